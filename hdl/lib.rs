@@ -1,0 +1,17 @@
+//! The EnDat receiver core, described in rust-hdl.
+//!
+//! ```text
+//! trigger -> Transaction -> ClockGen ------> endat_clk
+//!                |   \----> CommandSender -> data_o, data_oe
+//!                |
+//!                +-- LineDelay <- InputFilter <- data_i
+//!                |       | sample strobes
+//!                +-- Receiver -> Crc5 -> Snapshot -> registers -> host link
+//! ```
+//!
+//! Reading order: [`protocol`] and [`timing`] (facts), [`reg`] (the only registers), then the blocks
+//! from left to right in the drawing, [`channel`], [`card`]. [`elaborate`] turns any block into a typed `Design`.
+
+pub mod protocol;
+pub mod reg;
+pub mod timing;

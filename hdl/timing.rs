@@ -1,0 +1,73 @@
+//! Times and rates of EnDat, and the only place where hertz and nanoseconds become system clock cycles.
+//!
+//! Ref: HEIDENHAIN PWM 20 user's manual (Nov 2014), table of times; HEIDENHAIN Technical Information 383942.
+
+/// Slowest EnDat clock, in hertz (PWM 20).
+pub const ENDAT_HZ_MIN: u64 = 100_000;
+/// Fastest EnDat clock with propagation-delay compensation, in hertz (PWM 20).
+pub const ENDAT_HZ_MAX: u64 = 16_000_000;
+/// Clock of the frame that measures the propagation delay, in hertz: its period is longer than any cable's delay (TI, C2000).
+pub const CALIBRATION_HZ: u64 = 200_000;
+/// Shortest start time tST where the clock is fast enough to need one, in ns (PWM 20, TI).
+pub const TST_MIN_NS: u64 = 2_000;
+/// Longest start time tST, in ns (PWM 20).
+pub const TST_MAX_NS: u64 = 10_000;
+/// The clock from which TI's receiver uses tST, in hertz.
+pub const TST_FROM_HZ: u64 = 1_000_000;
+/// Shortest recovery time tm, in ns (PWM 20; default range).
+pub const RECOVERY_MIN_NS: u64 = 10_000;
+/// Longest recovery time tm, in ns (PWM 20; default range).
+pub const RECOVERY_MAX_NS: u64 = 30_000;
+/// Data must have been low for longer than tR before the next frame, in ns (PWM 20).
+pub const READY_LOW_NS: u64 = 500;
+/// Quiet time after an aborted transfer, in microseconds (S2 block, ADDI driver).
+pub const ABORT_US: u64 = 30_000;
+/// Largest deviation of the EnDat clock from the one asked for, in parts per million.
+pub const CLOCK_TOLERANCE_PPM: i64 = 5_000;
+/// Fewest system clock cycles in one EnDat clock period that the core can time.
+pub const PERIOD_CYCLES_MIN: u64 = 8;
+
+/// Cycles of a `system_hz` clock that last at least `ns` (rounded up: for minimum times).
+pub const fn cycles_at_least(ns: u64, system_hz: u64) -> u64 {
+    ((ns as u128 * system_hz as u128).div_ceil(1_000_000_000)) as u64
+}
+
+/// Cycles of a `system_hz` clock that last at most `ns` (rounded down: for maximum times).
+pub const fn cycles_at_most(ns: u64, system_hz: u64) -> u64 {
+    (ns as u128 * system_hz as u128 / 1_000_000_000) as u64
+}
+
+/// Cycles of a `system_hz` clock in one period of `hz`, to the nearest cycle.
+pub const fn period_cycles(hz: u64, system_hz: u64) -> u64 {
+    (system_hz + hz / 2) / hz
+}
+
+/// Nanoseconds that `cycles` of a `system_hz` clock last, rounded to the nearest.
+pub const fn cycles_to_ns(cycles: u64, system_hz: u64) -> u64 {
+    ((cycles as u128 * 1_000_000_000 + system_hz as u128 / 2) / system_hz as u128) as u64
+}
+
+/// Deviation of `actual` from `wanted` in parts per million, towards zero.
+pub const fn deviation_ppm(actual_hz: f64, wanted_hz: f64) -> f64 {
+    (actual_hz / wanted_hz - 1.0) * 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minimum_times_round_up_and_maximum_times_down() {
+        assert_eq!(cycles_at_least(500, 100_000_000), 50);
+        assert_eq!(cycles_at_least(501, 100_000_000), 51);
+        assert_eq!(cycles_at_most(509, 100_000_000), 50);
+        assert_eq!(cycles_at_least(31, 128_000_000), 4);
+    }
+
+    #[test]
+    fn four_megahertz_from_a_hundred_is_an_odd_number_of_cycles() {
+        assert_eq!(period_cycles(4_000_000, 100_000_000), 25);
+        assert_eq!(period_cycles(3_125_000, 100_000_000), 32);
+        assert_eq!(period_cycles(8_333_333, 100_000_000), 12);
+    }
+}

@@ -1,0 +1,43 @@
+//! Engines that run a design, one clock cycle at a time, behind one trait.
+
+/// Index of a port in [`Engine::ports`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PortId(pub usize);
+
+/// A port of the design that an engine runs. Clock ports are not listed: [`Engine::tick`] drives the clock.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// Name as in the emitted Verilog.
+    pub name: String,
+    /// Width in bits, 1..=128.
+    pub width_bits: usize,
+    /// Whether the bench drives it.
+    pub is_input: bool,
+}
+
+/// Something that executes a design cycle by cycle: rust-hdl's kernels, or an interpreter of the `Design`.
+///
+/// A cycle is: set inputs, (optionally) read outputs, [`Engine::tick`]. Registers start at their power-up values.
+pub trait Engine {
+    /// Every port but the clock, in declaration order.
+    fn ports(&self) -> &[Port];
+    /// Drives an input; bits above its width must be zero.
+    fn set(&mut self, port: PortId, value: u128);
+    /// The settled value of a port, with the present inputs and register contents.
+    fn get(&mut self, port: PortId) -> u128;
+    /// One rising edge of the clock.
+    fn tick(&mut self);
+
+    /// The port called `name`.
+    ///
+    /// # Panics
+    /// If there is none: the name is written in a bench, not typed by a user.
+    fn port(&self, name: &str) -> PortId {
+        PortId(
+            self.ports()
+                .iter()
+                .position(|p| p.name == name)
+                .unwrap_or_else(|| panic!("the design has no port {name}")),
+        )
+    }
+}

@@ -1,0 +1,15 @@
+//! The bench of the EnDat receiver core: everything the core talks to, and the engines that run it.
+//!
+//! Time is real here: [`Time`] counts picoseconds, and nothing in the encoder or line model is quantised to the
+//! system clock.
+
+pub mod engine;
+
+/// A moment or a span, in picoseconds.
+pub type Time = u64;
+/// Picoseconds in a nanosecond.
+pub const NS: Time = 1_000;
+/// Picoseconds in a microsecond.
+pub const US: Time = 1_000_000;
+/// Picoseconds in a millisecond.
+pub const MS: Time = 1_000_000_000;
