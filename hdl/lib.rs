@@ -12,6 +12,7 @@
 //! Reading order: [`protocol`] and [`timing`] (facts), [`reg`] (the only registers), then the blocks
 //! from left to right in the drawing, [`channel`], [`card`]. [`elaborate`] turns any block into a typed `Design`.
 
+pub mod config;
 pub mod protocol;
 pub mod reg;
 pub mod timing;
