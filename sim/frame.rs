@@ -180,8 +180,8 @@ mod tests {
     /// Every vector of the shared file; it is not part of the repository.
     #[test]
     fn every_published_crc_vector_holds() {
-        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("../../shared/crc_vectors.json");
+        let path =
+            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/crc_vectors.json");
         let Ok(text) = std::fs::read_to_string(&path) else {
             assert!(
                 std::env::var_os("CI").is_none(),

@@ -9,6 +9,8 @@ pub mod engine;
 pub mod frame;
 pub mod line;
 pub mod rng;
+#[cfg(test)]
+mod test_receiver;
 
 /// A moment or a span, in picoseconds.
 pub type Time = u64;

@@ -180,8 +180,9 @@ impl<E: Engine> Bench<E> {
     pub fn watch(&mut self, name: &str) {
         let id = self.engine.port(name);
         let port = &self.engine.ports()[id.0];
-        self.watched
-            .push(Watched::new(name, id, port.width_bits as u32));
+        let mut watched = Watched::new(name, id, port.width_bits as u32);
+        watched.note(self.now(), self.engine.get(id));
+        self.watched.push(watched);
     }
 
     /// The ports that are being watched.

@@ -89,12 +89,7 @@ mod tests {
 
     #[test]
     fn settings_of_the_paper_are_whole_cycles() {
-        let s = ChannelSettings::new(
-            100_000_000,
-            3_125_000,
-            ModeCommand::SendPositionAddInfo,
-            29,
-        );
+        let s = ChannelSettings::new(100_000_000, 3_125_000, ModeCommand::SendPositionAddInfo, 29);
         assert_eq!((s.period_cycles, s.first_low_extra_cycles), (32, 184));
         assert_eq!((s.ready_low_cycles, s.recovery_limit_cycles), (50, 3500));
         let slow = ChannelSettings::new(100_000_000, 200_000, ModeCommand::SendPosition, 13);

@@ -67,7 +67,7 @@ impl Encoder {
                 let f = self.frames.last_mut().expect("a frame came before");
                 f.end = FrameEnd::Overrun;
                 let after = time - f.last_rise;
-                let violation = if after < 2 * f.period {
+                let violation = if after < f.period {
                     Violation::TooManyPulses {
                         expected: f.rising_edges,
                     }
@@ -199,11 +199,7 @@ impl Encoder {
     fn next_answer_bit(&mut self, time: Time, bit: u32) {
         let answer = self.log().answer;
         if bit < answer.len {
-            self.launch(
-                time,
-                Drive::level(answer.get(bit)),
-                Symbol::Bit(bit as u8),
-            );
+            self.launch(time, Drive::level(answer.get(bit)), Symbol::Bit(bit as u8));
             self.work.next_bit = Some(bit + 1);
         } else {
             self.launch(time, Drive::High, Symbol::Tail);
@@ -267,7 +263,11 @@ impl Encoder {
         };
         self.state = State::Frame;
         self.pending.clear();
-        self.emit(time + self.config.release, Drive::Released, Symbol::Listening);
+        self.emit(
+            time + self.config.release,
+            Drive::Released,
+            Symbol::Listening,
+        );
     }
 
     pub(super) fn end_recovery(&mut self, time: Time) {
