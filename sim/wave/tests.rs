@@ -4,7 +4,7 @@ use crate::{
     encoder::{EncoderConfig, PositionSource},
     line::LineConfig,
     test_receiver::TestReceiver,
-    MS,
+    MS, US,
 };
 use endat_hdl::protocol::ModeCommand::SendPositionAddInfo;
 use std::process::Command;
@@ -21,6 +21,7 @@ fn recorded() -> Bench<TestReceiver> {
     bench.watch("position");
     bench.frame(MS);
     bench.frame(MS);
+    bench.run_for(40 * US);
     bench
 }
 
