@@ -9,6 +9,7 @@ pub mod engine;
 pub mod frame;
 pub mod line;
 pub mod rng;
+pub mod scenario;
 pub mod segments;
 #[cfg(test)]
 mod test_receiver;

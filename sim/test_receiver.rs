@@ -384,6 +384,11 @@ impl Engine for TestReceiver {
                     low_since: self.cycle,
                 };
             }
+            Phase::Settle { .. } if data && self.at("trigger") == 1 => {
+                self.overrun = false;
+                self.abort();
+                self.finish(1);
+            }
             Phase::Settle { .. } if data => {
                 self.phase = Phase::Settle {
                     low_since: self.cycle,
