@@ -9,8 +9,11 @@ pub mod engine;
 pub mod frame;
 pub mod line;
 pub mod rng;
+pub mod scenario;
+pub mod segments;
 #[cfg(test)]
 mod test_receiver;
+pub mod wave;
 
 /// A moment or a span, in picoseconds.
 pub type Time = u64;

@@ -84,7 +84,7 @@ pub struct TestReceiver {
     delay: Option<u64>,
     calibrating: bool,
     position: u128,
-    cause: u128,
+    overrun: bool,
 }
 
 impl TestReceiver {
@@ -123,7 +123,7 @@ impl TestReceiver {
             delay: None,
             calibrating: true,
             position: 0,
-            cause: 0,
+            overrun: false,
         };
         this.put("endat_clk", 1);
         this
@@ -155,6 +155,7 @@ impl TestReceiver {
 
     fn begin(&mut self) {
         if self.sync[1] && self.bug != Bug::NoRecovery {
+            self.abort();
             return self.finish(1);
         }
         self.calibrating = self.delay.is_none();
@@ -276,7 +277,8 @@ impl TestReceiver {
         }
     }
 
-    fn decode(&mut self) {
+    /// Takes the answer apart and returns the cause.
+    fn decode(&mut self) -> u128 {
         let bit = |i: usize| u128::from(self.bits[i]);
         let head = 2 + usize::from(self.has_f2());
         let width = self.at("position_bits") as usize;
@@ -286,17 +288,18 @@ impl TestReceiver {
         let (f1, f2) = (bit(1), if head == 3 { bit(2) } else { 1 });
         self.put("crc_received", received);
         self.put("crc_computed", computed);
-        self.cause = match (received == computed, f1, f2) {
+        match (received == computed, f1, f2) {
             (false, _, _) => 4,
             (_, 1, _) => 5,
             (_, _, 0) => 6,
             _ => 0,
-        };
+        }
     }
 
     fn abort(&mut self) {
         self.put("endat_clk", 1);
         self.put("data_oe", 0);
+        self.put("busy", 1);
         let quiet = self.at("abort_us") * self.system_hz / 1_000_000;
         self.delay = None;
         self.phase = Phase::Abort {
@@ -305,7 +308,9 @@ impl TestReceiver {
     }
 
     fn finish(&mut self, cause: u128) {
-        self.put("cause", cause);
+        let overrun = std::mem::take(&mut self.overrun);
+        let shown = if cause == 0 && overrun { 8 } else { cause };
+        self.put("cause", shown);
         self.put("fresh", u128::from(cause == 0));
         if cause == 0 {
             self.put("position", self.position);
@@ -327,14 +332,12 @@ impl TestReceiver {
         let all_bits = self.bits.len() == self.answer_bits();
         let all_edges = self.rises.len() as i64 >= self.last_rise();
         if self.phase == Phase::Run && self.start.is_some() && all_bits && all_edges {
-            self.decode();
-            self.phase = match self.bug {
-                Bug::NoRecovery => Phase::Idle,
-                _ => Phase::Recover { since: self.cycle },
-            };
+            let cause = self.decode();
+            self.finish(cause);
+            self.phase = Phase::Recover { since: self.cycle };
             if self.bug == Bug::NoRecovery {
                 self.put("busy", 0);
-                self.finish(self.cause);
+                self.phase = Phase::Idle;
             }
         }
     }
@@ -358,6 +361,7 @@ impl Engine for TestReceiver {
         self.put("result_strobe", 0);
         self.put("sample_strobe", 0);
         let data = self.sync[1];
+        self.overrun |= self.at("trigger") == 1 && self.phase != Phase::Idle;
         match self.phase {
             Phase::Idle if self.at("trigger") == 1 => self.begin(),
             Phase::Run => self.run(),
@@ -372,14 +376,18 @@ impl Engine for TestReceiver {
                     };
                 } else if waited > self.at("recovery_limit_cycles") {
                     self.abort();
-                    self.finish(7);
+                    self.put("cause", 7); // of the result that is out already
                 }
             }
             Phase::Abort { until } if self.cycle >= until => {
-                self.cause = u128::MAX;
                 self.phase = Phase::Settle {
                     low_since: self.cycle,
                 };
+            }
+            Phase::Settle { .. } if data && self.at("trigger") == 1 => {
+                self.overrun = false;
+                self.abort();
+                self.finish(1);
             }
             Phase::Settle { .. } if data => {
                 self.phase = Phase::Settle {
@@ -389,9 +397,6 @@ impl Engine for TestReceiver {
             Phase::Settle { low_since } if self.cycle - low_since > self.at("ready_low_cycles") => {
                 self.put("busy", 0);
                 self.phase = Phase::Idle;
-                if self.cause != u128::MAX {
-                    self.finish(self.cause);
-                }
             }
             _ => {}
         }

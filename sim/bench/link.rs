@@ -15,6 +15,8 @@ pub struct LinkTrace {
     pub clock_at_encoder: Vec<(Time, bool)>,
     /// What the receiver does to DATA.
     pub receiver: Vec<(Time, Drive)>,
+    /// The same as heard at the encoder.
+    pub receiver_at_encoder: Vec<(Time, Drive)>,
     /// What the encoder does to DATA.
     pub encoder: Vec<(Time, Output)>,
     /// DATA at the receiver's pin.
@@ -124,6 +126,8 @@ impl Link {
         note(&mut trace.clock_at_receiver, time, self.clock);
         note(&mut trace.clock_at_encoder, time, line.clock_at_encoder());
         note(&mut trace.receiver, time, line.receiver());
+        let heard = line.receiver_at_encoder();
+        note(&mut trace.receiver_at_encoder, time, heard);
         note(&mut trace.encoder, time, line.encoder());
         note(&mut trace.data_at_encoder, time, line.data_at_encoder());
         if let Some(change) = line.history().last() {

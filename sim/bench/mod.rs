@@ -351,8 +351,12 @@ impl<E: Engine> Bench<E> {
         true
     }
 
-    /// Triggers the block `Channel` and runs until it delivers a result; none if it does not within `span`.
+    /// Waits until the block `Channel` is not busy, triggers it and runs until it delivers a result; none if one of the two
+    /// takes longer than `span`.
     pub fn frame(&mut self, span: Time) -> Option<ChannelResult> {
+        if self.has_port("busy") && !self.run_until_done(span, |b| b.get("busy") == 0) {
+            return None;
+        }
         let before = self.results.len();
         self.trigger();
         self.run_until_done(span, |b| b.results.len() > before)
@@ -383,6 +387,11 @@ impl<E: Engine> Bench<E> {
         if let Some(ports) = &self.result_ports {
             if let Some(result) = ports.read(&mut self.engine, self.cycle, now) {
                 self.results.push(result);
+            } else if let Some(last) = self.results.last_mut() {
+                let cause = ports.cause(&mut self.engine);
+                if cause != last.cause {
+                    last.late_cause = Some(cause);
+                }
             }
         }
         for w in &mut self.watched {

@@ -4,6 +4,7 @@ use crate::{
     engine::{Engine, Port, PortId},
     Time,
 };
+use endat_hdl::transaction::cause;
 
 /// A result of the block `Channel`; the fields have the names of its ports.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,6 +27,8 @@ pub struct ChannelResult {
     pub age_us: u64,
     /// Primary cause, 0 = none.
     pub cause: u64,
+    /// The cause that took its place after the result was out (DATA that does not fall).
+    pub late_cause: Option<u64>,
     /// Raw flags.
     pub flags: u64,
     /// Received CRC.
@@ -38,23 +41,15 @@ pub struct ChannelResult {
     pub delay_cycles: u64,
 }
 
-/// Names of the causes of the block `Channel`, by code.
-pub const CAUSES: [&str; 9] = [
-    "none",
-    "DataNotLow",
-    "NoStartBit",
-    "StartWindow",
-    "Crc",
-    "F1",
-    "F2",
-    "DataNotFalling",
-    "TriggerOverrun",
-];
-
 impl ChannelResult {
-    /// Name of the cause.
+    /// The cause in the end: the late one if there is one.
+    pub fn last_cause(&self) -> u64 {
+        self.late_cause.unwrap_or(self.cause)
+    }
+
+    /// Name of the cause in the end.
     pub fn cause_name(&self) -> &'static str {
-        CAUSES.get(self.cause as usize).unwrap_or(&"unknown")
+        cause::name(self.last_cause())
     }
 }
 
@@ -63,6 +58,9 @@ pub(super) struct ResultPorts {
     strobe: PortId,
     fields: [Option<PortId>; 12],
 }
+
+/// Place of the cause in the list of fields.
+const CAUSE: usize = 6;
 
 impl ResultPorts {
     pub(super) fn find(engine: &impl Engine) -> Option<Self> {
@@ -93,6 +91,11 @@ impl ResultPorts {
         })
     }
 
+    /// The cause as it stands now.
+    pub(super) fn cause(&self, engine: &mut impl Engine) -> u64 {
+        self.fields[CAUSE].map_or(0, |id| engine.get(id) as u64)
+    }
+
     pub(super) fn read(
         &self,
         engine: &mut impl Engine,
@@ -117,6 +120,7 @@ impl ResultPorts {
             first_fall_timestamp,
             age_us,
             cause,
+            late_cause: None,
             flags,
             crc_received,
             crc_computed,

@@ -1,6 +1,9 @@
 //! What an encoder notes down: one record for each frame, and everything the receiver did wrong.
 
-use crate::{frame::AnswerBits, Time};
+use crate::{
+    frame::{position_field, AnswerBits, Field, PositionAnswer},
+    Time,
+};
 
 /// How a frame ended, seen from the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +59,22 @@ impl FrameLog {
     /// Rising edges that this frame must have: `s` + answer bits; none if the answer never began.
     pub fn expected_rising_edges(&self) -> Option<u32> {
         self.start_edge.map(|s| s + self.answer.len)
+    }
+
+    /// What bit `index` of the answer is.
+    pub fn field(&self, index: u32) -> Field {
+        position_field(index, self.has_f2, self.position_bits)
+    }
+
+    /// Whether the answer is, bit by bit, what a sound encoder would send for this position.
+    pub fn is_true_answer(&self, position_bits: u32, f2: bool) -> bool {
+        let good = PositionAnswer {
+            f1: false,
+            f2: f2.then_some(true),
+            position: self.position,
+            position_bits,
+        };
+        self.answer == good.bits()
     }
 }
 

@@ -109,7 +109,9 @@ enum State {
 /// Working data of the frame in progress.
 #[derive(Default)]
 struct Work {
+    /// Falling edges as counted, and as they came.
     falls: u32,
+    true_falls: u32,
     command: u8,
     request: Option<protocol::Request>,
     nominal: Time,

@@ -49,12 +49,12 @@ impl Encoder {
                 self.begin(time);
             }
             State::Frame => {
-                self.work.falls += 1;
-                if self.has(|d| *d == Defect::MissEdge(self.work.falls)) {
+                self.work.true_falls += 1;
+                if self.has(|d| *d == Defect::MissEdge(self.work.true_falls)) {
                     self.work.missed = true;
-                    self.work.falls -= 1;
                     return;
                 }
+                self.work.falls += 1;
                 self.work.last_high = width;
                 if self.work.nominal > 0 {
                     self.check_high(time, width);
@@ -256,6 +256,7 @@ impl Encoder {
         });
         self.work = Work {
             falls: 1,
+            true_falls: 1,
             tcal,
             tm,
             defects,
