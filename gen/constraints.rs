@@ -90,7 +90,7 @@ impl Port {
 
 /// A number of ns as the vendor's tools read it, without needless digits.
 fn ns(hz: u64) -> String {
-    let text = format!("{:.3}", 1e9 / hz as f64);
+    let text = format!("{:.4}", 1e9 / hz as f64);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
@@ -163,6 +163,6 @@ mod tests {
     fn periods_are_written_without_needless_digits() {
         assert_eq!(ns(32_000_000), "31.25");
         assert_eq!(ns(100_000_000), "10");
-        assert_eq!(ns(128_000_000), "7.813");
+        assert_eq!(ns(128_000_000), "7.8125");
     }
 }

@@ -406,17 +406,23 @@ fn assign_pins(
             }
         };
         if let Some(other) = all.iter().find(|a: &&Assignment| a.pin == pin) {
-            let text = format!(
-                "{pin} already carries {}; choose a free pin for one of the two",
-                other.signal
-            );
-            let line = user
-                .or(moved
-                    .iter()
-                    .find(|(s, _)| *s == other.signal)
-                    .map(|(_, at)| at))
-                .map_or(line, |at| at.line);
-            pins.complain(line, &signal, &format!("{word:?}"), &text);
+            // The one that the file has moved is the one to complain about, whichever comes first.
+            let moved_other = moved
+                .iter()
+                .find(|(s, _)| *s == other.signal)
+                .map(|(_, at)| at);
+            let (mover, at, place) = match (user, moved_other) {
+                (None, Some(at)) => (other.signal.as_str(), at.line, &at.value),
+                _ => (signal.as_str(), line, word),
+            };
+            let taken = if mover == signal {
+                &other.signal
+            } else {
+                &signal
+            };
+            let text =
+                format!("{pin} already carries {taken}; choose a free pin for one of the two");
+            pins.complain(at, mover, &format!("{place:?}"), &text);
             continue;
         }
         let position = board.position(&pin);
