@@ -12,6 +12,17 @@
 //! Reading order: [`protocol`] and [`timing`] (facts), [`reg`] (the only registers), then the blocks
 //! from left to right in the drawing, [`channel`], [`card`]. [`elaborate`] turns any block into a typed `Design`.
 
+pub mod channel;
+pub mod clock_gen;
+pub mod command_sender;
+pub mod config;
+pub mod crc5;
+pub mod half_period;
+pub mod input_filter;
+pub mod line_delay;
 pub mod protocol;
+pub mod receiver;
 pub mod reg;
+pub mod snapshot;
 pub mod timing;
+pub mod transaction;

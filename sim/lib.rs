@@ -3,7 +3,17 @@
 //! Time is real here: [`Time`] counts picoseconds, and nothing in the encoder or line model is quantised to the
 //! system clock.
 
+pub mod bench;
+pub mod encoder;
 pub mod engine;
+pub mod frame;
+pub mod line;
+pub mod rng;
+pub mod scenario;
+pub mod segments;
+#[cfg(test)]
+mod test_receiver;
+pub mod wave;
 
 /// A moment or a span, in picoseconds.
 pub type Time = u64;

@@ -1,0 +1,195 @@
+//! Configuration files: TOML text in, a checked [`Project`] out, or every complaint with file, line and remedy.
+
+mod names;
+mod reader;
+mod schema;
+
+pub use names::{check_name, NAME_MAX};
+
+use crate::board::{Assignment, Board, Pll};
+use crate::error::{Diagnostic, GenError};
+use endat_hdl::config::CardConfig;
+use std::path::Path;
+
+/// The presets that come with the program: name and text.
+pub const PRESETS: &[(&str, &str)] = &[(
+    "s6_two_channel",
+    include_str!("../presets/s6_two_channel.toml"),
+)];
+/// The preset that the program emits when nothing else is asked for.
+pub const DEFAULT_PRESET: &str = "s6_two_channel";
+/// Largest configuration file; a larger one is not a configuration.
+const FILE_BYTES_MAX: usize = 1 << 20;
+
+/// What a port of the top level is for; decides its constraints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Board oscillator.
+    Oscillator,
+    /// Output to a transceiver: clock, data, driver enable.
+    Transceiver,
+    /// Answer of the encoder, asynchronous.
+    EncoderData,
+    /// Trigger pin, asynchronous.
+    Trigger,
+    /// UART input, asynchronous.
+    UartInput,
+    /// UART output.
+    UartOutput,
+    /// Light.
+    Led,
+}
+
+impl Kind {
+    /// Whether the port is an input of the device.
+    pub const fn is_input(self) -> bool {
+        matches!(
+            self,
+            Self::Oscillator | Self::EncoderData | Self::Trigger | Self::UartInput
+        )
+    }
+
+    /// Why the timing of the port must not be analysed; `None` when it must.
+    pub const fn asynchronous(self) -> Option<&'static str> {
+        match self {
+            Self::EncoderData => Some("answers arrive with the delay of the cable, in any phase; synchronised and tracked inside"),
+            Self::Trigger => Some("belongs to no clock; synchronised inside, one system clock of jitter is documented"),
+            Self::UartInput => Some("belongs to the host's clock; synchronised and sampled in mid bit inside"),
+            _ => None,
+        }
+    }
+}
+
+/// A checked configuration and all that follows from it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Project {
+    /// Name of the folder, the files and the top module.
+    pub name: String,
+    /// The configuration file as the user named it.
+    pub source: String,
+    /// The card in the units of the blocks.
+    pub card: CardConfig,
+    /// Encoder of each channel, for people; may be empty.
+    pub encoders: Vec<String>,
+    /// The board.
+    pub board: Board,
+    /// The clock manager.
+    pub pll: Pll,
+    /// Pin of every port of the board top, in the order of the ports.
+    pub pins: Vec<Assignment>,
+    /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
+    pub hash: String,
+}
+
+/// Text of the preset with this name.
+pub fn preset(name: &str) -> Result<&'static str, GenError> {
+    let found = PRESETS.iter().find(|(n, _)| *n == name);
+    found.map(|(_, text)| *text).ok_or_else(|| {
+        let known: Vec<&str> = PRESETS.iter().map(|(n, _)| *n).collect();
+        GenError::input(format!(
+            "--preset = {}: unknown preset; known presets: {}",
+            reader::shorten(name),
+            known.join(", ")
+        ))
+    })
+}
+
+/// A preset, checked.
+pub fn load_preset(name: &str) -> Result<Project, GenError> {
+    Ok(parse(&format!("{name}.toml"), preset(name)?)?)
+}
+
+/// A configuration file, read and checked.
+pub fn load_file(path: &Path) -> Result<Project, GenError> {
+    let remedy = "give a TOML file; `endat-gen presets --show NAME` prints one to start from";
+    if path.is_dir() {
+        return Err(GenError::input(format!(
+            "{}: is a folder, not a configuration; {remedy}",
+            path.display()
+        )));
+    }
+    let bytes = std::fs::read(path).map_err(|e| GenError::io("read", path, &e, remedy))?;
+    let file = path.display().to_string();
+    Ok(parse(&file, text_of(&file, &bytes)?)?)
+}
+
+/// The text in the bytes of a configuration file.
+fn text_of<'b>(file: &str, bytes: &'b [u8]) -> Result<&'b str, Vec<Diagnostic>> {
+    let fail = |line, text: String| {
+        Err(vec![Diagnostic {
+            file: file.into(),
+            line,
+            text,
+        }])
+    };
+    if bytes.len() > FILE_BYTES_MAX {
+        return fail(
+            0,
+            format!(
+                "has {} bytes, a configuration at most {FILE_BYTES_MAX}; give a TOML file",
+                bytes.len()
+            ),
+        );
+    }
+    let line_of = |byte: usize| bytes[..byte].iter().filter(|b| **b == b'\n').count() + 1;
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    if bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF") {
+        return fail(0, "is UTF-16 text; save it as UTF-8".into());
+    }
+    if let Some(byte) = bytes.iter().position(|b| *b == 0) {
+        return fail(
+            line_of(byte),
+            "has a zero byte: this is binary, not text; give a TOML file".into(),
+        );
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Ok(text),
+        Err(e) => fail(
+            line_of(e.valid_up_to()),
+            "is not UTF-8 text; save it as UTF-8".into(),
+        ),
+    }
+}
+
+/// Checks the text of a configuration; `file` names it in the messages.
+pub fn parse(file: &str, text: &str) -> Result<Project, Vec<Diagnostic>> {
+    if text.trim().is_empty() {
+        let text = "is empty; `endat-gen presets --show s6_two_channel` prints a configuration to start from".into();
+        return Err(vec![Diagnostic {
+            file: file.into(),
+            line: 0,
+            text,
+        }]);
+    }
+    let source = reader::Source::new(file, text);
+    match schema::read(&source) {
+        Some(project) if source.is_good() => Ok(project),
+        _ => Err(source.into_diagnostics()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_preset_is_good_and_carries_its_own_name() {
+        for (name, _) in PRESETS {
+            assert_eq!(load_preset(name).unwrap().name, *name);
+        }
+        assert!(PRESETS.iter().any(|(n, _)| *n == DEFAULT_PRESET));
+    }
+
+    #[test]
+    fn bytes_that_are_not_text_are_refused_with_their_line() {
+        let line = |bytes: &[u8]| text_of("f", bytes).unwrap_err()[0].to_string();
+        assert_eq!(
+            line(b"a = 1\n\xFF"),
+            "f:2: is not UTF-8 text; save it as UTF-8"
+        );
+        assert!(line(b"a\n\n\0").starts_with("f:3: has a zero byte"));
+        assert!(line(b"\xFF\xFEa").contains("UTF-16"));
+        assert_eq!(text_of("f", b"\xEF\xBB\xBFa"), Ok("a"));
+        assert!(line(&vec![b' '; FILE_BYTES_MAX + 1]).contains("at most"));
+    }
+}

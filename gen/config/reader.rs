@@ -1,0 +1,387 @@
+//! Reads TOML tables key by key and collects every complaint with its line.
+//!
+//! `serde` stops at the first problem; a configuration is a form, and a form is checked as a whole.
+
+use crate::error::Diagnostic;
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::ops::Range;
+use toml::de::{DeTable, DeValue};
+use toml::Spanned;
+
+/// The text of one file, and the complaints about it.
+pub struct Source<'t> {
+    /// File as the user named it.
+    pub file: &'t str,
+    text: &'t str,
+    diagnostics: RefCell<Vec<Diagnostic>>,
+}
+
+impl<'t> Source<'t> {
+    /// A file that has nothing wrong yet.
+    pub fn new(file: &'t str, text: &'t str) -> Self {
+        Self {
+            file,
+            text,
+            diagnostics: RefCell::new(Vec::new()),
+        }
+    }
+
+    /// The text of the file.
+    pub fn text(&self) -> &'t str {
+        self.text
+    }
+
+    /// The line of a byte, counted from 1.
+    pub fn line(&self, byte: usize) -> usize {
+        let before = &self.text.as_bytes()[..byte.min(self.text.len())];
+        before.iter().filter(|b| **b == b'\n').count() + 1
+    }
+
+    /// Notes a complaint about a place.
+    pub fn complain(&self, span: &Range<usize>, text: String) {
+        self.complain_line(self.line(span.start), text);
+    }
+
+    /// Notes a complaint about a line; 0 = the whole file.
+    pub fn complain_line(&self, line: usize, text: String) {
+        let diagnostic = Diagnostic {
+            file: self.file.into(),
+            line,
+            text,
+        };
+        self.diagnostics.borrow_mut().push(diagnostic);
+    }
+
+    /// Whether nothing is wrong so far.
+    pub fn is_good(&self) -> bool {
+        self.diagnostics.borrow().is_empty()
+    }
+
+    /// All complaints, in the order of the lines.
+    pub fn into_diagnostics(self) -> Vec<Diagnostic> {
+        let mut all = self.diagnostics.into_inner();
+        all.sort_by_key(|d| d.line);
+        all.dedup();
+        all
+    }
+}
+
+/// A value and the line it stands on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct At<T> {
+    /// The value.
+    pub value: T,
+    /// Its line, counted from 1.
+    pub line: usize,
+}
+
+/// One table being read; [`Table::finish`] complains about the keys nobody asked for.
+pub struct Table<'s, 't> {
+    source: &'s Source<'t>,
+    table: &'s DeTable<'t>,
+    path: String,
+    /// Line of the table's head.
+    pub line: usize,
+    known: RefCell<BTreeSet<&'static str>>,
+}
+
+impl<'s, 't> Table<'s, 't> {
+    /// The top level of a file.
+    pub fn root(source: &'s Source<'t>, table: &'s DeTable<'t>) -> Self {
+        Self::new(source, table, String::new(), 1)
+    }
+
+    fn new(source: &'s Source<'t>, table: &'s DeTable<'t>, path: String, line: usize) -> Self {
+        Self {
+            source,
+            table,
+            path,
+            line,
+            known: RefCell::default(),
+        }
+    }
+
+    /// Name of a key with the path of its table.
+    pub fn name(&self, key: &str) -> String {
+        if self.path.is_empty() {
+            key.into()
+        } else {
+            format!("{}.{key}", self.path)
+        }
+    }
+
+    fn get(&self, key: &'static str) -> Option<&'s Spanned<DeValue<'t>>> {
+        self.known.borrow_mut().insert(key);
+        self.table.get(key)
+    }
+
+    fn wrong_type(&self, key: &str, value: &Spanned<DeValue<'_>>, wanted: &str) {
+        let text = format!(
+            "{} = {}: is {}, must be {wanted}",
+            self.name(key),
+            self.excerpt(&value.span()),
+            article(value.get_ref().type_str())
+        );
+        self.source.complain(&value.span(), text);
+    }
+
+    /// The value as it stands in the file, shortened.
+    fn excerpt(&self, span: &Range<usize>) -> String {
+        shorten(self.source.text.get(span.clone()).unwrap_or("?"))
+    }
+
+    fn at<T>(&self, value: T, spanned: &Spanned<DeValue<'_>>) -> Option<At<T>> {
+        Some(At {
+            value,
+            line: self.source.line(spanned.span().start),
+        })
+    }
+
+    /// An integer, if the key is there.
+    pub fn integer(&self, key: &'static str) -> Option<At<u64>> {
+        let spanned = self.get(key)?;
+        let Some(integer) = spanned.get_ref().as_integer() else {
+            self.wrong_type(
+                key,
+                spanned,
+                "a whole number, without quotes or decimal point",
+            );
+            return None;
+        };
+        match i128::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(value) if (0..=i128::from(u32::MAX) * 1_000).contains(&value) => {
+                self.at(value as u64, spanned)
+            }
+            _ => {
+                let text = format!(
+                    "{} = {}: outside 0..{}; choose a value in that range",
+                    self.name(key),
+                    self.excerpt(&spanned.span()),
+                    u64::from(u32::MAX) * 1_000
+                );
+                self.source.complain(&spanned.span(), text);
+                None
+            }
+        }
+    }
+
+    /// An integer that must be there.
+    pub fn required_integer(&self, key: &'static str, example: &str) -> Option<At<u64>> {
+        self.require(key, example)?;
+        self.integer(key)
+    }
+
+    /// A string, if the key is there.
+    pub fn string(&self, key: &'static str) -> Option<At<String>> {
+        let spanned = self.get(key)?;
+        match spanned.get_ref().as_str() {
+            Some(text) => self.at(text.to_owned(), spanned),
+            None => {
+                self.wrong_type(key, spanned, "text in quotes");
+                None
+            }
+        }
+    }
+
+    /// A string that must be there.
+    pub fn required_string(&self, key: &'static str, example: &str) -> Option<At<String>> {
+        self.require(key, example)?;
+        self.string(key)
+    }
+
+    /// A list of strings, if the key is there.
+    pub fn strings(&self, key: &'static str) -> Option<Vec<At<String>>> {
+        let spanned = self.get(key)?;
+        let Some(array) = spanned.get_ref().as_array() else {
+            self.wrong_type(key, spanned, "a list of texts in quotes");
+            return None;
+        };
+        let mut all = Vec::new();
+        for item in array.iter() {
+            match item.get_ref().as_str() {
+                Some(text) => all.extend(self.at(text.to_owned(), item)),
+                None => self.wrong_type(key, item, "text in quotes"),
+            }
+        }
+        Some(all)
+    }
+
+    /// A table; an empty one stands in when it is missing.
+    pub fn table(&self, key: &'static str, empty: &'s DeTable<'t>) -> Table<'s, 't> {
+        let path = self.name(key);
+        match self.get(key).map(|s| (s, s.get_ref().as_table())) {
+            Some((spanned, Some(table))) => Table::new(
+                self.source,
+                table,
+                path,
+                self.source.line(spanned.span().start),
+            ),
+            other => {
+                if let Some((spanned, None)) = other {
+                    self.wrong_type(key, spanned, &format!("a table headed [{path}]"));
+                }
+                Table::new(self.source, empty, path, 1)
+            }
+        }
+    }
+
+    /// An array of tables; empty when missing.
+    pub fn tables(&self, key: &'static str) -> Vec<Table<'s, 't>> {
+        let Some(spanned) = self.get(key) else {
+            return Vec::new();
+        };
+        let Some(array) = spanned.get_ref().as_array() else {
+            self.wrong_type(key, spanned, &format!("tables headed [[{key}]]"));
+            return Vec::new();
+        };
+        let mut all = Vec::new();
+        for (index, item) in array.iter().enumerate() {
+            match item.get_ref().as_table() {
+                Some(table) => {
+                    let line = self.source.line(item.span().start);
+                    all.push(Table::new(
+                        self.source,
+                        table,
+                        format!("{key}[{index}]"),
+                        line,
+                    ));
+                }
+                None => self.wrong_type(key, item, &format!("a table headed [[{key}]]")),
+            }
+        }
+        all
+    }
+
+    /// Every key with its text, for tables whose keys are names of things.
+    pub fn free_strings(&self) -> Vec<(String, At<String>)> {
+        let mut all = Vec::new();
+        for (key, spanned) in self.table.iter() {
+            match spanned.get_ref().as_str() {
+                Some(text) => all.extend(
+                    self.at(text.to_owned(), spanned)
+                        .map(|at| (key.get_ref().to_string(), at)),
+                ),
+                None => self.wrong_type(key.get_ref(), spanned, "text in quotes"),
+            }
+        }
+        all
+    }
+
+    fn require(&self, key: &'static str, example: &str) -> Option<()> {
+        if self.get(key).is_none() {
+            let text = format!(
+                "{}: is missing; add, for example, `{key} = {example}`",
+                self.name(key)
+            );
+            self.source.complain_line(self.line, text);
+            return None;
+        }
+        Some(())
+    }
+
+    /// Whether the key is there, readable or not.
+    pub fn has(&self, key: &str) -> bool {
+        self.table.get(key).is_some()
+    }
+
+    /// Notes a complaint about the table itself.
+    pub fn complain_plain(&self, text: String) {
+        self.source.complain_line(self.line, text);
+    }
+
+    /// Notes a complaint about a key of this table.
+    pub fn complain(&self, line: usize, key: &str, value: &str, text: &str) {
+        let text = format!("{} = {}: {text}", self.name(key), shorten(value));
+        self.source.complain_line(line, text);
+    }
+
+    /// Complains about every key that nothing has asked for.
+    pub fn finish(&self) {
+        let known = self.known.borrow();
+        for key in self.table.keys() {
+            if known.contains(key.get_ref().as_ref()) {
+                continue;
+            }
+            let list = known.iter().copied().collect::<Vec<_>>().join(", ");
+            let hint = match nearest(key.get_ref(), &known) {
+                Some(near) => format!("did you mean {near}?"),
+                None => format!("known keys here: {list}"),
+            };
+            let text = format!(
+                "{}: unknown key; {hint}",
+                shorten(&self.name(key.get_ref()))
+            );
+            self.source.complain(&key.span(), text);
+        }
+    }
+}
+
+/// The known key that is closest to a misspelt one, if any is close.
+fn nearest<'k>(key: &str, known: &BTreeSet<&'k str>) -> Option<&'k str> {
+    let scored = known.iter().map(|k| (distance(key, k), *k));
+    scored
+        .min()
+        .filter(|(d, k)| *d <= 1 + k.len() / 4)
+        .map(|(_, k)| k)
+}
+
+/// Edit distance, for short words.
+fn distance(a: &str, b: &str) -> usize {
+    if a.len() > 64 {
+        return usize::MAX;
+    }
+    let mut row: Vec<usize> = (0..=b.chars().count()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.chars().enumerate() {
+            let change = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = change.min(row[j] + 1).min(row[j + 1] + 1);
+        }
+    }
+    row[row.len() - 1]
+}
+
+fn article(kind: &str) -> String {
+    let an = kind.starts_with(['a', 'e', 'i', 'o', 'u']);
+    format!("{} {kind}", if an { "an" } else { "a" })
+}
+
+/// At most 60 characters, on one line, without control characters.
+pub fn shorten(text: &str) -> String {
+    let mut short: String = text.chars().take(60).flat_map(printable).collect();
+    if text.chars().nth(60).is_some() {
+        short.push_str("...");
+    }
+    short
+}
+
+fn printable(c: char) -> Vec<char> {
+    if c.is_control() {
+        c.escape_default().collect()
+    } else {
+        vec![c]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_misspelt_key_finds_its_neighbour_and_a_foreign_one_does_not() {
+        let known = BTreeSet::from(["clock_hz", "tst_ns", "cable_m"]);
+        assert_eq!(nearest("clok_hz", &known), Some("clock_hz"));
+        assert_eq!(nearest("colour", &known), None);
+        assert_eq!(distance("abc", "abc"), 0);
+        assert_eq!(distance("abc", "acb"), 2);
+    }
+
+    #[test]
+    fn values_in_messages_stay_on_one_line() {
+        assert_eq!(shorten("a\nb\u{7}"), "a\\nb\\u{7}");
+        assert_eq!(shorten(&"x".repeat(61)), format!("{}...", "x".repeat(60)));
+    }
+}

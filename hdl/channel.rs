@@ -1,0 +1,288 @@
+//! Channel: one encoder port, from the trigger to the snapshot.
+//!
+//! ```text
+//! trigger -> Transaction -> ClockGen -> endat_clk
+//!                |    \---> CommandSender -> data_o, data_oe
+//!                |              data_i -> InputFilter
+//!                |                             |
+//!                +------ LineDelay -> Receiver -> Snapshot -> position, cause, ...
+//! ```
+//!
+//! The first frame after reset, after an aborted frame and after `calibrate` runs at the calibration clock and
+//! measures the propagation delay; all others run at the configured clock. Configuration inputs may change while no
+//! frame is under way.
+
+use crate::clock_gen::ClockGen;
+use crate::command_sender::CommandSender;
+use crate::input_filter::InputFilter;
+use crate::line_delay::LineDelay;
+use crate::receiver::Receiver;
+use crate::reg::Reg;
+use crate::snapshot::Snapshot;
+use crate::transaction::Transaction;
+use rust_hdl::prelude::*;
+
+/// One EnDat port.
+#[derive(LogicBlock)]
+pub struct Channel {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// Free-running time in system clock cycles.
+    pub timestamp: Signal<In, Bits<32>>,
+    /// One-cycle strobe: take a position.
+    pub trigger: Signal<In, Bit>,
+    /// Strobe: measure the propagation delay again with the next frame.
+    pub calibrate: Signal<In, Bit>,
+    /// Data line from the transceiver, asynchronous.
+    pub data_i: Signal<In, Bit>,
+    /// EnDat clock period, in system clock cycles; an odd one has the longer high phase.
+    pub period_cycles: Signal<In, Bits<11>>,
+    /// How much longer than half a period the first low phase is: 0, or at least 2 system clock cycles (tST).
+    pub first_low_extra_cycles: Signal<In, Bits<11>>,
+    /// Mode command.
+    pub command: Signal<In, Bits<6>>,
+    /// Position width, 1..=48 bits.
+    pub position_bits: Signal<In, Bits<6>>,
+    /// Pulses on the data line of at most this many system clock cycles are ignored.
+    pub filter_cycles: Signal<In, Bits<4>>,
+    /// Largest distance of the start edge from its expected place, in system clock cycles.
+    pub start_window_cycles: Signal<In, Bits<6>>,
+    /// Longest wait for the start bit after the turnaround, in microseconds.
+    pub start_timeout_us: Signal<In, Bits<16>>,
+    /// Data must fall within this many system clock cycles after the frame.
+    pub recovery_limit_cycles: Signal<In, Bits<16>>,
+    /// Data must have been low this many system clock cycles before a frame (tR).
+    pub ready_low_cycles: Signal<In, Bits<8>>,
+    /// Quiet time after an aborted frame, in microseconds.
+    pub abort_us: Signal<In, Bits<16>>,
+    /// EnDat clock to the transceiver, from a register.
+    pub endat_clk: Signal<Out, Bit>,
+    /// Data line to the transceiver, from a register.
+    pub data_o: Signal<Out, Bit>,
+    /// Driver enable of the data line, from a register.
+    pub data_oe: Signal<Out, Bit>,
+    /// Strobe: a new result can be read from this cycle on.
+    pub result_strobe: Signal<Out, Bit>,
+    /// Last good position, bit 0 = LSB, zeros above its width.
+    pub position: Signal<Out, Bits<48>>,
+    /// There is a good position.
+    pub position_valid: Signal<Out, Bit>,
+    /// The last result brought the position; low = held from an earlier frame.
+    pub fresh: Signal<Out, Bit>,
+    /// Number of results, wrapping.
+    pub sequence: Signal<Out, Bits<16>>,
+    /// Time of the first falling clock edge of the frame that brought the position, in system clock cycles.
+    pub first_fall_timestamp: Signal<Out, Bits<32>>,
+    /// Age of the position in microseconds; stops at 65535.
+    pub age_us: Signal<Out, Bits<16>>,
+    /// Primary cause of the last result, see [`crate::transaction::cause`].
+    pub cause: Signal<Out, Bits<4>>,
+    /// Raw flags of the last result.
+    pub flags: Signal<Out, Bits<10>>,
+    /// CRC received in the last whole frame.
+    pub crc_received: Signal<Out, Bits<5>>,
+    /// CRC computed for the last whole frame.
+    pub crc_computed: Signal<Out, Bits<5>>,
+    /// Recovery time tm of the last frame, in system clock cycles.
+    pub recovery_cycles: Signal<Out, Bits<16>>,
+    /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
+    pub delay_cycles: Signal<Out, Bits<10>>,
+    /// A trigger would not be taken.
+    pub busy: Signal<Out, Bit>,
+    /// Strobe: the data line is sampled for a bit of the answer.
+    pub sample_strobe: Signal<Out, Bit>,
+    filter: InputFilter,
+    clock_gen: ClockGen,
+    sender: CommandSender,
+    delay: LineDelay,
+    receiver: Receiver,
+    transaction: Transaction,
+    snapshot: Snapshot,
+    clk_pin: Reg<Bit>,
+    data_pin: Reg<Bit>,
+    oe_pin: Reg<Bit>,
+    period: Signal<Local, Bits<11>>,
+    calibration_period_cycles: Constant<Bits<11>>,
+}
+
+impl Channel {
+    /// A channel whose delay measurement runs at one clock per `calibration_period_cycles` system clock cycles.
+    pub fn new(calibration_period_cycles: u64) -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            tick_us: Default::default(),
+            timestamp: Default::default(),
+            trigger: Default::default(),
+            calibrate: Default::default(),
+            data_i: Default::default(),
+            period_cycles: Default::default(),
+            first_low_extra_cycles: Default::default(),
+            command: Default::default(),
+            position_bits: Default::default(),
+            filter_cycles: Default::default(),
+            start_window_cycles: Default::default(),
+            start_timeout_us: Default::default(),
+            recovery_limit_cycles: Default::default(),
+            ready_low_cycles: Default::default(),
+            abort_us: Default::default(),
+            endat_clk: Default::default(),
+            data_o: Default::default(),
+            data_oe: Default::default(),
+            result_strobe: Default::default(),
+            position: Default::default(),
+            position_valid: Default::default(),
+            fresh: Default::default(),
+            sequence: Default::default(),
+            first_fall_timestamp: Default::default(),
+            age_us: Default::default(),
+            cause: Default::default(),
+            flags: Default::default(),
+            crc_received: Default::default(),
+            crc_computed: Default::default(),
+            recovery_cycles: Default::default(),
+            delay_cycles: Default::default(),
+            busy: Default::default(),
+            sample_strobe: Default::default(),
+            filter: Default::default(),
+            clock_gen: Default::default(),
+            sender: Default::default(),
+            delay: Default::default(),
+            receiver: Default::default(),
+            transaction: Default::default(),
+            snapshot: Default::default(),
+            clk_pin: Reg::new(true),
+            data_pin: Default::default(),
+            oe_pin: Default::default(),
+            period: Default::default(),
+            calibration_period_cycles: Constant::new(calibration_period_cycles.into()),
+        }
+    }
+}
+
+impl Logic for Channel {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, clk_pin, data_pin, oe_pin);
+        clock!(
+            self,
+            clock,
+            filter,
+            clock_gen,
+            sender,
+            delay,
+            receiver,
+            transaction,
+            snapshot
+        );
+        self.clk_pin.reset.next = self.reset.val();
+        self.data_pin.reset.next = self.reset.val();
+        self.oe_pin.reset.next = self.reset.val();
+        self.filter.reset.next = self.reset.val();
+        self.clock_gen.reset.next = self.reset.val();
+        self.sender.reset.next = self.reset.val();
+        self.delay.reset.next = self.reset.val();
+        self.receiver.reset.next = self.reset.val();
+        self.transaction.reset.next = self.reset.val();
+        self.snapshot.reset.next = self.reset.val();
+
+        self.period.next = self.period_cycles.val();
+        if self.transaction.acquire.val() {
+            self.period.next = self.calibration_period_cycles.val();
+        }
+
+        self.filter.pin.next = self.data_i.val();
+        self.filter.filter_cycles.next = self.filter_cycles.val();
+
+        self.clock_gen.start.next = self.transaction.start.val();
+        self.clock_gen.run.next = self.transaction.run.val();
+        self.clock_gen.hold_low.next = self.transaction.hold_low.val();
+        self.clock_gen.stop.next = self.transaction.stop.val();
+        self.clock_gen.period_cycles.next = self.period.val();
+
+        self.sender.start.next = self.transaction.start.val();
+        self.sender.fall.next = self.clock_gen.fall.val();
+        self.sender.abort.next = self.transaction.abort.val();
+        self.sender.command.next = self.command.val();
+
+        self.delay.run.next = self.transaction.run.val();
+        self.delay.acquire.next = self.transaction.acquire.val();
+        self.delay.hunting.next = self.receiver.hunting.val();
+        self.delay.rise.next = self.clock_gen.rise.val();
+        self.delay.data_rise.next = self.filter.rise.val();
+        self.delay.follow.next = self.receiver.start_found.val();
+        self.delay.period_cycles.next = self.period.val();
+        self.delay.start_window_cycles.next = self.start_window_cycles.val();
+
+        self.receiver.start.next = self.transaction.start.val();
+        self.receiver.acquire.next = self.transaction.acquire.val();
+        self.receiver.rise.next = self.clock_gen.rise.val();
+        self.receiver.sample.next = self.delay.sample.val();
+        self.receiver.level.next = self.filter.level.val();
+        self.receiver.edge_in_window.next = self.delay.edge_in_window.val();
+        self.receiver.position_bits.next = self.position_bits.val();
+        // The 2.2 commands begin with another bit than 000111.
+        self.receiver.has_f2.next = self.command.val().get_bit(5);
+
+        self.transaction.tick_us.next = self.tick_us.val();
+        self.transaction.trigger.next = self.trigger.val();
+        self.transaction.calibrate.next = self.calibrate.val();
+        self.transaction.level.next = self.filter.level.val();
+        self.transaction.sample.next = self.delay.sample.val();
+        self.transaction.center.next = self.delay.center.val();
+        self.transaction.hunting.next = self.receiver.hunting.val();
+        self.transaction.started.next = self.receiver.started.val();
+        self.transaction.start_refused.next = self.receiver.start_refused.val();
+        self.transaction.frame_done.next = self.receiver.done.val();
+        self.transaction.serial_ok.next = self.receiver.serial_ok.val();
+        self.transaction.parallel_ok.next = self.receiver.parallel_ok.val();
+        self.transaction.f1.next = self.receiver.f1.val();
+        self.transaction.f2.next = self.receiver.f2.val();
+        self.transaction.outstanding.next = self.delay.outstanding.val();
+        self.transaction.cells_left.next = self.receiver.cells_left.val();
+        self.transaction.first_low_extra_cycles.next = self.first_low_extra_cycles.val();
+        self.transaction.start_timeout_us.next = self.start_timeout_us.val();
+        self.transaction.recovery_limit_cycles.next = self.recovery_limit_cycles.val();
+        self.transaction.ready_low_cycles.next = self.ready_low_cycles.val();
+        self.transaction.abort_us.next = self.abort_us.val();
+
+        self.snapshot.tick_us.next = self.tick_us.val();
+        self.snapshot.timestamp.next = self.timestamp.val();
+        self.snapshot.first_fall.next = self.transaction.start.val();
+        self.snapshot.publish.next = self.transaction.publish.val();
+        self.snapshot.good.next = self.transaction.good.val();
+        self.snapshot.late_fault.next = self.transaction.late_fault.val();
+        self.snapshot.position_in.next = self.receiver.position.val();
+        self.snapshot.crc_received_in.next = self.receiver.crc_received.val();
+        self.snapshot.crc_computed_in.next = self.receiver.crc_computed.val();
+        self.snapshot.cause_in.next = self.transaction.cause.val();
+        self.snapshot.flags_in.next = self.transaction.flags.val();
+
+        self.clk_pin.d.next = self.clock_gen.endat_clk.val();
+        self.data_pin.d.next = self.sender.data.val();
+        self.oe_pin.d.next = self.sender.oe.val();
+        self.endat_clk.next = self.clk_pin.q.val();
+        self.data_o.next = self.data_pin.q.val();
+        self.data_oe.next = self.oe_pin.q.val();
+
+        self.result_strobe.next = self.snapshot.result_strobe.val();
+        self.position.next = self.snapshot.position.val();
+        self.position_valid.next = self.snapshot.position_valid.val();
+        self.fresh.next = self.snapshot.fresh.val();
+        self.sequence.next = self.snapshot.sequence.val();
+        self.first_fall_timestamp.next = self.snapshot.first_fall_timestamp.val();
+        self.age_us.next = self.snapshot.age_us.val();
+        self.cause.next = self.snapshot.cause.val();
+        self.flags.next = self.snapshot.flags.val();
+        self.crc_received.next = self.snapshot.crc_received.val();
+        self.crc_computed.next = self.snapshot.crc_computed.val();
+        self.recovery_cycles.next = self.transaction.recovery_cycles.val();
+        self.delay_cycles.next = self.delay.delay_cycles.val();
+        self.busy.next = self.transaction.busy.val();
+        self.sample_strobe.next = self.delay.sample.val() & !self.receiver.skipping.val();
+    }
+}

@@ -1,0 +1,98 @@
+//! Clock generator: the EnDat clock of one frame, and a strobe for each of its edges.
+//!
+//! ```text
+//! start       /\___________________________________
+//! hold_low    __/~~~~~~~~\________________________    tST, or too many pulses in flight
+//! endat_clk   ~~\_____________/~~~~\____/~~~~\____
+//! fall        /\___________________/\________/\___
+//! rise        ________________/\________/\________
+//! ```
+//!
+//! The line idles HIGH and a frame ends with it HIGH. A low phase that was held is followed by a whole half
+//! period, so no pulse is ever shortened.
+
+use crate::half_period::HalfPeriod;
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// EnDat clock generator of one channel.
+#[derive(LogicBlock)]
+pub struct ClockGen {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe: the first falling edge comes at the end of this cycle.
+    pub start: Signal<In, Bit>,
+    /// High while a frame is under way; low puts the clock HIGH at once.
+    pub run: Signal<In, Bit>,
+    /// Keeps a low phase low.
+    pub hold_low: Signal<In, Bit>,
+    /// Keeps a high phase high: the last rising edge of the frame has been sent.
+    pub stop: Signal<In, Bit>,
+    /// Period, in system clock cycles; the high phase is the longer one if it is odd.
+    pub period_cycles: Signal<In, Bits<11>>,
+    /// The EnDat clock, one cycle before it reaches the pin.
+    pub endat_clk: Signal<Out, Bit>,
+    /// High in the last cycle before a rising edge.
+    pub rise: Signal<Out, Bit>,
+    /// High in the last cycle before a falling edge.
+    pub fall: Signal<Out, Bit>,
+    half: HalfPeriod,
+    level: Reg<Bit>,
+    rise_now: Signal<Local, Bit>,
+    fall_now: Signal<Local, Bit>,
+    held: Signal<Local, Bit>,
+}
+
+impl Default for ClockGen {
+    fn default() -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            start: Default::default(),
+            run: Default::default(),
+            hold_low: Default::default(),
+            stop: Default::default(),
+            period_cycles: Default::default(),
+            endat_clk: Default::default(),
+            rise: Default::default(),
+            fall: Default::default(),
+            half: Default::default(),
+            level: Reg::new(true),
+            rise_now: Default::default(),
+            fall_now: Default::default(),
+            held: Default::default(),
+        }
+    }
+}
+
+impl Logic for ClockGen {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, level);
+        clock!(self, clock, half);
+        self.level.reset.next = self.reset.val();
+        self.half.reset.next = self.reset.val();
+        self.half.period_cycles.next = self.period_cycles.val();
+        self.half.second.next = self.level.q.val();
+        self.held.next = self.hold_low.val() & !self.level.q.val();
+        self.half.restart.next = self.start.val() | self.held.val();
+        self.rise_now.next =
+            self.half.tick.val() & !self.level.q.val() & !self.held.val() & self.run.val();
+        self.fall_now.next =
+            self.half.tick.val() & self.level.q.val() & !self.stop.val() & self.run.val();
+        if self.rise_now.val() {
+            self.level.d.next = true;
+        }
+        if self.start.val() | self.fall_now.val() {
+            self.level.d.next = false;
+        }
+        if !self.run.val() & !self.start.val() {
+            self.level.d.next = true;
+        }
+        self.endat_clk.next = self.level.q.val();
+        self.rise.next = self.rise_now.val();
+        self.fall.next = self.fall_now.val();
+    }
+}

@@ -1,0 +1,243 @@
+//! Channel requests into cycles, and the length of a frame.
+
+use super::*;
+use crate::protocol::{LEAD_PULSES, MAX_POSITION_BITS, POSITION_BITS};
+use crate::timing::*;
+
+impl ChannelConfig {
+    /// Converts and checks one channel; `Err` has every problem found.
+    pub fn resolve(
+        request: &ChannelRequest,
+        system_hz: u64,
+        index: usize,
+    ) -> Result<Self, Vec<Problem>> {
+        let mut problems = Vec::new();
+        let mut check = Check {
+            section: Section::Channel(index),
+            problems: &mut problems,
+        };
+        let position_good = check.range(
+            "position_bits",
+            request.position_bits,
+            u64::from(*POSITION_BITS.start())..=u64::from(MAX_POSITION_BITS),
+        );
+        let cable_good = check.range("cable_m", request.cable_m, 0..=CABLE_M_MAX);
+        // One second is far beyond any encoder and keeps every sum below in range.
+        let tcal_good = check.range("tcal_max_ns", request.tcal_max_ns, 1..=50_000_000);
+        check_recovery(&mut check, request);
+        let period = check_clock(&mut check, request.clock_hz, system_hz);
+        let mut resolved = period.map(|period_cycles| {
+            let half = period_cycles / 2;
+            Self {
+                period_cycles,
+                first_low_extra_cycles: check_tst(&mut check, request, half, system_hz),
+                command: request.command,
+                position_bits: 0,
+                filter_cycles: check_filter(&mut check, request, half, system_hz),
+                start_window_cycles: check_window(&mut check, request, half, system_hz),
+                start_timeout_us: 0,
+                recovery_limit_cycles: 0,
+                // DATA must be low for longer than tR.
+                ready_low_cycles: cycles_at_least(READY_LOW_NS, system_hz) + 1,
+                abort_us: ABORT_US,
+                request: request.clone(),
+            }
+        });
+        if let (Some(config), true) = (resolved.as_mut(), position_good && cable_good && tcal_good)
+        {
+            config.position_bits = request.position_bits as u32;
+            // The calibration frame is the slow one: two of its periods may pass before a start edge is seen.
+            let slowest_hz = request.clock_hz.min(CALIBRATION_HZ);
+            let wait_ns = request.tcal_max_ns
+                + request.delay_max_ns()
+                + 2 * 1_000_000_000u64.div_ceil(slowest_hz);
+            config.start_timeout_us = wait_ns.div_ceil(1_000) + 1;
+            let limit_ns = request.recovery_max_ns.min(1_000_000_000) + request.delay_max_ns();
+            config.recovery_limit_cycles =
+                cycles_at_least(limit_ns, system_hz) + INPUT_LATENCY_CYCLES;
+            let limit_cycles_max = max_of(RECOVERY_LIMIT_BITS);
+            if config.recovery_limit_cycles > limit_cycles_max {
+                let most_us =
+                    cycles_to_ns(limit_cycles_max - INPUT_LATENCY_CYCLES, system_hz) / 1_000;
+                check.fail(
+                    "recovery_max_ns",
+                    request.recovery_max_ns,
+                    format!("with the cable delay more than {most_us} us, the longest the counter can time at this system clock; lower it"),
+                );
+            }
+        }
+        match resolved {
+            Some(config) if problems.is_empty() => Ok(config),
+            _ => Err(problems),
+        }
+    }
+
+    /// EnDat clock that the core really makes, in hertz.
+    pub fn actual_hz(&self, system_hz: u64) -> f64 {
+        system_hz as f64 / self.period_cycles as f64
+    }
+
+    /// Lengths of one frame when the encoder needs its longest calculation time.
+    pub fn frame_time(&self, system_hz: u64) -> FrameTime {
+        let first_low_cycles = self.period_cycles / 2 + self.first_low_extra_cycles;
+        let tcal_cycles = cycles_at_least(self.request.tcal_max_ns, system_hz);
+        let needed = tcal_cycles
+            .saturating_sub(first_low_cycles)
+            .div_ceil(self.period_cycles);
+        let lead_pulses = needed.max(u64::from(LEAD_PULSES));
+        let answer_bits = u64::from(self.command.answer_bits(self.position_bits));
+        let pulses = lead_pulses + answer_bits + 1;
+        FrameTime {
+            first_low_cycles,
+            lead_pulses,
+            answer_bits,
+            pulses,
+            frame_cycles: first_low_cycles + (pulses - 1) * self.period_cycles,
+        }
+    }
+
+    /// Shortest time between two triggers in the worst case: frame, line delay, longest recovery time, tR.
+    pub fn cycle_max_cycles(&self, system_hz: u64) -> u64 {
+        self.frame_time(system_hz).frame_cycles
+            + cycles_at_least(
+                self.request.delay_max_ns() + self.request.recovery_max_ns,
+                system_hz,
+            )
+            + self.ready_low_cycles
+            + INPUT_LATENCY_CYCLES
+    }
+}
+
+fn check_recovery(check: &mut Check<'_>, request: &ChannelRequest) {
+    let (low, high) = (request.recovery_min_ns, request.recovery_max_ns);
+    if low > high {
+        check.fail(
+            "recovery_min_ns",
+            low,
+            format!("above recovery_max_ns = {high}; exchange the two"),
+        );
+    }
+    if low < SHORT_RECOVERY_MIN_NS {
+        check.fail(
+            "recovery_min_ns",
+            low,
+            format!("below {SHORT_RECOVERY_MIN_NS} ns, the shortest an encoder can be set to; use {RECOVERY_MIN_NS} or {SHORT_RECOVERY_MIN_NS}"),
+        );
+    } else if low < RECOVERY_MIN_NS
+        && (!request.command.has_f2() || request.clock_hz <= TST_FROM_HZ)
+    {
+        check.fail(
+            "recovery_min_ns",
+            low,
+            format!("a recovery time below {RECOVERY_MIN_NS} ns exists only with the command 111000 and a clock above {TST_FROM_HZ} Hz; use {RECOVERY_MIN_NS}"),
+        );
+    }
+}
+
+/// The period in cycles, if the rate can be made well enough.
+fn check_clock(check: &mut Check<'_>, clock_hz: u64, system_hz: u64) -> Option<u64> {
+    if !check.range("clock_hz", clock_hz, ENDAT_HZ_MIN..=ENDAT_HZ_MAX) || system_hz == 0 {
+        return None;
+    }
+    let period = period_cycles(clock_hz, system_hz);
+    if period < PERIOD_CYCLES_MIN {
+        check.fail(
+            "clock_hz",
+            clock_hz,
+            format!(
+                "needs a system clock of at least {} Hz, clock.system_hz is {system_hz}; use at most {} Hz or a faster system clock",
+                clock_hz * PERIOD_CYCLES_MIN,
+                system_hz / PERIOD_CYCLES_MIN
+            ),
+        );
+        return None;
+    }
+    if period > max_of(PERIOD_BITS) {
+        let slowest = system_hz.div_ceil(max_of(PERIOD_BITS));
+        check.fail(
+            "clock_hz",
+            clock_hz,
+            format!("its period is {period} cycles of clock.system_hz = {system_hz}, at most {} can be timed; use at least {slowest} Hz or a slower system clock", max_of(PERIOD_BITS)),
+        );
+        return None;
+    }
+    let ppm = deviation_ppm(system_hz as f64 / period as f64, clock_hz as f64);
+    if ppm.abs() > CLOCK_TOLERANCE_PPM as f64 {
+        let below = system_hz.div_ceil(clock_hz).max(PERIOD_CYCLES_MIN);
+        let above = (system_hz / clock_hz).max(PERIOD_CYCLES_MIN);
+        let rate = |cycles: u64| (system_hz + cycles / 2) / cycles;
+        let remedy = match (rate(below), rate(above)) {
+            (low, high) if low == high => format!("{low} Hz"),
+            (low, high) => format!("{low} or {high} Hz"),
+        };
+        check.fail(
+            "clock_hz",
+            clock_hz,
+            format!("would become {} Hz ({ppm:+.0} ppm), more than the allowed {CLOCK_TOLERANCE_PPM} ppm; use {remedy}, or another system clock", rate(period)),
+        );
+        return None;
+    }
+    Some(period)
+}
+
+/// Cycles that tST adds to the first half period.
+fn check_tst(check: &mut Check<'_>, request: &ChannelRequest, half: u64, system_hz: u64) -> u64 {
+    let tst = request.tst_ns;
+    if tst == 0 {
+        return 0;
+    }
+    if !check.range("tst_ns", tst, TST_MIN_NS..=TST_MAX_NS) {
+        return 0;
+    }
+    let extra = cycles_at_least(tst, system_hz).saturating_sub(half);
+    if extra > max_of(PERIOD_BITS) {
+        let most_ns = cycles_to_ns(max_of(PERIOD_BITS) + half, system_hz);
+        check.fail("tst_ns", tst, format!("more than {most_ns} ns, the longest the counter can time at this system clock; lower it"));
+    }
+    extra
+}
+
+fn check_filter(check: &mut Check<'_>, request: &ChannelRequest, half: u64, system_hz: u64) -> u64 {
+    let cycles = cycles_at_least(request.filter_ns, system_hz);
+    let most = half.min(max_of(FILTER_BITS));
+    if cycles > most {
+        check.fail(
+            "filter_ns",
+            request.filter_ns,
+            format!(
+                "is {cycles} cycles, more than {most} (half an EnDat period, and {} at most); use {} ns or less",
+                max_of(FILTER_BITS),
+                cycles_at_most_ns(most, system_hz)
+            ),
+        );
+    }
+    cycles
+}
+
+fn check_window(check: &mut Check<'_>, request: &ChannelRequest, half: u64, system_hz: u64) -> u64 {
+    let cycles = cycles_at_most(request.start_window_ns, system_hz);
+    let most = (half - 1).min(max_of(START_WINDOW_BITS));
+    if !(1..=most).contains(&cycles) {
+        check.fail(
+            "start_window_ns",
+            request.start_window_ns,
+            format!(
+                "is {cycles} cycles, outside 1..{most} (less than half an EnDat period, and {} at most); use {}..{} ns",
+                max_of(START_WINDOW_BITS),
+                cycles_to_ns_up(1, system_hz),
+                cycles_to_ns_up(most, system_hz)
+            ),
+        );
+    }
+    cycles
+}
+
+/// Longest whole number of ns that [`cycles_at_least`] turns into no more than `cycles`.
+fn cycles_at_most_ns(cycles: u64, system_hz: u64) -> u64 {
+    (u128::from(cycles) * 1_000_000_000 / u128::from(system_hz.max(1))) as u64
+}
+
+/// Shortest whole number of ns that [`cycles_at_most`] turns into no fewer than `cycles`.
+fn cycles_to_ns_up(cycles: u64, system_hz: u64) -> u64 {
+    (u128::from(cycles) * 1_000_000_000).div_ceil(u128::from(system_hz.max(1))) as u64
+}

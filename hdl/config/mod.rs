@@ -1,0 +1,262 @@
+//! The configuration of a card: what a user asks for in hertz and nanoseconds, and what the blocks get in cycles.
+//!
+//! ```text
+//! CardRequest (Hz, ns, bits) --CardConfig::resolve--> CardConfig (cycles, checked) --> blocks, explain, files
+//! ```
+//!
+//! The conversion happens here and nowhere else. Every problem is reported, not only the first; each names the
+//! key, its value, the limit and what to do.
+
+mod card;
+mod channel;
+
+pub use card::needed_baud;
+
+use crate::protocol::ModeCommand;
+use crate::timing::{TST_FROM_HZ, TST_MIN_NS};
+use std::fmt;
+use std::ops::RangeInclusive;
+
+/// Channels a card may have.
+pub const CHANNELS: RangeInclusive<usize> = 1..=4;
+/// Bits of the EnDat period and of the first low phase, in the blocks.
+pub const PERIOD_BITS: u32 = 11;
+/// Bits of the input filter length, in the blocks.
+pub const FILTER_BITS: u32 = 4;
+/// Bits of the start window, in the blocks.
+pub const START_WINDOW_BITS: u32 = 6;
+/// Bits of the recovery limit, in the blocks.
+pub const RECOVERY_LIMIT_BITS: u32 = 16;
+/// Bits of the ready time tR, in the blocks.
+pub const READY_LOW_BITS: u32 = 8;
+/// Bits of the period of the sampling timer, in the blocks.
+pub const TIMER_BITS: u32 = 24;
+/// Slowest system clock that leaves the UART and the filters room, in hertz.
+pub const SYSTEM_HZ_MIN: u64 = 8_000_000;
+/// Fastest system clock that the time stamps and counters are made for, in hertz.
+pub const SYSTEM_HZ_MAX: u64 = 250_000_000;
+/// Fewest system clock cycles in one bit of the host UART.
+pub const UART_BIT_CYCLES_MIN: u64 = 8;
+/// Largest deviation of the UART rate from the one asked for, in parts per million: half of what 8N1 stands.
+pub const UART_TOLERANCE_PPM: u64 = 20_000;
+/// Bits on the line for one byte (8N1).
+pub const UART_BITS_PER_BYTE: u64 = 10;
+/// Bytes of a UARTBone read request (command, length, address).
+pub const READ_REQUEST_BYTES: u64 = 6;
+/// Words of one channel that a host reads per result: position (2), time stamp, status with sequence number.
+pub const RESULT_WORDS: u64 = 4;
+/// Longest cable that the delay budget is made for, in metres.
+pub const CABLE_M_MAX: u64 = 150;
+/// Constant part of the propagation delay, in ns (PWM 20: tD = 0.2 us + 0.01 us/m).
+pub const DELAY_BASE_NS: u64 = 200;
+/// Propagation delay of a metre of cable, there and back, worst case, in ns (PWM 20).
+pub const DELAY_NS_PER_M: u64 = 10;
+/// Cycles between a pin and the logic that judges it: synchroniser, longest filter, edge detection.
+pub const INPUT_LATENCY_CYCLES: u64 = 32;
+/// Shortest programmed recovery time, in ns (PWM 20; EnDat 2.2 commands above 1 MHz only).
+pub const SHORT_RECOVERY_MIN_NS: u64 = 1_250;
+
+/// What is asked of one channel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChannelRequest {
+    /// EnDat clock, in hertz.
+    pub clock_hz: u64,
+    /// Shortest first low phase tST, in ns; 0 = an ordinary half period.
+    pub tst_ns: u64,
+    /// Mode command sent with every trigger.
+    pub command: ModeCommand,
+    /// Position bits of the encoder.
+    pub position_bits: u64,
+    /// DATA must be stable this long before it counts, in ns; 0 = no filter.
+    pub filter_ns: u64,
+    /// The start edge must come within plus or minus this of its expected phase, in ns.
+    pub start_window_ns: u64,
+    /// Longest calculation time tcal of the encoder, in ns.
+    pub tcal_max_ns: u64,
+    /// Shortest recovery time tm of the encoder, in ns.
+    pub recovery_min_ns: u64,
+    /// Longest recovery time tm of the encoder, in ns.
+    pub recovery_max_ns: u64,
+    /// Longest cable, in metres.
+    pub cable_m: u64,
+}
+
+/// What is asked of a card.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CardRequest {
+    /// System clock of the core, in hertz.
+    pub system_hz: u64,
+    /// The encoder ports.
+    pub channels: Vec<ChannelRequest>,
+    /// Sampling rate of the timer trigger, in hertz.
+    pub sample_hz: u64,
+    /// Which triggers are enabled after reset.
+    pub sources: TriggerSources,
+    /// Rate of the host UART, in bit/s.
+    pub baud: u64,
+    /// How often the host reads the results of all channels, in hertz.
+    pub read_hz: u64,
+}
+
+/// Trigger sources enabled after reset.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TriggerSources {
+    /// Rising edge of the trigger pin.
+    pub pin: bool,
+    /// Periodic timer.
+    pub timer: bool,
+    /// Strobe written by the host.
+    pub register: bool,
+}
+
+/// Part of the configuration that a problem belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Section {
+    /// `[clock]`
+    Clock,
+    /// The channel with this index.
+    Channel(usize),
+    /// `[trigger]`
+    Trigger,
+    /// `[link]`
+    Link,
+}
+
+/// One thing that is wrong with a request.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Problem {
+    /// Where.
+    pub section: Section,
+    /// Key, named as the field of the request.
+    pub key: &'static str,
+    /// The value as given.
+    pub value: String,
+    /// What is wrong, the limit, and the remedy.
+    pub text: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}: {}", self.key, self.value, self.text)
+    }
+}
+
+/// One channel in the units of the blocks; each field fits its configuration input.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ChannelConfig {
+    /// EnDat clock period; the high phase is the longer one when odd.
+    pub period_cycles: u64,
+    /// First low phase minus half a period (tST).
+    pub first_low_extra_cycles: u64,
+    /// Mode command.
+    pub command: ModeCommand,
+    /// Position bits.
+    pub position_bits: u32,
+    /// Input filter; 0 = off.
+    pub filter_cycles: u64,
+    /// Half width of the start window.
+    pub start_window_cycles: u64,
+    /// Longest wait for the start bit from the end of the turnaround, also at the calibration clock, in microseconds.
+    pub start_timeout_us: u64,
+    /// DATA must have fallen by then, counted from the last rising clock edge at the receiver.
+    pub recovery_limit_cycles: u64,
+    /// DATA must be low this long before the next frame (tR).
+    pub ready_low_cycles: u64,
+    /// Quiet time after an aborted transfer, in microseconds.
+    pub abort_us: u64,
+    /// What was asked for, for reports.
+    pub request: ChannelRequest,
+}
+
+/// A checked card in the units of the blocks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CardConfig {
+    /// System clock, in hertz.
+    pub system_hz: u64,
+    /// The encoder ports.
+    pub channels: Vec<ChannelConfig>,
+    /// Period of the sampling timer.
+    pub sample_period_cycles: u64,
+    /// Sampling rate asked for, in hertz.
+    pub sample_hz: u64,
+    /// Triggers enabled after reset.
+    pub sources: TriggerSources,
+    /// System clock cycles in a UART bit.
+    pub uart_bit_cycles: u64,
+    /// UART rate asked for, in bit/s.
+    pub baud: u64,
+    /// How often the host reads, in hertz.
+    pub read_hz: u64,
+    /// First 48 bits of the SHA-256 of the canonical configuration (0 until a generator sets it).
+    pub hash: u64,
+}
+
+/// Lengths of one position frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameTime {
+    /// First low phase.
+    pub first_low_cycles: u64,
+    /// Complete pulses before the start bit (`N_pre`) with the longest tcal.
+    pub lead_pulses: u64,
+    /// Bits from the start bit to the last CRC bit (`L`).
+    pub answer_bits: u64,
+    /// Rising edges that the encoder sees (`P = N_pre + L + 1`).
+    pub pulses: u64,
+    /// First falling to last rising clock edge.
+    pub frame_cycles: u64,
+}
+
+impl ChannelRequest {
+    /// Longest propagation delay tD of the line, in ns (PWM 20).
+    pub const fn delay_max_ns(&self) -> u64 {
+        DELAY_BASE_NS + DELAY_NS_PER_M * self.cable_m
+    }
+
+    /// The start time tST that receivers use at a clock rate: none below 1 MHz.
+    pub const fn usual_tst_ns(clock_hz: u64) -> u64 {
+        if clock_hz >= TST_FROM_HZ {
+            TST_MIN_NS
+        } else {
+            0
+        }
+    }
+}
+
+/// Largest number in `bits` bits.
+const fn max_of(bits: u32) -> u64 {
+    (1 << bits) - 1
+}
+
+/// Collects the problems of one section.
+struct Check<'a> {
+    section: Section,
+    problems: &'a mut Vec<Problem>,
+}
+
+impl Check<'_> {
+    fn fail(&mut self, key: &'static str, value: impl fmt::Display, text: String) {
+        self.problems.push(Problem {
+            section: self.section,
+            key,
+            value: value.to_string(),
+            text,
+        });
+    }
+
+    /// Whether `value` is in `range`; reports it when not.
+    fn range(&mut self, key: &'static str, value: u64, range: RangeInclusive<u64>) -> bool {
+        let inside = range.contains(&value);
+        if !inside {
+            let (low, high) = (range.start(), range.end());
+            self.fail(
+                key,
+                value,
+                format!("outside {low}..{high}; choose a value in that range"),
+            );
+        }
+        inside
+    }
+}
+
+#[cfg(test)]
+mod tests;

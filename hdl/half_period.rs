@@ -1,0 +1,77 @@
+//! Half-period timer: ends every half of an EnDat clock period, for the clock generator and for the receiver's cells.
+//!
+//! ```text
+//! restart   ~\________________________________
+//! second    ____________/~~~~~~~~~~~~~\______    (first half, second half)
+//! tick      ___________/\____________/\______
+//! ```
+//!
+//! A period of an odd number of cycles has its second half one cycle longer. The comparison is registered, which
+//! is why the counter starts at 2.
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Marks the last cycle of each half of a clock period.
+#[derive(LogicBlock)]
+pub struct HalfPeriod {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Begins a half with the next cycle; held, it keeps the timer at the beginning.
+    pub restart: Signal<In, Bit>,
+    /// Whether this is the second half of the period.
+    pub second: Signal<In, Bit>,
+    /// Period, in system clock cycles.
+    pub period_cycles: Signal<In, Bits<11>>,
+    /// High in the last cycle of a half.
+    pub tick: Signal<Out, Bit>,
+    count: Reg<Bits<10>>,
+    hit: Reg<Bit>,
+    hit_late: Reg<Bit>,
+    half_cycles: Signal<Local, Bits<10>>,
+    tick_now: Signal<Local, Bit>,
+}
+
+impl Default for HalfPeriod {
+    fn default() -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            restart: Default::default(),
+            second: Default::default(),
+            period_cycles: Default::default(),
+            tick: Default::default(),
+            count: Reg::new(2.into()),
+            hit: Default::default(),
+            hit_late: Default::default(),
+            half_cycles: Default::default(),
+            tick_now: Default::default(),
+        }
+    }
+}
+
+impl Logic for HalfPeriod {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, count, hit, hit_late);
+        self.count.reset.next = self.reset.val();
+        self.hit.reset.next = self.reset.val();
+        self.hit_late.reset.next = self.reset.val();
+        self.half_cycles.next = self.period_cycles.val().get_bits::<10>(1);
+        self.tick_now.next = self.hit.q.val();
+        if self.second.val() & self.period_cycles.val().get_bit(0) {
+            self.tick_now.next = self.hit_late.q.val();
+        }
+        self.hit.d.next = self.count.q.val() == self.half_cycles.val();
+        self.hit_late.d.next = self.hit.q.val();
+        self.count.d.next = self.count.q.val() + 1;
+        if self.restart.val() | self.tick_now.val() {
+            self.count.d.next = 2.into();
+            self.hit.d.next = false;
+            self.hit_late.d.next = false;
+        }
+        self.tick.next = self.tick_now.val();
+    }
+}

@@ -1,0 +1,267 @@
+//! Line delay: knows how long an answer takes to come back, and says when to sample.
+//!
+//! ```text
+//! rise        /\_________/\_________/\______      clock edges leaving the receiver
+//!             |<-- tD -->|
+//! center      ___________/\_________/\______      where a data edge is expected
+//! sample      ________________/\_________/\_      half a period later: the middle of the bit, the end of its cell
+//! ```
+//!
+//! The propagation delay tD is measured once, in a frame whose period is longer than any cable's delay
+//! (`acquire`), and followed by one cycle per frame afterwards. Sampling from this tracked phase tolerates twice
+//! the jitter that sampling from the start edge of the same frame would.
+//!
+//! `outstanding` counts clock pulses whose cell has not yet ended. It tells which rising edge launched a bit, and
+//! so how many more pulses the encoder needs.
+//!
+//! Ref: HEIDENHAIN PWM 20 user's manual, propagation delay compensation; TI motor-control SDK, `endat_main.asm`.
+
+use crate::half_period::HalfPeriod;
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Sample strobes, start edge window and pulses in flight of one channel.
+#[derive(LogicBlock)]
+pub struct LineDelay {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Low between frames: forgets everything but the delay.
+    pub run: Signal<In, Bit>,
+    /// This frame measures the delay instead of using it.
+    pub acquire: Signal<In, Bit>,
+    /// The start bit may come now.
+    pub hunting: Signal<In, Bit>,
+    /// Strobe of each rising clock edge.
+    pub rise: Signal<In, Bit>,
+    /// Strobe: the data line has just gone high.
+    pub data_rise: Signal<In, Bit>,
+    /// Strobe, together with `sample`: this sample is a good start bit, follow its edge.
+    pub follow: Signal<In, Bit>,
+    /// EnDat clock period, in system clock cycles.
+    pub period_cycles: Signal<In, Bits<11>>,
+    /// Largest distance of the start edge from its expected place, in system clock cycles.
+    pub start_window_cycles: Signal<In, Bits<6>>,
+    /// Strobe: sample the data line.
+    pub sample: Signal<Out, Bit>,
+    /// Strobe: the middle of the expected place of a data edge.
+    pub center: Signal<Out, Bit>,
+    /// A rising data edge lies within the window of this cell.
+    pub edge_in_window: Signal<Out, Bit>,
+    /// Clock pulses sent whose cell has not ended.
+    pub outstanding: Signal<Out, Bits<6>>,
+    /// Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
+    pub delay_cycles: Signal<Out, Bits<10>>,
+    half: HalfPeriod,
+    delay: Reg<Bits<10>>,
+    since_rise: Reg<Bits<10>>,
+    timing_armed: Reg<Bit>,
+    delay_over: Reg<Bit>,
+    cells_run: Reg<Bit>,
+    second_half: Reg<Bit>,
+    pulses: Reg<Bits<6>>,
+    center_seen: Reg<Bit>,
+    edge_seen: Reg<Bit>,
+    edge_late: Reg<Bit>,
+    edge_error: Reg<Bits<6>>,
+    edge_outside: Reg<Bit>,
+    first_rise: Signal<Local, Bit>,
+    acquired: Signal<Local, Bit>,
+    first_center: Signal<Local, Bit>,
+    center_now: Signal<Local, Bit>,
+    sample_now: Signal<Local, Bit>,
+    drained: Signal<Local, Bit>,
+    step: Signal<Local, Bits<10>>,
+}
+
+impl Default for LineDelay {
+    fn default() -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            run: Default::default(),
+            acquire: Default::default(),
+            hunting: Default::default(),
+            rise: Default::default(),
+            data_rise: Default::default(),
+            follow: Default::default(),
+            period_cycles: Default::default(),
+            start_window_cycles: Default::default(),
+            sample: Default::default(),
+            center: Default::default(),
+            edge_in_window: Default::default(),
+            outstanding: Default::default(),
+            delay_cycles: Default::default(),
+            half: Default::default(),
+            delay: Default::default(),
+            since_rise: Default::default(),
+            timing_armed: Default::default(),
+            delay_over: Default::default(),
+            cells_run: Default::default(),
+            second_half: Default::default(),
+            pulses: Default::default(),
+            center_seen: Default::default(),
+            edge_seen: Default::default(),
+            edge_late: Default::default(),
+            edge_error: Default::default(),
+            edge_outside: Default::default(),
+            first_rise: Default::default(),
+            acquired: Default::default(),
+            first_center: Default::default(),
+            center_now: Default::default(),
+            sample_now: Default::default(),
+            drained: Default::default(),
+            step: Default::default(),
+        }
+    }
+}
+
+impl Logic for LineDelay {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self,
+            clock,
+            delay,
+            since_rise,
+            timing_armed,
+            delay_over,
+            cells_run,
+            second_half,
+            pulses
+        );
+        dff_setup!(
+            self,
+            clock,
+            center_seen,
+            edge_seen,
+            edge_late,
+            edge_error,
+            edge_outside
+        );
+        clock!(self, clock, half);
+        self.delay.reset.next = self.reset.val();
+        self.since_rise.reset.next = self.reset.val();
+        self.timing_armed.reset.next = self.reset.val();
+        self.delay_over.reset.next = self.reset.val();
+        self.cells_run.reset.next = self.reset.val();
+        self.second_half.reset.next = self.reset.val();
+        self.pulses.reset.next = self.reset.val();
+        self.center_seen.reset.next = self.reset.val();
+        self.edge_seen.reset.next = self.reset.val();
+        self.edge_late.reset.next = self.reset.val();
+        self.edge_error.reset.next = self.reset.val();
+        self.edge_outside.reset.next = self.reset.val();
+        self.half.reset.next = self.reset.val();
+
+        // tD from the first rising edge of a burst to the first cell; in an acquiring frame from every rising edge.
+        self.first_rise.next = self.rise.val() & (self.acquire.val() | !self.timing_armed.q.val());
+        self.since_rise.d.next = self.since_rise.q.val() + 1;
+        if self.first_rise.val() {
+            self.timing_armed.d.next = true;
+            // The comparison with the tracked delay is registered: it starts one cycle earlier.
+            self.since_rise.d.next = 2.into();
+            if self.acquire.val() {
+                self.since_rise.d.next = 1.into();
+            }
+        }
+        self.delay_over.d.next =
+            self.timing_armed.q.val() & (self.since_rise.q.val() == self.delay.q.val());
+
+        self.acquired.next = self.acquire.val()
+            & self.hunting.val()
+            & self.data_rise.val()
+            & !self.cells_run.q.val();
+        self.first_center.next = self.acquired.val()
+            | (self.delay_over.q.val() & !self.cells_run.q.val() & !self.acquire.val());
+        self.center_now.next =
+            self.first_center.val() | (self.half.tick.val() & self.second_half.q.val());
+        self.sample_now.next =
+            self.half.tick.val() & !self.second_half.q.val() & self.cells_run.q.val();
+
+        self.half.period_cycles.next = self.period_cycles.val();
+        self.half.second.next = self.second_half.q.val();
+        self.half.restart.next = self.first_center.val() | !self.cells_run.q.val();
+        if self.first_center.val() {
+            self.cells_run.d.next = true;
+        }
+        if self.sample_now.val() {
+            self.second_half.d.next = true;
+        }
+        if self.center_now.val() {
+            self.second_half.d.next = false;
+        }
+
+        // Pulses whose cell has not ended. The edge that launched an acquired start bit is the only one.
+        if self.rise.val() & !self.sample_now.val() {
+            self.pulses.d.next = self.pulses.q.val() + 1;
+        }
+        if self.sample_now.val() & !self.rise.val() {
+            self.pulses.d.next = self.pulses.q.val() - 1;
+        }
+        if self.acquire.val() & !self.cells_run.q.val() {
+            self.pulses.d.next = 0.into();
+        }
+        if self.acquired.val() {
+            self.pulses.d.next = 1.into();
+        }
+
+        // Distance between the data edge and the middle of its place, whichever comes first.
+        if self.center_now.val() {
+            self.center_seen.d.next = true;
+        }
+        if self.data_rise.val() {
+            self.edge_seen.d.next = true;
+            if !self.edge_seen.q.val() {
+                self.edge_late.d.next = self.center_seen.q.val();
+            }
+        }
+        if self.center_seen.q.val() ^ self.edge_seen.q.val() {
+            self.edge_error.d.next = self.edge_error.q.val() + 1;
+            if self.edge_error.q.val() == self.start_window_cycles.val() {
+                self.edge_outside.d.next = true;
+            }
+        }
+        if self.follow.val() & self.edge_error.q.val().any() {
+            self.delay.d.next = self.delay.q.val() + self.step.val();
+        }
+        self.step.next = 0x3FF.into();
+        if self.edge_late.q.val() {
+            self.step.next = 1.into();
+        }
+        if self.acquired.val() {
+            self.delay.d.next = self.since_rise.q.val();
+        }
+
+        // A burst whose cells have all ended: the next rising edge begins a new one.
+        self.drained.next = self.sample_now.val()
+            & (self.pulses.q.val() == 1)
+            & !self.rise.val()
+            & !self.acquire.val();
+        if self.drained.val() {
+            self.cells_run.d.next = false;
+            self.timing_armed.d.next = false;
+            self.delay_over.d.next = false;
+        }
+        if self.sample_now.val() | !self.run.val() | (self.acquire.val() & !self.hunting.val()) {
+            self.center_seen.d.next = false;
+            self.edge_seen.d.next = false;
+            self.edge_error.d.next = 0.into();
+            self.edge_outside.d.next = false;
+        }
+        if !self.run.val() {
+            self.cells_run.d.next = false;
+            self.second_half.d.next = false;
+            self.timing_armed.d.next = false;
+            self.delay_over.d.next = false;
+            self.pulses.d.next = 0.into();
+        }
+
+        self.sample.next = self.sample_now.val();
+        self.center.next = self.center_now.val();
+        self.edge_in_window.next = self.edge_seen.q.val() & !self.edge_outside.q.val();
+        self.outstanding.next = self.pulses.q.val();
+        self.delay_cycles.next = self.delay.q.val();
+    }
+}

@@ -1,0 +1,440 @@
+//! Transaction: the order of one frame, all its time-outs, and what went wrong.
+//!
+//! ```text
+//! wire      NotReady Ready FirstLow Frame ................ Tail Recovery NotReady Ready
+//! endat_clk ~~~~~~~~~~~~~~\________/~\_/~\_ ... _/~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~
+//! data      \_____________? command    0 S F1 .. CRC ~~~~~~~~~~~~~~~\_________________
+//! done      _______________________________________________/\_________________________
+//! ```
+//!
+//! Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
+//! off, 30 ms, then data low for longer than tR.
+//!
+//! Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// What the wire is doing.
+#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+pub enum Phase {
+    /// Idle, but data has not yet been low for tR.
+    NotReady,
+    /// Idle and ready for a trigger.
+    Ready,
+    /// First low phase, held for tST.
+    FirstLow,
+    /// Mode command, turnaround, waiting for the start bit, answer.
+    Frame,
+    /// The last CRC bit has been taken; the cell after it must be high.
+    Tail,
+    /// Clock and data high: recovery time tm.
+    Recovery,
+    /// Quiet after an aborted frame.
+    Abort,
+}
+
+/// Why a frame gave no position: the codes of the status register.
+pub mod cause {
+    /// The frame is good.
+    pub const NONE: u64 = 0;
+    /// Data was high when the frame was to start.
+    pub const DATA_NOT_LOW: u64 = 1;
+    /// No start bit within its time.
+    pub const NO_START_BIT: u64 = 2;
+    /// A start bit at a time that does not fit the propagation delay.
+    pub const START_WINDOW: u64 = 3;
+    /// The CRC is wrong.
+    pub const CRC: u64 = 4;
+    /// Error bit 1 is set: the encoder reports an alarm.
+    pub const F1: u64 = 5;
+    /// Error bit 2 is clear: the encoder reports an alarm.
+    pub const F2: u64 = 6;
+    /// Data stayed high after the frame.
+    pub const DATA_NOT_FALLING: u64 = 7;
+    /// A trigger came while a frame was under way.
+    pub const TRIGGER_OVERRUN: u64 = 8;
+    /// Name of a code.
+    pub fn name(code: u64) -> &'static str {
+        match code {
+            NONE => "none",
+            DATA_NOT_LOW => "data not low before start",
+            NO_START_BIT => "no start bit",
+            START_WINDOW => "start bit outside its window",
+            CRC => "CRC",
+            F1 => "F1",
+            F2 => "F2",
+            DATA_NOT_FALLING => "data not falling after the frame",
+            TRIGGER_OVERRUN => "trigger overrun",
+            _ => "unknown",
+        }
+    }
+}
+
+/// Sequence, time-outs and verdict of one channel.
+#[derive(LogicBlock, Default)]
+pub struct Transaction {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// One-cycle strobe: take a position.
+    pub trigger: Signal<In, Bit>,
+    /// Strobe: measure the propagation delay again with the next frame.
+    pub calibrate: Signal<In, Bit>,
+    /// The data line.
+    pub level: Signal<In, Bit>,
+    /// Strobe: the data line is sampled.
+    pub sample: Signal<In, Bit>,
+    /// Strobe: middle of the expected place of a data edge.
+    pub center: Signal<In, Bit>,
+    /// The receiver waits for the start bit.
+    pub hunting: Signal<In, Bit>,
+    /// The start bit has been taken.
+    pub started: Signal<In, Bit>,
+    /// Strobe: a start bit outside its window.
+    pub start_refused: Signal<In, Bit>,
+    /// Strobe: the frame has been taken whole.
+    pub frame_done: Signal<In, Bit>,
+    /// Serial CRC verdict.
+    pub serial_ok: Signal<In, Bit>,
+    /// Parallel CRC verdict.
+    pub parallel_ok: Signal<In, Bit>,
+    /// Error bit 1, high = alarm.
+    pub f1: Signal<In, Bit>,
+    /// Error bit 2, low = alarm.
+    pub f2: Signal<In, Bit>,
+    /// Clock pulses whose cell has not ended.
+    pub outstanding: Signal<In, Bits<6>>,
+    /// Cells still to come.
+    pub cells_left: Signal<In, Bits<7>>,
+    /// How much longer than half a period the first low phase is; 0, or at least 2 cycles.
+    pub first_low_extra_cycles: Signal<In, Bits<11>>,
+    /// Longest wait for the start bit after the turnaround.
+    pub start_timeout_us: Signal<In, Bits<16>>,
+    /// Data must fall within this after the frame.
+    pub recovery_limit_cycles: Signal<In, Bits<16>>,
+    /// Data must have been low this long (tR).
+    pub ready_low_cycles: Signal<In, Bits<8>>,
+    /// Quiet time after an aborted frame.
+    pub abort_us: Signal<In, Bits<16>>,
+    /// One-cycle strobe: the first falling clock edge comes at the end of this cycle.
+    pub start: Signal<Out, Bit>,
+    /// A frame is under way on the wire.
+    pub run: Signal<Out, Bit>,
+    /// Driver off, at once.
+    pub abort: Signal<Out, Bit>,
+    /// Keeps the clock low.
+    pub hold_low: Signal<Out, Bit>,
+    /// Keeps the clock high: all edges have been sent.
+    pub stop: Signal<Out, Bit>,
+    /// This frame measures the propagation delay.
+    pub acquire: Signal<Out, Bit>,
+    /// A trigger would not be taken.
+    pub busy: Signal<Out, Bit>,
+    /// Strobe: result of a trigger, `cause` and `flags` are valid.
+    pub publish: Signal<Out, Bit>,
+    /// With `publish`: the position is good.
+    pub good: Signal<Out, Bit>,
+    /// Strobe: data did not fall after a frame that has been published.
+    pub late_fault: Signal<Out, Bit>,
+    /// Primary cause, with `publish` or `late_fault`.
+    pub cause: Signal<Out, Bits<4>>,
+    /// Raw flags in the order of the cause codes: bit k stands for cause k + 1; bit 8 parallel CRC, bit 9 tail not high.
+    pub flags: Signal<Out, Bits<10>>,
+    /// Recovery time tm of the last frame, in system clock cycles.
+    pub recovery_cycles: Signal<Out, Bits<16>>,
+    phase: Reg<Phase>,
+    timer: Reg<Bits<16>>,
+    timer_hit: Reg<Bit>,
+    calibrated: Reg<Bit>,
+    acquiring: Reg<Bit>,
+    overrun: Reg<Bit>,
+    stalled: Reg<Bit>,
+    all_sent: Reg<Bit>,
+    tail_sampled: Reg<Bit>,
+    recovery: Reg<Bits<16>>,
+    publish_now: Reg<Bit>,
+    good_now: Reg<Bit>,
+    late_now: Reg<Bit>,
+    cause_now: Reg<Bits<4>>,
+    flags_now: Reg<Bits<10>>,
+    limit: Signal<Local, Bits<16>>,
+    in_us: Signal<Local, Bit>,
+    timer_clear: Signal<Local, Bit>,
+    timer_step: Signal<Local, Bit>,
+    accept: Signal<Local, Bit>,
+    give_up: Signal<Local, Bit>,
+    idle: Signal<Local, Bit>,
+    found: Signal<Local, Bits<10>>,
+    crc_bad: Signal<Local, Bit>,
+    verdict: Signal<Local, Bit>,
+    primary: Signal<Local, Bits<4>>,
+    lost: Signal<Local, Bit>,
+}
+
+impl Logic for Transaction {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self, clock, phase, timer, timer_hit, calibrated, acquiring, overrun, stalled, all_sent
+        );
+        dff_setup!(
+            self,
+            clock,
+            tail_sampled,
+            recovery,
+            publish_now,
+            good_now,
+            late_now,
+            cause_now,
+            flags_now
+        );
+        self.phase.reset.next = self.reset.val();
+        self.timer.reset.next = self.reset.val();
+        self.timer_hit.reset.next = self.reset.val();
+        self.calibrated.reset.next = self.reset.val();
+        self.acquiring.reset.next = self.reset.val();
+        self.overrun.reset.next = self.reset.val();
+        self.stalled.reset.next = self.reset.val();
+        self.all_sent.reset.next = self.reset.val();
+        self.tail_sampled.reset.next = self.reset.val();
+        self.recovery.reset.next = self.reset.val();
+        self.publish_now.reset.next = self.reset.val();
+        self.good_now.reset.next = self.reset.val();
+        self.late_now.reset.next = self.reset.val();
+        self.cause_now.reset.next = self.reset.val();
+        self.flags_now.reset.next = self.reset.val();
+
+        self.limit.next = self.start_timeout_us.val();
+        self.in_us.next = false;
+        self.timer_clear.next = false;
+        self.accept.next = false;
+        self.give_up.next = false;
+        self.idle.next = false;
+        self.verdict.next = false;
+        self.found.next = 0.into();
+        self.good_now.d.next = false;
+        self.late_now.d.next = false;
+        self.run.next = false;
+        self.crc_bad.next = !(self.serial_ok.val() & self.parallel_ok.val());
+
+        match self.phase.q.val() {
+            Phase::NotReady => {
+                self.limit.next = bit_cast::<16, 8>(self.ready_low_cycles.val());
+                self.timer_clear.next = self.level.val();
+                self.idle.next = self.level.val();
+                if self.timer_hit.q.val() {
+                    self.phase.d.next = Phase::Ready;
+                }
+                if self.level.val() {
+                    self.phase.d.next = Phase::NotReady;
+                    if self.trigger.val() {
+                        self.found.next = 1.into();
+                        self.give_up.next = true;
+                    }
+                }
+            }
+            Phase::Ready => {
+                self.timer_clear.next = true;
+                self.idle.next = true;
+                if self.level.val() {
+                    self.phase.d.next = Phase::NotReady;
+                    if self.trigger.val() {
+                        self.found.next = 1.into();
+                        self.give_up.next = true;
+                    }
+                } else {
+                    if self.trigger.val() {
+                        self.accept.next = true;
+                        self.phase.d.next = Phase::Frame;
+                        if self.first_low_extra_cycles.val().any() {
+                            self.phase.d.next = Phase::FirstLow;
+                        }
+                    }
+                }
+            }
+            Phase::FirstLow => {
+                self.run.next = true;
+                self.limit.next = bit_cast::<16, 11>(self.first_low_extra_cycles.val());
+                if self.timer_hit.q.val() {
+                    self.phase.d.next = Phase::Frame;
+                    self.timer_clear.next = true;
+                }
+            }
+            Phase::Frame => {
+                self.run.next = true;
+                self.in_us.next = true;
+                self.timer_clear.next = !self.hunting.val();
+                if self.timer_hit.q.val() & self.hunting.val() {
+                    self.found.next = 2.into();
+                    self.give_up.next = true;
+                }
+                if self.start_refused.val() {
+                    self.found.next = 4.into();
+                    self.give_up.next = true;
+                }
+                if self.frame_done.val() {
+                    self.verdict.next = true;
+                    self.phase.d.next = Phase::Tail;
+                }
+            }
+            Phase::Tail => {
+                self.run.next = true;
+                self.timer_clear.next = true;
+                if self.center.val() {
+                    self.phase.d.next = Phase::Recovery;
+                }
+            }
+            Phase::Recovery => {
+                self.run.next = !self.tail_sampled.q.val();
+                self.limit.next = self.recovery_limit_cycles.val();
+                if self.sample.val() {
+                    self.tail_sampled.d.next = true;
+                }
+                if self.tail_sampled.q.val() & !self.level.val() {
+                    self.recovery.d.next = self.timer.q.val();
+                    self.timer_clear.next = true;
+                    self.phase.d.next = Phase::NotReady;
+                } else {
+                    if self.timer_hit.q.val() {
+                        self.found.next = 64.into();
+                        self.give_up.next = true;
+                    }
+                }
+                // The encoder still sends, or has stopped early: its frame has another length than ours.
+                if self.sample.val() & !self.tail_sampled.q.val() & !self.level.val() {
+                    self.found.next = 512.into();
+                    self.give_up.next = true;
+                }
+            }
+            Phase::Abort => {
+                self.in_us.next = true;
+                self.limit.next = self.abort_us.val();
+                if self.timer_hit.q.val() {
+                    self.phase.d.next = Phase::NotReady;
+                    self.timer_clear.next = true;
+                }
+            }
+            _ => {
+                self.phase.d.next = Phase::Abort;
+                self.timer_clear.next = true;
+            }
+        }
+        if self.give_up.val() {
+            self.phase.d.next = Phase::Abort;
+            self.timer_clear.next = true;
+            self.calibrated.d.next = false;
+        }
+
+        self.timer_step.next = !self.in_us.val() | self.tick_us.val();
+        if self.timer_step.val() {
+            self.timer.d.next = self.timer.q.val() + 1;
+        }
+        self.timer_hit.d.next = self.timer.q.val() == self.limit.val();
+        if self.timer_clear.val() {
+            self.timer.d.next = 0.into();
+            self.timer_hit.d.next = false;
+        }
+        // Cycles that pass before the timer sees the beginning of its span.
+        if self.accept.val() {
+            self.timer.d.next = 2.into();
+        }
+        if (self.phase.q.val() == Phase::Tail) & self.center.val() {
+            self.timer.d.next = 1.into();
+        }
+
+        // Pulses: never more on the cable than the answer needs.
+        self.all_sent.d.next = bit_cast::<7, 6>(self.outstanding.val()) == self.cells_left.val();
+        if self.all_sent.q.val() & !self.started.val() {
+            self.stalled.d.next = true;
+        }
+        if !self.outstanding.val().any() {
+            self.stalled.d.next = false;
+        }
+
+        // Verdict of a whole frame: CRC before F1 before F2, since error bits of a spoilt frame mean nothing.
+        if self.verdict.val() {
+            self.found.next = 0.into();
+            if self.crc_bad.val() {
+                self.found.next = self.found.val() | 8;
+            }
+            if self.f1.val() {
+                self.found.next = self.found.val() | 16;
+            }
+            if !self.f2.val() {
+                self.found.next = self.found.val() | 32;
+            }
+            if !self.parallel_ok.val() {
+                self.found.next = self.found.val() | 256;
+            }
+            self.good_now.d.next = !self.crc_bad.val() & !self.f1.val() & self.f2.val();
+            if !self.crc_bad.val() {
+                self.calibrated.d.next = true;
+            }
+        }
+        self.publish_now.d.next = self.verdict.val();
+        if self.give_up.val() {
+            self.publish_now.d.next = self.phase.q.val() != Phase::Recovery;
+            self.late_now.d.next = self.phase.q.val() == Phase::Recovery;
+        }
+        if self.overrun.q.val() {
+            self.found.next = self.found.val() | 128;
+        }
+        self.primary.next = 0.into();
+        if self.found.val().get_bit(7) {
+            self.primary.next = 8.into();
+        }
+        if self.found.val().get_bit(5) {
+            self.primary.next = 6.into();
+        }
+        if self.found.val().get_bit(4) {
+            self.primary.next = 5.into();
+        }
+        if self.found.val().get_bit(3) {
+            self.primary.next = 4.into();
+        }
+        if self.found.val().get_bit(6) | self.found.val().get_bit(9) {
+            self.primary.next = 7.into();
+        }
+        if self.found.val().get_bit(2) {
+            self.primary.next = 3.into();
+        }
+        if self.found.val().get_bit(1) {
+            self.primary.next = 2.into();
+        }
+        if self.found.val().get_bit(0) {
+            self.primary.next = 1.into();
+        }
+        if self.verdict.val() | self.give_up.val() {
+            self.flags_now.d.next = self.found.val();
+            self.cause_now.d.next = self.primary.val();
+            self.overrun.d.next = false;
+        }
+        self.lost.next = self.trigger.val() & !self.accept.val() & !self.idle.val();
+        if self.lost.val() {
+            self.overrun.d.next = true;
+        }
+        if self.accept.val() {
+            self.acquiring.d.next = !self.calibrated.q.val();
+            self.tail_sampled.d.next = false;
+        }
+        if self.calibrate.val() {
+            self.calibrated.d.next = false;
+        }
+        self.start.next = self.accept.val();
+        self.abort.next = self.give_up.val();
+        self.hold_low.next = (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val();
+        self.stop.next = self.all_sent.q.val() & self.started.val();
+        self.acquire.next = self.acquiring.q.val();
+        self.busy.next = !self.idle.val();
+        self.publish.next = self.publish_now.q.val();
+        self.good.next = self.good_now.q.val();
+        self.late_fault.next = self.late_now.q.val();
+        self.cause.next = self.cause_now.q.val();
+        self.flags.next = self.flags_now.q.val();
+        self.recovery_cycles.next = self.recovery.q.val();
+    }
+}

@@ -1,0 +1,425 @@
+//! Runs a design against encoders and lines, in real time.
+//!
+//! Edge `k` of the system clock is at `k / system_hz`, rounded to the picosecond. At each edge the bench lets the links run up to it, gives
+//! the design the DATA levels of that moment, ticks it, and takes its outputs to the lines at that same moment. Pins of the
+//! design have no delay of their own: put them into the line's transceivers.
+
+mod link;
+mod record;
+mod settings;
+#[cfg(test)]
+mod tests;
+
+pub use link::{Link, LinkTrace};
+pub use record::{ChannelResult, Cycles, Watched};
+pub use settings::ChannelSettings;
+
+use crate::{
+    encoder::{Drive, FrameLog, Violation},
+    engine::{Engine, PortId},
+    line::{Conflict, Sample},
+    Time, US,
+};
+use record::ResultPorts;
+
+/// Names of the pins of one EnDat port in a design.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PinNames {
+    /// CLOCK output.
+    pub clock: String,
+    /// DATA output.
+    pub data_o: String,
+    /// DATA driver enable.
+    pub data_oe: String,
+    /// DATA input.
+    pub data_i: String,
+    /// HIGH in the cycle after which the design takes a sample of DATA. Not every design has it.
+    pub sample_strobe: String,
+}
+
+impl PinNames {
+    /// Pins of the block `Channel`.
+    pub fn channel() -> Self {
+        Self {
+            clock: "endat_clk".into(),
+            data_o: "data_o".into(),
+            data_oe: "data_oe".into(),
+            data_i: "data_i".into(),
+            sample_strobe: "sample_strobe".into(),
+        }
+    }
+
+    /// Pins of channel `n` of the card.
+    pub fn card(n: usize) -> Self {
+        Self {
+            clock: format!("endat_clk{n}_o"),
+            data_o: format!("endat_data{n}_o"),
+            data_oe: format!("endat_data{n}_oe"),
+            data_i: format!("endat_data{n}_i"),
+            sample_strobe: format!("sample_strobe{n}"),
+        }
+    }
+}
+
+struct Port {
+    link: Link,
+    clock: PortId,
+    data_o: PortId,
+    data_oe: PortId,
+    data_i: PortId,
+    sample_strobe: Option<PortId>,
+    data: Option<bool>,
+    /// Moments at which DATA was sampled, not yet looked up in the line's history.
+    sampled: Vec<Time>,
+    samples: Vec<Sample>,
+}
+
+/// Inputs that the bench drives by itself, where the design has them.
+struct TimeBase {
+    tick_us: Option<PortId>,
+    timestamp: Option<PortId>,
+    trigger: Option<PortId>,
+}
+
+/// Cycles for which the bench holds reset, and a trigger pin.
+const PULSE_CYCLES: u64 = 8;
+/// A sample is looked up when the line has gone on for this long, so that the next change is known.
+const SAMPLE_SETTLES: Time = 20 * US;
+
+/// A design on its bench.
+pub struct Bench<E> {
+    engine: E,
+    system_hz: u64,
+    cycle: u64,
+    ports: Vec<Port>,
+    base: TimeBase,
+    trigger_until: u64,
+    trigger_level: bool,
+    sample_latency_cycles: u64,
+    results: Vec<ChannelResult>,
+    result_ports: Option<ResultPorts>,
+    watched: Vec<Watched>,
+    cycles: Option<Cycles>,
+}
+
+impl<E: Engine> Bench<E> {
+    /// A bench with the system clock `system_hz`, and a link on each named set of pins.
+    pub fn new(engine: E, system_hz: u64, links: Vec<(PinNames, Link)>) -> Self {
+        let find = |name: &str| engine.ports().iter().position(|p| p.name == name);
+        let find = |name: &str| find(name).map(PortId);
+        let base = TimeBase {
+            tick_us: find("tick_us"),
+            timestamp: find("timestamp"),
+            trigger: find("trigger").or(find("trigger_i")),
+        };
+        let ports = links
+            .into_iter()
+            .map(|(names, link)| Port {
+                link,
+                clock: engine.port(&names.clock),
+                data_o: engine.port(&names.data_o),
+                data_oe: engine.port(&names.data_oe),
+                data_i: engine.port(&names.data_i),
+                sample_strobe: find(&names.sample_strobe),
+                data: None,
+                sampled: Vec::new(),
+                samples: Vec::new(),
+            })
+            .collect();
+        let result_ports = ResultPorts::find(&engine);
+        Self {
+            engine,
+            system_hz,
+            cycle: 0,
+            ports,
+            base,
+            trigger_until: 0,
+            trigger_level: false,
+            sample_latency_cycles: 0,
+            results: Vec::new(),
+            result_ports,
+            watched: Vec::new(),
+            cycles: None,
+        }
+    }
+
+    /// A bench for the block `Channel` with one link, configured and reset.
+    pub fn channel(engine: E, system_hz: u64, settings: &ChannelSettings, link: Link) -> Self {
+        let mut bench = Self::new(engine, system_hz, vec![(PinNames::channel(), link)]);
+        bench.configure(settings);
+        bench.reset();
+        bench
+    }
+
+    /// Drives the configuration inputs that the design has.
+    pub fn configure(&mut self, settings: &ChannelSettings) {
+        for (name, value) in settings.ports() {
+            if self.has_port(name) {
+                self.set(name, value);
+            }
+        }
+    }
+
+    /// Holds the reset input (`reset` or `rst_i`), if there is one, for a few cycles.
+    pub fn reset(&mut self) {
+        let Some(name) = ["reset", "rst_i"].into_iter().find(|n| self.has_port(n)) else {
+            return;
+        };
+        self.set(name, 1);
+        self.run_cycles(PULSE_CYCLES);
+        self.set(name, 0);
+        self.run_cycles(1);
+    }
+
+    /// Sets how many cycles before the strobe's the sampled level was at the pin (synchroniser and filter).
+    pub fn set_sample_latency(&mut self, cycles: u64) {
+        self.sample_latency_cycles = cycles;
+    }
+
+    /// From now on every change of this port of the design is kept.
+    pub fn watch(&mut self, name: &str) {
+        let id = self.engine.port(name);
+        let port = &self.engine.ports()[id.0];
+        let mut watched = Watched::new(name, id, port.width_bits as u32);
+        watched.note(self.now(), self.engine.get(id));
+        self.watched.push(watched);
+    }
+
+    /// The ports that are being watched.
+    pub fn watched(&self) -> &[Watched] {
+        &self.watched
+    }
+
+    /// From now on the values of all ports are kept for every cycle, as a stimulus for other executions of the design.
+    pub fn record_cycles(&mut self) {
+        self.cycles = Some(Cycles::new(self.engine.ports()));
+    }
+
+    /// The recorded cycles.
+    pub fn cycles(&self) -> Option<&Cycles> {
+        self.cycles.as_ref()
+    }
+
+    /// From now on everything on the links is kept.
+    pub fn record_links(&mut self) {
+        self.ports.iter_mut().for_each(|p| p.link.record());
+    }
+
+    /// The design.
+    pub fn engine(&mut self) -> &mut E {
+        &mut self.engine
+    }
+
+    /// Whether the design has a port of this name.
+    pub fn has_port(&self, name: &str) -> bool {
+        self.engine.ports().iter().any(|p| p.name == name)
+    }
+
+    /// Drives an input of the design.
+    pub fn set(&mut self, name: &str, value: u128) {
+        let id = self.engine.port(name);
+        self.engine.set(id, value);
+    }
+
+    /// Reads a port of the design.
+    pub fn get(&mut self, name: &str) -> u128 {
+        let id = self.engine.port(name);
+        self.engine.get(id)
+    }
+
+    /// System clock in hertz.
+    pub fn system_hz(&self) -> u64 {
+        self.system_hz
+    }
+
+    /// System clock edges so far.
+    pub fn cycle(&self) -> u64 {
+        self.cycle
+    }
+
+    /// When an edge of the system clock is.
+    pub fn time_of(&self, cycle: u64) -> Time {
+        let hz = u128::from(self.system_hz);
+        ((u128::from(cycle) * 1_000_000_000_000 + hz / 2) / hz) as Time
+    }
+
+    /// When the latest edge of the system clock was.
+    pub fn now(&self) -> Time {
+        self.time_of(self.cycle)
+    }
+
+    /// The link on pin set `index`.
+    pub fn link(&self, index: usize) -> &Link {
+        &self.ports[index].link
+    }
+
+    /// Number of links.
+    pub fn link_count(&self) -> usize {
+        self.ports.len()
+    }
+
+    /// What encoder `index` noted about its frames.
+    pub fn frames(&self, index: usize) -> &[FrameLog] {
+        self.link(index).encoder().frames()
+    }
+
+    /// What the design did wrong in the eyes of encoder `index`.
+    pub fn violations(&self, index: usize) -> &[(Time, Violation)] {
+        self.link(index).encoder().violations()
+    }
+
+    /// Moments when DATA of link `index` was driven from both ends.
+    pub fn conflicts(&self, index: usize) -> Vec<Conflict> {
+        self.link(index).line().conflicts(self.now())
+    }
+
+    /// The samples that the design took on link `index`, with what was on the line; the latest ones appear after 20 us.
+    pub fn samples(&self, index: usize) -> &[Sample] {
+        &self.ports[index].samples
+    }
+
+    /// The results that the design delivered (block `Channel` only).
+    pub fn results(&self) -> &[ChannelResult] {
+        &self.results
+    }
+
+    /// Raises the trigger: a strobe of one cycle for the block, a pulse of a few cycles on the card's pin.
+    pub fn trigger(&mut self) {
+        let cycles = if self.has_port("trigger_i") {
+            PULSE_CYCLES
+        } else {
+            1
+        };
+        self.trigger_until = self.cycle + cycles;
+    }
+
+    /// Runs one cycle: the next edge of the system clock.
+    pub fn tick(&mut self) {
+        self.cycle += 1;
+        let now = self.now();
+        self.drive_base();
+        for port in &mut self.ports {
+            port.link.advance_to(now);
+            let data = port.link.data();
+            if port.data != Some(data) {
+                port.data = Some(data);
+                self.engine.set(port.data_i, u128::from(data));
+            }
+        }
+        if let Some(cycles) = &mut self.cycles {
+            cycles.note(&mut self.engine);
+        }
+        self.engine.tick();
+        for port in &mut self.ports {
+            let clock = self.engine.get(port.clock) != 0;
+            let drive = if self.engine.get(port.data_oe) != 0 {
+                Drive::level(self.engine.get(port.data_o) != 0)
+            } else {
+                Drive::Released
+            };
+            port.link.set_pins(now, clock, drive);
+        }
+        self.note_outputs(now);
+    }
+
+    /// Runs `cycles` cycles.
+    pub fn run_cycles(&mut self, cycles: u64) {
+        (0..cycles).for_each(|_| self.tick());
+    }
+
+    /// Runs until `time` is reached.
+    pub fn run_until(&mut self, time: Time) {
+        while self.now() < time {
+            self.tick();
+        }
+    }
+
+    /// Runs for a span of time.
+    pub fn run_for(&mut self, span: Time) {
+        self.run_until(self.now() + span);
+    }
+
+    /// Runs until `done` says so; false if it has not within `span`.
+    pub fn run_until_done(&mut self, span: Time, mut done: impl FnMut(&mut Self) -> bool) -> bool {
+        let end = self.now() + span;
+        while !done(self) {
+            if self.now() >= end {
+                return false;
+            }
+            self.tick();
+        }
+        true
+    }
+
+    /// Waits until the block `Channel` is not busy, triggers it and runs until it delivers a result; none if one of the two
+    /// takes longer than `span`.
+    pub fn frame(&mut self, span: Time) -> Option<ChannelResult> {
+        if self.has_port("busy") && !self.run_until_done(span, |b| b.get("busy") == 0) {
+            return None;
+        }
+        let before = self.results.len();
+        self.trigger();
+        self.run_until_done(span, |b| b.results.len() > before)
+            .then(|| self.results[before].clone())
+    }
+
+    fn drive_base(&mut self) {
+        // The values of this cycle: those of the edge before stay until this one has passed.
+        let last = self.cycle - 1;
+        if let Some(id) = self.base.timestamp {
+            self.engine.set(id, u128::from(last & 0xFFFF_FFFF));
+        }
+        if let Some(id) = self.base.tick_us {
+            let us = |cycle: u64| u128::from(cycle) * 1_000_000 / u128::from(self.system_hz);
+            let tick = us(self.cycle) != us(last);
+            self.engine.set(id, u128::from(tick));
+        }
+        let trigger = last < self.trigger_until;
+        if trigger != self.trigger_level {
+            self.trigger_level = trigger;
+            if let Some(id) = self.base.trigger {
+                self.engine.set(id, u128::from(trigger));
+            }
+        }
+    }
+
+    fn note_outputs(&mut self, now: Time) {
+        if let Some(ports) = &self.result_ports {
+            if let Some(result) = ports.read(&mut self.engine, self.cycle, now) {
+                self.results.push(result);
+            } else if let Some(last) = self.results.last_mut() {
+                let cause = ports.cause(&mut self.engine);
+                if cause != last.cause {
+                    last.late_cause = Some(cause);
+                }
+            }
+        }
+        for w in &mut self.watched {
+            w.note(now, self.engine.get(w.port()));
+        }
+        let latency = self.sample_latency_cycles;
+        let pin_time = self.time_of(self.cycle.saturating_sub(latency));
+        for port in &mut self.ports {
+            if let Some(strobe) = port.sample_strobe {
+                if self.engine.get(strobe) != 0 {
+                    port.sampled.push(pin_time);
+                }
+            }
+            port.look_up_samples(now);
+        }
+    }
+}
+
+impl Port {
+    fn look_up_samples(&mut self, now: Time) {
+        let line = self.link.line();
+        let settled = |t: &Time| t + SAMPLE_SETTLES < now || line.sample(*t).until.is_some();
+        let ready = self.sampled.iter().take_while(|t| settled(t)).count();
+        for time in self.sampled.drain(..ready) {
+            self.samples.push(self.link.line().sample(time));
+        }
+        let oldest = self.sampled.first().copied().unwrap_or(now);
+        let keep = oldest.min(now.saturating_sub(SAMPLE_SETTLES));
+        self.link.line_mut().forget_before(keep);
+    }
+}

@@ -1,0 +1,201 @@
+//! What the bench keeps of a design's ports.
+
+use crate::{
+    engine::{Engine, Port, PortId},
+    Time,
+};
+use endat_hdl::transaction::cause;
+
+/// A result of the block `Channel`; the fields have the names of its ports.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ChannelResult {
+    /// Cycle in which the result strobe was HIGH.
+    pub cycle: u64,
+    /// Its time.
+    pub time: Time,
+    /// The last good position.
+    pub position: u64,
+    /// There has been a good position.
+    pub position_valid: bool,
+    /// It is of this frame.
+    pub fresh: bool,
+    /// Number of the result.
+    pub sequence: u64,
+    /// Time stamp of the first falling clock edge of the frame that the position is of.
+    pub first_fall_timestamp: u64,
+    /// Age of the position.
+    pub age_us: u64,
+    /// Primary cause, 0 = none.
+    pub cause: u64,
+    /// The cause that took its place after the result was out (DATA that does not fall).
+    pub late_cause: Option<u64>,
+    /// Raw flags.
+    pub flags: u64,
+    /// Received CRC.
+    pub crc_received: u64,
+    /// Computed CRC.
+    pub crc_computed: u64,
+    /// Measured recovery time.
+    pub recovery_cycles: u64,
+    /// Tracked signal delay tD.
+    pub delay_cycles: u64,
+}
+
+impl ChannelResult {
+    /// The cause in the end: the late one if there is one.
+    pub fn last_cause(&self) -> u64 {
+        self.late_cause.unwrap_or(self.cause)
+    }
+
+    /// Name of the cause in the end.
+    pub fn cause_name(&self) -> &'static str {
+        cause::name(self.last_cause())
+    }
+}
+
+/// Ports of a result; those that the design does not have read as 0.
+pub(super) struct ResultPorts {
+    strobe: PortId,
+    fields: [Option<PortId>; 12],
+}
+
+/// Place of the cause in the list of fields.
+const CAUSE: usize = 6;
+
+impl ResultPorts {
+    pub(super) fn find(engine: &impl Engine) -> Option<Self> {
+        let find = |name: &str| {
+            engine
+                .ports()
+                .iter()
+                .position(|p| p.name == name)
+                .map(PortId)
+        };
+        Some(Self {
+            strobe: find("result_strobe")?,
+            fields: [
+                "position",
+                "position_valid",
+                "fresh",
+                "sequence",
+                "first_fall_timestamp",
+                "age_us",
+                "cause",
+                "flags",
+                "crc_received",
+                "crc_computed",
+                "recovery_cycles",
+                "delay_cycles",
+            ]
+            .map(find),
+        })
+    }
+
+    /// The cause as it stands now.
+    pub(super) fn cause(&self, engine: &mut impl Engine) -> u64 {
+        self.fields[CAUSE].map_or(0, |id| engine.get(id) as u64)
+    }
+
+    pub(super) fn read(
+        &self,
+        engine: &mut impl Engine,
+        cycle: u64,
+        time: Time,
+    ) -> Option<ChannelResult> {
+        if engine.get(self.strobe) == 0 {
+            return None;
+        }
+        let values = self
+            .fields
+            .map(|id| id.map_or(0, |id| engine.get(id) as u64));
+        let [position, position_valid, fresh, sequence, first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles] =
+            values;
+        Some(ChannelResult {
+            cycle,
+            time,
+            position,
+            position_valid: position_valid != 0,
+            fresh: fresh != 0,
+            sequence,
+            first_fall_timestamp,
+            age_us,
+            cause,
+            late_cause: None,
+            flags,
+            crc_received,
+            crc_computed,
+            recovery_cycles,
+            delay_cycles,
+        })
+    }
+}
+
+/// A port of the design and its changes.
+#[derive(Clone, Debug)]
+pub struct Watched {
+    name: String,
+    port: PortId,
+    width_bits: u32,
+    changes: Vec<(Time, u128)>,
+}
+
+impl Watched {
+    pub(super) fn new(name: &str, port: PortId, width_bits: u32) -> Self {
+        Self {
+            name: name.into(),
+            port,
+            width_bits,
+            changes: Vec::new(),
+        }
+    }
+
+    pub(super) fn port(&self) -> PortId {
+        self.port
+    }
+
+    pub(super) fn note(&mut self, time: Time, value: u128) {
+        if self.changes.last().is_none_or(|c| c.1 != value) {
+            self.changes.push((time, value));
+        }
+    }
+
+    /// Name of the port.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its width in bits.
+    pub fn width_bits(&self) -> u32 {
+        self.width_bits
+    }
+
+    /// Its changes; a value holds from the system clock edge at its time.
+    pub fn changes(&self) -> &[(Time, u128)] {
+        &self.changes
+    }
+}
+
+/// The settled values of all ports in each cycle, just before the clock edge that ends it.
+#[derive(Clone, Debug)]
+pub struct Cycles {
+    /// The ports, in the order of the values.
+    pub ports: Vec<Port>,
+    /// One row for each cycle.
+    pub rows: Vec<Vec<u128>>,
+}
+
+impl Cycles {
+    pub(super) fn new(ports: &[Port]) -> Self {
+        Self {
+            ports: ports.to_vec(),
+            rows: Vec::new(),
+        }
+    }
+
+    pub(super) fn note(&mut self, engine: &mut impl Engine) {
+        let row = (0..self.ports.len())
+            .map(|i| engine.get(PortId(i)))
+            .collect();
+        self.rows.push(row);
+    }
+}

@@ -1,0 +1,428 @@
+//! The two pairs between receiver and encoder: CLOCK one way, DATA both ways.
+//!
+//! ```text
+//! receiver pin --transceiver--cable--transceiver-- encoder pin       CLOCK
+//! receiver pin --transceiver--cable--transceiver-- encoder pin       DATA: each end hears the other after the path's delay
+//! ```
+//!
+//! A DATA pair that nobody drives reads HIGH (fail-safe transceivers). A driver's effect at its own end is immediate; the
+//! times of an end are those of its pins.
+
+mod config;
+mod path;
+#[cfg(test)]
+mod tests;
+
+pub use config::{Glitch, GlitchRate, Jitter, LineConfig, PathConfig, Wire};
+
+use crate::{
+    encoder::{Drive, Output, Symbol},
+    rng::Rng,
+    Time,
+};
+use path::Path;
+use std::collections::VecDeque;
+
+/// An end of the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The receiver's.
+    Receiver,
+    /// The encoder's.
+    Encoder,
+}
+
+/// Both drivers were heard at one end at the same time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Conflict {
+    /// At which end.
+    pub end: End,
+    /// Since when.
+    pub from: Time,
+    /// For how long.
+    pub length: Time,
+    /// They wanted different levels.
+    pub opposing: bool,
+    /// Both drivers were on at once. If not, the other end had already let go and its last edge was still in the cable.
+    pub both_on: bool,
+}
+
+impl std::fmt::Display for Conflict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "DATA driven from both ends at the {} for {:.3} us, {}, {}",
+            match self.end {
+                End::Receiver => "receiver",
+                End::Encoder => "encoder",
+            },
+            self.length as f64 / 1e6,
+            if self.opposing {
+                "to different levels"
+            } else {
+                "to the same level"
+            },
+            if self.both_on {
+                "both drivers on"
+            } else {
+                "one only by its echo in the cable"
+            },
+        )
+    }
+}
+
+/// Who determines DATA at the receiver's pin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Who {
+    /// Nobody: it floats, and reads HIGH.
+    Nobody,
+    /// The receiver itself.
+    Receiver,
+    /// The encoder, meaning this.
+    Encoder(Symbol),
+    /// Both.
+    Both,
+}
+
+/// A change of DATA at the receiver's pin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DataChange {
+    /// When.
+    pub time: Time,
+    /// Level from then on.
+    pub level: bool,
+    /// Who makes it.
+    pub who: Who,
+    /// Whether it is a glitch.
+    pub glitch: bool,
+}
+
+/// DATA at the receiver's pin at one moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sample {
+    /// The moment.
+    pub time: Time,
+    /// Its level.
+    pub level: bool,
+    /// Who makes it.
+    pub who: Who,
+    /// Whether it is a glitch.
+    pub glitch: bool,
+    /// How long it has been so.
+    pub since: Time,
+    /// How long it will be so; none = no change known yet.
+    pub until: Option<Time>,
+}
+
+impl Sample {
+    /// The number of the answer bit that is on the line (0 = start bit), if it is one.
+    pub fn answer_bit(&self) -> Option<u8> {
+        match self.who {
+            Who::Encoder(Symbol::Bit(i)) => Some(i),
+            _ => None,
+        }
+    }
+
+    /// Driven by the encoder alone, and not changing within `guard` before or after.
+    pub fn is_defined(&self, guard: Time) -> bool {
+        matches!(self.who, Who::Encoder(s) if s != Symbol::Absent)
+            && !self.glitch
+            && self.since >= guard
+            && self.until.is_none_or(|u| u >= guard)
+    }
+}
+
+/// What has arrived at an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrival {
+    /// CLOCK at the encoder has this level now.
+    Clock(bool),
+    /// DATA at one end may have changed.
+    Data(End),
+}
+
+/// The line. Time must not run backwards from call to call.
+pub struct Line {
+    config: LineConfig,
+    clock: Path<bool>,
+    data_out: Path<Drive>,
+    data_in: Path<Output>,
+    receiver: Drive,
+    encoder: Output,
+    glitches: VecDeque<Glitch>,
+    /// The glitch going on, and when it ends.
+    glitch: Option<(Wire, Time)>,
+    rng: Rng,
+    history: VecDeque<DataChange>,
+    conflicts: Vec<Conflict>,
+    open_conflicts: [Option<Conflict>; 2],
+}
+
+impl Line {
+    /// A line with CLOCK HIGH, the receiver's driver off and the encoder doing `encoder`.
+    pub fn new(config: LineConfig, encoder: Output) -> Self {
+        let mut rng = Rng::new(config.seed);
+        let flight = config.flight();
+        let mut line = Self {
+            clock: Path::new(config.clock, flight, rng.next_u64(), true),
+            data_out: Path::new(config.data_out, flight, rng.next_u64(), Drive::Released),
+            data_in: Path::new(config.data_in, flight, rng.next_u64(), encoder),
+            receiver: Drive::Released,
+            encoder,
+            glitches: config.glitches.iter().copied().collect(),
+            glitch: None,
+            rng,
+            history: VecDeque::new(),
+            conflicts: Vec::new(),
+            open_conflicts: [None; 2],
+            config,
+        };
+        line.plan_glitch(0);
+        line.note_data(0);
+        line
+    }
+
+    /// Its configuration.
+    pub fn config(&self) -> &LineConfig {
+        &self.config
+    }
+
+    /// The receiver sets CLOCK.
+    pub fn set_clock(&mut self, time: Time, level: bool) {
+        self.clock.send(time, level);
+    }
+
+    /// The receiver does this to DATA.
+    pub fn set_receiver(&mut self, time: Time, drive: Drive) {
+        if drive != self.receiver {
+            self.receiver = drive;
+            self.data_out.send(time, drive);
+            self.changed(time);
+        }
+    }
+
+    /// The encoder does this to DATA.
+    pub fn set_encoder(&mut self, time: Time, output: Output) {
+        if output != self.encoder {
+            self.encoder = output;
+            self.data_in.send(time, output);
+            self.changed(time);
+        }
+    }
+
+    /// When something arrives next.
+    pub fn next_event(&self) -> Option<Time> {
+        [
+            self.clock.next(),
+            self.data_out.next(),
+            self.data_in.next(),
+            match self.glitch {
+                Some((_, end)) => Some(end),
+                None => self.glitches.front().map(|g| g.at),
+            },
+        ]
+        .into_iter()
+        .flatten()
+        .min()
+    }
+
+    /// Lets one thing arrive that is due at `time`.
+    pub fn advance(&mut self, time: Time) -> Option<Arrival> {
+        if self.data_out.arrive(time).is_some() {
+            self.changed(time);
+            return Some(Arrival::Data(End::Encoder));
+        }
+        if self.clock.arrive(time).is_some() {
+            return Some(Arrival::Clock(self.clock_at_encoder()));
+        }
+        if self.data_in.arrive(time).is_some() {
+            self.changed(time);
+            return Some(Arrival::Data(End::Receiver));
+        }
+        let wire = self.switch_glitch(time)?;
+        self.changed(time);
+        Some(match wire {
+            Wire::Clock => Arrival::Clock(self.clock_at_encoder()),
+            Wire::Data => Arrival::Data(End::Receiver),
+        })
+    }
+
+    /// CLOCK at the encoder's pin.
+    pub fn clock_at_encoder(&self) -> bool {
+        self.clock.arrived() ^ self.in_glitch(Wire::Clock)
+    }
+
+    /// What the receiver does to DATA, as heard at the encoder.
+    pub fn receiver_at_encoder(&self) -> Drive {
+        self.data_out.arrived()
+    }
+
+    /// What the encoder does to DATA, as heard at the receiver.
+    pub fn encoder_at_receiver(&self) -> Output {
+        self.data_in.arrived()
+    }
+
+    /// What the receiver does to DATA.
+    pub fn receiver(&self) -> Drive {
+        self.receiver
+    }
+
+    /// What the encoder does to DATA.
+    pub fn encoder(&self) -> Output {
+        self.encoder
+    }
+
+    /// DATA at the receiver's pin.
+    pub fn data_at_receiver(&self) -> bool {
+        self.history.back().is_none_or(|c| c.level)
+    }
+
+    /// Who determines DATA at the receiver's pin.
+    pub fn who_at_receiver(&self) -> Who {
+        let remote = self.data_in.arrived();
+        match (self.receiver, remote.drive) {
+            (Drive::Released, Drive::Released) => Who::Nobody,
+            (_, Drive::Released) => Who::Receiver,
+            (Drive::Released, _) => Who::Encoder(remote.symbol),
+            _ => Who::Both,
+        }
+    }
+
+    /// DATA at the encoder's pin.
+    pub fn data_at_encoder(&self) -> bool {
+        match (self.encoder.drive, self.data_out.arrived()) {
+            (Drive::Released, remote) => remote != Drive::Low,
+            (local, _) => local == Drive::High,
+        }
+    }
+
+    /// The conflicts so far, the unfinished ones as if they ended at `now`.
+    pub fn conflicts(&self, now: Time) -> Vec<Conflict> {
+        let ended = |c: &Conflict| Conflict {
+            length: now - c.from,
+            ..*c
+        };
+        let open = self.open_conflicts.iter().flatten().map(ended);
+        let all = self.conflicts.iter().copied().chain(open);
+        all.filter(|c| c.length > 0).collect()
+    }
+
+    /// DATA at the receiver's pin at a moment not before the last [`Line::forget_before`].
+    pub fn sample(&self, time: Time) -> Sample {
+        let next = self.history.partition_point(|c| c.time <= time);
+        let change = self.history[next.saturating_sub(1)];
+        Sample {
+            time,
+            level: change.level,
+            who: change.who,
+            glitch: change.glitch,
+            since: time.saturating_sub(change.time),
+            until: self.history.get(next).map(|c| c.time - time),
+        }
+    }
+
+    /// The changes of DATA at the receiver's pin that are still remembered.
+    pub fn history(&self) -> impl Iterator<Item = &DataChange> {
+        self.history.iter()
+    }
+
+    /// Forgets what was on DATA before `time`, so that long runs do not fill the memory.
+    pub fn forget_before(&mut self, time: Time) {
+        while self.history.len() > 1 && self.history[1].time <= time {
+            self.history.pop_front();
+        }
+    }
+
+    fn in_glitch(&self, wire: Wire) -> bool {
+        self.glitch.is_some_and(|g| g.0 == wire)
+    }
+
+    fn switch_glitch(&mut self, time: Time) -> Option<Wire> {
+        if let Some((wire, end)) = self.glitch {
+            if end > time {
+                return None;
+            }
+            self.glitch = None;
+            self.plan_glitch(time);
+            return Some(wire);
+        }
+        let next = *self.glitches.front()?;
+        if next.at > time {
+            return None;
+        }
+        self.glitches.pop_front();
+        self.glitch = Some((next.wire, time + next.width));
+        Some(next.wire)
+    }
+
+    fn plan_glitch(&mut self, now: Time) {
+        let Some(rate) = self.config.random_glitches else {
+            return;
+        };
+        if self.glitches.is_empty() {
+            let uniform = (self.rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+            let gap = -(1.0 - uniform).ln() * rate.mean_gap as f64;
+            self.glitches.push_back(Glitch {
+                wire: rate.wire,
+                at: now + gap as Time,
+                width: self.rng.in_range(rate.shortest, rate.longest),
+            });
+        }
+    }
+
+    fn changed(&mut self, time: Time) {
+        self.note_data(time);
+        let receiver_end = (self.receiver, self.data_in.arrived().drive);
+        let encoder_end = (self.encoder.drive, self.data_out.arrived());
+        for (i, (end, drives)) in [(End::Receiver, receiver_end), (End::Encoder, encoder_end)]
+            .into_iter()
+            .enumerate()
+        {
+            self.note_conflict(time, i, end, drives);
+        }
+    }
+
+    fn note_data(&mut self, time: Time) {
+        let who = self.who_at_receiver();
+        let level = match self.receiver {
+            Drive::Released => self.data_in.arrived().drive != Drive::Low,
+            local => local == Drive::High,
+        };
+        let glitch = self.in_glitch(Wire::Data);
+        let change = DataChange {
+            time,
+            level: level ^ glitch,
+            who,
+            glitch,
+        };
+        match self.history.back_mut() {
+            Some(last) if last.time == time => *last = change,
+            Some(last) if DataChange { time, ..*last } == change => {}
+            _ => self.history.push_back(change),
+        }
+    }
+
+    fn note_conflict(&mut self, time: Time, slot: usize, end: End, drives: (Drive, Drive)) {
+        let (a, b) = drives;
+        let both = a != Drive::Released && b != Drive::Released;
+        if !both {
+            if let Some(mut c) = self.open_conflicts[slot].take() {
+                c.length = time - c.from;
+                if c.length > 0 {
+                    self.conflicts.push(c);
+                }
+            }
+            return;
+        }
+        let both_on = self.receiver != Drive::Released && self.encoder.drive != Drive::Released;
+        let c = self.open_conflicts[slot].get_or_insert(Conflict {
+            end,
+            from: time,
+            length: 0,
+            opposing: false,
+            both_on: false,
+        });
+        c.opposing |= a != b;
+        c.both_on |= both_on;
+    }
+}

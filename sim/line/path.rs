@@ -1,0 +1,86 @@
+//! Edges on their way from one end of a path to the other.
+
+use super::PathConfig;
+use crate::{encoder::Drive, rng::Rng, Time};
+use std::collections::VecDeque;
+
+/// Something whose change to LOW can be told from its change to HIGH.
+pub(super) trait Edge: Copy + PartialEq {
+    fn falls(self) -> bool;
+}
+
+impl Edge for bool {
+    fn falls(self) -> bool {
+        !self
+    }
+}
+
+impl Edge for Drive {
+    fn falls(self) -> bool {
+        self == Drive::Low
+    }
+}
+
+impl Edge for crate::encoder::Output {
+    fn falls(self) -> bool {
+        self.drive.falls()
+    }
+}
+
+/// A delay line. Edges keep their order; pulses too short for it vanish.
+pub(super) struct Path<T> {
+    config: PathConfig,
+    flight: Time,
+    rng: Rng,
+    underway: VecDeque<(Time, T)>,
+    arrived: T,
+}
+
+impl<T: Edge> Path<T> {
+    pub(super) fn new(config: PathConfig, flight: Time, seed: u64, at_rest: T) -> Self {
+        Self {
+            config,
+            flight,
+            rng: Rng::new(seed),
+            underway: VecDeque::new(),
+            arrived: at_rest,
+        }
+    }
+
+    /// A change enters at `time`.
+    pub(super) fn send(&mut self, time: Time, value: T) {
+        let mut delay = (self.flight + self.config.transceivers) as i64;
+        if value.falls() {
+            delay += self.config.fall_later;
+        }
+        delay += self.config.jitter.draw(&mut self.rng);
+        let arrival = time.saturating_add_signed(delay.max(0));
+        let earliest = |p: &(Time, T)| p.0 + self.config.shortest_pulse;
+        if self.underway.back().is_some_and(|p| arrival < earliest(p)) {
+            self.underway.pop_back();
+        }
+        let before = self.underway.back().map_or(self.arrived, |p| p.1);
+        if before != value {
+            self.underway.push_back((arrival, value));
+        }
+    }
+
+    /// When the next change arrives.
+    pub(super) fn next(&self) -> Option<Time> {
+        self.underway.front().map(|p| p.0)
+    }
+
+    /// Takes over a change that has arrived by `time`.
+    pub(super) fn arrive(&mut self, time: Time) -> Option<T> {
+        if self.next()? > time {
+            return None;
+        }
+        self.arrived = self.underway.pop_front()?.1;
+        Some(self.arrived)
+    }
+
+    /// What there is at the far end.
+    pub(super) fn arrived(&self) -> T {
+        self.arrived
+    }
+}

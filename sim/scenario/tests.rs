@@ -1,0 +1,80 @@
+use super::*;
+use crate::test_receiver::{Bug, TestReceiver, LATENCY};
+
+fn run(scenario: &Scenario, index: usize, bug: Bug) -> Report {
+    let receiver = TestReceiver::with_bug(scenario.system_hz, bug);
+    let options = RunOptions {
+        record: false,
+        sample_latency_cycles: LATENCY,
+    };
+    scenario.run_channel(index, receiver, options).1
+}
+
+#[test]
+fn every_scenario_goes_as_it_says() {
+    for s in all() {
+        if s.name == "glitches" {
+            continue; // the plain receiver has no input filter
+        }
+        for i in 0..s.channels.len() {
+            let report = run(&s, i, Bug::None);
+            assert_eq!(report.complaints(), [""; 0], "{report}");
+            assert_eq!(report.channels[0].frames.len(), s.causes.len());
+        }
+    }
+}
+
+#[test]
+fn without_a_filter_the_glitches_hurt() {
+    let report = run(&named("glitches").unwrap(), 0, Bug::None);
+    assert!(!report.complaints().is_empty(), "{report}");
+}
+
+#[test]
+fn a_wrong_receiver_is_complained_about() {
+    let paper = named("paper").unwrap();
+    for bug in [
+        Bug::ExtraPulses(1),
+        Bug::ExtraPulses(-1),
+        Bug::LateRelease(2),
+        Bug::NoRecovery,
+        Bug::LateSample(20),
+        Bug::Command(0b000_111),
+    ] {
+        let report = run(&paper, 0, bug);
+        let noticed = !report.complaints().is_empty();
+        // Without waiting for the recovery time nothing happens as long as triggers are slow.
+        assert_eq!(noticed, bug != Bug::NoRecovery, "{bug:?} {report}");
+    }
+    let fast = named("overrun").unwrap();
+    assert!(!run(&fast, 0, Bug::NoRecovery).complaints().is_empty());
+}
+
+#[test]
+fn names_are_unique_and_found() {
+    let names: std::collections::BTreeSet<_> = all().iter().map(|s| s.name).collect();
+    assert_eq!(names.len(), all().len());
+    assert!(named("paper").is_some() && named("no such scenario").is_none());
+}
+
+#[test]
+fn the_report_reads_well() {
+    let report = run(&named("alarm").unwrap(), 0, Bug::None).to_string();
+    let lines: Vec<&str> = report.lines().map(str::trim_end).collect();
+    let expected = [
+        "alarm: the encoder reports an error in F1, in F2 and in both, with a correct CRC",
+        "",
+        "channel 0: command 111000, 29 position bits, 3.125 MHz from 100 MHz (32 cycles, +0 ppm), 10 m of cable",
+        "   trigger us  result                            position      encoder's   pulses  start  S at us frame us    tm us",
+        "       20.000  good                             0x1234567      0x1234567    48/48   R#11   52.500  237.500   24.916",
+        "      620.000  good                             0x1235678      0x1235678    48/48   R#11    5.200   17.040   18.887",
+        "      720.000  held: F1                         0x1235678      0x1236789    48/48   R#11    5.200   17.040   25.258",
+        "      820.000  held: F2                         0x1235678      0x123789A    48/48   R#11    5.200   17.040   20.461",
+        "      920.000  held: F1                         0x1235678      0x12389AB    48/48   R#11    5.200   17.040   25.880",
+        "     1020.000  good                             0x1239ABC      0x1239ABC    48/48   R#11    5.200   17.040   22.108",
+        "  222 samples, narrowest margin 160.0 ns",
+        "",
+        "all as it should be",
+    ];
+    assert_eq!(lines, expected);
+}
