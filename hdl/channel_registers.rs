@@ -8,9 +8,10 @@
 //! The held words of all channels are loaded by the same signal, so they belong together. A byte that is not selected
 //! is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
 
+use crate::config::CardConfig;
 use crate::config_ring::ConfigRing;
 use crate::reg::Reg;
-use crate::regs::Start;
+use crate::regs::config_words;
 use rust_hdl::prelude::*;
 
 /// Words of a result.
@@ -109,10 +110,10 @@ pub struct ChannelRegisters {
 }
 
 impl ChannelRegisters {
-    /// The registers of channel `channel` of a card that starts with `start`.
-    pub fn new(start: &Start, channel: usize) -> Self {
-        let words = start.config_words(Some(channel));
-        let config = |i: usize| Reg::new(u64::from(words[i]).into());
+    /// The registers of channel `channel` of a card.
+    pub fn new(config: &CardConfig, channel: usize) -> Self {
+        let words = config_words(config, Some(channel));
+        let active = |i: usize| Reg::new(u64::from(words[i]).into());
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -158,10 +159,10 @@ impl ChannelRegisters {
             byte: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
             read_byte: Default::default(),
             ring: ConfigRing::new(words),
-            config0: config(0),
-            config1: config(1),
-            config2: config(2),
-            config3: config(3),
+            config0: active(0),
+            config1: active(1),
+            config2: active(2),
+            config3: active(3),
             _words: RESULT_WORDS,
         }
     }

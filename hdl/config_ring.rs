@@ -75,12 +75,12 @@ impl Logic for ConfigRing {
         self.w2.reset.next = self.reset.val();
         self.w3.reset.next = self.reset.val();
         if self.turn.val() {
-            self.w0.d.next = (self.w0.q.val() << 8)
-                | bit_cast::<32, 8>(self.w1.q.val().get_bits::<8>(24));
-            self.w1.d.next = (self.w1.q.val() << 8)
-                | bit_cast::<32, 8>(self.w2.q.val().get_bits::<8>(24));
-            self.w2.d.next = (self.w2.q.val() << 8)
-                | bit_cast::<32, 8>(self.w3.q.val().get_bits::<8>(24));
+            self.w0.d.next =
+                (self.w0.q.val() << 8) | bit_cast::<32, 8>(self.w1.q.val().get_bits::<8>(24));
+            self.w1.d.next =
+                (self.w1.q.val() << 8) | bit_cast::<32, 8>(self.w2.q.val().get_bits::<8>(24));
+            self.w2.d.next =
+                (self.w2.q.val() << 8) | bit_cast::<32, 8>(self.w3.q.val().get_bits::<8>(24));
             self.w3.d.next = (self.w3.q.val() << 8) | bit_cast::<32, 8>(self.byte_in.val());
         }
         self.byte_out.next = self.w0.q.val().get_bits::<8>(24);

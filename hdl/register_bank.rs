@@ -12,9 +12,10 @@
 //! Results of all channels are held together: they follow the channels while no channel owes a result and nothing is
 //! being read. See `docs/host-link.md`.
 
+use crate::config::CardConfig;
 use crate::config_ring::{ConfigRing, RING_BYTES};
 use crate::reg::Reg;
-use crate::regs::{Start, CARD};
+use crate::regs::{config_words, CARD};
 use rust_hdl::prelude::*;
 
 /// Decoder and card registers.
@@ -117,8 +118,8 @@ pub const fn ring_bytes(channels: usize) -> usize {
 }
 
 /// Start value of one of the card's words.
-fn card_word(start: &Start, name: &str) -> Constant<Bits<32>> {
-    let value = CARD.register(name).map_or(0, |r| r.start(start, 0));
+fn card_word(config: &CardConfig, name: &str) -> Constant<Bits<32>> {
+    let value = CARD.register(name).map_or(0, |r| r.start(config, 0));
     Constant::new(u64::from(value).into())
 }
 
@@ -129,9 +130,9 @@ fn card_address(name: &str) -> Constant<Bits<9>> {
 }
 
 impl RegisterBank {
-    /// The bank of a card that starts with `start`.
-    pub fn new(start: &Start) -> Self {
-        let words = start.config_words(None);
+    /// The bank of a card.
+    pub fn new(config: &CardConfig) -> Self {
+        let words = config_words(config, None);
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -187,12 +188,12 @@ impl RegisterBank {
             result_page: Default::default(),
             head: Default::default(),
             rom_word: Default::default(),
-            id: card_word(start, "id"),
-            version: card_word(start, "version"),
-            capabilities: card_word(start, "capabilities"),
-            system_hz: card_word(start, "system_hz"),
-            configuration_hash: card_word(start, "configuration_hash"),
-            last_position: Constant::new((ring_bytes(start.channels.len()) as u64 - 1).into()),
+            id: card_word(config, "id"),
+            version: card_word(config, "version"),
+            capabilities: card_word(config, "capabilities"),
+            system_hz: card_word(config, "system_hz"),
+            configuration_hash: card_word(config, "configuration_hash"),
+            last_position: Constant::new((ring_bytes(config.channels.len()) as u64 - 1).into()),
             trigger_count_at: card_address("trigger_count"),
             trigger_now_at: card_address("trigger_now"),
             calibrate_at: card_address("calibrate"),
@@ -203,9 +204,32 @@ impl RegisterBank {
 impl Logic for RegisterBank {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, turning, position, done_now, write_now, config_page);
-        dff_setup!(self, clock, result_words, channels, rom_byte, count_held, count_byte);
-        dff_setup!(self, clock, ring_byte, byte, trigger_strobe, calibrate_strobe);
+        dff_setup!(
+            self,
+            clock,
+            turning,
+            position,
+            done_now,
+            write_now,
+            config_page
+        );
+        dff_setup!(
+            self,
+            clock,
+            result_words,
+            channels,
+            rom_byte,
+            count_held,
+            count_byte
+        );
+        dff_setup!(
+            self,
+            clock,
+            ring_byte,
+            byte,
+            trigger_strobe,
+            calibrate_strobe
+        );
         dff_setup!(self, clock, active_sources, active_period, hold);
         clock!(self, clock, ring);
         self.ring.reset.next = self.reset.val();
@@ -365,7 +389,8 @@ impl Logic for RegisterBank {
             }
             _ => {}
         }
-        self.result_page.next = self.in_range.val() & self.word_address.val().get_bits::<2>(7).all();
+        self.result_page.next =
+            self.in_range.val() & self.word_address.val().get_bits::<2>(7).all();
         self.channels.d.next = 0.into();
         if self.result_page.val() {
             match self.word_address.val().get_bits::<4>(3).index() {

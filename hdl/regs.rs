@@ -15,7 +15,7 @@ mod table;
 pub use markdown::markdown;
 pub use table::{CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT};
 
-use crate::protocol::ModeCommand;
+use crate::config::CardConfig;
 
 /// Major, minor and patch version of the register map.
 pub const VERSION: [u8; 3] = [0, 1, 0];
@@ -66,7 +66,7 @@ pub struct Field {
     /// What it means.
     pub meaning: &'static str,
     /// Value after reset for a channel (0 for words of the card).
-    pub start: fn(&Start, usize) -> u64,
+    pub start: fn(&CardConfig, usize) -> u64,
 }
 
 impl Field {
@@ -93,9 +93,12 @@ pub struct Register {
 
 impl Register {
     /// Value after reset.
-    pub fn start(&self, start: &Start, channel: usize) -> u32 {
-        let part = |f: &Field| ((f.start)(start, channel) << f.lsb) as u32 & f.mask();
-        self.fields.iter().map(part).fold(0, |word, part| word | part)
+    pub fn start(&self, config: &CardConfig, channel: usize) -> u32 {
+        let part = |f: &Field| ((f.start)(config, channel) << f.lsb) as u32 & f.mask();
+        self.fields
+            .iter()
+            .map(part)
+            .fold(0, |word, part| word | part)
     }
 
     /// The field called `name`.
@@ -133,56 +136,18 @@ impl Block {
 /// All blocks, lowest base first.
 pub const BLOCKS: [Block; 4] = [CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT];
 
-/// Start values of one channel's configuration, in the units of its inputs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ChannelStart {
-    /// EnDat clock period.
-    pub period_cycles: u64,
-    /// First low phase minus half a period (tST).
-    pub first_low_extra_cycles: u64,
-    /// Mode command.
-    pub command: ModeCommand,
-    /// Position bits.
-    pub position_bits: u32,
-    /// Input filter; 0 = off.
-    pub filter_cycles: u64,
-    /// Half width of the start window.
-    pub start_window_cycles: u64,
-    /// Longest wait for the start bit.
-    pub start_timeout_us: u64,
-    /// DATA must have fallen by then.
-    pub recovery_limit_cycles: u64,
-    /// DATA must be low this long (tR).
-    pub ready_low_cycles: u64,
-    /// Quiet time after an aborted transfer.
-    pub abort_us: u64,
-}
-
-/// What the words of a card hold after reset.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Start {
-    /// System clock, in hertz.
-    pub system_hz: u64,
-    /// First 32 bits of the configuration hash.
-    pub hash: u32,
-    /// Enabled trigger sources, as in the register.
-    pub sources: u8,
-    /// Period of the sampling timer.
-    pub sample_period_cycles: u64,
-    /// Its channels.
-    pub channels: Vec<ChannelStart>,
-}
-
-impl Start {
-    /// The words of a configuration block: `channel` is `None` for the card's own.
-    pub fn config_words(&self, channel: Option<usize>) -> [u32; 4] {
-        let mut words = [0; 4];
-        let block = if channel.is_some() { CHANNEL_CONFIG } else { CARD_CONFIG };
-        for register in block.registers {
-            words[register.offset as usize] = register.start(self, channel.unwrap_or(0));
-        }
-        words
+/// The words of a configuration block after reset; `channel` is `None` for the card's own.
+pub fn config_words(config: &CardConfig, channel: Option<usize>) -> [u32; 4] {
+    let mut words = [0; 4];
+    let block = if channel.is_some() {
+        CHANNEL_CONFIG
+    } else {
+        CARD_CONFIG
+    };
+    for register in block.registers {
+        words[register.offset as usize] = register.start(config, channel.unwrap_or(0));
     }
+    words
 }
 
 #[cfg(test)]

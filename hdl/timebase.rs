@@ -97,7 +97,9 @@ mod tests {
                 })
                 .collect();
             assert!(strobes.len() >= 3);
-            assert!(strobes.windows(2).all(|w| w[1] - w[0] == system_hz / 1_000_000));
+            assert!(strobes
+                .windows(2)
+                .all(|w| w[1] - w[0] == system_hz / 1_000_000));
         }
     }
 }

@@ -97,9 +97,10 @@ impl Logic for Trigger {
             self.timer_hit.d.next = false;
         }
 
-        self.strobe.d.next = (self.sync1.q.val() & !self.sync2.q.val() & self.sources.val().get_bit(0))
-            | (self.timer_hit.q.val() & self.sources.val().get_bit(1))
-            | (self.register.val() & self.sources.val().get_bit(2));
+        self.strobe.d.next =
+            (self.sync1.q.val() & !self.sync2.q.val() & self.sources.val().get_bit(0))
+                | (self.timer_hit.q.val() & self.sources.val().get_bit(1))
+                | (self.register.val() & self.sources.val().get_bit(2));
         if self.strobe.q.val() {
             self.count.d.next = self.count.q.val() + 1;
         }
@@ -138,7 +139,10 @@ mod tests {
             let mut uut = new(2, period);
             let at = strobes(&mut uut, 10 * period);
             assert!(at.len() >= 9, "{period}: {at:?}");
-            assert!(at.windows(2).all(|w| w[1] - w[0] == period), "{period}: {at:?}");
+            assert!(
+                at.windows(2).all(|w| w[1] - w[0] == period),
+                "{period}: {at:?}"
+            );
             assert_eq!(uut.trigger_count.val().to_u64() as usize, at.len());
         }
     }

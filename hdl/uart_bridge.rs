@@ -144,7 +144,16 @@ impl UartBridge {
 impl Logic for UartBridge {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, state, fixed, writing, words_left, address, out_of_range);
+        dff_setup!(
+            self,
+            clock,
+            state,
+            fixed,
+            writing,
+            words_left,
+            address,
+            out_of_range
+        );
         dff_setup!(self, clock, byte_lane, data, access_now, byte_ready, idle_us, expired);
         clock!(self, clock, receiver, transmitter);
         self.receiver.reset.next = self.reset.val();
@@ -280,8 +289,8 @@ impl Logic for UartBridge {
                     self.out_of_range.d.next = self.out_of_range.q.val() | self.high_bits.val();
                 }
                 2 => {
-                    self.out_of_range.d.next = self.out_of_range.q.val()
-                        | self.receiver.data.val().get_bits::<7>(1).any();
+                    self.out_of_range.d.next =
+                        self.out_of_range.q.val() | self.receiver.data.val().get_bits::<7>(1).any();
                 }
                 _ => {
                     self.address.d.next = bit_cast::<9, 8>(self.receiver.data.val())

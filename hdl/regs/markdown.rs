@@ -1,22 +1,23 @@
 //! The register map as a Markdown page.
 
-use super::{Block, Start, BLOCKS, BLOCK_STRIDE};
+use super::{Block, BLOCKS, BLOCK_STRIDE};
+use crate::config::CardConfig;
 use std::fmt::Write;
 
-/// The register map of a card that starts with `start`.
-pub fn markdown(start: &Start) -> String {
+/// The register map of a card.
+pub fn markdown(config: &CardConfig) -> String {
     let mut text = String::from(
         "# Register map\n\n\
          Word addresses; words are 32 bits wide. Bits of no field read as 0, except in configuration words, which keep what is\n\
          written there (write 0). Addresses not listed read as 0 and writing them does nothing.\n",
     );
     for block in BLOCKS {
-        write_block(&mut text, &block, start);
+        write_block(&mut text, &block, config);
     }
     text
 }
 
-fn write_block(text: &mut String, block: &Block, start: &Start) {
+fn write_block(text: &mut String, block: &Block, config: &CardConfig) {
     // Writing to a String cannot fail.
     let _ = if block.per_channel {
         writeln!(
@@ -27,8 +28,15 @@ fn write_block(text: &mut String, block: &Block, start: &Start) {
     } else {
         writeln!(text, "\n## `{}` at 0x{:03X}\n", block.name, block.base)
     };
-    let channels = if block.per_channel { start.channels.len() } else { 1 };
-    let _ = writeln!(text, "| word | register | access | bits | field | unit | reset | meaning |");
+    let channels = if block.per_channel {
+        config.channels.len()
+    } else {
+        1
+    };
+    let _ = writeln!(
+        text,
+        "| word | register | access | bits | field | unit | reset | meaning |"
+    );
     let _ = writeln!(text, "|---|---|---|---|---|---|---|---|");
     for register in block.registers {
         let place = if block.per_channel {
@@ -50,7 +58,7 @@ fn write_block(text: &mut String, block: &Block, start: &Start) {
             };
             let mask = field.mask() >> field.lsb;
             let mut resets: Vec<String> = (0..channels)
-                .map(|channel| number((field.start)(start, channel) as u32 & mask))
+                .map(|channel| number((field.start)(config, channel) as u32 & mask))
                 .collect();
             resets.dedup();
             let _ = writeln!(

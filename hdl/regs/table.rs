@@ -1,24 +1,51 @@
 //! The words themselves.
 
-use super::{Access, Block, ChannelStart, Field, Register, Start, CONFIG_BASE, ID, RESULT_BASE, VERSION};
+use super::{Access, Block, Field, Register, BLOCK_STRIDE, CONFIG_BASE, ID, RESULT_BASE, VERSION};
+use crate::config::{CardConfig, ChannelConfig};
 use crate::protocol::MAX_POSITION_BITS;
 use Access::{ReadOnly, ReadWrite, Strobe};
 
-const fn word(name: &'static str, offset: u16, access: Access, meaning: &'static str, fields: &'static [Field]) -> Register {
-    Register { name, offset, access, meaning, fields }
+const fn word(
+    name: &'static str,
+    offset: u16,
+    access: Access,
+    meaning: &'static str,
+    fields: &'static [Field],
+) -> Register {
+    Register {
+        name,
+        offset,
+        access,
+        meaning,
+        fields,
+    }
 }
 
-const fn field(name: &'static str, lsb: u32, width: u32, unit: &'static str, meaning: &'static str, start: fn(&Start, usize) -> u64) -> Field {
-    Field { name, lsb, width, unit, meaning, start }
+const fn field(
+    name: &'static str,
+    lsb: u32,
+    width: u32,
+    unit: &'static str,
+    meaning: &'static str,
+    start: fn(&CardConfig, usize) -> u64,
+) -> Field {
+    Field {
+        name,
+        lsb,
+        width,
+        unit,
+        meaning,
+        start,
+    }
 }
 
-fn zero(_: &Start, _: usize) -> u64 {
+fn zero(_: &CardConfig, _: usize) -> u64 {
     0
 }
 
 /// The channel's start values; zeros for a channel that the card does not have.
-fn of<T: Default>(start: &Start, channel: usize, value: impl Fn(&ChannelStart) -> T) -> T {
-    start.channels.get(channel).map(value).unwrap_or_default()
+fn of(config: &CardConfig, channel: usize, value: impl Fn(&ChannelConfig) -> u64) -> u64 {
+    config.channels.get(channel).map(value).unwrap_or_default()
 }
 
 /// Identification, capabilities, counters and strobes.
@@ -44,7 +71,7 @@ pub const CARD: Block = Block {
             field("value", 0, 32, "Hz", "Frequency", |s, _| s.system_hz),
         ]),
         word("configuration_hash", 4, ReadOnly, "Tells which configuration the card was generated from.", &[
-            field("value", 0, 32, "", "First 32 bits of the hash that stands in the generated files", |s, _| s.hash as u64),
+            field("value", 0, 32, "", "First 8 digits of the hash that stands in the generated files", |s, _| s.hash >> 16),
         ]),
         word("trigger_count", 8, ReadOnly, "Triggers since reset; stands still with the results (see hold).", &[
             field("value", 0, 32, "", "Wraps", zero),
@@ -64,51 +91,171 @@ pub const CARD_CONFIG: Block = Block {
     base: CONFIG_BASE,
     per_channel: false,
     registers: &[
-        word("trigger_sources", 0, ReadWrite, "Enabled trigger sources; one trigger starts all channels in the same clock cycle.", &[
-            field("pin", 0, 1, "", "Rising edge of the trigger pin", |s, _| s.sources as u64),
-            field("timer", 1, 1, "", "Every trigger_period", |s, _| (s.sources >> 1) as u64),
-            field("register", 2, 1, "", "trigger_now", |s, _| (s.sources >> 2) as u64),
-        ]),
-        word("trigger_period", 1, ReadWrite, "Period of the timer, at least 4; write it while the timer is disabled.", &[
-            field("value", 0, 24, "cycles", "Period", |s, _| s.sample_period_cycles),
-        ]),
-        word("hold", 2, ReadWrite, "Keeps the results of all channels, for a host that reads word by word.", &[
-            field("hold", 0, 1, "", "1: results stand still", zero),
-        ]),
-        word("scratch", 3, ReadWrite, "Free for the host, to try the link.", &[
-            field("value", 0, 32, "", "Any", zero),
-        ]),
+        word(
+            "trigger_sources",
+            0,
+            ReadWrite,
+            "Enabled trigger sources; one trigger starts all channels in the same clock cycle.",
+            &[
+                field("pin", 0, 1, "", "Rising edge of the trigger pin", |s, _| {
+                    s.sources.pin as u64
+                }),
+                field("timer", 1, 1, "", "Every trigger_period", |s, _| {
+                    s.sources.timer as u64
+                }),
+                field("register", 2, 1, "", "trigger_now", |s, _| {
+                    s.sources.register as u64
+                }),
+            ],
+        ),
+        word(
+            "trigger_period",
+            1,
+            ReadWrite,
+            "Period of the timer, at least 4; write it while the timer is disabled.",
+            &[field("value", 0, 24, "cycles", "Period", |s, _| {
+                s.sample_period_cycles
+            })],
+        ),
+        word(
+            "hold",
+            2,
+            ReadWrite,
+            "Keeps the results of all channels, for a host that reads word by word.",
+            &[field("hold", 0, 1, "", "1: results stand still", zero)],
+        ),
+        word(
+            "scratch",
+            3,
+            ReadWrite,
+            "Free for the host, to try the link.",
+            &[field("value", 0, 32, "", "Any", zero)],
+        ),
     ],
 };
 
 /// Configuration of a channel; taken over between two frames.
 pub const CHANNEL_CONFIG: Block = Block {
     name: "config",
-    base: CONFIG_BASE + super::BLOCK_STRIDE,
+    base: CONFIG_BASE + BLOCK_STRIDE,
     per_channel: true,
     registers: &[
-        word("frame", 0, ReadWrite, "What is asked of the encoder, and how fast.", &[
-            field("period_cycles", 0, 11, "cycles", "EnDat clock period; the high phase is the longer one when odd", |s, c| of(s, c, |v| v.period_cycles)),
-            field("position_bits", 16, 6, "bits", "Position width, 1..48", |s, c| of(s, c, |v| v.position_bits as u64)),
-            field("command", 24, 6, "", "Mode command, sent most significant bit first", |s, c| of(s, c, |v| v.command.code() as u64)),
-        ]),
-        word("timing", 1, ReadWrite, "First low phase and tolerance of the start bit.", &[
-            field("first_low_extra_cycles", 0, 11, "cycles", "First low phase minus half a period (tST)", |s, c| of(s, c, |v| v.first_low_extra_cycles)),
-            field("start_window_cycles", 16, 6, "cycles", "The start edge must come within plus or minus this of its expected phase", |s, c| of(s, c, |v| v.start_window_cycles)),
-            field("filter_cycles", 24, 4, "cycles", "Pulses on DATA up to this length are ignored; 0 = off", |s, c| of(s, c, |v| v.filter_cycles)),
-        ]),
-        word("timeouts", 2, ReadWrite, "Longest waits.", &[
-            field("start_timeout_us", 0, 16, "us", "Longest wait for the start bit after the turnaround", |s, c| of(s, c, |v| v.start_timeout_us)),
-            field("abort_us", 16, 16, "us", "Quiet time after an aborted frame", |s, c| of(s, c, |v| v.abort_us)),
-        ]),
-        word("recovery", 3, ReadWrite, "End of the frame.", &[
-            field("recovery_limit_cycles", 0, 16, "cycles", "DATA must fall within this after the frame (tm)", |s, c| of(s, c, |v| v.recovery_limit_cycles)),
-            field("ready_low_cycles", 16, 8, "cycles", "DATA must be low this long before a frame (tR)", |s, c| of(s, c, |v| v.ready_low_cycles)),
-        ]),
+        word(
+            "frame",
+            0,
+            ReadWrite,
+            "What is asked of the encoder, and how fast.",
+            &[
+                field(
+                    "period_cycles",
+                    0,
+                    11,
+                    "cycles",
+                    "EnDat clock period; the high phase is the longer one when odd",
+                    |s, c| of(s, c, |v| v.period_cycles),
+                ),
+                field(
+                    "position_bits",
+                    16,
+                    6,
+                    "bits",
+                    "Position width, 1..48",
+                    |s, c| of(s, c, |v| v.position_bits as u64),
+                ),
+                field(
+                    "command",
+                    24,
+                    6,
+                    "",
+                    "Mode command, sent most significant bit first",
+                    |s, c| of(s, c, |v| v.command.code() as u64),
+                ),
+            ],
+        ),
+        word(
+            "timing",
+            1,
+            ReadWrite,
+            "First low phase and tolerance of the start bit.",
+            &[
+                field(
+                    "first_low_extra_cycles",
+                    0,
+                    11,
+                    "cycles",
+                    "First low phase minus half a period (tST)",
+                    |s, c| of(s, c, |v| v.first_low_extra_cycles),
+                ),
+                field(
+                    "start_window_cycles",
+                    16,
+                    6,
+                    "cycles",
+                    "The start edge must come within plus or minus this of its expected phase",
+                    |s, c| of(s, c, |v| v.start_window_cycles),
+                ),
+                field(
+                    "filter_cycles",
+                    24,
+                    4,
+                    "cycles",
+                    "Pulses on DATA up to this length are ignored; 0 = off",
+                    |s, c| of(s, c, |v| v.filter_cycles),
+                ),
+            ],
+        ),
+        word(
+            "timeouts",
+            2,
+            ReadWrite,
+            "Longest waits.",
+            &[
+                field(
+                    "start_timeout_us",
+                    0,
+                    16,
+                    "us",
+                    "Longest wait for the start bit after the turnaround",
+                    |s, c| of(s, c, |v| v.start_timeout_us),
+                ),
+                field(
+                    "abort_us",
+                    16,
+                    16,
+                    "us",
+                    "Quiet time after an aborted frame",
+                    |s, c| of(s, c, |v| v.abort_us),
+                ),
+            ],
+        ),
+        word(
+            "recovery",
+            3,
+            ReadWrite,
+            "End of the frame.",
+            &[
+                field(
+                    "recovery_limit_cycles",
+                    0,
+                    16,
+                    "cycles",
+                    "DATA must fall within this after the frame (tm)",
+                    |s, c| of(s, c, |v| v.recovery_limit_cycles),
+                ),
+                field(
+                    "ready_low_cycles",
+                    16,
+                    8,
+                    "cycles",
+                    "DATA must be low this long before a frame (tR)",
+                    |s, c| of(s, c, |v| v.ready_low_cycles),
+                ),
+            ],
+        ),
     ],
 };
 
-/// Result of a channel: all words, of all channels, change together and never within a read command.
+/// Result of a channel; all words of all channels, change together and never within a read command.
 pub const RESULT: Block = Block {
     name: "result",
     base: RESULT_BASE,
