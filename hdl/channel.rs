@@ -19,6 +19,7 @@ use crate::line_delay::LineDelay;
 use crate::receiver::Receiver;
 use crate::reg::Reg;
 use crate::snapshot::Snapshot;
+use crate::timing;
 use crate::transaction::Transaction;
 use rust_hdl::prelude::*;
 
@@ -52,13 +53,9 @@ pub struct Channel {
     /// Largest distance of the start edge from its expected place, in system clock cycles.
     pub start_window_cycles: Signal<In, Bits<6>>,
     /// Longest wait for the start bit after the turnaround, in microseconds.
-    pub start_timeout_us: Signal<In, Bits<16>>,
+    pub start_timeout_us: Signal<In, Bits<12>>,
     /// Data must fall within this many system clock cycles after the frame.
-    pub recovery_limit_cycles: Signal<In, Bits<16>>,
-    /// Data must have been low this many system clock cycles before a frame (tR).
-    pub ready_low_cycles: Signal<In, Bits<8>>,
-    /// Quiet time after an aborted frame, in microseconds.
-    pub abort_us: Signal<In, Bits<16>>,
+    pub recovery_limit_cycles: Signal<In, Bits<13>>,
     /// EnDat clock to the transceiver, from a register.
     pub endat_clk: Signal<Out, Bit>,
     /// Data line to the transceiver, from a register.
@@ -88,7 +85,7 @@ pub struct Channel {
     /// CRC computed for the last whole frame.
     pub crc_computed: Signal<Out, Bits<5>>,
     /// Recovery time tm of the last frame, in system clock cycles.
-    pub recovery_cycles: Signal<Out, Bits<16>>,
+    pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
     pub delay_cycles: Signal<Out, Bits<10>>,
     /// A trigger would not be taken.
@@ -109,9 +106,31 @@ pub struct Channel {
     calibration_period_cycles: Constant<Bits<11>>,
 }
 
+/// Times of a channel that no encoder changes, fixed when the design is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FixedTimes {
+    /// Clock period of the frame that measures the propagation delay, in system clock cycles (1..=2047).
+    pub calibration_period_cycles: u64,
+    /// Data must have been low this long before a frame (tR), in system clock cycles (1..=32767).
+    pub ready_low_cycles: u64,
+    /// Quiet time after an aborted frame, in microseconds (1..=32767).
+    pub abort_us: u64,
+}
+
+impl FixedTimes {
+    /// The protocol's times at a system clock of `system_hz`.
+    pub const fn at(system_hz: u64) -> Self {
+        Self {
+            calibration_period_cycles: timing::period_cycles(timing::CALIBRATION_HZ, system_hz),
+            ready_low_cycles: timing::cycles_at_least(timing::READY_LOW_NS, system_hz),
+            abort_us: timing::ABORT_US,
+        }
+    }
+}
+
 impl Channel {
-    /// A channel whose delay measurement runs at one clock per `calibration_period_cycles` system clock cycles.
-    pub fn new(calibration_period_cycles: u64) -> Self {
+    /// A channel with these fixed times.
+    pub fn new(times: FixedTimes) -> Self {
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -128,8 +147,6 @@ impl Channel {
             start_window_cycles: Default::default(),
             start_timeout_us: Default::default(),
             recovery_limit_cycles: Default::default(),
-            ready_low_cycles: Default::default(),
-            abort_us: Default::default(),
             endat_clk: Default::default(),
             data_o: Default::default(),
             data_oe: Default::default(),
@@ -153,13 +170,13 @@ impl Channel {
             sender: Default::default(),
             delay: Default::default(),
             receiver: Default::default(),
-            transaction: Default::default(),
+            transaction: Transaction::new(times.ready_low_cycles, times.abort_us),
             snapshot: Default::default(),
             clk_pin: Reg::new(true),
             data_pin: Default::default(),
             oe_pin: Default::default(),
             period: Default::default(),
-            calibration_period_cycles: Constant::new(calibration_period_cycles.into()),
+            calibration_period_cycles: Constant::new(times.calibration_period_cycles.into()),
         }
     }
 }
@@ -247,8 +264,6 @@ impl Logic for Channel {
         self.transaction.first_low_extra_cycles.next = self.first_low_extra_cycles.val();
         self.transaction.start_timeout_us.next = self.start_timeout_us.val();
         self.transaction.recovery_limit_cycles.next = self.recovery_limit_cycles.val();
-        self.transaction.ready_low_cycles.next = self.ready_low_cycles.val();
-        self.transaction.abort_us.next = self.abort_us.val();
 
         self.snapshot.tick_us.next = self.tick_us.val();
         self.snapshot.timestamp.next = self.timestamp.val();

@@ -56,6 +56,8 @@ pub fn parity_mask(crc_bit: usize, width: usize) -> u128 {
 }
 
 /// Parallel CRC5 of up to 50 bits, the number of which is known at run time only.
+///
+/// Bits 15 places apart contribute the same, so the word is folded to 15 bits before the five parities.
 #[derive(LogicBlock)]
 pub struct Crc5Parallel {
     /// The covered bits, the last received one at the top or a multiple of 15 places below it, zeros elsewhere.
@@ -64,45 +66,31 @@ pub struct Crc5Parallel {
     pub covered_mod_15: Signal<In, Bits<4>>,
     /// The CRC as transmitted; bit 4 goes first.
     pub crc: Signal<Out, Bits<5>>,
-    mask4: Constant<Bits<50>>,
-    mask3: Constant<Bits<50>>,
-    mask2: Constant<Bits<50>>,
-    mask1: Constant<Bits<50>>,
-    mask0: Constant<Bits<50>>,
+    mask: Vec<Constant<Bits<15>>>,
+    weight: Vec<Constant<Bits<5>>>,
     length: Vec<Constant<Bits<4>>>,
     term: Vec<Constant<Bits<5>>>,
-    parity4: Signal<Local, Bits<5>>,
-    parity3: Signal<Local, Bits<5>>,
-    parity2: Signal<Local, Bits<5>>,
-    parity1: Signal<Local, Bits<5>>,
-    parity0: Signal<Local, Bits<5>>,
-    constant: Signal<Local, Bits<5>>,
+    folded: Signal<Local, Bits<15>>,
+    sum: Signal<Local, Bits<5>>,
 }
 
 impl Default for Crc5Parallel {
     fn default() -> Self {
-        let mask = |crc_bit| Constant::new((parity_mask(crc_bit, MAX_COVERED_BITS) as u64).into());
+        let mask = |crc_bit| Constant::new((parity_mask(crc_bit, ORDER_OF_X) as u64).into());
         Self {
             word: Default::default(),
             covered_mod_15: Default::default(),
             crc: Default::default(),
-            mask4: mask(4),
-            mask3: mask(3),
-            mask2: mask(2),
-            mask1: mask(1),
-            mask0: mask(0),
+            mask: (0..5).map(mask).collect(),
+            weight: crc_bit_weights(),
             length: (0..ORDER_OF_X)
                 .map(|n| Constant::new((n as u64).into()))
                 .collect(),
             term: (0..ORDER_OF_X)
                 .map(|n| Constant::new(u64::from(constant_term(n)).into()))
                 .collect(),
-            parity4: Default::default(),
-            parity3: Default::default(),
-            parity2: Default::default(),
-            parity1: Default::default(),
-            parity0: Default::default(),
-            constant: Default::default(),
+            folded: Default::default(),
+            sum: Default::default(),
         }
     }
 }
@@ -110,39 +98,27 @@ impl Default for Crc5Parallel {
 impl Logic for Crc5Parallel {
     #[hdl_gen]
     fn update(&mut self) {
-        self.constant.next = 0.into();
+        self.folded.next = self.word.val().get_bits::<15>(35)
+            ^ self.word.val().get_bits::<15>(20)
+            ^ self.word.val().get_bits::<15>(5)
+            ^ (bit_cast::<15, 5>(self.word.val().get_bits::<5>(0)) << 10);
+        self.sum.next = 0.into();
         for i in 0..15 {
             if self.covered_mod_15.val() == self.length[i].val() {
-                self.constant.next = self.term[i].val();
+                self.sum.next = self.term[i].val();
             }
         }
-        self.parity4.next = 0.into();
-        if (self.word.val() & self.mask4.val()).xor() {
-            self.parity4.next = 16.into();
+        for i in 0..5 {
+            if (self.folded.val() & self.mask[i].val()).xor() {
+                self.sum.next = self.sum.val() ^ self.weight[i].val();
+            }
         }
-        self.parity3.next = 0.into();
-        if (self.word.val() & self.mask3.val()).xor() {
-            self.parity3.next = 8.into();
-        }
-        self.parity2.next = 0.into();
-        if (self.word.val() & self.mask2.val()).xor() {
-            self.parity2.next = 4.into();
-        }
-        self.parity1.next = 0.into();
-        if (self.word.val() & self.mask1.val()).xor() {
-            self.parity1.next = 2.into();
-        }
-        self.parity0.next = 0.into();
-        if (self.word.val() & self.mask0.val()).xor() {
-            self.parity0.next = 1.into();
-        }
-        self.crc.next = self.constant.val()
-            ^ self.parity4.val()
-            ^ self.parity3.val()
-            ^ self.parity2.val()
-            ^ self.parity1.val()
-            ^ self.parity0.val();
+        self.crc.next = self.sum.val();
     }
+}
+
+fn crc_bit_weights() -> Vec<Constant<Bits<5>>> {
+    (0..5).map(|i| Constant::new((1u64 << i).into())).collect()
 }
 
 /// Parallel CRC5 of exactly `N` bits: five XOR equations.
@@ -171,7 +147,7 @@ impl<const N: usize> Default for Crc5Fixed<N> {
             word: Default::default(),
             crc: Default::default(),
             mask: (0..5).map(mask).collect(),
-            weight: (0..5).map(|i| Constant::new((1u64 << i).into())).collect(),
+            weight: crc_bit_weights(),
             constant: Constant::new(u64::from(constant_term(N)).into()),
             sum: Default::default(),
         }

@@ -14,7 +14,7 @@
 //! the encoder sees exactly the rising edges it needs, and never more than the shortest answer while its start bit
 //! may still be on the cable.
 
-use crate::crc5::{Crc5Parallel, Crc5Serial};
+use crate::crc5::{Crc5Parallel, Crc5Serial, ORDER_OF_X};
 use crate::protocol;
 use crate::reg::Reg;
 use rust_hdl::prelude::*;
@@ -92,7 +92,6 @@ pub struct Receiver {
     parallel: Crc5Parallel,
     serial: Crc5Serial,
     field: Reg<Field>,
-    skip_left: Reg<Bits<4>>,
     left: Reg<Bits<7>>,
     word: Reg<Bits<50>>,
     covered: Reg<Bits<4>>,
@@ -107,7 +106,7 @@ pub struct Receiver {
     done_now: Reg<Bit>,
     parallel_equal: Reg<Bit>,
     serial_good: Reg<Bit>,
-    skip_cells: Constant<Bits<4>>,
+    skip_from: Constant<Bits<4>>,
     fixed_cells: Constant<Bits<7>>,
     skip_step: Signal<Local, Bit>,
     covered_bit: Signal<Local, Bit>,
@@ -154,7 +153,6 @@ impl Default for Receiver {
             parallel: Default::default(),
             serial: Default::default(),
             field: Reg::new(Field::Done),
-            skip_left: Default::default(),
             left: Default::default(),
             word: Default::default(),
             covered: Default::default(),
@@ -169,7 +167,7 @@ impl Default for Receiver {
             done_now: Default::default(),
             parallel_equal: Default::default(),
             serial_good: Default::default(),
-            skip_cells: Constant::new(u64::from(protocol::LEAD_PULSES).into()),
+            skip_from: Constant::new((ORDER_OF_X as u64 - u64::from(protocol::LEAD_PULSES)).into()),
             fixed_cells: Constant::new(
                 u64::from(protocol::LEAD_PULSES + protocol::START_BITS + 1 + protocol::CRC_BITS)
                     .into(),
@@ -194,9 +192,7 @@ impl Default for Receiver {
 impl Logic for Receiver {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(
-            self, clock, field, skip_left, left, word, covered, f1_bit, f2_bit, crc_bits, crc_calc
-        );
+        dff_setup!(self, clock, field, left, word, covered, f1_bit, f2_bit, crc_bits, crc_calc);
         dff_setup!(
             self,
             clock,
@@ -210,7 +206,6 @@ impl Logic for Receiver {
         );
         clock!(self, clock, serial);
         self.field.reset.next = self.reset.val();
-        self.skip_left.reset.next = self.reset.val();
         self.left.reset.next = self.reset.val();
         self.word.reset.next = self.reset.val();
         self.covered.reset.next = self.reset.val();
@@ -248,8 +243,7 @@ impl Logic for Receiver {
             Field::Skip => {
                 if self.skip_step.val() {
                     self.left.d.next = self.left.q.val() - 1;
-                    self.skip_left.d.next = self.skip_left.q.val() - 1;
-                    if self.skip_left.q.val() == 1 {
+                    if self.covered.q.val() == 14 {
                         self.field.d.next = Field::Start;
                     }
                 }
@@ -327,6 +321,8 @@ impl Logic for Receiver {
         }
         if self.shift.val() {
             self.word.d.next = self.shifted.val();
+        }
+        if self.shift.val() | ((self.field.q.val() == Field::Skip) & self.skip_step.val()) {
             self.covered.d.next = self.covered_next.val();
         }
         // Aligned when 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
@@ -360,14 +356,14 @@ impl Logic for Receiver {
 
         if self.start.val() {
             self.field.d.next = Field::Skip;
-            self.skip_left.d.next = self.skip_cells.val();
             self.left.d.next = bit_cast::<7, 6>(self.position_bits.val()) + self.fixed_cells.val();
             if self.has_f2.val() {
                 self.left.d.next =
                     bit_cast::<7, 6>(self.position_bits.val()) + self.fixed_cells.val() + 1;
             }
             self.word.d.next = 0.into();
-            self.covered.d.next = 0.into();
+            // Skipped cells take the counter to 0, where the covered bits start from.
+            self.covered.d.next = self.skip_from.val();
             self.f2_bit.d.next = true;
             self.align.d.next = false;
         }

@@ -72,7 +72,7 @@ pub mod cause {
 }
 
 /// Sequence, time-outs and verdict of one channel.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock)]
 pub struct Transaction {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -113,13 +113,9 @@ pub struct Transaction {
     /// How much longer than half a period the first low phase is; 0, or at least 2 cycles.
     pub first_low_extra_cycles: Signal<In, Bits<11>>,
     /// Longest wait for the start bit after the turnaround.
-    pub start_timeout_us: Signal<In, Bits<16>>,
+    pub start_timeout_us: Signal<In, Bits<12>>,
     /// Data must fall within this after the frame.
-    pub recovery_limit_cycles: Signal<In, Bits<16>>,
-    /// Data must have been low this long (tR).
-    pub ready_low_cycles: Signal<In, Bits<8>>,
-    /// Quiet time after an aborted frame.
-    pub abort_us: Signal<In, Bits<16>>,
+    pub recovery_limit_cycles: Signal<In, Bits<13>>,
     /// One-cycle strobe: the first falling clock edge comes at the end of this cycle.
     pub start: Signal<Out, Bit>,
     /// A frame is under way on the wire.
@@ -145,9 +141,11 @@ pub struct Transaction {
     /// Raw flags in the order of the cause codes: bit k stands for cause k + 1; bit 8 parallel CRC, bit 9 tail not high.
     pub flags: Signal<Out, Bits<10>>,
     /// Recovery time tm of the last frame, in system clock cycles.
-    pub recovery_cycles: Signal<Out, Bits<16>>,
+    pub recovery_cycles: Signal<Out, Bits<13>>,
+    ready_low_cycles: Constant<Bits<15>>,
+    abort_us: Constant<Bits<15>>,
     phase: Reg<Phase>,
-    timer: Reg<Bits<16>>,
+    timer: Reg<Bits<15>>,
     timer_hit: Reg<Bit>,
     calibrated: Reg<Bit>,
     acquiring: Reg<Bit>,
@@ -155,13 +153,13 @@ pub struct Transaction {
     stalled: Reg<Bit>,
     all_sent: Reg<Bit>,
     tail_sampled: Reg<Bit>,
-    recovery: Reg<Bits<16>>,
+    recovery: Reg<Bits<13>>,
     publish_now: Reg<Bit>,
     good_now: Reg<Bit>,
     late_now: Reg<Bit>,
     cause_now: Reg<Bits<4>>,
     flags_now: Reg<Bits<10>>,
-    limit: Signal<Local, Bits<16>>,
+    limit: Signal<Local, Bits<15>>,
     in_us: Signal<Local, Bit>,
     timer_clear: Signal<Local, Bit>,
     timer_step: Signal<Local, Bit>,
@@ -173,6 +171,77 @@ pub struct Transaction {
     verdict: Signal<Local, Bit>,
     primary: Signal<Local, Bits<4>>,
     lost: Signal<Local, Bit>,
+}
+
+impl Transaction {
+    /// A transaction with the times that no encoder changes: data low before a frame, quiet after an abort.
+    pub fn new(ready_low_cycles: u64, abort_us: u64) -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            tick_us: Default::default(),
+            trigger: Default::default(),
+            calibrate: Default::default(),
+            level: Default::default(),
+            sample: Default::default(),
+            center: Default::default(),
+            hunting: Default::default(),
+            started: Default::default(),
+            start_refused: Default::default(),
+            frame_done: Default::default(),
+            serial_ok: Default::default(),
+            parallel_ok: Default::default(),
+            f1: Default::default(),
+            f2: Default::default(),
+            outstanding: Default::default(),
+            cells_left: Default::default(),
+            first_low_extra_cycles: Default::default(),
+            start_timeout_us: Default::default(),
+            recovery_limit_cycles: Default::default(),
+            start: Default::default(),
+            run: Default::default(),
+            abort: Default::default(),
+            hold_low: Default::default(),
+            stop: Default::default(),
+            acquire: Default::default(),
+            busy: Default::default(),
+            publish: Default::default(),
+            good: Default::default(),
+            late_fault: Default::default(),
+            cause: Default::default(),
+            flags: Default::default(),
+            recovery_cycles: Default::default(),
+            ready_low_cycles: Constant::new(ready_low_cycles.into()),
+            abort_us: Constant::new(abort_us.into()),
+            phase: Default::default(),
+            timer: Default::default(),
+            timer_hit: Default::default(),
+            calibrated: Default::default(),
+            acquiring: Default::default(),
+            overrun: Default::default(),
+            stalled: Default::default(),
+            all_sent: Default::default(),
+            tail_sampled: Default::default(),
+            recovery: Default::default(),
+            publish_now: Default::default(),
+            good_now: Default::default(),
+            late_now: Default::default(),
+            cause_now: Default::default(),
+            flags_now: Default::default(),
+            limit: Default::default(),
+            in_us: Default::default(),
+            timer_clear: Default::default(),
+            timer_step: Default::default(),
+            accept: Default::default(),
+            give_up: Default::default(),
+            idle: Default::default(),
+            found: Default::default(),
+            crc_bad: Default::default(),
+            verdict: Default::default(),
+            primary: Default::default(),
+            lost: Default::default(),
+        }
+    }
 }
 
 impl Logic for Transaction {
@@ -208,7 +277,7 @@ impl Logic for Transaction {
         self.cause_now.reset.next = self.reset.val();
         self.flags_now.reset.next = self.reset.val();
 
-        self.limit.next = self.start_timeout_us.val();
+        self.limit.next = bit_cast::<15, 12>(self.start_timeout_us.val());
         self.in_us.next = false;
         self.timer_clear.next = false;
         self.accept.next = false;
@@ -223,7 +292,7 @@ impl Logic for Transaction {
 
         match self.phase.q.val() {
             Phase::NotReady => {
-                self.limit.next = bit_cast::<16, 8>(self.ready_low_cycles.val());
+                self.limit.next = self.ready_low_cycles.val();
                 self.timer_clear.next = self.level.val();
                 self.idle.next = self.level.val();
                 if self.timer_hit.q.val() {
@@ -258,7 +327,7 @@ impl Logic for Transaction {
             }
             Phase::FirstLow => {
                 self.run.next = true;
-                self.limit.next = bit_cast::<16, 11>(self.first_low_extra_cycles.val());
+                self.limit.next = bit_cast::<15, 11>(self.first_low_extra_cycles.val());
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::Frame;
                     self.timer_clear.next = true;
@@ -290,12 +359,12 @@ impl Logic for Transaction {
             }
             Phase::Recovery => {
                 self.run.next = !self.tail_sampled.q.val();
-                self.limit.next = self.recovery_limit_cycles.val();
+                self.limit.next = bit_cast::<15, 13>(self.recovery_limit_cycles.val());
                 if self.sample.val() {
                     self.tail_sampled.d.next = true;
                 }
                 if self.tail_sampled.q.val() & !self.level.val() {
-                    self.recovery.d.next = self.timer.q.val();
+                    self.recovery.d.next = self.timer.q.val().get_bits::<13>(0);
                     self.timer_clear.next = true;
                     self.phase.d.next = Phase::NotReady;
                 } else {
