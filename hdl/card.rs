@@ -13,12 +13,11 @@
 //! `led_status_o` blinks slowly while every channel is well, quickly while the last result of one is an error;
 //! `led_channelN_o` is on while the channel's last result is a good position.
 
-use crate::channel::Channel;
+use crate::channel::{Channel, FixedTimes};
 use crate::channel_registers::ChannelRegisters;
-use crate::config::CardConfig;
+use crate::config::{CardConfig, ChannelConfig};
 use crate::register_bank::RegisterBank;
 use crate::timebase::Timebase;
-use crate::timing::{period_cycles, CALIBRATION_HZ};
 use crate::trigger::Trigger;
 use crate::uart_bridge::{UartBridge, TIMEOUT_US};
 use rust_hdl::prelude::*;
@@ -69,6 +68,15 @@ fn blink_bit(system_hz: u64, hz: u64) -> u64 {
     u64::from((system_hz / (2 * hz)).max(1).ilog2())
 }
 
+/// The times of a channel that are fixed in the design.
+fn times(card: &CardConfig, channel: &ChannelConfig) -> FixedTimes {
+    FixedTimes {
+        ready_low_cycles: channel.ready_low_cycles,
+        abort_us: channel.abort_us,
+        ..FixedTimes::at(card.system_hz)
+    }
+}
+
 impl Card {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
@@ -78,7 +86,6 @@ impl Card {
     /// A card with another limit on pauses within a host command, for quick tests.
     pub fn with_timeout(config: &CardConfig, timeout_us: u64) -> Self {
         let channels = config.channels.len();
-        let calibration = period_cycles(CALIBRATION_HZ, config.system_hz);
         fn each<T: Default>(n: usize) -> Vec<T> {
             (0..n).map(|_| T::default()).collect()
         }
@@ -101,7 +108,11 @@ impl Card {
             registers: (0..channels)
                 .map(|i| ChannelRegisters::new(config, i))
                 .collect(),
-            channel: (0..channels).map(|_| Channel::new(calibration)).collect(),
+            channel: config
+                .channels
+                .iter()
+                .map(|c| Channel::new(times(config, c)))
+                .collect(),
             ring_link: each(channels + 1),
             read_link: each(channels + 1),
             pending: each(channels + 1),
@@ -172,8 +183,6 @@ impl Logic for Card {
             self.channel[i].start_timeout_us.next = self.registers[i].start_timeout_us.val();
             self.channel[i].recovery_limit_cycles.next =
                 self.registers[i].recovery_limit_cycles.val();
-            self.channel[i].ready_low_cycles.next = self.registers[i].ready_low_cycles.val();
-            self.channel[i].abort_us.next = self.registers[i].abort_us.val();
 
             self.registers[i].trigger.next = self.trigger.trigger.val();
             self.registers[i].busy.next = self.channel[i].busy.val();
@@ -230,3 +239,6 @@ impl Logic for Card {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -51,7 +51,7 @@ pub struct ChannelRegisters {
     /// CRC as computed.
     pub crc_computed: Signal<In, Bits<5>>,
     /// Recovery time, in system clock cycles.
-    pub recovery_cycles: Signal<In, Bits<16>>,
+    pub recovery_cycles: Signal<In, Bits<13>>,
     /// Tracked line delay, in system clock cycles.
     pub delay_cycles: Signal<In, Bits<10>>,
     /// A trigger has been taken and its result is not there yet.
@@ -89,13 +89,9 @@ pub struct ChannelRegisters {
     /// Half width of the start window, in system clock cycles.
     pub start_window_cycles: Signal<Out, Bits<6>>,
     /// Longest wait for the start bit, in microseconds.
-    pub start_timeout_us: Signal<Out, Bits<16>>,
+    pub start_timeout_us: Signal<Out, Bits<12>>,
     /// Longest recovery time, in system clock cycles.
-    pub recovery_limit_cycles: Signal<Out, Bits<16>>,
-    /// Time tR, in system clock cycles.
-    pub ready_low_cycles: Signal<Out, Bits<8>>,
-    /// Quiet time after an aborted frame, in microseconds.
-    pub abort_us: Signal<Out, Bits<16>>,
+    pub recovery_limit_cycles: Signal<Out, Bits<13>>,
     waiting: Reg<Bit>,
     held: Vec<Reg<Bits<32>>>,
     word: Vec<Signal<Local, Bits<32>>>,
@@ -105,7 +101,6 @@ pub struct ChannelRegisters {
     config0: Reg<Bits<32>>,
     config1: Reg<Bits<32>>,
     config2: Reg<Bits<32>>,
-    config3: Reg<Bits<32>>,
     _words: usize,
 }
 
@@ -151,8 +146,6 @@ impl ChannelRegisters {
             start_window_cycles: Default::default(),
             start_timeout_us: Default::default(),
             recovery_limit_cycles: Default::default(),
-            ready_low_cycles: Default::default(),
-            abort_us: Default::default(),
             waiting: Default::default(),
             held: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
             word: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
@@ -162,7 +155,6 @@ impl ChannelRegisters {
             config0: active(0),
             config1: active(1),
             config2: active(2),
-            config3: active(3),
             _words: RESULT_WORDS,
         }
     }
@@ -171,14 +163,13 @@ impl ChannelRegisters {
 impl Logic for ChannelRegisters {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, waiting, read_byte, config0, config1, config2, config3);
+        dff_setup!(self, clock, waiting, read_byte, config0, config1, config2);
         clock!(self, clock, ring);
         self.waiting.reset.next = self.reset.val();
         self.read_byte.reset.next = self.reset.val();
         self.config0.reset.next = self.reset.val();
         self.config1.reset.next = self.reset.val();
         self.config2.reset.next = self.reset.val();
-        self.config3.reset.next = self.reset.val();
         self.ring.reset.next = self.reset.val();
 
         // A trigger that the channel does not take gives no result of its own.
@@ -202,7 +193,7 @@ impl Logic for ChannelRegisters {
             | (bit_cast::<32, 10>(self.delay_cycles.val()) << 10)
             | (bit_cast::<32, 10>(self.flags.val()) << 20);
         self.word[5].next = bit_cast::<32, 16>(self.age_us.val())
-            | (bit_cast::<32, 16>(self.recovery_cycles.val()) << 16);
+            | (bit_cast::<32, 13>(self.recovery_cycles.val()) << 16);
         for i in 0..self._words {
             self.held[i].clock.next = self.clock.val();
             self.held[i].reset.next = self.reset.val();
@@ -248,7 +239,6 @@ impl Logic for ChannelRegisters {
             self.config0.d.next = self.ring.word0.val();
             self.config1.d.next = self.ring.word1.val();
             self.config2.d.next = self.ring.word2.val();
-            self.config3.d.next = self.ring.word3.val();
         }
         self.period_cycles.next = self.config0.q.val().get_bits::<11>(0);
         self.position_bits.next = self.config0.q.val().get_bits::<6>(16);
@@ -256,9 +246,10 @@ impl Logic for ChannelRegisters {
         self.first_low_extra_cycles.next = self.config1.q.val().get_bits::<11>(0);
         self.start_window_cycles.next = self.config1.q.val().get_bits::<6>(16);
         self.filter_cycles.next = self.config1.q.val().get_bits::<4>(24);
-        self.start_timeout_us.next = self.config2.q.val().get_bits::<16>(0);
-        self.abort_us.next = self.config2.q.val().get_bits::<16>(16);
-        self.recovery_limit_cycles.next = self.config3.q.val().get_bits::<16>(0);
-        self.ready_low_cycles.next = self.config3.q.val().get_bits::<8>(16);
+        self.start_timeout_us.next = self.config2.q.val().get_bits::<12>(0);
+        self.recovery_limit_cycles.next = self.config2.q.val().get_bits::<13>(16);
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,9 +1,9 @@
-//! One block of configuration words on the ring: four words, a byte leaves at the front as another enters at the end.
+//! One block of configuration words on the ring: three words, a byte leaves at the front as another enters at the end.
 //!
 //! ```text
 //!             +--------------------------- byte ring, one step in each cycle with `turn` ---------------------------+
 //!             v                                                                                                     |
-//! head <- [card block: word 0 .. 3] <- [channel 0: word 0 .. 3] <- ... <- [last channel] <- head, or a written byte +
+//! head <- [card block: word 0 .. 2] <- [channel 0: word 0 .. 2] <- ... <- [last channel] <- head, or a written byte +
 //! ```
 //!
 //! A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
@@ -13,11 +13,11 @@ use crate::reg::Reg;
 use rust_hdl::prelude::*;
 
 /// Words in a block.
-pub const RING_WORDS: usize = 4;
+pub const RING_WORDS: usize = 3;
 /// Bytes in a block, most significant byte of word 0 first.
 pub const RING_BYTES: usize = 4 * RING_WORDS;
 
-/// Four configuration words on the byte ring.
+/// Three configuration words on the byte ring.
 #[derive(LogicBlock)]
 pub struct ConfigRing {
     /// System clock.
@@ -36,12 +36,9 @@ pub struct ConfigRing {
     pub word1: Signal<Out, Bits<32>>,
     /// Word 2, while the ring stands still.
     pub word2: Signal<Out, Bits<32>>,
-    /// Word 3, while the ring stands still.
-    pub word3: Signal<Out, Bits<32>>,
     w0: Reg<Bits<32>>,
     w1: Reg<Bits<32>>,
     w2: Reg<Bits<32>>,
-    w3: Reg<Bits<32>>,
 }
 
 impl ConfigRing {
@@ -57,11 +54,9 @@ impl ConfigRing {
             word0: Default::default(),
             word1: Default::default(),
             word2: Default::default(),
-            word3: Default::default(),
             w0: word(start[0]),
             w1: word(start[1]),
             w2: word(start[2]),
-            w3: word(start[3]),
         }
     }
 }
@@ -69,24 +64,20 @@ impl ConfigRing {
 impl Logic for ConfigRing {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, w0, w1, w2, w3);
+        dff_setup!(self, clock, w0, w1, w2);
         self.w0.reset.next = self.reset.val();
         self.w1.reset.next = self.reset.val();
         self.w2.reset.next = self.reset.val();
-        self.w3.reset.next = self.reset.val();
         if self.turn.val() {
             self.w0.d.next =
                 (self.w0.q.val() << 8) | bit_cast::<32, 8>(self.w1.q.val().get_bits::<8>(24));
             self.w1.d.next =
                 (self.w1.q.val() << 8) | bit_cast::<32, 8>(self.w2.q.val().get_bits::<8>(24));
-            self.w2.d.next =
-                (self.w2.q.val() << 8) | bit_cast::<32, 8>(self.w3.q.val().get_bits::<8>(24));
-            self.w3.d.next = (self.w3.q.val() << 8) | bit_cast::<32, 8>(self.byte_in.val());
+            self.w2.d.next = (self.w2.q.val() << 8) | bit_cast::<32, 8>(self.byte_in.val());
         }
         self.byte_out.next = self.w0.q.val().get_bits::<8>(24);
         self.word0.next = self.w0.q.val();
         self.word1.next = self.w1.q.val();
         self.word2.next = self.w2.q.val();
-        self.word3.next = self.w3.q.val();
     }
 }

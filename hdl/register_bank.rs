@@ -193,7 +193,7 @@ impl RegisterBank {
             capabilities: card_word(config, "capabilities"),
             system_hz: card_word(config, "system_hz"),
             configuration_hash: card_word(config, "configuration_hash"),
-            last_position: Constant::new((ring_bytes(config.channels.len()) as u64 - 1).into()),
+            last_position: Constant::new((16 * config.channels.len() as u64 + 11).into()),
             trigger_count_at: card_address("trigger_count"),
             trigger_now_at: card_address("trigger_now"),
             calibrate_at: card_address("calibrate"),
@@ -256,6 +256,10 @@ impl Logic for RegisterBank {
         self.position.d.next = 0.into();
         if self.turning.q.val() {
             self.position.d.next = self.position.q.val() + 1;
+            // Bytes 12 to 15 of a block do not exist.
+            if self.position.q.val().get_bits::<4>(0) == 11 {
+                self.position.d.next = self.position.q.val() + 5;
+            }
             if self.at_end.val() {
                 self.turning.d.next = false;
             }
@@ -269,7 +273,7 @@ impl Logic for RegisterBank {
         self.ring_home.next = !self.turning.q.val();
         self.done.next = self.done_now.q.val();
 
-        // Configuration: the ring carries 4 of the 8 words that a block has room for.
+        // Configuration: the ring carries 3 of the 8 words that a block has room for.
         self.config_page.d.next = self.in_range.val()
             & self.word_address.val().get_bit(8)
             & !self.word_address.val().get_bit(7)

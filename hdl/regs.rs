@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! 0x000  card: identification, capabilities, counters, strobes
-//! 0x100  configuration: 4 words of the card, then 4 words of channel n at 0x108 + 8 n
+//! 0x100  configuration: 3 words of the card, then 3 words of channel n at 0x108 + 8 n
 //! 0x180  results: 6 words of channel n at 0x180 + 8 n
 //! ```
 //!
@@ -16,6 +16,7 @@ pub use markdown::markdown;
 pub use table::{CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT};
 
 use crate::config::CardConfig;
+use crate::config_ring::RING_WORDS;
 
 /// Major, minor and patch version of the register map.
 pub const VERSION: [u8; 3] = [0, 1, 0];
@@ -137,8 +138,8 @@ impl Block {
 pub const BLOCKS: [Block; 4] = [CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT];
 
 /// The words of a configuration block after reset; `channel` is `None` for the card's own.
-pub fn config_words(config: &CardConfig, channel: Option<usize>) -> [u32; 4] {
-    let mut words = [0; 4];
+pub fn config_words(config: &CardConfig, channel: Option<usize>) -> [u32; RING_WORDS] {
+    let mut words = [0; RING_WORDS];
     let block = if channel.is_some() {
         CHANNEL_CONFIG
     } else {
@@ -151,4 +152,4 @@ pub fn config_words(config: &CardConfig, channel: Option<usize>) -> [u32; 4] {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

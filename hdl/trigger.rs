@@ -6,8 +6,8 @@
 //! register strobe -----------------------------+
 //! ```
 //!
-//! Sources that coincide make one trigger. The strobe comes 4 cycles after the first clock edge that sees the pin high,
-//! and 1 cycle after the register strobe.
+//! Sources that coincide make one trigger. The strobe begins with the third clock edge that sees the pin high, and with the
+//! first that sees the register strobe.
 
 use crate::reg::{Reg, SyncReg};
 use rust_hdl::prelude::*;

@@ -250,3 +250,127 @@ impl Logic for UartTransmitter {
         self.tx.next = self.shift.q.val().get_bit(0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::tick;
+
+    fn receiver(bit_cycles: u64) -> UartReceiver {
+        let mut uut = UartReceiver::new(bit_cycles);
+        uut.rx.next = true;
+        uut.connect_all();
+        uut
+    }
+
+    /// Runs the receiver over a line whose level at each cycle is `line`; bytes and framing errors.
+    fn receive(uut: &mut UartReceiver, line: impl IntoIterator<Item = bool>) -> (Vec<u8>, usize) {
+        let (mut bytes, mut errors) = (Vec::new(), 0);
+        for level in line {
+            uut.rx.next = level;
+            tick(uut, |u, level| u.clock.next = level.into());
+            if uut.strobe.val() {
+                bytes.push(uut.data.val().to_u8());
+            }
+            errors += usize::from(uut.framing_error.val());
+        }
+        (bytes, errors)
+    }
+
+    /// Levels of `bytes` at a sender whose bits last `bit` cycles and whose first edge comes `phase` cycles late.
+    fn line(bytes: &[u8], bit: f64, phase: f64) -> Vec<bool> {
+        let mut bits = Vec::new();
+        for byte in bytes {
+            bits.push(false);
+            bits.extend((0..8).map(|i| byte >> i & 1 == 1));
+            bits.push(true);
+        }
+        let cycles = ((bits.len() + 2) as f64 * bit + phase) as usize;
+        (0..cycles)
+            .map(|cycle| {
+                let index = (cycle as f64 - phase) / bit;
+                index < 0.0 || bits.get(index as usize).copied().unwrap_or(true)
+            })
+            .collect()
+    }
+
+    const BYTES: [u8; 9] = [0x00, 0xff, 0x55, 0xaa, 0x01, 0x80, 0x7f, 0xfe, 0x1b];
+
+    #[test]
+    fn receiver_takes_two_per_cent_of_rate_error_at_any_phase() {
+        for bit_cycles in [8, 9, 11, 33, 109, 434] {
+            for error in [-0.02, -0.01, 0.0, 0.01, 0.02] {
+                for phase in [0.0, 0.3, 0.7] {
+                    let bit = bit_cycles as f64 * (1.0 + error);
+                    let bytes = if bit_cycles > 50 {
+                        &BYTES[2..5]
+                    } else {
+                        &BYTES[..]
+                    };
+                    let got = receive(&mut receiver(bit_cycles), line(bytes, bit, phase));
+                    assert_eq!(got, (bytes.to_vec(), 0), "{bit_cycles} {error} {phase}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn receiver_forgets_a_glitch_that_is_gone_at_mid_bit() {
+        let mut uut = receiver(16);
+        let mut levels = vec![true; 40];
+        levels[10..15].fill(false);
+        // A byte right behind it is not spoilt.
+        levels.truncate(24);
+        levels.extend(line(&[0xa5], 16.0, 0.0));
+        assert_eq!(receive(&mut uut, levels), (vec![0xa5], 0));
+    }
+
+    #[test]
+    fn receiver_drops_a_byte_without_stop_bit_and_reports_a_break_once() {
+        let mut uut = receiver(16);
+        let mut levels = line(&[0x0f], 16.0, 0.0);
+        levels[9 * 16..10 * 16].fill(false);
+        assert_eq!(receive(&mut uut, levels), (vec![], 1));
+        assert_eq!(receive(&mut uut, vec![false; 16 * 100]), (vec![], 1));
+        let mut levels = vec![true; 16];
+        levels.extend(line(&[0x3c], 16.0, 0.0));
+        assert_eq!(receive(&mut uut, levels), (vec![0x3c], 0));
+    }
+
+    #[test]
+    fn transmitter_sends_back_to_back_bytes_with_exact_bits() {
+        for bit_cycles in [8, 33, 109] {
+            let mut uut = UartTransmitter::new(bit_cycles);
+            uut.connect_all();
+            let (mut sent, mut levels) = (0, Vec::new());
+            for _ in 0..bit_cycles * 10 * (BYTES.len() as u64 + 1) {
+                uut.valid.next = sent < BYTES.len();
+                uut.data.next = u64::from(BYTES[sent.min(BYTES.len() - 1)]).into();
+                uut.clock.next = false.into();
+                crate::testing::settle(&mut uut);
+                let accept = uut.accept.val();
+                tick(&mut uut, |u, level| u.clock.next = level.into());
+                sent += usize::from(accept);
+                levels.push(uut.tx.val());
+            }
+            let first = levels.iter().position(|l| !l).unwrap();
+            let expected = line(&BYTES, bit_cycles as f64, 0.0);
+            let frames = BYTES.len() * 10 * bit_cycles as usize;
+            assert_eq!(
+                levels[first..first + frames],
+                expected[..frames],
+                "{bit_cycles}"
+            );
+            assert!(levels[first + frames..].iter().all(|l| *l));
+        }
+    }
+
+    #[test]
+    fn rate_error_is_that_of_the_nearest_divisor() {
+        assert_eq!(bit_cycles(100_000_000, 3_000_000), 33);
+        assert_eq!(baud_error_ppm(100_000_000, 3_000_000, 33).round(), 10_101.0);
+        assert_eq!(bit_cycles(100_000_000, 115_200), 868);
+        assert_eq!(bit_cycles(100_000_000, 0), BIT_CYCLES_MAX);
+        assert_eq!(bit_cycles(8_000_000, 8_000_000), BIT_CYCLES_MIN);
+    }
+}

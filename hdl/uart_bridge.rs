@@ -341,3 +341,6 @@ impl Logic for UartBridge {
         self.reading.next = self.state.q.val() == BridgeState::Read;
     }
 }
+
+#[cfg(test)]
+mod tests;
