@@ -73,7 +73,7 @@ pub struct Field {
 impl Field {
     /// The field's bits within its word.
     pub const fn mask(&self) -> u32 {
-        ((1u64 << self.width) - 1 << self.lsb) as u32
+        (((1u64 << self.width) - 1) << self.lsb) as u32
     }
 }
 

@@ -75,7 +75,7 @@ fn write_block(text: &mut String, block: &Block, config: &CardConfig) {
 
 /// Small numbers in decimal, large ones that are no round decimal number in hexadecimal.
 fn number(value: u32) -> String {
-    if value < 0x1_0000 || value % 1_000 == 0 {
+    if value < 0x1_0000 || value.is_multiple_of(1_000) {
         value.to_string()
     } else {
         format!("0x{value:08X}")
