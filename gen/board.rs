@@ -157,7 +157,7 @@ fn pll_settings(oscillator_hz: u64) -> impl Iterator<Item = (u64, Pll)> {
     let loops =
         dividers.flat_map(move |divide| (1..=64u64).rev().map(move |multiply| (divide, multiply)));
     loops
-        .filter(move |(divide, _)| oscillator_hz % divide == 0)
+        .filter(move |(divide, _)| oscillator_hz.is_multiple_of(*divide))
         .map(move |(divide, multiply)| (divide, multiply, oscillator_hz / divide * multiply))
         .filter(|(_, _, vco_hz)| (VCO_HZ_MIN..=VCO_HZ_MAX).contains(vco_hz))
         .flat_map(|(divide, multiply, vco_hz)| {

@@ -4,6 +4,7 @@
 //! system clock.
 
 pub mod bench;
+pub mod diagram;
 pub mod encoder;
 pub mod engine;
 pub mod frame;

@@ -294,6 +294,16 @@ fn value_at<T: Copy>(track: &[(Time, T)], time: Time) -> Option<T> {
     next.checked_sub(1).map(|i| track[i].1)
 }
 
+/// The first falling edge of each frame on a recorded clock.
+pub fn first_falls(clock: &[(Time, bool)]) -> Vec<Time> {
+    let mut counter = FallCounter::new(clock);
+    let falls = clock.iter().filter(|c| !c.1);
+    falls
+        .filter(|c| counter.at(c.0) == 1)
+        .map(|c| c.0)
+        .collect()
+}
+
 /// Counts the falling clock edges of a frame, for moments in ascending order.
 struct FallCounter<'a> {
     clock: &'a [(Time, bool)],

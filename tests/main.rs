@@ -1,1 +1,5 @@
-//! x
+//! Tests of the whole system, one module per topic.
+
+mod cli;
+mod config;
+mod constraints;

@@ -149,13 +149,43 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     })
 }
 
-/// The resolved configuration as text: what it means, not how the file spells it.
+/// The resolved configuration as text, one number a line: what it means, not how the file spells it.
 fn canonical(card: &CardConfig, board: &Board, pins: &[Assignment]) -> String {
-    let mut text = format!("{card:?}\n{} {}\n", board.part, board.oscillator_hz);
-    for pin in pins {
-        text.push_str(&format!("{} {}\n", pin.signal, pin.pin));
+    let mut lines = vec![
+        format!("system_hz {}", card.system_hz),
+        format!("sample_period_cycles {}", card.sample_period_cycles),
+        format!(
+            "sources {} {} {}",
+            card.sources.pin, card.sources.timer, card.sources.register
+        ),
+        format!("uart_bit_cycles {}", card.uart_bit_cycles),
+        format!("part {}", board.part),
+        format!("oscillator_hz {}", board.oscillator_hz),
+    ];
+    for (n, c) in card.channels.iter().enumerate() {
+        let numbers = [
+            ("period_cycles", c.period_cycles),
+            ("first_low_extra_cycles", c.first_low_extra_cycles),
+            ("command", u64::from(c.command.code())),
+            ("position_bits", u64::from(c.position_bits)),
+            ("filter_cycles", c.filter_cycles),
+            ("start_window_cycles", c.start_window_cycles),
+            ("start_timeout_us", c.start_timeout_us),
+            ("recovery_limit_cycles", c.recovery_limit_cycles),
+            ("ready_low_cycles", c.ready_low_cycles),
+            ("abort_us", c.abort_us),
+        ];
+        lines.extend(
+            numbers
+                .iter()
+                .map(|(name, value)| format!("channel {n} {name} {value}")),
+        );
     }
-    text
+    lines.extend(
+        pins.iter()
+            .map(|pin| format!("pin {} {}", pin.signal, pin.pin)),
+    );
+    lines.join("\n")
 }
 
 fn read_name(root: &Table<'_, '_>) -> Option<String> {
@@ -376,17 +406,23 @@ fn assign_pins(
             }
         };
         if let Some(other) = all.iter().find(|a: &&Assignment| a.pin == pin) {
-            let text = format!(
-                "{pin} already carries {}; choose a free pin for one of the two",
-                other.signal
-            );
-            let line = user
-                .or(moved
-                    .iter()
-                    .find(|(s, _)| *s == other.signal)
-                    .map(|(_, at)| at))
-                .map_or(line, |at| at.line);
-            pins.complain(line, &signal, &format!("{word:?}"), &text);
+            // The one that the file has moved is the one to complain about, whichever comes first.
+            let moved_other = moved
+                .iter()
+                .find(|(s, _)| *s == other.signal)
+                .map(|(_, at)| at);
+            let (mover, at, place) = match (user, moved_other) {
+                (None, Some(at)) => (other.signal.as_str(), at.line, &at.value),
+                _ => (signal.as_str(), line, word),
+            };
+            let taken = if mover == signal {
+                &other.signal
+            } else {
+                &signal
+            };
+            let text =
+                format!("{pin} already carries {taken}; choose a free pin for one of the two");
+            pins.complain(at, mover, &format!("{place:?}"), &text);
             continue;
         }
         let position = board.position(&pin);

@@ -37,7 +37,11 @@ fn card() -> CardRequest {
 fn frame(clock_hz: u64, command: ModeCommand, bits: u64, tst_ns: u64) -> (u64, f64) {
     let system_hz = [100_000_000, 128_000_000, 120_000_000, 60_000_000]
         .into_iter()
-        .find(|s| s % clock_hz == 0 && (s / clock_hz) % 2 == 0 && s / clock_hz >= PERIOD_CYCLES_MIN)
+        .find(|s| {
+            s % clock_hz == 0
+                && (s / clock_hz).is_multiple_of(2)
+                && s / clock_hz >= PERIOD_CYCLES_MIN
+        })
         .expect("a system clock for every row");
     let request = ChannelRequest {
         clock_hz,

@@ -2,7 +2,10 @@
 
 use endat_hdl::{protocol::ModeCommand, timing};
 
-/// Configuration inputs of a channel; the fields have the names of its ports.
+/// Configuration of a channel; the fields have the names of its ports.
+///
+/// A design may fix some of them when it is made and have no port for them (tR, the abort time): the bench then
+/// leaves them alone, and whoever makes the design passes them on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ChannelSettings {
     /// EnDat clock period; if odd, the HIGH phase is one cycle longer.

@@ -123,9 +123,14 @@ impl Sample {
         }
     }
 
-    /// Driven by the encoder alone, and not changing within `guard` before or after.
-    pub fn is_defined(&self, guard: Time) -> bool {
+    /// Driven by the encoder alone, whether a glitch disturbs it or not.
+    pub fn is_encoders(&self) -> bool {
         matches!(self.who, Who::Encoder(s) if s != Symbol::Absent)
+    }
+
+    /// Driven by the encoder alone, undisturbed, and not changing within `guard` before or after.
+    pub fn is_defined(&self, guard: Time) -> bool {
+        self.is_encoders()
             && !self.glitch
             && self.since >= guard
             && self.until.is_none_or(|u| u >= guard)

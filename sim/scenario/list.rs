@@ -141,7 +141,7 @@ fn long_cable() -> Scenario {
 
 fn sixteen_megahertz() -> Scenario {
     let rates = (128_000_000, 16_000_000);
-    let mut encoder = EncoderConfig::endat22(25).position(ramp(0x155_5555, 0x0AA_AAAB));
+    let mut encoder = EncoderConfig::endat22(25).position(ramp(0x155_5555, 0x01_2345));
     encoder.tm = 1_250 * NS..=3_750 * NS;
     Scenario {
         name: "sixteen-megahertz",

@@ -19,7 +19,7 @@ use crate::{
 /// One EnDat port of a scenario.
 #[derive(Clone, Debug)]
 pub struct ChannelScenario {
-    /// Configuration of the channel.
+    /// Configuration of the channel. Some stories need its short `abort_us`, which the core fixes when it is made.
     pub settings: ChannelSettings,
     /// The encoder.
     pub encoder: EncoderConfig,

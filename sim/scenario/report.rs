@@ -29,7 +29,7 @@ pub struct SampleSummary {
     pub count: usize,
     /// How many where DATA was not driven by the encoder alone.
     pub undefined: usize,
-    /// Smallest distance of the others from a change of DATA.
+    /// Smallest distance of an undisturbed one from a change of DATA.
     pub narrowest: Time,
 }
 
@@ -197,7 +197,7 @@ fn summarise(samples: &[crate::line::Sample]) -> SampleSummary {
     let defined = samples.iter().filter(|s| s.is_defined(0));
     SampleSummary {
         count: samples.len(),
-        undefined: samples.iter().filter(|s| !s.is_defined(0)).count(),
+        undefined: samples.iter().filter(|s| !s.is_encoders()).count(),
         narrowest: defined.map(margin).min().unwrap_or(0),
     }
 }

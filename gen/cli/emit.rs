@@ -1,0 +1,128 @@
+//! `emit`: writes the files of a card, or checks them.
+
+use super::{Outcome, SourceArgs};
+use crate::artifact;
+use crate::config::{check_name, Project};
+use crate::error::GenError;
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// Folder that everything is emitted into unless another is given.
+const OUT: &str = "out";
+
+/// Arguments of `emit`.
+#[derive(Args, Default)]
+pub struct EmitArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// Folder to write into; the files go to DIR/PREFIX [default: out]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Name of the folder, the files and the top module [default: the name in the configuration]
+    #[arg(long, value_name = "PREFIX")]
+    name: Option<String>,
+    /// Write nothing; exit with 1 when a file is not what the configuration gives
+    #[arg(long)]
+    check: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
+    let mut project: Project = arguments.source.load()?;
+    if let Some(name) = &arguments.name {
+        check_name(name).map_err(|text| GenError::input(format!("--name = {name:?}: {text}")))?;
+        project.name.clone_from(name);
+    }
+    let out = arguments.out.as_deref().unwrap_or(Path::new(OUT));
+    if out.as_os_str().is_empty() {
+        return Err(GenError::input("--out = \"\": is empty; give a folder"));
+    }
+    let folder = out.join(&project.name);
+    let artifacts = crate::emit(&project)?;
+    if arguments.check {
+        let mut found = artifact::differences(&folder, &artifacts);
+        if found.is_empty() {
+            return Ok(Outcome::good(format!(
+                "{}: {} files, up to date\n",
+                folder.display(),
+                artifacts.len()
+            )));
+        }
+        found.push(format!("renew with: {}", repair(arguments)));
+        return Err(GenError::CheckFailed(found));
+    }
+    let written = artifact::write(&folder, &artifacts)?;
+    let mut lines: String = written
+        .iter()
+        .map(|path| format!("{}\n", path.display()))
+        .collect();
+    if lines.is_empty() {
+        lines = format!(
+            "{}: {} files, up to date\n",
+            folder.display(),
+            artifacts.len()
+        );
+    }
+    Ok(Outcome {
+        messages: artifact::leftovers(&folder, &artifacts),
+        ..Outcome::good(lines)
+    })
+}
+
+/// The command that makes the check pass.
+fn repair(arguments: &EmitArgs) -> String {
+    let mut words = Vec::new();
+    let mut add = |flag: &str, value: Option<String>| {
+        if let Some(value) = value {
+            words.push(format!("{flag} {}", quoted(&value)));
+        }
+    };
+    add(
+        "--config",
+        arguments
+            .source
+            .config
+            .as_ref()
+            .map(|p| p.display().to_string()),
+    );
+    add("--preset", arguments.source.preset.clone());
+    add(
+        "--out",
+        arguments.out.as_ref().map(|p| p.display().to_string()),
+    );
+    add("--name", arguments.name.clone());
+    if words.is_empty() {
+        return "cargo run".into();
+    }
+    format!("cargo run -- emit {}", words.join(" "))
+}
+
+/// A word for a POSIX shell.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_-./=:,+".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.into()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_repair_command_can_be_pasted_into_a_shell() {
+        assert_eq!(repair(&EmitArgs::default()), "cargo run");
+        let out = Some(PathBuf::from("my 'files'"));
+        let arguments = EmitArgs {
+            out,
+            name: Some("a".into()),
+            ..EmitArgs::default()
+        };
+        assert_eq!(
+            repair(&arguments),
+            r"cargo run -- emit --out 'my '\''files'\''' --name a"
+        );
+    }
+}

@@ -1,0 +1,171 @@
+//! The command line: arguments in, an [`Outcome`] out. Results are text for stdout, messages are lines for stderr.
+
+mod crc_command;
+mod emit;
+mod sim;
+
+use crate::config::{self, Project};
+use crate::error::GenError;
+use crate::explain;
+use clap::{Args, Parser, Subcommand};
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// What a run of the program gives.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Outcome {
+    /// Results.
+    pub stdout: String,
+    /// Messages, one a line.
+    pub messages: Vec<String>,
+    /// 0 good, 1 a check failed, 2 wrong usage or input.
+    pub exit_code: u8,
+}
+
+impl Outcome {
+    /// A good result.
+    fn good(stdout: impl Into<String>) -> Self {
+        Self {
+            stdout: stdout.into(),
+            ..Self::default()
+        }
+    }
+}
+
+/// Makes the Verilog, the constraints and the register map of an EnDat receiver card from one configuration.
+///
+/// Without a command: emit the preset s6_two_channel into out/. Exit code 0: good; 1: a check failed; 2: wrong usage or input.
+#[derive(Parser)]
+#[command(name = "endat-gen", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Write the files of a card, or check that they are up to date
+    Emit(emit::EmitArgs),
+    /// List the configurations that come with the program, or print one
+    Presets {
+        /// Print the file of this preset, to start an own configuration from
+        #[arg(long, value_name = "NAME")]
+        show: Option<String>,
+        /// As JSON
+        #[arg(long, conflicts_with = "show")]
+        json: bool,
+    },
+    /// Show what a configuration becomes: clocks, timing, frame lengths, sampling rates, link load
+    Explain {
+        #[command(flatten)]
+        source: SourceArgs,
+        /// As JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Run a scenario of the bench
+    Sim(sim::SimArgs),
+    /// Compute and explain the CRC of a frame
+    Crc(crc_command::CrcArgs),
+}
+
+/// Which configuration.
+#[derive(Args, Clone, Default)]
+struct SourceArgs {
+    /// Configuration file
+    #[arg(long, value_name = "FILE", conflicts_with = "preset")]
+    config: Option<PathBuf>,
+    /// Configuration that comes with the program [default: s6_two_channel]
+    #[arg(long, value_name = "NAME")]
+    preset: Option<String>,
+}
+
+impl SourceArgs {
+    fn load(&self) -> Result<Project, GenError> {
+        match (&self.config, &self.preset) {
+            (Some(file), _) => config::load_file(file),
+            (None, preset) => {
+                config::load_preset(preset.as_deref().unwrap_or(config::DEFAULT_PRESET))
+            }
+        }
+    }
+}
+
+/// Runs the program with these arguments; the first is the program's name.
+pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Outcome {
+    match Cli::try_parse_from(arguments) {
+        Ok(cli) => execute(cli).unwrap_or_else(|error| Outcome {
+            stdout: String::new(),
+            messages: error.messages().to_vec(),
+            exit_code: error.exit_code(),
+        }),
+        Err(error) if !error.use_stderr() => Outcome::good(error.to_string()),
+        Err(error) => {
+            let text = error.to_string();
+            let messages = text
+                .trim_end()
+                .trim_start_matches("error: ")
+                .lines()
+                .filter(|l| !l.is_empty());
+            Outcome {
+                stdout: String::new(),
+                messages: messages.map(str::to_owned).collect(),
+                exit_code: 2,
+            }
+        }
+    }
+}
+
+fn execute(cli: Cli) -> Result<Outcome, GenError> {
+    match cli.command {
+        None => emit::run(&emit::EmitArgs::default()),
+        Some(Command::Emit(arguments)) => emit::run(&arguments),
+        Some(Command::Presets {
+            show: Some(name), ..
+        }) => config::preset(&name).map(Outcome::good),
+        Some(Command::Presets { json, .. }) => presets(json),
+        Some(Command::Explain { source, json }) => {
+            let report = explain::report(&source.load()?);
+            Ok(Outcome::good(if json {
+                to_json(&report)?
+            } else {
+                report.to_string()
+            }))
+        }
+        Some(Command::Sim(arguments)) => sim::run(&arguments),
+        Some(Command::Crc(arguments)) => crc_command::run(&arguments),
+    }
+}
+
+/// First line of each preset beside its name.
+fn presets(json: bool) -> Result<Outcome, GenError> {
+    let summary = |text: &'static str| {
+        text.lines()
+            .next()
+            .unwrap_or("")
+            .trim_start_matches(['#', ' '])
+    };
+    let list = config::PRESETS
+        .iter()
+        .map(|(name, text)| (*name, summary(text)));
+    if json {
+        let objects: Vec<_> = list
+            .map(|(name, summary)| serde_json::json!({"name": name, "summary": summary}))
+            .collect();
+        return Ok(Outcome::good(to_json(&objects)?));
+    }
+    Ok(Outcome::good(
+        list.map(|(name, summary)| format!("{name:<20} {summary}\n"))
+            .collect::<String>(),
+    ))
+}
+
+/// Indented JSON with a newline at the end.
+fn to_json(value: &impl serde::Serialize) -> Result<String, GenError> {
+    let text = serde_json::to_string_pretty(value);
+    text.map(|t| t + "\n").map_err(|e| {
+        GenError::input(format!(
+            "JSON: {e}; this is a fault of endat-gen, please report it"
+        ))
+    })
+}

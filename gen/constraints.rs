@@ -1,0 +1,168 @@
+//! Board-dependent files: the board top with the clock manager, the UCF, and the page about both.
+
+use crate::artifact::Artifact;
+use crate::board::Assignment;
+use crate::config::{Kind, Project};
+use crate::error::GenError;
+use crate::explain;
+use minijinja::syntax::SyntaxConfig;
+use minijinja::value::{Serde, Value};
+use minijinja::{context, Environment, UndefinedBehavior};
+use serde::Serialize;
+
+const TEMPLATES: [(&str, &str); 3] = [
+    (
+        "top.v",
+        include_str!("../constraints/templates/top.v.jinja"),
+    ),
+    ("ucf", include_str!("../constraints/templates/ucf.jinja")),
+    (
+        "readme",
+        include_str!("../constraints/templates/readme.md.jinja"),
+    ),
+];
+
+/// A port as the templates see it.
+#[derive(Serialize)]
+struct Port {
+    signal: String,
+    pin: String,
+    position: String,
+    meaning: String,
+    input: bool,
+    /// The last register belongs into the output cell.
+    iob: bool,
+    /// UCF attributes beside place and I/O standard.
+    attributes: &'static str,
+    /// Why the timing is not analysed; empty when it is.
+    asynchronous: &'static str,
+}
+
+/// What a port is, in words.
+fn meaning(pin: &Assignment) -> String {
+    let channel: String = pin.signal.chars().filter(char::is_ascii_digit).collect();
+    match (pin.kind, pin.signal.as_str()) {
+        (Kind::Oscillator, _) => "oscillator of the board".into(),
+        (Kind::Transceiver, s) if s.ends_with("_oe") => {
+            format!("driver enable of the DATA transceiver, channel {channel}")
+        }
+        (Kind::Transceiver, s) if s.contains("clk") => {
+            format!("EnDat CLOCK to its driver, channel {channel}; idles high")
+        }
+        (Kind::Transceiver, _) => format!("DATA to the encoder, channel {channel}"),
+        (Kind::EncoderData, _) => format!("DATA from the encoder, channel {channel}"),
+        (Kind::Trigger, _) => "external trigger, rising edge".into(),
+        (Kind::UartInput, _) => "host UART, from the host".into(),
+        (Kind::UartOutput, _) => "host UART, to the host".into(),
+        (Kind::Led, "led_status_o") => "status light".into(),
+        (Kind::Led, _) => format!("light of channel {channel}"),
+    }
+}
+
+fn attributes(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Oscillator => "",
+        // Slow edges are fast enough for 16 MHz and ring less on the wires to the wing.
+        Kind::Transceiver => " | SLEW = SLOW | DRIVE = 8 | IOB = TRUE",
+        // An unplugged wing then reads like an open line: high, never a start bit after low.
+        Kind::EncoderData | Kind::UartInput => " | PULLUP",
+        // An open trigger pin must stay quiet.
+        Kind::Trigger => " | PULLDOWN",
+        Kind::UartOutput => " | SLEW = SLOW | DRIVE = 8",
+        Kind::Led => " | SLEW = QUIETIO | DRIVE = 8",
+    }
+}
+
+impl Port {
+    fn new(pin: &Assignment) -> Self {
+        Self {
+            signal: pin.signal.clone(),
+            pin: pin.pin.clone(),
+            position: pin.position.clone(),
+            meaning: meaning(pin),
+            input: pin.kind.is_input(),
+            iob: pin.kind == Kind::Transceiver,
+            attributes: attributes(pin.kind),
+            asynchronous: pin.kind.asynchronous().unwrap_or(""),
+        }
+    }
+}
+
+/// A number of ns as the vendor's tools read it, without needless digits.
+fn ns(hz: u64) -> String {
+    let text = format!("{:.4}", 1e9 / hz as f64);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Board top, UCF and README of a project.
+pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    let syntax = SyntaxConfig::builder()
+        .keep_trailing_newline(true)
+        .trim_blocks(true)
+        .lstrip_blocks(true)
+        .build();
+    environment.set_syntax(syntax.map_err(broken)?);
+    // The output is Verilog, UCF and Markdown: nothing is to be escaped for HTML.
+    environment.set_auto_escape_callback(|_| minijinja::AutoEscape::None);
+    for (name, text) in TEMPLATES {
+        environment.add_template(name, text).map_err(broken)?;
+    }
+    let ports: Vec<Value> = project
+        .pins
+        .iter()
+        .map(|pin| Value::from(Serde(Port::new(pin))))
+        .collect();
+    let pll = &project.pll;
+    let context = context! {
+        name => project.name.as_str(),
+        version => env!("CARGO_PKG_VERSION"),
+        hash => project.hash.as_str(),
+        board => context! { title => project.board.title.as_str(), name => project.board.name.as_str(), part => project.board.part.as_str() },
+        iostandard => project.board.iostandard.as_str(),
+        ports => ports,
+        widest => project.pins.iter().map(|p| p.signal.len()).max().unwrap_or(0),
+        oscillator_hz => project.board.oscillator_hz,
+        oscillator_ns => ns(project.board.oscillator_hz),
+        system_hz => project.card.system_hz,
+        system_ns => ns(project.card.system_hz),
+        pll => context! { divide => pll.divide, multiply => pll.multiply, output_divide => pll.output_divide, vco_hz => pll.vco_hz },
+        channels => project.card.channels.len(),
+        timing => explain::report(project).to_string(),
+    };
+    let files = [
+        ("top.v", format!("{}_top.v", project.name)),
+        ("ucf", format!("{}.ucf", project.name)),
+        ("readme", "README.md".into()),
+    ];
+    files
+        .into_iter()
+        .map(|(template, path)| {
+            let text = environment
+                .get_template(template)
+                .and_then(|t| t.render(&context))
+                .map_err(broken)?;
+            Ok(Artifact::new(path, text))
+        })
+        .collect()
+}
+
+/// A template that does not render is a fault of the program, and still no reason to panic.
+fn broken(error: minijinja::Error) -> GenError {
+    GenError::input(format!(
+        "template: {error:#}; this is a fault of endat-gen, please report it"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn periods_are_written_without_needless_digits() {
+        assert_eq!(ns(32_000_000), "31.25");
+        assert_eq!(ns(100_000_000), "10");
+        assert_eq!(ns(128_000_000), "7.8125");
+    }
+}

@@ -1,0 +1,364 @@
+//! `explain`: what a configuration really becomes, as text and as data.
+
+use crate::config::Project;
+use endat_hdl::config::{ChannelConfig, READ_REQUEST_BYTES, RESULT_WORDS};
+use endat_hdl::timing::{deviation_ppm, CALIBRATION_HZ};
+use serde::Serialize;
+use std::fmt;
+
+/// A rate that was asked for and the one the card makes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rate {
+    /// Asked for, in hertz.
+    pub requested_hz: u64,
+    /// Made, in hertz.
+    pub actual_hz: f64,
+    /// Deviation, in parts per million.
+    pub deviation_ppm: f64,
+}
+
+impl Rate {
+    fn new(requested_hz: u64, actual_hz: f64) -> Self {
+        // A deviation below a thousandth of a ppm is the rounding of this very division.
+        let deviation_ppm = (deviation_ppm(actual_hz, requested_hz as f64) * 1e3).round() / 1e3;
+        Self {
+            requested_hz,
+            actual_hz,
+            deviation_ppm: deviation_ppm + 0.0,
+        }
+    }
+}
+
+/// One channel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChannelReport {
+    /// Encoder, for people.
+    pub encoder: String,
+    /// Mode command, six binary digits.
+    pub command: String,
+    /// Position bits.
+    pub position_bits: u32,
+    /// EnDat clock.
+    pub clock: Rate,
+    /// EnDat period in system clock cycles.
+    pub period_cycles: u64,
+    /// Start time tST asked for, in ns.
+    pub tst_ns: u64,
+    /// First low phase, in ns.
+    pub first_low_ns: f64,
+    /// Pulses before the start bit, with the longest tcal.
+    pub lead_pulses: u64,
+    /// Bits from start bit to the last CRC bit.
+    pub answer_bits: u64,
+    /// Rising edges that the encoder sees in a frame.
+    pub pulses: u64,
+    /// First falling to last rising edge, in microseconds.
+    pub frame_us: f64,
+    /// Frame and shortest recovery time, in microseconds.
+    pub cycle_min_us: f64,
+    /// Frame and longest recovery time, in microseconds.
+    pub cycle_max_us: f64,
+    /// Highest sampling rate with the shortest recovery time, in hertz.
+    pub highest_sampling_hz: f64,
+    /// Sampling rate that is reached with the longest recovery time, in hertz.
+    pub sure_sampling_hz: f64,
+    /// The same with the longest cable, tR and the latency of the core: what the configuration is checked against.
+    pub worst_case_sampling_hz: f64,
+    /// Length of the first frame, which measures the propagation delay at 200 kHz, in microseconds.
+    pub calibration_us: f64,
+    /// Longest propagation delay planned for, in ns.
+    pub delay_max_ns: u64,
+    /// Input filter, in ns.
+    pub filter_ns: f64,
+    /// Half width of the start window, in ns.
+    pub start_window_ns: f64,
+    /// Longest wait for the start bit, in microseconds.
+    pub start_timeout_us: u64,
+}
+
+/// The host link.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LinkReport {
+    /// UART rate.
+    pub baud: Rate,
+    /// How often the host reads all channels, in hertz.
+    pub read_hz: u64,
+    /// Bytes of one read, request and answer.
+    pub bytes_per_read: u64,
+    /// UART rate that the reading takes, in bit/s.
+    pub needed_baud: u64,
+    /// Share of the link that the reading takes, in percent.
+    pub used_percent: f64,
+    /// Most reads per second that the link carries.
+    pub highest_read_hz: f64,
+}
+
+/// Everything that `explain` shows.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Name of the configuration.
+    pub name: String,
+    /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
+    pub config_hash: String,
+    /// Board.
+    pub board: String,
+    /// Oscillator of the board, in hertz.
+    pub oscillator_hz: u64,
+    /// Factors of the clock manager: multiply, divide, divide again.
+    pub clock_manager: [u64; 3],
+    /// System clock, in hertz.
+    pub system_hz: u64,
+    /// The channels.
+    pub channels: Vec<ChannelReport>,
+    /// Timer trigger.
+    pub sampling: Rate,
+    /// Triggers enabled after reset.
+    pub sources: Vec<&'static str>,
+    /// Host link.
+    pub link: LinkReport,
+}
+
+fn channel(config: &ChannelConfig, encoder: &str, system_hz: u64) -> ChannelReport {
+    let us = |cycles: u64| cycles as f64 * 1e6 / system_hz as f64;
+    let time = config.frame_time(system_hz);
+    let request = &config.request;
+    let frame_us = us(time.frame_cycles);
+    let cycle_min_us = frame_us + request.recovery_min_ns as f64 / 1e3;
+    let cycle_max_us = frame_us + request.recovery_max_ns as f64 / 1e3;
+    ChannelReport {
+        encoder: encoder.into(),
+        command: format!("{:06b}", config.command.code()),
+        position_bits: config.position_bits,
+        clock: Rate::new(request.clock_hz, config.actual_hz(system_hz)),
+        period_cycles: config.period_cycles,
+        tst_ns: request.tst_ns,
+        first_low_ns: us(time.first_low_cycles) * 1e3,
+        lead_pulses: time.lead_pulses,
+        answer_bits: time.answer_bits,
+        pulses: time.pulses,
+        frame_us,
+        cycle_min_us,
+        cycle_max_us,
+        highest_sampling_hz: 1e6 / cycle_min_us,
+        sure_sampling_hz: 1e6 / cycle_max_us,
+        worst_case_sampling_hz: 1e6 / us(config.cycle_max_cycles(system_hz)),
+        calibration_us: us(config.calibration_cycles(system_hz)),
+        delay_max_ns: request.delay_max_ns(),
+        filter_ns: us(config.filter_cycles) * 1e3,
+        start_window_ns: us(config.start_window_cycles) * 1e3,
+        start_timeout_us: config.start_timeout_us,
+    }
+}
+
+/// The report of a project.
+pub fn report(project: &Project) -> Report {
+    let card = &project.card;
+    let system_hz = card.system_hz;
+    let channels = card
+        .channels
+        .iter()
+        .zip(&project.encoders)
+        .map(|(c, encoder)| channel(c, encoder, system_hz))
+        .collect();
+    let sources = [
+        (card.sources.pin, "pin"),
+        (card.sources.timer, "timer"),
+        (card.sources.register, "register"),
+    ];
+    let needed_baud = card.needed_baud();
+    Report {
+        name: project.name.clone(),
+        config_hash: project.hash.clone(),
+        board: project.board.name.clone(),
+        oscillator_hz: project.board.oscillator_hz,
+        clock_manager: [
+            project.pll.multiply,
+            project.pll.divide,
+            project.pll.output_divide,
+        ],
+        system_hz,
+        channels,
+        sampling: Rate::new(card.sample_hz, card.actual_sample_hz()),
+        sources: sources
+            .into_iter()
+            .filter(|(on, _)| *on)
+            .map(|(_, name)| name)
+            .collect(),
+        link: LinkReport {
+            baud: Rate::new(card.baud, card.actual_baud()),
+            read_hz: card.read_hz,
+            bytes_per_read: READ_REQUEST_BYTES + 4 * RESULT_WORDS * card.channels.len() as u64,
+            needed_baud,
+            used_percent: needed_baud as f64 * 100.0 / card.actual_baud(),
+            highest_read_hz: card.highest_read_hz(),
+        },
+    }
+}
+
+/// `1234.5` with at most `digits` after the point and no needless zeros.
+fn number(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
+fn rate(rate: &Rate, unit: &str) -> String {
+    let actual = number(rate.actual_hz, 1);
+    match rate.deviation_ppm == 0.0 {
+        true => format!("{actual} {unit}, as asked"),
+        false => format!(
+            "{actual} {unit}, asked {}, {:+.0} ppm",
+            rate.requested_hz, rate.deviation_ppm
+        ),
+    }
+}
+
+/// One row of the channel table: heading, and the cell of a channel.
+type Row = (&'static str, fn(&ChannelReport) -> String);
+
+const ROWS: [Row; 17] = [
+    ("encoder", |c| {
+        if c.encoder.is_empty() {
+            "-".into()
+        } else {
+            c.encoder.clone()
+        }
+    }),
+    ("mode command", |c| c.command.clone()),
+    ("position", |c| format!("{} bits", c.position_bits)),
+    ("clock asked", |c| format!("{} Hz", c.clock.requested_hz)),
+    ("clock made", |c| {
+        format!("{} Hz", number(c.clock.actual_hz, 1))
+    }),
+    ("deviation", |c| {
+        format!("{:+.0} ppm", c.clock.deviation_ppm)
+    }),
+    ("period", |c| format!("{} cycles", c.period_cycles)),
+    ("first low phase", |c| {
+        format!("{} ns (tST {})", number(c.first_low_ns, 1), c.tst_ns)
+    }),
+    ("pulses per frame", |c| {
+        format!("{} = {}+{}+1", c.pulses, c.lead_pulses, c.answer_bits)
+    }),
+    ("frame time", |c| format!("{} us", number(c.frame_us, 3))),
+    ("frame + tm", |c| {
+        format!(
+            "{}..{} us",
+            number(c.cycle_min_us, 2),
+            number(c.cycle_max_us, 2)
+        )
+    }),
+    ("highest sampling", |c| {
+        format!(
+            "{}..{} Hz",
+            number(c.sure_sampling_hz, 0),
+            number(c.highest_sampling_hz, 0)
+        )
+    }),
+    ("worst case", |c| {
+        format!(
+            "{} Hz (tD {} ns)",
+            number(c.worst_case_sampling_hz.floor(), 0),
+            c.delay_max_ns
+        )
+    }),
+    ("input filter", |c| format!("{} ns", number(c.filter_ns, 1))),
+    ("start window", |c| {
+        format!("+-{} ns", number(c.start_window_ns, 1))
+    }),
+    ("start time-out", |c| format!("{} us", c.start_timeout_us)),
+    ("calibration frame", |c| {
+        format!("{} us", number(c.calibration_us, 1))
+    }),
+];
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{}, configuration {}, board {}",
+            self.name, self.config_hash, self.board
+        )?;
+        let [multiply, divide, output] = self.clock_manager;
+        writeln!(
+            f,
+            "system clock       {} Hz = {} Hz * {multiply} / {divide} / {output}",
+            self.system_hz, self.oscillator_hz
+        )?;
+        writeln!(
+            f,
+            "sampling           {}, triggers: {}",
+            rate(&self.sampling, "Hz"),
+            list(&self.sources)
+        )?;
+        writeln!(f, "host link          {}", rate(&self.link.baud, "bit/s"))?;
+        writeln!(
+            f,
+            "reading            {} bytes, {} times a second: {} bit/s, {} % of the link; at most {} a second",
+            self.link.bytes_per_read,
+            self.link.read_hz,
+            self.link.needed_baud,
+            number(self.link.used_percent, 1),
+            number(self.link.highest_read_hz.floor(), 0)
+        )?;
+        writeln!(f)?;
+        let heads: Vec<String> = (0..self.channels.len())
+            .map(|n| format!("channel {n}"))
+            .collect();
+        line(f, "", &heads)?;
+        for (head, cell) in ROWS {
+            line(f, head, &self.channels.iter().map(cell).collect::<Vec<_>>())?;
+        }
+        writeln!(f)?;
+        writeln!(f, "tm is the recovery time; the first frame after reset measures the cable at {CALIBRATION_HZ} Hz and takes longer.")
+    }
+}
+
+fn list(words: &[&str]) -> String {
+    if words.is_empty() {
+        "none".into()
+    } else {
+        words.join(", ")
+    }
+}
+
+fn line(f: &mut fmt::Formatter<'_>, head: &str, cells: &[String]) -> fmt::Result {
+    let mut text = format!("{head:<18}");
+    for cell in cells {
+        text.push_str(&format!(" {cell:<24}"));
+    }
+    writeln!(f, "{}", text.trim_end())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::load_preset;
+
+    #[test]
+    fn the_preset_is_explained_with_the_figures_of_the_timing_table() {
+        let report = report(&load_preset("s6_two_channel").unwrap());
+        for channel in &report.channels {
+            assert_eq!(
+                (channel.pulses, channel.lead_pulses, channel.answer_bits),
+                (48, 10, 37)
+            );
+            assert!((channel.frame_us - 17.04).abs() < 1e-9);
+            assert!((channel.cycle_min_us - 27.04).abs() < 1e-9);
+            assert!((channel.cycle_max_us - 47.04).abs() < 1e-9);
+            assert_eq!(channel.highest_sampling_hz.floor(), 36_982.0);
+            assert_eq!(channel.clock.deviation_ppm, 0.0);
+        }
+        assert_eq!(report.link.bytes_per_read, 38);
+        assert_eq!(report.link.used_percent, 19.0);
+    }
+
+    #[test]
+    fn numbers_lose_needless_zeros_only() {
+        assert_eq!(number(100.0, 0), "100");
+        assert_eq!(number(1.50, 2), "1.5");
+        assert_eq!(number(-0.04, 2), "-0.04");
+    }
+}

@@ -1,0 +1,440 @@
+//! Draws a recorded frame as a timing diagram.
+//!
+//! CLOCK with its rising edges counted, DATA coloured by who drives it and cut into its fields, the times that matter, and an axis in
+//! microseconds. Long quiet spans are shortened and marked. If the cable is long, both ends are shown.
+
+mod scale;
+mod svg;
+#[cfg(test)]
+mod tests;
+mod times;
+
+use crate::{
+    bench::Link,
+    encoder::FrameLog,
+    frame::Field,
+    line::End,
+    segments::{data_segments, first_falls, By, Level, Meaning, Segment},
+    Time, US,
+};
+use scale::Scale;
+use svg::{text_width, Anchor, Svg};
+
+const STYLE: &str = "\
+text{font-family:'DejaVu Sans',Verdana,Helvetica,sans-serif;fill:#1f2937}\
+.title{font-size:19px;font-weight:bold}.sub{font-size:12.5px;fill:#4b5563}.name{font-size:13px;font-weight:bold}\
+.end{font-size:10.5px;fill:#6b7280}.bit{font-size:9px;fill:#374151}.count{font-size:8.5px;fill:#9ca3af}\
+.mark{font-size:9.5px;font-weight:bold;fill:#111827}.field{font-size:11px;fill:#111827}.tick{font-size:10.5px;fill:#4b5563}\
+.dim{font-size:11px;fill:#7c2d12}.legend{font-size:11.5px;fill:#374151}\
+path{fill:none}.clock{stroke:#111827;stroke-width:1.4}.grid{stroke:#e5e7eb;stroke-width:0.8}\
+.receiver{stroke:#1d4ed8;stroke-width:1.8}.encoder{stroke:#b45309;stroke-width:1.8}.nobody{stroke:#9ca3af;stroke-width:1.4;stroke-dasharray:4 3}\
+.both,.glitch{stroke:#dc2626;stroke-width:2.2}.axis{stroke:#6b7280;stroke-width:1}.dimline{stroke:#c2410c;stroke-width:1}\
+.bracket{stroke:#9ca3af;stroke-width:1}.cell{stroke:#ffffff;stroke-width:1.2}.gap{fill:#ffffff;stroke:none}.gapline{stroke:#9ca3af;stroke-width:1.1}\
+.f-receiver{fill:#dbeafe}.f-encoder{fill:#fef3c7}.f-nobody{fill:#f3f4f6}.f-both{fill:#fecaca}.f-start{fill:#fcd34d}.f-crc{fill:#fde68a}\
+.f-idle{fill:#fffbeb}";
+
+/// Place of the first moment on the page.
+const LEFT: f64 = 118.0;
+const RIGHT: f64 = 40.0;
+const PERIOD_PIXELS: f64 = 27.0;
+const CLOCK_HEIGHT: f64 = 24.0;
+const DATA_HEIGHT: f64 = 34.0;
+/// A quiet span is shortened to this many clock periods.
+const QUIET_PERIODS: Time = 4;
+/// Both ends are shown if the cable and the transceivers are longer than this part of a period.
+const BOTH_ENDS_PART: Time = 3;
+
+/// The frame number `index` (0 = first) of a link as SVG; none if it is not in the link's record.
+pub fn frame_svg(link: &Link, index: usize, title: &str) -> Option<String> {
+    let frame = link.encoder().frames().get(index)?;
+    Some(Diagram::new(link, frame)?.draw(title))
+}
+
+/// One row of the drawing.
+enum Row {
+    Clock(End),
+    Data(End),
+}
+
+struct Diagram<'a> {
+    link: &'a Link,
+    frame: &'a FrameLog,
+    scale: Scale,
+    /// First falling clock edge at the receiver: zero of the axis.
+    zero: Time,
+    begin: Time,
+    end: Time,
+    segments: Vec<Segment>,
+    far_segments: Vec<Segment>,
+    both_ends: bool,
+    svg: Svg,
+}
+
+impl<'a> Diagram<'a> {
+    fn new(link: &'a Link, frame: &'a FrameLog) -> Option<Self> {
+        let trace = link.trace()?;
+        let zero = *first_falls(&trace.clock_at_receiver)
+            .iter()
+            .rfind(|t| **t <= frame.first_fall)?;
+        let period = if frame.period > 0 { frame.period } else { US };
+        let last = frame.data_fall.unwrap_or(frame.last_rise);
+        let trip = (link.line().config().round_trip() / 2).max(frame.first_fall - zero);
+        let begin = zero.saturating_sub(2 * period);
+        let end = last + trip + 3 * period;
+        let inside = |s: &Segment| s.until > begin && s.from < end;
+        let cut = |end_of_line| -> Vec<Segment> {
+            let all = data_segments(link, end_of_line, end);
+            all.into_iter().filter(inside).collect()
+        };
+        let (segments, far_segments) = (cut(End::Receiver), cut(End::Encoder));
+        let both_ends = trip * BOTH_ENDS_PART > period;
+        let clocks = [&trace.clock_at_receiver, &trace.clock_at_encoder];
+        let edges = clocks.iter().flat_map(|c| c.iter().map(|e| e.0));
+        let cuts = segments.iter().chain(&far_segments).map(|s| s.from);
+        let events = edges.chain(cuts).filter(|t| (begin..=end).contains(t));
+        let events = events.chain([begin, end]).collect();
+        Some(Self {
+            scale: Scale::new(events, LEFT, period, PERIOD_PIXELS, QUIET_PERIODS * period),
+            link,
+            frame,
+            zero,
+            begin,
+            end,
+            segments,
+            far_segments,
+            both_ends,
+            svg: Svg::new(),
+        })
+    }
+
+    fn x(&self, time: Time) -> f64 {
+        self.scale.x(time.clamp(self.begin, self.end))
+    }
+
+    fn draw(mut self, title: &str) -> String {
+        let width = self.scale.end() + RIGHT;
+        self.svg.text(24.0, 34.0, Anchor::Start, "title", title);
+        let subtitle = self.subtitle();
+        self.svg.text(24.0, 55.0, Anchor::Start, "sub", &subtitle);
+        self.legend(24.0, 78.0);
+        let rows = match self.both_ends {
+            false => vec![Row::Clock(End::Receiver), Row::Data(End::Receiver)],
+            true => vec![
+                Row::Clock(End::Receiver),
+                Row::Clock(End::Encoder),
+                Row::Data(End::Encoder),
+                Row::Data(End::Receiver),
+            ],
+        };
+        let mut y = 112.0;
+        for row in &rows {
+            match row {
+                Row::Clock(end) => {
+                    self.clock_row(*end, y + 12.0);
+                    self.break_marks(y + 7.0, y + 17.0 + CLOCK_HEIGHT);
+                    y += CLOCK_HEIGHT + 32.0;
+                }
+                Row::Data(end) => {
+                    self.field_brackets(*end, y);
+                    self.data_row(*end, y + 22.0);
+                    self.break_marks(y + 20.0, y + 24.0 + DATA_HEIGHT);
+                    y += DATA_HEIGHT + 42.0;
+                }
+            }
+        }
+        self.axis(y);
+        self.break_marks(y - 5.0, y + 5.0);
+        let bottom = self.dimensions(y + 44.0);
+        self.svg.finish(width, bottom + 16.0, title, STYLE)
+    }
+
+    fn subtitle(&self) -> String {
+        let f = self.frame;
+        let config = self.link.line().config();
+        let answer = match f.start_edge {
+            Some(s) => format!(
+                "{} answer bits from rising edge {s} on, {} rising edges in all",
+                f.answer.len, f.rising_edges
+            ),
+            None => format!("no answer, {} rising edges", f.rising_edges),
+        };
+        format!(
+            "mode command {} · {:.3} MHz · {} m of cable ({:.0} ns there and back) · {answer}",
+            f.command.map_or("-".into(), |c| format!("{c:06b}")),
+            1e6 / f.period.max(1) as f64,
+            config.cable_m,
+            config.round_trip() as f64 / 1e3,
+        )
+    }
+
+    fn legend(&mut self, mut x: f64, y: f64) {
+        let entries = [
+            (By::Receiver, "receiver drives"),
+            (By::Encoder, "encoder drives"),
+            (By::Nobody, "nobody drives"),
+            (By::Both, "both drive: conflict"),
+        ];
+        for (by, text) in entries {
+            if by == By::Both && !self.shown(|s| s.by == By::Both) {
+                continue;
+            }
+            self.svg.rect(x, y - 10.0, 22.0, 12.0, fill(by));
+            self.svg
+                .line(&[(x, y - 4.0), (x + 22.0, y - 4.0)], stroke(by));
+            self.svg.text(x + 29.0, y, Anchor::Start, "legend", text);
+            x += 29.0 + text_width(text, 11.5) + 22.0;
+        }
+        if self.shown(|s| s.meaning == Meaning::Glitch) {
+            self.svg
+                .line(&[(x + 4.0, y - 9.0), (x + 4.0, y + 1.0)], "glitch");
+            self.svg
+                .text(x + 14.0, y, Anchor::Start, "legend", "glitch");
+        }
+    }
+
+    fn shown(&self, which: impl Fn(&Segment) -> bool) -> bool {
+        self.segments.iter().any(which)
+    }
+
+    fn row_name(&mut self, name: &str, end: End, y: f64) {
+        self.svg.text(24.0, y, Anchor::Start, "name", name);
+        if self.both_ends {
+            let end = match end {
+                End::Receiver => "at the receiver",
+                End::Encoder => "at the encoder",
+            };
+            self.svg.text(24.0, y + 14.0, Anchor::Start, "end", end);
+        }
+    }
+
+    fn clock_row(&mut self, end: End, top: f64) {
+        let Some(trace) = self.link.trace() else {
+            return;
+        };
+        let (track, first) = match end {
+            End::Receiver => (&trace.clock_at_receiver, self.zero),
+            End::Encoder => (&trace.clock_at_encoder, self.frame.first_fall),
+        };
+        let bottom = top + CLOCK_HEIGHT;
+        let level_y = |level: bool| if level { top } else { bottom };
+        let mut points = vec![(self.x(self.begin), top)];
+        let mut count = 0;
+        let mut labels = Vec::new();
+        for (time, level) in track.iter().filter(|e| e.0 > self.begin && e.0 < self.end) {
+            let x = self.x(*time);
+            points.push((x, level_y(!level)));
+            points.push((x, level_y(*level)));
+            if *level && *time > first {
+                count += 1;
+                labels.push((x, count));
+            }
+        }
+        points.push((self.x(self.end), points.last().map_or(top, |p| p.1)));
+        self.svg.line(&points, "clock");
+        self.row_name("CLOCK", end, top + CLOCK_HEIGHT / 2.0 + 4.0);
+        let marked = [
+            Some(1),
+            self.frame.start_edge,
+            self.frame.expected_rising_edges(),
+        ];
+        for (x, n) in labels {
+            let class = if marked.contains(&Some(n)) {
+                "mark"
+            } else {
+                "count"
+            };
+            self.svg
+                .text(x, top - 4.0, Anchor::Middle, class, &n.to_string());
+        }
+    }
+
+    fn data_row(&mut self, end: End, top: f64) {
+        let bottom = top + DATA_HEIGHT;
+        let middle = top + DATA_HEIGHT / 2.0;
+        let segments = self.segments_at(end).to_vec();
+        let y_of = |level: Level| match level {
+            Level::High => top + 3.0,
+            Level::Low => bottom - 3.0,
+            Level::Floating | Level::Conflict => middle,
+        };
+        for s in &segments {
+            let (a, b) = (self.x(s.from), self.x(s.until));
+            self.svg.rect(a, top, b - a, DATA_HEIGHT, segment_fill(s));
+        }
+        let mut before: Option<f64> = None;
+        let mut named = None;
+        for s in &segments {
+            let (a, b, y) = (self.x(s.from), self.x(s.until), y_of(s.level));
+            let cell_begins = matches!(s.meaning, Meaning::Answer(..) | Meaning::Command(_));
+            if cell_begins && before == Some(y) {
+                self.svg.line(&[(a, top + 9.0), (a, bottom - 9.0)], "cell");
+            }
+            let mut points = vec![(a, y), (b, y)];
+            if let Some(from) = before.filter(|from| *from != y) {
+                points.insert(0, (a, from));
+            }
+            let class = match s.meaning {
+                Meaning::Glitch => "glitch",
+                _ => stroke(s.by),
+            };
+            self.svg.line(&points, class);
+            before = Some(y);
+            if cell_begins && named != Some(s.meaning) {
+                let label = match s.meaning {
+                    Meaning::Command(i) => format!("M{i}"),
+                    Meaning::Answer(_, field) => field.to_string(),
+                    _ => String::new(),
+                };
+                if text_width(&label, 9.0) < b - a {
+                    named = Some(s.meaning);
+                    self.svg
+                        .text((a + b) / 2.0, middle + 3.2, Anchor::Middle, "bit", &label);
+                }
+            }
+        }
+        self.row_name("DATA", end, middle + 4.0);
+    }
+
+    fn segments_at(&self, end: End) -> &[Segment] {
+        match end {
+            End::Receiver => &self.segments,
+            End::Encoder => &self.far_segments,
+        }
+    }
+
+    /// What the cells belong to, above them.
+    fn field_brackets(&mut self, end: End, y: f64) {
+        let mut groups: Vec<(Group, Time, Time)> = Vec::new();
+        for s in self.segments_at(end) {
+            let group = group_of(s);
+            if s.meaning == Meaning::Glitch {
+                continue; // belongs to what it disturbs
+            }
+            match groups.last_mut() {
+                Some(last) if last.0 == group => last.2 = s.until,
+                _ => groups.push((group, s.from, s.until)),
+            }
+        }
+        for (group, from, until) in groups {
+            let (a, b) = (self.x(from), self.x(until));
+            let Some(text) = self
+                .group_texts(group)
+                .into_iter()
+                .find(|t| text_width(t, 11.0) < b - a - 2.0)
+            else {
+                continue;
+            };
+            let (top, bottom) = (y + 10.0, y + 18.0);
+            let (l, r) = (a + 1.5, b - 1.5);
+            self.svg.line(
+                &[(l, bottom), (l, top + 4.0), (r, top + 4.0), (r, bottom)],
+                "bracket",
+            );
+            self.svg
+                .text((a + b) / 2.0, top, Anchor::Middle, "field", &text);
+        }
+    }
+
+    /// Texts for a group, the longest first.
+    fn group_texts(&self, group: Group) -> Vec<String> {
+        let f = self.frame;
+        let bits = f.answer.iter().collect::<Vec<_>>();
+        let tail = bits.len().saturating_sub(crate::frame::CRC_BITS as usize);
+        let crc = bits[tail..].iter().fold(0, |c, b| c << 1 | u32::from(*b));
+        let head = 2 + usize::from(f.has_f2);
+        let position = bits
+            .get(head..tail)
+            .unwrap_or_default()
+            .iter()
+            .enumerate()
+            .fold(0u64, |p, (i, b)| p | u64::from(*b) << i);
+        let texts = |list: &[&str]| list.iter().map(|t| (*t).to_owned()).collect();
+        match group {
+            Group::Idle => texts(&["idle", ""]),
+            Group::LeadIn => texts(&["lead-in"]),
+            Group::Command => {
+                let code = f.command.map_or(String::new(), |c| format!(" {c:06b}"));
+                vec![
+                    format!("mode command{code}"),
+                    "mode command".into(),
+                    "command".into(),
+                ]
+            }
+            Group::Turnaround => texts(&["nobody drives", "released", "off"]),
+            Group::Wait => texts(&["LOW until tcal has passed", "LOW until tcal", "wait"]),
+            Group::Start => texts(&["S"]),
+            Group::Errors if f.has_f2 => texts(&["F1, F2", "F"]),
+            Group::Errors => texts(&["F1", "F"]),
+            Group::Position => vec![
+                format!(
+                    "position {position:#X}, {} bits, LSB first",
+                    f.position_bits
+                ),
+                format!("position {position:#X}"),
+                "position".into(),
+                "D".into(),
+            ],
+            Group::Crc => vec![format!("CRC {crc:#04X}"), "CRC".into()],
+            Group::Recovery => texts(&["HIGH for the recovery time", "recovery time", "tm"]),
+            Group::Other => Vec::new(),
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Group {
+    Idle,
+    LeadIn,
+    Command,
+    Turnaround,
+    Wait,
+    Start,
+    Errors,
+    Position,
+    Crc,
+    Recovery,
+    Other,
+}
+
+fn group_of(s: &Segment) -> Group {
+    match s.meaning {
+        Meaning::Idle => Group::Idle,
+        Meaning::LeadIn => Group::LeadIn,
+        Meaning::Command(_) => Group::Command,
+        Meaning::Turnaround => Group::Turnaround,
+        Meaning::Wait => Group::Wait,
+        Meaning::Answer(_, Field::Start) => Group::Start,
+        Meaning::Answer(_, Field::F1 | Field::F2) => Group::Errors,
+        Meaning::Answer(_, Field::Position(_)) => Group::Position,
+        Meaning::Answer(_, Field::Crc(_)) => Group::Crc,
+        Meaning::Recovery => Group::Recovery,
+        Meaning::Answer(_, Field::None) | Meaning::Absent | Meaning::Glitch => Group::Other,
+    }
+}
+
+fn fill(by: By) -> &'static str {
+    match by {
+        By::Receiver => "f-receiver",
+        By::Encoder => "f-encoder",
+        By::Nobody => "f-nobody",
+        By::Both => "f-both",
+    }
+}
+
+fn segment_fill(s: &Segment) -> &'static str {
+    match (s.by, s.meaning) {
+        (By::Encoder, Meaning::Idle | Meaning::Wait | Meaning::Recovery) => "f-idle",
+        (By::Encoder, Meaning::Answer(_, Field::Start)) => "f-start",
+        (By::Encoder, Meaning::Answer(_, Field::Crc(_))) => "f-crc",
+        (by, _) => fill(by),
+    }
+}
+
+fn stroke(by: By) -> &'static str {
+    match by {
+        By::Receiver => "receiver",
+        By::Encoder => "encoder",
+        By::Nobody => "nobody",
+        By::Both => "both",
+    }
+}

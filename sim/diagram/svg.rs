@@ -1,0 +1,95 @@
+//! Just enough SVG.
+
+use std::fmt::Write as _;
+
+/// A drawing that grows downwards in the file in the order of the calls.
+pub(super) struct Svg {
+    body: String,
+}
+
+/// Where a text stands relative to its point.
+#[derive(Clone, Copy)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+}
+
+impl Anchor {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Middle => "middle",
+        }
+    }
+}
+
+/// Mean width of a character, as a part of the font size.
+const CHARACTER_WIDTH: f64 = 0.57;
+
+/// Estimated width of a text.
+pub(super) fn text_width(text: &str, size: f64) -> f64 {
+    text.chars().count() as f64 * size * CHARACTER_WIDTH
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}
+
+impl Svg {
+    pub(super) fn new() -> Self {
+        Self {
+            body: String::new(),
+        }
+    }
+
+    fn add(&mut self, text: std::fmt::Arguments<'_>) {
+        let _ = writeln!(self.body, "{text}");
+    }
+
+    /// A rectangle of a style class.
+    pub(super) fn rect(&mut self, x: f64, y: f64, width: f64, height: f64, class: &str) {
+        self.add(format_args!(
+            r#"<rect class="{class}" x="{x:.1}" y="{y:.1}" width="{width:.1}" height="{height:.1}"/>"#
+        ));
+    }
+
+    /// A polyline.
+    pub(super) fn line(&mut self, points: &[(f64, f64)], class: &str) {
+        let mut d = String::new();
+        for (i, (x, y)) in points.iter().enumerate() {
+            let _ = write!(d, "{}{x:.1} {y:.1}", if i == 0 { "M" } else { " L" });
+        }
+        self.path(&d, class);
+    }
+
+    /// A path.
+    pub(super) fn path(&mut self, d: &str, class: &str) {
+        self.add(format_args!(r#"<path class="{class}" d="{d}"/>"#));
+    }
+
+    /// A text; its baseline is at `y`.
+    pub(super) fn text(&mut self, x: f64, y: f64, anchor: Anchor, class: &str, text: &str) {
+        self.add(format_args!(
+            r#"<text class="{class}" x="{x:.1}" y="{y:.1}" text-anchor="{}">{}</text>"#,
+            anchor.name(),
+            escape(text)
+        ));
+    }
+
+    /// The file: title and description for those who do not see it, style, drawing.
+    pub(super) fn finish(self, width: f64, height: f64, title: &str, style: &str) -> String {
+        format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0}" height="{height:.0}" viewBox="0 0 {width:.0} {height:.0}" role="img">
+<title>{}</title>
+<style>{style}</style>
+<rect width="100%" height="100%" fill="white"/>
+{}</svg>
+"#,
+            escape(title),
+            self.body
+        )
+    }
+}

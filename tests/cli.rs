@@ -1,0 +1,474 @@
+//! The program as a user meets it: exit codes, streams, files.
+
+use endat_gen::cli::{self, Outcome};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// A folder of its own for one test, emptied before use.
+struct Dir(PathBuf);
+
+impl Dir {
+    fn new(test: &str) -> Self {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("cli-{test}"));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) -> String {
+        fs::write(self.0.join(name), bytes).unwrap();
+        self.path(name)
+    }
+
+    /// Every file below the folder, with its bytes.
+    fn files(&self) -> Vec<(String, Vec<u8>)> {
+        let mut all = Vec::new();
+        let mut folders = vec![self.0.clone()];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(&folder).unwrap() {
+                let path = entry.unwrap().path();
+                match path.is_dir() {
+                    true => folders.push(path),
+                    false => all.push((path.display().to_string(), fs::read(&path).unwrap())),
+                }
+            }
+        }
+        all.sort();
+        all
+    }
+}
+
+fn run(arguments: &[&str]) -> Outcome {
+    cli::run(std::iter::once("endat-gen").chain(arguments.iter().copied()))
+}
+
+fn good(arguments: &[&str]) -> String {
+    let outcome = run(arguments);
+    assert_eq!(
+        (outcome.exit_code, &outcome.messages),
+        (0, &vec![]),
+        "{arguments:?}"
+    );
+    outcome.stdout
+}
+
+/// The messages of a run that must end with this exit code.
+fn bad(arguments: &[&str], exit_code: u8) -> String {
+    let outcome = run(arguments);
+    assert_eq!(outcome.exit_code, exit_code, "{arguments:?}: {outcome:?}");
+    assert!(!outcome.messages.is_empty(), "{arguments:?}");
+    outcome.messages.join("\n")
+}
+
+fn program() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_endat-gen"))
+}
+
+#[test]
+fn the_bare_program_emits_the_preset_into_out() {
+    let dir = Dir::new("bare");
+    let output = program().current_dir(&dir.0).output().unwrap();
+    assert_eq!(
+        (output.status.code(), output.stderr.as_slice()),
+        (Some(0), b"".as_slice())
+    );
+    let lines = String::from_utf8(output.stdout).unwrap();
+    for name in [
+        "s6_two_channel_top.v",
+        "s6_two_channel.ucf",
+        "README.md",
+        "MANIFEST",
+    ] {
+        assert!(
+            lines
+                .lines()
+                .any(|l| Path::new(l) == Path::new("out/s6_two_channel").join(name)),
+            "{name}\n{lines}"
+        );
+    }
+    assert_eq!(lines.lines().count(), dir.files().len());
+}
+
+#[test]
+fn results_go_to_stdout_and_messages_to_stderr_with_the_name_of_the_program() {
+    let output = program()
+        .args(["explain", "--preset", "nothing"])
+        .output()
+        .unwrap();
+    assert_eq!(
+        (output.status.code(), output.stdout.as_slice()),
+        (Some(2), b"".as_slice())
+    );
+    let text = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(
+        text,
+        "endat-gen: --preset = nothing: unknown preset; known presets: s6_two_channel\n"
+    );
+    let usage = program().args(["emit", "--what"]).output().unwrap();
+    assert_eq!(usage.status.code(), Some(2));
+    assert!(String::from_utf8(usage.stderr)
+        .unwrap()
+        .lines()
+        .all(|l| l.starts_with("endat-gen: ")));
+    let help = program().arg("--help").output().unwrap();
+    assert_eq!(
+        (help.status.code(), help.stderr.as_slice()),
+        (Some(0), b"".as_slice())
+    );
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let mut child = program()
+        .args(["presets", "--show", "s6_two_channel"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+}
+
+#[test]
+fn unchanged_files_keep_their_time_and_a_changed_one_comes_back() {
+    let dir = Dir::new("unchanged");
+    let emit = ["emit", "--out", &dir.path("o")];
+    let first = good(&emit);
+    let time = |name: &str| {
+        fs::metadata(dir.0.join("o/s6_two_channel").join(name))
+            .unwrap()
+            .modified()
+            .unwrap()
+    };
+    let before = (time("s6_two_channel.ucf"), time("MANIFEST"));
+    assert!(good(&emit).ends_with("up to date\n"));
+    assert_eq!(before, (time("s6_two_channel.ucf"), time("MANIFEST")));
+    let readme = dir.0.join("o/s6_two_channel/README.md");
+    let original = fs::read(&readme).unwrap();
+    fs::write(&readme, "x").unwrap();
+    assert_eq!(good(&emit), format!("{}\n", readme.display()));
+    assert_eq!(fs::read(&readme).unwrap(), original);
+    assert_eq!(before, (time("s6_two_channel.ucf"), time("MANIFEST")));
+    assert_eq!(first.lines().count(), dir.files().len());
+}
+
+#[test]
+fn check_finds_every_kind_of_staleness_and_never_writes() {
+    let dir = Dir::new("check");
+    let out = dir.path("o");
+    let check = ["emit", "--check", "--out", &out];
+    let nothing = bad(&check, 1);
+    assert!(nothing.contains("README.md: is missing"), "{nothing}");
+    assert_eq!(dir.files(), vec![]);
+    good(&["emit", "--out", &out]);
+    assert!(good(&check).ends_with("up to date\n"));
+    let folder = dir.0.join("o/s6_two_channel");
+    fs::write(folder.join("README.md"), "x").unwrap();
+    fs::remove_file(folder.join("s6_two_channel.ucf")).unwrap();
+    fs::write(folder.join("old.v"), "x").unwrap();
+    let manifest = fs::read_to_string(folder.join("MANIFEST")).unwrap();
+    fs::write(
+        folder.join("MANIFEST"),
+        format!("{manifest}0  1  old.v\n0  1  ../../o.v\n"),
+    )
+    .unwrap();
+    let before = dir.files();
+    let found = bad(&check, 1);
+    for text in [
+        "README.md: is not what",
+        "s6_two_channel.ucf: is missing",
+        "MANIFEST: is not what",
+        "old.v: is no longer emitted; delete it",
+    ] {
+        assert!(found.contains(text), "{text}\n{found}");
+    }
+    assert!(
+        !found.contains("o.v: is no longer emitted; delete it\n../"),
+        "{found}"
+    );
+    assert!(
+        found.ends_with(&format!("renew with: cargo run -- emit --out {out}")),
+        "{found}"
+    );
+    assert_eq!(dir.files(), before);
+}
+
+#[test]
+fn a_file_that_cannot_be_written_leaves_all_others_alone() {
+    let dir = Dir::new("blocked");
+    let folder = dir.0.join("o/s6_two_channel");
+    // The last file of the emission is blocked by a folder in its place.
+    fs::create_dir_all(folder.join("MANIFEST")).unwrap();
+    let message = bad(&["emit", "--out", &dir.path("o")], 2);
+    assert!(
+        message.contains(
+            "MANIFEST: cannot write: a folder is in its place; give another folder with --out"
+        ),
+        "{message}"
+    );
+    assert_eq!(dir.files(), vec![], "partial files");
+    let file = dir.write("file", b"");
+    assert!(bad(&["emit", "--out", &file], 2).contains("cannot make the folder"));
+    assert_eq!(dir.files().len(), 1);
+}
+
+#[test]
+fn another_name_names_everything() {
+    let dir = Dir::new("name");
+    good(&["emit", "--out", &dir.path("o"), "--name", "my_card"]);
+    for (path, bytes) in dir.files() {
+        assert!(!path.contains("s6_two_channel"), "{path}");
+        assert!(
+            !String::from_utf8(bytes).unwrap().contains("s6_two_channel"),
+            "{path}"
+        );
+    }
+}
+
+#[test]
+fn a_preset_that_was_shown_can_be_emitted_as_an_own_configuration() {
+    let dir = Dir::new("own");
+    let text = good(&["presets", "--show", "s6_two_channel"]);
+    let file = dir.write(
+        "mine.toml",
+        text.replace("s6_two_channel", "mine").as_bytes(),
+    );
+    let mut with_mark = b"\xEF\xBB\xBF".to_vec();
+    with_mark.extend(
+        text.replace("s6_two_channel", "marked")
+            .replace('\n', "\r\n")
+            .as_bytes(),
+    );
+    let marked = dir.write("marked.toml", &with_mark);
+    for file in [&file, &marked] {
+        good(&["emit", "--config", file, "--out", &dir.path("o")]);
+    }
+    assert!(dir.0.join("o/mine/mine.ucf").exists() && dir.0.join("o/marked/marked.ucf").exists());
+}
+
+#[test]
+fn bad_files_are_refused_with_what_to_do() {
+    let dir = Dir::new("files");
+    let rows: [(String, &str); 7] = [
+        (dir.path("none.toml"), "cannot read: No such file"),
+        (
+            dir.0.display().to_string(),
+            "is a folder, not a configuration; give a TOML file",
+        ),
+        (
+            dir.write("empty.toml", b""),
+            "is empty; `endat-gen presets --show s6_two_channel` prints",
+        ),
+        (
+            dir.write("binary.toml", b"\x7FELF\0\0"),
+            "has a zero byte: this is binary",
+        ),
+        (
+            dir.write("latin.toml", b"name = \"\xE4\""),
+            ":1: is not UTF-8 text",
+        ),
+        (
+            dir.write("utf16.toml", b"\xFF\xFEn\0"),
+            "is UTF-16 text; save it as UTF-8",
+        ),
+        (
+            dir.write("large.toml", &vec![b'#'; (1 << 20) + 1]),
+            "a configuration at most 1048576",
+        ),
+    ];
+    for (file, text) in &rows {
+        for command in ["emit", "explain"] {
+            let message = bad(&[command, "--config", file], 2);
+            assert!(
+                message.contains(text) && message.contains(file.as_str()),
+                "{file}\n{message}"
+            );
+        }
+    }
+    let mistakes = dir.write("mistakes.toml", b"name = \"a b\"\n[clock]\nsystem_hz = 1\n");
+    let message = bad(&["explain", "--config", &mistakes], 2);
+    assert!(
+        message.lines().all(|l| l.starts_with(&mistakes)),
+        "{message}"
+    );
+    assert!(message.lines().count() >= 4, "{message}");
+}
+
+#[test]
+fn wrong_usage_ends_with_two() {
+    let rows: &[&[&str]] = &[
+        &["emmit"],
+        &["emit", "extra"],
+        &["emit", "--preset"],
+        &["emit", "--preset", "s6_two_channel", "--config", "x"],
+        &["emit", "--name", "../x"],
+        &["emit", "--name", "entity"],
+        &["emit", "--name", ""],
+        &["emit", "--out", ""],
+        &["emit", "--preset", ""],
+        &["presets", "--show", "x"],
+        &["presets", "--show", "s6_two_channel", "--json"],
+        &["explain", "--jsn"],
+        &["sim"],
+        &["sim", "no-such-scenario"],
+        &["crc"],
+        &["crc", "--position", "1"],
+        &["crc", "--bits", "4"],
+        &["crc", "--position", "16", "--bits", "4"],
+        &["crc", "--position", "-1", "--bits", "4"],
+        &["crc", "--position", "0xG", "--bits", "4"],
+        &[
+            "crc",
+            "--position",
+            "99999999999999999999999",
+            "--bits",
+            "4",
+        ],
+        &["crc", "--position", "0", "--bits", "0"],
+        &["crc", "--position", "0", "--bits", "49"],
+        &["crc", "--position", "0", "--bits", "4", "--f1", "2"],
+        &["crc", "--position", "0", "--bits", "4", "--received", "32"],
+        &["crc", "--raw", ""],
+        &["crc", "--raw", "012"],
+        &["crc", "--raw", "01", "--position", "1", "--bits", "2"],
+        &["crc", "--raw", "01", "--f1", "1"],
+    ];
+    for arguments in rows {
+        bad(arguments, 2);
+    }
+    bad(&["crc", "--raw", &"0".repeat(129)], 2);
+}
+
+#[cfg(unix)]
+#[test]
+fn arguments_that_are_not_text_are_refused() {
+    use std::os::unix::ffi::OsStrExt;
+    let odd = std::ffi::OsStr::from_bytes(b"\xFF\xFE");
+    for arguments in [
+        ["explain", "--config"],
+        ["explain", "--preset"],
+        ["crc", "--raw"],
+    ] {
+        let output = program().args(arguments).arg(odd).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn json_is_json_and_holds_the_figures() {
+    let value: serde_json::Value = serde_json::from_str(&good(&["explain", "--json"])).unwrap();
+    assert_eq!(value["system_hz"], 100_000_000);
+    assert_eq!(value["channels"][1]["pulses"], 48);
+    assert_eq!(value["channels"][0]["clock"]["actual_hz"], 3_125_000.0);
+    assert_eq!(value["channels"].as_array().unwrap().len(), 2);
+    let presets: serde_json::Value = serde_json::from_str(&good(&["presets", "--json"])).unwrap();
+    assert_eq!(presets[0]["name"], "s6_two_channel");
+    let crc: serde_json::Value =
+        serde_json::from_str(&good(&["crc", "--raw", "01", "--json"])).unwrap();
+    assert_eq!(crc["steps"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn explain_shows_the_deviation_of_an_inexact_clock() {
+    let dir = Dir::new("deviation");
+    let text = good(&["presets", "--show", "s6_two_channel"])
+        .replace("clock_hz = 3_125_000", "clock_hz = 8_300_000");
+    let file = dir.write(
+        "card.toml",
+        text.replace("start_window_ns = 80", "start_window_ns = 30")
+            .as_bytes(),
+    );
+    let table = good(&["explain", "--config", &file]);
+    let row = |head: &str| {
+        table
+            .lines()
+            .find(|l| l.starts_with(head))
+            .unwrap_or_else(|| panic!("{head}\n{table}"))
+            .to_owned()
+    };
+    assert!(row("clock asked").contains("8300000 Hz"));
+    assert!(row("clock made").contains("8333333.3 Hz"));
+    assert!(row("deviation").contains("+4016 ppm"));
+    assert!(row("period").contains("12 cycles"));
+}
+
+#[test]
+fn crc_checks_a_received_value() {
+    let real = [
+        "crc",
+        "--position",
+        "0x7500684EF",
+        "--bits",
+        "37",
+        "--f1",
+        "0",
+        "--f2",
+        "1",
+        "--received",
+    ];
+    let text = good(&[&real[..], &["0x19"]].concat());
+    assert!(
+        text.contains("0x19: good") && text.contains("transmitted        11001"),
+        "{text}"
+    );
+    let wrong = run(&[&real[..], &["0x18"]].concat());
+    assert_eq!(wrong.exit_code, 1);
+    assert_eq!(
+        wrong.messages,
+        ["--received = 0x18: wrong, the CRC is 0x19"]
+    );
+    assert!(wrong.stdout.contains("WRONG"));
+}
+
+/// The project's CRC vectors, each by fields and by raw bits; skipped with a line when they are not beside the project.
+#[test]
+fn crc_gives_every_published_vector() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/crc_vectors.json");
+    let Ok(text) = fs::read_to_string(&path) else {
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "crc_vectors.json is required in CI"
+        );
+        eprintln!("skipped: no crc_vectors.json beside the project");
+        return;
+    };
+    let file: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let vectors = file["vectors"].as_array().unwrap();
+    assert!(vectors.len() >= 30);
+    for vector in vectors {
+        let text = |key: &str| vector[key].as_str().unwrap_or_default().to_owned();
+        let raw: serde_json::Value = serde_json::from_str(&good(&[
+            "crc",
+            "--raw",
+            &text("covered_bits_tx_order"),
+            "--json",
+        ]))
+        .unwrap();
+        assert_eq!(raw["crc_bits"], text("crc_bits_tx_order"), "{}", text("id"));
+        let bits = vector["n_bits"].as_u64().filter(|n| *n <= 48);
+        if let (Some(bits), true) = (bits, text("kind").starts_with("position_")) {
+            let (bits, f1) = (bits.to_string(), vector["f1"].to_string());
+            let position = text("position_hex");
+            let mut arguments = vec![
+                "crc",
+                "--json",
+                "--position",
+                &position,
+                "--bits",
+                &bits,
+                "--f1",
+                &f1,
+            ];
+            let f2 = vector["f2"].to_string();
+            if vector["f2"].is_number() {
+                arguments.extend(["--f2", &f2]);
+            }
+            let value: serde_json::Value = serde_json::from_str(&good(&arguments)).unwrap();
+            assert_eq!(value["frame"], text("frame_S_to_CRC"), "{}", text("id"));
+        }
+    }
+}

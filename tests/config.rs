@@ -1,0 +1,351 @@
+//! Configuration files: what is refused, where, and with which remedy; and that nothing typed makes it panic.
+
+use endat_gen::config::{parse, Project};
+use endat_gen::error::Diagnostic;
+use proptest::prelude::*;
+
+const PRESET: &str = include_str!("../gen/presets/s6_two_channel.toml");
+
+/// The preset with one piece of text replaced, and the line of the replacement.
+fn changed(from: &str, to: &str) -> (String, usize) {
+    let at = PRESET
+        .find(from)
+        .unwrap_or_else(|| panic!("the preset has no {from:?}"));
+    let line =
+        PRESET[..at].matches('\n').count() + 1 + from.len() - from.trim_start_matches('\n').len();
+    (PRESET.replacen(from, to, 1), line)
+}
+
+fn refuse(text: &str) -> Vec<Diagnostic> {
+    parse("card.toml", text).expect_err("must be refused")
+}
+
+#[test]
+fn the_preset_gives_the_card_of_the_paper() {
+    let project = parse("card.toml", PRESET).unwrap();
+    assert_eq!(project.card.channels.len(), 2);
+    assert_eq!(project.card.channels[0], project.card.channels[1]);
+    assert_eq!(project.card.channels[0].period_cycles, 32);
+    assert_eq!(
+        project.pll.multiply * 32_000_000 / project.pll.divide / project.pll.output_divide,
+        100_000_000
+    );
+    assert_eq!(project.pins.len(), 1 + 3 + 8 + 3);
+    assert_eq!(
+        project.card.hash,
+        u64::from_str_radix(&project.hash, 16).unwrap()
+    );
+}
+
+#[test]
+fn every_line_of_the_preset_is_explained() {
+    for (number, line) in PRESET.lines().enumerate() {
+        let heading = line.starts_with('[')
+            && line.contains("[clock]") | line.contains("[endat]") | line.contains("[trigger]");
+        let heading = heading || line.starts_with("[link]") || line.starts_with("[board]");
+        let repeated = [
+            "encoder = \"RCN 8510\"",
+            "position_bits = 29",
+            "command = \"111000\"",
+        ]
+        .contains(&line);
+        assert!(
+            line.is_empty() || line.contains('#') || heading || repeated,
+            "line {}: {line}",
+            number + 1
+        );
+    }
+}
+
+/// Each row: text of the preset, its replacement, what the message about that line must contain.
+#[test]
+fn one_wrong_line_gives_one_message_about_that_line() {
+    let rows = [
+        // keys
+        ("filter_ns = 20", "fliter_ns = 20", "endat.fliter_ns: unknown key; did you mean filter_ns?"),
+        ("baud = ", "colour = 7\nbaud = ", "link.colour: unknown key; known keys here: baud, read_hz"),
+        ("name = \"s6", "names = 1\nname = \"s6", "names: unknown key; did you mean name?"),
+        ("[board]", "[colour]\nx = 1\n[board]", "colour: unknown key; known keys here: board, channel"),
+        ("encoder = ", "phase = 1\nencoder = ", "channel[0].phase: unknown key"),
+        // types
+        ("system_hz = 100_000_000", "system_hz = \"fast\"", "clock.system_hz = \"fast\": is a string, must be a whole number"),
+        ("system_hz = 100_000_000", "system_hz = 1e8", "clock.system_hz = 1e8: is a float, must be a whole number"),
+        ("system_hz = 100_000_000", "system_hz = -1", "clock.system_hz = -1: outside 0.."),
+        ("system_hz = 100_000_000", "system_hz = 99999999999999999999999999999999999999999", "outside 0.."),
+        ("system_hz = 100_000_000", "system_hz = true", "is a boolean, must be a whole number"),
+        ("name = \"s6_two_channel\"", "name = 6", "name = 6: is an integer, must be text in quotes"),
+        ("command = \"111000\"", "command = 111000", "channel[0].command = 111000: is an integer, must be text in quotes"),
+        ("sources = [\"pin\", \"timer\"]", "sources = \"pin\"", "trigger.sources = \"pin\": is a string, must be a list"),
+        ("sources = [\"pin\", \"timer\"]", "sources = [1]", "trigger.sources = 1: is an integer, must be text in quotes"),
+        // numbers
+        ("system_hz = 100_000_000", "system_hz = 0", "clock.system_hz = 0: outside 8000000..250000000"),
+        ("system_hz = 100_000_000", "system_hz = 300_000_000", "outside 8000000..250000000"),
+        ("system_hz = 100_000_000", "system_hz = 99_999_999", "the clock manager cannot make it from the board's 32000000 Hz; use 99200000 or 100000000 Hz"),
+        ("clock_hz = 3_125_000", "clock_hz = 9_000_000", "endat.clock_hz = 9000000: would become 9090909 Hz (+10101 ppm), more than the allowed 5000 ppm"),
+        ("clock_hz = 3_125_000", "clock_hz = 16_000_000", "needs a system clock of at least 128000000 Hz"),
+        ("clock_hz = 3_125_000", "clock_hz = 99_000", "outside 100000..16000000"),
+        ("tst_ns = 2_000", "tst_ns = 1_000", "endat.tst_ns = 1000: outside 2000..10000"),
+        ("filter_ns = 20", "filter_ns = 1_000", "endat.filter_ns = 1000: is 100 cycles, more than 15"),
+        ("start_window_ns = 80", "start_window_ns = 0", "endat.start_window_ns = 0: is 0 cycles, outside 1..15"),
+        ("start_window_ns = 80", "start_window_ns = 160", "use 10..150 ns"),
+        ("tcal_max_ns = 5_000", "tcal_max_ns = 0", "endat.tcal_max_ns = 0: outside 1..50000000"),
+        ("recovery_min_ns = 10_000", "recovery_min_ns = 40_000", "above recovery_max_ns = 30000; exchange the two"),
+        ("recovery_min_ns = 10_000", "recovery_min_ns = 100", "below 1250 ns"),
+        ("recovery_max_ns = 30_000", "recovery_max_ns = 4_000_000_000", "the longest the counter can time"),
+        ("cable_m = 100", "cable_m = 1_000", "endat.cable_m = 1000: outside 0..150"),
+        ("position_bits = 29", "position_bits = 0", "channel[0].position_bits = 0: outside 1..48"),
+        ("position_bits = 29", "position_bits = 49", "channel[0].position_bits = 49: outside 1..48"),
+        ("position_bits = 29", "position_bits = 29\nclock_hz = 9_000_000", "channel[0].clock_hz = 9000000: would become"),
+        ("command = \"111000\"", "command = \"101010\"", "channel[0].command = \"101010\": is not a mode command that this core sends"),
+        ("command = \"111000\"", "command = \"position\"", "a mode command is six binary digits"),
+        ("command = \"111000\"", "command = \"\"", "a mode command is six binary digits"),
+        ("command = \"111000\"", "command = \"0000111\"", "a mode command is six binary digits"),
+        ("sample_hz = 10_000", "sample_hz = 0", "trigger.sample_hz = 0: outside 6..1000000"),
+        ("sample_hz = 10_000", "sample_hz = 25_000", "takes up to 49.1 us, so at most 20379 Hz"),
+        ("[\"pin\", \"timer\"]", "[\"pin\", \"button\"]", "trigger.sources = \"button\": unknown trigger; use pin, timer, register"),
+        ("[\"pin\", \"timer\"]", "[\"pin\", \"pin\"]", "trigger.sources = \"pin\": stands twice"),
+        ("baud = 2_000_000", "baud = 9_000", "link.baud = 9000: outside 9600.."),
+        ("baud = 2_000_000", "baud = 115_200", "the link is too slow: reading 2 channels 1000 times a second takes 380000 bit/s"),
+        ("baud = 2_000_000", "baud = 4_000_000", "more than 3000000 bit/s, the most that papilio_pro passes on"),
+        ("read_hz = 1_000", "read_hz = 0", "link.read_hz = 0: outside 1..1000000"),
+        // names
+        ("name = \"s6_two_channel\"", "name = \"module\"", "name = \"module\": is a reserved word"),
+        ("name = \"s6_two_channel\"", "name = \"Signal\"", "is a reserved word"),
+        ("name = \"s6_two_channel\"", "name = \"\"", "is empty"),
+        ("name = \"s6_two_channel\"", "name = \"../../etc\"", "is a path"),
+        ("name = \"s6_two_channel\"", "name = \"C:\\\\x\"", "is a path"),
+        ("name = \"s6_two_channel\"", "name = \"2card\"", "does not begin with a letter"),
+        ("name = \"s6_two_channel\"", "name = \"two channel\"", "has the character ' '"),
+        ("name = \"s6_two_channel\"", "name = \"a\\u0000b\"", "has the character '\\0'"),
+        // board and pins
+        ("name = \"papilio_pro\"", "name = \"papilio\"", "board.name = \"papilio\": unknown board; known boards: papilio_pro"),
+        ("[pins]", "[pins]\ntrigger_i = \"P145\"", "pins.trigger_i = \"P145\": no such pin; the package of xc6slx9-tqg144-2 has P1..P144"),
+        ("[pins]", "[pins]\ntrigger_i = \"P2\"", "is not on a connector of papilio_pro; use A0..A15"),
+        ("[pins]", "[pins]\ntrigger_i = \"D1\"", "is neither a pin (P48) nor a connector position (A0)"),
+        ("[pins]", "[pins]\ntrigger_i = \"C0\"", "P114 already carries endat_clk0_o"),
+        ("[pins]", "[pins]\nendat_clk2_o = \"A0\"", "pins.endat_clk2_o = \"A0\": no such signal; signals: trigger_i"),
+        ("[pins]", "[pins]\ntrigger_i = 5", "pins.trigger_i = 5: is an integer, must be text in quotes"),
+        // syntax
+        ("[clock]", "[clock", "not TOML:"),
+        ("baud = 2_000_000", "baud = ", "not TOML:"),
+        ("baud = 2_000_000", "baud = 2_000_000 bit", "not TOML:"),
+        ("[link]", "[clock]", "not TOML:"),
+    ];
+    for (from, to, wanted) in rows {
+        let (text, line) = changed(from, to);
+        let found = refuse(&text);
+        let lines = line..=line + to.matches('\n').count();
+        let hit = found.iter().find(|d| d.text.contains(wanted));
+        let hit = hit.unwrap_or_else(|| panic!("{to:?}: no message has {wanted:?}\n{found:#?}"));
+        assert!(
+            lines.contains(&hit.line),
+            "{to:?}: line {} instead of {lines:?}",
+            hit.line
+        );
+        assert_eq!(hit.file, "card.toml");
+        let syntax = wanted.starts_with("not TOML");
+        assert!(
+            syntax || found.len() == 1,
+            "{to:?}: more than one message\n{found:#?}"
+        );
+    }
+}
+
+#[test]
+fn what_is_missing_is_named_with_an_example() {
+    let rows = [
+        (
+            "name = \"s6_two_channel\"",
+            "name: is missing; add, for example, `name = \"my_card\"`",
+        ),
+        (
+            "system_hz = 100_000_000",
+            "clock.system_hz: is missing; add, for example, `system_hz = 100_000_000`",
+        ),
+        (
+            "clock_hz = 3_125_000",
+            "channel[1].clock_hz: is missing; add `clock_hz = 3_125_000` here or in [endat]",
+        ),
+        (
+            "position_bits = 29",
+            "channel[0].position_bits: is missing; add, for example, `position_bits = 29`",
+        ),
+        ("command = \"111000\"", "channel[0].command: is missing"),
+        ("sample_hz = 10_000", "trigger.sample_hz: is missing"),
+        ("baud = 2_000_000", "link.baud: is missing"),
+        (
+            "name = \"papilio_pro\"",
+            "board.name: is missing; add, for example, `name = \"papilio_pro\"`",
+        ),
+    ];
+    for (from, wanted) in rows {
+        let found = refuse(&changed(from, "").0);
+        assert!(
+            found
+                .iter()
+                .any(|d| d.text.starts_with(wanted) && d.line > 0),
+            "{wanted}\n{found:#?}"
+        );
+    }
+    assert!(refuse("").iter().all(|d| d.text.starts_with("is empty")));
+    assert!(refuse(" \n\t")
+        .iter()
+        .all(|d| d.text.starts_with("is empty")));
+    assert!(
+        refuse("name = \"x\"").len() >= 4,
+        "every missing key is named"
+    );
+}
+
+#[test]
+fn optional_keys_may_be_left_out_and_keep_the_card() {
+    let whole = parse("card.toml", PRESET).unwrap();
+    for key in [
+        "tst_ns",
+        "start_window_ns",
+        "tcal_max_ns",
+        "recovery_min_ns",
+        "recovery_max_ns",
+        "cable_m",
+    ] {
+        let shorter: String = PRESET
+            .lines()
+            .filter(|l| !l.starts_with(key))
+            .map(|l| format!("{l}\n"))
+            .collect();
+        let project = parse("card.toml", &shorter).unwrap_or_else(|e| panic!("{key}: {e:?}"));
+        assert_eq!(project.hash, whole.hash, "{key}");
+    }
+    // Without read_hz the host is to read every sample, which this link cannot.
+    assert!(refuse(&changed("read_hz = 1_000", "").0)[0]
+        .text
+        .contains("the link is too slow"));
+}
+
+#[test]
+fn a_channel_overrides_the_common_keys() {
+    let (text, _) = changed(
+        "command = \"111000\"",
+        "command = \"000111\"\nclock_hz = 2_000_000\ntst_ns = 0",
+    );
+    let project = parse("card.toml", &text).unwrap();
+    assert_eq!(project.card.channels[0].period_cycles, 50);
+    assert_eq!(project.card.channels[0].first_low_extra_cycles, 0);
+    assert_eq!(project.card.channels[1].period_cycles, 32);
+}
+
+#[test]
+fn all_mistakes_of_a_file_are_listed_in_the_order_of_its_lines() {
+    let text = PRESET
+        .replacen("name = \"s6_two_channel\"", "name = \"a b\"", 1)
+        .replacen("filter_ns", "fliter_ns", 1)
+        .replacen("position_bits = 29", "position_bits = 50", 1)
+        .replacen("baud = 2_000_000", "baud = 1", 1);
+    let found = refuse(&text);
+    let keys: Vec<&str> = found
+        .iter()
+        .map(|d| d.text.split([' ', ':']).next().unwrap())
+        .collect();
+    assert_eq!(
+        keys,
+        [
+            "name",
+            "endat.fliter_ns",
+            "channel[0].position_bits",
+            "link.baud"
+        ]
+    );
+}
+
+#[test]
+fn a_mistake_in_the_common_keys_is_told_once_not_for_each_channel() {
+    assert_eq!(
+        refuse(&changed("clock_hz = 3_125_000", "clock_hz = 1").0).len(),
+        1
+    );
+}
+
+#[test]
+fn channels_without_pins_say_which_pins_they_need() {
+    let third =
+        "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\nclock_hz = 1_000_000\n\n[trigger]";
+    let (text, _) = changed("[trigger]", third);
+    let found = refuse(&text);
+    assert_eq!(found.len(), 5, "{found:#?}");
+    assert!(found[0]
+        .text
+        .contains("has no usual pin for it; add, for example, `endat_clk2_o = \"A0\"` to [pins]"));
+    let pins = "[pins]\nendat_clk2_o = \"A0\"\nendat_data2_o = \"A1\"\nendat_data2_oe = \"A2\"\nendat_data2_i = \"P58\"\nled_channel2_o = \"b0\"\n";
+    let project = parse("card.toml", &text.replacen("[pins]", pins, 1)).unwrap();
+    assert_eq!(project.card.channels.len(), 3);
+}
+
+#[test]
+fn the_hash_follows_the_meaning_and_not_the_spelling() {
+    let hash = |text: &str| parse("card.toml", text).unwrap().hash;
+    let whole = hash(PRESET);
+    assert_eq!(whole.len(), 12);
+    assert_eq!(hash(&PRESET.replace("100_000_000", "0x5F5E100")), whole);
+    assert_eq!(hash(&format!("# another comment\n{PRESET}")), whole);
+    for (from, to) in [
+        ("position_bits = 29", "position_bits = 28"),
+        ("filter_ns = 20", "filter_ns = 30"),
+        ("[pins]", "[pins]\ntrigger_i = \"A0\""),
+        ("[\"pin\", \"timer\"]", "[\"pin\"]"),
+    ] {
+        assert_ne!(hash(&changed(from, to).0), whole, "{to}");
+    }
+}
+
+/// What every verdict must satisfy.
+fn judge(text: &str) -> Result<(), TestCaseError> {
+    let lines = text.matches('\n').count() + 1;
+    match parse("card.toml", text) {
+        Ok(project) => {
+            let project: Project = project;
+            prop_assert!(endat_gen::config::check_name(&project.name).is_ok());
+            prop_assert!(!project.card.channels.is_empty());
+        }
+        Err(found) => {
+            prop_assert!(!found.is_empty());
+            for d in found {
+                prop_assert!(
+                    d.line <= lines && !d.text.is_empty() && !d.text.contains('\n'),
+                    "{d:?}"
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    /// Pieces cut out, doubled or replaced by something typed.
+    #[test]
+    fn a_mangled_file_gives_messages_and_never_a_panic(
+        cuts in prop::collection::vec((0usize..4_000, 0usize..40, "[ -~\n\u{e4}]{0,12}"), 1..4),
+    ) {
+        let mut text: Vec<char> = PRESET.chars().collect();
+        for (at, length, insert) in cuts {
+            let at = at % (text.len() + 1);
+            let end = (at + length).min(text.len());
+            text.splice(at..end, insert.chars());
+        }
+        judge(&text.into_iter().collect::<String>())?;
+    }
+
+    /// Any number in any place.
+    #[test]
+    fn any_number_in_any_place_gives_a_verdict(which in 0usize..64, value in prop_oneof![any::<i128>(), -10i128..100_000_000]) {
+        let lines: Vec<&str> = PRESET.lines().collect();
+        let numeric: Vec<usize> = (0..lines.len()).filter(|n| lines[*n].contains(" = ") && !lines[*n].starts_with('#')).collect();
+        let target = numeric[which % numeric.len()];
+        let key = lines[target].split(" = ").next().unwrap_or("");
+        let text: String = (0..lines.len())
+            .map(|n| if n == target { format!("{key} = {value}\n") } else { format!("{}\n", lines[n]) })
+            .collect();
+        judge(&text)?;
+    }
+}
