@@ -40,7 +40,7 @@ impl Link {
     fn step(&mut self, rx: bool) {
         let uut = &mut self.uut;
         uut.rx.next = rx;
-        uut.tick_us.next = self.cycle % MICROSECOND == 0;
+        uut.tick_us.next = self.cycle.is_multiple_of(MICROSECOND);
         uut.done.next = self.busy == 1;
         uut.clock.next = false.into();
         settle(uut);
