@@ -42,7 +42,7 @@ pub struct Channel {
     pub data_i: Signal<In, Bit>,
     /// EnDat clock period, in system clock cycles; an odd one has the longer high phase.
     pub period_cycles: Signal<In, Bits<11>>,
-    /// How much longer than half a period the first low phase is: 0, or at least 2 system clock cycles (tST).
+    /// How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     pub first_low_extra_cycles: Signal<In, Bits<11>>,
     /// Mode command.
     pub command: Signal<In, Bits<6>>,
@@ -226,6 +226,7 @@ impl Logic for Channel {
         self.sender.abort.next = self.transaction.abort.val();
         self.sender.command.next = self.command.val();
 
+        self.delay.drain.next = self.transaction.drain.val();
         self.delay.run.next = self.transaction.run.val();
         self.delay.acquire.next = self.transaction.acquire.val();
         self.delay.hunting.next = self.receiver.hunting.val();

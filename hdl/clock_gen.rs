@@ -5,7 +5,7 @@
 //! hold_low    __/~~~~~~~~\________________________    tST, or too many pulses in flight
 //! endat_clk   ~~\_____________/~~~~\____/~~~~\____
 //! fall        /\___________________/\________/\___
-//! rise        ________________/\________/\________
+//! rise        _________________/\________/\_______
 //! ```
 //!
 //! The line idles HIGH and a frame ends with it HIGH. A low phase that was held is followed by a whole half
@@ -34,12 +34,13 @@ pub struct ClockGen {
     pub period_cycles: Signal<In, Bits<11>>,
     /// The EnDat clock, one cycle before it reaches the pin.
     pub endat_clk: Signal<Out, Bit>,
-    /// High in the last cycle before a rising edge.
+    /// High in the first cycle after a rising edge.
     pub rise: Signal<Out, Bit>,
     /// High in the last cycle before a falling edge.
     pub fall: Signal<Out, Bit>,
     half: HalfPeriod,
     level: Reg<Bit>,
+    risen: Reg<Bit>,
     rise_now: Signal<Local, Bit>,
     fall_now: Signal<Local, Bit>,
     held: Signal<Local, Bit>,
@@ -60,6 +61,7 @@ impl Default for ClockGen {
             fall: Default::default(),
             half: Default::default(),
             level: Reg::new(true),
+            risen: Default::default(),
             rise_now: Default::default(),
             fall_now: Default::default(),
             held: Default::default(),
@@ -70,9 +72,10 @@ impl Default for ClockGen {
 impl Logic for ClockGen {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, level);
+        dff_setup!(self, clock, level, risen);
         clock!(self, clock, half);
         self.level.reset.next = self.reset.val();
+        self.risen.reset.next = self.reset.val();
         self.half.reset.next = self.reset.val();
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.level.q.val();
@@ -92,7 +95,8 @@ impl Logic for ClockGen {
             self.level.d.next = true;
         }
         self.endat_clk.next = self.level.q.val();
-        self.rise.next = self.rise_now.val();
+        self.rise.next = self.risen.q.val();
+        self.risen.d.next = self.rise_now.val();
         self.fall.next = self.fall_now.val();
     }
 }

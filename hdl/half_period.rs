@@ -32,10 +32,12 @@ pub struct HalfPeriod {
     hit_late: Reg<Bit>,
     half_cycles: Signal<Local, Bits<10>>,
     tick_now: Signal<Local, Bit>,
+    restart_count: Constant<Bits<10>>,
 }
 
-impl Default for HalfPeriod {
-    fn default() -> Self {
+impl HalfPeriod {
+    /// A timer whose half after `restart` is `early_cycles` shorter than the others.
+    pub fn new(early_cycles: u64) -> Self {
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -48,7 +50,14 @@ impl Default for HalfPeriod {
             hit_late: Default::default(),
             half_cycles: Default::default(),
             tick_now: Default::default(),
+            restart_count: Constant::new((2 + early_cycles).into()),
         }
+    }
+}
+
+impl Default for HalfPeriod {
+    fn default() -> Self {
+        Self::new(0)
     }
 }
 
@@ -71,6 +80,9 @@ impl Logic for HalfPeriod {
             self.count.d.next = 2.into();
             self.hit.d.next = false;
             self.hit_late.d.next = false;
+        }
+        if self.restart.val() {
+            self.count.d.next = self.restart_count.val();
         }
         self.tick.next = self.tick_now.val();
     }

@@ -29,6 +29,8 @@ pub struct LineDelay {
     pub reset: Signal<In, Bit>,
     /// Low between frames: forgets everything but the delay.
     pub run: Signal<In, Bit>,
+    /// The clock waits: when all cells have ended, a new burst of pulses begins.
+    pub drain: Signal<In, Bit>,
     /// This frame measures the delay instead of using it.
     pub acquire: Signal<In, Bit>,
     /// The start bit may come now.
@@ -60,6 +62,8 @@ pub struct LineDelay {
     delay_over: Reg<Bit>,
     cells_run: Reg<Bit>,
     second_half: Reg<Bit>,
+    sample_strobe: Reg<Bit>,
+    center_strobe: Reg<Bit>,
     pulses: Reg<Bits<6>>,
     center_seen: Reg<Bit>,
     edge_seen: Reg<Bit>,
@@ -81,6 +85,7 @@ impl Default for LineDelay {
             clock: Default::default(),
             reset: Default::default(),
             run: Default::default(),
+            drain: Default::default(),
             acquire: Default::default(),
             hunting: Default::default(),
             rise: Default::default(),
@@ -93,13 +98,15 @@ impl Default for LineDelay {
             edge_in_window: Default::default(),
             outstanding: Default::default(),
             delay_cycles: Default::default(),
-            half: Default::default(),
+            half: HalfPeriod::new(1),
             delay: Default::default(),
             since_rise: Default::default(),
             timing_armed: Default::default(),
             delay_over: Default::default(),
             cells_run: Default::default(),
             second_half: Default::default(),
+            sample_strobe: Default::default(),
+            center_strobe: Default::default(),
             pulses: Default::default(),
             center_seen: Default::default(),
             edge_seen: Default::default(),
@@ -129,6 +136,8 @@ impl Logic for LineDelay {
             delay_over,
             cells_run,
             second_half,
+            sample_strobe,
+            center_strobe,
             pulses
         );
         dff_setup!(
@@ -147,6 +156,8 @@ impl Logic for LineDelay {
         self.delay_over.reset.next = self.reset.val();
         self.cells_run.reset.next = self.reset.val();
         self.second_half.reset.next = self.reset.val();
+        self.sample_strobe.reset.next = self.reset.val();
+        self.center_strobe.reset.next = self.reset.val();
         self.pulses.reset.next = self.reset.val();
         self.center_seen.reset.next = self.reset.val();
         self.edge_seen.reset.next = self.reset.val();
@@ -175,21 +186,21 @@ impl Logic for LineDelay {
             & !self.cells_run.q.val();
         self.first_center.next = self.acquired.val()
             | (self.delay_over.q.val() & !self.cells_run.q.val() & !self.acquire.val());
-        self.center_now.next =
-            self.first_center.val() | (self.half.tick.val() & self.second_half.q.val());
-        self.sample_now.next =
+        // The half period timer runs one cycle ahead: its ticks are registered before they are used.
+        self.sample_strobe.d.next =
             self.half.tick.val() & !self.second_half.q.val() & self.cells_run.q.val();
+        self.center_strobe.d.next = self.half.tick.val() & self.second_half.q.val();
+        self.sample_now.next = self.sample_strobe.q.val();
+        self.center_now.next = self.first_center.val() | self.center_strobe.q.val();
 
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.second_half.q.val();
-        self.half.restart.next = self.first_center.val() | !self.cells_run.q.val();
+        self.half.restart.next = !self.cells_run.q.val();
+        if self.half.tick.val() & self.cells_run.q.val() {
+            self.second_half.d.next = !self.second_half.q.val();
+        }
         if self.first_center.val() {
             self.cells_run.d.next = true;
-        }
-        if self.sample_now.val() {
-            self.second_half.d.next = true;
-        }
-        if self.center_now.val() {
             self.second_half.d.next = false;
         }
 
@@ -234,13 +245,11 @@ impl Logic for LineDelay {
             self.delay.d.next = self.since_rise.q.val();
         }
 
-        // A burst whose cells have all ended: the next rising edge begins a new one.
-        self.drained.next = self.sample_now.val()
-            & (self.pulses.q.val() == 1)
-            & !self.rise.val()
-            & !self.acquire.val();
-        if self.drained.val() {
+        // All cells of a burst have ended: the next rising edge begins a new one.
+        self.drained.next = self.drain.val() & !self.pulses.q.val().any();
+        if self.drained.val() | !self.run.val() {
             self.cells_run.d.next = false;
+            self.second_half.d.next = false;
             self.timing_armed.d.next = false;
             self.delay_over.d.next = false;
         }
@@ -251,10 +260,8 @@ impl Logic for LineDelay {
             self.edge_outside.d.next = false;
         }
         if !self.run.val() {
-            self.cells_run.d.next = false;
-            self.second_half.d.next = false;
-            self.timing_armed.d.next = false;
-            self.delay_over.d.next = false;
+            self.sample_strobe.d.next = false;
+            self.center_strobe.d.next = false;
             self.pulses.d.next = 0.into();
         }
 

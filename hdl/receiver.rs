@@ -67,7 +67,7 @@ pub struct Receiver {
     pub hunting: Signal<Out, Bit>,
     /// Strobe with `sample`: this sample is a good start bit.
     pub start_found: Signal<Out, Bit>,
-    /// Strobe with `sample`: high, but its edge is outside the window.
+    /// Strobe one cycle after `sample`: it was high, but its edge is outside the window.
     pub start_refused: Signal<Out, Bit>,
     /// The start bit has been taken.
     pub started: Signal<Out, Bit>,
@@ -106,6 +106,7 @@ pub struct Receiver {
     done_now: Reg<Bit>,
     parallel_equal: Reg<Bit>,
     serial_good: Reg<Bit>,
+    refused: Reg<Bit>,
     skip_from: Constant<Bits<4>>,
     fixed_cells: Constant<Bits<7>>,
     skip_step: Signal<Local, Bit>,
@@ -167,6 +168,7 @@ impl Default for Receiver {
             done_now: Default::default(),
             parallel_equal: Default::default(),
             serial_good: Default::default(),
+            refused: Default::default(),
             skip_from: Constant::new((ORDER_OF_X as u64 - u64::from(protocol::LEAD_PULSES)).into()),
             fixed_cells: Constant::new(
                 u64::from(protocol::LEAD_PULSES + protocol::START_BITS + 1 + protocol::CRC_BITS)
@@ -220,6 +222,8 @@ impl Logic for Receiver {
         self.done_now.reset.next = self.reset.val();
         self.parallel_equal.reset.next = self.reset.val();
         self.serial_good.reset.next = self.reset.val();
+        self.refused.reset.next = self.reset.val();
+        clock!(self, clock, refused);
         self.serial.reset.next = self.reset.val();
 
         self.skip_step.next = self.sample.val();
@@ -371,7 +375,8 @@ impl Logic for Receiver {
         self.skipping.next = self.field.q.val() == Field::Skip;
         self.hunting.next = self.field.q.val() == Field::Start;
         self.start_found.next = self.start_sample.val() & self.edge_in_window.val();
-        self.start_refused.next = self.start_sample.val() & !self.edge_in_window.val();
+        self.refused.d.next = self.start_sample.val() & !self.edge_in_window.val();
+        self.start_refused.next = self.refused.q.val();
         self.started.next =
             (self.field.q.val() != Field::Skip) & (self.field.q.val() != Field::Start);
         self.cells_left.next = self.left.q.val();

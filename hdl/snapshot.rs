@@ -64,6 +64,7 @@ pub struct Snapshot {
     latched: Reg<Bits<32>>,
     stamp: Reg<Bits<32>>,
     age: Reg<Bits<16>>,
+    age_full: Reg<Bit>,
     cause_held: Reg<Bits<4>>,
     flags_held: Reg<Bits<10>>,
     received: Reg<Bits<5>>,
@@ -75,7 +76,7 @@ impl Logic for Snapshot {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, strobe, held, valid, is_fresh, count, latched, stamp, age);
-        dff_setup!(self, clock, cause_held, flags_held, received, computed);
+        dff_setup!(self, clock, age_full, cause_held, flags_held, received, computed);
         self.strobe.reset.next = self.reset.val();
         self.held.reset.next = self.reset.val();
         self.valid.reset.next = self.reset.val();
@@ -83,6 +84,7 @@ impl Logic for Snapshot {
         self.count.reset.next = self.reset.val();
         self.latched.reset.next = self.reset.val();
         self.stamp.reset.next = self.reset.val();
+        self.age_full.reset.next = self.reset.val();
         self.age.reset.next = self.reset.val();
         self.cause_held.reset.next = self.reset.val();
         self.flags_held.reset.next = self.reset.val();
@@ -93,7 +95,8 @@ impl Logic for Snapshot {
         if self.first_fall.val() {
             self.latched.d.next = self.timestamp.val();
         }
-        if self.tick_us.val() & !self.age.q.val().all() {
+        self.age_full.d.next = self.age.q.val().all();
+        if self.tick_us.val() & !self.age_full.q.val() {
             self.age.d.next = self.age.q.val() + 1;
         }
         self.strobe.d.next = self.publish.val();

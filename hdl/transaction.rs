@@ -110,7 +110,7 @@ pub struct Transaction {
     pub outstanding: Signal<In, Bits<6>>,
     /// Cells still to come.
     pub cells_left: Signal<In, Bits<7>>,
-    /// How much longer than half a period the first low phase is; 0, or at least 2 cycles.
+    /// How much longer than half a period the first low phase is; 0, or at least 4 cycles.
     pub first_low_extra_cycles: Signal<In, Bits<11>>,
     /// Longest wait for the start bit after the turnaround.
     pub start_timeout_us: Signal<In, Bits<12>>,
@@ -124,6 +124,8 @@ pub struct Transaction {
     pub abort: Signal<Out, Bit>,
     /// Keeps the clock low.
     pub hold_low: Signal<Out, Bit>,
+    /// The clock waits for the cells of all pulses sent.
+    pub drain: Signal<Out, Bit>,
     /// Keeps the clock high: all edges have been sent.
     pub stop: Signal<Out, Bit>,
     /// This frame measures the propagation delay.
@@ -146,7 +148,11 @@ pub struct Transaction {
     abort_us: Constant<Bits<15>>,
     phase: Reg<Phase>,
     timer: Reg<Bits<15>>,
+    timer_limit: Reg<Bits<15>>,
     timer_hit: Reg<Bit>,
+    hold: Reg<Bit>,
+    start_now: Reg<Bit>,
+    run_now: Reg<Bit>,
     calibrated: Reg<Bit>,
     acquiring: Reg<Bit>,
     overrun: Reg<Bit>,
@@ -154,6 +160,10 @@ pub struct Transaction {
     all_sent: Reg<Bit>,
     tail_sampled: Reg<Bit>,
     recovery: Reg<Bits<13>>,
+    seen: Reg<Bits<10>>,
+    taken: Reg<Bit>,
+    gave_up: Reg<Bit>,
+    gave_up_late: Reg<Bit>,
     publish_now: Reg<Bit>,
     good_now: Reg<Bit>,
     late_now: Reg<Bit>,
@@ -167,6 +177,7 @@ pub struct Transaction {
     give_up: Signal<Local, Bit>,
     idle: Signal<Local, Bit>,
     found: Signal<Local, Bits<10>>,
+    told: Signal<Local, Bits<10>>,
     crc_bad: Signal<Local, Bit>,
     verdict: Signal<Local, Bit>,
     primary: Signal<Local, Bits<4>>,
@@ -202,6 +213,7 @@ impl Transaction {
             run: Default::default(),
             abort: Default::default(),
             hold_low: Default::default(),
+            drain: Default::default(),
             stop: Default::default(),
             acquire: Default::default(),
             busy: Default::default(),
@@ -215,7 +227,11 @@ impl Transaction {
             abort_us: Constant::new(abort_us.into()),
             phase: Default::default(),
             timer: Default::default(),
+            timer_limit: Default::default(),
             timer_hit: Default::default(),
+            hold: Default::default(),
+            start_now: Default::default(),
+            run_now: Default::default(),
             calibrated: Default::default(),
             acquiring: Default::default(),
             overrun: Default::default(),
@@ -223,6 +239,10 @@ impl Transaction {
             all_sent: Default::default(),
             tail_sampled: Default::default(),
             recovery: Default::default(),
+            seen: Default::default(),
+            taken: Default::default(),
+            gave_up: Default::default(),
+            gave_up_late: Default::default(),
             publish_now: Default::default(),
             good_now: Default::default(),
             late_now: Default::default(),
@@ -236,6 +256,7 @@ impl Transaction {
             give_up: Default::default(),
             idle: Default::default(),
             found: Default::default(),
+            told: Default::default(),
             crc_bad: Default::default(),
             verdict: Default::default(),
             primary: Default::default(),
@@ -248,13 +269,30 @@ impl Logic for Transaction {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(
-            self, clock, phase, timer, timer_hit, calibrated, acquiring, overrun, stalled, all_sent
+            self,
+            clock,
+            phase,
+            timer,
+            timer_limit,
+            timer_hit,
+            hold,
+            start_now,
+            run_now,
+            calibrated,
+            acquiring,
+            overrun,
+            stalled,
+            all_sent
         );
         dff_setup!(
             self,
             clock,
             tail_sampled,
             recovery,
+            seen,
+            taken,
+            gave_up,
+            gave_up_late,
             publish_now,
             good_now,
             late_now,
@@ -264,6 +302,10 @@ impl Logic for Transaction {
         self.phase.reset.next = self.reset.val();
         self.timer.reset.next = self.reset.val();
         self.timer_hit.reset.next = self.reset.val();
+        self.timer_limit.reset.next = self.reset.val();
+        self.run_now.reset.next = self.reset.val();
+        self.start_now.reset.next = self.reset.val();
+        self.hold.reset.next = self.reset.val();
         self.calibrated.reset.next = self.reset.val();
         self.acquiring.reset.next = self.reset.val();
         self.overrun.reset.next = self.reset.val();
@@ -271,6 +313,10 @@ impl Logic for Transaction {
         self.all_sent.reset.next = self.reset.val();
         self.tail_sampled.reset.next = self.reset.val();
         self.recovery.reset.next = self.reset.val();
+        self.seen.reset.next = self.reset.val();
+        self.taken.reset.next = self.reset.val();
+        self.gave_up.reset.next = self.reset.val();
+        self.gave_up_late.reset.next = self.reset.val();
         self.publish_now.reset.next = self.reset.val();
         self.good_now.reset.next = self.reset.val();
         self.late_now.reset.next = self.reset.val();
@@ -285,9 +331,7 @@ impl Logic for Transaction {
         self.idle.next = false;
         self.verdict.next = false;
         self.found.next = 0.into();
-        self.good_now.d.next = false;
-        self.late_now.d.next = false;
-        self.run.next = false;
+        self.run_now.d.next = false;
         self.crc_bad.next = !(self.serial_ok.val() & self.parallel_ok.val());
 
         match self.phase.q.val() {
@@ -326,7 +370,7 @@ impl Logic for Transaction {
                 }
             }
             Phase::FirstLow => {
-                self.run.next = true;
+                self.run_now.d.next = true;
                 self.limit.next = bit_cast::<15, 11>(self.first_low_extra_cycles.val());
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::Frame;
@@ -334,7 +378,7 @@ impl Logic for Transaction {
                 }
             }
             Phase::Frame => {
-                self.run.next = true;
+                self.run_now.d.next = true;
                 self.in_us.next = true;
                 self.timer_clear.next = !self.hunting.val();
                 if self.timer_hit.q.val() & self.hunting.val() {
@@ -351,14 +395,14 @@ impl Logic for Transaction {
                 }
             }
             Phase::Tail => {
-                self.run.next = true;
+                self.run_now.d.next = true;
                 self.timer_clear.next = true;
                 if self.center.val() {
                     self.phase.d.next = Phase::Recovery;
                 }
             }
             Phase::Recovery => {
-                self.run.next = !self.tail_sampled.q.val();
+                self.run_now.d.next = !self.tail_sampled.q.val();
                 self.limit.next = bit_cast::<15, 13>(self.recovery_limit_cycles.val());
                 if self.sample.val() {
                     self.tail_sampled.d.next = true;
@@ -382,19 +426,21 @@ impl Logic for Transaction {
             Phase::Abort => {
                 self.in_us.next = true;
                 self.limit.next = self.abort_us.val();
-                if self.timer_hit.q.val() {
+                // The first cycle here still sees the time-out that led here.
+                self.timer_clear.next = self.gave_up.q.val();
+                if self.timer_hit.q.val() & !self.gave_up.q.val() {
                     self.phase.d.next = Phase::NotReady;
                     self.timer_clear.next = true;
                 }
             }
             _ => {
-                self.phase.d.next = Phase::Abort;
-                self.timer_clear.next = true;
+                self.give_up.next = true;
             }
         }
         if self.give_up.val() {
             self.phase.d.next = Phase::Abort;
-            self.timer_clear.next = true;
+        }
+        if self.gave_up.q.val() {
             self.calibrated.d.next = false;
         }
 
@@ -402,7 +448,8 @@ impl Logic for Transaction {
         if self.timer_step.val() {
             self.timer.d.next = self.timer.q.val() + 1;
         }
-        self.timer_hit.d.next = self.timer.q.val() == self.limit.val();
+        self.timer_limit.d.next = self.limit.val();
+        self.timer_hit.d.next = self.timer.q.val() == self.timer_limit.q.val();
         if self.timer_clear.val() {
             self.timer.d.next = 0.into();
             self.timer_hit.d.next = false;
@@ -424,61 +471,64 @@ impl Logic for Transaction {
             self.stalled.d.next = false;
         }
 
-        // Verdict of a whole frame: CRC before F1 before F2, since error bits of a spoilt frame mean nothing.
-        if self.verdict.val() {
-            self.found.next = 0.into();
+        // What happened is registered, then told: the frame's bits stay where they are.
+        self.seen.d.next = self.found.val();
+        self.taken.d.next = self.verdict.val();
+        self.gave_up.d.next = self.give_up.val();
+        self.gave_up_late.d.next = self.give_up.val() & (self.phase.q.val() == Phase::Recovery);
+        self.told.next = self.seen.q.val();
+        self.good_now.d.next = false;
+        if self.taken.q.val() {
             if self.crc_bad.val() {
-                self.found.next = self.found.val() | 8;
+                self.told.next = self.told.val() | 8;
+            } else {
+                self.calibrated.d.next = true;
+                self.good_now.d.next = !self.f1.val() & self.f2.val();
             }
             if self.f1.val() {
-                self.found.next = self.found.val() | 16;
+                self.told.next = self.told.val() | 16;
             }
             if !self.f2.val() {
-                self.found.next = self.found.val() | 32;
+                self.told.next = self.told.val() | 32;
             }
             if !self.parallel_ok.val() {
-                self.found.next = self.found.val() | 256;
+                self.told.next = self.told.val() | 256;
             }
-            self.good_now.d.next = !self.crc_bad.val() & !self.f1.val() & self.f2.val();
-            if !self.crc_bad.val() {
-                self.calibrated.d.next = true;
-            }
-        }
-        self.publish_now.d.next = self.verdict.val();
-        if self.give_up.val() {
-            self.publish_now.d.next = self.phase.q.val() != Phase::Recovery;
-            self.late_now.d.next = self.phase.q.val() == Phase::Recovery;
         }
         if self.overrun.q.val() {
-            self.found.next = self.found.val() | 128;
+            self.told.next = self.told.val() | 128;
         }
+        self.publish_now.d.next =
+            self.taken.q.val() | (self.gave_up.q.val() & !self.gave_up_late.q.val());
+        self.late_now.d.next = self.gave_up_late.q.val();
+        // One primary cause: CRC before F1 before F2, since error bits of a spoilt frame mean nothing.
         self.primary.next = 0.into();
-        if self.found.val().get_bit(7) {
+        if self.told.val().get_bit(7) {
             self.primary.next = 8.into();
         }
-        if self.found.val().get_bit(5) {
+        if self.told.val().get_bit(5) {
             self.primary.next = 6.into();
         }
-        if self.found.val().get_bit(4) {
+        if self.told.val().get_bit(4) {
             self.primary.next = 5.into();
         }
-        if self.found.val().get_bit(3) {
+        if self.told.val().get_bit(3) {
             self.primary.next = 4.into();
         }
-        if self.found.val().get_bit(6) | self.found.val().get_bit(9) {
+        if self.told.val().get_bit(6) | self.told.val().get_bit(9) {
             self.primary.next = 7.into();
         }
-        if self.found.val().get_bit(2) {
+        if self.told.val().get_bit(2) {
             self.primary.next = 3.into();
         }
-        if self.found.val().get_bit(1) {
+        if self.told.val().get_bit(1) {
             self.primary.next = 2.into();
         }
-        if self.found.val().get_bit(0) {
+        if self.told.val().get_bit(0) {
             self.primary.next = 1.into();
         }
-        if self.verdict.val() | self.give_up.val() {
-            self.flags_now.d.next = self.found.val();
+        if self.taken.q.val() | self.gave_up.q.val() {
+            self.flags_now.d.next = self.told.val();
             self.cause_now.d.next = self.primary.val();
             self.overrun.d.next = false;
         }
@@ -493,9 +543,13 @@ impl Logic for Transaction {
         if self.calibrate.val() {
             self.calibrated.d.next = false;
         }
-        self.start.next = self.accept.val();
-        self.abort.next = self.give_up.val();
-        self.hold_low.next = (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val();
+        self.run.next = self.run_now.q.val();
+        self.start_now.d.next = self.accept.val();
+        self.start.next = self.start_now.q.val();
+        self.abort.next = self.gave_up.q.val();
+        self.hold.d.next = (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val();
+        self.hold_low.next = self.hold.q.val();
+        self.drain.next = self.stalled.q.val();
         self.stop.next = self.all_sent.q.val() & self.started.val();
         self.acquire.next = self.acquiring.q.val();
         self.busy.next = !self.idle.val();
