@@ -15,6 +15,7 @@ pub mod constraints;
 pub mod crc;
 pub mod error;
 pub mod explain;
+pub mod verilog;
 
 use artifact::Artifact;
 use config::Project;

@@ -34,7 +34,7 @@ pub struct CommandSender {
     pub oe: Signal<Out, Bit>,
     cells_left: Reg<Bits<4>>,
     cells: Signal<Local, Bits<8>>,
-    cell: Signal<Local, Bits<3>>,
+    cell_now: Signal<Local, Bits<3>>,
 }
 
 impl Logic for CommandSender {
@@ -44,7 +44,7 @@ impl Logic for CommandSender {
         self.cells_left.reset.next = self.reset.val();
         // Cells in falling order: 7 = the lead-in 0 at F2, 6..1 = the command, 8 and 0 = driver off.
         self.cells.next = bit_cast::<8, 6>(self.command.val()) << 1;
-        self.cell.next = self.cells_left.q.val().get_bits::<3>(0);
+        self.cell_now.next = self.cells_left.q.val().get_bits::<3>(0);
         if self.fall.val() & self.cells_left.q.val().any() {
             self.cells_left.d.next = self.cells_left.q.val() - 1;
         }
@@ -54,7 +54,7 @@ impl Logic for CommandSender {
         if self.start.val() {
             self.cells_left.d.next = 8.into();
         }
-        self.data.next = self.cells.val().get_bit(self.cell.val().index());
-        self.oe.next = self.cell.val().any();
+        self.data.next = self.cells.val().get_bit(self.cell_now.val().index());
+        self.oe.next = self.cell_now.val().any();
     }
 }

@@ -1,5 +1,12 @@
 //! Engines that run a design, one clock cycle at a time, behind one trait.
 
+mod interpreter;
+mod kernel;
+mod program;
+
+pub use interpreter::{Interpreter, InterpreterError};
+pub use kernel::{KernelEngine, Pin};
+
 /// Index of a port in [`Engine::ports`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PortId(pub usize);

@@ -1,0 +1,577 @@
+//! One module as Verilog text.
+
+use super::expression::{literal, range, Helper, Helpers};
+use endat_hdl::elaborate::{
+    mask, Design, Direction, EnumId, Expr, ExprKind, Memory, Module, NetId, Register, Statement,
+};
+use std::collections::{BTreeMap, BTreeSet};
+
+const INDENT: &str = "    ";
+/// Keeps a synchroniser stage a flip-flop: Vivado and XST, then yosys and other tools.
+const SYNCHRONISER: &str = "(* ASYNC_REG = \"TRUE\", SHREG_EXTRACT = \"NO\", keep = \"true\" *)";
+
+/// The text of a module.
+pub(super) fn print(design: &Design, module: &Module) -> String {
+    ModulePrinter::new(design, module).print()
+}
+
+pub(super) struct ModulePrinter<'a> {
+    design: &'a Design,
+    pub module: &'a Module,
+    /// Names in use, in lower case.
+    taken: BTreeSet<String>,
+    /// Helper nets that are assigned continuously.
+    pub continuous: Vec<Helper>,
+    /// Helper nets that are assigned inside a process.
+    inside: Vec<Helper>,
+    /// Targets of the process that is being printed.
+    pub process_targets: BTreeSet<NetId>,
+    /// Names of the states that are used.
+    variants: BTreeMap<(EnumId, usize), String>,
+    used_parameters: BTreeSet<usize>,
+}
+
+impl<'a> ModulePrinter<'a> {
+    fn new(design: &'a Design, module: &'a Module) -> Self {
+        let names = module.nets.iter().map(|n| &n.name);
+        let names = names.chain(module.parameters.iter().map(|p| &p.name));
+        let names = names.chain(module.instances.iter().map(|i| &i.name));
+        let names = names.chain(module.memories.iter().map(|m| &m.name));
+        Self {
+            design,
+            module,
+            taken: names.map(|name| name.to_lowercase()).collect(),
+            continuous: vec![],
+            inside: vec![],
+            process_targets: BTreeSet::new(),
+            variants: BTreeMap::new(),
+            used_parameters: BTreeSet::new(),
+        }
+    }
+
+    /// `base`, or `base` with a number if that is taken.
+    pub fn unique(&mut self, base: &str) -> String {
+        let numbered = (2..).map(|number| format!("{base}_{number}"));
+        let name = std::iter::once(base.to_string())
+            .chain(numbered)
+            .find(|name| !self.taken.contains(&name.to_lowercase()))
+            .unwrap_or_default();
+        self.taken.insert(name.to_lowercase());
+        name
+    }
+
+    /// The `localparam` of a state.
+    pub fn variant(&mut self, enum_id: EnumId, variant: usize) -> String {
+        if let Some(name) = self.variants.get(&(enum_id, variant)) {
+            return name.clone();
+        }
+        let enum_type = &self.design.enums[enum_id];
+        let name = format!(
+            "{}_{}",
+            upper(&enum_type.name),
+            upper(&enum_type.variants[variant])
+        );
+        let name = self.unique(&name);
+        self.variants.insert((enum_id, variant), name.clone());
+        name
+    }
+
+    fn print(mut self) -> String {
+        self.find_used_parameters();
+        let instances: String = (0..self.module.instances.len())
+            .map(|i| self.instance(i))
+            .collect();
+        let mut processes = String::new();
+        let mut in_always = BTreeSet::new();
+        for process in &self.module.processes {
+            let text = self.process(&process.statements, &mut in_always);
+            processes.push_str(&text);
+        }
+        let registers = self.registers();
+        let memories: String = self
+            .module
+            .memories
+            .iter()
+            .map(|m| self.memory(m))
+            .collect();
+
+        let mut out = comment(&self.module.docs, "");
+        out.push_str(&format!("module {} (\n", self.module.name));
+        out.push_str(&self.ports(&in_always));
+        out.push_str(");\n");
+        out.push_str(&self.constants());
+        out.push_str(&self.declarations(&in_always));
+        for helper in &self.continuous {
+            out.push_str(&format!(
+                "{INDENT}assign {} = {};\n",
+                helper.name, helper.text
+            ));
+        }
+        for section in [instances, processes, registers, memories] {
+            if !section.is_empty() {
+                out.push('\n');
+                out.push_str(section.trim_start_matches('\n'));
+            }
+        }
+        out.push_str("endmodule\n");
+        out
+    }
+
+    fn find_used_parameters(&mut self) {
+        fn visit(expr: &Expr, used: &mut BTreeSet<usize>) {
+            if let ExprKind::Parameter(index) = expr.kind {
+                used.insert(index);
+            }
+            // bits of a constant are printed as a literal
+            if !matches!(expr.kind, ExprKind::Slice(..)) {
+                expr.operands().into_iter().for_each(|e| visit(e, used));
+            }
+        }
+        let used = &mut self.used_parameters;
+        for statement in self.module.processes.iter().flat_map(|p| &p.statements) {
+            statement.for_each_expr(&mut |expr| visit(expr, used));
+        }
+        for connection in self.module.instances.iter().flat_map(|i| &i.connections) {
+            visit(connection, used);
+        }
+    }
+
+    fn ports(&self, in_always: &BTreeSet<NetId>) -> String {
+        let mut out = String::new();
+        for (index, port) in self.module.ports.iter().enumerate() {
+            let net = &self.module.nets[port.net];
+            let kind = match port.direction {
+                Direction::Input => "input  wire",
+                Direction::Output if in_always.contains(&port.net) => "output reg ",
+                Direction::Output => "output wire",
+            };
+            let comma = if index + 1 < self.module.ports.len() {
+                ","
+            } else {
+                ""
+            };
+            out.push_str(&comment(&net.docs, INDENT));
+            out.push_str(&format!(
+                "{INDENT}{kind} {:>7} {}{comma}\n",
+                vector(net.width_bits),
+                net.name
+            ));
+        }
+        out
+    }
+
+    fn constants(&self) -> String {
+        let mut out = String::new();
+        for index in &self.used_parameters {
+            let parameter = &self.module.parameters[*index];
+            out.push_str(&comment(&parameter.docs, INDENT));
+            let (vector, value) = (
+                vector(parameter.width_bits),
+                literal(parameter.value, parameter.width_bits),
+            );
+            out.push_str(&format!(
+                "{INDENT}localparam {vector:>7} {} = {value};\n",
+                parameter.name
+            ));
+        }
+        let mut last = None;
+        for ((enum_id, variant), name) in &self.variants {
+            let enum_type = &self.design.enums[*enum_id];
+            if last.replace(*enum_id) != Some(*enum_id) {
+                let docs = if enum_type.docs.is_empty() {
+                    std::slice::from_ref(&enum_type.name)
+                } else {
+                    &enum_type.docs[..]
+                };
+                out.push_str(&comment(docs, INDENT));
+            }
+            let doc = enum_type
+                .variant_docs
+                .get(*variant)
+                .and_then(|docs| docs.first());
+            let doc = doc.map_or(String::new(), |doc| format!(" // {doc}"));
+            let (vector, value) = (
+                vector(enum_type.width_bits),
+                literal(*variant as u128, enum_type.width_bits),
+            );
+            out.push_str(&format!(
+                "{INDENT}localparam {vector:>7} {name} = {value};{doc}\n"
+            ));
+        }
+        if out.is_empty() {
+            out
+        } else {
+            format!("{out}\n")
+        }
+    }
+
+    fn declarations(&mut self, in_always: &BTreeSet<NetId>) -> String {
+        let module = self.module;
+        let ports: BTreeSet<NetId> = module.ports.iter().map(|p| p.net).collect();
+        let mut starts: BTreeMap<NetId, (String, bool)> = BTreeMap::new();
+        for register in &module.registers {
+            starts.insert(register.q, (self.start(register), register.is_synchroniser));
+        }
+        for memory in &module.memories {
+            starts.insert(memory.read_data, (literal(0, memory.width_bits), false));
+        }
+        let mut out = String::new();
+        for (id, net) in module
+            .nets
+            .iter()
+            .enumerate()
+            .filter(|(id, _)| !ports.contains(id))
+        {
+            out.push_str(&comment(&net.docs, INDENT));
+            let vector = vector(net.width_bits);
+            out.push_str(&match starts.get(&id) {
+                Some((start, true)) => format!(
+                    "{INDENT}{SYNCHRONISER}\n{INDENT}reg  {vector:>7} {} = {start};\n",
+                    net.name
+                ),
+                Some((start, false)) => {
+                    format!("{INDENT}reg  {vector:>7} {} = {start};\n", net.name)
+                }
+                None if in_always.contains(&id) => {
+                    format!("{INDENT}reg  {vector:>7} {};\n", net.name)
+                }
+                None => format!("{INDENT}wire {vector:>7} {};\n", net.name),
+            });
+        }
+        for (kind, helpers) in [("wire", &self.continuous), ("reg ", &self.inside)] {
+            for helper in helpers {
+                out.push_str(&format!(
+                    "{INDENT}{kind} {:>7} {};\n",
+                    vector(helper.width_bits),
+                    helper.name
+                ));
+            }
+        }
+        let unused = self.unused();
+        if !unused.is_empty() {
+            let name = self.unique("unused_ok");
+            out.push_str(&format!(
+                "{INDENT}wire {:>7} _{name} = &{{1'b0, {}}};\n",
+                "",
+                unused.join(", ")
+            ));
+        }
+        out
+    }
+
+    /// What is driven but never read, as Verilog expressions.
+    fn unused(&self) -> Vec<String> {
+        let read = self.module.read_bits();
+        let outputs: BTreeSet<NetId> = self
+            .module
+            .ports
+            .iter()
+            .filter(|p| p.direction == Direction::Output)
+            .map(|p| p.net)
+            .collect();
+        let mut out = vec![];
+        for (id, net) in self
+            .module
+            .nets
+            .iter()
+            .enumerate()
+            .filter(|(id, _)| !outputs.contains(id))
+        {
+            let unread = mask(net.width_bits) & !read.get(&id).copied().unwrap_or(0);
+            out.extend(
+                ranges(unread).map(|(low, width)| range(&net.name, low, width, net.width_bits)),
+            );
+        }
+        for helper in self.continuous.iter().chain(&self.inside) {
+            let unread = mask(helper.width_bits) & !helper.read_bits;
+            out.extend(
+                ranges(unread)
+                    .map(|(low, width)| range(&helper.name, low, width, helper.width_bits)),
+            );
+        }
+        out
+    }
+
+    fn instance(&mut self, index: usize) -> String {
+        let instance = &self.module.instances[index];
+        let child = &self.design.modules[instance.module];
+        let mut lines = vec![];
+        for (port, connection) in child.ports.iter().zip(&instance.connections) {
+            let value = self.expression(connection, "", &mut Helpers::default());
+            lines.push(format!(
+                "{INDENT}{INDENT}.{}({value})",
+                child.nets[port.net].name
+            ));
+        }
+        format!(
+            "{INDENT}{} {} (\n{}\n{INDENT});\n",
+            child.name,
+            instance.name,
+            lines.join(",\n")
+        )
+    }
+
+    fn process(&mut self, statements: &[Statement], in_always: &mut BTreeSet<NetId>) -> String {
+        self.process_targets.clear();
+        let mut reads = BTreeSet::new();
+        for statement in statements {
+            statement.for_each_target(&mut |net, _, _| {
+                self.process_targets.insert(net);
+            });
+            statement.for_each_expr(&mut |e| {
+                e.for_each_net(&mut |net| {
+                    reads.insert(net);
+                });
+            });
+        }
+        if let [Statement::Assign {
+            net,
+            low_bit: 0,
+            value,
+        }] = statements
+        {
+            if value.width_bits == self.module.nets[*net].width_bits && !reads.contains(net) {
+                let name = self.module.nets[*net].name.clone();
+                let text = self.expression(value, &name, &mut Helpers::default());
+                return format!("{INDENT}assign {name} = {text};\n");
+            }
+        }
+        if reads.is_subset(&self.process_targets) {
+            // `always @*` would never run: the values are constants.
+            return self.constant_process(statements);
+        }
+        in_always.extend(&self.process_targets);
+        let first_helper = self.inside.len();
+        let body = self.block(statements, 2);
+        let defaults: String = self.inside[first_helper..]
+            .iter()
+            .map(|h| {
+                format!(
+                    "{INDENT}{INDENT}{} = {};\n",
+                    h.name,
+                    literal(0, h.width_bits)
+                )
+            })
+            .collect();
+        format!("\n{INDENT}always @* begin\n{defaults}{body}{INDENT}end\n")
+    }
+
+    fn constant_process(&self, statements: &[Statement]) -> String {
+        let mut values: BTreeMap<NetId, u128> = BTreeMap::new();
+        let parameters: Vec<u128> = self.module.parameters.iter().map(|p| p.value).collect();
+        endat_hdl::elaborate::execute(statements, &parameters, &mut values);
+        let line = |(net, value): (&NetId, &u128)| {
+            let net = &self.module.nets[*net];
+            format!(
+                "{INDENT}assign {} = {};\n",
+                net.name,
+                literal(*value, net.width_bits)
+            )
+        };
+        values.iter().map(line).collect()
+    }
+
+    fn block(&mut self, statements: &[Statement], depth: usize) -> String {
+        statements
+            .iter()
+            .map(|s| self.statement(s, depth))
+            .collect()
+    }
+
+    /// A statement at an indentation depth, after the helper nets that it needs.
+    fn statement(&mut self, statement: &Statement, depth: usize) -> String {
+        let pad = INDENT.repeat(depth);
+        let mut helpers = Helpers::default();
+        let text = match statement {
+            Statement::Assign {
+                net,
+                low_bit,
+                value,
+            } => {
+                let target = &self.module.nets[*net];
+                let place = range(&target.name, *low_bit, value.width_bits, target.width_bits);
+                let value = self.expression(value, &target.name, &mut helpers);
+                format!("{pad}{place} = {value};\n")
+            }
+            Statement::If {
+                condition,
+                then,
+                otherwise,
+            } => {
+                let condition = self.expression(condition, "condition", &mut helpers);
+                format!(
+                    "{pad}if ({condition}) begin\n{}{}",
+                    self.block(then, depth + 1),
+                    self.otherwise(otherwise, depth)
+                )
+            }
+            Statement::Case {
+                subject,
+                arms,
+                default,
+            } => {
+                let subject = self.expression(subject, "subject", &mut helpers);
+                let mut text = format!("{pad}case ({subject})\n");
+                let inner = INDENT.repeat(depth + 1);
+                for (value, body) in arms {
+                    let value = self.expression(value, "", &mut helpers);
+                    let body = self.block(body, depth + 2);
+                    text.push_str(&format!("{inner}{value}: begin\n{body}{inner}end\n"));
+                }
+                let body = self.block(default, depth + 2);
+                text.push_str(&format!(
+                    "{inner}default: begin\n{body}{inner}end\n{pad}endcase\n"
+                ));
+                text
+            }
+        };
+        let before: String = helpers
+            .nets
+            .iter()
+            .map(|h| format!("{pad}{} = {};\n", h.name, h.text))
+            .collect();
+        self.inside.extend(helpers.nets);
+        before + &text
+    }
+
+    fn otherwise(&mut self, otherwise: &[Statement], depth: usize) -> String {
+        let pad = INDENT.repeat(depth);
+        match otherwise {
+            [] => format!("{pad}end\n"),
+            [Statement::If { .. }] => {
+                let text = self.statement(&otherwise[0], depth);
+                match text.trim_start().starts_with("if (") {
+                    true => format!("{pad}end else {}", text.trim_start()),
+                    false => format!("{pad}end else begin\n{text}{pad}end\n"),
+                }
+            }
+            _ => format!(
+                "{pad}end else begin\n{}{pad}end\n",
+                self.block(otherwise, depth + 1)
+            ),
+        }
+    }
+
+    fn start(&mut self, register: &Register) -> String {
+        let net = &self.module.nets[register.q];
+        match net.enum_id {
+            Some(id) if (register.start as usize) < self.design.enums[id].variants.len() => {
+                self.variant(id, register.start as usize)
+            }
+            _ => literal(register.start, net.width_bits),
+        }
+    }
+
+    /// One clocked process for all registers of one clock and reset.
+    fn registers(&mut self) -> String {
+        let mut groups: Vec<((NetId, Option<NetId>), Vec<&Register>)> = vec![];
+        for register in &self.module.registers {
+            let key = (register.clock, register.reset);
+            match groups.iter_mut().find(|(k, _)| *k == key) {
+                Some((_, group)) => group.push(register),
+                None => groups.push((key, vec![register])),
+            }
+        }
+        let mut out = String::new();
+        for ((clock, reset), group) in groups {
+            let name = |net: NetId| &self.module.nets[net].name;
+            let next = |pad: &str| -> String {
+                group
+                    .iter()
+                    .map(|r| format!("{pad}{} <= {};\n", name(r.q), name(r.next)))
+                    .collect()
+            };
+            let (pad, deep) = (INDENT.repeat(2), INDENT.repeat(3));
+            let head = format!("\n{INDENT}always @(posedge {}) begin\n", name(clock));
+            let body = match reset {
+                None => next(&pad),
+                Some(reset) => {
+                    let (reset, next) = (name(reset).clone(), next(&deep));
+                    let starts: String = group
+                        .iter()
+                        .map(|r| {
+                            format!(
+                                "{deep}{} <= {};\n",
+                                self.module.nets[r.q].name,
+                                self.start(r)
+                            )
+                        })
+                        .collect();
+                    format!(
+                        "{pad}if ({reset}) begin\n{starts}{pad}end else begin\n{next}{pad}end\n"
+                    )
+                }
+            };
+            out.push_str(&format!("{head}{body}{INDENT}end\n"));
+        }
+        out
+    }
+
+    fn memory(&mut self, memory: &Memory) -> String {
+        let name = |net: NetId| self.module.nets[net].name.clone();
+        let (clock, enable) = (name(memory.clock), name(memory.write_enable));
+        let (write_address, write_data) = (name(memory.write_address), name(memory.write_data));
+        let (read_address, read_data) = (name(memory.read_address), name(memory.read_data));
+        let counter = self.unique(&format!("{}_word", memory.name));
+        let (vector, words) = (vector(memory.width_bits), memory.words);
+        let zero = literal(0, memory.width_bits);
+        let word = &memory.name;
+        let docs = comment(&memory.docs, INDENT);
+        format!(
+            "\n{docs}    reg {vector} {word} [0:{last}];
+    integer {counter};
+    initial begin
+        for ({counter} = 0; {counter} < {words}; {counter} = {counter} + 1) begin
+            {word}[{counter}] = {zero};
+        end
+    end
+    always @(posedge {clock}) begin
+        if ({enable}) begin
+            {word}[{write_address}] <= {write_data};
+        end
+        {read_data} <= {word}[{read_address}];
+    end
+",
+            last = words - 1
+        )
+    }
+}
+
+/// The ranges of set bits, as lowest bit and width.
+fn ranges(mut bits: u128) -> impl Iterator<Item = (usize, usize)> {
+    std::iter::from_fn(move || {
+        if bits == 0 {
+            return None;
+        }
+        let low = bits.trailing_zeros() as usize;
+        let width = (bits >> low).trailing_ones() as usize;
+        bits &= !(mask(width) << low);
+        Some((low, width))
+    })
+}
+
+fn vector(width_bits: usize) -> String {
+    match width_bits {
+        1 => String::new(),
+        _ => format!("[{}:0]", width_bits - 1),
+    }
+}
+
+fn comment(lines: &[String], pad: &str) -> String {
+    let line = |line: &String| format!("{}\n", format!("{pad}// {line}").trim_end());
+    lines.iter().map(line).collect()
+}
+
+/// `NoStartBit` becomes `NO_START_BIT`.
+fn upper(name: &str) -> String {
+    let mut out = String::new();
+    let mut previous_is_lower = false;
+    for c in name.chars() {
+        if c.is_ascii_uppercase() && previous_is_lower {
+            out.push('_');
+        }
+        previous_is_lower = !c.is_ascii_uppercase();
+        out.push(c.to_ascii_uppercase());
+    }
+    out
+}

@@ -1,0 +1,492 @@
+//! The typed design: modules, nets, registers, memories and expressions, each with its width.
+
+use std::collections::BTreeSet;
+
+/// Index of a module in [`Design::modules`].
+pub type ModuleId = usize;
+/// Index of a net in [`Module::nets`].
+pub type NetId = usize;
+/// Index of an enum type in [`Design::enums`].
+pub type EnumId = usize;
+
+/// Widest net that a design may have.
+pub const MAX_WIDTH_BITS: usize = 128;
+
+/// The value with the lowest `width_bits` bits set.
+pub fn mask(width_bits: usize) -> u128 {
+    if width_bits >= 128 {
+        u128::MAX
+    } else {
+        (1 << width_bits) - 1
+    }
+}
+
+/// A whole elaborated design. Modules stand before the modules that they instantiate: the top comes first.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Design {
+    /// One module per distinct block type and parameters; the first is the top.
+    pub modules: Vec<Module>,
+    /// Every enum type that a net has.
+    pub enums: Vec<EnumType>,
+}
+
+impl Design {
+    /// The top module.
+    pub fn top(&self) -> &Module {
+        &self.modules[0]
+    }
+}
+
+/// An enum type and its states, in the order of their values.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EnumType {
+    /// Rust name of the type.
+    pub name: String,
+    /// Rust names of the variants; the value of a variant is its index.
+    pub variants: Vec<String>,
+    /// Bits of a value.
+    pub width_bits: usize,
+    /// Rust documentation of the type, line by line.
+    pub docs: Vec<String>,
+    /// Rust documentation of each variant, line by line.
+    pub variant_docs: Vec<Vec<String>>,
+}
+
+/// One block type with its parameters.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Module {
+    /// Verilog name.
+    pub name: String,
+    /// Rust name of the block type; the instance name where the type is not in the sources.
+    pub type_name: String,
+    /// Rust documentation of the block type, line by line.
+    pub docs: Vec<String>,
+    /// Every net, ports included.
+    pub nets: Vec<Net>,
+    /// Ports, in declaration order.
+    pub ports: Vec<Port>,
+    /// Named constants.
+    pub parameters: Vec<Parameter>,
+    /// Registers.
+    pub registers: Vec<Register>,
+    /// Memories.
+    pub memories: Vec<Memory>,
+    /// Child modules.
+    pub instances: Vec<Instance>,
+    /// Combinational processes; each net has one driver at most. A process stands after those that it reads.
+    pub processes: Vec<Process>,
+}
+
+/// A named bundle of wires.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Net {
+    /// Verilog name, unique within the module even without regard to case.
+    pub name: String,
+    /// Width in bits, 1..=[`MAX_WIDTH_BITS`].
+    pub width_bits: usize,
+    /// The enum type, if it holds a state.
+    pub enum_id: Option<EnumId>,
+    /// Rust documentation of the field, line by line.
+    pub docs: Vec<String>,
+}
+
+/// Direction of a port.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// Driven from outside.
+    Input,
+    /// Driven by the module.
+    Output,
+}
+
+/// A port of a module.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// The net of the same name.
+    pub net: NetId,
+    /// Who drives it.
+    pub direction: Direction,
+    /// Whether it is a clock.
+    pub is_clock: bool,
+}
+
+/// A named constant of a module.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// Verilog name.
+    pub name: String,
+    /// Width in bits.
+    pub width_bits: usize,
+    /// Its value.
+    pub value: u128,
+    /// Rust documentation of the field, line by line.
+    pub docs: Vec<String>,
+}
+
+/// A register: on each rising edge of `clock`, `q` takes `start` if `reset` is high, else `next`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Register {
+    /// Present value.
+    pub q: NetId,
+    /// Next value.
+    pub next: NetId,
+    /// Clock.
+    pub clock: NetId,
+    /// Synchronous reset, active high; `None` if it is tied low.
+    pub reset: Option<NetId>,
+    /// Value at power-up and after reset.
+    pub start: u128,
+    /// Whether it is a synchroniser stage, to be kept a flip-flop of its own.
+    pub is_synchroniser: bool,
+}
+
+/// A memory with one write port and one synchronous read port; a read in the cycle of a write sees the old word.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Memory {
+    /// Verilog name.
+    pub name: String,
+    /// Bits of a word.
+    pub width_bits: usize,
+    /// Words; the address nets have just enough bits.
+    pub words: usize,
+    /// Clock.
+    pub clock: NetId,
+    /// Word to read.
+    pub read_address: NetId,
+    /// The word that stood at `read_address` at the last clock edge; starts at 0.
+    pub read_data: NetId,
+    /// Writes at the next clock edge if high.
+    pub write_enable: NetId,
+    /// Word to write.
+    pub write_address: NetId,
+    /// What to write.
+    pub write_data: NetId,
+    /// Rust documentation of the field, line by line.
+    pub docs: Vec<String>,
+}
+
+/// A child module in its place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Instance {
+    /// Verilog name.
+    pub name: String,
+    /// The child.
+    pub module: ModuleId,
+    /// What each port of the child is connected to, in port order. An input may be a constant or a part of a
+    /// net, an output is a whole net.
+    pub connections: Vec<Expr>,
+}
+
+/// Statements that drive a set of nets, in order; later assignments replace earlier ones.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Process {
+    /// What it does.
+    pub statements: Vec<Statement>,
+}
+
+/// A statement of a [`Process`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Statement {
+    /// Assigns `value` to the bits of `net` from `low_bit` upwards.
+    Assign {
+        /// Target.
+        net: NetId,
+        /// Lowest bit assigned.
+        low_bit: usize,
+        /// Its width is that of the part assigned.
+        value: Expr,
+    },
+    /// Executes one of two branches.
+    If {
+        /// One bit.
+        condition: Expr,
+        /// If it is 1.
+        then: Vec<Statement>,
+        /// If it is 0.
+        otherwise: Vec<Statement>,
+    },
+    /// Executes the arm whose value equals the subject.
+    Case {
+        /// What is compared.
+        subject: Expr,
+        /// Constants of the subject's width, and what to execute.
+        arms: Vec<(Expr, Vec<Statement>)>,
+        /// For all other values.
+        default: Vec<Statement>,
+    },
+}
+
+/// An expression and its width. Operands have the width of the result, except where a kind says otherwise.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Expr {
+    /// Width in bits.
+    pub width_bits: usize,
+    /// What it computes.
+    pub kind: ExprKind,
+}
+
+/// What an expression computes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ExprKind {
+    /// A literal.
+    Constant(u128),
+    /// A named state.
+    Variant(EnumId, usize),
+    /// A named constant, by index in [`Module::parameters`].
+    Parameter(usize),
+    /// A whole net.
+    Net(NetId),
+    /// Zero-extension of a narrower operand.
+    Extend(Box<Expr>),
+    /// The bits from `.1` upwards of a wider operand; they lie within it.
+    Slice(Box<Expr>, usize),
+    /// The bits of `.0` from `.1` (any width) upwards; bits above its end are zero.
+    Select(Box<Expr>, Box<Expr>),
+    /// An operator with one operand.
+    Unary(UnaryOp, Box<Expr>),
+    /// An operator with two operands.
+    Binary(BinaryOp, Box<Expr>, Box<Expr>),
+}
+
+/// Operators with one operand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum UnaryOp {
+    /// Complement.
+    Not,
+    /// 1 if all bits of an operand of any width are 1.
+    All,
+    /// 1 if any bit of an operand of any width is 1.
+    Any,
+    /// Parity of an operand of any width.
+    Xor,
+}
+
+/// Operators with two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BinaryOp {
+    /// Sum, wrapping.
+    Add,
+    /// Difference, wrapping.
+    Sub,
+    /// Product, wrapping.
+    Mul,
+    /// Bitwise and.
+    And,
+    /// Bitwise or.
+    Or,
+    /// Bitwise exclusive or.
+    Xor,
+    /// Shift to the left by the second operand, of any width; zero once everything is shifted out.
+    Shl,
+    /// Shift to the right by the second operand, of any width.
+    Shr,
+    /// 1 if equal; both operands have the same width.
+    Eq,
+    /// 1 if not equal; both operands have the same width.
+    Ne,
+    /// 1 if less, unsigned; both operands have the same width.
+    Lt,
+    /// 1 if less or equal, unsigned; both operands have the same width.
+    Le,
+    /// 1 if greater, unsigned; both operands have the same width.
+    Gt,
+    /// 1 if greater or equal, unsigned; both operands have the same width.
+    Ge,
+}
+
+impl Expr {
+    /// A literal.
+    pub fn constant(value: u128, width_bits: usize) -> Self {
+        Self {
+            width_bits,
+            kind: ExprKind::Constant(value & mask(width_bits)),
+        }
+    }
+
+    /// The operands of the expression.
+    pub fn operands(&self) -> Vec<&Expr> {
+        match &self.kind {
+            ExprKind::Constant(_)
+            | ExprKind::Variant(..)
+            | ExprKind::Parameter(_)
+            | ExprKind::Net(_) => {
+                vec![]
+            }
+            ExprKind::Extend(a) | ExprKind::Slice(a, _) | ExprKind::Unary(_, a) => vec![a],
+            ExprKind::Select(a, b) | ExprKind::Binary(_, a, b) => vec![a, b],
+        }
+    }
+
+    /// Calls `visit` for every net that the expression reads.
+    pub fn for_each_net(&self, visit: &mut dyn FnMut(NetId)) {
+        if let ExprKind::Net(net) = self.kind {
+            visit(net);
+        }
+        for operand in self.operands() {
+            operand.for_each_net(visit);
+        }
+    }
+
+    /// Calls `change` for every net that the expression reads.
+    pub fn for_each_net_mut(&mut self, change: &mut dyn FnMut(&mut NetId)) {
+        match &mut self.kind {
+            ExprKind::Net(net) => change(net),
+            ExprKind::Constant(_) | ExprKind::Variant(..) | ExprKind::Parameter(_) => {}
+            ExprKind::Extend(a) | ExprKind::Slice(a, _) | ExprKind::Unary(_, a) => {
+                a.for_each_net_mut(change)
+            }
+            ExprKind::Select(a, b) | ExprKind::Binary(_, a, b) => {
+                a.for_each_net_mut(change);
+                b.for_each_net_mut(change);
+            }
+        }
+    }
+}
+
+impl Statement {
+    /// Calls `visit` for every net that the statement assigns, with the lowest bit and the width.
+    pub fn for_each_target(&self, visit: &mut dyn FnMut(NetId, usize, usize)) {
+        if let Statement::Assign {
+            net,
+            low_bit,
+            value,
+        } = self
+        {
+            visit(*net, *low_bit, value.width_bits);
+        }
+        for block in self.blocks() {
+            for statement in block {
+                statement.for_each_target(visit);
+            }
+        }
+    }
+
+    /// Calls `visit` for every expression in the statement.
+    pub fn for_each_expr(&self, visit: &mut dyn FnMut(&Expr)) {
+        match self {
+            Statement::Assign { value, .. } => visit(value),
+            Statement::If { condition, .. } => visit(condition),
+            Statement::Case { subject, arms, .. } => {
+                visit(subject);
+                arms.iter().for_each(|(value, _)| visit(value));
+            }
+        }
+        for block in self.blocks() {
+            for statement in block {
+                statement.for_each_expr(visit);
+            }
+        }
+    }
+
+    /// Calls `change` for every net that the statement assigns or reads.
+    pub fn for_each_net_mut(&mut self, change: &mut dyn FnMut(&mut NetId)) {
+        if let Statement::Assign { net, .. } = self {
+            change(net);
+        }
+        self.for_each_expr_mut(&mut |expr| expr.for_each_net_mut(change));
+        self.for_each_inner_mut(&mut |statement| {
+            if let Statement::Assign { net, .. } = statement {
+                change(net);
+            }
+        });
+    }
+
+    /// Calls `change` for every expression in the statement.
+    pub fn for_each_expr_mut(&mut self, change: &mut dyn FnMut(&mut Expr)) {
+        fn own(statement: &mut Statement, change: &mut dyn FnMut(&mut Expr)) {
+            match statement {
+                Statement::Assign { value, .. } => change(value),
+                Statement::If { condition, .. } => change(condition),
+                Statement::Case { subject, arms, .. } => {
+                    change(subject);
+                    arms.iter_mut().for_each(|(value, _)| change(value));
+                }
+            }
+        }
+        own(self, change);
+        self.for_each_inner_mut(&mut |statement| own(statement, change));
+    }
+
+    /// Calls `change` for every statement inside, at any depth.
+    fn for_each_inner_mut(&mut self, change: &mut dyn FnMut(&mut Statement)) {
+        let blocks: Vec<&mut Vec<Statement>> = match self {
+            Statement::Assign { .. } => vec![],
+            Statement::If {
+                then, otherwise, ..
+            } => vec![then, otherwise],
+            Statement::Case { arms, default, .. } => arms
+                .iter_mut()
+                .map(|(_, block)| block)
+                .chain([default])
+                .collect(),
+        };
+        for statement in blocks.into_iter().flatten() {
+            change(statement);
+            statement.for_each_inner_mut(change);
+        }
+    }
+
+    /// The part of the statement that assigns nets of `set`.
+    pub fn restricted_to(&self, set: &BTreeSet<NetId>) -> Option<Statement> {
+        let block = |statements: &[Statement]| -> Vec<Statement> {
+            statements
+                .iter()
+                .filter_map(|s| s.restricted_to(set))
+                .collect()
+        };
+        match self {
+            Statement::Assign { net, .. } => set.contains(net).then(|| self.clone()),
+            Statement::If {
+                condition,
+                then,
+                otherwise,
+            } => {
+                let (then, otherwise) = (block(then), block(otherwise));
+                (!then.is_empty() || !otherwise.is_empty()).then(|| Statement::If {
+                    condition: condition.clone(),
+                    then,
+                    otherwise,
+                })
+            }
+            Statement::Case {
+                subject,
+                arms,
+                default,
+            } => {
+                let arms: Vec<_> = arms.iter().map(|(v, b)| (v.clone(), block(b))).collect();
+                let default = block(default);
+                let is_used = !default.is_empty() || arms.iter().any(|(_, b)| !b.is_empty());
+                is_used.then(|| Statement::Case {
+                    subject: subject.clone(),
+                    arms,
+                    default,
+                })
+            }
+        }
+    }
+
+    /// The blocks of statements inside it.
+    pub fn blocks(&self) -> Vec<&[Statement]> {
+        match self {
+            Statement::Assign { .. } => vec![],
+            Statement::If {
+                then, otherwise, ..
+            } => vec![then, otherwise],
+            Statement::Case { arms, default, .. } => arms
+                .iter()
+                .map(|(_, block)| &block[..])
+                .chain([&default[..]])
+                .collect(),
+        }
+    }
+}
+
+impl Module {
+    /// A reference to a whole net.
+    pub fn net_expr(&self, net: NetId) -> Expr {
+        Expr {
+            width_bits: self.nets[net].width_bits,
+            kind: ExprKind::Net(net),
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! The last steps on a whole design: order of the modules, and their names.
+
+use super::design::{Design, Direction, ModuleId};
+use super::names::{problem, snake_case};
+use super::tree::BlockNode;
+use super::ElaborateError;
+use std::collections::BTreeMap;
+
+/// Puts the top first and gives every module its name.
+pub(super) fn finish(
+    design: &mut Design,
+    top: ModuleId,
+    name: &str,
+    tree: &BlockNode,
+) -> Result<(), ElaborateError> {
+    let order = top_down(design, top);
+    let mut position = vec![0; design.modules.len()];
+    for (new, old) in order.iter().enumerate() {
+        position[*old] = new;
+    }
+    let mut modules: Vec<_> = std::mem::take(&mut design.modules)
+        .into_iter()
+        .map(Some)
+        .collect();
+    design.modules = order
+        .iter()
+        .filter_map(|old| modules[*old].take())
+        .collect();
+    for module in &mut design.modules {
+        for instance in &mut module.instances {
+            instance.module = position[instance.module];
+        }
+    }
+    name_modules(design, name);
+    if let Some(problem) = problem(name) {
+        return Err(tree.error(
+            "",
+            format!("module name = {name}: {problem}"),
+            "choose another name",
+        ));
+    }
+    Ok(())
+}
+
+/// Every module before those that it instantiates, otherwise in the order of the source.
+fn top_down(design: &Design, top: ModuleId) -> Vec<ModuleId> {
+    fn visit(design: &Design, module: ModuleId, done: &mut Vec<ModuleId>) {
+        if done.contains(&module) {
+            return;
+        }
+        for instance in design.modules[module].instances.iter().rev() {
+            visit(design, instance.module, done);
+        }
+        done.push(module);
+    }
+    let mut done = vec![];
+    visit(design, top, &mut done);
+    done.reverse();
+    done
+}
+
+fn name_modules(design: &mut Design, top_name: &str) {
+    let mut by_type: BTreeMap<String, Vec<ModuleId>> = BTreeMap::new();
+    for (id, module) in design.modules.iter().enumerate().skip(1) {
+        by_type
+            .entry(snake_case(&module.type_name))
+            .or_default()
+            .push(id);
+    }
+    design.modules[0].name = top_name.into();
+    let mut taken = vec![top_name.to_lowercase()];
+    for (type_name, ids) in by_type {
+        let suffixes = suffixes(design, &ids);
+        for (id, suffix) in ids.into_iter().zip(suffixes) {
+            let mut name = format!("endat_{type_name}{suffix}");
+            while taken.contains(&name.to_lowercase()) {
+                name.push_str("_core");
+            }
+            taken.push(name.to_lowercase());
+            design.modules[id].name = name;
+        }
+    }
+}
+
+/// What tells modules of one block type apart: the first width or constant that differs in all of them, or else a number.
+fn suffixes(design: &Design, ids: &[ModuleId]) -> Vec<String> {
+    if ids.len() == 1 {
+        return vec![String::new()];
+    }
+    let facts: Vec<BTreeMap<String, String>> = ids.iter().map(|id| facts(design, *id)).collect();
+    let distinguishing = facts[0].keys().find(|key| {
+        let values: Vec<_> = facts.iter().filter_map(|f| f.get(*key)).collect();
+        values.len() == ids.len()
+            && values
+                .iter()
+                .enumerate()
+                .all(|(i, v)| !values[..i].contains(v))
+    });
+    match distinguishing {
+        Some(key) => facts.iter().map(|f| format!("_{}", f[key])).collect(),
+        None => (1..=ids.len()).map(|number| format!("_{number}")).collect(),
+    }
+}
+
+/// Widths of the ports and values of the constants; widths sort first.
+fn facts(design: &Design, id: ModuleId) -> BTreeMap<String, String> {
+    let module = &design.modules[id];
+    let mut facts = BTreeMap::new();
+    for port in &module.ports {
+        let net = &module.nets[port.net];
+        let kind = if port.direction == Direction::Input {
+            "1i"
+        } else {
+            "0o"
+        };
+        facts.insert(
+            format!("{kind} {}", net.name),
+            format!("w{}", net.width_bits),
+        );
+    }
+    for parameter in &module.parameters {
+        let key = parameter.name.to_lowercase();
+        facts.insert(format!("2p {key}"), format!("{key}{}", parameter.value));
+    }
+    for register in &module.registers {
+        let name = &module.nets[register.q].name;
+        facts.insert(format!("3r {name}"), format!("{name}{}", register.start));
+    }
+    facts
+}

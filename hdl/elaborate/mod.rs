@@ -1,0 +1,51 @@
+//! Elaboration: any rust-hdl block becomes a typed [`Design`].
+//!
+//! ```text
+//! block tree (Probe) -> names and statements of each block -> typed expressions -> processes -> modules -> Design
+//!    tree                   scope, index                        expr              plan       build
+//! ```
+//!
+//! Every width is the one that the Rust simulation computes with. What has no exact meaning is an
+//! [`ElaborateError`] that names block, field and remedy.
+
+mod build;
+mod design;
+pub mod docs;
+mod execute;
+mod expr;
+mod finish;
+mod index;
+mod names;
+mod plan;
+mod scope;
+mod tree;
+
+pub use design::*;
+pub use execute::{binary, evaluate, execute};
+use rust_hdl::prelude::Block;
+
+/// Why a block cannot be elaborated.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("block {block}, {field}: {problem}; {remedy}")]
+pub struct ElaborateError {
+    /// Instance path of the block.
+    pub block: String,
+    /// Field or statement in it.
+    pub field: String,
+    /// What is wrong.
+    pub problem: String,
+    /// What to write instead.
+    pub remedy: String,
+}
+
+/// Elaborates a block. `name` becomes the name of the top module; the other modules are `endat_` and the snake case of their
+/// Rust type.
+///
+/// # Errors
+/// For every construct that has no exact meaning as hardware.
+pub fn elaborate(top: &dyn Block, name: &str) -> Result<Design, ElaborateError> {
+    let tree = tree::read(top, name)?;
+    let (mut design, top) = build::build(&tree)?;
+    finish::finish(&mut design, top, name, &tree)?;
+    Ok(design)
+}

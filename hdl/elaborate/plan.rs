@@ -1,0 +1,426 @@
+//! From the statements of one kernel to processes: targets that are assigned together stay together, as the author
+//! wrote them, unless that would close a loop through another process or a child.
+
+use super::design::{mask, Expr, ExprKind, NetId, Process, Statement};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Nets that each target depends on combinationally.
+pub(super) type Dependencies = BTreeMap<NetId, BTreeSet<NetId>>;
+
+/// Why the statements have no exact meaning.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum PlanError {
+    /// These nets depend on each other.
+    Loop(Vec<NetId>),
+    /// Read before it is assigned.
+    ReadBeforeAssigned(NetId),
+    /// Not assigned on every way through the kernel.
+    Latch(NetId),
+}
+
+/// Splits `statements` into processes in an order in which each reads only what earlier ones drive.
+/// `through_children` says which nets a child's output depends on.
+pub(super) fn plan(
+    statements: &[Statement],
+    through_children: &Dependencies,
+) -> Result<(Vec<Process>, Dependencies), PlanError> {
+    let targets = Targets::new(statements);
+    let classes = targets.classes();
+    check_order(&targets, &classes)?;
+    let order = targets.sorted(&classes, through_children)?;
+    let sets = place(&targets, &classes, &order, through_children);
+    let mut processes = vec![];
+    for set in sets {
+        let statements: Vec<Statement> = statements
+            .iter()
+            .filter_map(|s| s.restricted_to(&set))
+            .collect();
+        check_assigned(&statements, &set)?;
+        processes.push(Process { statements });
+    }
+    Ok((processes, targets.depends))
+}
+
+/// What the kernel assigns, and when.
+struct Targets {
+    /// First and last top-level statement that assigns a net.
+    span: BTreeMap<NetId, (usize, usize)>,
+    /// (target, net read for it, top-level statement)
+    reads: BTreeSet<(NetId, NetId, usize)>,
+    depends: Dependencies,
+    /// Targets of each top-level statement.
+    together: Vec<BTreeSet<NetId>>,
+}
+
+impl Targets {
+    fn new(statements: &[Statement]) -> Self {
+        let mut targets = Self {
+            span: BTreeMap::new(),
+            reads: BTreeSet::new(),
+            depends: BTreeMap::new(),
+            together: vec![],
+        };
+        for (at, statement) in statements.iter().enumerate() {
+            let mut set = BTreeSet::new();
+            statement.for_each_target(&mut |net, _, _| {
+                set.insert(net);
+            });
+            for &target in &set {
+                targets.span.entry(target).or_insert((at, at)).1 = at;
+                let part = statement.restricted_to(&BTreeSet::from([target]));
+                let depends = targets.depends.entry(target).or_default();
+                if let Some(part) = part {
+                    part.for_each_expr(&mut |expr| {
+                        expr.for_each_net(&mut |net| {
+                            depends.insert(net);
+                            targets.reads.insert((target, net, at));
+                        });
+                    });
+                }
+            }
+            targets.together.push(set);
+        }
+        targets
+    }
+
+    /// A name (one of its nets) for each set of targets that must share a process, because one reads a value of another
+    /// that is not its last.
+    fn classes(&self) -> BTreeMap<NetId, NetId> {
+        let mut sets = Sets::new(self.span.keys().copied());
+        for &(target, read, at) in &self.reads {
+            if let Some(&(first, last)) = self.span.get(&read) {
+                if (first..=last).contains(&at) {
+                    sets.join(target, read);
+                }
+            }
+        }
+        sets.names()
+    }
+
+    /// Sets of classes that share top-level statements: candidates for one process.
+    fn groups(&self, classes: &BTreeMap<NetId, NetId>) -> BTreeMap<NetId, NetId> {
+        let mut sets = Sets::new(self.span.keys().copied());
+        for (net, class) in classes {
+            sets.join(*net, *class);
+        }
+        for set in &self.together {
+            for pair in set.iter().collect::<Vec<_>>().windows(2) {
+                sets.join(*pair[0], *pair[1]);
+            }
+        }
+        sets.names()
+    }
+
+    /// For each class, the classes that it reads.
+    fn class_graph(
+        &self,
+        classes: &BTreeMap<NetId, NetId>,
+        through_children: &Dependencies,
+    ) -> Dependencies {
+        let mut graph: Dependencies = classes
+            .values()
+            .map(|class| (*class, BTreeSet::new()))
+            .collect();
+        for (target, depends) in &self.depends {
+            let class = classes[target];
+            for net in depends {
+                let sources = through_children.get(net).cloned().unwrap_or_default();
+                let is_direct = classes.get(net).filter(|source| **source != class);
+                // A way through a child counts even if it ends in the same class: then it is a loop.
+                let through = sources.iter().filter_map(|source| classes.get(source));
+                let entry = graph.entry(class).or_default();
+                entry.extend(is_direct.into_iter().chain(through));
+            }
+        }
+        graph
+    }
+
+    /// The classes in an order in which each depends on earlier ones only, as close to the source as possible.
+    fn sorted(
+        &self,
+        classes: &BTreeMap<NetId, NetId>,
+        through_children: &Dependencies,
+    ) -> Result<Vec<NetId>, PlanError> {
+        let graph = self.class_graph(classes, through_children);
+        let groups = self.groups(classes);
+        let first = |class: NetId| {
+            let members = classes.iter().filter(|(_, c)| **c == class);
+            members.map(|(net, _)| self.span[net].0).min().unwrap_or(0)
+        };
+        let mut left: BTreeMap<NetId, usize> =
+            graph.keys().map(|class| (*class, first(*class))).collect();
+        let mut order: Vec<NetId> = vec![];
+        while !left.is_empty() {
+            let last_group = order.last().map(|class| groups[class]);
+            let ready = left
+                .iter()
+                .filter(|(class, _)| graph[class].iter().all(|source| !left.contains_key(source)))
+                .min_by_key(|(class, first)| (Some(groups[class]) != last_group, **first));
+            let Some((&class, _)) = ready else {
+                return Err(PlanError::Loop(find_loop(&graph, &left)));
+            };
+            left.remove(&class);
+            order.push(class);
+        }
+        Ok(order)
+    }
+}
+
+fn find_loop(graph: &Dependencies, left: &BTreeMap<NetId, usize>) -> Vec<NetId> {
+    let mut path: Vec<NetId> = left.keys().take(1).copied().collect();
+    while let Some(last) = path.last() {
+        let Some(&next) = graph[last].iter().find(|source| left.contains_key(source)) else {
+            break;
+        };
+        if let Some(at) = path.iter().position(|net| *net == next) {
+            let mut found = path.split_off(at);
+            found.reverse();
+            return found;
+        }
+        path.push(next);
+    }
+    path
+}
+
+/// The target sets of the processes, in order.
+fn place(
+    targets: &Targets,
+    classes: &BTreeMap<NetId, NetId>,
+    order: &[NetId],
+    through_children: &Dependencies,
+) -> Vec<BTreeSet<NetId>> {
+    let graph = targets.class_graph(classes, through_children);
+    let groups = targets.groups(classes);
+    let mut process_of: BTreeMap<NetId, usize> = BTreeMap::new();
+    // For each process: the group, and the processes that it reads.
+    let mut processes: Vec<(NetId, BTreeSet<usize>)> = vec![];
+    for class in order {
+        let sources: BTreeSet<usize> = graph[class]
+            .iter()
+            .map(|source| process_of[source])
+            .collect();
+        let fits = |process: usize| {
+            processes[process].0 == groups[class]
+                && !targets.is_read_early(*class, process, classes, &process_of)
+                // Joining must not make the process depend on itself through another one.
+                && sources.iter().all(|source| *source == process || !reads(&processes, *source, process))
+        };
+        let process = match (0..processes.len()).rev().find(|process| fits(*process)) {
+            Some(process) => process,
+            None => {
+                processes.push((groups[class], BTreeSet::new()));
+                processes.len() - 1
+            }
+        };
+        processes[process]
+            .1
+            .extend(sources.into_iter().filter(|s| *s != process));
+        process_of.insert(*class, process);
+    }
+    let mut sets = vec![BTreeSet::new(); processes.len()];
+    for (net, class) in classes {
+        sets[process_of[class]].insert(*net);
+    }
+    // A process joined late may read one that was made after it: sort once more.
+    let mut done: Vec<usize> = vec![];
+    while done.len() < processes.len() {
+        let next = (0..processes.len())
+            .find(|p| {
+                !done.contains(p) && processes[*p].1.iter().all(|source| done.contains(source))
+            })
+            .unwrap_or(done.len());
+        done.push(next);
+    }
+    done.into_iter()
+        .map(|process| std::mem::take(&mut sets[process]))
+        .collect()
+}
+
+/// Whether process `from` reads, directly or not, process `to`.
+fn reads(processes: &[(NetId, BTreeSet<usize>)], from: usize, to: usize) -> bool {
+    let mut seen = BTreeSet::new();
+    let mut open = vec![from];
+    while let Some(process) = open.pop() {
+        if process == to {
+            return true;
+        }
+        if seen.insert(process) {
+            open.extend(&processes[process].1);
+        }
+    }
+    false
+}
+
+impl Targets {
+    /// Whether `class` and a member of `process` read each other before the first assignment: such a read means
+    /// the final value, so it must stand in another process.
+    fn is_read_early(
+        &self,
+        class: NetId,
+        process: usize,
+        classes: &BTreeMap<NetId, NetId>,
+        process_of: &BTreeMap<NetId, usize>,
+    ) -> bool {
+        self.reads.iter().any(|(target, read, at)| {
+            let (Some(target), Some(source)) = (classes.get(target), classes.get(read)) else {
+                return false;
+            };
+            let is_pair = (*target == class && process_of.get(source) == Some(&process))
+                || (*source == class && process_of.get(target) == Some(&process));
+            is_pair && *at < self.span[read].0
+        })
+    }
+}
+
+/// A target that must share the process of what it reads early has no exact meaning.
+fn check_order(targets: &Targets, classes: &BTreeMap<NetId, NetId>) -> Result<(), PlanError> {
+    for (target, read, at) in &targets.reads {
+        let is_early = targets.span.get(read).is_some_and(|(first, _)| at < first);
+        if is_early && classes.get(target) == classes.get(read) {
+            return Err(PlanError::ReadBeforeAssigned(*read));
+        }
+    }
+    Ok(())
+}
+
+/// Checks that every way through the statements assigns all targets, and assigns them before reading them.
+fn check_assigned(statements: &[Statement], set: &BTreeSet<NetId>) -> Result<(), PlanError> {
+    let mut widths: BTreeMap<NetId, u128> = BTreeMap::new();
+    for statement in statements {
+        statement.for_each_target(&mut |net, low, width| {
+            *widths.entry(net).or_default() |= mask(width) << low;
+        });
+    }
+    let mut assigned = BTreeMap::new();
+    walk(statements, set, &mut assigned)?;
+    for (net, bits) in widths {
+        if assigned.get(&net).copied().unwrap_or(0) != bits {
+            return Err(PlanError::Latch(net));
+        }
+    }
+    Ok(())
+}
+
+type Assigned = BTreeMap<NetId, u128>;
+
+fn walk(
+    statements: &[Statement],
+    set: &BTreeSet<NetId>,
+    assigned: &mut Assigned,
+) -> Result<(), PlanError> {
+    for statement in statements {
+        match statement {
+            Statement::Assign {
+                net,
+                low_bit,
+                value,
+            } => {
+                check_reads(value, set, assigned)?;
+                *assigned.entry(*net).or_default() |= mask(value.width_bits) << low_bit;
+            }
+            Statement::If {
+                condition,
+                then,
+                otherwise,
+            } => {
+                check_reads(condition, set, assigned)?;
+                branches(&[then, otherwise], set, assigned)?;
+            }
+            Statement::Case {
+                subject,
+                arms,
+                default,
+            } => {
+                check_reads(subject, set, assigned)?;
+                let mut blocks: Vec<&[Statement]> =
+                    arms.iter().map(|(_, block)| &block[..]).collect();
+                if arms.len() as u128 <= mask(subject.width_bits) {
+                    blocks.push(default);
+                }
+                branches(&blocks, set, assigned)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn branches(
+    blocks: &[&[Statement]],
+    set: &BTreeSet<NetId>,
+    assigned: &mut Assigned,
+) -> Result<(), PlanError> {
+    let mut common: Option<Assigned> = None;
+    for block in blocks {
+        let mut branch = assigned.clone();
+        walk(block, set, &mut branch)?;
+        common = Some(match common {
+            None => branch,
+            Some(other) => other
+                .into_iter()
+                .filter_map(|(net, bits)| Some((net, bits & branch.get(&net)?)))
+                .collect(),
+        });
+    }
+    *assigned = common.unwrap_or_default();
+    Ok(())
+}
+
+fn check_reads(expr: &Expr, set: &BTreeSet<NetId>, assigned: &Assigned) -> Result<(), PlanError> {
+    let mut result = Ok(());
+    for_each_read(expr, &mut |net, bits| {
+        if set.contains(&net) && bits & !assigned.get(&net).copied().unwrap_or(0) != 0 {
+            result = Err(PlanError::ReadBeforeAssigned(net));
+        }
+    });
+    result
+}
+
+/// Calls `visit` for every net that an expression reads, with the bits that matter.
+pub(super) fn for_each_read(expr: &Expr, visit: &mut dyn FnMut(NetId, u128)) {
+    match &expr.kind {
+        ExprKind::Net(net) => visit(*net, mask(expr.width_bits)),
+        ExprKind::Slice(inner, low_bit) => {
+            if let ExprKind::Net(net) = inner.kind {
+                visit(net, mask(expr.width_bits) << low_bit);
+            } else {
+                for_each_read(inner, visit);
+            }
+        }
+        _ => expr
+            .operands()
+            .into_iter()
+            .for_each(|operand| for_each_read(operand, visit)),
+    }
+}
+
+/// Disjoint sets of nets.
+struct Sets {
+    parent: BTreeMap<NetId, NetId>,
+}
+
+impl Sets {
+    fn new(nets: impl Iterator<Item = NetId>) -> Self {
+        Self {
+            parent: nets.map(|net| (net, net)).collect(),
+        }
+    }
+
+    fn root(&self, mut net: NetId) -> NetId {
+        while self.parent[&net] != net {
+            net = self.parent[&net];
+        }
+        net
+    }
+
+    fn join(&mut self, a: NetId, b: NetId) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent.insert(a.max(b), a.min(b));
+    }
+
+    fn names(&self) -> BTreeMap<NetId, NetId> {
+        self.parent
+            .keys()
+            .map(|net| (*net, self.root(*net)))
+            .collect()
+    }
+}
