@@ -14,6 +14,8 @@ struct Host {
     falls: Vec<Vec<u64>>,
     clk: Vec<bool>,
     tx: Vec<bool>,
+    /// Cycles with a calibrate strobe, per channel.
+    calibrations: [usize; 2],
     cycle: u64,
 }
 
@@ -39,6 +41,7 @@ impl Host {
             falls: vec![Vec::new(); 2],
             clk: vec![true; 2],
             tx: Vec::new(),
+            calibrations: [0; 2],
             cycle: 0,
         };
         // DATA low for longer than tR.
@@ -54,6 +57,7 @@ impl Host {
                 self.falls[i].push(self.cycle);
             }
             self.clk[i] = pin.val();
+            self.calibrations[i] += usize::from(self.card.channel[i].calibrate.val());
         }
         self.tx.push(self.card.uart_tx_o.val());
         self.cycle += 1;
@@ -240,6 +244,19 @@ fn a_disabled_source_does_not_trigger() {
     host.write(address(CARD, "trigger_now", 0), &[0xffff_fffe]);
     host.idle(100);
     assert!(host.falls.iter().all(Vec::is_empty));
+    // A read of the strobe, with the trigger bit left over from a write to elsewhere.
+    host.write(address(CARD, "id", 0), &[1]);
+    assert_eq!(host.read(address(CARD, "trigger_now", 0), 1), [0]);
+    assert!(host.falls.iter().all(Vec::is_empty));
+}
+
+#[test]
+fn calibrate_reaches_the_channels_whose_bits_are_set() {
+    let mut host = Host::new(false, 0);
+    for (bits, expected) in [(2, [0, 1]), (1, [1, 1]), (3, [2, 2]), (0xfc, [2, 2])] {
+        host.write(address(CARD, "calibrate", 0), &[bits]);
+        assert_eq!(host.calibrations, expected, "{bits}");
+    }
 }
 
 /// Sequence number and cause of a status word.
