@@ -25,7 +25,7 @@ pub struct Timebase {
     pub timestamp: Signal<Out, Bits<32>>,
     count: Reg<Bits<8>>,
     tick: Reg<Bit>,
-    time: Reg<Bits<32>>,
+    cycles: Reg<Bits<32>>,
     hit: Signal<Local, Bit>,
     last_count: Constant<Bits<8>>,
 }
@@ -52,7 +52,7 @@ impl Timebase {
             timestamp: Default::default(),
             count: Default::default(),
             tick: Default::default(),
-            time: Default::default(),
+            cycles: Default::default(),
             hit: Default::default(),
             last_count: Constant::new((cycles_per_us(system_hz) - 1).into()),
         }
@@ -62,10 +62,10 @@ impl Timebase {
 impl Logic for Timebase {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, count, tick, time);
+        dff_setup!(self, clock, count, tick, cycles);
         self.count.reset.next = self.reset.val();
         self.tick.reset.next = self.reset.val();
-        self.time.reset.next = self.reset.val();
+        self.cycles.reset.next = self.reset.val();
 
         self.hit.next = self.count.q.val() == self.last_count.val();
         self.count.d.next = self.count.q.val() + 1;
@@ -73,9 +73,9 @@ impl Logic for Timebase {
             self.count.d.next = 0.into();
         }
         self.tick.d.next = self.hit.val();
-        self.time.d.next = self.time.q.val() + 1;
+        self.cycles.d.next = self.cycles.q.val() + 1;
         self.tick_us.next = self.tick.q.val();
-        self.timestamp.next = self.time.q.val();
+        self.timestamp.next = self.cycles.q.val();
     }
 }
 

@@ -3,7 +3,7 @@
 use super::design::*;
 use super::names::{problem, verilog_name};
 use super::plan::{for_each_read, plan, Dependencies, PlanError};
-use super::scope::{child_port, Scope, Symbol};
+use super::scope::{child_port, drop_replaced, Scope, Symbol};
 use super::tree::{AtomNode, BlockNode};
 use super::{docs, ElaborateError};
 use crate::memory::MEMORY_TIMING;
@@ -102,9 +102,10 @@ impl Builder {
         draft.module.nets = scope.nets;
         draft.module.parameters = scope.parameters;
 
+        drop_replaced(&mut statements, &draft.module.nets);
         draft.check_driven(&statements)?;
         draft.connect_directly(&mut statements);
-        draft.settle_registers(&mut statements)?;
+        draft.check_clocks()?;
         let through_children = self.through_children(&draft);
         let (processes, mut depends) =
             plan(&statements, &through_children).map_err(|e| draft.plan_error(e))?;
@@ -278,9 +279,12 @@ impl Builder {
         let name = verilog_name(&child.name);
         let enum_id = self.intern_enums(&mut draft.enums, &d.descriptor);
         let q = draft.net(name.clone(), d.width_bits, enum_id, draft.docs(&child.name));
-        let next = draft.net(format!("{name}_next"), d.width_bits, enum_id, vec![]);
-        let clock = draft.net(format!("{name}_clock"), 1, None, vec![]);
-        let reset = draft.net(format!("{name}_reset"), 1, None, vec![]);
+        let free_name = draft.free_name(&format!("{name}_next"));
+        let next = draft.net(free_name, d.width_bits, enum_id, vec![]);
+        let free_name = draft.free_name(&format!("{name}_clock"));
+        let clock = draft.net(free_name, 1, None, vec![]);
+        let free_name = draft.free_name(&format!("{name}_reset"));
+        let reset = draft.net(free_name, 1, None, vec![]);
         for (port, net, direction) in [
             ("q", q, Direction::Output),
             ("d", next, Direction::Input),
@@ -306,7 +310,7 @@ impl Builder {
         let ports = child.atoms.iter().filter(|atom| atom.kind.is_parameter());
         for (atom, port) in ports.zip(&self.design.modules[id].ports.clone()) {
             let enum_id = self.intern_enums(&mut draft.enums, &atom.descriptor);
-            let net_name = format!("{name}_{}", verilog_name(&atom.key));
+            let net_name = draft.free_name(&format!("{name}_{}", verilog_name(&atom.key)));
             let net = draft.net(net_name, atom.width_bits, enum_id, vec![]);
             draft.child_port(&child.name, &atom.key, net, port.direction);
             nets.push(net);
@@ -378,6 +382,21 @@ impl Draft<'_> {
         self.module.nets.len() - 1
     }
 
+    /// A name for a net that no field has: `base`, or `base` with a number if a field is called that.
+    fn free_name(&self, base: &str) -> String {
+        let fields = self.block.atoms.iter().map(|a| &a.key);
+        let mut taken: BTreeSet<String> = fields
+            .chain(self.block.children.iter().map(|c| &c.name))
+            .map(|key| verilog_name(key).to_lowercase())
+            .collect();
+        taken.extend(self.module.nets.iter().map(|n| n.name.to_lowercase()));
+        let numbered = (2..).map(|number| format!("{base}_{number}"));
+        std::iter::once(base.to_string())
+            .chain(numbered)
+            .find(|name| !taken.contains(&name.to_lowercase()))
+            .unwrap_or_default()
+    }
+
     fn child_port(&mut self, child: &str, port: &str, net: NetId, direction: Direction) {
         self.symbols
             .insert(format!("{child}${port}"), child_port(net, direction));
@@ -400,7 +419,8 @@ impl Draft<'_> {
             let Some(atom) = child.atom(port) else {
                 return Err(child.error(port, "is missing from a memory", "use Memory"));
             };
-            let net = self.net(format!("{name}_{port}"), atom.width_bits, None, vec![]);
+            let free_name = self.free_name(&format!("{name}_{port}"));
+            let net = self.net(free_name, atom.width_bits, None, vec![]);
             self.child_port(&child.name, port, net, direction);
             nets.push(net);
         }
@@ -591,7 +611,7 @@ impl Draft<'_> {
         }
     }
 
-    fn settle_registers(&mut self, _statements: &mut [Statement]) -> Result<()> {
+    fn check_clocks(&self) -> Result<()> {
         let clocks: BTreeSet<NetId> = self
             .module
             .ports

@@ -125,71 +125,11 @@ const KEYWORDS: &[&str] = &[
     "xor",
 ];
 
-/// Words of SystemVerilog and VHDL that some tool takes for keywords even in Verilog files.
-const LATER_KEYWORDS: &[&str] = &[
-    "bit",
-    "break",
-    "byte",
-    "checker",
-    "class",
-    "clocking",
-    "const",
-    "continue",
-    "cover",
-    "do",
-    "enum",
-    "export",
-    "extends",
-    "extern",
-    "final",
-    "global",
-    "iff",
-    "import",
-    "inside",
-    "int",
-    "interface",
-    "logic",
-    "longint",
-    "new",
-    "null",
-    "package",
-    "packed",
-    "priority",
-    "program",
-    "property",
-    "protected",
-    "pure",
-    "rand",
-    "randc",
-    "ref",
-    "return",
-    "sequence",
-    "shortint",
-    "static",
-    "string",
-    "struct",
-    "super",
-    "this",
-    "throughout",
-    "type",
-    "typedef",
-    "union",
-    "unique",
-    "var",
-    "virtual",
-    "void",
-    "with",
-    "within",
-];
-
 /// Why a name cannot be used in Verilog, if it cannot.
 pub(super) fn problem(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     if KEYWORDS.contains(&name) || KEYWORDS.contains(&lower.as_str()) {
         return Some("is a Verilog keyword");
-    }
-    if LATER_KEYWORDS.contains(&lower.as_str()) {
-        return Some("is a SystemVerilog keyword, which some tools refuse");
     }
     let is_plain = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     if !is_plain || !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
@@ -259,7 +199,6 @@ mod tests {
     #[test]
     fn keywords_are_refused_in_any_case() {
         assert!(problem("Release").is_some());
-        assert!(problem("bit").is_some());
         assert!(problem("a$b").is_some());
         assert!(problem("_x").is_some());
         assert!(problem("fall").is_none());

@@ -279,6 +279,35 @@ impl Scope<'_> {
     }
 }
 
+/// Removes defaults that are always replaced before anything reads them.
+pub(super) fn drop_replaced(statements: &mut Vec<Statement>, nets: &[Net]) {
+    let full_target = |statement: &Statement| match statement {
+        Statement::Assign { net, value, .. } if value.width_bits == nets[*net].width_bits => {
+            Some(*net)
+        }
+        _ => None,
+    };
+    let is_replaced = |at: usize| {
+        let Some(net) = full_target(&statements[at]) else {
+            return false;
+        };
+        for later in &statements[at + 1..] {
+            let mut is_read = false;
+            later.for_each_expr(&mut |expr| expr.for_each_net(&mut |read| is_read |= read == net));
+            if is_read {
+                return false;
+            }
+            if full_target(later) == Some(net) {
+                return true;
+            }
+        }
+        false
+    };
+    let keep: Vec<bool> = (0..statements.len()).map(|at| !is_replaced(at)).collect();
+    let mut keep = keep.into_iter();
+    statements.retain(|_| keep.next().unwrap_or(true));
+}
+
 /// Whether a port of a child may be assigned and read by the parent.
 pub(super) fn child_port(net: NetId, direction: Direction) -> Symbol {
     Symbol::Net {
