@@ -19,7 +19,12 @@ pub mod verilog;
 
 use artifact::Artifact;
 use config::Project;
+use endat_hdl::card::Card;
+use endat_hdl::elaborate::elaborate;
+use endat_hdl::regs::markdown;
 use error::GenError;
+use rust_hdl::prelude::Block;
+use verilog::Header;
 
 /// All files of a project, the MANIFEST last.
 pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
@@ -30,6 +35,35 @@ pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
 }
 
 /// The card as Verilog, and its register map.
-pub fn design_artifacts(_project: &Project) -> Result<Vec<Artifact>, GenError> {
-    Ok(Vec::new())
+pub fn design_artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
+    let fault = |e: &dyn std::fmt::Display| {
+        GenError::input(format!(
+            "design: {e}; this is a fault of endat-gen, please report it"
+        ))
+    };
+    let mut card = Card::new(&project.card);
+    card.connect_all();
+    let design = elaborate(&card, &project.name).map_err(|e| fault(&e))?;
+    let report = explain::report(project).to_string();
+    let channels = project.card.channels.len();
+    let header = Header {
+        title: format!(
+            "{}: EnDat acquisition card, {channels} channel{}.",
+            project.name,
+            if channels == 1 { "" } else { "s" }
+        ),
+        version: env!("CARGO_PKG_VERSION").into(),
+        configuration_hash: project.hash.clone(),
+        timing: report.lines().map(str::to_owned).collect(),
+    };
+    Ok(vec![
+        Artifact::new(
+            format!("{}.v", project.name),
+            verilog::print(&design, &header),
+        ),
+        Artifact::new(
+            format!("{}_registers.md", project.name),
+            markdown(&project.card),
+        ),
+    ])
 }

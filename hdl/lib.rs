@@ -12,10 +12,13 @@
 //! Reading order: [`protocol`] and [`timing`] (facts), [`reg`] (the only registers), then the blocks
 //! from left to right in the drawing, [`channel`], [`card`]. [`elaborate`] turns any block into a typed `Design`.
 
+pub mod card;
 pub mod channel;
+pub mod channel_registers;
 pub mod clock_gen;
 pub mod command_sender;
 pub mod config;
+pub mod config_ring;
 pub mod crc5;
 pub mod elaborate;
 pub mod half_period;
@@ -25,6 +28,14 @@ pub mod memory;
 pub mod protocol;
 pub mod receiver;
 pub mod reg;
+pub mod register_bank;
+pub mod regs;
 pub mod snapshot;
+#[cfg(test)]
+mod testing;
+pub mod timebase;
 pub mod timing;
 pub mod transaction;
+pub mod trigger;
+pub mod uart;
+pub mod uart_bridge;

@@ -258,6 +258,17 @@ fn all_mistakes_of_a_file_are_listed_in_the_order_of_its_lines() {
 }
 
 #[test]
+fn the_messages_on_the_page_are_the_real_ones() {
+    let page = include_str!("../docs/configuration.md");
+    let text = PRESET
+        .replacen("clock_hz = 3_125_000", "clock_hz = 9_000_000", 1)
+        .replacen("position_bits = 29", "position_bits = 49", 1);
+    for d in parse("my_card.toml", &text).unwrap_err() {
+        assert!(page.contains(&format!("endat-gen: {d}\n")), "{d}");
+    }
+}
+
+#[test]
 fn a_mistake_in_the_common_keys_is_told_once_not_for_each_channel() {
     assert_eq!(
         refuse(&changed("clock_hz = 3_125_000", "clock_hz = 1").0).len(),

@@ -191,6 +191,27 @@ fn moved_pins_and_other_channel_counts_hold_too() {
 }
 
 #[test]
+fn the_wiring_page_names_the_pins_of_the_preset() {
+    let page = include_str!("../docs/wiring.md");
+    for pin in load_preset("s6_two_channel").unwrap().pins {
+        // Rows of the channels are written once, with N for the number.
+        let n = pin.signal.find(|c: char| c.is_ascii_digit());
+        let name = n.map_or(pin.signal.clone(), |at| {
+            format!("{}N{}", &pin.signal[..at], &pin.signal[at + 1..])
+        });
+        let place = if pin.position.is_empty() {
+            pin.pin
+        } else {
+            format!("{} ({})", pin.position, pin.pin)
+        };
+        let row = page
+            .lines()
+            .find(|l| l.starts_with('|') && l.contains(&name) && l.contains(&place));
+        assert!(row.is_some(), "{} on {place}", pin.signal);
+    }
+}
+
+#[test]
 fn the_ucf_reader_is_strict() {
     let good = text_of(&load_preset("s6_two_channel").unwrap(), ".ucf");
     assert!(read_ucf(&good).is_ok());

@@ -52,6 +52,17 @@ impl ChannelConfig {
                 + request.delay_max_ns()
                 + 2 * 1_000_000_000u64.div_ceil(slowest_hz);
             config.start_timeout_us = wait_ns.div_ceil(1_000) + 1;
+            let timeout_us_max = max_of(START_TIMEOUT_BITS);
+            if config.start_timeout_us > timeout_us_max {
+                let most_ns = request
+                    .tcal_max_ns
+                    .saturating_sub((config.start_timeout_us - timeout_us_max) * 1_000);
+                check.fail(
+                    "tcal_max_ns",
+                    request.tcal_max_ns,
+                    format!("the wait for the start bit would be {} us, more than {timeout_us_max}; use {most_ns} or less", config.start_timeout_us),
+                );
+            }
             let limit_ns = request.recovery_max_ns.min(1_000_000_000) + request.delay_max_ns();
             config.recovery_limit_cycles =
                 cycles_at_least(limit_ns, system_hz) + INPUT_LATENCY_CYCLES;
@@ -200,7 +211,10 @@ fn check_tst(check: &mut Check<'_>, request: &ChannelRequest, half: u64, system_
     if !check.range("tst_ns", tst, TST_MIN_NS..=TST_MAX_NS) {
         return 0;
     }
-    let extra = cycles_at_least(tst, system_hz).saturating_sub(half);
+    let extra = match cycles_at_least(tst, system_hz).saturating_sub(half) {
+        0 => 0,
+        extra => extra.max(FIRST_LOW_EXTRA_MIN),
+    };
     if extra > max_of(PERIOD_BITS) {
         let most_ns = cycles_to_ns(max_of(PERIOD_BITS) + half, system_hz);
         check.fail("tst_ns", tst, format!("more than {most_ns} ns, the longest the counter can time at this system clock; lower it"));

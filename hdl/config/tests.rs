@@ -223,7 +223,8 @@ fn problem(change: impl Fn(&mut CardRequest)) -> Problem {
 #[test]
 fn each_limit_is_refused_with_its_key_and_remedy() {
     type Change = fn(&mut CardRequest);
-    let cases: [(Change, &str, &str); 22] = [
+    let cases: [(Change, &str, &str); 23] = [
+        (|c| c.channels[1].tcal_max_ns = 4_083_000, "tcal_max_ns", "the wait for the start bit would be 4096 us, more than 4095; use 4082000 or less"),
         (|c| c.system_hz = 1_000_000, "system_hz", "outside 8000000..250000000"),
         (|c| c.channels.clear(), "channel", "1..4 channels"),
         (|c| c.channels[1].clock_hz = 99_999, "clock_hz", "outside 100000..16000000"),
@@ -241,7 +242,7 @@ fn each_limit_is_refused_with_its_key_and_remedy() {
         (|c| c.channels[1].cable_m = 151, "cable_m", "outside 0..150"),
         (|c| c.channels[1].recovery_min_ns = 1_249, "recovery_min_ns", "below 1250 ns"),
         (|c| c.channels[1].recovery_min_ns = 30_001, "recovery_min_ns", "exchange the two"),
-        (|c| { c.channels[1].recovery_max_ns = 655_000; c.sample_hz = 1_000 }, "recovery_max_ns", "the longest the counter can time"),
+        (|c| { c.channels[1].recovery_max_ns = 80_391; c.sample_hz = 1_000 }, "recovery_max_ns", "the longest the counter can time"),
         (|c| c.sample_hz = 20_382, "sample_hz", "so at most 20379 Hz"),
         (|c| c.sample_hz = 5, "sample_hz", "outside 6..1000000"),
         (|c| c.baud = 7_000_000, "baud", "would become 7142857 bit/s (+20408 ppm)"),
@@ -311,12 +312,12 @@ proptest::proptest! {
         };
         if let Ok(c) = ChannelConfig::resolve(&request, system_hz, 0) {
             proptest::prop_assert!((PERIOD_CYCLES_MIN..=max_of(PERIOD_BITS)).contains(&c.period_cycles));
-            proptest::prop_assert!(c.first_low_extra_cycles <= max_of(PERIOD_BITS));
+            proptest::prop_assert!(c.first_low_extra_cycles != 1 && c.first_low_extra_cycles <= max_of(PERIOD_BITS));
             proptest::prop_assert!((1..=48).contains(&c.position_bits));
             proptest::prop_assert!(c.filter_cycles <= max_of(FILTER_BITS));
             proptest::prop_assert!((1..=max_of(START_WINDOW_BITS)).contains(&c.start_window_cycles));
-            proptest::prop_assert!(c.start_timeout_us <= 65_535);
-            proptest::prop_assert!(c.recovery_limit_cycles <= 65_535);
+            proptest::prop_assert!(c.start_timeout_us <= max_of(START_TIMEOUT_BITS));
+            proptest::prop_assert!(c.recovery_limit_cycles <= max_of(RECOVERY_LIMIT_BITS));
             proptest::prop_assert!(c.ready_low_cycles <= max_of(READY_LOW_BITS));
             let first_low_ns = (c.frame_time(system_hz).first_low_cycles as u128 * 1_000_000_000 / system_hz as u128) as u64;
             proptest::prop_assert!(first_low_ns + 1 >= tst_ns);

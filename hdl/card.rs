@@ -1,0 +1,244 @@
+//! Card: encoder ports, triggers and the host link, with the pins of a board.
+//!
+//! ```text
+//! trigger_i -> Trigger --+--> Channel 0 -> endat_clk0_o, endat_data0_o, endat_data0_oe <- endat_data0_i
+//!               ^        +--> Channel 1 -> ...
+//!               |             |   ^
+//!               |             v   | configuration
+//!               |     ChannelRegisters 0, 1
+//!               |             ^
+//!               +------- RegisterBank <-> UartBridge <-> uart_rx_i, uart_tx_o
+//! ```
+//!
+//! `led_status_o` blinks slowly while every channel is well, quickly while the last result of one is an error;
+//! `led_channelN_o` is on while the channel's last result is a good position.
+
+use crate::channel::{Channel, FixedTimes};
+use crate::channel_registers::ChannelRegisters;
+use crate::config::{CardConfig, ChannelConfig};
+use crate::register_bank::RegisterBank;
+use crate::timebase::Timebase;
+use crate::trigger::Trigger;
+use crate::uart_bridge::{UartBridge, TIMEOUT_US};
+use rust_hdl::prelude::*;
+
+/// The whole core; the number of channels is that of [`CardConfig::channels`].
+#[derive(LogicBlock)]
+pub struct Card {
+    /// System clock.
+    pub clk_i: Signal<In, Clock>,
+    /// Synchronous reset, active high.
+    pub rst_i: Signal<In, Bit>,
+    /// Trigger pin, asynchronous; a rising edge triggers.
+    pub trigger_i: Signal<In, Bit>,
+    /// Serial line from the host, asynchronous.
+    pub uart_rx_i: Signal<In, Bit>,
+    /// Serial line to the host.
+    pub uart_tx_o: Signal<Out, Bit>,
+    /// EnDat clock to the transceiver.
+    pub endat_clk_o: Vec<Signal<Out, Bit>>,
+    /// EnDat data to the transceiver.
+    pub endat_data_o: Vec<Signal<Out, Bit>>,
+    /// Driver enable of the EnDat data line.
+    pub endat_data_oe: Vec<Signal<Out, Bit>>,
+    /// EnDat data from the transceiver, asynchronous.
+    pub endat_data_i: Vec<Signal<In, Bit>>,
+    /// Blinks: slowly = well, quickly = the last result of a channel is an error.
+    pub led_status_o: Signal<Out, Bit>,
+    /// The channel's last result is a good position.
+    pub led_channel_o: Vec<Signal<Out, Bit>>,
+    timebase: Timebase,
+    trigger: Trigger,
+    bridge: UartBridge,
+    bank: RegisterBank,
+    registers: Vec<ChannelRegisters>,
+    channel: Vec<Channel>,
+    ring_link: Vec<Signal<Local, Bits<8>>>,
+    read_link: Vec<Signal<Local, Bits<8>>>,
+    pending: Vec<Signal<Local, Bit>>,
+    faulty: Vec<Signal<Local, Bit>>,
+    slow_bit: Constant<Bits<5>>,
+    quick_bit: Constant<Bits<5>>,
+    _channels: usize,
+    _links: usize,
+}
+
+/// Time stamp bit that toggles about `hz` times a second.
+fn blink_bit(system_hz: u64, hz: u64) -> u64 {
+    u64::from((system_hz / (2 * hz)).max(1).ilog2())
+}
+
+/// The times of a channel that are fixed in the design.
+fn times(card: &CardConfig, channel: &ChannelConfig) -> FixedTimes {
+    FixedTimes {
+        ready_low_cycles: channel.ready_low_cycles,
+        abort_us: channel.abort_us,
+        ..FixedTimes::at(card.system_hz)
+    }
+}
+
+impl Card {
+    /// A card.
+    pub fn new(config: &CardConfig) -> Self {
+        Self::with_timeout(config, TIMEOUT_US)
+    }
+
+    /// A card with another limit on pauses within a host command, for quick tests.
+    pub fn with_timeout(config: &CardConfig, timeout_us: u64) -> Self {
+        let channels = config.channels.len();
+        fn each<T: Default>(n: usize) -> Vec<T> {
+            (0..n).map(|_| T::default()).collect()
+        }
+        Self {
+            clk_i: Default::default(),
+            rst_i: Default::default(),
+            trigger_i: Default::default(),
+            uart_rx_i: Default::default(),
+            uart_tx_o: Default::default(),
+            endat_clk_o: each(channels),
+            endat_data_o: each(channels),
+            endat_data_oe: each(channels),
+            endat_data_i: each(channels),
+            led_status_o: Default::default(),
+            led_channel_o: each(channels),
+            timebase: Timebase::new(config.system_hz),
+            trigger: Default::default(),
+            bridge: UartBridge::new(config.uart_bit_cycles, timeout_us),
+            bank: RegisterBank::new(config),
+            registers: (0..channels)
+                .map(|i| ChannelRegisters::new(config, i))
+                .collect(),
+            channel: config
+                .channels
+                .iter()
+                .map(|c| Channel::new(times(config, c)))
+                .collect(),
+            ring_link: each(channels + 1),
+            read_link: each(channels + 1),
+            pending: each(channels + 1),
+            faulty: each(channels + 1),
+            slow_bit: Constant::new(blink_bit(config.system_hz, 1).into()),
+            quick_bit: Constant::new(blink_bit(config.system_hz, 8).into()),
+            _channels: channels,
+            _links: channels + 1,
+        }
+    }
+}
+
+impl Logic for Card {
+    #[hdl_gen]
+    fn update(&mut self) {
+        self.timebase.clock.next = self.clk_i.val();
+        self.timebase.reset.next = self.rst_i.val();
+        self.trigger.clock.next = self.clk_i.val();
+        self.trigger.reset.next = self.rst_i.val();
+        self.bridge.clock.next = self.clk_i.val();
+        self.bridge.reset.next = self.rst_i.val();
+        self.bank.clock.next = self.clk_i.val();
+        self.bank.reset.next = self.rst_i.val();
+
+        self.trigger.pin.next = self.trigger_i.val();
+        self.trigger.register.next = self.bank.trigger_now.val();
+        self.trigger.sources.next = self.bank.sources.val();
+        self.trigger.period_cycles.next = self.bank.period_cycles.val();
+
+        self.bridge.tick_us.next = self.timebase.tick_us.val();
+        self.bridge.rx.next = self.uart_rx_i.val();
+        self.bridge.take_byte.next = self.bank.take_byte.val();
+        self.bridge.read_byte.next = self.bank.read_byte.val();
+        self.bridge.done.next = self.bank.done.val();
+        self.uart_tx_o.next = self.bridge.tx.val();
+
+        self.bank.word_address.next = self.bridge.word_address.val();
+        self.bank.in_range.next = self.bridge.in_range.val();
+        self.bank.lane.next = self.bridge.lane.val();
+        self.bank.access.next = self.bridge.access.val();
+        self.bank.write.next = self.bridge.write.val();
+        self.bank.write_data.next = self.bridge.write_data.val();
+        self.bank.reading.next = self.bridge.reading.val();
+        self.bank.trigger_count.next = self.trigger.trigger_count.val();
+
+        // From the first channel to the last: read bytes and "some channel" signals. The ring runs the other way.
+        self.read_link[0].next = 0.into();
+        self.pending[0].next = false;
+        self.faulty[0].next = false;
+        self.bank.ring_in.next = self.ring_link[0].val();
+        for i in 0..self._channels {
+            self.registers[i].clock.next = self.clk_i.val();
+            self.registers[i].reset.next = self.rst_i.val();
+            self.channel[i].clock.next = self.clk_i.val();
+            self.channel[i].reset.next = self.rst_i.val();
+            self.channel[i].tick_us.next = self.timebase.tick_us.val();
+            self.channel[i].timestamp.next = self.timebase.timestamp.val();
+            self.channel[i].trigger.next = self.trigger.trigger.val();
+            self.channel[i].calibrate.next = self.bank.calibrate.val().get_bit(i);
+
+            self.channel[i].period_cycles.next = self.registers[i].period_cycles.val();
+            self.channel[i].first_low_extra_cycles.next =
+                self.registers[i].first_low_extra_cycles.val();
+            self.channel[i].command.next = self.registers[i].command.val();
+            self.channel[i].position_bits.next = self.registers[i].position_bits.val();
+            self.channel[i].filter_cycles.next = self.registers[i].filter_cycles.val();
+            self.channel[i].start_window_cycles.next = self.registers[i].start_window_cycles.val();
+            self.channel[i].start_timeout_us.next = self.registers[i].start_timeout_us.val();
+            self.channel[i].recovery_limit_cycles.next =
+                self.registers[i].recovery_limit_cycles.val();
+
+            self.registers[i].trigger.next = self.trigger.trigger.val();
+            self.registers[i].busy.next = self.channel[i].busy.val();
+            self.registers[i].result_strobe.next = self.channel[i].result_strobe.val();
+            self.registers[i].position.next = self.channel[i].position.val();
+            self.registers[i].position_valid.next = self.channel[i].position_valid.val();
+            self.registers[i].fresh.next = self.channel[i].fresh.val();
+            self.registers[i].sequence.next = self.channel[i].sequence.val();
+            self.registers[i].first_fall_timestamp.next =
+                self.channel[i].first_fall_timestamp.val();
+            self.registers[i].age_us.next = self.channel[i].age_us.val();
+            self.registers[i].cause.next = self.channel[i].cause.val();
+            self.registers[i].flags.next = self.channel[i].flags.val();
+            self.registers[i].crc_received.next = self.channel[i].crc_received.val();
+            self.registers[i].crc_computed.next = self.channel[i].crc_computed.val();
+            self.registers[i].recovery_cycles.next = self.channel[i].recovery_cycles.val();
+            self.registers[i].delay_cycles.next = self.channel[i].delay_cycles.val();
+
+            self.registers[i].load.next = self.bank.load.val();
+            self.registers[i].word_select.next = self.bank.word_select.val();
+            self.registers[i].lane.next = self.bridge.lane.val();
+            self.registers[i].selected.next = self.bank.channel_select.val().get_bit(i);
+            self.registers[i].read_in.next = self.read_link[i].val();
+            self.read_link[i + 1].next = self.registers[i].read_out.val();
+            self.registers[i].ring_turn.next = self.bank.ring_turn.val();
+            self.registers[i].ring_home.next = self.bank.ring_home.val();
+            self.registers[i].ring_in.next = self.ring_link[i + 1].val();
+            self.ring_link[i].next = self.registers[i].ring_out.val();
+            self.pending[i + 1].next = self.pending[i].val() | self.registers[i].pending.val();
+            self.faulty[i + 1].next = self.faulty[i].val() | self.channel[i].cause.val().any();
+
+            self.channel[i].data_i.next = self.endat_data_i[i].val();
+            self.endat_clk_o[i].next = self.channel[i].endat_clk.val();
+            self.endat_data_o[i].next = self.channel[i].data_o.val();
+            self.endat_data_oe[i].next = self.channel[i].data_oe.val();
+            self.led_channel_o[i].next = self.channel[i].fresh.val();
+        }
+        self.led_status_o.next = self
+            .timebase
+            .timestamp
+            .val()
+            .get_bit(self.slow_bit.val().index());
+        for i in self._channels..self._links {
+            self.ring_link[i].next = self.bank.ring_out.val();
+            self.bank.channel_byte.next = self.read_link[i].val();
+            self.bank.pending.next = self.pending[i].val();
+            if self.faulty[i].val() {
+                self.led_status_o.next = self
+                    .timebase
+                    .timestamp
+                    .val()
+                    .get_bit(self.quick_bit.val().index());
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,255 @@
+//! Registers of one channel: the result as the host reads it, and the configuration.
+//!
+//! ```text
+//! channel's result --(load)--> held words --> byte of each word, of the selected word only --> OR --> read_out
+//! ring block of the channel --(ring stands still, channel not busy)--> configuration of the channel
+//! ```
+//!
+//! The held words of all channels are loaded by the same signal, so they belong together. A byte that is not selected
+//! is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
+
+use crate::config::CardConfig;
+use crate::config_ring::ConfigRing;
+use crate::reg::Reg;
+use crate::regs::config_words;
+use rust_hdl::prelude::*;
+
+/// Words of a result.
+pub const RESULT_WORDS: usize = 6;
+
+/// Host side of one channel.
+#[derive(LogicBlock)]
+pub struct ChannelRegisters {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// The channel's trigger.
+    pub trigger: Signal<In, Bit>,
+    /// The channel does not take a trigger; its configuration must not change.
+    pub busy: Signal<In, Bit>,
+    /// Strobe: a new result is there.
+    pub result_strobe: Signal<In, Bit>,
+    /// Last good position.
+    pub position: Signal<In, Bits<48>>,
+    /// There is a good position.
+    pub position_valid: Signal<In, Bit>,
+    /// The last result brought the position.
+    pub fresh: Signal<In, Bit>,
+    /// Number of results.
+    pub sequence: Signal<In, Bits<16>>,
+    /// First falling clock edge of the position's frame.
+    pub first_fall_timestamp: Signal<In, Bits<32>>,
+    /// Age of the position, in microseconds.
+    pub age_us: Signal<In, Bits<16>>,
+    /// Primary cause.
+    pub cause: Signal<In, Bits<4>>,
+    /// Raw flags.
+    pub flags: Signal<In, Bits<10>>,
+    /// CRC as received.
+    pub crc_received: Signal<In, Bits<5>>,
+    /// CRC as computed.
+    pub crc_computed: Signal<In, Bits<5>>,
+    /// Recovery time, in system clock cycles.
+    pub recovery_cycles: Signal<In, Bits<13>>,
+    /// Tracked line delay, in system clock cycles.
+    pub delay_cycles: Signal<In, Bits<10>>,
+    /// A trigger has been taken and its result is not there yet.
+    pub pending: Signal<Out, Bit>,
+    /// The held words follow the result.
+    pub load: Signal<In, Bit>,
+    /// The word that is read, one bit per word.
+    pub word_select: Signal<In, Bits<6>>,
+    /// Byte of the word, 0 = most significant.
+    pub lane: Signal<In, Bits<2>>,
+    /// This channel's result is read.
+    pub selected: Signal<In, Bit>,
+    /// Read byte of the channels before this one.
+    pub read_in: Signal<In, Bits<8>>,
+    /// `read_in`, or this channel's byte; 2 cycles after `word_select`.
+    pub read_out: Signal<Out, Bits<8>>,
+    /// The configuration ring moves on by one byte.
+    pub ring_turn: Signal<In, Bit>,
+    /// The configuration ring stands still, its words are in place.
+    pub ring_home: Signal<In, Bit>,
+    /// Byte from the ring block behind.
+    pub ring_in: Signal<In, Bits<8>>,
+    /// Byte to the ring block in front.
+    pub ring_out: Signal<Out, Bits<8>>,
+    /// EnDat clock period, in system clock cycles.
+    pub period_cycles: Signal<Out, Bits<11>>,
+    /// First low phase minus half a period, in system clock cycles.
+    pub first_low_extra_cycles: Signal<Out, Bits<11>>,
+    /// Mode command.
+    pub command: Signal<Out, Bits<6>>,
+    /// Position width.
+    pub position_bits: Signal<Out, Bits<6>>,
+    /// Input filter, in system clock cycles.
+    pub filter_cycles: Signal<Out, Bits<4>>,
+    /// Half width of the start window, in system clock cycles.
+    pub start_window_cycles: Signal<Out, Bits<6>>,
+    /// Longest wait for the start bit, in microseconds.
+    pub start_timeout_us: Signal<Out, Bits<12>>,
+    /// Longest recovery time, in system clock cycles.
+    pub recovery_limit_cycles: Signal<Out, Bits<13>>,
+    waiting: Reg<Bit>,
+    held: Vec<Reg<Bits<32>>>,
+    word: Vec<Signal<Local, Bits<32>>>,
+    byte: Vec<Reg<Bits<8>>>,
+    read_byte: Reg<Bits<8>>,
+    ring: ConfigRing,
+    config0: Reg<Bits<32>>,
+    config1: Reg<Bits<32>>,
+    config2: Reg<Bits<32>>,
+    _words: usize,
+}
+
+impl ChannelRegisters {
+    /// The registers of channel `channel` of a card.
+    pub fn new(config: &CardConfig, channel: usize) -> Self {
+        let words = config_words(config, Some(channel));
+        let active = |i: usize| Reg::new(u64::from(words[i]).into());
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            trigger: Default::default(),
+            busy: Default::default(),
+            result_strobe: Default::default(),
+            position: Default::default(),
+            position_valid: Default::default(),
+            fresh: Default::default(),
+            sequence: Default::default(),
+            first_fall_timestamp: Default::default(),
+            age_us: Default::default(),
+            cause: Default::default(),
+            flags: Default::default(),
+            crc_received: Default::default(),
+            crc_computed: Default::default(),
+            recovery_cycles: Default::default(),
+            delay_cycles: Default::default(),
+            pending: Default::default(),
+            load: Default::default(),
+            word_select: Default::default(),
+            lane: Default::default(),
+            selected: Default::default(),
+            read_in: Default::default(),
+            read_out: Default::default(),
+            ring_turn: Default::default(),
+            ring_home: Default::default(),
+            ring_in: Default::default(),
+            ring_out: Default::default(),
+            period_cycles: Default::default(),
+            first_low_extra_cycles: Default::default(),
+            command: Default::default(),
+            position_bits: Default::default(),
+            filter_cycles: Default::default(),
+            start_window_cycles: Default::default(),
+            start_timeout_us: Default::default(),
+            recovery_limit_cycles: Default::default(),
+            waiting: Default::default(),
+            held: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
+            word: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
+            byte: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
+            read_byte: Default::default(),
+            ring: ConfigRing::new(words),
+            config0: active(0),
+            config1: active(1),
+            config2: active(2),
+            _words: RESULT_WORDS,
+        }
+    }
+}
+
+impl Logic for ChannelRegisters {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, waiting, read_byte, config0, config1, config2);
+        clock!(self, clock, ring);
+        self.waiting.reset.next = self.reset.val();
+        self.read_byte.reset.next = self.reset.val();
+        self.config0.reset.next = self.reset.val();
+        self.config1.reset.next = self.reset.val();
+        self.config2.reset.next = self.reset.val();
+        self.ring.reset.next = self.reset.val();
+
+        // A trigger that the channel does not take gives no result of its own.
+        if self.result_strobe.val() {
+            self.waiting.d.next = false;
+        }
+        if self.trigger.val() & !self.busy.val() {
+            self.waiting.d.next = true;
+        }
+        self.pending.next = self.waiting.q.val();
+
+        self.word[0].next = bit_cast::<32, 16>(self.sequence.val())
+            | (bit_cast::<32, 4>(self.cause.val()) << 16)
+            | (bit_cast::<32, 1>(self.position_valid.val().into()) << 20)
+            | (bit_cast::<32, 1>(self.fresh.val().into()) << 21);
+        self.word[1].next = self.position.val().get_bits::<32>(0);
+        self.word[2].next = bit_cast::<32, 16>(self.position.val().get_bits::<16>(32));
+        self.word[3].next = self.first_fall_timestamp.val();
+        self.word[4].next = bit_cast::<32, 5>(self.crc_received.val())
+            | (bit_cast::<32, 5>(self.crc_computed.val()) << 5)
+            | (bit_cast::<32, 10>(self.delay_cycles.val()) << 10)
+            | (bit_cast::<32, 10>(self.flags.val()) << 20);
+        self.word[5].next = bit_cast::<32, 16>(self.age_us.val())
+            | (bit_cast::<32, 13>(self.recovery_cycles.val()) << 16);
+        for i in 0..self._words {
+            self.held[i].clock.next = self.clock.val();
+            self.held[i].reset.next = self.reset.val();
+            self.held[i].d.next = self.held[i].q.val();
+            if self.load.val() {
+                self.held[i].d.next = self.word[i].val();
+            }
+            self.byte[i].clock.next = self.clock.val();
+            self.byte[i].reset.next = self.reset.val();
+            self.byte[i].d.next = 0.into();
+            if self.word_select.val().get_bit(i) {
+                match self.lane.val().index() {
+                    0 => {
+                        self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(24);
+                    }
+                    1 => {
+                        self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(16);
+                    }
+                    2 => {
+                        self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(8);
+                    }
+                    _ => {
+                        self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(0);
+                    }
+                }
+            }
+        }
+        self.read_byte.d.next = 0.into();
+        if self.selected.val() {
+            self.read_byte.d.next = self.byte[0].q.val()
+                | self.byte[1].q.val()
+                | self.byte[2].q.val()
+                | self.byte[3].q.val()
+                | self.byte[4].q.val()
+                | self.byte[5].q.val();
+        }
+        self.read_out.next = self.read_in.val() | self.read_byte.q.val();
+
+        self.ring.turn.next = self.ring_turn.val();
+        self.ring.byte_in.next = self.ring_in.val();
+        self.ring_out.next = self.ring.byte_out.val();
+        if self.ring_home.val() & !self.busy.val() {
+            self.config0.d.next = self.ring.word0.val();
+            self.config1.d.next = self.ring.word1.val();
+            self.config2.d.next = self.ring.word2.val();
+        }
+        self.period_cycles.next = self.config0.q.val().get_bits::<11>(0);
+        self.position_bits.next = self.config0.q.val().get_bits::<6>(16);
+        self.command.next = self.config0.q.val().get_bits::<6>(24);
+        self.first_low_extra_cycles.next = self.config1.q.val().get_bits::<11>(0);
+        self.start_window_cycles.next = self.config1.q.val().get_bits::<6>(16);
+        self.filter_cycles.next = self.config1.q.val().get_bits::<4>(24);
+        self.start_timeout_us.next = self.config2.q.val().get_bits::<12>(0);
+        self.recovery_limit_cycles.next = self.config2.q.val().get_bits::<13>(16);
+    }
+}
+
+#[cfg(test)]
+mod tests;

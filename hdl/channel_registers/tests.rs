@@ -1,0 +1,208 @@
+use super::*;
+use crate::regs::tests::test_config;
+use crate::regs::{CHANNEL_CONFIG, RESULT};
+use crate::testing::tick;
+
+fn new() -> ChannelRegisters {
+    let mut uut = ChannelRegisters::new(&test_config(), 0);
+    uut.ring_home.next = true;
+    uut.connect_all();
+    step(&mut uut);
+    uut
+}
+
+fn step(uut: &mut ChannelRegisters) {
+    tick(uut, |u, level| u.clock.next = level.into());
+}
+
+/// A word of the held result, byte by byte, as the bank reads it.
+fn read(uut: &mut ChannelRegisters, word: usize) -> u32 {
+    let mut bytes = [0; 4];
+    for (lane, byte) in bytes.iter_mut().enumerate() {
+        uut.word_select.next = (1u64 << word).into();
+        uut.lane.next = (lane as u64).into();
+        uut.selected.next = true;
+        step(uut);
+        step(uut);
+        *byte = uut.read_out.val().to_u8();
+    }
+    u32::from_be_bytes(bytes)
+}
+
+/// Sets one of the result inputs.
+fn set(uut: &mut ChannelRegisters, register: &str, field: &str, value: u64) {
+    match (register, field) {
+        ("status", "sequence") => uut.sequence.next = value.into(),
+        ("status", "cause") => uut.cause.next = value.into(),
+        ("status", "valid") => uut.position_valid.next = value == 1,
+        ("status", "fresh") => uut.fresh.next = value == 1,
+        ("position_low", _) => uut.position.next = value.into(),
+        ("position_high", _) => uut.position.next = (value << 32).into(),
+        ("timestamp", _) => uut.first_fall_timestamp.next = value.into(),
+        ("evidence", "crc_received") => uut.crc_received.next = value.into(),
+        ("evidence", "crc_computed") => uut.crc_computed.next = value.into(),
+        ("evidence", "delay_cycles") => uut.delay_cycles.next = value.into(),
+        ("evidence", "flags") => uut.flags.next = value.into(),
+        ("age_recovery", "age_us") => uut.age_us.next = value.into(),
+        ("age_recovery", "recovery_cycles") => uut.recovery_cycles.next = value.into(),
+        other => panic!("the table has a field that the test does not know: {other:?}"),
+    }
+}
+
+#[test]
+fn every_result_field_is_where_the_table_says() {
+    for register in RESULT.registers {
+        for field in register.fields {
+            let mut uut = new();
+            uut.load.next = true;
+            set(
+                &mut uut,
+                register.name,
+                field.name,
+                u64::from(field.mask() >> field.lsb),
+            );
+            step(&mut uut);
+            for other in RESULT.registers {
+                let expected = if other.offset == register.offset {
+                    field.mask()
+                } else {
+                    0
+                };
+                assert_eq!(
+                    read(&mut uut, usize::from(other.offset)),
+                    expected,
+                    "{} {} in {}",
+                    register.name,
+                    field.name,
+                    other.name
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn words_stand_still_without_load_and_read_as_zero_when_not_selected() {
+    let mut uut = new();
+    uut.load.next = true;
+    uut.sequence.next = 7u64.into();
+    step(&mut uut);
+    uut.load.next = false;
+    uut.sequence.next = 8u64.into();
+    uut.position.next = 0xffff_ffff_ffffu64.into();
+    step(&mut uut);
+    assert_eq!(
+        (read(&mut uut, 0), read(&mut uut, 1), read(&mut uut, 2)),
+        (7, 0, 0)
+    );
+    uut.selected.next = false;
+    step(&mut uut);
+    assert_eq!(uut.read_out.val().to_u8(), 0);
+    uut.read_in.next = 0xa5u64.into();
+    step(&mut uut);
+    assert_eq!(uut.read_out.val().to_u8(), 0xa5);
+}
+
+/// One of the configuration outputs.
+fn output(uut: &ChannelRegisters, field: &str) -> u64 {
+    match field {
+        "period_cycles" => uut.period_cycles.val().to_u64(),
+        "position_bits" => uut.position_bits.val().to_u64(),
+        "command" => uut.command.val().to_u64(),
+        "first_low_extra_cycles" => uut.first_low_extra_cycles.val().to_u64(),
+        "start_window_cycles" => uut.start_window_cycles.val().to_u64(),
+        "filter_cycles" => uut.filter_cycles.val().to_u64(),
+        "start_timeout_us" => uut.start_timeout_us.val().to_u64(),
+        "recovery_limit_cycles" => uut.recovery_limit_cycles.val().to_u64(),
+        other => panic!("the table has a field that the test does not know: {other}"),
+    }
+}
+
+/// Turns new words into the ring block, most significant byte of word 0 first.
+fn turn_in(uut: &mut ChannelRegisters, words: [u32; 3]) {
+    uut.ring_turn.next = true;
+    uut.ring_home.next = false;
+    for byte in words.iter().flat_map(|w| w.to_be_bytes()) {
+        uut.ring_in.next = u64::from(byte).into();
+        step(uut);
+    }
+    uut.ring_turn.next = false;
+    uut.ring_home.next = true;
+    step(uut);
+}
+
+#[test]
+fn every_configuration_field_is_where_the_table_says() {
+    let config = test_config();
+    let uut = new();
+    let fields = || {
+        CHANNEL_CONFIG
+            .registers
+            .iter()
+            .flat_map(|r| r.fields.iter().map(move |f| (r, f)))
+    };
+    for (_, field) in fields() {
+        assert_eq!(
+            output(&uut, field.name),
+            (field.start)(&config, 0),
+            "{} after reset",
+            field.name
+        );
+    }
+    for (register, field) in fields() {
+        let mut uut = new();
+        let mut words = [0; 3];
+        words[usize::from(register.offset)] = field.mask();
+        turn_in(&mut uut, words);
+        for (_, other) in fields() {
+            let set = u64::from(other.mask() >> other.lsb);
+            let expected = if other.name == field.name { set } else { 0 };
+            assert_eq!(
+                output(&uut, other.name),
+                expected,
+                "{} with {}",
+                other.name,
+                field.name
+            );
+        }
+    }
+}
+
+#[test]
+fn configuration_changes_only_between_frames() {
+    let mut uut = new();
+    let before = output(&uut, "period_cycles");
+    uut.busy.next = true;
+    turn_in(&mut uut, [0x155, 0, 0]);
+    (0..20).for_each(|_| step(&mut uut));
+    assert_eq!(output(&uut, "period_cycles"), before);
+    uut.busy.next = false;
+    step(&mut uut);
+    assert_eq!(output(&uut, "period_cycles"), 0x155);
+}
+
+#[test]
+fn a_result_is_owed_from_a_trigger_that_is_taken_to_its_result() {
+    let mut uut = new();
+    let pulse = |uut: &mut ChannelRegisters, trigger: bool, result: bool| {
+        uut.trigger.next = trigger;
+        uut.result_strobe.next = result;
+        step(uut);
+        uut.trigger.next = false;
+        uut.result_strobe.next = false;
+        uut.pending.val()
+    };
+    assert!(pulse(&mut uut, true, false));
+    assert!(pulse(&mut uut, false, false));
+    assert!(!pulse(&mut uut, false, true));
+    uut.busy.next = true;
+    assert!(
+        !pulse(&mut uut, true, false),
+        "an overrun gives no result of its own"
+    );
+    uut.busy.next = false;
+    assert!(
+        pulse(&mut uut, true, true),
+        "a trigger with the last result"
+    );
+}

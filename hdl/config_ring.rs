@@ -1,0 +1,83 @@
+//! One block of configuration words on the ring: three words, a byte leaves at the front as another enters at the end.
+//!
+//! ```text
+//!             +--------------------------- byte ring, one step in each cycle with `turn` ---------------------------+
+//!             v                                                                                                     |
+//! head <- [card block: word 0 .. 2] <- [channel 0: word 0 .. 2] <- ... <- [last channel] <- head, or a written byte +
+//! ```
+//!
+//! A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
+//! in place only while the ring stands still, so the blocks work from copies that are taken then.
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Words in a block.
+pub const RING_WORDS: usize = 3;
+/// Bytes in a block, most significant byte of word 0 first.
+pub const RING_BYTES: usize = 4 * RING_WORDS;
+
+/// Three configuration words on the byte ring.
+#[derive(LogicBlock)]
+pub struct ConfigRing {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset: the words return to their start values.
+    pub reset: Signal<In, Bit>,
+    /// The ring moves on by one byte.
+    pub turn: Signal<In, Bit>,
+    /// Byte from the block behind.
+    pub byte_in: Signal<In, Bits<8>>,
+    /// Byte that goes to the block in front: the most significant one of word 0.
+    pub byte_out: Signal<Out, Bits<8>>,
+    /// Word 0, while the ring stands still.
+    pub word0: Signal<Out, Bits<32>>,
+    /// Word 1, while the ring stands still.
+    pub word1: Signal<Out, Bits<32>>,
+    /// Word 2, while the ring stands still.
+    pub word2: Signal<Out, Bits<32>>,
+    w0: Reg<Bits<32>>,
+    w1: Reg<Bits<32>>,
+    w2: Reg<Bits<32>>,
+}
+
+impl ConfigRing {
+    /// A block that holds `start` after reset.
+    pub fn new(start: [u32; RING_WORDS]) -> Self {
+        let word = |value: u32| Reg::new(u64::from(value).into());
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            turn: Default::default(),
+            byte_in: Default::default(),
+            byte_out: Default::default(),
+            word0: Default::default(),
+            word1: Default::default(),
+            word2: Default::default(),
+            w0: word(start[0]),
+            w1: word(start[1]),
+            w2: word(start[2]),
+        }
+    }
+}
+
+impl Logic for ConfigRing {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, w0, w1, w2);
+        self.w0.reset.next = self.reset.val();
+        self.w1.reset.next = self.reset.val();
+        self.w2.reset.next = self.reset.val();
+        if self.turn.val() {
+            self.w0.d.next =
+                (self.w0.q.val() << 8) | bit_cast::<32, 8>(self.w1.q.val().get_bits::<8>(24));
+            self.w1.d.next =
+                (self.w1.q.val() << 8) | bit_cast::<32, 8>(self.w2.q.val().get_bits::<8>(24));
+            self.w2.d.next = (self.w2.q.val() << 8) | bit_cast::<32, 8>(self.byte_in.val());
+        }
+        self.byte_out.next = self.w0.q.val().get_bits::<8>(24);
+        self.word0.next = self.w0.q.val();
+        self.word1.next = self.w1.q.val();
+        self.word2.next = self.w2.q.val();
+    }
+}

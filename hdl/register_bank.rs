@@ -1,0 +1,437 @@
+//! Register bank: the card's own words, and the decoder in front of all words.
+//!
+//! ```text
+//! access, word_address, lane --> turning: one turn of the configuration ring, whatever is accessed --> done
+//!                                   |
+//!        constants ---------+       +-- the byte passing the head is read, or replaced by the one to write
+//!        trigger count -----+
+//!        ring byte ---------OR--> read_byte
+//!        results of channels+
+//! ```
+//!
+//! Results of all channels are held together: they follow the channels while no channel owes a result and nothing is
+//! being read. See `docs/host-link.md`.
+
+use crate::config::CardConfig;
+use crate::config_ring::{ConfigRing, RING_BYTES};
+use crate::reg::Reg;
+use crate::regs::{config_words, CARD};
+use rust_hdl::prelude::*;
+
+/// Decoder and card registers.
+#[derive(LogicBlock)]
+pub struct RegisterBank {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Word address, constant from `access` to `done`.
+    pub word_address: Signal<In, Bits<9>>,
+    /// The address fits `word_address`; otherwise a read gives 0 and a write does nothing.
+    pub in_range: Signal<In, Bit>,
+    /// Byte of the word, 0 = most significant.
+    pub lane: Signal<In, Bits<2>>,
+    /// One-cycle strobe: begin an access.
+    pub access: Signal<In, Bit>,
+    /// With `access`: write a word; low = read a byte.
+    pub write: Signal<In, Bit>,
+    /// Word to write.
+    pub write_data: Signal<In, Bits<32>>,
+    /// The most significant byte of `write_data` is being taken.
+    pub take_byte: Signal<Out, Bit>,
+    /// Byte that was read, from `done` to the next `access`.
+    pub read_byte: Signal<Out, Bits<8>>,
+    /// One-cycle strobe: the access has ended.
+    pub done: Signal<Out, Bit>,
+    /// The host is reading: results must not change.
+    pub reading: Signal<In, Bit>,
+    /// A channel owes a result.
+    pub pending: Signal<In, Bit>,
+    /// The held results follow the channels.
+    pub load: Signal<Out, Bit>,
+    /// Result word that is read, one bit per word.
+    pub word_select: Signal<Out, Bits<6>>,
+    /// Channel whose result is read, one bit per channel.
+    pub channel_select: Signal<Out, Bits<8>>,
+    /// Result byte of the channels.
+    pub channel_byte: Signal<In, Bits<8>>,
+    /// The configuration ring moves on by one byte.
+    pub ring_turn: Signal<Out, Bit>,
+    /// The configuration ring stands still.
+    pub ring_home: Signal<Out, Bit>,
+    /// Byte from the first channel's ring block.
+    pub ring_in: Signal<In, Bits<8>>,
+    /// Byte to the last channel's ring block.
+    pub ring_out: Signal<Out, Bits<8>>,
+    /// Triggers since reset.
+    pub trigger_count: Signal<In, Bits<32>>,
+    /// Strobe: trigger now.
+    pub trigger_now: Signal<Out, Bit>,
+    /// Strobe, one bit per channel: measure the line delay again.
+    pub calibrate: Signal<Out, Bits<8>>,
+    /// Enabled trigger sources.
+    pub sources: Signal<Out, Bits<3>>,
+    /// Period of the trigger timer.
+    pub period_cycles: Signal<Out, Bits<24>>,
+    ring: ConfigRing,
+    turning: Reg<Bit>,
+    position: Reg<Bits<8>>,
+    done_now: Reg<Bit>,
+    write_now: Reg<Bit>,
+    config_page: Reg<Bit>,
+    result_words: Reg<Bits<6>>,
+    channels: Reg<Bits<8>>,
+    rom_byte: Reg<Bits<8>>,
+    count_held: Reg<Bits<32>>,
+    count_byte: Reg<Bits<8>>,
+    ring_byte: Reg<Bits<8>>,
+    byte: Reg<Bits<8>>,
+    trigger_strobe: Reg<Bit>,
+    calibrate_strobe: Reg<Bits<8>>,
+    active_sources: Reg<Bits<3>>,
+    active_period: Reg<Bits<24>>,
+    hold: Reg<Bit>,
+    at_end: Signal<Local, Bit>,
+    at_word: Signal<Local, Bit>,
+    at_byte: Signal<Local, Bit>,
+    take: Signal<Local, Bit>,
+    card_page: Signal<Local, Bit>,
+    strobe: Signal<Local, Bit>,
+    follow: Signal<Local, Bit>,
+    result_page: Signal<Local, Bit>,
+    head: Signal<Local, Bits<8>>,
+    rom_word: Signal<Local, Bits<32>>,
+    id: Constant<Bits<32>>,
+    version: Constant<Bits<32>>,
+    capabilities: Constant<Bits<32>>,
+    system_hz: Constant<Bits<32>>,
+    configuration_hash: Constant<Bits<32>>,
+    last_position: Constant<Bits<8>>,
+    trigger_count_at: Constant<Bits<9>>,
+    trigger_now_at: Constant<Bits<9>>,
+    calibrate_at: Constant<Bits<9>>,
+}
+
+/// Bytes of the configuration ring of a card with `channels` channels; an access takes that many cycles and a few.
+pub const fn ring_bytes(channels: usize) -> usize {
+    RING_BYTES * (channels + 1)
+}
+
+/// Start value of one of the card's words.
+fn card_word(config: &CardConfig, name: &str) -> Constant<Bits<32>> {
+    let value = CARD.register(name).map_or(0, |r| r.start(config, 0));
+    Constant::new(u64::from(value).into())
+}
+
+/// Address of one of the card's words.
+fn card_address(name: &str) -> Constant<Bits<9>> {
+    let address = CARD.register(name).map_or(0, |r| CARD.address(r, 0));
+    Constant::new(u64::from(address).into())
+}
+
+impl RegisterBank {
+    /// The bank of a card.
+    pub fn new(config: &CardConfig) -> Self {
+        let words = config_words(config, None);
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            word_address: Default::default(),
+            in_range: Default::default(),
+            lane: Default::default(),
+            access: Default::default(),
+            write: Default::default(),
+            write_data: Default::default(),
+            take_byte: Default::default(),
+            read_byte: Default::default(),
+            done: Default::default(),
+            reading: Default::default(),
+            pending: Default::default(),
+            load: Default::default(),
+            word_select: Default::default(),
+            channel_select: Default::default(),
+            channel_byte: Default::default(),
+            ring_turn: Default::default(),
+            ring_home: Default::default(),
+            ring_in: Default::default(),
+            ring_out: Default::default(),
+            trigger_count: Default::default(),
+            trigger_now: Default::default(),
+            calibrate: Default::default(),
+            sources: Default::default(),
+            period_cycles: Default::default(),
+            ring: ConfigRing::new(words),
+            turning: Default::default(),
+            position: Default::default(),
+            done_now: Default::default(),
+            write_now: Default::default(),
+            config_page: Default::default(),
+            result_words: Default::default(),
+            channels: Default::default(),
+            rom_byte: Default::default(),
+            count_held: Default::default(),
+            count_byte: Default::default(),
+            ring_byte: Default::default(),
+            byte: Default::default(),
+            trigger_strobe: Default::default(),
+            calibrate_strobe: Default::default(),
+            active_sources: Reg::new(u64::from(words[0] & 7).into()),
+            active_period: Reg::new(u64::from(words[1]).into()),
+            hold: Default::default(),
+            at_end: Default::default(),
+            at_word: Default::default(),
+            at_byte: Default::default(),
+            take: Default::default(),
+            card_page: Default::default(),
+            strobe: Default::default(),
+            follow: Default::default(),
+            result_page: Default::default(),
+            head: Default::default(),
+            rom_word: Default::default(),
+            id: card_word(config, "id"),
+            version: card_word(config, "version"),
+            capabilities: card_word(config, "capabilities"),
+            system_hz: card_word(config, "system_hz"),
+            configuration_hash: card_word(config, "configuration_hash"),
+            last_position: Constant::new((16 * config.channels.len() as u64 + 11).into()),
+            trigger_count_at: card_address("trigger_count"),
+            trigger_now_at: card_address("trigger_now"),
+            calibrate_at: card_address("calibrate"),
+        }
+    }
+}
+
+impl Logic for RegisterBank {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self,
+            clock,
+            turning,
+            position,
+            done_now,
+            write_now,
+            config_page
+        );
+        dff_setup!(
+            self,
+            clock,
+            result_words,
+            channels,
+            rom_byte,
+            count_held,
+            count_byte
+        );
+        dff_setup!(
+            self,
+            clock,
+            ring_byte,
+            byte,
+            trigger_strobe,
+            calibrate_strobe
+        );
+        dff_setup!(self, clock, active_sources, active_period, hold);
+        clock!(self, clock, ring);
+        self.ring.reset.next = self.reset.val();
+        self.turning.reset.next = self.reset.val();
+        self.position.reset.next = self.reset.val();
+        self.done_now.reset.next = self.reset.val();
+        self.write_now.reset.next = self.reset.val();
+        self.config_page.reset.next = self.reset.val();
+        self.result_words.reset.next = self.reset.val();
+        self.channels.reset.next = self.reset.val();
+        self.rom_byte.reset.next = self.reset.val();
+        self.count_held.reset.next = self.reset.val();
+        self.count_byte.reset.next = self.reset.val();
+        self.ring_byte.reset.next = self.reset.val();
+        self.byte.reset.next = self.reset.val();
+        self.trigger_strobe.reset.next = self.reset.val();
+        self.calibrate_strobe.reset.next = self.reset.val();
+        self.active_sources.reset.next = self.reset.val();
+        self.active_period.reset.next = self.reset.val();
+        self.hold.reset.next = self.reset.val();
+
+        // One turn per access.
+        self.at_end.next = self.position.q.val() == self.last_position.val();
+        self.position.d.next = 0.into();
+        if self.turning.q.val() {
+            self.position.d.next = self.position.q.val() + 1;
+            // Bytes 12 to 15 of a block do not exist.
+            if self.position.q.val().get_bits::<4>(0) == 11 {
+                self.position.d.next = self.position.q.val() + 5;
+            }
+            if self.at_end.val() {
+                self.turning.d.next = false;
+            }
+        }
+        if self.access.val() {
+            self.turning.d.next = true;
+            self.write_now.d.next = self.write.val();
+        }
+        self.done_now.d.next = self.turning.q.val() & self.at_end.val();
+        self.ring_turn.next = self.turning.q.val();
+        self.ring_home.next = !self.turning.q.val();
+        self.done.next = self.done_now.q.val();
+
+        // Configuration: the ring carries 3 of the 8 words that a block has room for.
+        self.config_page.d.next = self.in_range.val()
+            & self.word_address.val().get_bit(8)
+            & !self.word_address.val().get_bit(7)
+            & !self.word_address.val().get_bit(2);
+        self.at_word.next = self.turning.q.val()
+            & self.config_page.q.val()
+            & (self.position.q.val().get_bits::<4>(4) == self.word_address.val().get_bits::<4>(3))
+            & (self.position.q.val().get_bits::<2>(2) == self.word_address.val().get_bits::<2>(0));
+        self.at_byte.next =
+            self.at_word.val() & (self.position.q.val().get_bits::<2>(0) == self.lane.val());
+        self.take.next = self.at_word.val() & self.write_now.q.val();
+        self.head.next = self.ring.byte_out.val();
+        if self.take.val() {
+            self.head.next = self.write_data.val().get_bits::<8>(24);
+        }
+        if self.at_byte.val() {
+            self.ring_byte.d.next = self.ring.byte_out.val();
+        }
+        if self.access.val() {
+            self.ring_byte.d.next = 0.into();
+        }
+        self.take_byte.next = self.take.val();
+        self.ring.turn.next = self.turning.q.val();
+        self.ring.byte_in.next = self.ring_in.val();
+        self.ring_out.next = self.head.val();
+
+        // The card's own words.
+        self.card_page.next = self.in_range.val() & !self.word_address.val().get_bits::<5>(4).any();
+        self.rom_word.next = 0.into();
+        match self.word_address.val().get_bits::<3>(0).index() {
+            0 => {
+                self.rom_word.next = self.id.val();
+            }
+            1 => {
+                self.rom_word.next = self.version.val();
+            }
+            2 => {
+                self.rom_word.next = self.capabilities.val();
+            }
+            3 => {
+                self.rom_word.next = self.system_hz.val();
+            }
+            4 => {
+                self.rom_word.next = self.configuration_hash.val();
+            }
+            _ => {}
+        }
+        self.rom_byte.d.next = 0.into();
+        self.count_byte.d.next = 0.into();
+        match self.lane.val().index() {
+            0 => {
+                self.rom_byte.d.next = self.rom_word.val().get_bits::<8>(24);
+                self.count_byte.d.next = self.count_held.q.val().get_bits::<8>(24);
+            }
+            1 => {
+                self.rom_byte.d.next = self.rom_word.val().get_bits::<8>(16);
+                self.count_byte.d.next = self.count_held.q.val().get_bits::<8>(16);
+            }
+            2 => {
+                self.rom_byte.d.next = self.rom_word.val().get_bits::<8>(8);
+                self.count_byte.d.next = self.count_held.q.val().get_bits::<8>(8);
+            }
+            _ => {
+                self.rom_byte.d.next = self.rom_word.val().get_bits::<8>(0);
+                self.count_byte.d.next = self.count_held.q.val().get_bits::<8>(0);
+            }
+        }
+        if !self.card_page.val() | self.word_address.val().get_bit(3) {
+            self.rom_byte.d.next = 0.into();
+        }
+        if !self.in_range.val() | (self.word_address.val() != self.trigger_count_at.val()) {
+            self.count_byte.d.next = 0.into();
+        }
+        self.strobe.next = self.access.val() & self.write.val() & self.in_range.val();
+        self.trigger_strobe.d.next = self.strobe.val()
+            & (self.word_address.val() == self.trigger_now_at.val())
+            & self.write_data.val().get_bit(0);
+        self.calibrate_strobe.d.next = 0.into();
+        if self.strobe.val() & (self.word_address.val() == self.calibrate_at.val()) {
+            self.calibrate_strobe.d.next = self.write_data.val().get_bits::<8>(0);
+        }
+        self.trigger_now.next = self.trigger_strobe.q.val();
+        self.calibrate.next = self.calibrate_strobe.q.val();
+        if !self.turning.q.val() {
+            self.active_sources.d.next = self.ring.word0.val().get_bits::<3>(0);
+            self.active_period.d.next = self.ring.word1.val().get_bits::<24>(0);
+            self.hold.d.next = self.ring.word2.val().get_bit(0);
+        }
+        self.sources.next = self.active_sources.q.val();
+        self.period_cycles.next = self.active_period.q.val();
+
+        // Results.
+        self.follow.next = !(self.pending.val() | self.reading.val() | self.hold.q.val());
+        self.load.next = self.follow.val();
+        if self.follow.val() {
+            self.count_held.d.next = self.trigger_count.val();
+        }
+        self.result_words.d.next = 0.into();
+        match self.word_address.val().get_bits::<3>(0).index() {
+            0 => {
+                self.result_words.d.next = 1.into();
+            }
+            1 => {
+                self.result_words.d.next = 2.into();
+            }
+            2 => {
+                self.result_words.d.next = 4.into();
+            }
+            3 => {
+                self.result_words.d.next = 8.into();
+            }
+            4 => {
+                self.result_words.d.next = 16.into();
+            }
+            5 => {
+                self.result_words.d.next = 32.into();
+            }
+            _ => {}
+        }
+        self.result_page.next =
+            self.in_range.val() & self.word_address.val().get_bits::<2>(7).all();
+        self.channels.d.next = 0.into();
+        if self.result_page.val() {
+            match self.word_address.val().get_bits::<4>(3).index() {
+                0 => {
+                    self.channels.d.next = 1.into();
+                }
+                1 => {
+                    self.channels.d.next = 2.into();
+                }
+                2 => {
+                    self.channels.d.next = 4.into();
+                }
+                3 => {
+                    self.channels.d.next = 8.into();
+                }
+                4 => {
+                    self.channels.d.next = 16.into();
+                }
+                5 => {
+                    self.channels.d.next = 32.into();
+                }
+                6 => {
+                    self.channels.d.next = 64.into();
+                }
+                7 => {
+                    self.channels.d.next = 128.into();
+                }
+                _ => {}
+            }
+        }
+        self.word_select.next = self.result_words.q.val();
+        self.channel_select.next = self.channels.q.val();
+
+        self.byte.d.next = self.rom_byte.q.val()
+            | self.count_byte.q.val()
+            | self.ring_byte.q.val()
+            | self.channel_byte.val();
+        self.read_byte.next = self.byte.q.val();
+    }
+}

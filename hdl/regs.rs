@@ -1,0 +1,155 @@
+//! The register table: the one place that says which word and bit means what.
+//!
+//! ```text
+//! 0x000  card: identification, capabilities, counters, strobes
+//! 0x100  configuration: 3 words of the card, then 3 words of channel n at 0x108 + 8 n
+//! 0x180  results: 6 words of channel n at 0x180 + 8 n
+//! ```
+//!
+//! Offsets count 32-bit words. The decoder ([`crate::register_bank`]), the start values, the Markdown map and the host's
+//! constants come from this table; within a major version an offset never moves.
+
+mod markdown;
+mod table;
+
+pub use markdown::markdown;
+pub use table::{CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT};
+
+use crate::config::CardConfig;
+use crate::config_ring::RING_WORDS;
+
+/// Major, minor and patch version of the register map.
+pub const VERSION: [u8; 3] = [0, 1, 0];
+/// Identification word: "EnDt" in ASCII, most significant byte first.
+pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
+/// First word of the configuration blocks; block 0 is the card's, block n + 1 that of channel n.
+pub const CONFIG_BASE: u16 = 0x100;
+/// First word of the result blocks; block n is that of channel n.
+pub const RESULT_BASE: u16 = 0x180;
+/// Words from one block to the next.
+pub const BLOCK_STRIDE: u16 = 8;
+/// Most channels that the map and the decoder take.
+pub const CHANNELS_MAX: usize = 8;
+
+/// What a host may do with a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Read only: a write does nothing.
+    ReadOnly,
+    /// Read and write.
+    ReadWrite,
+    /// Write only: ones act once, a read gives 0.
+    Strobe,
+}
+
+impl Access {
+    /// Short form used in tables.
+    pub const fn short(self) -> &'static str {
+        match self {
+            Self::ReadOnly => "ro",
+            Self::ReadWrite => "rw",
+            Self::Strobe => "strobe",
+        }
+    }
+}
+
+/// Some bits of a word.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    /// Name, unique in its word.
+    pub name: &'static str,
+    /// Lowest bit.
+    pub lsb: u32,
+    /// Number of bits.
+    pub width: u32,
+    /// Unit of the number, or "".
+    pub unit: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// Value after reset for a channel (0 for words of the card).
+    pub start: fn(&CardConfig, usize) -> u64,
+}
+
+impl Field {
+    /// The field's bits within its word.
+    pub const fn mask(&self) -> u32 {
+        (((1u64 << self.width) - 1) << self.lsb) as u32
+    }
+}
+
+/// One word.
+#[derive(Clone, Copy, Debug)]
+pub struct Register {
+    /// Name, unique in its block.
+    pub name: &'static str,
+    /// Word offset in its block.
+    pub offset: u16,
+    /// What a host may do with it.
+    pub access: Access,
+    /// One sentence.
+    pub meaning: &'static str,
+    /// Fields, lowest first; bits of no field read as 0, except in configuration words, which keep what is written.
+    pub fields: &'static [Field],
+}
+
+impl Register {
+    /// Value after reset.
+    pub fn start(&self, config: &CardConfig, channel: usize) -> u32 {
+        let part = |f: &Field| ((f.start)(config, channel) << f.lsb) as u32 & f.mask();
+        self.fields
+            .iter()
+            .map(part)
+            .fold(0, |word, part| word | part)
+    }
+
+    /// The field called `name`.
+    pub fn field(&self, name: &str) -> Option<&'static Field> {
+        self.fields.iter().find(|f| f.name == name)
+    }
+}
+
+/// Words that stand together, once in the card or once for each channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Block {
+    /// Name; registers of a channel are called `<name><channel>_<register>`.
+    pub name: &'static str,
+    /// First word, for channel 0.
+    pub base: u16,
+    /// Whether every channel has one.
+    pub per_channel: bool,
+    /// Its words, lowest offset first.
+    pub registers: &'static [Register],
+}
+
+impl Block {
+    /// Word address of one of its registers.
+    pub const fn address(&self, register: &Register, channel: usize) -> u16 {
+        let block = if self.per_channel { channel as u16 } else { 0 };
+        self.base + BLOCK_STRIDE * block + register.offset
+    }
+
+    /// The register called `name`.
+    pub fn register(&self, name: &str) -> Option<&'static Register> {
+        self.registers.iter().find(|r| r.name == name)
+    }
+}
+
+/// All blocks, lowest base first.
+pub const BLOCKS: [Block; 4] = [CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT];
+
+/// The words of a configuration block after reset; `channel` is `None` for the card's own.
+pub fn config_words(config: &CardConfig, channel: Option<usize>) -> [u32; RING_WORDS] {
+    let mut words = [0; RING_WORDS];
+    let block = if channel.is_some() {
+        CHANNEL_CONFIG
+    } else {
+        CARD_CONFIG
+    };
+    for register in block.registers {
+        words[register.offset as usize] = register.start(config, channel.unwrap_or(0));
+    }
+    words
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -1,0 +1,83 @@
+//! The register map as a Markdown page.
+
+use super::{Block, BLOCKS, BLOCK_STRIDE};
+use crate::config::CardConfig;
+use std::fmt::Write;
+
+/// The register map of a card.
+pub fn markdown(config: &CardConfig) -> String {
+    let mut text = String::from(
+        "# Register map\n\n\
+         Word addresses; words are 32 bits wide. Bits of no field read as 0, except in configuration words, which keep what is\n\
+         written there (write 0). Addresses not listed read as 0 and writing them does nothing.\n",
+    );
+    for block in BLOCKS {
+        write_block(&mut text, &block, config);
+    }
+    text
+}
+
+fn write_block(text: &mut String, block: &Block, config: &CardConfig) {
+    // Writing to a String cannot fail.
+    let _ = if block.per_channel {
+        writeln!(
+            text,
+            "\n## `{}<n>`: channel n at 0x{:03X} + {BLOCK_STRIDE} n\n",
+            block.name, block.base
+        )
+    } else {
+        writeln!(text, "\n## `{}` at 0x{:03X}\n", block.name, block.base)
+    };
+    let channels = if block.per_channel {
+        config.channels.len()
+    } else {
+        1
+    };
+    let _ = writeln!(
+        text,
+        "| word | register | access | bits | field | unit | reset | meaning |"
+    );
+    let _ = writeln!(text, "|---|---|---|---|---|---|---|---|");
+    for register in block.registers {
+        let place = if block.per_channel {
+            format!("+{}", register.offset)
+        } else {
+            format!("0x{:03X}", block.base + register.offset)
+        };
+        let _ = writeln!(
+            text,
+            "| {place} | `{}` | {} | | | | | {} |",
+            register.name,
+            register.access.short(),
+            register.meaning
+        );
+        for field in register.fields {
+            let bits = match field.width {
+                1 => field.lsb.to_string(),
+                width => format!("{}:{}", field.lsb + width - 1, field.lsb),
+            };
+            let mask = field.mask() >> field.lsb;
+            let mut resets: Vec<String> = (0..channels)
+                .map(|channel| number((field.start)(config, channel) as u32 & mask))
+                .collect();
+            resets.dedup();
+            let _ = writeln!(
+                text,
+                "| | | | {bits} | `{}` | {} | {} | {} |",
+                field.name,
+                field.unit,
+                resets.join(", "),
+                field.meaning
+            );
+        }
+    }
+}
+
+/// Small numbers in decimal, large ones that are no round decimal number in hexadecimal.
+fn number(value: u32) -> String {
+    if value < 0x1_0000 || value.is_multiple_of(1_000) {
+        value.to_string()
+    } else {
+        format!("0x{value:08X}")
+    }
+}

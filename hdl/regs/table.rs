@@ -1,0 +1,276 @@
+//! The words themselves.
+
+use super::{Access, Block, Field, Register, BLOCK_STRIDE, CONFIG_BASE, ID, RESULT_BASE, VERSION};
+use crate::config::{CardConfig, ChannelConfig};
+use crate::protocol::MAX_POSITION_BITS;
+use Access::{ReadOnly, ReadWrite, Strobe};
+
+const fn word(
+    name: &'static str,
+    offset: u16,
+    access: Access,
+    meaning: &'static str,
+    fields: &'static [Field],
+) -> Register {
+    Register {
+        name,
+        offset,
+        access,
+        meaning,
+        fields,
+    }
+}
+
+const fn field(
+    name: &'static str,
+    lsb: u32,
+    width: u32,
+    unit: &'static str,
+    meaning: &'static str,
+    start: fn(&CardConfig, usize) -> u64,
+) -> Field {
+    Field {
+        name,
+        lsb,
+        width,
+        unit,
+        meaning,
+        start,
+    }
+}
+
+fn zero(_: &CardConfig, _: usize) -> u64 {
+    0
+}
+
+/// The channel's start values; zeros for a channel that the card does not have.
+fn of(config: &CardConfig, channel: usize, value: impl Fn(&ChannelConfig) -> u64) -> u64 {
+    config.channels.get(channel).map(value).unwrap_or_default()
+}
+
+/// Identification, capabilities, counters and strobes.
+pub const CARD: Block = Block {
+    name: "card",
+    base: 0,
+    per_channel: false,
+    registers: &[
+        word("id", 0, ReadOnly, "Identification: the ASCII letters EnDt.", &[
+            field("value", 0, 32, "", "0x456E4474", |_, _| ID as u64),
+        ]),
+        word("version", 1, ReadOnly, "Version of the register map; offsets never move within a major version.", &[
+            field("patch", 0, 16, "", "Patch", |_, _| VERSION[2] as u64),
+            field("minor", 16, 8, "", "Minor", |_, _| VERSION[1] as u64),
+            field("major", 24, 8, "", "Major", |_, _| VERSION[0] as u64),
+        ]),
+        word("capabilities", 2, ReadOnly, "What this card has.", &[
+            field("channels", 0, 8, "", "Encoder ports", |s, _| s.channels.len() as u64),
+            field("max_position_bits", 8, 8, "bits", "Widest position", |_, _| MAX_POSITION_BITS as u64),
+            field("features", 16, 16, "", "bit 0: EnDat 2.2 position frames (111000); bit 1: line delay is measured; bit 2: trigger pin; bit 3: trigger timer", |_, _| 0b1111),
+        ]),
+        word("system_hz", 3, ReadOnly, "System clock: the unit of every number of cycles.", &[
+            field("value", 0, 32, "Hz", "Frequency", |s, _| s.system_hz),
+        ]),
+        word("configuration_hash", 4, ReadOnly, "Tells which configuration the card was generated from.", &[
+            field("value", 0, 32, "", "First 8 digits of the hash that stands in the generated files", |s, _| s.hash >> 16),
+        ]),
+        word("trigger_count", 8, ReadOnly, "Triggers since reset; stands still with the results (see hold).", &[
+            field("value", 0, 32, "", "Wraps", zero),
+        ]),
+        word("trigger_now", 9, Strobe, "Triggers all channels, if sources allows it.", &[
+            field("trigger", 0, 1, "", "Write 1", zero),
+        ]),
+        word("calibrate", 10, Strobe, "Makes channels measure their line delay again, with their next frame.", &[
+            field("channels", 0, 8, "", "Bit n for channel n", zero),
+        ]),
+    ],
+};
+
+/// Configuration of the card.
+pub const CARD_CONFIG: Block = Block {
+    name: "config",
+    base: CONFIG_BASE,
+    per_channel: false,
+    registers: &[
+        word(
+            "trigger_sources",
+            0,
+            ReadWrite,
+            "Enabled trigger sources; one trigger starts all channels in the same clock cycle.",
+            &[
+                field("pin", 0, 1, "", "Rising edge of the trigger pin", |s, _| {
+                    s.sources.pin as u64
+                }),
+                field("timer", 1, 1, "", "Every trigger_period", |s, _| {
+                    s.sources.timer as u64
+                }),
+                field("register", 2, 1, "", "trigger_now", |s, _| {
+                    s.sources.register as u64
+                }),
+            ],
+        ),
+        word(
+            "trigger_period",
+            1,
+            ReadWrite,
+            "Period of the timer, at least 4; write it while the timer is disabled.",
+            &[field("value", 0, 24, "cycles", "Period", |s, _| {
+                s.sample_period_cycles
+            })],
+        ),
+        word(
+            "hold",
+            2,
+            ReadWrite,
+            "Keeps the results of all channels, for a host that reads word by word.",
+            &[
+                field(
+                    "hold",
+                    0,
+                    1,
+                    "",
+                    "1: results and trigger_count stand still",
+                    zero,
+                ),
+                field(
+                    "scratch",
+                    8,
+                    24,
+                    "",
+                    "Free for the host, to try the link",
+                    zero,
+                ),
+            ],
+        ),
+    ],
+};
+
+/// Configuration of a channel; taken over between two frames.
+pub const CHANNEL_CONFIG: Block = Block {
+    name: "config",
+    base: CONFIG_BASE + BLOCK_STRIDE,
+    per_channel: true,
+    registers: &[
+        word(
+            "frame",
+            0,
+            ReadWrite,
+            "What is asked of the encoder, and how fast.",
+            &[
+                field(
+                    "period_cycles",
+                    0,
+                    11,
+                    "cycles",
+                    "EnDat clock period; the high phase is the longer one when odd",
+                    |s, c| of(s, c, |v| v.period_cycles),
+                ),
+                field(
+                    "position_bits",
+                    16,
+                    6,
+                    "bits",
+                    "Position width, 1..48",
+                    |s, c| of(s, c, |v| v.position_bits as u64),
+                ),
+                field(
+                    "command",
+                    24,
+                    6,
+                    "",
+                    "Mode command, sent most significant bit first",
+                    |s, c| of(s, c, |v| v.command.code() as u64),
+                ),
+            ],
+        ),
+        word(
+            "timing",
+            1,
+            ReadWrite,
+            "First low phase and tolerance of the start bit.",
+            &[
+                field(
+                    "first_low_extra_cycles",
+                    0,
+                    11,
+                    "cycles",
+                    "First low phase minus half a period (tST)",
+                    |s, c| of(s, c, |v| v.first_low_extra_cycles),
+                ),
+                field(
+                    "start_window_cycles",
+                    16,
+                    6,
+                    "cycles",
+                    "The start edge must come within plus or minus this of its expected phase",
+                    |s, c| of(s, c, |v| v.start_window_cycles),
+                ),
+                field(
+                    "filter_cycles",
+                    24,
+                    4,
+                    "cycles",
+                    "Pulses on DATA up to this length are ignored; 0 = off",
+                    |s, c| of(s, c, |v| v.filter_cycles),
+                ),
+            ],
+        ),
+        word(
+            "limits",
+            2,
+            ReadWrite,
+            "Longest waits.",
+            &[
+                field(
+                    "start_timeout_us",
+                    0,
+                    12,
+                    "us",
+                    "Longest wait for the start bit after the turnaround",
+                    |s, c| of(s, c, |v| v.start_timeout_us),
+                ),
+                field(
+                    "recovery_limit_cycles",
+                    16,
+                    13,
+                    "cycles",
+                    "DATA must fall within this after the frame (tm)",
+                    |s, c| of(s, c, |v| v.recovery_limit_cycles),
+                ),
+            ],
+        ),
+    ],
+};
+
+/// Result of a channel; all words of all channels, change together and never within a read command.
+pub const RESULT: Block = Block {
+    name: "result",
+    base: RESULT_BASE,
+    per_channel: true,
+    registers: &[
+        word("status", 0, ReadOnly, "What became of the last trigger.", &[
+            field("sequence", 0, 16, "", "Number of results, wrapping", zero),
+            field("cause", 16, 4, "", "Primary cause: 0 none, 1 data not low before start, 2 no start bit, 3 start bit outside its window, 4 CRC, 5 F1, 6 F2, 7 data not falling after the frame, 8 trigger overrun", zero),
+            field("valid", 20, 1, "", "There is a good position", zero),
+            field("fresh", 21, 1, "", "The last result brought the position; 0 = held from an earlier one", zero),
+        ]),
+        word("position_low", 1, ReadOnly, "Last good position, bits 31..0.", &[
+            field("value", 0, 32, "", "Bit 0 is the LSB", zero),
+        ]),
+        word("position_high", 2, ReadOnly, "Last good position, bits 47..32.", &[
+            field("value", 0, 16, "", "0 above the position's width", zero),
+        ]),
+        word("timestamp", 3, ReadOnly, "First falling clock edge of the frame that brought the position; equal in two channels = same trigger.", &[
+            field("value", 0, 32, "cycles", "Since reset, wrapping", zero),
+        ]),
+        word("evidence", 4, ReadOnly, "How good the last frame was.", &[
+            field("crc_received", 0, 5, "", "CRC as received", zero),
+            field("crc_computed", 5, 5, "", "CRC as computed", zero),
+            field("delay_cycles", 10, 10, "cycles", "Tracked line delay tD, synchroniser and filter included", zero),
+            field("flags", 20, 10, "", "Raw flags: bit k stands for cause k + 1; bit 8: parallel CRC; bit 9: data not high after the frame", zero),
+        ]),
+        word("age_recovery", 5, ReadOnly, "Age and recovery time.", &[
+            field("age_us", 0, 16, "us", "Age of the position; stops at 65535", zero),
+            field("recovery_cycles", 16, 13, "cycles", "Recovery time tm of the last frame", zero),
+        ]),
+    ],
+};

@@ -1,0 +1,346 @@
+//! UART bridge: register accesses from a host, in the UARTBone byte format.
+//!
+//! ```text
+//! write   01 len  a3 a2 a1 a0  d3 d2 d1 d0  d3 d2 d1 d0 ...          03: all words to one address
+//! read    02 len  a3 a2 a1 a0                                        04: all words from one address
+//! answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
+//! ```
+//!
+//! Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
+//! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then.
+//!
+//! A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
+//!
+//! Ref: LiteX, `litex/soc/cores/uart.py` (gateware) and `litex/tools/remote/comm_uart.py` (client).
+
+use crate::reg::Reg;
+use crate::uart::{UartReceiver, UartTransmitter};
+use rust_hdl::prelude::*;
+
+/// Longest pause within a command, in microseconds (LiteX: 100 ms).
+pub const TIMEOUT_US: u64 = 100_000;
+/// Bits of a register's word address; any higher address bit makes an access miss.
+pub const ADDRESS_BITS: u32 = 9;
+
+/// What the next byte means.
+#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+pub enum BridgeState {
+    /// Command code.
+    Command,
+    /// Number of words.
+    Length,
+    /// Word address.
+    Address,
+    /// Data from the host.
+    Write,
+    /// Data to the host; bytes from it are dropped.
+    Read,
+    /// Nothing, until the time-out.
+    Discard,
+}
+
+/// UART and UARTBone command interpreter.
+#[derive(LogicBlock)]
+pub struct UartBridge {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// Serial line from the host, asynchronous.
+    pub rx: Signal<In, Bit>,
+    /// Serial line to the host, from a register.
+    pub tx: Signal<Out, Bit>,
+    /// Word address of the access, constant from `access` to `done`.
+    pub word_address: Signal<Out, Bits<9>>,
+    /// The host's 32-bit address fits `word_address`.
+    pub in_range: Signal<Out, Bit>,
+    /// Byte of the word, 0 = most significant; 0 in a write.
+    pub lane: Signal<Out, Bits<2>>,
+    /// One-cycle strobe: begin an access.
+    pub access: Signal<Out, Bit>,
+    /// With `access`: a whole word is to be written; low = one byte is to be read.
+    pub write: Signal<Out, Bit>,
+    /// Word to write; moves up by a byte in each cycle with `take_byte`.
+    pub write_data: Signal<Out, Bits<32>>,
+    /// The bank takes the most significant byte of `write_data`.
+    pub take_byte: Signal<In, Bit>,
+    /// Byte that has been read, from `done` to the next `access`.
+    pub read_byte: Signal<In, Bits<8>>,
+    /// One-cycle strobe: the access has ended.
+    pub done: Signal<In, Bit>,
+    /// A read command is being answered: results must not change.
+    pub reading: Signal<Out, Bit>,
+    receiver: UartReceiver,
+    transmitter: UartTransmitter,
+    state: Reg<BridgeState>,
+    fixed: Reg<Bit>,
+    writing: Reg<Bit>,
+    words_left: Reg<Bits<8>>,
+    address: Reg<Bits<9>>,
+    out_of_range: Reg<Bit>,
+    byte_lane: Reg<Bits<2>>,
+    data: Reg<Bits<32>>,
+    access_now: Reg<Bit>,
+    byte_ready: Reg<Bit>,
+    idle_us: Reg<Bits<17>>,
+    expired: Reg<Bit>,
+    last_lane: Signal<Local, Bit>,
+    last_word: Signal<Local, Bit>,
+    next_word: Signal<Local, Bit>,
+    next_lane: Signal<Local, Bit>,
+    next_address: Signal<Local, Bits<10>>,
+    high_bits: Signal<Local, Bit>,
+    stop_timer: Signal<Local, Bit>,
+    timeout_us: Constant<Bits<17>>,
+}
+
+impl UartBridge {
+    /// A bridge with bits of `bit_cycles` system clock cycles that forgets a command after a pause of `timeout_us`.
+    pub fn new(bit_cycles: u64, timeout_us: u64) -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            tick_us: Default::default(),
+            rx: Default::default(),
+            tx: Default::default(),
+            word_address: Default::default(),
+            in_range: Default::default(),
+            lane: Default::default(),
+            access: Default::default(),
+            write: Default::default(),
+            write_data: Default::default(),
+            take_byte: Default::default(),
+            read_byte: Default::default(),
+            done: Default::default(),
+            reading: Default::default(),
+            receiver: UartReceiver::new(bit_cycles),
+            transmitter: UartTransmitter::new(bit_cycles),
+            state: Reg::new(BridgeState::Command),
+            fixed: Default::default(),
+            writing: Default::default(),
+            words_left: Default::default(),
+            address: Default::default(),
+            out_of_range: Default::default(),
+            byte_lane: Default::default(),
+            data: Default::default(),
+            access_now: Default::default(),
+            byte_ready: Default::default(),
+            idle_us: Default::default(),
+            expired: Default::default(),
+            last_lane: Default::default(),
+            last_word: Default::default(),
+            next_word: Default::default(),
+            next_lane: Default::default(),
+            next_address: Default::default(),
+            high_bits: Default::default(),
+            stop_timer: Default::default(),
+            timeout_us: Constant::new(timeout_us.into()),
+        }
+    }
+}
+
+impl Logic for UartBridge {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self,
+            clock,
+            state,
+            fixed,
+            writing,
+            words_left,
+            address,
+            out_of_range
+        );
+        dff_setup!(self, clock, byte_lane, data, access_now, byte_ready, idle_us, expired);
+        clock!(self, clock, receiver, transmitter);
+        self.receiver.reset.next = self.reset.val();
+        self.transmitter.reset.next = self.reset.val();
+        self.state.reset.next = self.reset.val();
+        self.fixed.reset.next = self.reset.val();
+        self.writing.reset.next = self.reset.val();
+        self.words_left.reset.next = self.reset.val();
+        self.address.reset.next = self.reset.val();
+        self.out_of_range.reset.next = self.reset.val();
+        self.byte_lane.reset.next = self.reset.val();
+        self.data.reset.next = self.reset.val();
+        self.access_now.reset.next = self.reset.val();
+        self.byte_ready.reset.next = self.reset.val();
+        self.idle_us.reset.next = self.reset.val();
+        self.expired.reset.next = self.reset.val();
+
+        self.receiver.rx.next = self.rx.val();
+        self.transmitter.data.next = self.read_byte.val();
+        self.transmitter.valid.next = self.byte_ready.q.val();
+        self.tx.next = self.transmitter.tx.val();
+
+        self.last_lane.next = self.byte_lane.q.val().all();
+        self.last_word.next = self.words_left.q.val() == 1;
+        self.next_lane.next = false;
+        self.next_word.next = false;
+        self.high_bits.next = self.receiver.data.val().any();
+        self.access_now.d.next = false;
+        self.stop_timer.next = self.receiver.strobe.val();
+
+        match self.state.q.val() {
+            BridgeState::Command => {
+                self.stop_timer.next = true;
+                if self.receiver.strobe.val() {
+                    self.writing.d.next = self.receiver.data.val().get_bit(0);
+                    self.fixed.d.next = false;
+                    match self.receiver.data.val().index() {
+                        1 => {
+                            self.state.d.next = BridgeState::Length;
+                        }
+                        2 => {
+                            self.state.d.next = BridgeState::Length;
+                        }
+                        3 => {
+                            self.fixed.d.next = true;
+                            self.state.d.next = BridgeState::Length;
+                        }
+                        4 => {
+                            self.fixed.d.next = true;
+                            self.state.d.next = BridgeState::Length;
+                        }
+                        _ => {}
+                    }
+                }
+            }
+            BridgeState::Length => {
+                if self.receiver.strobe.val() {
+                    self.words_left.d.next = self.receiver.data.val();
+                    self.byte_lane.d.next = 0.into();
+                    self.out_of_range.d.next = false;
+                    self.state.d.next = BridgeState::Address;
+                }
+            }
+            BridgeState::Address => {
+                if self.receiver.strobe.val() {
+                    self.next_lane.next = true;
+                    if self.last_lane.val() {
+                        self.state.d.next = BridgeState::Read;
+                        self.access_now.d.next = !self.writing.q.val();
+                        if self.writing.q.val() {
+                            self.state.d.next = BridgeState::Write;
+                        }
+                        if !self.words_left.q.val().any() {
+                            self.access_now.d.next = false;
+                            self.state.d.next = BridgeState::Command;
+                        }
+                    }
+                }
+            }
+            BridgeState::Write => {
+                if self.receiver.strobe.val() {
+                    self.next_lane.next = true;
+                    if self.last_lane.val() {
+                        self.next_word.next = true;
+                        self.access_now.d.next = true;
+                    }
+                }
+            }
+            BridgeState::Read => {
+                self.stop_timer.next = true;
+                if self.transmitter.accept.val() {
+                    self.next_lane.next = true;
+                    self.next_word.next = self.last_lane.val();
+                    self.access_now.d.next = !(self.last_lane.val() & self.last_word.val());
+                }
+            }
+            BridgeState::Discard => {
+                self.stop_timer.next = false;
+            }
+            _ => {
+                self.state.d.next = BridgeState::Discard;
+            }
+        }
+
+        if self.next_lane.val() {
+            self.byte_lane.d.next = self.byte_lane.q.val() + 1;
+        }
+        if self.next_word.val() {
+            self.words_left.d.next = self.words_left.q.val() - 1;
+            if self.last_word.val() {
+                self.state.d.next = BridgeState::Command;
+            }
+        }
+
+        // A written word keeps its address until its access has ended.
+        self.next_address.next = bit_cast::<10, 9>(self.address.q.val()) + 1;
+        if !self.fixed.q.val()
+            & ((self.writing.q.val() & self.done.val())
+                | (!self.writing.q.val() & self.next_word.val()))
+        {
+            self.address.d.next = self.next_address.val().get_bits::<9>(0);
+            if self.next_address.val().get_bit(9) {
+                self.out_of_range.d.next = true;
+            }
+        }
+        if (self.state.q.val() == BridgeState::Address) & self.receiver.strobe.val() {
+            self.address.d.next = bit_cast::<9, 8>(self.receiver.data.val());
+            match self.byte_lane.q.val().index() {
+                0 => {
+                    self.out_of_range.d.next = self.high_bits.val();
+                }
+                1 => {
+                    self.out_of_range.d.next = self.out_of_range.q.val() | self.high_bits.val();
+                }
+                2 => {
+                    self.out_of_range.d.next =
+                        self.out_of_range.q.val() | self.receiver.data.val().get_bits::<7>(1).any();
+                }
+                _ => {
+                    self.address.d.next = bit_cast::<9, 8>(self.receiver.data.val())
+                        | (bit_cast::<9, 1>(self.address.q.val().get_bits::<1>(0)) << 8);
+                }
+            }
+        }
+
+        if (self.receiver.strobe.val() & (self.state.q.val() == BridgeState::Write))
+            | self.take_byte.val()
+        {
+            self.data.d.next =
+                (self.data.q.val() << 8) | bit_cast::<32, 8>(self.receiver.data.val());
+        }
+
+        if self.done.val() & (self.state.q.val() == BridgeState::Read) {
+            self.byte_ready.d.next = true;
+        }
+        if self.transmitter.accept.val() {
+            self.byte_ready.d.next = false;
+        }
+
+        if self.receiver.framing_error.val()
+            & (self.state.q.val() != BridgeState::Command)
+            & (self.state.q.val() != BridgeState::Read)
+        {
+            self.state.d.next = BridgeState::Discard;
+        }
+        self.expired.d.next = self.idle_us.q.val() == self.timeout_us.val();
+        if self.tick_us.val() {
+            self.idle_us.d.next = self.idle_us.q.val() + 1;
+        }
+        if self.stop_timer.val() {
+            self.idle_us.d.next = 0.into();
+            self.expired.d.next = false;
+        }
+        if self.expired.q.val() {
+            self.state.d.next = BridgeState::Command;
+            self.idle_us.d.next = 0.into();
+        }
+
+        self.word_address.next = self.address.q.val();
+        self.in_range.next = !self.out_of_range.q.val();
+        self.lane.next = self.byte_lane.q.val();
+        self.access.next = self.access_now.q.val();
+        self.write.next = self.writing.q.val();
+        self.write_data.next = self.data.q.val();
+        self.reading.next = self.state.q.val() == BridgeState::Read;
+    }
+}
+
+#[cfg(test)]
+mod tests;
