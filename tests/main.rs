@@ -3,3 +3,6 @@
 mod cli;
 mod config;
 mod constraints;
+mod elaborate;
+mod three_way;
+mod tools;
