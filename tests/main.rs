@@ -5,3 +5,6 @@ mod config;
 mod constraints;
 mod program;
 mod sim;
+mod elaborate;
+mod three_way;
+mod tools;
