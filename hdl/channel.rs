@@ -102,7 +102,7 @@ pub struct Channel {
     clk_pin: Reg<Bit>,
     data_pin: Reg<Bit>,
     oe_pin: Reg<Bit>,
-    period: Reg<Bits<11>>,
+    period: Signal<Local, Bits<11>>,
     calibration_period_cycles: Constant<Bits<11>>,
 }
 
@@ -184,8 +184,7 @@ impl Channel {
 impl Logic for Channel {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, clk_pin, data_pin, oe_pin, period);
-        self.period.reset.next = self.reset.val();
+        dff_setup!(self, clock, clk_pin, data_pin, oe_pin);
         clock!(
             self,
             clock,
@@ -208,9 +207,9 @@ impl Logic for Channel {
         self.transaction.reset.next = self.reset.val();
         self.snapshot.reset.next = self.reset.val();
 
-        self.period.d.next = self.period_cycles.val();
+        self.period.next = self.period_cycles.val();
         if self.transaction.acquire.val() {
-            self.period.d.next = self.calibration_period_cycles.val();
+            self.period.next = self.calibration_period_cycles.val();
         }
 
         self.filter.pin.next = self.data_i.val();
@@ -220,7 +219,7 @@ impl Logic for Channel {
         self.clock_gen.run.next = self.transaction.run.val();
         self.clock_gen.hold_low.next = self.transaction.hold_low.val();
         self.clock_gen.stop.next = self.transaction.stop.val();
-        self.clock_gen.period_cycles.next = self.period.q.val();
+        self.clock_gen.period_cycles.next = self.period.val();
 
         self.sender.start.next = self.transaction.start.val();
         self.sender.fall.next = self.clock_gen.fall.val();
@@ -234,7 +233,7 @@ impl Logic for Channel {
         self.delay.rise.next = self.clock_gen.rise.val();
         self.delay.data_rise.next = self.filter.rise.val();
         self.delay.follow.next = self.receiver.start_found.val();
-        self.delay.period_cycles.next = self.period.q.val();
+        self.delay.period_cycles.next = self.period.val();
         self.delay.start_window_cycles.next = self.start_window_cycles.val();
 
         self.receiver.start.next = self.transaction.start.val();

@@ -30,7 +30,6 @@ pub struct HalfPeriod {
     count: Reg<Bits<10>>,
     hit: Reg<Bit>,
     hit_late: Reg<Bit>,
-    longer: Reg<Bit>,
     half_cycles: Signal<Local, Bits<10>>,
     tick_now: Signal<Local, Bit>,
     restart_count: Constant<Bits<10>>,
@@ -49,7 +48,6 @@ impl HalfPeriod {
             count: Reg::new(2.into()),
             hit: Default::default(),
             hit_late: Default::default(),
-            longer: Default::default(),
             half_cycles: Default::default(),
             tick_now: Default::default(),
             restart_count: Constant::new((2 + early_cycles).into()),
@@ -66,15 +64,13 @@ impl Default for HalfPeriod {
 impl Logic for HalfPeriod {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, count, hit, hit_late, longer);
-        self.longer.reset.next = self.reset.val();
+        dff_setup!(self, clock, count, hit, hit_late);
         self.count.reset.next = self.reset.val();
         self.hit.reset.next = self.reset.val();
         self.hit_late.reset.next = self.reset.val();
         self.half_cycles.next = self.period_cycles.val().get_bits::<10>(1);
         self.tick_now.next = self.hit.q.val();
-        self.longer.d.next = self.second.val() & self.period_cycles.val().get_bit(0);
-        if self.longer.q.val() {
+        if self.second.val() & self.period_cycles.val().get_bit(0) {
             self.tick_now.next = self.hit_late.q.val();
         }
         self.hit.d.next = self.count.q.val() == self.half_cycles.val();
