@@ -350,6 +350,8 @@ mod tests {
             assert!((channel.cycle_max_us - 47.04).abs() < 1e-9);
             assert_eq!(channel.highest_sampling_hz.floor(), 36_982.0);
             assert_eq!(channel.clock.deviation_ppm, 0.0);
+            // As long as the first frame of the scenario `paper` on the elaborated channel.
+            assert!((channel.calibration_us - 239.34).abs() < 1e-9);
         }
         assert_eq!(report.link.bytes_per_read, 38);
         assert_eq!(report.link.used_percent, 19.0);

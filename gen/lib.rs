@@ -56,14 +56,14 @@ pub fn design_artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         configuration_hash: project.hash.clone(),
         timing: report.lines().map(str::to_owned).collect(),
     };
-    Ok(vec![
-        Artifact::new(
-            format!("{}.v", project.name),
-            verilog::print(&design, &header),
-        ),
-        Artifact::new(
-            format!("{}_registers.md", project.name),
-            markdown(&project.card),
-        ),
-    ])
+    let files = verilog::print_files(&design, &header);
+    let mut artifacts: Vec<Artifact> = files
+        .into_iter()
+        .map(|(path, text)| Artifact::new(path, text))
+        .collect();
+    artifacts.push(Artifact::new(
+        format!("{}_registers.md", project.name),
+        markdown(&project.card),
+    ));
+    Ok(artifacts)
 }

@@ -75,7 +75,12 @@ pub struct RegisterBank {
     pub period_cycles: Signal<Out, Bits<24>>,
     ring: ConfigRing,
     turning: Reg<Bit>,
-    position: Reg<Bits<8>>,
+    byte_at: Reg<Bits<4>>,
+    block_at: Reg<Bits<4>>,
+    turn: Reg<Bit>,
+    word_passes: Reg<Bit>,
+    byte_passes: Reg<Bit>,
+    ended: Reg<Bit>,
     done_now: Reg<Bit>,
     write_now: Reg<Bit>,
     config_page: Reg<Bit>,
@@ -93,8 +98,7 @@ pub struct RegisterBank {
     hold: Reg<Bit>,
     at_end: Signal<Local, Bit>,
     at_word: Signal<Local, Bit>,
-    at_byte: Signal<Local, Bit>,
-    take: Signal<Local, Bit>,
+    block_end: Signal<Local, Bit>,
     card_page: Signal<Local, Bit>,
     strobe: Signal<Local, Bit>,
     follow: Signal<Local, Bit>,
@@ -106,7 +110,7 @@ pub struct RegisterBank {
     capabilities: Constant<Bits<32>>,
     system_hz: Constant<Bits<32>>,
     configuration_hash: Constant<Bits<32>>,
-    last_position: Constant<Bits<8>>,
+    last_block: Constant<Bits<4>>,
     trigger_count_at: Constant<Bits<9>>,
     trigger_now_at: Constant<Bits<9>>,
     calibrate_at: Constant<Bits<9>>,
@@ -162,7 +166,12 @@ impl RegisterBank {
             period_cycles: Default::default(),
             ring: ConfigRing::new(words),
             turning: Default::default(),
-            position: Default::default(),
+            byte_at: Default::default(),
+            block_at: Default::default(),
+            turn: Default::default(),
+            word_passes: Default::default(),
+            byte_passes: Default::default(),
+            ended: Default::default(),
             done_now: Default::default(),
             write_now: Default::default(),
             config_page: Default::default(),
@@ -180,8 +189,7 @@ impl RegisterBank {
             hold: Default::default(),
             at_end: Default::default(),
             at_word: Default::default(),
-            at_byte: Default::default(),
-            take: Default::default(),
+            block_end: Default::default(),
             card_page: Default::default(),
             strobe: Default::default(),
             follow: Default::default(),
@@ -193,7 +201,7 @@ impl RegisterBank {
             capabilities: card_word(config, "capabilities"),
             system_hz: card_word(config, "system_hz"),
             configuration_hash: card_word(config, "configuration_hash"),
-            last_position: Constant::new((16 * config.channels.len() as u64 + 11).into()),
+            last_block: Constant::new((config.channels.len() as u64).into()),
             trigger_count_at: card_address("trigger_count"),
             trigger_now_at: card_address("trigger_now"),
             calibrate_at: card_address("calibrate"),
@@ -207,12 +215,14 @@ impl Logic for RegisterBank {
         dff_setup!(
             self,
             clock,
-            turning,
-            position,
-            done_now,
-            write_now,
-            config_page
+            byte_at,
+            block_at,
+            turn,
+            word_passes,
+            byte_passes,
+            ended
         );
+        dff_setup!(self, clock, turning, done_now, write_now, config_page);
         dff_setup!(
             self,
             clock,
@@ -234,7 +244,12 @@ impl Logic for RegisterBank {
         clock!(self, clock, ring);
         self.ring.reset.next = self.reset.val();
         self.turning.reset.next = self.reset.val();
-        self.position.reset.next = self.reset.val();
+        self.byte_at.reset.next = self.reset.val();
+        self.block_at.reset.next = self.reset.val();
+        self.turn.reset.next = self.reset.val();
+        self.word_passes.reset.next = self.reset.val();
+        self.byte_passes.reset.next = self.reset.val();
+        self.ended.reset.next = self.reset.val();
         self.done_now.reset.next = self.reset.val();
         self.write_now.reset.next = self.reset.val();
         self.config_page.reset.next = self.reset.val();
@@ -251,26 +266,31 @@ impl Logic for RegisterBank {
         self.active_period.reset.next = self.reset.val();
         self.hold.reset.next = self.reset.val();
 
-        // One turn per access.
-        self.at_end.next = self.position.q.val() == self.last_position.val();
-        self.position.d.next = 0.into();
+        // One turn per access. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
+        self.block_end.next = self.byte_at.q.val() == 11;
+        self.at_end.next = self.block_end.val() & (self.block_at.q.val() == self.last_block.val());
         if self.turning.q.val() {
-            self.position.d.next = self.position.q.val() + 1;
-            // Bytes 12 to 15 of a block do not exist.
-            if self.position.q.val().get_bits::<4>(0) == 11 {
-                self.position.d.next = self.position.q.val() + 5;
+            self.byte_at.d.next = self.byte_at.q.val() + 1;
+            if self.block_end.val() {
+                self.byte_at.d.next = 0.into();
+                self.block_at.d.next = self.block_at.q.val() + 1;
             }
             if self.at_end.val() {
                 self.turning.d.next = false;
             }
+        } else {
+            self.byte_at.d.next = 0.into();
+            self.block_at.d.next = 0.into();
         }
         if self.access.val() {
             self.turning.d.next = true;
             self.write_now.d.next = self.write.val();
         }
-        self.done_now.d.next = self.turning.q.val() & self.at_end.val();
-        self.ring_turn.next = self.turning.q.val();
-        self.ring_home.next = !self.turning.q.val();
+        self.turn.d.next = self.turning.q.val();
+        self.ended.d.next = self.turning.q.val() & self.at_end.val();
+        self.done_now.d.next = self.ended.q.val();
+        self.ring_turn.next = self.turn.q.val();
+        self.ring_home.next = !self.turn.q.val();
         self.done.next = self.done_now.q.val();
 
         // Configuration: the ring carries 3 of the 8 words that a block has room for.
@@ -280,23 +300,23 @@ impl Logic for RegisterBank {
             & !self.word_address.val().get_bit(2);
         self.at_word.next = self.turning.q.val()
             & self.config_page.q.val()
-            & (self.position.q.val().get_bits::<4>(4) == self.word_address.val().get_bits::<4>(3))
-            & (self.position.q.val().get_bits::<2>(2) == self.word_address.val().get_bits::<2>(0));
-        self.at_byte.next =
-            self.at_word.val() & (self.position.q.val().get_bits::<2>(0) == self.lane.val());
-        self.take.next = self.at_word.val() & self.write_now.q.val();
+            & (self.block_at.q.val() == self.word_address.val().get_bits::<4>(3))
+            & (self.byte_at.q.val().get_bits::<2>(2) == self.word_address.val().get_bits::<2>(0));
+        self.word_passes.d.next = self.at_word.val() & self.write_now.q.val();
+        self.byte_passes.d.next =
+            self.at_word.val() & (self.byte_at.q.val().get_bits::<2>(0) == self.lane.val());
         self.head.next = self.ring.byte_out.val();
-        if self.take.val() {
+        if self.word_passes.q.val() {
             self.head.next = self.write_data.val().get_bits::<8>(24);
         }
-        if self.at_byte.val() {
+        if self.byte_passes.q.val() {
             self.ring_byte.d.next = self.ring.byte_out.val();
         }
         if self.access.val() {
             self.ring_byte.d.next = 0.into();
         }
-        self.take_byte.next = self.take.val();
-        self.ring.turn.next = self.turning.q.val();
+        self.take_byte.next = self.word_passes.q.val();
+        self.ring.turn.next = self.turn.q.val();
         self.ring.byte_in.next = self.ring_in.val();
         self.ring_out.next = self.head.val();
 
@@ -357,7 +377,7 @@ impl Logic for RegisterBank {
         }
         self.trigger_now.next = self.trigger_strobe.q.val();
         self.calibrate.next = self.calibrate_strobe.q.val();
-        if !self.turning.q.val() {
+        if !self.turn.q.val() {
             self.active_sources.d.next = self.ring.word0.val().get_bits::<3>(0);
             self.active_period.d.next = self.ring.word1.val().get_bits::<24>(0);
             self.hold.d.next = self.ring.word2.val().get_bit(0);

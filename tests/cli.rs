@@ -1,73 +1,9 @@
 //! The program as a user meets it: exit codes, streams, files.
 
-use endat_gen::cli::{self, Outcome};
+use crate::program::{bad, good, program, run, Dir};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-
-/// A folder of its own for one test, emptied before use.
-struct Dir(PathBuf);
-
-impl Dir {
-    fn new(test: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("cli-{test}"));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).display().to_string()
-    }
-
-    fn write(&self, name: &str, bytes: &[u8]) -> String {
-        fs::write(self.0.join(name), bytes).unwrap();
-        self.path(name)
-    }
-
-    /// Every file below the folder, with its bytes.
-    fn files(&self) -> Vec<(String, Vec<u8>)> {
-        let mut all = Vec::new();
-        let mut folders = vec![self.0.clone()];
-        while let Some(folder) = folders.pop() {
-            for entry in fs::read_dir(&folder).unwrap() {
-                let path = entry.unwrap().path();
-                match path.is_dir() {
-                    true => folders.push(path),
-                    false => all.push((path.display().to_string(), fs::read(&path).unwrap())),
-                }
-            }
-        }
-        all.sort();
-        all
-    }
-}
-
-fn run(arguments: &[&str]) -> Outcome {
-    cli::run(std::iter::once("endat-gen").chain(arguments.iter().copied()))
-}
-
-fn good(arguments: &[&str]) -> String {
-    let outcome = run(arguments);
-    assert_eq!(
-        (outcome.exit_code, &outcome.messages),
-        (0, &vec![]),
-        "{arguments:?}"
-    );
-    outcome.stdout
-}
-
-/// The messages of a run that must end with this exit code.
-fn bad(arguments: &[&str], exit_code: u8) -> String {
-    let outcome = run(arguments);
-    assert_eq!(outcome.exit_code, exit_code, "{arguments:?}: {outcome:?}");
-    assert!(!outcome.messages.is_empty(), "{arguments:?}");
-    outcome.messages.join("\n")
-}
-
-fn program() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_endat-gen"))
-}
+use std::path::Path;
+use std::process::Stdio;
 
 #[test]
 fn the_bare_program_emits_the_preset_into_out() {
@@ -230,6 +166,27 @@ fn another_name_names_everything() {
 }
 
 #[test]
+fn the_name_of_a_block_may_name_the_card_too() {
+    let dir = Dir::new("block-name");
+    for name in ["endat_channel", "Endat_Channel"] {
+        good(&["emit", "--out", &dir.path("o"), "--name", name]);
+        let files: Vec<String> = fs::read_dir(dir.0.join("o").join(name))
+            .unwrap()
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
+        let lower: std::collections::BTreeSet<String> =
+            files.iter().map(|f| f.to_lowercase()).collect();
+        assert_eq!(lower.len(), files.len(), "{files:?}");
+        let manifest = fs::read_to_string(dir.0.join("o").join(name).join("MANIFEST")).unwrap();
+        assert_eq!(
+            manifest.lines().count() + 1,
+            files.len(),
+            "a file was written twice"
+        );
+    }
+}
+
+#[test]
 fn a_preset_that_was_shown_can_be_emitted_as_an_own_configuration() {
     let dir = Dir::new("own");
     let text = good(&["presets", "--show", "s6_two_channel"]);
@@ -315,6 +272,10 @@ fn wrong_usage_ends_with_two() {
         &["explain", "--jsn"],
         &["sim"],
         &["sim", "no-such-scenario"],
+        &["sim", "--list", "paper"],
+        &["sim", "paper", "--channel", "2"],
+        &["sim", "paper", "--channel", "-1"],
+        &["sim", "--list", "--vcd", "x.vcd"],
         &["crc"],
         &["crc", "--position", "1"],
         &["crc", "--bits", "4"],

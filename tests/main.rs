@@ -4,5 +4,7 @@ mod cli;
 mod config;
 mod constraints;
 mod elaborate;
+mod program;
+mod sim;
 mod three_way;
 mod tools;

@@ -107,15 +107,16 @@ impl ChannelConfig {
         }
     }
 
-    /// First falling to last rising edge of the frame that measures the propagation delay, without tST.
+    /// First falling to last rising edge of the frame that measures the propagation delay.
     pub fn calibration_cycles(&self, system_hz: u64) -> u64 {
-        let period = period_cycles(self.request.clock_hz.min(CALIBRATION_HZ), system_hz);
+        let period = period_cycles(CALIBRATION_HZ, system_hz);
+        let first_low = period / 2 + self.first_low_extra_cycles;
         let tcal_cycles = cycles_at_least(self.request.tcal_max_ns, system_hz);
         let lead = tcal_cycles
-            .saturating_sub(period / 2)
+            .saturating_sub(first_low)
             .div_ceil(period)
             .max(u64::from(LEAD_PULSES));
-        period / 2 + (lead + u64::from(self.command.answer_bits(self.position_bits))) * period
+        first_low + (lead + u64::from(self.command.answer_bits(self.position_bits))) * period
     }
 
     /// Shortest time between two triggers in the worst case: frame, line delay, longest recovery time, tR.
