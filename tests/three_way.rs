@@ -25,8 +25,17 @@ pub struct Recording {
 
 /// Runs an engine: in each cycle the inputs are set, the outputs noted, the clock ticked.
 pub fn record(engine: &mut dyn Engine, stimulus: &Stimulus) -> Recording {
-    let inputs: Vec<PortId> = stimulus.inputs.iter().map(|name| engine.port(name)).collect();
-    let outputs: Vec<Port> = engine.ports().iter().filter(|p| !p.is_input).cloned().collect();
+    let inputs: Vec<PortId> = stimulus
+        .inputs
+        .iter()
+        .map(|name| engine.port(name))
+        .collect();
+    let outputs: Vec<Port> = engine
+        .ports()
+        .iter()
+        .filter(|p| !p.is_input)
+        .cloned()
+        .collect();
     let ids: Vec<PortId> = outputs.iter().map(|p| engine.port(&p.name)).collect();
     let cycle = |values: &Vec<u128>| {
         for (port, value) in inputs.iter().zip(values) {
@@ -54,9 +63,15 @@ pub fn three_way(
     for port in design.top().ports.iter().filter(|p| !p.is_clock) {
         let net = &design.top().nets[port.net];
         let is_input = port.direction == Direction::Input;
-        let found = kernel.ports().iter().find(|p| p.name == net.name && p.is_input == is_input);
+        let found = kernel
+            .ports()
+            .iter()
+            .find(|p| p.name == net.name && p.is_input == is_input);
         if found.is_none_or(|p| p.width_bits != net.width_bits) {
-            return Err(format!("port {}: the kernel engine does not have it so", net.name));
+            return Err(format!(
+                "port {}: the kernel engine does not have it so",
+                net.name
+            ));
         }
         if is_input && !stimulus.inputs.contains(&net.name) {
             return Err(format!("port {}: the stimulus does not drive it", net.name));
@@ -66,7 +81,8 @@ pub fn three_way(
     for (cycle, expected_row) in expected.cycles.iter().enumerate() {
         for (port, want) in expected.outputs.iter().zip(expected_row) {
             let at = interpreted.outputs.iter().position(|p| p.name == port.name);
-            let got = interpreted.cycles[cycle][at.ok_or(format!("interpreter: no port {}", port.name))?];
+            let got = interpreted.cycles[cycle]
+                [at.ok_or(format!("interpreter: no port {}", port.name))?];
             if got != *want {
                 return Err(format!(
                     "interpreter, cycle {cycle}, port {}: {got:#x} instead of {want:#x}",
@@ -75,21 +91,41 @@ pub fn three_way(
             }
         }
     }
-    if tools::require("iverilog", &format!("three-way check of {name}: emitted Verilog")) {
+    if tools::require(
+        "iverilog",
+        &format!("three-way check of {name}: emitted Verilog"),
+    ) {
         replay(name, design, stimulus, &expected)?;
     }
     Ok(())
 }
 
 /// Runs the emitted Verilog on the stimulus under iverilog and compares every output in every cycle.
-pub fn replay(name: &str, design: &Design, stimulus: &Stimulus, expected: &Recording) -> Result<(), String> {
+pub fn replay(
+    name: &str,
+    design: &Design,
+    stimulus: &Stimulus,
+    expected: &Recording,
+) -> Result<(), String> {
     let folder = tools::folder(&format!("three_way-{name}"));
-    fs::write(folder.join("design.v"), verilog::print(design, &Header::default())).unwrap();
+    fs::write(
+        folder.join("design.v"),
+        verilog::print(design, &Header::default()),
+    )
+    .unwrap();
     fs::write(folder.join("bench.v"), bench(design, stimulus, expected)).unwrap();
     let widths = |ports: &[Port]| -> Vec<usize> { ports.iter().map(|p| p.width_bits).collect() };
     let inputs = input_ports(design, stimulus);
-    fs::write(folder.join("stimulus.hex"), rows(&stimulus.cycles, &widths(&inputs))).unwrap();
-    fs::write(folder.join("expected.hex"), rows(&expected.cycles, &widths(&expected.outputs))).unwrap();
+    fs::write(
+        folder.join("stimulus.hex"),
+        rows(&stimulus.cycles, &widths(&inputs)),
+    )
+    .unwrap();
+    fs::write(
+        folder.join("expected.hex"),
+        rows(&expected.cycles, &widths(&expected.outputs)),
+    )
+    .unwrap();
     let arguments = ["-g2005", "-Wall", "-o", "bench.vvp", "design.v", "bench.v"];
     let (good, text) = tools::run("iverilog", &folder, &arguments);
     if !good || !text.is_empty() {

@@ -7,7 +7,11 @@ use std::process::{Command, Stdio};
 
 /// Whether a tool can be started.
 pub fn has(tool: &str) -> bool {
-    let version = if tool == "iverilog" { "-V" } else { "--version" };
+    let version = if tool == "iverilog" {
+        "-V"
+    } else {
+        "--version"
+    };
     Command::new(tool)
         .arg(version)
         .stdout(Stdio::null())
@@ -21,9 +25,15 @@ pub fn require(tool: &str, check: &str) -> bool {
     if has(tool) {
         return true;
     }
-    assert!(std::env::var_os("CI").is_none(), "{check}: {tool} is not installed, and CI requires it");
+    assert!(
+        std::env::var_os("CI").is_none(),
+        "{check}: {tool} is not installed, and CI requires it"
+    );
     // not eprintln!, which the test harness would swallow
-    let _ = writeln!(std::io::stderr(), "SKIPPED {check}: {tool} is not installed");
+    let _ = writeln!(
+        std::io::stderr(),
+        "SKIPPED {check}: {tool} is not installed"
+    );
     false
 }
 
@@ -37,7 +47,11 @@ pub fn folder(name: &str) -> PathBuf {
 
 /// Runs a tool in a folder; its two outputs, and whether it was content.
 pub fn run(tool: &str, folder: &Path, arguments: &[&str]) -> (bool, String) {
-    let output = Command::new(tool).current_dir(folder).args(arguments).output().unwrap();
+    let output = Command::new(tool)
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
     let mut text = String::from_utf8_lossy(&output.stdout).into_owned();
     text.push_str(&String::from_utf8_lossy(&output.stderr));
     (output.status.success(), text)

@@ -51,7 +51,9 @@ fn all_values_agree() {
         precedence, cast_sum, cast_complement, cast_flag, cast_difference, shifted_sum, compared_shift, literal_first);
     let stimulus = Stimulus {
         inputs: ["a", "b", "f"].map(String::from).into(),
-        cycles: (0..1 << 13).map(|v: u128| vec![v & 63, v >> 6 & 63, v >> 12]).collect(),
+        cycles: (0..1 << 13)
+            .map(|v: u128| vec![v & 63, v >> 6 & 63, v >> 12])
+            .collect(),
     };
     three_way("mismatch", &mut kernel, &design, &stimulus).unwrap();
 }

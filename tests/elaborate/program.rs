@@ -4,8 +4,8 @@
 use endat_hdl::reg::Reg;
 use endat_sim::rng::Rng;
 use rust_hdl::core::ast::{
-    VerilogBlockOrConditional, VerilogCase, VerilogConditional, VerilogExpression as Ast, VerilogMatch,
-    VerilogOp, VerilogOpUnary, VerilogStatement,
+    VerilogBlockOrConditional, VerilogCase, VerilogConditional, VerilogExpression as Ast,
+    VerilogMatch, VerilogOp, VerilogOpUnary, VerilogStatement,
 };
 use rust_hdl::prelude::*;
 use std::sync::Arc;
@@ -259,7 +259,9 @@ impl RandomKernel {
             E::Reduce(op, x) => self.evaluate(x).reduce(*op),
             E::Cast(width, x) => self.evaluate(x).cast_to(*width),
             E::Slice(width, x, low) => self.evaluate(x).slice_to(self.position(low), *width),
-            E::ReplaceBit(x, at, bit) => self.evaluate(x).replace_bit(self.position(at), self.evaluate(bit)),
+            E::ReplaceBit(x, at, bit) => self
+                .evaluate(x)
+                .replace_bit(self.position(at), self.evaluate(bit)),
         }
     }
 
@@ -300,7 +302,10 @@ impl Logic for RandomKernel {
         for width in WIDTHS {
             for input in ["clock", "reset"] {
                 let target = Ast::Signal(format!("r{width}${input}$next"));
-                block.push(VerilogStatement::Assignment(target, Ast::Signal(input.into())));
+                block.push(VerilogStatement::Assignment(
+                    target,
+                    Ast::Signal(input.into()),
+                ));
             }
         }
         block.extend(self._program.iter().map(statement));
@@ -313,7 +318,11 @@ fn statement(s: &S) -> VerilogStatement {
     let block = |b: &[S]| b.iter().map(statement).collect();
     match s {
         S::Assign((kind, width), value) => {
-            let target = if *kind == 'd' { format!("r{width}$d$next") } else { format!("{kind}{width}$next") };
+            let target = if *kind == 'd' {
+                format!("r{width}$d$next")
+            } else {
+                format!("{kind}{width}$next")
+            };
             VerilogStatement::Assignment(Ast::Signal(target), ast(value))
         }
         S::If(condition, then, otherwise) => VerilogStatement::If(VerilogConditional {
@@ -329,7 +338,10 @@ fn statement(s: &S) -> VerilogStatement {
                 condition,
                 block: block(b),
             };
-            let mut cases: Vec<_> = arms.iter().map(|(value, b)| case(value.to_string(), b)).collect();
+            let mut cases: Vec<_> = arms
+                .iter()
+                .map(|(value, b)| case(value.to_string(), b))
+                .collect();
             cases.push(case("default".into(), default));
             VerilogStatement::Match(VerilogMatch {
                 test: ast(subject),
@@ -389,7 +401,9 @@ pub struct Generator {
 
 impl Generator {
     pub fn new(seed: u64) -> Self {
-        Self { rng: Rng::new(seed) }
+        Self {
+            rng: Rng::new(seed),
+        }
     }
 
     fn below(&mut self, limit: usize) -> usize {
@@ -444,18 +458,26 @@ impl Generator {
             }
             2 => {
                 let condition = self.any(1, depth);
-                S::If(condition, self.block(depth, nesting), self.block(depth, nesting))
+                S::If(
+                    condition,
+                    self.block(depth, nesting),
+                    self.block(depth, nesting),
+                )
             }
             _ => {
                 let narrow = E::Binary(Op::And, Box::new(self.any(6, depth)), Box::new(E::Raw(3)));
-                let arms = (0..self.below(4) as u64).map(|v| (v, self.block(depth, nesting))).collect();
+                let arms = (0..self.below(4) as u64)
+                    .map(|v| (v, self.block(depth, nesting)))
+                    .collect();
                 S::Match(narrow, arms, self.block(depth, nesting))
             }
         }
     }
 
     fn block(&mut self, depth: usize, nesting: usize) -> Vec<S> {
-        (0..self.below(3)).map(|_| self.statement(depth, nesting - 1)).collect()
+        (0..self.below(3))
+            .map(|_| self.statement(depth, nesting - 1))
+            .collect()
     }
 
     fn any(&mut self, width: usize, depth: usize) -> E {
@@ -487,12 +509,19 @@ impl Generator {
                 let of = self.wide();
                 let op = [Op::Eq, Op::Ne, Op::Lt, Op::Le, Op::Gt, Op::Ge][self.below(6)];
                 let left = boxed(self, of);
-                let right = if self.below(2) == 0 { Box::new(E::Raw(self.number(of))) } else { boxed(self, of) };
+                let right = if self.below(2) == 0 {
+                    Box::new(E::Raw(self.number(of)))
+                } else {
+                    boxed(self, of)
+                };
                 E::Compare(op, left, right)
             }
             (1, 6..=7) => {
                 let of = self.wide();
-                E::Reduce([Op::Any, Op::All, Op::Parity][self.below(3)], boxed(self, of))
+                E::Reduce(
+                    [Op::Any, Op::All, Op::Parity][self.below(3)],
+                    boxed(self, of),
+                )
             }
             (1, _) => E::Binary(logic[self.below(3)], boxed(self, 1), boxed(self, 1)),
             (_, 3) => {
@@ -511,7 +540,11 @@ impl Generator {
             _ => {
                 let op = [Op::Add, Op::Sub, Op::And, Op::Or, Op::Xor][self.below(5)];
                 let left = boxed(self, width);
-                let right = if self.below(4) == 0 { Box::new(E::Raw(self.number(width))) } else { boxed(self, width) };
+                let right = if self.below(4) == 0 {
+                    Box::new(E::Raw(self.number(width)))
+                } else {
+                    boxed(self, width)
+                };
                 E::Binary(op, left, right)
             }
         }
