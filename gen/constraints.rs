@@ -6,8 +6,8 @@ use crate::config::{Kind, Project};
 use crate::error::GenError;
 use crate::explain;
 use crate::template;
-use minijinja::value::{Serde, Value};
 use minijinja::context;
+use minijinja::value::{Serde, Value};
 use serde::Serialize;
 
 const TEMPLATES: [(&str, &str); 3] = [

@@ -170,6 +170,7 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         block_stride => BLOCK_STRIDE,
         causes,
         identification,
+        timer => card.sources.timer,
     };
     let text = template::render(
         "testbench",

@@ -8,3 +8,4 @@ mod program;
 mod sim;
 mod three_way;
 mod tools;
+mod verilog;
