@@ -3,5 +3,8 @@
 mod cli;
 mod config;
 mod constraints;
+mod elaborate;
 mod program;
 mod sim;
+mod three_way;
+mod tools;

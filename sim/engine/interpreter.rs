@@ -266,6 +266,7 @@ impl Flat<'_> {
             let child_path = format!("{path}{}.", instance.name);
             let mut connected: BTreeMap<NetId, usize> = BTreeMap::new();
             for (port, connection) in child.ports.iter().zip(&instance.connections) {
+                let connection = &connection.value;
                 let value = match connection.kind {
                     ExprKind::Net(net) => nets[net],
                     _ => {
