@@ -158,6 +158,7 @@ pub struct Transaction {
     overrun: Reg<Bit>,
     stalled: Reg<Bit>,
     all_sent: Reg<Bit>,
+    was_started: Reg<Bit>,
     tail_sampled: Reg<Bit>,
     recovery: Reg<Bits<13>>,
     seen: Reg<Bits<10>>,
@@ -237,6 +238,7 @@ impl Transaction {
             overrun: Default::default(),
             stalled: Default::default(),
             all_sent: Default::default(),
+            was_started: Default::default(),
             tail_sampled: Default::default(),
             recovery: Default::default(),
             seen: Default::default(),
@@ -282,7 +284,8 @@ impl Logic for Transaction {
             acquiring,
             overrun,
             stalled,
-            all_sent
+            all_sent,
+            was_started
         );
         dff_setup!(
             self,
@@ -311,6 +314,7 @@ impl Logic for Transaction {
         self.overrun.reset.next = self.reset.val();
         self.stalled.reset.next = self.reset.val();
         self.all_sent.reset.next = self.reset.val();
+        self.was_started.reset.next = self.reset.val();
         self.tail_sampled.reset.next = self.reset.val();
         self.recovery.reset.next = self.reset.val();
         self.seen.reset.next = self.reset.val();
@@ -399,6 +403,8 @@ impl Logic for Transaction {
                 self.timer_clear.next = true;
                 if self.center.val() {
                     self.phase.d.next = Phase::Recovery;
+                    // From here on the full clock's times again: a short tm ends before half a slow period does.
+                    self.acquiring.d.next = false;
                 }
             }
             Phase::Recovery => {
@@ -464,6 +470,8 @@ impl Logic for Transaction {
 
         // Pulses: never more on the cable than the answer needs.
         self.all_sent.d.next = bit_cast::<7, 6>(self.outstanding.val()) == self.cells_left.val();
+        // Taking the start bit ends its cell: the comparison of the cycle before says nothing then.
+        self.was_started.d.next = self.started.val();
         if self.all_sent.q.val() & !self.started.val() {
             self.stalled.d.next = true;
         }
@@ -550,7 +558,7 @@ impl Logic for Transaction {
         self.hold.d.next = (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val();
         self.hold_low.next = self.hold.q.val();
         self.drain.next = self.stalled.q.val();
-        self.stop.next = self.all_sent.q.val() & self.started.val();
+        self.stop.next = self.all_sent.q.val() & self.was_started.q.val();
         self.acquire.next = self.acquiring.q.val();
         self.busy.next = !self.idle.val();
         self.publish.next = self.publish_now.q.val();

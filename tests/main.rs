@@ -3,5 +3,6 @@
 mod cli;
 mod config;
 mod constraints;
+mod position;
 mod program;
 mod sim;
