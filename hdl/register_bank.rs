@@ -49,10 +49,10 @@ pub struct RegisterBank {
     pub pending: Signal<In, Bit>,
     /// The held results follow the channels.
     pub load: Signal<Out, Bit>,
-    /// Result word that is read, one bit per word.
-    pub word_select: Signal<Out, Bits<6>>,
-    /// Channel whose result is read, one bit per channel.
-    pub channel_select: Signal<Out, Bits<8>>,
+    /// Result words that are not read, one bit per word.
+    pub word_skip: Signal<Out, Bits<6>>,
+    /// Channels whose results are not read, one bit per channel.
+    pub channel_skip: Signal<Out, Bits<8>>,
     /// Result byte of the channels.
     pub channel_byte: Signal<In, Bits<8>>,
     /// The configuration ring moves on by one byte.
@@ -84,8 +84,10 @@ pub struct RegisterBank {
     done_now: Reg<Bit>,
     write_now: Reg<Bit>,
     config_page: Reg<Bit>,
-    result_words: Reg<Bits<6>>,
-    channels: Reg<Bits<8>>,
+    skipped_words: Reg<Bits<6>>,
+    skipped_channels: Reg<Bits<8>>,
+    rom_skip: Reg<Bit>,
+    count_skip: Reg<Bit>,
     rom_byte: Reg<Bits<8>>,
     count_held: Reg<Bits<32>>,
     count_byte: Reg<Bits<8>>,
@@ -152,8 +154,8 @@ impl RegisterBank {
             reading: Default::default(),
             pending: Default::default(),
             load: Default::default(),
-            word_select: Default::default(),
-            channel_select: Default::default(),
+            word_skip: Default::default(),
+            channel_skip: Default::default(),
             channel_byte: Default::default(),
             ring_turn: Default::default(),
             ring_home: Default::default(),
@@ -175,8 +177,10 @@ impl RegisterBank {
             done_now: Default::default(),
             write_now: Default::default(),
             config_page: Default::default(),
-            result_words: Default::default(),
-            channels: Default::default(),
+            skipped_words: Reg::new(0x3fu64.into()),
+            skipped_channels: Reg::new(0xffu64.into()),
+            rom_skip: Reg::new(true),
+            count_skip: Reg::new(true),
             rom_byte: Default::default(),
             count_held: Default::default(),
             count_byte: Default::default(),
@@ -226,8 +230,8 @@ impl Logic for RegisterBank {
         dff_setup!(
             self,
             clock,
-            result_words,
-            channels,
+            skipped_words,
+            skipped_channels,
             rom_byte,
             count_held,
             count_byte
@@ -240,7 +244,15 @@ impl Logic for RegisterBank {
             trigger_strobe,
             calibrate_strobe
         );
-        dff_setup!(self, clock, active_sources, active_period, hold);
+        dff_setup!(
+            self,
+            clock,
+            active_sources,
+            active_period,
+            hold,
+            rom_skip,
+            count_skip
+        );
         clock!(self, clock, ring);
         self.ring.reset.next = self.reset.val();
         self.turning.reset.next = self.reset.val();
@@ -253,11 +265,14 @@ impl Logic for RegisterBank {
         self.done_now.reset.next = self.reset.val();
         self.write_now.reset.next = self.reset.val();
         self.config_page.reset.next = self.reset.val();
-        self.result_words.reset.next = self.reset.val();
-        self.channels.reset.next = self.reset.val();
-        self.rom_byte.reset.next = self.reset.val();
+        self.skipped_words.reset.next = self.reset.val();
+        self.skipped_channels.reset.next = self.reset.val();
+        self.rom_skip.reset.next = self.reset.val();
+        self.count_skip.reset.next = self.reset.val();
+        // A reset by deselection takes no logic.
+        self.rom_byte.reset.next = self.rom_skip.q.val();
         self.count_held.reset.next = self.reset.val();
-        self.count_byte.reset.next = self.reset.val();
+        self.count_byte.reset.next = self.count_skip.q.val();
         self.ring_byte.reset.next = self.reset.val();
         self.byte.reset.next = self.reset.val();
         self.trigger_strobe.reset.next = self.reset.val();
@@ -341,8 +356,6 @@ impl Logic for RegisterBank {
             }
             _ => {}
         }
-        self.rom_byte.d.next = 0.into();
-        self.count_byte.d.next = 0.into();
         match self.lane.val().index() {
             0 => {
                 self.rom_byte.d.next = self.rom_word.val().get_bits::<8>(24);
@@ -361,12 +374,9 @@ impl Logic for RegisterBank {
                 self.count_byte.d.next = self.count_held.q.val().get_bits::<8>(0);
             }
         }
-        if !self.card_page.val() | self.word_address.val().get_bit(3) {
-            self.rom_byte.d.next = 0.into();
-        }
-        if !self.in_range.val() | (self.word_address.val() != self.trigger_count_at.val()) {
-            self.count_byte.d.next = 0.into();
-        }
+        self.rom_skip.d.next = !self.card_page.val() | self.word_address.val().get_bit(3);
+        self.count_skip.d.next =
+            !self.in_range.val() | (self.word_address.val() != self.trigger_count_at.val());
         self.strobe.next = self.access.val() & self.write.val() & self.in_range.val();
         self.trigger_strobe.d.next = self.strobe.val()
             & (self.word_address.val() == self.trigger_now_at.val())
@@ -391,62 +401,62 @@ impl Logic for RegisterBank {
         if self.follow.val() {
             self.count_held.d.next = self.trigger_count.val();
         }
-        self.result_words.d.next = 0.into();
+        self.skipped_words.d.next = 63.into();
         match self.word_address.val().get_bits::<3>(0).index() {
             0 => {
-                self.result_words.d.next = 1.into();
+                self.skipped_words.d.next = 62.into();
             }
             1 => {
-                self.result_words.d.next = 2.into();
+                self.skipped_words.d.next = 61.into();
             }
             2 => {
-                self.result_words.d.next = 4.into();
+                self.skipped_words.d.next = 59.into();
             }
             3 => {
-                self.result_words.d.next = 8.into();
+                self.skipped_words.d.next = 55.into();
             }
             4 => {
-                self.result_words.d.next = 16.into();
+                self.skipped_words.d.next = 47.into();
             }
             5 => {
-                self.result_words.d.next = 32.into();
+                self.skipped_words.d.next = 31.into();
             }
             _ => {}
         }
         self.result_page.next =
             self.in_range.val() & self.word_address.val().get_bits::<2>(7).all();
-        self.channels.d.next = 0.into();
+        self.skipped_channels.d.next = 255.into();
         if self.result_page.val() {
             match self.word_address.val().get_bits::<4>(3).index() {
                 0 => {
-                    self.channels.d.next = 1.into();
+                    self.skipped_channels.d.next = 254.into();
                 }
                 1 => {
-                    self.channels.d.next = 2.into();
+                    self.skipped_channels.d.next = 253.into();
                 }
                 2 => {
-                    self.channels.d.next = 4.into();
+                    self.skipped_channels.d.next = 251.into();
                 }
                 3 => {
-                    self.channels.d.next = 8.into();
+                    self.skipped_channels.d.next = 247.into();
                 }
                 4 => {
-                    self.channels.d.next = 16.into();
+                    self.skipped_channels.d.next = 239.into();
                 }
                 5 => {
-                    self.channels.d.next = 32.into();
+                    self.skipped_channels.d.next = 223.into();
                 }
                 6 => {
-                    self.channels.d.next = 64.into();
+                    self.skipped_channels.d.next = 191.into();
                 }
                 7 => {
-                    self.channels.d.next = 128.into();
+                    self.skipped_channels.d.next = 127.into();
                 }
                 _ => {}
             }
         }
-        self.word_select.next = self.result_words.q.val();
-        self.channel_select.next = self.channels.q.val();
+        self.word_skip.next = self.skipped_words.q.val();
+        self.channel_skip.next = self.skipped_channels.q.val();
 
         self.byte.d.next = self.rom_byte.q.val()
             | self.count_byte.q.val()

@@ -92,11 +92,11 @@ pub struct UartBridge {
     byte_ready: Reg<Bit>,
     idle_us: Reg<Bits<17>>,
     expired: Reg<Bit>,
+    stop_timer: Reg<Bit>,
     last_lane: Signal<Local, Bit>,
     next_lane: Signal<Local, Bit>,
     next_address: Signal<Local, Bits<10>>,
     high_bits: Signal<Local, Bit>,
-    stop_timer: Signal<Local, Bit>,
     timeout_us: Constant<Bits<17>>,
 }
 
@@ -139,11 +139,11 @@ impl UartBridge {
             byte_ready: Default::default(),
             idle_us: Default::default(),
             expired: Default::default(),
+            stop_timer: Default::default(),
             last_lane: Default::default(),
             next_lane: Default::default(),
             next_address: Default::default(),
             high_bits: Default::default(),
-            stop_timer: Default::default(),
             timeout_us: Constant::new(timeout_us.into()),
         }
     }
@@ -162,7 +162,7 @@ impl Logic for UartBridge {
             address,
             out_of_range
         );
-        dff_setup!(self, clock, byte_lane, data, byte_ready, idle_us, expired);
+        dff_setup!(self, clock, byte_lane, data, byte_ready, idle_us, expired, stop_timer);
         dff_setup!(
             self,
             clock,
@@ -194,6 +194,7 @@ impl Logic for UartBridge {
         self.access_now.reset.next = self.reset.val();
         self.byte_ready.reset.next = self.reset.val();
         self.idle_us.reset.next = self.reset.val();
+        self.stop_timer.reset.next = self.reset.val();
         self.expired.reset.next = self.reset.val();
 
         self.receiver.rx.next = self.rx.val();
@@ -212,11 +213,11 @@ impl Logic for UartBridge {
         self.access_now.d.next = self.access_next.q.val();
         self.next_lane.next = false;
         self.high_bits.next = self.receiver.data.val().any();
-        self.stop_timer.next = self.receiver.strobe.val();
+        self.stop_timer.d.next = self.receiver.strobe.val();
 
         match self.state.q.val() {
             BridgeState::Command => {
-                self.stop_timer.next = true;
+                self.stop_timer.d.next = true;
                 if self.receiver.strobe.val() {
                     self.writing.d.next = self.receiver.data.val().get_bit(0);
                     self.fixed.d.next = false;
@@ -270,7 +271,7 @@ impl Logic for UartBridge {
                 }
             }
             BridgeState::Read => {
-                self.stop_timer.next = true;
+                self.stop_timer.d.next = true;
                 if self.sent.q.val() {
                     self.next_lane.next = true;
                     self.word_end.d.next = self.last_lane.val();
@@ -282,7 +283,7 @@ impl Logic for UartBridge {
                 }
             }
             BridgeState::Discard => {
-                self.stop_timer.next = false;
+                self.stop_timer.d.next = false;
             }
             _ => {
                 self.state.d.next = BridgeState::Discard;
@@ -354,13 +355,12 @@ impl Logic for UartBridge {
         if self.tick_us.val() {
             self.idle_us.d.next = self.idle_us.q.val() + 1;
         }
-        if self.stop_timer.val() {
+        if self.stop_timer.q.val() | self.expired.q.val() {
             self.idle_us.d.next = 0.into();
             self.expired.d.next = false;
         }
         if self.expired.q.val() {
             self.state.d.next = BridgeState::Command;
-            self.idle_us.d.next = 0.into();
         }
 
         self.word_address.next = self.address.q.val();
