@@ -410,6 +410,8 @@ impl Logic for Transaction {
                 self.timer_clear.next = true;
                 if self.center.val() {
                     self.phase.d.next = Phase::Recovery;
+                    // From here on the full clock's times again: a short tm ends before half a slow period does.
+                    self.acquiring.d.next = false;
                 }
             }
             Phase::Recovery => {

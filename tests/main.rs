@@ -4,6 +4,7 @@ mod cli;
 mod config;
 mod constraints;
 mod elaborate;
+mod position;
 mod program;
 mod sim;
 mod three_way;

@@ -9,6 +9,7 @@ use endat_hdl::elaborate::{
     mask, Design, Direction, Expr, ExprKind, Module, NetId, Process, Statement,
 };
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 /// Why a design cannot be interpreted.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -26,18 +27,19 @@ pub enum InterpreterError {
     },
 }
 
-/// Runs a [`Design`].
+/// Runs a [`Design`]. A clone goes on from the same state, apart from the original.
+#[derive(Clone)]
 pub struct Interpreter {
     ports: Vec<Port>,
     /// Value index of each port.
     port_values: Vec<usize>,
     values: Vec<u128>,
-    program: Program,
-    registers: Vec<FlatRegister>,
+    program: Arc<Program>,
+    registers: Arc<[FlatRegister]>,
     /// New register contents, while a clock edge is computed.
     next: Vec<u128>,
     memories: Vec<FlatMemory>,
-    names: Vec<String>,
+    names: Arc<[String]>,
     is_settled: bool,
 }
 
@@ -48,6 +50,7 @@ struct FlatRegister {
     start: u128,
 }
 
+#[derive(Clone)]
 struct FlatMemory {
     read_address: usize,
     read_data: usize,
@@ -100,10 +103,10 @@ impl Interpreter {
                 .collect(),
             next: vec![0; flat.registers.len()],
             values,
-            program,
-            registers: flat.registers,
+            program: program.into(),
+            registers: flat.registers.into(),
             memories: flat.memories,
-            names: flat.names,
+            names: flat.names.into(),
             is_settled: false,
         })
     }
@@ -149,7 +152,7 @@ impl Engine for Interpreter {
     fn tick(&mut self) {
         self.settle();
         let values = &mut self.values;
-        for (next, register) in self.next.iter_mut().zip(&self.registers) {
+        for (next, register) in self.next.iter_mut().zip(&*self.registers) {
             let is_reset = register.reset.is_some_and(|reset| values[reset] != 0);
             *next = if is_reset {
                 register.start
@@ -168,7 +171,7 @@ impl Engine for Interpreter {
                 memory.words[values[memory.write_address] as usize] = values[memory.write_data];
             }
         }
-        for (next, register) in self.next.iter().zip(&self.registers) {
+        for (next, register) in self.next.iter().zip(&*self.registers) {
             values[register.q] = *next;
         }
         for (net, word) in read {

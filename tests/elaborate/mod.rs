@@ -1,5 +1,6 @@
 //! From kernels to the typed design to Verilog: every construct, three ways.
 
+mod core;
 mod errors;
 mod lint;
 mod mismatch;

@@ -33,7 +33,7 @@ fn check(seed: u64, statements: usize, depth: usize) -> Result<(), String> {
     block.connect_all();
     let design = elaborate(&block, "random").map_err(|e| e.to_string())?;
     let stimulus = stimulus(&mut generator);
-    three_way("random", &mut block.engine(), &design, &stimulus)
+    three_way("random", &mut block.engine(), &design, &stimulus).map(|_| ())
 }
 
 proptest! {

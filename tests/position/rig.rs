@@ -1,0 +1,258 @@
+//! Benches of one elaborated channel, and what a sound run looks like.
+
+use endat_hdl::{
+    channel::{Channel, FixedTimes},
+    elaborate::elaborate,
+    protocol::ModeCommand,
+    transaction::cause,
+};
+use endat_sim::{
+    bench::{Bench, ChannelResult, ChannelSettings, Link},
+    encoder::{Defect, EncoderConfig, FrameEnd, FrameLog, Symbol},
+    engine::Interpreter,
+    frame::CRC_BITS,
+    line::{LineConfig, Sample, Who},
+    Time, MS, US,
+};
+use rust_hdl::prelude::Block;
+use std::{
+    collections::BTreeMap,
+    sync::{Mutex, OnceLock, PoisonError},
+};
+
+/// System clock and EnDat clock, in hertz.
+pub type Rates = (u64, u64);
+
+/// The rates that every width and cable is tried at.
+pub const RATES: [Rates; 10] = [
+    (100_000_000, 100_000),
+    (100_000_000, 200_000),
+    (100_000_000, 1_000_000),
+    (100_000_000, 2_000_000),
+    (100_000_000, 3_125_000),
+    (100_000_000, 4_000_000),
+    (100_000_000, 6_250_000),
+    (100_000_000, 8_333_333),
+    (100_000_000, 12_500_000),
+    (128_000_000, 16_000_000),
+];
+/// The setting of the acquisition card.
+pub const CARD: Rates = (100_000_000, 3_125_000);
+/// The cables that every width and rate is tried on, in metres.
+pub const CABLES_M: [f64; 4] = [0.0, 1.0, 20.0, 100.0];
+/// The commands whose answers the core takes.
+pub const COMMANDS: [ModeCommand; 2] = ModeCommand::ALL;
+
+/// Quiet time after an aborted frame: longer than the encoder's own time-out, short enough to be simulated.
+pub const ABORT_US: u64 = 50;
+/// From the pin to the register that takes a sample, without filter.
+const SAMPLE_LATENCY_CYCLES: u64 = 3;
+/// Longer than any frame with its time-outs.
+pub const FRAME_LIMIT: Time = 5 * MS;
+
+/// A channel on its bench.
+pub type Rig = Bench<Interpreter>;
+
+/// The times that are fixed in the channels of these tests.
+pub const fn fixed_times(system_hz: u64) -> FixedTimes {
+    FixedTimes {
+        abort_us: ABORT_US,
+        ..FixedTimes::at(system_hz)
+    }
+}
+
+/// A channel after power-up. The design is made once for each system clock.
+pub fn engine(system_hz: u64) -> Interpreter {
+    static MADE: OnceLock<Mutex<BTreeMap<u64, Interpreter>>> = OnceLock::new();
+    let mut made = MADE
+        .get_or_init(Mutex::default)
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner);
+    let make = || {
+        let mut block = Channel::new(fixed_times(system_hz));
+        block.connect_all();
+        let design = elaborate(&block, "channel").expect("the channel elaborates");
+        Interpreter::new(&design).expect("the channel has no loop")
+    };
+    made.entry(system_hz).or_insert_with(make).clone()
+}
+
+/// Everything around a channel.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// System clock.
+    pub system_hz: u64,
+    /// Configuration.
+    pub settings: ChannelSettings,
+    /// The encoder.
+    pub encoder: EncoderConfig,
+    /// The line.
+    pub line: LineConfig,
+}
+
+impl Setup {
+    /// A sound encoder on a sound cable, with fitting settings. The recovery time is short, where that is allowed.
+    pub fn new(rates: Rates, command: ModeCommand, position_bits: u32, cable_m: f64) -> Self {
+        let (system_hz, endat_hz) = rates;
+        let mut encoder =
+            EncoderConfig::endat22(position_bits).seed(u64::from(position_bits) + endat_hz);
+        encoder.tm = if command.has_f2() && endat_hz > 1_000_000 {
+            1_250_000..=3_750_000
+        } else {
+            10 * US..=12 * US
+        };
+        Self {
+            system_hz,
+            settings: ChannelSettings::new(system_hz, endat_hz, command, position_bits),
+            encoder,
+            line: LineConfig::cable(cable_m),
+        }
+    }
+
+    /// The 29-bit encoder of the acquisition card on 10 m of cable.
+    pub fn card() -> Self {
+        Self::new(CARD, ModeCommand::SendPositionAddInfo, 29, 10.0)
+    }
+
+    /// Adds a defect to one frame (0 = first).
+    pub fn defect(mut self, frame: u64, defect: Defect) -> Self {
+        self.encoder = self.encoder.defect(frame, defect);
+        self
+    }
+
+    /// Bits from the start bit to the last CRC bit.
+    pub fn answer_bits(&self) -> u32 {
+        ModeCommand::from_code(self.settings.command)
+            .expect("a known command")
+            .answer_bits(self.settings.position_bits)
+    }
+
+    fn link(&self) -> Link {
+        Link::new(self.line.clone(), self.encoder.clone())
+    }
+
+    fn prepared(&self, mut rig: Rig) -> Rig {
+        rig.set_sample_latency(SAMPLE_LATENCY_CYCLES + self.settings.filter_cycles);
+        rig
+    }
+
+    /// After power-up and reset: the first frame measures the delay.
+    pub fn fresh(&self) -> Rig {
+        let engine = engine(self.system_hz);
+        let rig = Bench::channel(engine, self.system_hz, &self.settings, self.link());
+        self.prepared(rig)
+    }
+
+    /// A channel that goes on from some idle state, with a new line and encoder.
+    pub fn on(&self, engine: Interpreter) -> Rig {
+        let pins = endat_sim::bench::PinNames::channel();
+        let mut rig = Bench::new(engine, self.system_hz, vec![(pins, self.link())]);
+        rig.configure(&self.settings);
+        self.prepared(rig)
+    }
+
+    /// An idle channel that has measured the delay of this line, with a good position.
+    pub fn measured(&self) -> Interpreter {
+        let mut sound = self.clone();
+        sound.encoder.defects.clear();
+        let mut rig = sound.fresh();
+        good_frame(&mut rig);
+        settle(&mut rig);
+        assert_sound(&sound, &rig);
+        rig.engine().clone()
+    }
+
+    /// A channel that has measured the delay of this line: the next frame runs at the full clock and is the
+    /// encoder's frame 0.
+    pub fn ready(&self) -> Rig {
+        self.on(self.measured())
+    }
+}
+
+/// Runs until the channel is idle and the latest samples have been looked up.
+pub fn settle(rig: &mut Rig) {
+    assert!(
+        rig.run_until_done(FRAME_LIMIT, |b| b.get("busy") == 0),
+        "the channel stays busy"
+    );
+}
+
+/// Triggers a frame and runs to its result.
+pub fn any_frame(rig: &mut Rig) -> ChannelResult {
+    rig.frame(FRAME_LIMIT).expect("every trigger has a result")
+}
+
+/// Triggers a frame, which must be good and bring the encoder's position.
+pub fn good_frame(rig: &mut Rig) -> ChannelResult {
+    let result = any_frame(rig);
+    let frame = rig.frames(0).last().expect("the encoder saw a frame");
+    assert_eq!(
+        (result.cause_name(), result.fresh, result.position_valid),
+        ("none", true, true),
+        "{result:?} {frame:?}"
+    );
+    assert_eq!(
+        result.position, frame.position,
+        "wrong position: {result:?} {frame:?}"
+    );
+    result
+}
+
+/// The CRC at the end of an answer.
+pub fn crc_sent(frame: &FrameLog) -> u64 {
+    let bit = |i| u64::from(frame.answer.get(frame.answer.len - CRC_BITS + i));
+    (0..CRC_BITS).fold(0, |crc, i| crc << 1 | bit(i))
+}
+
+/// Asserts that all frames so far were good and by the rules. The channel must be idle.
+pub fn assert_sound(setup: &Setup, rig: &Rig) {
+    assert_eq!(rig.violations(0), [], "{setup:?}");
+    assert_eq!(rig.conflicts(0), [], "{setup:?}");
+    let (frames, results) = (rig.frames(0), rig.results());
+    assert_eq!(frames.len(), results.len(), "{setup:?}");
+    for (frame, result) in frames.iter().zip(results) {
+        let what = || format!("{frame:?}\n{result:?}\n{setup:?}");
+        assert_eq!(frame.end, FrameEnd::Complete, "{}", what());
+        assert_eq!(
+            Some(frame.rising_edges),
+            frame.expected_rising_edges(),
+            "{}",
+            what()
+        );
+        assert_eq!(frame.command, Some(setup.settings.command), "{}", what());
+        assert!(frame.is_true_answer(setup.settings.position_bits, frame.has_f2));
+        assert_eq!(frame.answer.len, setup.answer_bits(), "{}", what());
+        assert_eq!(
+            (result.last_cause(), result.flags, result.fresh),
+            (cause::NONE, 0, true),
+            "{}",
+            what()
+        );
+        assert_eq!(result.position, frame.position, "{}", what());
+        assert_eq!(result.crc_received, crc_sent(frame), "{}", what());
+        assert_eq!(result.crc_computed, crc_sent(frame), "{}", what());
+    }
+    assert_samples_in_order(rig.samples(0), setup);
+}
+
+/// Every sample is of the encoder's LOW, of the answer bits one after the other, or of the HIGH after them.
+fn assert_samples_in_order(samples: &[Sample], setup: &Setup) {
+    let mut next = 0;
+    for sample in samples {
+        let what = || format!("{sample:?} {setup:?}");
+        match sample.who {
+            Who::Encoder(Symbol::Lead) => assert_eq!(next, 0, "{}", what()),
+            Who::Encoder(Symbol::Bit(i)) => {
+                assert_eq!(u32::from(i), next, "{}", what());
+                next += 1;
+            }
+            Who::Encoder(Symbol::Tail) => {
+                assert_eq!(next, setup.answer_bits(), "{}", what());
+                next = 0;
+            }
+            _ => panic!("sample of an undefined phase: {}", what()),
+        }
+        assert!(!sample.glitch, "{}", what());
+    }
+    assert_eq!(next, 0, "a frame's samples are missing: {setup:?}");
+}
