@@ -2,6 +2,7 @@
 
 mod core;
 mod errors;
+mod generator;
 mod lint;
 mod mismatch;
 mod program;

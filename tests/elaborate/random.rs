@@ -1,6 +1,7 @@
 //! Random kernels under random stimulus: rust-hdl, interpreter and Verilog agree.
 
-use super::program::{Generator, RandomKernel, WIDTHS};
+use super::generator::Generator;
+use super::program::{RandomKernel, WIDTHS};
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::elaborate::elaborate;
 use proptest::prelude::*;
