@@ -202,9 +202,9 @@ impl Logic for Card {
             self.registers[i].delay_cycles.next = self.channel[i].delay_cycles.val();
 
             self.registers[i].load.next = self.bank.load.val();
-            self.registers[i].word_select.next = self.bank.word_select.val();
+            self.registers[i].word_skip.next = self.bank.word_skip.val();
             self.registers[i].lane.next = self.bridge.lane.val();
-            self.registers[i].selected.next = self.bank.channel_select.val().get_bit(i);
+            self.registers[i].skip.next = self.bank.channel_skip.val().get_bit(i);
             self.registers[i].read_in.next = self.read_link[i].val();
             self.read_link[i + 1].next = self.registers[i].read_out.val();
             self.registers[i].ring_turn.next = self.bank.ring_turn.val();

@@ -58,15 +58,15 @@ pub struct ChannelRegisters {
     pub pending: Signal<Out, Bit>,
     /// The held words follow the result.
     pub load: Signal<In, Bit>,
-    /// The word that is read, one bit per word.
-    pub word_select: Signal<In, Bits<6>>,
+    /// Words that are not read, one bit per word.
+    pub word_skip: Signal<In, Bits<6>>,
     /// Byte of the word, 0 = most significant.
     pub lane: Signal<In, Bits<2>>,
-    /// This channel's result is read.
-    pub selected: Signal<In, Bit>,
+    /// This channel's result is not read.
+    pub skip: Signal<In, Bit>,
     /// Read byte of the channels before this one.
     pub read_in: Signal<In, Bits<8>>,
-    /// `read_in`, or this channel's byte; 2 cycles after `word_select`.
+    /// `read_in`, or this channel's byte; 2 cycles after `word_skip`.
     pub read_out: Signal<Out, Bits<8>>,
     /// The configuration ring moves on by one byte.
     pub ring_turn: Signal<In, Bit>,
@@ -129,9 +129,9 @@ impl ChannelRegisters {
             delay_cycles: Default::default(),
             pending: Default::default(),
             load: Default::default(),
-            word_select: Default::default(),
+            word_skip: Default::default(),
             lane: Default::default(),
-            selected: Default::default(),
+            skip: Default::default(),
             read_in: Default::default(),
             read_out: Default::default(),
             ring_turn: Default::default(),
@@ -166,7 +166,6 @@ impl Logic for ChannelRegisters {
         dff_setup!(self, clock, waiting, read_byte, config0, config1, config2);
         clock!(self, clock, ring);
         self.waiting.reset.next = self.reset.val();
-        self.read_byte.reset.next = self.reset.val();
         self.config0.reset.next = self.reset.val();
         self.config1.reset.next = self.reset.val();
         self.config2.reset.next = self.reset.val();
@@ -202,34 +201,30 @@ impl Logic for ChannelRegisters {
                 self.held[i].d.next = self.word[i].val();
             }
             self.byte[i].clock.next = self.clock.val();
-            self.byte[i].reset.next = self.reset.val();
-            self.byte[i].d.next = 0.into();
-            if self.word_select.val().get_bit(i) {
-                match self.lane.val().index() {
-                    0 => {
-                        self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(24);
-                    }
-                    1 => {
-                        self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(16);
-                    }
-                    2 => {
-                        self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(8);
-                    }
-                    _ => {
-                        self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(0);
-                    }
+            // A reset by deselection alone takes no logic; what a reset of the card would clear is never shown.
+            self.byte[i].reset.next = self.word_skip.val().get_bit(i);
+            match self.lane.val().index() {
+                0 => {
+                    self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(24);
+                }
+                1 => {
+                    self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(16);
+                }
+                2 => {
+                    self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(8);
+                }
+                _ => {
+                    self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(0);
                 }
             }
         }
-        self.read_byte.d.next = 0.into();
-        if self.selected.val() {
-            self.read_byte.d.next = self.byte[0].q.val()
-                | self.byte[1].q.val()
-                | self.byte[2].q.val()
-                | self.byte[3].q.val()
-                | self.byte[4].q.val()
-                | self.byte[5].q.val();
-        }
+        self.read_byte.reset.next = self.skip.val();
+        self.read_byte.d.next = self.byte[0].q.val()
+            | self.byte[1].q.val()
+            | self.byte[2].q.val()
+            | self.byte[3].q.val()
+            | self.byte[4].q.val()
+            | self.byte[5].q.val();
         self.read_out.next = self.read_in.val() | self.read_byte.q.val();
 
         self.ring.turn.next = self.ring_turn.val();

@@ -28,7 +28,7 @@ pub struct ClockGen {
     pub run: Signal<In, Bit>,
     /// Keeps a low phase low.
     pub hold_low: Signal<In, Bit>,
-    /// Keeps a high phase high: the last rising edge of the frame has been sent.
+    /// Keeps a high phase high: no frame, or its last rising edge has been sent.
     pub stop: Signal<In, Bit>,
     /// Period, in system clock cycles; the high phase is the longer one if it is odd.
     pub period_cycles: Signal<In, Bits<11>>,
@@ -81,10 +81,8 @@ impl Logic for ClockGen {
         self.half.second.next = self.level.q.val();
         self.held.next = self.hold_low.val() & !self.level.q.val();
         self.half.restart.next = self.start.val() | self.held.val();
-        self.rise_now.next =
-            self.half.tick.val() & !self.level.q.val() & !self.held.val() & self.run.val();
-        self.fall_now.next =
-            self.half.tick.val() & self.level.q.val() & !self.stop.val() & self.run.val();
+        self.rise_now.next = self.half.tick.val() & !self.level.q.val() & !self.held.val();
+        self.fall_now.next = self.half.tick.val() & self.level.q.val() & !self.stop.val();
         if self.rise_now.val() {
             self.level.d.next = true;
         }

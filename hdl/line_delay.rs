@@ -66,6 +66,9 @@ pub struct LineDelay {
     center_strobe: Reg<Bit>,
     pulses: Reg<Bits<6>>,
     center_seen: Reg<Bit>,
+    not_yet: Reg<Bit>,
+    afresh: Reg<Bit>,
+    follow_now: Reg<Bit>,
     edge_seen: Reg<Bit>,
     edge_late: Reg<Bit>,
     edge_error: Reg<Bits<6>>,
@@ -75,7 +78,6 @@ pub struct LineDelay {
     first_center: Signal<Local, Bit>,
     center_now: Signal<Local, Bit>,
     sample_now: Signal<Local, Bit>,
-    drained: Signal<Local, Bit>,
     step: Signal<Local, Bits<10>>,
 }
 
@@ -109,6 +111,9 @@ impl Default for LineDelay {
             center_strobe: Default::default(),
             pulses: Default::default(),
             center_seen: Default::default(),
+            not_yet: Default::default(),
+            afresh: Default::default(),
+            follow_now: Default::default(),
             edge_seen: Default::default(),
             edge_late: Default::default(),
             edge_error: Default::default(),
@@ -118,7 +123,6 @@ impl Default for LineDelay {
             first_center: Default::default(),
             center_now: Default::default(),
             sample_now: Default::default(),
-            drained: Default::default(),
             step: Default::default(),
         }
     }
@@ -160,6 +164,10 @@ impl Logic for LineDelay {
         self.center_strobe.reset.next = self.reset.val();
         self.pulses.reset.next = self.reset.val();
         self.center_seen.reset.next = self.reset.val();
+        self.not_yet.reset.next = self.reset.val();
+        self.follow_now.reset.next = self.reset.val();
+        self.afresh.reset.next = self.reset.val();
+        clock!(self, clock, afresh, not_yet, follow_now);
         self.edge_seen.reset.next = self.reset.val();
         self.edge_late.reset.next = self.reset.val();
         self.edge_error.reset.next = self.reset.val();
@@ -234,7 +242,8 @@ impl Logic for LineDelay {
                 self.edge_outside.d.next = true;
             }
         }
-        if self.follow.val() & self.edge_error.q.val().any() {
+        self.follow_now.d.next = self.follow.val() & self.edge_error.q.val().any();
+        if self.follow_now.q.val() {
             self.delay.d.next = self.delay.q.val() + self.step.val();
         }
         self.step.next = 0x3FF.into();
@@ -246,25 +255,23 @@ impl Logic for LineDelay {
         }
 
         // All cells of a burst have ended: the next rising edge begins a new one.
-        self.drained.next = self.drain.val() & !self.pulses.q.val().any();
-        if self.drained.val() | !self.run.val() {
+        self.afresh.d.next = !self.run.val() | (self.drain.val() & !self.pulses.q.val().any());
+        if self.afresh.q.val() {
             self.cells_run.d.next = false;
             self.second_half.d.next = false;
             self.timing_armed.d.next = false;
             self.delay_over.d.next = false;
+            self.sample_strobe.d.next = false;
+            self.center_strobe.d.next = false;
+            self.pulses.d.next = 0.into();
         }
-        if self.sample_now.val() | !self.run.val() | (self.acquire.val() & !self.hunting.val()) {
+        self.not_yet.d.next = !self.run.val() | (self.acquire.val() & !self.hunting.val());
+        if self.sample_now.val() | self.not_yet.q.val() {
             self.center_seen.d.next = false;
             self.edge_seen.d.next = false;
             self.edge_error.d.next = 0.into();
             self.edge_outside.d.next = false;
         }
-        if !self.run.val() {
-            self.sample_strobe.d.next = false;
-            self.center_strobe.d.next = false;
-            self.pulses.d.next = 0.into();
-        }
-
         self.sample.next = self.sample_now.val();
         self.center.next = self.center_now.val();
         self.edge_in_window.next = self.edge_seen.q.val() & !self.edge_outside.q.val();

@@ -107,6 +107,11 @@ pub struct Receiver {
     parallel_equal: Reg<Bit>,
     serial_good: Reg<Bit>,
     refused: Reg<Bit>,
+    shift_now: Reg<Bit>,
+    bit_now: Reg<Bit>,
+    last_position: Reg<Bit>,
+    hunting_now: Reg<Bit>,
+    started_now: Reg<Bit>,
     skip_from: Constant<Bits<4>>,
     fixed_cells: Constant<Bits<7>>,
     skip_step: Signal<Local, Bit>,
@@ -169,6 +174,11 @@ impl Default for Receiver {
             parallel_equal: Default::default(),
             serial_good: Default::default(),
             refused: Default::default(),
+            shift_now: Default::default(),
+            bit_now: Default::default(),
+            last_position: Default::default(),
+            hunting_now: Default::default(),
+            started_now: Default::default(),
             skip_from: Constant::new((ORDER_OF_X as u64 - u64::from(protocol::LEAD_PULSES)).into()),
             fixed_cells: Constant::new(
                 u64::from(protocol::LEAD_PULSES + protocol::START_BITS + 1 + protocol::CRC_BITS)
@@ -223,7 +233,21 @@ impl Logic for Receiver {
         self.parallel_equal.reset.next = self.reset.val();
         self.serial_good.reset.next = self.reset.val();
         self.refused.reset.next = self.reset.val();
-        clock!(self, clock, refused);
+        self.hunting_now.reset.next = self.reset.val();
+        self.started_now.reset.next = self.reset.val();
+        self.shift_now.reset.next = self.reset.val();
+        self.bit_now.reset.next = self.reset.val();
+        self.last_position.reset.next = self.reset.val();
+        clock!(
+            self,
+            clock,
+            shift_now,
+            bit_now,
+            last_position,
+            refused,
+            hunting_now,
+            started_now
+        );
         self.serial.reset.next = self.reset.val();
 
         self.skip_step.next = self.sample.val();
@@ -234,7 +258,8 @@ impl Logic for Receiver {
             (self.field.q.val() == Field::Start) & self.sample.val() & self.level.val();
         self.covered_bit.next = false;
         self.crc_bit.next = false;
-        self.take_crc.d.next = false;
+        self.last_position.d.next = false;
+        self.take_crc.d.next = self.last_position.q.val();
         self.last_taken.d.next = false;
 
         if self.sample.val()
@@ -279,7 +304,7 @@ impl Logic for Receiver {
                     self.covered_bit.next = true;
                     // Seven cells left: this bit, five of the CRC and the edge that ends the frame.
                     if self.left.q.val() == 7 {
-                        self.take_crc.d.next = true;
+                        self.last_position.d.next = true;
                         self.field.d.next = Field::Crc;
                     }
                 }
@@ -304,8 +329,11 @@ impl Logic for Receiver {
         self.in20.next = (self.position_bits.val() <= 18) & !self.in5.val();
         self.in35.next = (self.position_bits.val() <= 33) & !self.in5.val() & !self.in20.val();
         self.in50.next = !self.in5.val() & !self.in20.val() & !self.in35.val();
-        self.bit_in.next = self.level.val() & !self.align.q.val();
-        self.shift.next = self.covered_bit.val() | self.align.q.val();
+        self.bit_in.next = self.bit_now.q.val() & !self.align.q.val();
+        // One cycle later than the sample: the whole word hangs on this enable.
+        self.shift_now.d.next = self.covered_bit.val();
+        self.bit_now.d.next = self.level.val();
+        self.shift.next = self.shift_now.q.val() | self.align.q.val();
         self.shifted.next = self.word.q.val() >> 1;
         if self.in50.val() {
             self.shifted.next = (self.word.q.val() >> 1).replace_bit(49, self.bit_in.val());
@@ -373,12 +401,14 @@ impl Logic for Receiver {
         }
 
         self.skipping.next = self.field.q.val() == Field::Skip;
-        self.hunting.next = self.field.q.val() == Field::Start;
+        self.hunting_now.d.next = self.field.q.val() == Field::Start;
+        self.hunting.next = self.hunting_now.q.val();
         self.start_found.next = self.start_sample.val() & self.edge_in_window.val();
         self.refused.d.next = self.start_sample.val() & !self.edge_in_window.val();
         self.start_refused.next = self.refused.q.val();
-        self.started.next =
+        self.started_now.d.next =
             (self.field.q.val() != Field::Skip) & (self.field.q.val() != Field::Start);
+        self.started.next = self.started_now.q.val();
         self.cells_left.next = self.left.q.val();
         self.done.next = self.done_now.q.val();
         self.position.next = self.word.q.val().get_bits::<48>(0);

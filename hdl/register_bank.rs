@@ -49,10 +49,10 @@ pub struct RegisterBank {
     pub pending: Signal<In, Bit>,
     /// The held results follow the channels.
     pub load: Signal<Out, Bit>,
-    /// Result word that is read, one bit per word.
-    pub word_select: Signal<Out, Bits<6>>,
-    /// Channel whose result is read, one bit per channel.
-    pub channel_select: Signal<Out, Bits<8>>,
+    /// Result words that are not read, one bit per word.
+    pub word_skip: Signal<Out, Bits<6>>,
+    /// Channels whose results are not read, one bit per channel.
+    pub channel_skip: Signal<Out, Bits<8>>,
     /// Result byte of the channels.
     pub channel_byte: Signal<In, Bits<8>>,
     /// The configuration ring moves on by one byte.
@@ -75,12 +75,19 @@ pub struct RegisterBank {
     pub period_cycles: Signal<Out, Bits<24>>,
     ring: ConfigRing,
     turning: Reg<Bit>,
-    position: Reg<Bits<8>>,
+    byte_at: Reg<Bits<4>>,
+    block_at: Reg<Bits<4>>,
+    turn: Reg<Bit>,
+    word_passes: Reg<Bit>,
+    byte_passes: Reg<Bit>,
+    ended: Reg<Bit>,
     done_now: Reg<Bit>,
     write_now: Reg<Bit>,
     config_page: Reg<Bit>,
-    result_words: Reg<Bits<6>>,
-    channels: Reg<Bits<8>>,
+    skipped_words: Reg<Bits<6>>,
+    skipped_channels: Reg<Bits<8>>,
+    rom_skip: Reg<Bit>,
+    count_skip: Reg<Bit>,
     rom_byte: Reg<Bits<8>>,
     count_held: Reg<Bits<32>>,
     count_byte: Reg<Bits<8>>,
@@ -93,8 +100,7 @@ pub struct RegisterBank {
     hold: Reg<Bit>,
     at_end: Signal<Local, Bit>,
     at_word: Signal<Local, Bit>,
-    at_byte: Signal<Local, Bit>,
-    take: Signal<Local, Bit>,
+    block_end: Signal<Local, Bit>,
     card_page: Signal<Local, Bit>,
     strobe: Signal<Local, Bit>,
     follow: Signal<Local, Bit>,
@@ -106,7 +112,7 @@ pub struct RegisterBank {
     capabilities: Constant<Bits<32>>,
     system_hz: Constant<Bits<32>>,
     configuration_hash: Constant<Bits<32>>,
-    last_position: Constant<Bits<8>>,
+    last_block: Constant<Bits<4>>,
     trigger_count_at: Constant<Bits<9>>,
     trigger_now_at: Constant<Bits<9>>,
     calibrate_at: Constant<Bits<9>>,
@@ -148,8 +154,8 @@ impl RegisterBank {
             reading: Default::default(),
             pending: Default::default(),
             load: Default::default(),
-            word_select: Default::default(),
-            channel_select: Default::default(),
+            word_skip: Default::default(),
+            channel_skip: Default::default(),
             channel_byte: Default::default(),
             ring_turn: Default::default(),
             ring_home: Default::default(),
@@ -162,12 +168,19 @@ impl RegisterBank {
             period_cycles: Default::default(),
             ring: ConfigRing::new(words),
             turning: Default::default(),
-            position: Default::default(),
+            byte_at: Default::default(),
+            block_at: Default::default(),
+            turn: Default::default(),
+            word_passes: Default::default(),
+            byte_passes: Default::default(),
+            ended: Default::default(),
             done_now: Default::default(),
             write_now: Default::default(),
             config_page: Default::default(),
-            result_words: Default::default(),
-            channels: Default::default(),
+            skipped_words: Reg::new(0x3fu64.into()),
+            skipped_channels: Reg::new(0xffu64.into()),
+            rom_skip: Reg::new(true),
+            count_skip: Reg::new(true),
             rom_byte: Default::default(),
             count_held: Default::default(),
             count_byte: Default::default(),
@@ -180,8 +193,7 @@ impl RegisterBank {
             hold: Default::default(),
             at_end: Default::default(),
             at_word: Default::default(),
-            at_byte: Default::default(),
-            take: Default::default(),
+            block_end: Default::default(),
             card_page: Default::default(),
             strobe: Default::default(),
             follow: Default::default(),
@@ -193,7 +205,7 @@ impl RegisterBank {
             capabilities: card_word(config, "capabilities"),
             system_hz: card_word(config, "system_hz"),
             configuration_hash: card_word(config, "configuration_hash"),
-            last_position: Constant::new((16 * config.channels.len() as u64 + 11).into()),
+            last_block: Constant::new((config.channels.len() as u64).into()),
             trigger_count_at: card_address("trigger_count"),
             trigger_now_at: card_address("trigger_now"),
             calibrate_at: card_address("calibrate"),
@@ -207,17 +219,19 @@ impl Logic for RegisterBank {
         dff_setup!(
             self,
             clock,
-            turning,
-            position,
-            done_now,
-            write_now,
-            config_page
+            byte_at,
+            block_at,
+            turn,
+            word_passes,
+            byte_passes,
+            ended
         );
+        dff_setup!(self, clock, turning, done_now, write_now, config_page);
         dff_setup!(
             self,
             clock,
-            result_words,
-            channels,
+            skipped_words,
+            skipped_channels,
             rom_byte,
             count_held,
             count_byte
@@ -230,19 +244,35 @@ impl Logic for RegisterBank {
             trigger_strobe,
             calibrate_strobe
         );
-        dff_setup!(self, clock, active_sources, active_period, hold);
+        dff_setup!(
+            self,
+            clock,
+            active_sources,
+            active_period,
+            hold,
+            rom_skip,
+            count_skip
+        );
         clock!(self, clock, ring);
         self.ring.reset.next = self.reset.val();
         self.turning.reset.next = self.reset.val();
-        self.position.reset.next = self.reset.val();
+        self.byte_at.reset.next = self.reset.val();
+        self.block_at.reset.next = self.reset.val();
+        self.turn.reset.next = self.reset.val();
+        self.word_passes.reset.next = self.reset.val();
+        self.byte_passes.reset.next = self.reset.val();
+        self.ended.reset.next = self.reset.val();
         self.done_now.reset.next = self.reset.val();
         self.write_now.reset.next = self.reset.val();
         self.config_page.reset.next = self.reset.val();
-        self.result_words.reset.next = self.reset.val();
-        self.channels.reset.next = self.reset.val();
-        self.rom_byte.reset.next = self.reset.val();
+        self.skipped_words.reset.next = self.reset.val();
+        self.skipped_channels.reset.next = self.reset.val();
+        self.rom_skip.reset.next = self.reset.val();
+        self.count_skip.reset.next = self.reset.val();
+        // A reset by deselection takes no logic.
+        self.rom_byte.reset.next = self.rom_skip.q.val();
         self.count_held.reset.next = self.reset.val();
-        self.count_byte.reset.next = self.reset.val();
+        self.count_byte.reset.next = self.count_skip.q.val();
         self.ring_byte.reset.next = self.reset.val();
         self.byte.reset.next = self.reset.val();
         self.trigger_strobe.reset.next = self.reset.val();
@@ -251,26 +281,31 @@ impl Logic for RegisterBank {
         self.active_period.reset.next = self.reset.val();
         self.hold.reset.next = self.reset.val();
 
-        // One turn per access.
-        self.at_end.next = self.position.q.val() == self.last_position.val();
-        self.position.d.next = 0.into();
+        // One turn per access. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
+        self.block_end.next = self.byte_at.q.val() == 11;
+        self.at_end.next = self.block_end.val() & (self.block_at.q.val() == self.last_block.val());
         if self.turning.q.val() {
-            self.position.d.next = self.position.q.val() + 1;
-            // Bytes 12 to 15 of a block do not exist.
-            if self.position.q.val().get_bits::<4>(0) == 11 {
-                self.position.d.next = self.position.q.val() + 5;
+            self.byte_at.d.next = self.byte_at.q.val() + 1;
+            if self.block_end.val() {
+                self.byte_at.d.next = 0.into();
+                self.block_at.d.next = self.block_at.q.val() + 1;
             }
             if self.at_end.val() {
                 self.turning.d.next = false;
             }
+        } else {
+            self.byte_at.d.next = 0.into();
+            self.block_at.d.next = 0.into();
         }
         if self.access.val() {
             self.turning.d.next = true;
             self.write_now.d.next = self.write.val();
         }
-        self.done_now.d.next = self.turning.q.val() & self.at_end.val();
-        self.ring_turn.next = self.turning.q.val();
-        self.ring_home.next = !self.turning.q.val();
+        self.turn.d.next = self.turning.q.val();
+        self.ended.d.next = self.turning.q.val() & self.at_end.val();
+        self.done_now.d.next = self.ended.q.val();
+        self.ring_turn.next = self.turn.q.val();
+        self.ring_home.next = !self.turn.q.val();
         self.done.next = self.done_now.q.val();
 
         // Configuration: the ring carries 3 of the 8 words that a block has room for.
@@ -280,23 +315,23 @@ impl Logic for RegisterBank {
             & !self.word_address.val().get_bit(2);
         self.at_word.next = self.turning.q.val()
             & self.config_page.q.val()
-            & (self.position.q.val().get_bits::<4>(4) == self.word_address.val().get_bits::<4>(3))
-            & (self.position.q.val().get_bits::<2>(2) == self.word_address.val().get_bits::<2>(0));
-        self.at_byte.next =
-            self.at_word.val() & (self.position.q.val().get_bits::<2>(0) == self.lane.val());
-        self.take.next = self.at_word.val() & self.write_now.q.val();
+            & (self.block_at.q.val() == self.word_address.val().get_bits::<4>(3))
+            & (self.byte_at.q.val().get_bits::<2>(2) == self.word_address.val().get_bits::<2>(0));
+        self.word_passes.d.next = self.at_word.val() & self.write_now.q.val();
+        self.byte_passes.d.next =
+            self.at_word.val() & (self.byte_at.q.val().get_bits::<2>(0) == self.lane.val());
         self.head.next = self.ring.byte_out.val();
-        if self.take.val() {
+        if self.word_passes.q.val() {
             self.head.next = self.write_data.val().get_bits::<8>(24);
         }
-        if self.at_byte.val() {
+        if self.byte_passes.q.val() {
             self.ring_byte.d.next = self.ring.byte_out.val();
         }
         if self.access.val() {
             self.ring_byte.d.next = 0.into();
         }
-        self.take_byte.next = self.take.val();
-        self.ring.turn.next = self.turning.q.val();
+        self.take_byte.next = self.word_passes.q.val();
+        self.ring.turn.next = self.turn.q.val();
         self.ring.byte_in.next = self.ring_in.val();
         self.ring_out.next = self.head.val();
 
@@ -321,8 +356,6 @@ impl Logic for RegisterBank {
             }
             _ => {}
         }
-        self.rom_byte.d.next = 0.into();
-        self.count_byte.d.next = 0.into();
         match self.lane.val().index() {
             0 => {
                 self.rom_byte.d.next = self.rom_word.val().get_bits::<8>(24);
@@ -341,12 +374,9 @@ impl Logic for RegisterBank {
                 self.count_byte.d.next = self.count_held.q.val().get_bits::<8>(0);
             }
         }
-        if !self.card_page.val() | self.word_address.val().get_bit(3) {
-            self.rom_byte.d.next = 0.into();
-        }
-        if !self.in_range.val() | (self.word_address.val() != self.trigger_count_at.val()) {
-            self.count_byte.d.next = 0.into();
-        }
+        self.rom_skip.d.next = !self.card_page.val() | self.word_address.val().get_bit(3);
+        self.count_skip.d.next =
+            !self.in_range.val() | (self.word_address.val() != self.trigger_count_at.val());
         self.strobe.next = self.access.val() & self.write.val() & self.in_range.val();
         self.trigger_strobe.d.next = self.strobe.val()
             & (self.word_address.val() == self.trigger_now_at.val())
@@ -357,7 +387,7 @@ impl Logic for RegisterBank {
         }
         self.trigger_now.next = self.trigger_strobe.q.val();
         self.calibrate.next = self.calibrate_strobe.q.val();
-        if !self.turning.q.val() {
+        if !self.turn.q.val() {
             self.active_sources.d.next = self.ring.word0.val().get_bits::<3>(0);
             self.active_period.d.next = self.ring.word1.val().get_bits::<24>(0);
             self.hold.d.next = self.ring.word2.val().get_bit(0);
@@ -371,62 +401,62 @@ impl Logic for RegisterBank {
         if self.follow.val() {
             self.count_held.d.next = self.trigger_count.val();
         }
-        self.result_words.d.next = 0.into();
+        self.skipped_words.d.next = 63.into();
         match self.word_address.val().get_bits::<3>(0).index() {
             0 => {
-                self.result_words.d.next = 1.into();
+                self.skipped_words.d.next = 62.into();
             }
             1 => {
-                self.result_words.d.next = 2.into();
+                self.skipped_words.d.next = 61.into();
             }
             2 => {
-                self.result_words.d.next = 4.into();
+                self.skipped_words.d.next = 59.into();
             }
             3 => {
-                self.result_words.d.next = 8.into();
+                self.skipped_words.d.next = 55.into();
             }
             4 => {
-                self.result_words.d.next = 16.into();
+                self.skipped_words.d.next = 47.into();
             }
             5 => {
-                self.result_words.d.next = 32.into();
+                self.skipped_words.d.next = 31.into();
             }
             _ => {}
         }
         self.result_page.next =
             self.in_range.val() & self.word_address.val().get_bits::<2>(7).all();
-        self.channels.d.next = 0.into();
+        self.skipped_channels.d.next = 255.into();
         if self.result_page.val() {
             match self.word_address.val().get_bits::<4>(3).index() {
                 0 => {
-                    self.channels.d.next = 1.into();
+                    self.skipped_channels.d.next = 254.into();
                 }
                 1 => {
-                    self.channels.d.next = 2.into();
+                    self.skipped_channels.d.next = 253.into();
                 }
                 2 => {
-                    self.channels.d.next = 4.into();
+                    self.skipped_channels.d.next = 251.into();
                 }
                 3 => {
-                    self.channels.d.next = 8.into();
+                    self.skipped_channels.d.next = 247.into();
                 }
                 4 => {
-                    self.channels.d.next = 16.into();
+                    self.skipped_channels.d.next = 239.into();
                 }
                 5 => {
-                    self.channels.d.next = 32.into();
+                    self.skipped_channels.d.next = 223.into();
                 }
                 6 => {
-                    self.channels.d.next = 64.into();
+                    self.skipped_channels.d.next = 191.into();
                 }
                 7 => {
-                    self.channels.d.next = 128.into();
+                    self.skipped_channels.d.next = 127.into();
                 }
                 _ => {}
             }
         }
-        self.word_select.next = self.result_words.q.val();
-        self.channel_select.next = self.channels.q.val();
+        self.word_skip.next = self.skipped_words.q.val();
+        self.channel_skip.next = self.skipped_channels.q.val();
 
         self.byte.d.next = self.rom_byte.q.val()
             | self.count_byte.q.val()

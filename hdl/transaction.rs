@@ -126,7 +126,7 @@ pub struct Transaction {
     pub hold_low: Signal<Out, Bit>,
     /// The clock waits for the cells of all pulses sent.
     pub drain: Signal<Out, Bit>,
-    /// Keeps the clock high: all edges have been sent.
+    /// Keeps the clock high: no frame, or all its edges have been sent.
     pub stop: Signal<Out, Bit>,
     /// This frame measures the propagation delay.
     pub acquire: Signal<Out, Bit>,
@@ -150,15 +150,17 @@ pub struct Transaction {
     timer: Reg<Bits<15>>,
     timer_limit: Reg<Bits<15>>,
     timer_hit: Reg<Bit>,
+    timer_step: Reg<Bit>,
     hold: Reg<Bit>,
     start_now: Reg<Bit>,
     run_now: Reg<Bit>,
+    extra: Reg<Bit>,
+    stop_now: Reg<Bit>,
     calibrated: Reg<Bit>,
     acquiring: Reg<Bit>,
     overrun: Reg<Bit>,
     stalled: Reg<Bit>,
     all_sent: Reg<Bit>,
-    was_started: Reg<Bit>,
     tail_sampled: Reg<Bit>,
     recovery: Reg<Bits<13>>,
     seen: Reg<Bits<10>>,
@@ -173,7 +175,6 @@ pub struct Transaction {
     limit: Signal<Local, Bits<15>>,
     in_us: Signal<Local, Bit>,
     timer_clear: Signal<Local, Bit>,
-    timer_step: Signal<Local, Bit>,
     accept: Signal<Local, Bit>,
     give_up: Signal<Local, Bit>,
     idle: Signal<Local, Bit>,
@@ -230,15 +231,17 @@ impl Transaction {
             timer: Default::default(),
             timer_limit: Default::default(),
             timer_hit: Default::default(),
+            timer_step: Default::default(),
             hold: Default::default(),
             start_now: Default::default(),
             run_now: Default::default(),
+            extra: Default::default(),
+            stop_now: Reg::new(true),
             calibrated: Default::default(),
             acquiring: Default::default(),
             overrun: Default::default(),
             stalled: Default::default(),
             all_sent: Default::default(),
-            was_started: Default::default(),
             tail_sampled: Default::default(),
             recovery: Default::default(),
             seen: Default::default(),
@@ -253,7 +256,6 @@ impl Transaction {
             limit: Default::default(),
             in_us: Default::default(),
             timer_clear: Default::default(),
-            timer_step: Default::default(),
             accept: Default::default(),
             give_up: Default::default(),
             idle: Default::default(),
@@ -277,15 +279,17 @@ impl Logic for Transaction {
             timer,
             timer_limit,
             timer_hit,
+            timer_step,
             hold,
             start_now,
             run_now,
+            extra,
+            stop_now,
             calibrated,
             acquiring,
             overrun,
             stalled,
-            all_sent,
-            was_started
+            all_sent
         );
         dff_setup!(
             self,
@@ -304,8 +308,12 @@ impl Logic for Transaction {
         );
         self.phase.reset.next = self.reset.val();
         self.timer.reset.next = self.reset.val();
+        self.timer_step.reset.next = self.reset.val();
         self.timer_hit.reset.next = self.reset.val();
         self.timer_limit.reset.next = self.reset.val();
+        self.stop_now.reset.next = self.reset.val();
+        self.extra.reset.next = self.reset.val();
+        self.extra.d.next = self.first_low_extra_cycles.val().any();
         self.run_now.reset.next = self.reset.val();
         self.start_now.reset.next = self.reset.val();
         self.hold.reset.next = self.reset.val();
@@ -314,7 +322,6 @@ impl Logic for Transaction {
         self.overrun.reset.next = self.reset.val();
         self.stalled.reset.next = self.reset.val();
         self.all_sent.reset.next = self.reset.val();
-        self.was_started.reset.next = self.reset.val();
         self.tail_sampled.reset.next = self.reset.val();
         self.recovery.reset.next = self.reset.val();
         self.seen.reset.next = self.reset.val();
@@ -367,7 +374,7 @@ impl Logic for Transaction {
                     if self.trigger.val() {
                         self.accept.next = true;
                         self.phase.d.next = Phase::Frame;
-                        if self.first_low_extra_cycles.val().any() {
+                        if self.extra.q.val() {
                             self.phase.d.next = Phase::FirstLow;
                         }
                     }
@@ -432,9 +439,7 @@ impl Logic for Transaction {
             Phase::Abort => {
                 self.in_us.next = true;
                 self.limit.next = self.abort_us.val();
-                // The first cycle here still sees the time-out that led here.
-                self.timer_clear.next = self.gave_up.q.val();
-                if self.timer_hit.q.val() & !self.gave_up.q.val() {
+                if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::NotReady;
                     self.timer_clear.next = true;
                 }
@@ -443,15 +448,16 @@ impl Logic for Transaction {
                 self.give_up.next = true;
             }
         }
-        if self.give_up.val() {
-            self.phase.d.next = Phase::Abort;
-        }
+        // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
         if self.gave_up.q.val() {
+            self.phase.d.next = Phase::Abort;
+            self.timer_clear.next = true;
+            self.accept.next = false;
             self.calibrated.d.next = false;
         }
 
-        self.timer_step.next = !self.in_us.val() | self.tick_us.val();
-        if self.timer_step.val() {
+        self.timer_step.d.next = !self.in_us.val() | self.tick_us.val();
+        if self.timer_step.q.val() {
             self.timer.d.next = self.timer.q.val() + 1;
         }
         self.timer_limit.d.next = self.limit.val();
@@ -470,8 +476,6 @@ impl Logic for Transaction {
 
         // Pulses: never more on the cable than the answer needs.
         self.all_sent.d.next = bit_cast::<7, 6>(self.outstanding.val()) == self.cells_left.val();
-        // Taking the start bit ends its cell: the comparison of the cycle before says nothing then.
-        self.was_started.d.next = self.started.val();
         if self.all_sent.q.val() & !self.started.val() {
             self.stalled.d.next = true;
         }
@@ -482,8 +486,9 @@ impl Logic for Transaction {
         // What happened is registered, then told: the frame's bits stay where they are.
         self.seen.d.next = self.found.val();
         self.taken.d.next = self.verdict.val();
-        self.gave_up.d.next = self.give_up.val();
-        self.gave_up_late.d.next = self.give_up.val() & (self.phase.q.val() == Phase::Recovery);
+        self.gave_up.d.next = self.give_up.val() & !self.gave_up.q.val();
+        self.gave_up_late.d.next =
+            self.give_up.val() & !self.gave_up.q.val() & (self.phase.q.val() == Phase::Recovery);
         self.told.next = self.seen.q.val();
         self.good_now.d.next = false;
         if self.taken.q.val() {
@@ -558,7 +563,9 @@ impl Logic for Transaction {
         self.hold.d.next = (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val();
         self.hold_low.next = self.hold.q.val();
         self.drain.next = self.stalled.q.val();
-        self.stop.next = self.all_sent.q.val() & self.was_started.q.val();
+        // Taking the start bit ends its cell; `started` comes when the comparison knows that.
+        self.stop_now.d.next = (self.all_sent.q.val() & self.started.val()) | !self.run_now.q.val();
+        self.stop.next = self.stop_now.q.val();
         self.acquire.next = self.acquiring.q.val();
         self.busy.next = !self.idle.val();
         self.publish.next = self.publish_now.q.val();

@@ -40,7 +40,9 @@ pub struct Trigger {
     sync1: SyncReg<Bit>,
     sync2: SyncReg<Bit>,
     timer: Reg<Bits<24>>,
-    timer_hit: Reg<Bit>,
+    timer_hit_low: Reg<Bit>,
+    timer_hit_high: Reg<Bit>,
+    timer_hit: Signal<Local, Bit>,
     strobe: Reg<Bit>,
     count: Reg<Bits<32>>,
     timer_first: Constant<Bits<24>>,
@@ -65,6 +67,8 @@ impl Default for Trigger {
             sync1: SyncReg::new(true),
             sync2: SyncReg::new(true),
             timer: Reg::new(TIMER_FIRST.into()),
+            timer_hit_low: Default::default(),
+            timer_hit_high: Default::default(),
             timer_hit: Default::default(),
             strobe: Default::default(),
             count: Default::default(),
@@ -76,12 +80,24 @@ impl Default for Trigger {
 impl Logic for Trigger {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, sync0, sync1, sync2, timer, timer_hit, strobe, count);
+        dff_setup!(
+            self,
+            clock,
+            sync0,
+            sync1,
+            sync2,
+            timer,
+            timer_hit_low,
+            timer_hit_high,
+            strobe,
+            count
+        );
         self.sync0.reset.next = self.reset.val();
         self.sync1.reset.next = self.reset.val();
         self.sync2.reset.next = self.reset.val();
         self.timer.reset.next = self.reset.val();
-        self.timer_hit.reset.next = self.reset.val();
+        self.timer_hit_low.reset.next = self.reset.val();
+        self.timer_hit_high.reset.next = self.reset.val();
         self.strobe.reset.next = self.reset.val();
         self.count.reset.next = self.reset.val();
 
@@ -89,17 +105,21 @@ impl Logic for Trigger {
         self.sync1.d.next = self.sync0.q.val();
         self.sync2.d.next = self.sync1.q.val();
 
-        self.timer_hit.d.next = self.timer.q.val() == self.period_cycles.val();
+        self.timer_hit_low.d.next =
+            self.timer.q.val().get_bits::<12>(0) == self.period_cycles.val().get_bits::<12>(0);
+        self.timer_hit_high.d.next =
+            self.timer.q.val().get_bits::<12>(12) == self.period_cycles.val().get_bits::<12>(12);
+        self.timer_hit.next = self.timer_hit_low.q.val() & self.timer_hit_high.q.val();
         self.timer.d.next = self.timer.q.val() + 1;
         // Restarts while disabled: the first period is a whole one.
-        if self.timer_hit.q.val() | !self.sources.val().get_bit(1) {
+        if self.timer_hit.val() | !self.sources.val().get_bit(1) {
             self.timer.d.next = self.timer_first.val();
-            self.timer_hit.d.next = false;
+            self.timer_hit_low.d.next = false;
         }
 
         self.strobe.d.next =
             (self.sync1.q.val() & !self.sync2.q.val() & self.sources.val().get_bit(0))
-                | (self.timer_hit.q.val() & self.sources.val().get_bit(1))
+                | (self.timer_hit.val() & self.sources.val().get_bit(1))
                 | (self.register.val() & self.sources.val().get_bit(2));
         if self.strobe.q.val() {
             self.count.d.next = self.count.q.val() + 1;

@@ -192,8 +192,8 @@ pub struct UartTransmitter {
     count: Reg<Bits<15>>,
     bit_end: Reg<Bit>,
     shift: Reg<Bits<10>>,
+    empty: Reg<Bit>,
     hit: Signal<Local, Bit>,
-    empty: Signal<Local, Bit>,
     take: Signal<Local, Bit>,
     last_count: Constant<Bits<15>>,
     stop_bit: Constant<Bits<10>>,
@@ -212,8 +212,8 @@ impl UartTransmitter {
             count: Default::default(),
             bit_end: Default::default(),
             shift: Reg::new(1.into()),
+            empty: Reg::new(true),
             hit: Default::default(),
-            empty: Default::default(),
             take: Default::default(),
             last_count: Constant::new((bit_cycles - 1).into()),
             stop_bit: Constant::new((1u64 << 9).into()),
@@ -224,10 +224,11 @@ impl UartTransmitter {
 impl Logic for UartTransmitter {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, count, bit_end, shift);
+        dff_setup!(self, clock, count, bit_end, shift, empty);
         self.count.reset.next = self.reset.val();
         self.bit_end.reset.next = self.reset.val();
         self.shift.reset.next = self.reset.val();
+        self.empty.reset.next = self.reset.val();
 
         // Bits begin on a fixed grid, so that a byte is loaded in the shift register's own step.
         self.hit.next = self.count.q.val() == self.last_count.val();
@@ -238,9 +239,9 @@ impl Logic for UartTransmitter {
         self.bit_end.d.next = self.hit.val();
 
         // Only the stop bit is left, and it stays until there is something to send.
-        self.empty.next = !self.shift.q.val().get_bits::<9>(1).any();
-        self.take.next = self.bit_end.q.val() & self.empty.val() & self.valid.val();
-        if self.bit_end.q.val() & !self.empty.val() {
+        self.empty.d.next = !self.shift.q.val().get_bits::<9>(1).any();
+        self.take.next = self.bit_end.q.val() & self.empty.q.val() & self.valid.val();
+        if self.bit_end.q.val() & !self.empty.q.val() {
             self.shift.d.next = bit_cast::<10, 9>(self.shift.q.val().get_bits::<9>(1));
         }
         if self.take.val() {

@@ -82,17 +82,21 @@ pub struct UartBridge {
     out_of_range: Reg<Bit>,
     byte_lane: Reg<Bits<2>>,
     data: Reg<Bits<32>>,
+    sent: Reg<Bit>,
+    word_end: Reg<Bit>,
+    last_word: Reg<Bit>,
+    no_word: Reg<Bit>,
+    step_address: Reg<Bit>,
+    access_next: Reg<Bit>,
     access_now: Reg<Bit>,
     byte_ready: Reg<Bit>,
     idle_us: Reg<Bits<17>>,
     expired: Reg<Bit>,
+    stop_timer: Reg<Bit>,
     last_lane: Signal<Local, Bit>,
-    last_word: Signal<Local, Bit>,
-    next_word: Signal<Local, Bit>,
     next_lane: Signal<Local, Bit>,
     next_address: Signal<Local, Bits<10>>,
     high_bits: Signal<Local, Bit>,
-    stop_timer: Signal<Local, Bit>,
     timeout_us: Constant<Bits<17>>,
 }
 
@@ -125,17 +129,21 @@ impl UartBridge {
             out_of_range: Default::default(),
             byte_lane: Default::default(),
             data: Default::default(),
+            sent: Default::default(),
+            word_end: Default::default(),
+            last_word: Default::default(),
+            no_word: Default::default(),
+            step_address: Default::default(),
+            access_next: Default::default(),
             access_now: Default::default(),
             byte_ready: Default::default(),
             idle_us: Default::default(),
             expired: Default::default(),
+            stop_timer: Default::default(),
             last_lane: Default::default(),
-            last_word: Default::default(),
-            next_word: Default::default(),
             next_lane: Default::default(),
             next_address: Default::default(),
             high_bits: Default::default(),
-            stop_timer: Default::default(),
             timeout_us: Constant::new(timeout_us.into()),
         }
     }
@@ -154,7 +162,18 @@ impl Logic for UartBridge {
             address,
             out_of_range
         );
-        dff_setup!(self, clock, byte_lane, data, access_now, byte_ready, idle_us, expired);
+        dff_setup!(self, clock, byte_lane, data, byte_ready, idle_us, expired, stop_timer);
+        dff_setup!(
+            self,
+            clock,
+            sent,
+            word_end,
+            last_word,
+            no_word,
+            step_address,
+            access_next,
+            access_now
+        );
         clock!(self, clock, receiver, transmitter);
         self.receiver.reset.next = self.reset.val();
         self.transmitter.reset.next = self.reset.val();
@@ -166,9 +185,16 @@ impl Logic for UartBridge {
         self.out_of_range.reset.next = self.reset.val();
         self.byte_lane.reset.next = self.reset.val();
         self.data.reset.next = self.reset.val();
+        self.sent.reset.next = self.reset.val();
+        self.word_end.reset.next = self.reset.val();
+        self.last_word.reset.next = self.reset.val();
+        self.no_word.reset.next = self.reset.val();
+        self.step_address.reset.next = self.reset.val();
+        self.access_next.reset.next = self.reset.val();
         self.access_now.reset.next = self.reset.val();
         self.byte_ready.reset.next = self.reset.val();
         self.idle_us.reset.next = self.reset.val();
+        self.stop_timer.reset.next = self.reset.val();
         self.expired.reset.next = self.reset.val();
 
         self.receiver.rx.next = self.rx.val();
@@ -177,16 +203,21 @@ impl Logic for UartBridge {
         self.tx.next = self.transmitter.tx.val();
 
         self.last_lane.next = self.byte_lane.q.val().all();
-        self.last_word.next = self.words_left.q.val() == 1;
+        // Bytes are tens of cycles apart: every decision may take a few, which keeps each one short.
+        self.last_word.d.next = self.words_left.q.val() == 1;
+        self.no_word.d.next = !self.words_left.q.val().any();
+        self.sent.d.next = self.transmitter.accept.val();
+        self.word_end.d.next = false;
+        self.step_address.d.next = false;
+        self.access_next.d.next = false;
+        self.access_now.d.next = self.access_next.q.val();
         self.next_lane.next = false;
-        self.next_word.next = false;
         self.high_bits.next = self.receiver.data.val().any();
-        self.access_now.d.next = false;
-        self.stop_timer.next = self.receiver.strobe.val();
+        self.stop_timer.d.next = self.receiver.strobe.val();
 
         match self.state.q.val() {
             BridgeState::Command => {
-                self.stop_timer.next = true;
+                self.stop_timer.d.next = true;
                 if self.receiver.strobe.val() {
                     self.writing.d.next = self.receiver.data.val().get_bit(0);
                     self.fixed.d.next = false;
@@ -222,12 +253,11 @@ impl Logic for UartBridge {
                     self.next_lane.next = true;
                     if self.last_lane.val() {
                         self.state.d.next = BridgeState::Read;
-                        self.access_now.d.next = !self.writing.q.val();
+                        self.access_next.d.next = !self.writing.q.val() & !self.no_word.q.val();
                         if self.writing.q.val() {
                             self.state.d.next = BridgeState::Write;
                         }
-                        if !self.words_left.q.val().any() {
-                            self.access_now.d.next = false;
+                        if self.no_word.q.val() {
                             self.state.d.next = BridgeState::Command;
                         }
                     }
@@ -236,22 +266,24 @@ impl Logic for UartBridge {
             BridgeState::Write => {
                 if self.receiver.strobe.val() {
                     self.next_lane.next = true;
-                    if self.last_lane.val() {
-                        self.next_word.next = true;
-                        self.access_now.d.next = true;
-                    }
+                    self.word_end.d.next = self.last_lane.val();
+                    self.access_next.d.next = self.last_lane.val();
                 }
             }
             BridgeState::Read => {
-                self.stop_timer.next = true;
-                if self.transmitter.accept.val() {
+                self.stop_timer.d.next = true;
+                if self.sent.q.val() {
                     self.next_lane.next = true;
-                    self.next_word.next = self.last_lane.val();
-                    self.access_now.d.next = !(self.last_lane.val() & self.last_word.val());
+                    self.word_end.d.next = self.last_lane.val();
+                    self.access_next.d.next = !self.last_lane.val();
+                }
+                if self.word_end.q.val() {
+                    self.access_next.d.next = !self.last_word.q.val();
+                    self.step_address.d.next = !self.fixed.q.val();
                 }
             }
             BridgeState::Discard => {
-                self.stop_timer.next = false;
+                self.stop_timer.d.next = false;
             }
             _ => {
                 self.state.d.next = BridgeState::Discard;
@@ -261,19 +293,19 @@ impl Logic for UartBridge {
         if self.next_lane.val() {
             self.byte_lane.d.next = self.byte_lane.q.val() + 1;
         }
-        if self.next_word.val() {
+        if self.word_end.q.val() {
             self.words_left.d.next = self.words_left.q.val() - 1;
-            if self.last_word.val() {
+            if self.last_word.q.val() {
                 self.state.d.next = BridgeState::Command;
             }
         }
 
         // A written word keeps its address until its access has ended.
+        if self.done.val() & self.writing.q.val() {
+            self.step_address.d.next = !self.fixed.q.val();
+        }
         self.next_address.next = bit_cast::<10, 9>(self.address.q.val()) + 1;
-        if !self.fixed.q.val()
-            & ((self.writing.q.val() & self.done.val())
-                | (!self.writing.q.val() & self.next_word.val()))
-        {
+        if self.step_address.q.val() {
             self.address.d.next = self.next_address.val().get_bits::<9>(0);
             if self.next_address.val().get_bit(9) {
                 self.out_of_range.d.next = true;
@@ -323,13 +355,12 @@ impl Logic for UartBridge {
         if self.tick_us.val() {
             self.idle_us.d.next = self.idle_us.q.val() + 1;
         }
-        if self.stop_timer.val() {
+        if self.stop_timer.q.val() | self.expired.q.val() {
             self.idle_us.d.next = 0.into();
             self.expired.d.next = false;
         }
         if self.expired.q.val() {
             self.state.d.next = BridgeState::Command;
-            self.idle_us.d.next = 0.into();
         }
 
         self.word_address.next = self.address.q.val();

@@ -3,6 +3,9 @@
 mod cli;
 mod config;
 mod constraints;
+mod elaborate;
 mod position;
 mod program;
 mod sim;
+mod three_way;
+mod tools;

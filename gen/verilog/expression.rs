@@ -50,7 +50,8 @@ impl ModulePrinter<'_> {
             }
             ExprKind::Unary(op, inner) => {
                 let is_flag = inner.width_bits == 1;
-                let inner = self.operand(inner, None, for_net, helpers);
+                let is_bare = !matches!(inner.kind, ExprKind::Unary(..) | ExprKind::Binary(..));
+                let inner = self.operand(inner, is_bare, for_net, helpers);
                 let sign = match op {
                     UnaryOp::Not if is_flag => "!",
                     UnaryOp::Not => "~",
@@ -61,8 +62,13 @@ impl ModulePrinter<'_> {
                 format!("{sign}{inner}")
             }
             ExprKind::Binary(op, left, right) => {
-                let left = self.operand(left, Some(*op), for_net, helpers);
-                let right = self.operand(right, None, for_net, helpers);
+                let is_bare = |e: &Expr, is_left: bool| match e.kind {
+                    ExprKind::Binary(inner, ..) => is_left && inner == *op && is_chain(inner),
+                    ExprKind::Unary(inner, _) => inner == UnaryOp::Not,
+                    _ => true,
+                };
+                let left = self.operand(left, is_bare(left, true), for_net, helpers);
+                let right = self.operand(right, is_bare(right, false), for_net, helpers);
                 format!("{left} {} {right}", sign(*op))
             }
         }
@@ -72,22 +78,14 @@ impl ModulePrinter<'_> {
     fn operand(
         &mut self,
         expr: &Expr,
-        chain: Option<BinaryOp>,
+        is_bare: bool,
         for_net: &str,
         helpers: &mut Helpers,
     ) -> String {
         let text = self.expression(expr, for_net, helpers);
-        let is_bare = match expr.kind {
-            ExprKind::Binary(op, ..) => chain == Some(op) && is_chain(op),
-            ExprKind::Unary(op, _) => op == UnaryOp::Not && chain.is_some(),
-            _ => true,
-        };
-        match expr.kind {
-            ExprKind::Unary(UnaryOp::Not, _) if !text.contains(' ') && !text.starts_with("~(") => {
-                text
-            }
-            _ if is_bare => text,
-            _ => format!("({text})"),
+        match is_bare {
+            true => text,
+            false => format!("({text})"),
         }
     }
 
@@ -134,9 +132,9 @@ impl ModulePrinter<'_> {
             .checked_shl(index.width_bits as u32)
             .unwrap_or(usize::MAX);
         let needed_bits = positions.saturating_add(width_bits - 1);
-        let name = match inner.kind {
+        let (name, net_bits) = match inner.kind {
             ExprKind::Net(net) if needed_bits <= inner.width_bits => {
-                self.module.nets[net].name.clone()
+                (self.module.nets[net].name.clone(), inner.width_bits)
             }
             _ if needed_bits <= 1024 => {
                 let base = match inner.kind {
@@ -150,7 +148,11 @@ impl ModulePrinter<'_> {
                     },
                     false => inner.clone(),
                 };
-                self.helper(value, base, u128::MAX, for_net, helpers)
+                let net_bits = value.width_bits;
+                (
+                    self.helper(value, base, u128::MAX, for_net, helpers),
+                    net_bits,
+                )
             }
             _ => {
                 let shifted = Expr {
@@ -174,7 +176,16 @@ impl ModulePrinter<'_> {
                 };
             }
         };
-        let index = self.expression(index, for_net, helpers);
+        // As many bits as count the bits of the net: linters take less for a mistake.
+        let index_bits = usize::BITS as usize - (net_bits - 1).leading_zeros() as usize;
+        let index = match index_bits > index.width_bits {
+            true => Expr {
+                width_bits: index_bits,
+                kind: ExprKind::Extend(Box::new(index.clone())),
+            },
+            false => index.clone(),
+        };
+        let index = self.expression(&index, for_net, helpers);
         match width_bits {
             1 => format!("{name}[{index}]"),
             _ => format!("{name}[{index} +: {width_bits}]"),

@@ -29,6 +29,8 @@ pub(super) struct ModulePrinter<'a> {
     /// Names of the states that are used.
     variants: BTreeMap<(EnumId, usize), String>,
     used_parameters: BTreeSet<usize>,
+    /// Next values of registers that are one expression: they need no net.
+    direct_next: BTreeMap<NetId, Expr>,
 }
 
 impl<'a> ModulePrinter<'a> {
@@ -46,6 +48,7 @@ impl<'a> ModulePrinter<'a> {
             process_targets: BTreeSet::new(),
             variants: BTreeMap::new(),
             used_parameters: BTreeSet::new(),
+            direct_next: direct_next(module),
         }
     }
 
@@ -81,9 +84,17 @@ impl<'a> ModulePrinter<'a> {
         let instances: String = (0..self.module.instances.len())
             .map(|i| self.instance(i))
             .collect();
+        let direct = self.direct_next.clone();
         let mut processes = String::new();
         let mut in_always = BTreeSet::new();
-        for process in &self.module.processes {
+        let is_direct =
+            |s: &Statement| matches!(s, Statement::Assign { net, .. } if direct.contains_key(net));
+        let processes_left = self
+            .module
+            .processes
+            .iter()
+            .filter(|p| !p.statements.iter().any(is_direct));
+        for process in processes_left {
             let text = self.process(&process.statements, &mut in_always);
             processes.push_str(&text);
         }
@@ -132,7 +143,7 @@ impl<'a> ModulePrinter<'a> {
             statement.for_each_expr(&mut |expr| visit(expr, used));
         }
         for connection in self.module.instances.iter().flat_map(|i| &i.connections) {
-            visit(connection, used);
+            visit(&connection.value, used);
         }
     }
 
@@ -220,7 +231,7 @@ impl<'a> ModulePrinter<'a> {
             .nets
             .iter()
             .enumerate()
-            .filter(|(id, _)| !ports.contains(id))
+            .filter(|(id, _)| !ports.contains(id) && !self.direct_next.contains_key(id))
         {
             out.push_str(&comment(&net.docs, INDENT));
             let vector = vector(net.width_bits);
@@ -297,7 +308,7 @@ impl<'a> ModulePrinter<'a> {
         let child = &self.design.modules[instance.module];
         let mut lines = vec![];
         for (port, connection) in child.ports.iter().zip(&instance.connections) {
-            let value = self.expression(connection, "", &mut Helpers::default());
+            let value = self.expression(&connection.value, "", &mut Helpers::default());
             lines.push(format!(
                 "{INDENT}{INDENT}.{}({value})",
                 child.nets[port.net].name
@@ -475,34 +486,38 @@ impl<'a> ModulePrinter<'a> {
         let mut out = String::new();
         for ((clock, reset), group) in groups {
             let name = |net: NetId| &self.module.nets[net].name;
-            let next = |pad: &str| -> String {
-                group
-                    .iter()
-                    .map(|r| format!("{pad}{} <= {};\n", name(r.q), name(r.next)))
-                    .collect()
-            };
             let (pad, deep) = (INDENT.repeat(2), INDENT.repeat(3));
             let head = format!("\n{INDENT}always @(posedge {}) begin\n", name(clock));
+            let reset = reset.map(|net| name(net).clone());
             let body = match reset {
-                None => next(&pad),
+                None => self.next_values(&group, &pad),
                 Some(reset) => {
-                    let (reset, next) = (name(reset).clone(), next(&deep));
-                    let starts: String = group
-                        .iter()
-                        .map(|r| {
-                            format!(
-                                "{deep}{} <= {};\n",
-                                self.module.nets[r.q].name,
-                                self.start(r)
-                            )
-                        })
-                        .collect();
+                    let next = self.next_values(&group, &deep);
+                    let mut start = |r: &&Register| {
+                        let start = self.start(r);
+                        format!("{deep}{} <= {start};\n", self.module.nets[r.q].name)
+                    };
+                    let starts: String = group.iter().map(&mut start).collect();
                     format!(
                         "{pad}if ({reset}) begin\n{starts}{pad}end else begin\n{next}{pad}end\n"
                     )
                 }
             };
             out.push_str(&format!("{head}{body}{INDENT}end\n"));
+        }
+        out
+    }
+
+    fn next_values(&mut self, group: &[&Register], pad: &str) -> String {
+        let mut out = String::new();
+        self.process_targets.clear();
+        for register in group {
+            let name = self.module.nets[register.q].name.clone();
+            let next = match self.direct_next.get(&register.next).cloned() {
+                Some(expr) => self.expression(&expr, &name, &mut Helpers::default()),
+                None => self.module.nets[register.next].name.clone(),
+            };
+            out.push_str(&format!("{pad}{name} <= {next};\n"));
         }
         out
     }
@@ -535,6 +550,20 @@ impl<'a> ModulePrinter<'a> {
             last = words - 1
         )
     }
+}
+
+/// Registers whose next value is a single expression, and that expression.
+fn direct_next(module: &Module) -> BTreeMap<NetId, Expr> {
+    let next: BTreeSet<NetId> = module.registers.iter().map(|r| r.next).collect();
+    let single = |process: &endat_hdl::elaborate::Process| match &process.statements[..] {
+        [Statement::Assign { net, value, .. }]
+            if next.contains(net) && value.width_bits == module.nets[*net].width_bits =>
+        {
+            Some((*net, value.clone()))
+        }
+        _ => None,
+    };
+    module.processes.iter().filter_map(single).collect()
 }
 
 /// The ranges of set bits, as lowest bit and width.

@@ -19,9 +19,9 @@ fn step(uut: &mut ChannelRegisters) {
 fn read(uut: &mut ChannelRegisters, word: usize) -> u32 {
     let mut bytes = [0; 4];
     for (lane, byte) in bytes.iter_mut().enumerate() {
-        uut.word_select.next = (1u64 << word).into();
+        uut.word_skip.next = (!(1u64 << word) & 0x3f).into();
         uut.lane.next = (lane as u64).into();
-        uut.selected.next = true;
+        uut.skip.next = false;
         step(uut);
         step(uut);
         *byte = uut.read_out.val().to_u8();
@@ -95,7 +95,7 @@ fn words_stand_still_without_load_and_read_as_zero_when_not_selected() {
         (read(&mut uut, 0), read(&mut uut, 1), read(&mut uut, 2)),
         (7, 0, 0)
     );
-    uut.selected.next = false;
+    uut.skip.next = true;
     step(&mut uut);
     assert_eq!(uut.read_out.val().to_u8(), 0);
     uut.read_in.next = 0xa5u64.into();

@@ -137,7 +137,10 @@ impl Builder {
             block,
             module: Module {
                 name: String::new(),
-                type_name: found.map_or_else(|| verilog_name(&block.name), |t| t.name.clone()),
+                type_name: match found {
+                    Some(found) => found.name.clone(),
+                    None => block.name.split('$').next().unwrap_or(&block.name).into(),
+                },
                 docs: found.map_or(vec![], |t| t.docs.clone()),
                 nets: vec![],
                 ports: vec![],
@@ -318,7 +321,14 @@ impl Builder {
         draft.module.instances.push(Instance {
             name,
             module: id,
-            connections: nets.iter().map(|net| draft.module.net_expr(*net)).collect(),
+            connections: nets
+                .iter()
+                .zip(&self.design.modules[id].ports)
+                .map(|(net, port)| Connection {
+                    direction: port.direction,
+                    value: draft.module.net_expr(*net),
+                })
+                .collect(),
         });
         draft.ports_of_child.push(nets);
         Ok(())
@@ -329,12 +339,12 @@ impl Builder {
         let mut depends = Dependencies::new();
         for instance in &draft.module.instances {
             for (output, inputs) in &self.through[instance.module] {
-                let ExprKind::Net(net) = instance.connections[*output].kind else {
+                let ExprKind::Net(net) = instance.connections[*output].value.kind else {
                     continue;
                 };
                 let sources: &mut BTreeSet<NetId> = depends.entry(net).or_default();
                 for input in inputs {
-                    instance.connections[*input].for_each_net(&mut |net| {
+                    instance.connections[*input].value.for_each_net(&mut |net| {
                         sources.insert(net);
                     });
                 }
@@ -559,12 +569,12 @@ impl Draft<'_> {
         }
         for instance in &mut self.module.instances {
             for connection in &mut instance.connections {
-                if let ExprKind::Net(net) = connection.kind {
+                if let ExprKind::Net(net) = connection.value.kind {
                     if let Some(source) = sources.get(&net) {
-                        *connection = source.clone();
+                        connection.value = source.clone();
                     }
                 }
-                connection.for_each_net_mut(&mut |net| rename(net));
+                connection.value.for_each_net_mut(&mut |net| rename(net));
             }
         }
         let replace = |net: &mut NetId| {
@@ -787,9 +797,11 @@ impl Module {
             }
         }
         for instance in &self.instances {
-            for connection in &instance.connections {
-                for_each_read(connection, &mut note);
-            }
+            let inputs = instance
+                .connections
+                .iter()
+                .filter(|c| c.direction == Direction::Input);
+            inputs.for_each(|c| for_each_read(&c.value, &mut note));
         }
         read
     }
@@ -799,6 +811,11 @@ impl Module {
         nets.extend(self.ports.iter().map(|p| p.net));
         nets.extend(self.registers.iter().map(|r| r.q));
         nets.extend(self.memories.iter().map(|m| m.read_data));
+        for connection in self.instances.iter().flat_map(|i| &i.connections) {
+            connection.value.for_each_net(&mut |net| {
+                nets.insert(net);
+            });
+        }
         for statement in self.processes.iter().flat_map(|p| &p.statements) {
             statement.for_each_target(&mut |net, _, _| {
                 nets.insert(net);
@@ -826,7 +843,9 @@ impl Module {
         }
         for instance in &mut self.instances {
             for connection in &mut instance.connections {
-                connection.for_each_net_mut(&mut |net| *net = map(*net));
+                connection
+                    .value
+                    .for_each_net_mut(&mut |net| *net = map(*net));
             }
         }
     }

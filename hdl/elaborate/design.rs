@@ -172,9 +172,17 @@ pub struct Instance {
     pub name: String,
     /// The child.
     pub module: ModuleId,
-    /// What each port of the child is connected to, in port order. An input may be a constant or a part of a
-    /// net, an output is a whole net.
-    pub connections: Vec<Expr>,
+    /// What each port of the child is connected to, in port order.
+    pub connections: Vec<Connection>,
+}
+
+/// What a port of an [`Instance`] is connected to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Connection {
+    /// Direction of the port, seen from the child.
+    pub direction: Direction,
+    /// A net, or for an input also a constant or a part of a net.
+    pub value: Expr,
 }
 
 /// Statements that drive a set of nets, in order; later assignments replace earlier ones.

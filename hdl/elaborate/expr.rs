@@ -339,6 +339,7 @@ pub(super) fn resize(expr: Expr, width_bits: usize) -> Expr {
         _ if width_bits == expr.width_bits => expr,
         ExprKind::Constant(value) => Expr::constant(value, width_bits),
         _ if width_bits < expr.width_bits => slice(expr, 0, width_bits),
+        ExprKind::Extend(inner) => resize(*inner, width_bits),
         _ => Expr {
             width_bits,
             kind: ExprKind::Extend(Box::new(expr)),

@@ -94,7 +94,30 @@ impl Targets {
                 }
             }
         }
-        sets.names()
+        // Sets that read each other's last values can only run as one, in the order of the source.
+        loop {
+            let classes = sets.names();
+            let mut graph: Dependencies = classes
+                .values()
+                .map(|class| (*class, BTreeSet::new()))
+                .collect();
+            for &(target, read, at) in &self.reads {
+                if let Some(&(_, last)) = self.span.get(&read) {
+                    let (class, source) = (classes[&target], classes[&read]);
+                    if at > last && class != source {
+                        graph.entry(class).or_default().insert(source);
+                    }
+                }
+            }
+            let left: BTreeMap<NetId, usize> = graph.keys().map(|class| (*class, 0)).collect();
+            let found = find_loop(&graph, &on_loops(&graph, left));
+            if found.len() < 2 {
+                return classes;
+            }
+            for pair in found.windows(2) {
+                sets.join(pair[0], pair[1]);
+            }
+        }
     }
 
     /// Sets of classes that share top-level statements: candidates for one process.
@@ -163,6 +186,22 @@ impl Targets {
             order.push(class);
         }
         Ok(order)
+    }
+}
+
+/// The classes that are left when those that depend on nothing left are taken away again and again.
+fn on_loops(graph: &Dependencies, mut left: BTreeMap<NetId, usize>) -> BTreeMap<NetId, usize> {
+    loop {
+        let count = left.len();
+        let before = left.clone();
+        left.retain(|class, _| {
+            graph[class]
+                .iter()
+                .any(|source| before.contains_key(source))
+        });
+        if left.len() == count {
+            return left;
+        }
     }
 }
 

@@ -5,7 +5,7 @@ mod kernel;
 mod program;
 
 pub use interpreter::{Interpreter, InterpreterError};
-pub use kernel::{KernelEngine, Pin};
+pub use kernel::{Access, KernelEngine, Number, Pin};
 
 /// Index of a port in [`Engine::ports`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -54,7 +54,7 @@ pub const FRAME_LIMIT: Time = 5 * MS;
 pub type Rig = Bench<Interpreter>;
 
 /// The times that are fixed in the channels of these tests.
-pub const fn fixed_times(system_hz: u64) -> FixedTimes {
+fn fixed_times(system_hz: u64) -> FixedTimes {
     FixedTimes {
         abort_us: ABORT_US,
         ..FixedTimes::at(system_hz)
@@ -160,6 +160,13 @@ impl Setup {
         settle(&mut rig);
         assert_sound(&sound, &rig);
         rig.engine().clone()
+    }
+
+    /// Like [`Setup::ready`], for an encoder whose recovery time would be a fault of the frame that measures.
+    pub fn ready_with_other_recovery(&self) -> Rig {
+        let mut usual = self.clone();
+        usual.encoder.tm = 2 * US..=2 * US;
+        self.on(usual.measured())
     }
 
     /// A channel that has measured the delay of this line: the next frame runs at the full clock and is the

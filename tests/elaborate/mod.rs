@@ -1,0 +1,9 @@
+//! From kernels to the typed design to Verilog: every construct, three ways.
+
+mod errors;
+mod lint;
+mod mismatch;
+mod program;
+mod random;
+mod source_check;
+mod zoo;

@@ -1,0 +1,58 @@
+//! Outside tools. A tool that is missing is a skipped check with a line that says so; in CI (variable `CI` set) it is a failure.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Whether a tool can be started.
+pub fn has(tool: &str) -> bool {
+    let version = if tool == "iverilog" {
+        "-V"
+    } else {
+        "--version"
+    };
+    Command::new(tool)
+        .arg(version)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .is_ok()
+}
+
+/// Whether a check that needs `tool` can run. If not, says which check is skipped, or fails in CI.
+pub fn require(tool: &str, check: &str) -> bool {
+    if has(tool) {
+        return true;
+    }
+    assert!(
+        std::env::var_os("CI").is_none(),
+        "{check}: {tool} is not installed, and CI requires it"
+    );
+    // not eprintln!, which the test harness would swallow
+    let _ = writeln!(
+        std::io::stderr(),
+        "SKIPPED {check}: {tool} is not installed"
+    );
+    false
+}
+
+/// An empty folder for the files of one test.
+pub fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&path);
+    fs::create_dir_all(&path).unwrap();
+    path
+}
+
+/// Runs a tool in a folder; its two outputs, and whether it was content.
+pub fn run(tool: &str, folder: &Path, arguments: &[&str]) -> (bool, String) {
+    let output = Command::new(tool)
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    let mut text = String::from_utf8_lossy(&output.stdout).into_owned();
+    text.push_str(&String::from_utf8_lossy(&output.stderr));
+    (output.status.success(), text)
+}
