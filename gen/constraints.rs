@@ -5,9 +5,9 @@ use crate::board::Assignment;
 use crate::config::{Kind, Project};
 use crate::error::GenError;
 use crate::explain;
-use minijinja::syntax::SyntaxConfig;
+use crate::template;
+use minijinja::context;
 use minijinja::value::{Serde, Value};
-use minijinja::{context, Environment, UndefinedBehavior};
 use serde::Serialize;
 
 const TEMPLATES: [(&str, &str); 3] = [
@@ -96,19 +96,6 @@ fn ns(hz: u64) -> String {
 
 /// Board top, UCF and README of a project.
 pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
-    let mut environment = Environment::new();
-    environment.set_undefined_behavior(UndefinedBehavior::Strict);
-    let syntax = SyntaxConfig::builder()
-        .keep_trailing_newline(true)
-        .trim_blocks(true)
-        .lstrip_blocks(true)
-        .build();
-    environment.set_syntax(syntax.map_err(broken)?);
-    // The output is Verilog, UCF and Markdown: nothing is to be escaped for HTML.
-    environment.set_auto_escape_callback(|_| minijinja::AutoEscape::None);
-    for (name, text) in TEMPLATES {
-        environment.add_template(name, text).map_err(broken)?;
-    }
     let ports: Vec<Value> = project
         .pins
         .iter()
@@ -132,27 +119,20 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         timing => explain::report(project).to_string(),
     };
     let files = [
-        ("top.v", format!("{}_top.v", project.name)),
-        ("ucf", format!("{}.ucf", project.name)),
-        ("readme", "README.md".into()),
+        format!("{}_top.v", project.name),
+        format!("{}.ucf", project.name),
+        "README.md".into(),
     ];
-    files
-        .into_iter()
-        .map(|(template, path)| {
-            let text = environment
-                .get_template(template)
-                .and_then(|t| t.render(&context))
-                .map_err(broken)?;
-            Ok(Artifact::new(path, text))
+    TEMPLATES
+        .iter()
+        .zip(files)
+        .map(|((name, template), path)| {
+            Ok(Artifact::new(
+                path,
+                template::render(name, template, &context)?,
+            ))
         })
         .collect()
-}
-
-/// A template that does not render is a fault of the program, and still no reason to panic.
-fn broken(error: minijinja::Error) -> GenError {
-    GenError::input(format!(
-        "template: {error:#}; this is a fault of endat-gen, please report it"
-    ))
 }
 
 #[cfg(test)]

@@ -15,6 +15,8 @@ pub mod constraints;
 pub mod crc;
 pub mod error;
 pub mod explain;
+pub mod template;
+pub mod testbench;
 pub mod verilog;
 
 use artifact::Artifact;
@@ -30,6 +32,7 @@ use verilog::Header;
 pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let mut artifacts = design_artifacts(project)?;
     artifacts.extend(constraints::artifacts(project)?);
+    artifacts.push(testbench::artifact(project)?);
     artifacts.push(artifact::manifest(&artifacts));
     Ok(artifacts)
 }

@@ -98,12 +98,12 @@ pub struct RegisterBank {
     active_sources: Reg<Bits<3>>,
     active_period: Reg<Bits<24>>,
     hold: Reg<Bit>,
+    follow: Reg<Bit>,
     at_end: Signal<Local, Bit>,
     at_word: Signal<Local, Bit>,
     block_end: Signal<Local, Bit>,
     card_page: Signal<Local, Bit>,
     strobe: Signal<Local, Bit>,
-    follow: Signal<Local, Bit>,
     result_page: Signal<Local, Bit>,
     head: Signal<Local, Bits<8>>,
     rom_word: Signal<Local, Bits<32>>,
@@ -191,12 +191,12 @@ impl RegisterBank {
             active_sources: Reg::new(u64::from(words[0] & 7).into()),
             active_period: Reg::new(u64::from(words[1]).into()),
             hold: Default::default(),
+            follow: Default::default(),
             at_end: Default::default(),
             at_word: Default::default(),
             block_end: Default::default(),
             card_page: Default::default(),
             strobe: Default::default(),
-            follow: Default::default(),
             result_page: Default::default(),
             head: Default::default(),
             rom_word: Default::default(),
@@ -251,7 +251,8 @@ impl Logic for RegisterBank {
             active_period,
             hold,
             rom_skip,
-            count_skip
+            count_skip,
+            follow
         );
         clock!(self, clock, ring);
         self.ring.reset.next = self.reset.val();
@@ -280,6 +281,7 @@ impl Logic for RegisterBank {
         self.active_sources.reset.next = self.reset.val();
         self.active_period.reset.next = self.reset.val();
         self.hold.reset.next = self.reset.val();
+        self.follow.reset.next = self.reset.val();
 
         // One turn per access. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
         self.block_end.next = self.byte_at.q.val() == 11;
@@ -396,9 +398,10 @@ impl Logic for RegisterBank {
         self.period_cycles.next = self.active_period.q.val();
 
         // Results.
-        self.follow.next = !(self.pending.val() | self.reading.val() | self.hold.q.val());
-        self.load.next = self.follow.val();
-        if self.follow.val() {
+        // A cycle late: a result changes 2 cycles after its trigger at the earliest, the first byte is read later still.
+        self.follow.d.next = !(self.pending.val() | self.reading.val() | self.hold.q.val());
+        self.load.next = self.follow.q.val();
+        if self.follow.q.val() {
             self.count_held.d.next = self.trigger_count.val();
         }
         self.skipped_words.d.next = 63.into();

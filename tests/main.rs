@@ -9,3 +9,4 @@ mod program;
 mod sim;
 mod three_way;
 mod tools;
+mod verilog;

@@ -51,13 +51,22 @@ pub fn record(engine: &mut dyn Engine, stimulus: &Stimulus) -> Recording {
     }
 }
 
-/// Checks that the three executions agree; `Err` names the first cycle and port where they do not.
+impl Recording {
+    /// The values of an output, cycle by cycle.
+    pub fn output(&self, name: &str) -> Vec<u128> {
+        let at = self.outputs.iter().position(|p| p.name == name).unwrap();
+        self.cycles.iter().map(|row| row[at]).collect()
+    }
+}
+
+/// Checks that the three executions agree and returns what they gave; `Err` names the first cycle and port where they
+/// do not.
 pub fn three_way(
     name: &str,
     kernel: &mut dyn Engine,
     design: &Design,
     stimulus: &Stimulus,
-) -> Result<(), String> {
+) -> Result<Recording, String> {
     let expected = record(kernel, stimulus);
     let mut interpreter = Interpreter::new(design).map_err(|e| e.to_string())?;
     for port in design.top().ports.iter().filter(|p| !p.is_clock) {
@@ -97,7 +106,7 @@ pub fn three_way(
     ) {
         replay(name, design, stimulus, &expected)?;
     }
-    Ok(())
+    Ok(expected)
 }
 
 /// Runs the emitted Verilog on the stimulus under iverilog and compares every output in every cycle.

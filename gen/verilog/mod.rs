@@ -3,6 +3,7 @@
 //! Every printed operator has operands of the width of its result, so Verilog's rules for the width of an expression
 //! never change a value. What Verilog cannot say in one expression (bits of an expression) gets a net of its own.
 
+mod clocked;
 mod expression;
 mod module;
 mod names;

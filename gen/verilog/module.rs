@@ -2,11 +2,11 @@
 
 use super::expression::{literal, range, Helper, Helpers};
 use endat_hdl::elaborate::{
-    mask, Design, Direction, EnumId, Expr, ExprKind, Memory, Module, NetId, Register, Statement,
+    mask, Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Statement,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-const INDENT: &str = "    ";
+pub(super) const INDENT: &str = "    ";
 /// Keeps a synchroniser stage a flip-flop: Vivado and XST, then yosys and other tools.
 const SYNCHRONISER: &str = "(* ASYNC_REG = \"TRUE\", SHREG_EXTRACT = \"NO\", keep = \"true\" *)";
 
@@ -16,7 +16,7 @@ pub(super) fn print(design: &Design, module: &Module) -> String {
 }
 
 pub(super) struct ModulePrinter<'a> {
-    design: &'a Design,
+    pub design: &'a Design,
     pub module: &'a Module,
     /// Names in use, in lower case.
     taken: BTreeSet<String>,
@@ -30,7 +30,7 @@ pub(super) struct ModulePrinter<'a> {
     variants: BTreeMap<(EnumId, usize), String>,
     used_parameters: BTreeSet<usize>,
     /// Next values of registers that are one expression: they need no net.
-    direct_next: BTreeMap<NetId, Expr>,
+    pub direct_next: BTreeMap<NetId, Expr>,
 }
 
 impl<'a> ModulePrinter<'a> {
@@ -462,94 +462,6 @@ impl<'a> ModulePrinter<'a> {
             ),
         }
     }
-
-    fn start(&mut self, register: &Register) -> String {
-        let net = &self.module.nets[register.q];
-        match net.enum_id {
-            Some(id) if (register.start as usize) < self.design.enums[id].variants.len() => {
-                self.variant(id, register.start as usize)
-            }
-            _ => literal(register.start, net.width_bits),
-        }
-    }
-
-    /// One clocked process for all registers of one clock and reset.
-    fn registers(&mut self) -> String {
-        let mut groups: Vec<((NetId, Option<NetId>), Vec<&Register>)> = vec![];
-        for register in &self.module.registers {
-            let key = (register.clock, register.reset);
-            match groups.iter_mut().find(|(k, _)| *k == key) {
-                Some((_, group)) => group.push(register),
-                None => groups.push((key, vec![register])),
-            }
-        }
-        let mut out = String::new();
-        for ((clock, reset), group) in groups {
-            let name = |net: NetId| &self.module.nets[net].name;
-            let (pad, deep) = (INDENT.repeat(2), INDENT.repeat(3));
-            let head = format!("\n{INDENT}always @(posedge {}) begin\n", name(clock));
-            let reset = reset.map(|net| name(net).clone());
-            let body = match reset {
-                None => self.next_values(&group, &pad),
-                Some(reset) => {
-                    let next = self.next_values(&group, &deep);
-                    let mut start = |r: &&Register| {
-                        let start = self.start(r);
-                        format!("{deep}{} <= {start};\n", self.module.nets[r.q].name)
-                    };
-                    let starts: String = group.iter().map(&mut start).collect();
-                    format!(
-                        "{pad}if ({reset}) begin\n{starts}{pad}end else begin\n{next}{pad}end\n"
-                    )
-                }
-            };
-            out.push_str(&format!("{head}{body}{INDENT}end\n"));
-        }
-        out
-    }
-
-    fn next_values(&mut self, group: &[&Register], pad: &str) -> String {
-        let mut out = String::new();
-        self.process_targets.clear();
-        for register in group {
-            let name = self.module.nets[register.q].name.clone();
-            let next = match self.direct_next.get(&register.next).cloned() {
-                Some(expr) => self.expression(&expr, &name, &mut Helpers::default()),
-                None => self.module.nets[register.next].name.clone(),
-            };
-            out.push_str(&format!("{pad}{name} <= {next};\n"));
-        }
-        out
-    }
-
-    fn memory(&mut self, memory: &Memory) -> String {
-        let name = |net: NetId| self.module.nets[net].name.clone();
-        let (clock, enable) = (name(memory.clock), name(memory.write_enable));
-        let (write_address, write_data) = (name(memory.write_address), name(memory.write_data));
-        let (read_address, read_data) = (name(memory.read_address), name(memory.read_data));
-        let counter = self.unique(&format!("{}_word", memory.name));
-        let (vector, words) = (vector(memory.width_bits), memory.words);
-        let zero = literal(0, memory.width_bits);
-        let word = &memory.name;
-        let docs = comment(&memory.docs, INDENT);
-        format!(
-            "\n{docs}    reg {vector} {word} [0:{last}];
-    integer {counter};
-    initial begin
-        for ({counter} = 0; {counter} < {words}; {counter} = {counter} + 1) begin
-            {word}[{counter}] = {zero};
-        end
-    end
-    always @(posedge {clock}) begin
-        if ({enable}) begin
-            {word}[{write_address}] <= {write_data};
-        end
-        {read_data} <= {word}[{read_address}];
-    end
-",
-            last = words - 1
-        )
-    }
 }
 
 /// Registers whose next value is a single expression, and that expression.
@@ -579,14 +491,14 @@ fn ranges(mut bits: u128) -> impl Iterator<Item = (usize, usize)> {
     })
 }
 
-fn vector(width_bits: usize) -> String {
+pub(super) fn vector(width_bits: usize) -> String {
     match width_bits {
         1 => String::new(),
         _ => format!("[{}:0]", width_bits - 1),
     }
 }
 
-fn comment(lines: &[String], pad: &str) -> String {
+pub(super) fn comment(lines: &[String], pad: &str) -> String {
     let line = |line: &String| format!("{}\n", format!("{pad}// {line}").trim_end());
     lines.iter().map(line).collect()
 }

@@ -15,14 +15,19 @@ struct Host {
     clk: Vec<bool>,
     tx: Vec<bool>,
     /// Cycles with a calibrate strobe, per channel.
-    calibrations: [usize; 2],
+    calibrations: Vec<usize>,
     cycle: u64,
 }
 
 impl Host {
     /// A card whose encoders hold DATA at `data`, with its trigger sources as bits.
     fn new(data: bool, sources: u8) -> Self {
+        Self::with_channels(data, sources, 2)
+    }
+
+    fn with_channels(data: bool, sources: u8, channels: usize) -> Self {
         let mut config = test_config();
+        config.channels = config.channels.into_iter().cycle().take(channels).collect();
         config.sources.pin = sources & 1 != 0;
         config.sources.timer = sources & 2 != 0;
         config.sources.register = sources & 4 != 0;
@@ -38,10 +43,10 @@ impl Host {
         card.connect_all();
         let mut host = Self {
             card,
-            falls: vec![Vec::new(); 2],
-            clk: vec![true; 2],
+            falls: vec![Vec::new(); channels],
+            clk: vec![true; channels],
             tx: Vec::new(),
-            calibrations: [0; 2],
+            calibrations: vec![0; channels],
             cycle: 0,
         };
         // DATA low for longer than tR.
@@ -331,4 +336,29 @@ fn status_led_blinks_quickly_after_an_error_and_slowly_before() {
     assert!(host.card.faulty.iter().all(|f| !f.val()));
     host.write(address(CARD, "trigger_now", 0), &[1]);
     assert!(host.card.faulty[2].val());
+}
+
+#[test]
+fn cards_of_one_and_of_four_channels_reach_every_channel() {
+    for channels in [1, 4] {
+        let mut host = Host::with_channels(true, 4, channels);
+        let last = channels - 1;
+        let count = CARD.register("capabilities").unwrap();
+        assert_eq!(host.read(count.offset, 1)[0] & 0xff, channels as u32);
+        // A burst at the fastest rate: the ring has turned before the next word is there.
+        let at = 0x108 + 8 * last as u16;
+        let values = [0x1111_1110, 0x2222_2222, 0x3333_3333];
+        let first = host.read(0x108, 3);
+        host.write(at, &values);
+        assert_eq!(host.read(at, 3), values);
+        if channels > 1 {
+            assert_eq!(host.read(0x108, 3), first);
+        }
+        assert_eq!(host.read(at + 8, 3), [0; 3], "a channel that is not there");
+        host.write(address(CARD, "trigger_now", 0), &[1]);
+        assert_eq!(
+            status(host.read(RESULT.base + 8 * last as u16, 1)[0]),
+            (1, 1)
+        );
+    }
 }

@@ -10,7 +10,9 @@
 
 mod build;
 mod design;
+mod direct;
 pub mod docs;
+mod draft;
 mod execute;
 mod expr;
 mod finish;
@@ -19,6 +21,7 @@ mod names;
 mod plan;
 mod scope;
 mod tree;
+mod uses;
 
 pub use design::*;
 pub use execute::{binary, evaluate, execute};

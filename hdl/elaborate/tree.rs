@@ -159,7 +159,7 @@ impl Probe for Reader {
             kind: signal.kind(),
             width_bits,
             descriptor: signal.descriptor(),
-            value: value as u128,
+            value,
         });
     }
 }

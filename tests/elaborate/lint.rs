@@ -2,7 +2,9 @@
 
 use super::zoo::{Everything, Machine, Store};
 use crate::tools;
+use endat_gen::config::load_preset;
 use endat_gen::verilog::{print_files, Header};
+use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, FixedTimes};
 use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::reg::{Reg, SyncReg};
@@ -10,6 +12,7 @@ use rust_hdl::prelude::*;
 use std::fs;
 
 fn designs() -> Vec<Design> {
+    let card = load_preset("s6_two_channel").unwrap().card;
     let mut blocks: Vec<(Box<dyn Block>, &str)> = vec![
         (Box::new(Machine::new(5)), "machine"),
         (Box::new(Everything::new(3)), "everything"),
@@ -19,6 +22,7 @@ fn designs() -> Vec<Design> {
             "channel",
         ),
         (Box::new(Chain::default()), "chain"),
+        (Box::new(Card::new(&card)), "card"),
     ];
     blocks
         .iter_mut()

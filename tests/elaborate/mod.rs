@@ -1,6 +1,8 @@
 //! From kernels to the typed design to Verilog: every construct, three ways.
 
+mod core;
 mod errors;
+mod generator;
 mod lint;
 mod mismatch;
 mod program;

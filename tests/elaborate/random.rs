@@ -1,6 +1,7 @@
 //! Random kernels under random stimulus: rust-hdl, interpreter and Verilog agree.
 
-use super::program::{Generator, RandomKernel, WIDTHS};
+use super::generator::Generator;
+use super::program::{RandomKernel, WIDTHS};
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::elaborate::elaborate;
 use proptest::prelude::*;
@@ -33,7 +34,7 @@ fn check(seed: u64, statements: usize, depth: usize) -> Result<(), String> {
     block.connect_all();
     let design = elaborate(&block, "random").map_err(|e| e.to_string())?;
     let stimulus = stimulus(&mut generator);
-    three_way("random", &mut block.engine(), &design, &stimulus)
+    three_way("random", &mut block.engine(), &design, &stimulus).map(|_| ())
 }
 
 proptest! {

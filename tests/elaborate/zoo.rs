@@ -14,7 +14,7 @@ pub fn random_stimulus(engine: &dyn Engine, cycles: usize, seed: u64) -> Stimulu
     let mut rng = Rng::new(seed);
     let inputs: Vec<_> = engine.ports().iter().filter(|p| p.is_input).collect();
     let value = |cycle: usize, name: &str, width: usize, rng: &mut Rng| match name {
-        "reset" => (cycle % 64 == 0).into(),
+        "reset" => (cycle.is_multiple_of(64)).into(),
         _ => {
             (rng.next_u64() as u128 | (rng.next_u64() as u128) << 64) & (u128::MAX >> (128 - width))
         }

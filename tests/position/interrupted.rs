@@ -3,29 +3,8 @@
 use super::rig::*;
 use endat_hdl::transaction::cause;
 use endat_sim::{
-    bench::ChannelResult,
-    encoder::Defect,
-    engine::Engine,
-    frame::{crc5, CRC_BITS},
-    rng::Rng,
-    Time, MS, NS, US,
+    bench::ChannelResult, encoder::Defect, engine::Engine, rng::Rng, Time, MS, NS, US,
 };
-
-/// Whether the sampled levels from the first HIGH on are an answer that a receiver must believe.
-fn is_believable(levels: &[bool], answer_bits: u32) -> bool {
-    let Some(start) = levels.iter().position(|l| *l) else {
-        return false;
-    };
-    let answer = &levels[start..];
-    let (covered_end, end) = ((answer_bits - CRC_BITS) as usize, answer_bits as usize);
-    if answer.len() < end {
-        return false;
-    }
-    let crc = answer[covered_end..end]
-        .iter()
-        .fold(0, |crc, b| crc << 1 | u8::from(*b));
-    !answer[1] && answer[2] && crc5(answer[1..covered_end].iter().copied()) == crc
-}
 
 /// Runs a frame that is disturbed, then until the encoder is back and the channel idle. Gives the result and the levels sampled for it.
 fn disturbed(rig: &mut Rig, back: Time) -> (ChannelResult, Vec<bool>) {
@@ -51,11 +30,7 @@ fn an_encoder_lost_at_any_moment_of_a_frame_gives_an_error_and_comes_back() {
             let (result, levels) = disturbed(&mut rig, back);
             let sent = rig.frames(0)[0].position;
             let what = format!("lost after {after} ps for {length} ps: {result:?}");
-            assert_eq!(
-                result.fresh,
-                is_believable(&levels, setup.answer_bits()),
-                "{what}"
-            );
+            assert_eq!(result.fresh, setup.believes(&levels), "{what}");
             match (result.fresh, result.position == sent) {
                 (true, true) => good += 1,
                 (true, false) => unlucky += 1,
@@ -64,11 +39,9 @@ fn an_encoder_lost_at_any_moment_of_a_frame_gives_an_error_and_comes_back() {
                     bad += 1;
                 }
             }
-            assert_eq!(
-                rig.conflicts(0).iter().filter(|c| c.both_on).count(),
-                0,
-                "{what}"
-            );
+            // An encoder that comes back within the mode command drives its idle level against the receiver.
+            let drove = rig.conflicts(0).iter().filter(|c| c.both_on).count();
+            assert!(drove == 0 || (length < 4 * US && after < 5 * US), "{what}");
             good_frame(&mut rig);
         }
     }
@@ -87,11 +60,7 @@ fn a_plug_pulled_and_put_back_at_every_cell_never_leaves_a_wrong_position() {
         let mut rig = setup.on(measured.clone());
         rig.run_for(2 * US);
         let (result, levels) = disturbed(&mut rig, pulled + 200 * US);
-        assert_eq!(
-            result.fresh,
-            is_believable(&levels, setup.answer_bits()),
-            "{cell} {result:?}"
-        );
+        assert_eq!(result.fresh, setup.believes(&levels), "{cell} {result:?}");
         if result.fresh {
             assert_eq!(
                 result.position,

@@ -10,7 +10,7 @@ use endat_sim::{
     bench::{Bench, ChannelResult, ChannelSettings, Link},
     encoder::{Defect, EncoderConfig, FrameEnd, FrameLog, Symbol},
     engine::Interpreter,
-    frame::CRC_BITS,
+    frame::{crc5, CRC_BITS},
     line::{LineConfig, Sample, Who},
     Time, MS, US,
 };
@@ -125,6 +125,21 @@ impl Setup {
         ModeCommand::from_code(self.settings.command)
             .expect("a known command")
             .answer_bits(self.settings.position_bits)
+    }
+
+    /// Whether sampled levels, from the first HIGH on, are an answer without alarm and with a right CRC.
+    pub fn believes(&self, levels: &[bool]) -> bool {
+        let start = levels.iter().position(|level| *level);
+        let answer = &levels[start.unwrap_or(levels.len())..];
+        let (end, f2) = (self.answer_bits() as usize, self.settings.command >> 5 != 0);
+        let covered_end = end - CRC_BITS as usize;
+        if answer.len() < end {
+            return false;
+        }
+        let sent = answer[covered_end..end].iter();
+        let crc = sent.fold(0, |crc, bit| crc << 1 | u8::from(*bit));
+        let no_alarm = !answer[1] && (!f2 || answer[2]);
+        no_alarm && crc5(answer[1..covered_end].iter().copied()) == crc
     }
 
     fn link(&self) -> Link {

@@ -1,0 +1,32 @@
+//! Renders the templates of generated text files.
+
+use crate::error::GenError;
+use minijinja::syntax::SyntaxConfig;
+use minijinja::value::Value;
+use minijinja::{Environment, UndefinedBehavior};
+
+/// A template with its values filled in; nothing is escaped, and a value that is missing is an error.
+pub fn render(name: &str, template: &str, context: &Value) -> Result<String, GenError> {
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    let syntax = SyntaxConfig::builder()
+        .keep_trailing_newline(true)
+        .trim_blocks(true)
+        .lstrip_blocks(true)
+        .build();
+    environment.set_syntax(syntax.map_err(broken)?);
+    // The output is Verilog, UCF and Markdown: nothing is to be escaped for HTML.
+    environment.set_auto_escape_callback(|_| minijinja::AutoEscape::None);
+    environment.add_template(name, template).map_err(broken)?;
+    environment
+        .get_template(name)
+        .and_then(|t| t.render(context))
+        .map_err(broken)
+}
+
+/// A template that does not render is a fault of the program, and still no reason to panic.
+fn broken(error: minijinja::Error) -> GenError {
+    GenError::input(format!(
+        "template: {error:#}; this is a fault of endat-gen, please report it"
+    ))
+}

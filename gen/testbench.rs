@@ -1,0 +1,181 @@
+//! The Verilog test bench that is emitted with a card: everything in it follows from the configuration and the register table.
+
+use crate::artifact::Artifact;
+use crate::config::Project;
+use crate::error::GenError;
+use crate::template;
+use endat_hdl::config::{CardConfig, ChannelConfig};
+use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, RESULT};
+use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
+use endat_hdl::transaction::cause;
+use minijinja::context;
+use minijinja::value::{Serde, Value};
+use serde::Serialize;
+
+/// Added to every wait, in ns: time for the last steps inside the card, and for lights to be looked at.
+const MARGIN_NS: u64 = 3_000;
+/// After a clock that stopped, the bench's encoder waits this long before it takes the frame for ended, in ns.
+const ENCODER_GIVES_UP_NS: u64 = 15_000;
+/// Delay that the bench's encoder adds between a clock edge and its data, in ns.
+const LAUNCH_NS: u64 = 12;
+/// The trigger pin's way through synchroniser, edge detection and transaction, and one cycle for its phase.
+const TRIGGER_CYCLES_MAX: u64 = 10;
+/// Cycles that synchroniser and edge detection add to the measured line delay (the filter's come on top).
+const INPUT_CYCLES: u64 = 3;
+
+/// A word of the register map.
+#[derive(Serialize)]
+struct Word {
+    name: String,
+    address: String,
+}
+
+/// Some bits of a word.
+#[derive(Serialize)]
+struct Bits {
+    name: String,
+    lsb: u32,
+    width: u32,
+}
+
+/// A channel and the encoder on it.
+#[derive(Serialize)]
+struct Port {
+    index: usize,
+    command: String,
+    has_f2: u8,
+    position_bits: u32,
+    mask: String,
+    tcal_ns: String,
+    tm_ns: String,
+    cable_ns: String,
+    recovery_cycles: u64,
+    delay_cycles: u64,
+}
+
+/// A literal of type `real`.
+fn real(ns: f64) -> String {
+    let text = format!("{ns:.3}");
+    let plain = text.trim_end_matches('0');
+    let zero = if plain.ends_with('.') { "0" } else { "" };
+    format!("{plain}{zero}")
+}
+
+fn whole(ns: u64) -> String {
+    real(ns as f64)
+}
+
+impl Port {
+    fn new(card: &CardConfig, index: usize, channel: &ChannelConfig) -> Self {
+        let request = &channel.request;
+        let (low, high) = (request.recovery_min_ns, request.recovery_max_ns);
+        let tm_ns = low + (high - low) / 4;
+        // Every channel has another cable, the last one the longest that is allowed for.
+        let share = (index + 1) as f64 / card.channels.len() as f64;
+        let cable_ns = ((request.delay_max_ns() - LAUNCH_NS) as f64 * share / 2.0).floor() - 0.7;
+        let round_trip_ns = (2.0 * cable_ns) as u64 + LAUNCH_NS;
+        Self {
+            index,
+            command: format!("{:06b}", channel.command.code()),
+            has_f2: u8::from(channel.command.has_f2()),
+            position_bits: channel.position_bits,
+            mask: format!("{:012X}", (1u64 << channel.position_bits) - 1),
+            tcal_ns: whole(request.tcal_max_ns),
+            tm_ns: whole(tm_ns),
+            cable_ns: real(cable_ns),
+            recovery_cycles: cycles_at_most(tm_ns, card.system_hz),
+            delay_cycles: cycles_at_most(round_trip_ns, card.system_hz)
+                + INPUT_CYCLES
+                + channel.filter_cycles,
+        }
+    }
+}
+
+fn words(block: &Block) -> impl Iterator<Item = Word> + '_ {
+    block.registers.iter().map(|register| Word {
+        name: format!("{}_{}", block.name, register.name).to_uppercase(),
+        address: format!("{:03X}", block.address(register, 0)),
+    })
+}
+
+fn fields(block: &Block) -> impl Iterator<Item = Bits> + '_ {
+    block.registers.iter().flat_map(|register| {
+        register.fields.iter().map(|field| Bits {
+            name: format!("{}_{}", register.name, field.name).to_uppercase(),
+            lsb: field.lsb,
+            width: field.width,
+        })
+    })
+}
+
+/// The longest of a time over all channels, in cycles, as ns.
+fn longest_ns(card: &CardConfig, cycles: impl Fn(&ChannelConfig) -> u64) -> u64 {
+    let most = card.channels.iter().map(cycles).max().unwrap_or(0);
+    cycles_to_ns(most, card.system_hz)
+}
+
+/// The test bench of a card.
+pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
+    let card = &project.card;
+    let hz = card.system_hz;
+    let cycle_ns = longest_ns(card, |c| c.cycle_max_cycles(hz)) + MARGIN_NS;
+    let after_frame = |c: &ChannelConfig| c.cycle_max_cycles(hz) - c.frame_time(hz).frame_cycles;
+    let calibration_ns =
+        longest_ns(card, |c| c.calibration_cycles(hz) + after_frame(c)) + MARGIN_NS;
+    let timeout = |c: &ChannelConfig| {
+        c.recovery_limit_cycles + cycles_at_least(1_000 * c.start_timeout_us, hz)
+    };
+    let shortest_frame = card
+        .channels
+        .iter()
+        .map(|c| c.frame_time(hz).frame_cycles)
+        .min();
+    let abort_ns = card.channels.iter().map(|c| 1_000 * c.abort_us).max();
+    let ports = card.channels.iter().enumerate();
+    let ports: Vec<Port> = ports.map(|(i, c)| Port::new(card, i, c)).collect();
+    let causes = [
+        ("NO_START_BIT", cause::NO_START_BIT),
+        ("CRC", cause::CRC),
+        ("F1", cause::F1),
+        ("F2", cause::F2),
+        ("DATA_NOT_FALLING", cause::DATA_NOT_FALLING),
+        ("TRIGGER_OVERRUN", cause::TRIGGER_OVERRUN),
+    ];
+    let causes: Vec<Value> = causes
+        .into_iter()
+        .map(|(name, code)| context! { name, code })
+        .collect();
+    // Constant words from the first one on: they say which card this is.
+    let identification: Vec<String> = CARD
+        .registers
+        .iter()
+        .take_while(|r| r.name != "trigger_count")
+        .map(|r| format!("{:08X}", r.start(card, 0)))
+        .collect();
+    let context = context! {
+        name => project.name.as_str(),
+        version => env!("CARGO_PKG_VERSION"),
+        hash => project.hash.as_str(),
+        channels => Serde(ports),
+        clk_ns => real(1e9 / hz as f64),
+        uart_bit_ns => real(1e9 / card.baud as f64),
+        calibration_ns => whole(calibration_ns),
+        cycle_ns => whole(cycle_ns),
+        fault_ns => whole(cycle_ns + longest_ns(card, timeout) + ENCODER_GIVES_UP_NS),
+        abort_ns => whole(abort_ns.unwrap_or(0) + MARGIN_NS),
+        overrun_ns => whole(cycles_to_ns(shortest_frame.unwrap_or(0) / 2, hz)),
+        trigger_cycles_max => TRIGGER_CYCLES_MAX,
+        words => Serde([CARD, CARD_CONFIG, RESULT].iter().flat_map(words).collect::<Vec<_>>()),
+        fields => Serde([CARD_CONFIG, RESULT].iter().flat_map(fields).collect::<Vec<_>>()),
+        block_stride => BLOCK_STRIDE,
+        causes,
+        identification,
+        timer => card.sources.timer,
+    };
+    let text = template::render(
+        "testbench",
+        include_str!("templates/testbench.v.jinja"),
+        &context,
+    )?;
+    Ok(Artifact::new(format!("{}_tb.v", project.name), text))
+}

@@ -1,0 +1,125 @@
+//! The real core, three ways, under stimulus that wanders through as many states as it can without an encoder.
+
+use crate::three_way::{three_way, Stimulus};
+use endat_gen::config::load_preset;
+use endat_hdl::card::Card;
+use endat_hdl::channel::{Channel, FixedTimes};
+use endat_hdl::elaborate::elaborate;
+use endat_sim::kernel_engine;
+use endat_sim::rng::Rng;
+use rust_hdl::prelude::Block;
+use std::collections::BTreeSet;
+
+/// Lines that keep their level for a while; each has its own average number of cycles between changes.
+fn wandering(lines: &[(&str, u64)], cycles: usize, seed: u64) -> Stimulus {
+    let mut rng = Rng::new(seed);
+    let mut row = vec![0; lines.len()];
+    let mut cycle = |_| {
+        for (value, (_, hold_cycles)) in row.iter_mut().zip(lines) {
+            if rng.in_range(1, *hold_cycles) == 1 {
+                *value ^= 1;
+            }
+        }
+        row.clone()
+    };
+    Stimulus {
+        inputs: lines.iter().map(|(name, _)| name.to_string()).collect(),
+        cycles: (0..cycles).map(&mut cycle).collect(),
+    }
+}
+
+#[test]
+fn a_channel_agrees() {
+    let times = FixedTimes {
+        calibration_period_cycles: 24,
+        ready_low_cycles: 9,
+        abort_us: 5,
+    };
+    let mut block = Channel::new(times);
+    block.connect_all();
+    let design = elaborate(&block, "channel").unwrap();
+    let mut kernel = kernel_engine!(block; clock;
+        in reset, tick_us, timestamp, trigger, calibrate, data_i, period_cycles, first_low_extra_cycles, command,
+        position_bits, filter_cycles, start_window_cycles, start_timeout_us, recovery_limit_cycles;
+        out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
+        first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles, busy,
+        sample_strobe);
+    let lines = [
+        ("tick_us", 2),
+        ("trigger", 8),
+        ("calibrate", 700),
+        ("data_i", 40),
+        ("reset", 3000),
+    ];
+    let mut stimulus = wandering(&lines, 12_000, 3);
+    let fixed = [
+        ("period_cycles", 12),
+        ("first_low_extra_cycles", 5),
+        ("command", 0b111000),
+        ("position_bits", 7),
+        ("filter_cycles", 1),
+        ("start_window_cycles", 6),
+        ("start_timeout_us", 20),
+        ("recovery_limit_cycles", 300),
+        ("timestamp", 0),
+    ];
+    for (name, value) in fixed {
+        stimulus.inputs.push(name.into());
+        for (cycle, row) in stimulus.cycles.iter_mut().enumerate() {
+            row.push(if name == "timestamp" {
+                cycle as u128
+            } else {
+                value
+            });
+        }
+    }
+    for row in stimulus.cycles.iter_mut() {
+        row[4] &= row[1] & row[0]; // reset is rare and short
+    }
+    let recording = three_way("channel", &mut kernel, &design, &stimulus).unwrap();
+    // The stimulus is worth something: frames end, in different ways.
+    let results: u128 = recording.output("result_strobe").iter().sum();
+    let causes: BTreeSet<u128> = recording.output("cause").into_iter().collect();
+    assert!(
+        results > 10 && causes.len() > 2,
+        "{results} results, causes {causes:?}"
+    );
+}
+
+#[test]
+fn the_card_agrees() {
+    let project = load_preset("s6_two_channel").unwrap();
+    let mut block = Card::new(&project.card);
+    block.connect_all();
+    let design = elaborate(&block, &project.name).unwrap();
+    let mut kernel =
+        kernel_engine!(block; clk_i; in rst_i, trigger_i, uart_rx_i; out uart_tx_o, led_status_o)
+            .input("endat_data0_i", |b| &mut b.endat_data_i[0])
+            .input("endat_data1_i", |b| &mut b.endat_data_i[1])
+            .output("endat_clk0_o", |b| &mut b.endat_clk_o[0])
+            .output("endat_clk1_o", |b| &mut b.endat_clk_o[1])
+            .output("endat_data0_o", |b| &mut b.endat_data_o[0])
+            .output("endat_data1_o", |b| &mut b.endat_data_o[1])
+            .output("endat_data0_oe", |b| &mut b.endat_data_oe[0])
+            .output("endat_data1_oe", |b| &mut b.endat_data_oe[1])
+            .output("led_channel0_o", |b| &mut b.led_channel_o[0])
+            .output("led_channel1_o", |b| &mut b.led_channel_o[1]);
+    let lines = [
+        ("trigger_i", 300),
+        ("uart_rx_i", 100),
+        ("endat_data0_i", 150),
+        ("endat_data1_i", 60),
+        ("rst_i", 1),
+    ];
+    let mut stimulus = wandering(&lines, 8_000, 5);
+    for (cycle, row) in stimulus.cycles.iter_mut().enumerate() {
+        row[4] = (cycle < 3).into();
+    }
+    let recording = three_way("card", &mut kernel, &design, &stimulus).unwrap();
+    let edges = recording
+        .output("endat_clk0_o")
+        .windows(2)
+        .filter(|w| w[0] != w[1])
+        .count();
+    assert!(edges > 20, "{edges} clock edges");
+}

@@ -1,0 +1,56 @@
+//! Outside tools over the emitted card: simulators, linters, synthesis, formal equivalence, gate level.
+
+mod lint;
+mod mutations;
+mod testbench;
+
+use crate::tools;
+use endat_gen::artifact::Artifact;
+use endat_gen::config::{load_preset, Project, DEFAULT_PRESET};
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// The preset with the fastest host link that the core takes, and no timer: what is simulated most is the host's bytes.
+pub fn quick_project() -> Project {
+    let mut project = load_preset(DEFAULT_PRESET).unwrap();
+    project.card.uart_bit_cycles = endat_hdl::config::UART_BIT_CYCLES_MIN;
+    project.card.baud = project.card.system_hz / project.card.uart_bit_cycles;
+    project.card.sources.timer = false;
+    project
+}
+
+/// Everything that is emitted for [`quick_project`]; made once.
+pub fn quick_files() -> &'static [Artifact] {
+    static FILES: OnceLock<Vec<Artifact>> = OnceLock::new();
+    FILES.get_or_init(|| endat_gen::emit(&quick_project()).unwrap())
+}
+
+/// Everything that is emitted for the preset; made once.
+pub fn preset_files() -> &'static [Artifact] {
+    static FILES: OnceLock<Vec<Artifact>> = OnceLock::new();
+    FILES.get_or_init(|| endat_gen::emit(&load_preset(DEFAULT_PRESET).unwrap()).unwrap())
+}
+
+/// Whether a file belongs to the card itself: no board top, no test bench.
+pub fn is_core(file: &Artifact) -> bool {
+    file.path.ends_with(".v") && !file.path.ends_with("_top.v") && !file.path.ends_with("_tb.v")
+}
+
+/// Writes the Verilog files of a card into a folder of its own; the folder, and the names of those of the card itself.
+pub fn write(test: &str, files: &[Artifact]) -> (PathBuf, Vec<String>) {
+    let folder = tools::folder(&format!("verilog-{test}"));
+    let verilog = files.iter().filter(|f| f.path.ends_with(".v"));
+    verilog.for_each(|f| std::fs::write(folder.join(&f.path), &f.text).unwrap());
+    let core = files.iter().filter(|f| is_core(f));
+    let core = core.map(|f| f.path.clone()).collect();
+    (folder, core)
+}
+
+/// Compiles files with iverilog, which must have nothing to say.
+pub fn compile(folder: &Path, top: &str, files: &[String], options: &[&str]) {
+    let mut arguments = vec!["-g2005", "-o", "sim.vvp", "-s", top];
+    arguments.extend(options);
+    arguments.extend(files.iter().map(String::as_str));
+    let (good, text) = tools::run("iverilog", folder, &arguments);
+    assert!(good && text.is_empty(), "{}: {text}", folder.display());
+}

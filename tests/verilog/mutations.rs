@@ -1,0 +1,133 @@
+//! Ways to break the emitted card: one text in one file becomes another.
+
+/// One change of the emitted Verilog.
+pub struct Mutation {
+    /// What it breaks.
+    pub name: &'static str,
+    /// File.
+    pub file: &'static str,
+    /// Text that stands there exactly once.
+    pub from: &'static str,
+    /// What it becomes.
+    pub to: &'static str,
+}
+
+const fn mutation(
+    name: &'static str,
+    file: &'static str,
+    from: &'static str,
+    to: &'static str,
+) -> Mutation {
+    Mutation {
+        name,
+        file,
+        from,
+        to,
+    }
+}
+
+/// All of them.
+pub const MUTATIONS: &[Mutation] = &[
+    mutation(
+        "parallel CRC: wrong constant for 31 bits",
+        "endat_crc5_parallel.v",
+        "TERM_1 = 5'd10;",
+        "TERM_1 = 5'd11;",
+    ),
+    mutation(
+        "serial CRC: wrong polynomial",
+        "endat_crc5_serial.v",
+        "POLYNOMIAL = 5'd11;",
+        "POLYNOMIAL = 5'd9;",
+    ),
+    mutation(
+        "one clock pulse fewer",
+        "endat_transaction.v",
+        "{1'b0, outstanding} == cells_left",
+        "{1'b0, outstanding} == cells_left - 7'd1",
+    ),
+    mutation(
+        "clock pulses on the cable not counted",
+        "endat_transaction.v",
+        "{1'b0, outstanding} == cells_left",
+        "7'd1 == cells_left",
+    ),
+    mutation(
+        "driver never released",
+        "endat_command_sender.v",
+        "fall & (|cells_left)",
+        "fall & (|cells_left[3:1])",
+    ),
+    mutation(
+        "driver on one period too early",
+        "endat_command_sender.v",
+        "oe = |cell_now",
+        "oe = |cells_left",
+    ),
+    mutation(
+        "mode command shifted by one bit",
+        "endat_command_sender.v",
+        "{2'd0, command} << 1'b1",
+        "{2'd0, command} << 2'd2",
+    ),
+    mutation(
+        "sample half a bit off",
+        "endat_line_delay.v",
+        "half_tick & !second_half & cells_run",
+        "half_tick & second_half & cells_run",
+    ),
+    mutation(
+        "line delay measured too long",
+        "endat_line_delay.v",
+        "delay_next = since_rise;",
+        "delay_next = since_rise + 10'd20;",
+    ),
+    mutation(
+        "F2 ignored",
+        "endat_transaction.v",
+        "good_now_next = !f1 & f2;",
+        "good_now_next = !f1;",
+    ),
+    mutation(
+        "wrong cause for a missing start bit",
+        "endat_transaction.v",
+        "found = 10'd2;",
+        "found = 10'd4;",
+    ),
+    mutation(
+        "a bad frame replaces the last good position",
+        "endat_snapshot.v",
+        "take_good = publish & good;",
+        "take_good = publish;",
+    ),
+    mutation(
+        "hold has no effect",
+        "endat_register_bank.v",
+        "!(pending | reading | hold)",
+        "!(pending | reading)",
+    ),
+    mutation(
+        "channel 1 is not triggered",
+        "s6_two_channel.v",
+        ".trigger(trigger_trigger),\n        .calibrate(bank_calibrate[1]),",
+        ".trigger(1'b0),\n        .calibrate(bank_calibrate[1]),",
+    ),
+    mutation(
+        "words of the position exchanged",
+        "endat_channel_registers.v",
+        "word_1 = position[31:0];",
+        "word_1 = {16'd0, position[47:32]};",
+    ),
+    mutation(
+        "trigger count at another word",
+        "endat_register_bank.v",
+        "TRIGGER_COUNT_AT = 9'd8;",
+        "TRIGGER_COUNT_AT = 9'd9;",
+    ),
+    mutation(
+        "trigger overrun not told",
+        "endat_transaction.v",
+        "overrun_next = 1'b1;",
+        "overrun_next = 1'b0;",
+    ),
+];

@@ -1,0 +1,99 @@
+//! The emitted test bench on the emitted card: passes as it stands, and fails on every broken card.
+
+use super::mutations::{Mutation, MUTATIONS};
+use super::{compile, preset_files, quick_files, write};
+use crate::tools;
+use endat_gen::artifact::Artifact;
+use endat_gen::config::parse;
+
+/// Runs a card's own test bench; what it prints.
+fn run_bench(test: &str, files: &[Artifact], plusargs: &[&str]) -> String {
+    let (folder, mut sources) = write(test, files);
+    let bench = files.iter().find(|f| f.path.ends_with("_tb.v")).unwrap();
+    sources.insert(0, bench.path.clone());
+    compile(
+        &folder,
+        bench.path.trim_end_matches(".v"),
+        &sources,
+        &["-Wall"],
+    );
+    let (good, text) = tools::run("vvp", &folder, &[&["-n", "sim.vvp"], plusargs].concat());
+    assert!(good, "{}: {text}", folder.display());
+    text
+}
+
+#[test]
+fn bench_passes_on_the_preset() {
+    if tools::require("iverilog", "emitted test bench") {
+        assert_eq!(run_bench("preset", preset_files(), &[]), "PASS\n");
+    }
+}
+
+/// Other channel counts, commands, widths, rates and cables; one channel, and a system clock with a fractional period.
+#[test]
+fn bench_passes_on_other_cards() {
+    if !tools::require("iverilog", "emitted test bench") {
+        return;
+    }
+    let other = |name: &str, text: String| {
+        let project = parse("other.toml", &text).unwrap();
+        let files = endat_gen::emit(&project).unwrap();
+        assert_eq!(run_bench(name, &files, &[]), "PASS\n", "{name}");
+    };
+    let frame = "[clock]\nsystem_hz = 128_000_000\n[trigger]\nsample_hz = 1_000\nsources = [\"register\"]\n[link]\nbaud = 3_000_000\nread_hz = 100\n[board]\nname = \"papilio_pro\"\n";
+    other(
+        "one_channel",
+        format!("name = \"one\"\n{frame}[endat]\nclock_hz = 16_000_000\ncable_m = 20\n[[channel]]\nposition_bits = 1\ncommand = \"000111\"\n"),
+    );
+    other(
+        "mixed",
+        format!("name = \"mixed\"\n{frame}[endat]\nclock_hz = 2_000_000\n[[channel]]\nposition_bits = 48\ncommand = \"111000\"\n[[channel]]\nposition_bits = 13\ncommand = \"000111\"\nclock_hz = 8_000_000\n"),
+    );
+}
+
+fn mutant(mutation: &Mutation) -> Vec<Artifact> {
+    let mut files = quick_files().to_vec();
+    let Mutation {
+        name,
+        file,
+        from,
+        to,
+    } = mutation;
+    let target = files.iter_mut().find(|f| f.path == *file);
+    let target = target.unwrap_or_else(|| panic!("{name}: no file {file}"));
+    assert_eq!(
+        target.text.matches(from).count(),
+        1,
+        "{name}: {from:?} in {file}"
+    );
+    target.text = target.text.replace(from, to);
+    files
+}
+
+#[test]
+fn bench_fails_on_every_broken_card() {
+    if !tools::require("iverilog", "mutations of the emitted card") {
+        return;
+    }
+    assert_eq!(run_bench("quick", quick_files(), &[]), "PASS\n");
+    let workers = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let next = std::sync::atomic::AtomicUsize::new(0);
+    let survivors = std::sync::Mutex::new(vec![]);
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| loop {
+                let index = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+                let Some(mutation) = MUTATIONS.get(index) else {
+                    break;
+                };
+                let text = run_bench(&format!("mutant{index}"), &mutant(mutation), &["+first"]);
+                let last = text.lines().last().unwrap_or("");
+                if !last.starts_with("FAIL") {
+                    survivors.lock().unwrap().push((mutation.name, text));
+                }
+            });
+        }
+    });
+    let survivors = survivors.into_inner().unwrap();
+    assert!(survivors.is_empty(), "not noticed: {survivors:?}");
+}
