@@ -23,6 +23,15 @@ use crate::timing;
 use crate::transaction::Transaction;
 use rust_hdl::prelude::*;
 
+/// From the cycle with the trigger strobe to the first cycle with the EnDat clock low, at every width and rate.
+pub const TRIGGER_TO_FIRST_FALL_CYCLES: u64 = 3;
+/// From the cycle in which the last CRC bit is sampled to the one with the result strobe, at every width and rate.
+pub const LAST_CRC_SAMPLE_TO_RESULT_CYCLES: u64 = 5;
+/// From the time in `first_fall_timestamp` to the first cycle with the EnDat clock low.
+pub const TIMESTAMP_TO_FIRST_FALL_CYCLES: u64 = 2;
+/// What registers at both pins and the synchroniser add to `delay_cycles`; the filter adds its length.
+pub const DELAY_OFFSET_CYCLES: u64 = 4;
+
 /// One EnDat port.
 #[derive(LogicBlock)]
 pub struct Channel {

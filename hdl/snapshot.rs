@@ -22,7 +22,7 @@ pub struct Snapshot {
     pub publish: Signal<In, Bit>,
     /// With `publish`: the position is good.
     pub good: Signal<In, Bit>,
-    /// Strobe: replace cause and flags of the present result.
+    /// Strobe: replace cause and flags of the present result; with flag 9 its position is not good any more.
     pub late_fault: Signal<In, Bit>,
     /// Position of the frame.
     pub position_in: Signal<In, Bits<48>>,
@@ -111,6 +111,11 @@ impl Logic for Snapshot {
             self.stamp.d.next = self.latched.q.val();
             self.valid.d.next = true;
             self.age.d.next = 0.into();
+        }
+        // A frame of another length: its position may be anything.
+        if self.late_fault.val() & self.flags_in.val().get_bit(9) {
+            self.valid.d.next = false;
+            self.is_fresh.d.next = false;
         }
         if self.publish.val() | self.late_fault.val() {
             self.cause_held.d.next = self.cause_in.val();

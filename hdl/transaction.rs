@@ -563,6 +563,7 @@ impl Logic for Transaction {
         self.hold.d.next = (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val();
         self.hold_low.next = self.hold.q.val();
         self.drain.next = self.stalled.q.val();
+        // Taking the start bit ends its cell; `started` comes when the comparison knows that.
         self.stop_now.d.next = (self.all_sent.q.val() & self.started.val()) | !self.run_now.q.val();
         self.stop.next = self.stop_now.q.val();
         self.acquire.next = self.acquiring.q.val();

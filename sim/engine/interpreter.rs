@@ -40,6 +40,8 @@ pub struct Interpreter {
     next: Vec<u128>,
     memories: Vec<FlatMemory>,
     names: Arc<[String]>,
+    /// Processes to run again before anything is read.
+    stale: Vec<bool>,
     is_settled: bool,
 }
 
@@ -103,6 +105,7 @@ impl Interpreter {
                 .collect(),
             next: vec![0; flat.registers.len()],
             values,
+            stale: program.all_stale(),
             program: program.into(),
             registers: flat.registers.into(),
             memories: flat.memories,
@@ -124,7 +127,7 @@ impl Interpreter {
 
     fn settle(&mut self) {
         if !self.is_settled {
-            self.program.run(&mut self.values);
+            self.program.run(&mut self.values, &mut self.stale);
             self.is_settled = true;
         }
     }
@@ -137,9 +140,10 @@ impl Engine for Interpreter {
 
     fn set(&mut self, port: PortId, value: u128) {
         let value = value & mask(self.ports[port.0].width_bits);
-        let slot = &mut self.values[self.port_values[port.0]];
-        if *slot != value {
-            *slot = value;
+        let net = self.port_values[port.0];
+        if self.values[net] != value {
+            self.values[net] = value;
+            self.program.changed(net, &mut self.stale);
             self.is_settled = false;
         }
     }
@@ -172,10 +176,16 @@ impl Engine for Interpreter {
             }
         }
         for (next, register) in self.next.iter().zip(&*self.registers) {
-            values[register.q] = *next;
+            if values[register.q] != *next {
+                values[register.q] = *next;
+                self.program.changed(register.q, &mut self.stale);
+            }
         }
         for (net, word) in read {
-            values[net] = word;
+            if values[net] != word {
+                values[net] = word;
+                self.program.changed(net, &mut self.stale);
+            }
         }
         self.is_settled = false;
     }
@@ -349,12 +359,14 @@ impl Flat<'_> {
             )
         })?;
         let mut compiler = Compiler::new(self.widths.clone());
-        for process in order {
-            let FlatProcess {
-                statements,
-                parameters,
-            } = &self.processes[process];
-            compiler.statements(statements, parameters);
+        for index in order {
+            let process = &self.processes[index];
+            compiler.process(
+                &process.statements,
+                &process.parameters,
+                &process.reads(),
+                process.targets(),
+            );
         }
         Ok(compiler.finish())
     }

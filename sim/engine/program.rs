@@ -1,7 +1,8 @@
 //! Statements as a list of operations on numbered values.
 
 use endat_hdl::elaborate::{binary, mask, BinaryOp, Expr, ExprKind, Statement, UnaryOp};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
 
 /// One operation. `to`, `a`, `b` are indices of values.
 #[derive(Clone, Copy, Debug)]
@@ -58,18 +59,60 @@ enum Operation {
     },
 }
 
-/// A compiled list of statements.
+/// The operations of one process.
+struct Segment {
+    operations: Range<usize>,
+    targets: Vec<usize>,
+}
+
+/// Compiled processes, in an order in which each reads only what is settled before.
 pub(super) struct Program {
     operations: Vec<Operation>,
+    segments: Vec<Segment>,
+    /// For each net the segments that read it.
+    readers: Vec<Vec<usize>>,
     pub value_count: usize,
     /// Values that never change.
     pub constants: Vec<(usize, u128)>,
 }
 
 impl Program {
-    pub fn run(&self, v: &mut [u128]) {
-        let mut at = 0;
-        while let Some(operation) = self.operations.get(at) {
+    /// The segments of a state in which nothing is settled.
+    pub fn all_stale(&self) -> Vec<bool> {
+        vec![true; self.segments.len()]
+    }
+
+    /// Notes that a net has changed.
+    pub fn changed(&self, net: usize, stale: &mut [bool]) {
+        for reader in &self.readers[net] {
+            stale[*reader] = true;
+        }
+    }
+
+    /// Settles: runs the stale segments and those that read what they change.
+    pub fn run(&self, v: &mut [u128], stale: &mut [bool]) {
+        let mut before = vec![];
+        for (index, segment) in self.segments.iter().enumerate() {
+            if !stale[index] {
+                continue;
+            }
+            before.clear();
+            before.extend(segment.targets.iter().map(|target| v[*target]));
+            self.run_segment(&segment.operations, v);
+            for (target, before) in segment.targets.iter().zip(&before) {
+                if v[*target] != *before {
+                    self.changed(*target, stale);
+                }
+            }
+            // What a process computes for itself does not make it stale.
+            stale[index] = false;
+        }
+    }
+
+    fn run_segment(&self, range: &Range<usize>, v: &mut [u128]) {
+        let mut at = range.start;
+        while at < range.end {
+            let operation = &self.operations[at];
             at += 1;
             match *operation {
                 Operation::Copy { to, a } => v[to] = v[a],
@@ -117,6 +160,8 @@ impl Program {
 pub(super) struct Compiler {
     net_widths: Vec<usize>,
     operations: Vec<Operation>,
+    segments: Vec<Segment>,
+    readers: Vec<Vec<usize>>,
     value_count: usize,
     constants: HashMap<u128, usize>,
 }
@@ -126,8 +171,10 @@ impl Compiler {
     pub fn new(net_widths: Vec<usize>) -> Self {
         Self {
             value_count: net_widths.len(),
+            readers: vec![vec![]; net_widths.len()],
             net_widths,
             operations: vec![],
+            segments: vec![],
             constants: HashMap::new(),
         }
     }
@@ -135,6 +182,8 @@ impl Compiler {
     pub fn finish(self) -> Program {
         Program {
             operations: self.operations,
+            segments: self.segments,
+            readers: self.readers,
             value_count: self.value_count,
             constants: self
                 .constants
@@ -144,7 +193,26 @@ impl Compiler {
         }
     }
 
-    pub fn statements(&mut self, statements: &[Statement], parameters: &[u128]) {
+    /// Adds a process with all nets that it reads and writes; those that it reads must come from earlier ones.
+    pub fn process(
+        &mut self,
+        statements: &[Statement],
+        parameters: &[u128],
+        reads: &BTreeSet<usize>,
+        targets: BTreeSet<usize>,
+    ) {
+        let start = self.operations.len();
+        self.statements(statements, parameters);
+        for net in reads {
+            self.readers[*net].push(self.segments.len());
+        }
+        self.segments.push(Segment {
+            operations: start..self.operations.len(),
+            targets: targets.into_iter().collect(),
+        });
+    }
+
+    fn statements(&mut self, statements: &[Statement], parameters: &[u128]) {
         for statement in statements {
             self.statement(statement, parameters);
         }

@@ -1,1 +1,152 @@
-//! .
+//! Wrong bits in an answer: none of them becomes a position.
+
+use super::rig::*;
+use endat_hdl::{
+    protocol::ModeCommand::{SendPosition, SendPositionAddInfo},
+    transaction::cause,
+};
+use endat_sim::{encoder::Defect, engine::Interpreter};
+
+/// Longest burst that a CRC5 is sure to see.
+const BURST_BITS: u32 = 5;
+
+/// Frames of several widths and both kinds, at the fastest clock of the 100 MHz design.
+fn setups() -> Vec<Setup> {
+    let rates = (100_000_000, 12_500_000);
+    [
+        (SendPositionAddInfo, 29),
+        (SendPositionAddInfo, 1),
+        (SendPositionAddInfo, 48),
+        (SendPosition, 13),
+        (SendPosition, 25),
+    ]
+    .map(|(command, bits)| Setup::new(rates, command, bits, 5.0))
+    .into()
+}
+
+/// All patterns of 1 to 5 bits whose first and last bit are wrong: 1, 11, 101, 111, ...
+fn bursts() -> impl Iterator<Item = (u32, u128)> {
+    (1..=BURST_BITS).flat_map(|span| {
+        (0..1u128 << span)
+            .filter(move |p| p & 1 != 0 && p >> (span - 1) & 1 != 0)
+            .map(move |p| (span, p))
+    })
+}
+
+/// Sends a frame with each mask, every one between two good ones. `judge` gets the mask and what became of the frame.
+fn with_masks(
+    setup: &Setup,
+    measured: &Interpreter,
+    masks: &[u128],
+    mut judge: impl FnMut(u128, &mut Rig),
+) {
+    let mut setup = setup.clone();
+    for (i, mask) in masks.iter().enumerate() {
+        setup = setup.defect(2 * i as u64 + 1, Defect::FlipBits(*mask));
+    }
+    let mut rig = setup.on(measured.clone());
+    good_frame(&mut rig);
+    for mask in masks {
+        judge(*mask, &mut rig);
+        good_frame(&mut rig);
+    }
+    assert_eq!(rig.conflicts(0), []);
+}
+
+#[test]
+fn bursts_of_all_patterns_are_sixteen() {
+    assert_eq!(bursts().count(), 16);
+}
+
+#[test]
+fn every_single_bit_error_and_every_burst_behind_the_start_bit_is_refused_as_crc_error() {
+    for setup in setups() {
+        let bits = setup.answer_bits();
+        let places = bursts().flat_map(|(span, p)| (1..=bits - span).map(move |at| p << at));
+        let masks: Vec<u128> = places.collect();
+        let mut count = 0;
+        with_masks(&setup, &setup.measured(), &masks, |mask, rig| {
+            let good = rig
+                .results()
+                .last()
+                .cloned()
+                .expect("a good frame came before");
+            let result = any_frame(rig);
+            let what = || format!("{mask:#b} {setup:?} {result:?}");
+            assert_eq!(result.cause, cause::CRC, "{}", what());
+            assert!(!result.fresh && result.position_valid, "{}", what());
+            assert_eq!(result.position, good.position, "{}", what());
+            assert_eq!(
+                result.first_fall_timestamp,
+                good.first_fall_timestamp,
+                "{}",
+                what()
+            );
+            assert_eq!(result.sequence, good.sequence + 1 & 0xFFFF, "{}", what());
+            count += 1;
+        });
+        assert_eq!(count, masks.len());
+        assert!((1..bits).all(|bit| masks.contains(&(1 << bit))));
+    }
+}
+
+/// Without its start bit a frame is taken from a later bit on, too long for the encoder, or not at all.
+fn start_bit_wrong(masks: &[u128], seeds: u64, mut judge: impl FnMut(&Setup, u128, &mut Rig)) {
+    for setup in setups() {
+        let measured = setup.measured();
+        for seed in 0..seeds {
+            let mut setup = setup.clone();
+            setup.encoder.seed = seed;
+            with_masks(&setup, &measured, masks, |mask, rig| {
+                judge(&setup, mask, rig);
+                // The encoder, which saw too many pulses, needs a while to be ready.
+                rig.run_for(30 * endat_sim::US);
+                settle(rig);
+            });
+        }
+    }
+}
+
+#[test]
+fn a_wrong_start_bit_alone_is_always_refused() {
+    start_bit_wrong(&[1], 40, |setup, _, rig| {
+        let good = rig
+            .results()
+            .last()
+            .cloned()
+            .expect("a good frame came before");
+        let result = any_frame(rig);
+        let what = || format!("{setup:?} {result:?}");
+        assert_ne!(result.cause, cause::NONE, "{}", what());
+        assert!(!result.fresh && result.position_valid, "{}", what());
+        assert_eq!(result.position, good.position, "{}", what());
+    });
+}
+
+/// The CRC does not cover the start bit, and a receiver cannot know how long an encoder calculates: with more wrong bits behind it, what
+/// is believed is exactly what looks like a right answer.
+#[test]
+fn a_burst_on_the_start_bit_is_refused_unless_it_makes_another_right_answer() {
+    let masks: Vec<u128> = bursts().map(|(_, p)| p).filter(|p| *p != 1).collect();
+    let (mut count, mut unlucky) = (0, 0);
+    start_bit_wrong(&masks, 6, |setup, mask, rig| {
+        let before = rig.samples(0).len();
+        let good = rig
+            .results()
+            .last()
+            .cloned()
+            .expect("a good frame came before");
+        let result = any_frame(rig);
+        settle(rig);
+        let levels: Vec<bool> = rig.samples(0)[before..].iter().map(|s| s.level).collect();
+        let what = || format!("{mask:#b} {setup:?} {result:?}");
+        assert_eq!(result.fresh, setup.believes(&levels), "{}", what());
+        if !result.fresh {
+            assert_ne!(result.cause, cause::NONE, "{}", what());
+            assert_eq!(result.position, good.position, "{}", what());
+        }
+        count += 1;
+        unlucky += usize::from(result.fresh);
+    });
+    assert!(unlucky * 20 < count, "{unlucky} of {count}");
+}

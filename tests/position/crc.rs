@@ -1,1 +1,201 @@
-//! .
+//! The core's three CRC blocks against published vectors and a CRC library.
+
+use endat_hdl::{
+    crc5::{Crc5Fixed, Crc5Parallel, Crc5Serial, MAX_COVERED_BITS, ORDER_OF_X},
+    elaborate::elaborate,
+};
+use endat_sim::{
+    engine::{Engine, Interpreter},
+    rng::Rng,
+};
+use rust_hdl::prelude::Block;
+use std::{path::Path, sync::LazyLock};
+
+/// Covered bits in the order of transmission, and their CRC.
+struct Vector {
+    name: String,
+    bits: Vec<bool>,
+    crc: u8,
+}
+
+fn vectors() -> Vec<Vector> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/crc_vectors.json");
+    let text = std::fs::read_to_string(path).expect("the vectors are part of the repository");
+    let file: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let bits =
+        |text: &serde_json::Value| text.as_str().unwrap().bytes().map(|b| b == b'1').collect();
+    let frames = file["vectors"].as_array().unwrap().iter().map(|v| Vector {
+        name: v["id"].as_str().unwrap().into(),
+        bits: bits(&v["covered_bits_tx_order"]),
+        crc: u8::from_str_radix(v["crc_hex"].as_str().unwrap().trim_start_matches("0x"), 16)
+            .unwrap(),
+    });
+    let random = file["random_bitstrings"].as_array().unwrap().iter();
+    let random = random.map(|v| Vector {
+        name: v["bits_tx_order"].to_string(),
+        bits: bits(&v["bits_tx_order"]),
+        crc: v["crc"].as_u64().unwrap() as u8,
+    });
+    let all: Vec<Vector> = frames.chain(random).collect();
+    assert_eq!(all.len(), 62 + 64);
+    all
+}
+
+fn interpreter(mut block: impl Block) -> Interpreter {
+    block.connect_all();
+    let design = elaborate(&block, "crc").expect("the block elaborates");
+    Interpreter::new(&design).expect("no loop")
+}
+
+/// Every place that the run-time block may be given a word of this length at: the last bit at the top or a multiple of 15 below.
+fn parallel(engine: &mut Interpreter, bits: &[bool]) -> Vec<u8> {
+    let (word, length, crc) = (
+        engine.port("word"),
+        engine.port("covered_mod_15"),
+        engine.port("crc"),
+    );
+    let room = MAX_COVERED_BITS - bits.len();
+    let mut got = Vec::new();
+    for below in (0..=room).step_by(ORDER_OF_X) {
+        let first = room - below;
+        let value = (0..bits.len()).fold(0, |w, i| w | u128::from(bits[i]) << (first + i));
+        engine.set(word, value);
+        engine.set(length, (bits.len() % ORDER_OF_X) as u128);
+        got.push(engine.get(crc) as u8);
+    }
+    got
+}
+
+/// A block of exactly this length, if there is one in the list: the top bit was received first.
+fn fixed(bits: &[bool]) -> Option<u8> {
+    macro_rules! lengths {
+        ($($n:literal)*) => {
+            match bits.len() {
+                $($n => interpreter(Crc5Fixed::<$n>::default()),)*
+                _ => return None,
+            }
+        };
+    }
+    let mut engine = lengths!(6 9 11 14 15 16 20 21 23 24 26 27 28 29 30 31 33 34 35 37 38 39 41 44 47 50 51 60 64 68);
+    let (word, crc) = (engine.port("word"), engine.port("crc"));
+    engine.set(word, bits.iter().fold(0, |w, b| w << 1 | u128::from(*b)));
+    Some(engine.get(crc) as u8)
+}
+
+/// Clears the register, takes the bits and the CRC behind them; whether the block finds them right.
+fn serial_accepts(engine: &mut Interpreter, bits: &[bool], crc: u8) -> bool {
+    let [clear, enable, bit, ok] =
+        ["clear", "enable", "bit", "residue_ok"].map(|name| engine.port(name));
+    engine.set(clear, 1);
+    engine.tick();
+    engine.set(clear, 0);
+    engine.set(enable, 1);
+    for b in bits
+        .iter()
+        .copied()
+        .chain((0..5).rev().map(|i| crc >> i & 1 != 0))
+    {
+        engine.set(bit, u128::from(b));
+        engine.tick();
+    }
+    engine.set(enable, 0);
+    engine.tick();
+    engine.get(ok) != 0
+}
+
+/// The CRC library works on bytes: zeros in front fill the first one, and the preset is the one that they turn into 11111.
+fn library(bits: &[bool]) -> u8 {
+    static CRC: LazyLock<crc::Crc<u8>> = LazyLock::new(|| {
+        crc::Crc::<u8>::new(&crc::Algorithm {
+            width: 5,
+            poly: 0x0B,
+            init: 0x1F,
+            refin: false,
+            refout: false,
+            xorout: 0x1F,
+            check: 0,
+            residue: 0,
+        })
+    });
+    let fill = bits.len().next_multiple_of(8) - bits.len();
+    // x^15 = 1: `fill` zeros on their way in are undone by 15 - fill (or 30 - ...) zeros before them.
+    let preset = (0..32).find(|start| {
+        let mut register = *start;
+        (0..fill).for_each(|_| {
+            register = (register << 1 & 0x1F) ^ if register & 16 != 0 { 0x0B } else { 0 }
+        });
+        register == 0x1F
+    });
+    let padded: Vec<bool> = std::iter::repeat_n(false, fill)
+        .chain(bits.iter().copied())
+        .collect();
+    let bytes: Vec<u8> = padded
+        .chunks(8)
+        .map(|c| c.iter().fold(0, |byte, b| byte << 1 | u8::from(*b)))
+        .collect();
+    let mut digest =
+        CRC.digest_with_initial(preset.expect("zeros are a permutation of the register"));
+    digest.update(&bytes);
+    digest.finalize()
+}
+
+#[test]
+fn every_published_vector_holds_in_all_blocks() {
+    let (mut any_length, mut serial) = (
+        interpreter(Crc5Parallel::default()),
+        interpreter(Crc5Serial::default()),
+    );
+    let (mut at_run_time, mut at_fixed_length) = (0, 0);
+    for v in vectors() {
+        assert_eq!(library(&v.bits), v.crc, "library: {}", v.name);
+        if v.bits.len() <= MAX_COVERED_BITS {
+            let got = parallel(&mut any_length, &v.bits);
+            assert!(
+                got.iter().all(|crc| *crc == v.crc),
+                "{}: {got:?}, not {}",
+                v.name,
+                v.crc
+            );
+            at_run_time += 1;
+        }
+        if let Some(crc) = fixed(&v.bits) {
+            assert_eq!(crc, v.crc, "fixed length: {}", v.name);
+            at_fixed_length += 1;
+        }
+        for other in 0..32 {
+            let accepted = serial_accepts(&mut serial, &v.bits, other);
+            assert_eq!(accepted, other == v.crc, "serial: {} with {other}", v.name);
+        }
+    }
+    assert!(
+        at_run_time >= 100 && at_fixed_length >= 90,
+        "{at_run_time}, {at_fixed_length}"
+    );
+}
+
+#[test]
+fn random_words_of_every_length_agree_with_the_library() {
+    let (mut any_length, mut serial) = (
+        interpreter(Crc5Parallel::default()),
+        interpreter(Crc5Serial::default()),
+    );
+    let mut rng = Rng::new(5);
+    for length in 1..=MAX_COVERED_BITS {
+        for _ in 0..20 {
+            let word = rng.next_u64();
+            let bits: Vec<bool> = (0..length).map(|i| word >> i & 1 != 0).collect();
+            let want = library(&bits);
+            let got = parallel(&mut any_length, &bits);
+            assert!(
+                got.iter().all(|crc| *crc == want),
+                "{bits:?}: {got:?}, not {want}"
+            );
+            assert!(serial_accepts(&mut serial, &bits, want));
+            assert!(!serial_accepts(
+                &mut serial,
+                &bits,
+                want ^ 1 << rng.in_range(0, 4)
+            ));
+        }
+    }
+}

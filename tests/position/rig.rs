@@ -10,7 +10,7 @@ use endat_sim::{
     bench::{Bench, ChannelResult, ChannelSettings, Link},
     encoder::{Defect, EncoderConfig, FrameEnd, FrameLog, Symbol},
     engine::Interpreter,
-    frame::CRC_BITS,
+    frame::{crc5, CRC_BITS},
     line::{LineConfig, Sample, Who},
     Time, MS, US,
 };
@@ -54,7 +54,7 @@ pub const FRAME_LIMIT: Time = 5 * MS;
 pub type Rig = Bench<Interpreter>;
 
 /// The times that are fixed in the channels of these tests.
-pub const fn fixed_times(system_hz: u64) -> FixedTimes {
+fn fixed_times(system_hz: u64) -> FixedTimes {
     FixedTimes {
         abort_us: ABORT_US,
         ..FixedTimes::at(system_hz)
@@ -127,6 +127,21 @@ impl Setup {
             .answer_bits(self.settings.position_bits)
     }
 
+    /// Whether sampled levels, from the first HIGH on, are an answer without alarm and with a right CRC.
+    pub fn believes(&self, levels: &[bool]) -> bool {
+        let start = levels.iter().position(|level| *level);
+        let answer = &levels[start.unwrap_or(levels.len())..];
+        let (end, f2) = (self.answer_bits() as usize, self.settings.command >> 5 != 0);
+        let covered_end = end - CRC_BITS as usize;
+        if answer.len() < end {
+            return false;
+        }
+        let sent = answer[covered_end..end].iter();
+        let crc = sent.fold(0, |crc, bit| crc << 1 | u8::from(*bit));
+        let no_alarm = !answer[1] && (!f2 || answer[2]);
+        no_alarm && crc5(answer[1..covered_end].iter().copied()) == crc
+    }
+
     fn link(&self) -> Link {
         Link::new(self.line.clone(), self.encoder.clone())
     }
@@ -160,6 +175,13 @@ impl Setup {
         settle(&mut rig);
         assert_sound(&sound, &rig);
         rig.engine().clone()
+    }
+
+    /// Like [`Setup::ready`], for an encoder whose recovery time would be a fault of the frame that measures.
+    pub fn ready_with_other_recovery(&self) -> Rig {
+        let mut usual = self.clone();
+        usual.encoder.tm = 2 * US..=2 * US;
+        self.on(usual.measured())
     }
 
     /// A channel that has measured the delay of this line: the next frame runs at the full clock and is the
