@@ -30,7 +30,7 @@ pub const RECOVERY_LIMIT_BITS: u32 = 13;
 /// Bits of the longest wait for the start bit, in the blocks.
 pub const START_TIMEOUT_BITS: u32 = 12;
 /// Fewest cycles that a first low phase can be longer than half a period, in the blocks.
-pub const FIRST_LOW_EXTRA_MIN: u64 = 2;
+pub const FIRST_LOW_EXTRA_MIN: u64 = 4;
 /// Bits of the ready time tR, in the blocks.
 pub const READY_LOW_BITS: u32 = 8;
 /// Bits of the period of the sampling timer, in the blocks.

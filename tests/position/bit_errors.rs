@@ -130,6 +130,7 @@ fn a_burst_on_the_start_bit_is_refused_unless_it_makes_another_right_answer() {
     let masks: Vec<u128> = bursts().map(|(_, p)| p).filter(|p| *p != 1).collect();
     let (mut count, mut unlucky) = (0, 0);
     start_bit_wrong(&masks, 6, |setup, mask, rig| {
+        settle(rig);
         let before = rig.samples(0).len();
         let good = rig
             .results()

@@ -9,7 +9,7 @@ use endat_sim::{
     rng::Rng,
 };
 use rust_hdl::prelude::Block;
-use std::{path::Path, sync::LazyLock};
+use std::sync::LazyLock;
 
 /// Covered bits in the order of transmission, and their CRC.
 struct Vector {
@@ -19,9 +19,8 @@ struct Vector {
 }
 
 fn vectors() -> Vec<Vector> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/crc_vectors.json");
-    let text = std::fs::read_to_string(path).expect("the vectors are part of the repository");
-    let file: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let text = include_str!("../data/crc_vectors.json");
+    let file: serde_json::Value = serde_json::from_str(text).expect("JSON");
     let bits =
         |text: &serde_json::Value| text.as_str().unwrap().bytes().map(|b| b == b'1').collect();
     let frames = file["vectors"].as_array().unwrap().iter().map(|v| Vector {

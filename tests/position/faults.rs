@@ -90,7 +90,8 @@ fn data_high_before_a_frame_is_data_not_low_at_once_and_without_a_clock_edge() {
     // A quiet time, then DATA low for tR.
     settle(&mut rig);
     let quiet = rig.now() - faulty.time;
-    assert!(quiet >= (ABORT_US - 1) * US, "{quiet} ps");
+    // The first microsecond is not a whole one, and the count begins with it.
+    assert!(quiet >= (ABORT_US - 2) * US, "{quiet} ps");
     rig.run_until_done(MS, |b| b.get("data_i") == 0);
     rig.run_for(US);
     good_frame(&mut rig);
@@ -326,12 +327,12 @@ fn a_position_of_another_width_passes_only_with_a_right_crc_and_a_high_tail() {
     let measured = setup.measured();
     let (mut count, mut by_tail, mut unlucky) = (0, 0, 0);
     for wider in (-16..=16).filter(|n| *n != 0) {
-        for seed in 0..48 {
+        for seed in 0..40 {
             // The position fills all 48 bits, so that a wider answer has some.
             let mut other = setup.clone();
             other.encoder.position_bits = 48;
             other = other.defect(0, Defect::WiderBy(29 - 48 + wider));
-            other.encoder.seed = seed;
+            other.encoder.seed = (seed * 64_u64).wrapping_add_signed(i64::from(wider));
             let mut rig = other.on(measured.clone());
             let result = any_frame(&mut rig);
             rig.run_for(20 * US);
@@ -354,11 +355,7 @@ fn a_position_of_another_width_passes_only_with_a_right_crc_and_a_high_tail() {
         }
     }
     assert!(
-        by_tail > 0,
-        "no wrong width passed the CRC: the tail was not tried"
-    );
-    assert!(
-        unlucky * 40 < count,
+        by_tail > 0 && unlucky * 40 < count,
         "{unlucky} of {count}, {by_tail} by the tail"
     );
 }

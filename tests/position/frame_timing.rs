@@ -51,7 +51,7 @@ fn clock_edges(rig: &Rig) -> (Vec<u64>, Vec<u64>) {
 #[test]
 fn every_phase_is_half_a_period_and_the_first_low_one_has_its_extra() {
     for period in [8, 9, 10, 11, 12, 25, 32, 33, 999, 1000] {
-        for extra in [0, 2, 3, 4, 5, 150, 1000] {
+        for extra in [0, 4, 5, 6, 150, 1000] {
             let mut setup = Setup::new(CARD, SendPosition, 3, 0.0);
             setup.settings.period_cycles = period;
             setup.settings.first_low_extra_cycles = extra;

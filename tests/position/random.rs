@@ -25,7 +25,7 @@ struct Story {
 }
 
 fn stories() -> impl Strategy<Value = Story> {
-    let line = (0.0..120.0, 5.0..10.0, 0..60 * NS, 0..200 * NS);
+    let line = (0.0..100.0, 4.5..7.0, 0..60 * NS, 0..200 * NS);
     let times = (0..12 * US, 0..3 * US);
     let parts = (0.0..1.0, -1.0..1.0, 0.0..1.0, 0.0..1.0);
     let kind = (0..RATES.len(), any::<bool>(), 1..=48u32, any::<u64>());
