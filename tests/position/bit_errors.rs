@@ -82,7 +82,7 @@ fn every_single_bit_error_and_every_burst_behind_the_start_bit_is_refused_as_crc
                 "{}",
                 what()
             );
-            assert_eq!(result.sequence, good.sequence + 1 & 0xFFFF, "{}", what());
+            assert_eq!(result.sequence, (good.sequence + 1) & 0xFFFF, "{}", what());
             count += 1;
         });
         assert_eq!(count, masks.len());
