@@ -17,6 +17,7 @@ mod execute;
 mod expr;
 mod finish;
 mod index;
+mod loops;
 mod names;
 mod plan;
 mod scope;
@@ -50,5 +51,6 @@ pub fn elaborate(top: &dyn Block, name: &str) -> Result<Design, ElaborateError> 
     let tree = tree::read(top, name)?;
     let (mut design, top) = build::build(&tree)?;
     finish::finish(&mut design, top, name, &tree)?;
+    loops::separate(&mut design, &tree)?;
     Ok(design)
 }

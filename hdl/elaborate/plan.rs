@@ -41,6 +41,31 @@ pub(super) fn plan(
     Ok((processes, targets.depends))
 }
 
+/// The smallest processes that the statements of one process can be taken apart into.
+pub(super) fn split(statements: &[Statement]) -> Vec<Process> {
+    let targets = Targets::new(statements);
+    let classes = targets.classes();
+    let none = Dependencies::new();
+    // One process is never a loop in itself.
+    let order = targets.sorted(&classes, &none).unwrap_or_default();
+    if order.len() < 2 {
+        return vec![Process {
+            statements: statements.to_vec(),
+        }];
+    }
+    let part = |class: &NetId| {
+        let members = classes.iter().filter(|(_, c)| *c == class);
+        let set: BTreeSet<NetId> = members.map(|(net, _)| *net).collect();
+        Process {
+            statements: statements
+                .iter()
+                .filter_map(|s| s.restricted_to(&set))
+                .collect(),
+        }
+    };
+    order.iter().map(part).collect()
+}
+
 /// What the kernel assigns, and when.
 struct Targets {
     /// First and last top-level statement that assigns a net.
@@ -134,8 +159,25 @@ impl Targets {
         sets.names()
     }
 
-    /// For each class, the classes that it reads.
-    fn class_graph(
+    /// For each class, the other classes that it reads.
+    fn direct_graph(&self, classes: &BTreeMap<NetId, NetId>) -> Dependencies {
+        let mut graph: Dependencies = classes
+            .values()
+            .map(|class| (*class, BTreeSet::new()))
+            .collect();
+        for (target, depends) in &self.depends {
+            let class = classes[target];
+            let sources = depends.iter().filter_map(|net| classes.get(net));
+            graph
+                .entry(class)
+                .or_default()
+                .extend(sources.filter(|source| **source != class));
+        }
+        graph
+    }
+
+    /// For each class, the classes that it reads by way of a child. One that reads itself so is a loop.
+    fn through_graph(
         &self,
         classes: &BTreeMap<NetId, NetId>,
         through_children: &Dependencies,
@@ -145,15 +187,12 @@ impl Targets {
             .map(|class| (*class, BTreeSet::new()))
             .collect();
         for (target, depends) in &self.depends {
-            let class = classes[target];
-            for net in depends {
-                let sources = through_children.get(net).cloned().unwrap_or_default();
-                let is_direct = classes.get(net).filter(|source| **source != class);
-                // A way through a child counts even if it ends in the same class: then it is a loop.
-                let through = sources.iter().filter_map(|source| classes.get(source));
-                let entry = graph.entry(class).or_default();
-                entry.extend(is_direct.into_iter().chain(through));
-            }
+            let sources = depends
+                .iter()
+                .filter_map(|net| through_children.get(net))
+                .flatten();
+            let sources = sources.filter_map(|source| classes.get(source));
+            graph.entry(classes[target]).or_default().extend(sources);
         }
         graph
     }
@@ -164,7 +203,10 @@ impl Targets {
         classes: &BTreeMap<NetId, NetId>,
         through_children: &Dependencies,
     ) -> Result<Vec<NetId>, PlanError> {
-        let graph = self.class_graph(classes, through_children);
+        let mut graph = self.direct_graph(classes);
+        for (class, sources) in self.through_graph(classes, through_children) {
+            graph.entry(class).or_default().extend(sources);
+        }
         let groups = self.groups(classes);
         let first = |class: NetId| {
             let members = classes.iter().filter(|(_, c)| **c == class);
@@ -228,21 +270,26 @@ fn place(
     order: &[NetId],
     through_children: &Dependencies,
 ) -> Vec<BTreeSet<NetId>> {
-    let graph = targets.class_graph(classes, through_children);
+    let direct = targets.direct_graph(classes);
+    let through = targets.through_graph(classes, through_children);
     let groups = targets.groups(classes);
     let mut process_of: BTreeMap<NetId, usize> = BTreeMap::new();
     // For each process: the group, and the processes that it reads.
     let mut processes: Vec<(NetId, BTreeSet<usize>)> = vec![];
     for class in order {
-        let sources: BTreeSet<usize> = graph[class]
-            .iter()
-            .map(|source| process_of[source])
-            .collect();
+        let processes_of = |graph: &Dependencies| -> BTreeSet<usize> {
+            graph[class]
+                .iter()
+                .map(|source| process_of[source])
+                .collect()
+        };
+        let (sources, around) = (processes_of(&direct), processes_of(&through));
         let fits = |process: usize| {
             processes[process].0 == groups[class]
                 && !targets.is_read_early(*class, process, classes, &process_of)
-                // Joining must not make the process depend on itself through another one.
+                // Joining must not make the process feed itself through another one or through a child.
                 && sources.iter().all(|source| *source == process || !reads(&processes, *source, process))
+                && around.iter().all(|source| !reads(&processes, *source, process))
         };
         let process = match (0..processes.len()).rev().find(|process| fits(*process)) {
             Some(process) => process,
@@ -253,7 +300,7 @@ fn place(
         };
         processes[process]
             .1
-            .extend(sources.into_iter().filter(|s| *s != process));
+            .extend(sources.into_iter().chain(around).filter(|s| *s != process));
         process_of.insert(*class, process);
     }
     let mut sets = vec![BTreeSet::new(); processes.len()];

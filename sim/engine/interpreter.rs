@@ -341,17 +341,8 @@ impl Flat<'_> {
         }
     }
 
-    fn compile(&mut self) -> Result<Program, InterpreterError> {
-        let mut order = sorted(&self.processes);
-        if order.is_err() {
-            // Processes of one block may lean on each other by way of its surroundings: take their targets apart.
-            let parts = std::mem::take(&mut self.processes)
-                .into_iter()
-                .flat_map(split);
-            self.processes = parts.collect();
-            order = sorted(&self.processes);
-        }
-        let order = order.map_err(|nets| {
+    fn compile(&self) -> Result<Program, InterpreterError> {
+        let order = sorted(&self.processes).map_err(|nets| {
             InterpreterError::Loop(
                 nets.into_iter()
                     .map(|net| self.names[net].clone())
@@ -370,32 +361,6 @@ impl Flat<'_> {
         }
         Ok(compiler.finish())
     }
-}
-
-/// One process for each target that can stand alone; targets that the process itself reads stay with their readers.
-fn split(process: FlatProcess) -> Vec<FlatProcess> {
-    let targets = process.targets();
-    let read = process.reads();
-    let (shared, alone): (BTreeSet<usize>, BTreeSet<usize>) =
-        targets.into_iter().partition(|t| read.contains(t));
-    alone
-        .into_iter()
-        .map(|target| {
-            // A shared target is computed again for each reader; the last one to do so leaves the same value.
-            let mut set = shared.clone();
-            set.insert(target);
-            set
-        })
-        .chain((!shared.is_empty()).then(|| shared.clone()))
-        .map(|set| FlatProcess {
-            statements: process
-                .statements
-                .iter()
-                .filter_map(|s| s.restricted_to(&set))
-                .collect(),
-            parameters: process.parameters.clone(),
-        })
-        .collect()
 }
 
 /// An order in which every process comes after those it reads, or the nets of a loop.

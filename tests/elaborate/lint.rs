@@ -1,6 +1,6 @@
 //! The emitted text under the tools that read it: not one warning.
 
-use super::zoo::{Everything, Machine, Store};
+use super::zoo::{Everything, Machine, Store, ThereAndBack};
 use crate::tools;
 use endat_gen::config::load_preset;
 use endat_gen::verilog::{print_files, Header};
@@ -17,6 +17,7 @@ fn designs() -> Vec<Design> {
         (Box::new(Machine::new(5)), "machine"),
         (Box::new(Everything::new(3)), "everything"),
         (Box::new(Store::default()), "store"),
+        (Box::new(ThereAndBack::default()), "there_and_back"),
         (
             Box::new(Channel::new(FixedTimes::at(100_000_000))),
             "channel",

@@ -414,3 +414,62 @@ fn memories_agree() {
     let engine = kernel_engine!(block; clock; in enable, to, from, data; out out, low);
     check("store", &design, engine, 1000);
 }
+
+/// Two ways through, under one condition: one process, unless the surroundings join the ways.
+#[derive(LogicBlock, Default)]
+struct TwoWays {
+    pub swap: Signal<In, Bit>,
+    pub a: Signal<In, Bits<6>>,
+    pub b: Signal<In, Bits<6>>,
+    pub a_out: Signal<Out, Bits<6>>,
+    pub b_out: Signal<Out, Bits<6>>,
+}
+
+impl Logic for TwoWays {
+    #[hdl_gen]
+    fn update(&mut self) {
+        self.a_out.next = self.a.val();
+        self.b_out.next = self.b.val();
+        if self.swap.val() {
+            self.a_out.next = !self.a.val();
+            self.b_out.next = self.b.val() + 1;
+        }
+    }
+}
+
+/// Sends a value through both ways of one child, one after the other: no loop, although one process feeds itself.
+#[derive(LogicBlock, Default)]
+pub struct ThereAndBack {
+    pub clock: Signal<In, Clock>,
+    pub swap: Signal<In, Bit>,
+    pub value: Signal<In, Bits<6>>,
+    pub out: Signal<Out, Bits<6>>,
+    pub doubled: Signal<Out, Bits<6>>,
+    ways: TwoWays,
+    between: Signal<Local, Bits<6>>,
+}
+
+impl Logic for ThereAndBack {
+    #[hdl_gen]
+    fn update(&mut self) {
+        self.ways.swap.next = self.swap.val();
+        self.ways.a.next = self.value.val();
+        self.between.next = 0.into();
+        self.doubled.next = 0.into();
+        if self.value.val().any() {
+            self.between.next = self.ways.a_out.val() ^ 3;
+            self.doubled.next = self.ways.b_out.val() << 1;
+        }
+        self.ways.b.next = self.between.val();
+        self.out.next = self.ways.b_out.val();
+    }
+}
+
+#[test]
+fn ways_through_a_child_that_follow_each_other_agree() {
+    let mut block = ThereAndBack::default();
+    block.connect_all();
+    let design = elaborate(&block, "there_and_back").unwrap();
+    let engine = kernel_engine!(block; clock; in swap, value; out out, doubled);
+    check("there_and_back", &design, engine, 300);
+}
