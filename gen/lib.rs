@@ -7,6 +7,7 @@
 //!
 //! Everything before [`artifact::write`] makes text and touches no file.
 
+pub mod area;
 pub mod artifact;
 pub mod board;
 pub mod cli;

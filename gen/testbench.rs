@@ -152,10 +152,16 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         .take_while(|r| r.name != "trigger_count")
         .map(|r| format!("{:08X}", r.start(card, 0)))
         .collect();
+    let encoder = template::render(
+        "encoder",
+        include_str!("templates/encoder.v.jinja"),
+        &context! { name => project.name.as_str() },
+    )?;
     let context = context! {
         name => project.name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
+        encoder,
         channels => Serde(ports),
         clk_ns => real(1e9 / hz as f64),
         uart_bit_ns => real(1e9 / card.baud as f64),

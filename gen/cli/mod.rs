@@ -1,5 +1,6 @@
 //! The command line: arguments in, an [`Outcome`] out. Results are text for stdout, messages are lines for stderr.
 
+mod area;
 mod crc_command;
 mod emit;
 mod sim;
@@ -67,6 +68,8 @@ enum Command {
     Sim(sim::SimArgs),
     /// Compute and explain the CRC of a frame
     Crc(crc_command::CrcArgs),
+    /// Measure the area, and the speed, of card, channel and blocks with yosys and nextpnr
+    Area(area::AreaArgs),
 }
 
 /// Which configuration.
@@ -134,6 +137,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         }
         Some(Command::Sim(arguments)) => sim::run(&arguments),
         Some(Command::Crc(arguments)) => crc_command::run(&arguments),
+        Some(Command::Area(arguments)) => area::run(&arguments),
     }
 }
 

@@ -1,7 +1,10 @@
 //! Outside tools over the emitted card: simulators, linters, synthesis, formal equivalence, gate level.
 
+mod area;
+mod formal;
 mod lint;
 mod mutations;
+mod netlist;
 mod testbench;
 
 use crate::tools;

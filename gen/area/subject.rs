@@ -1,0 +1,81 @@
+//! What is measured: the card of the preset, one channel, and some of its blocks.
+
+use crate::artifact::Artifact;
+use crate::config::{load_preset, DEFAULT_PRESET};
+use crate::error::GenError;
+use crate::verilog::{print_files, Header};
+use endat_hdl::card::Card;
+use endat_hdl::channel::{Channel, FixedTimes};
+use endat_hdl::crc5::{Crc5Fixed, Crc5Parallel, Crc5Serial};
+use endat_hdl::elaborate::{elaborate, Design};
+use endat_hdl::line_delay::LineDelay;
+use endat_hdl::receiver::Receiver;
+use endat_hdl::snapshot::Snapshot;
+use endat_hdl::transaction::Transaction;
+use rust_hdl::prelude::Block;
+
+/// A design whose area is measured.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    /// Name; also that of the top module.
+    pub name: &'static str,
+    /// What it is.
+    pub title: &'static str,
+    /// The design.
+    pub design: Design,
+}
+
+impl Subject {
+    fn new(
+        name: &'static str,
+        title: &'static str,
+        mut block: impl Block,
+    ) -> Result<Self, GenError> {
+        block.connect_all();
+        let design = elaborate(&block, name).map_err(|e| {
+            GenError::input(format!(
+                "{name}: {e}; this is a fault of endat-gen, please report it"
+            ))
+        })?;
+        Ok(Self {
+            name,
+            title,
+            design,
+        })
+    }
+
+    /// Its Verilog.
+    pub fn files(&self) -> Vec<Artifact> {
+        let files = print_files(&self.design, &Header::default());
+        let files = files.into_iter();
+        files
+            .map(|(path, text)| Artifact::new(path, text))
+            .collect()
+    }
+}
+
+/// Everything that is measured, the largest first.
+pub fn subjects() -> Result<Vec<Subject>, GenError> {
+    let card = load_preset(DEFAULT_PRESET)?.card;
+    let times = FixedTimes::at(card.system_hz);
+    let transaction = Transaction::new(times.ready_low_cycles, times.abort_us);
+    Ok(vec![
+        Subject::new("card", "two-channel card s6_two_channel", Card::new(&card))?,
+        Subject::new("channel", "one position channel", Channel::new(times))?,
+        Subject::new("transaction", "order and time-outs", transaction)?,
+        Subject::new("line_delay", "propagation delay", LineDelay::default())?,
+        Subject::new("receiver", "receiver with both CRCs", Receiver::default())?,
+        Subject::new("snapshot", "snapshot with time stamp", Snapshot::default())?,
+        Subject::new(
+            "crc5_parallel",
+            "CRC5, parallel, any length to 50 bits",
+            Crc5Parallel::default(),
+        )?,
+        Subject::new(
+            "crc5_fixed_31",
+            "CRC5, parallel, 31 bits",
+            Crc5Fixed::<31>::default(),
+        )?,
+        Subject::new("crc5_serial", "CRC5, serial", Crc5Serial::default())?,
+    ])
+}

@@ -1,0 +1,27 @@
+//! `area`: measures the emitted Verilog with outside tools.
+
+use super::{to_json, Outcome};
+use crate::area;
+use crate::error::GenError;
+use clap::Args;
+
+/// Arguments of `area`.
+#[derive(Args)]
+pub struct AreaArgs {
+    /// Also place and route card and channel: takes minutes
+    #[arg(long)]
+    fmax: bool,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &AreaArgs) -> Result<Outcome, GenError> {
+    let report = area::report(arguments.fmax)?;
+    Ok(Outcome::good(if arguments.json {
+        to_json(&report)?
+    } else {
+        report.to_string()
+    }))
+}

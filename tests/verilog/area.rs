@@ -1,0 +1,86 @@
+//! Budgets: the exact area of card, channel and blocks. A change that is meant is taken over with `UPDATE_EXPECT=1 cargo test`.
+
+use crate::tools;
+use endat_gen::area::{self, Family, Subject, Usage, ICE40, XC6S};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+
+const TABLE: &str = "tests/data/area.toml";
+const HEAD: &str = "# LUTs and flip-flops after synthesis with yosys 0.70, exact. Renew with: UPDATE_EXPECT=1 cargo test area\n";
+
+/// Whether the synthesis tool is there in the version that the figures are made with.
+pub fn require(check: &str) -> bool {
+    if !tools::require(area::YOSYS, check) {
+        return false;
+    }
+    let right = area::is_available();
+    assert!(
+        right || std::env::var_os("CI").is_none(),
+        "{check}: {} is not {}",
+        area::YOSYS,
+        area::YOSYS_VERSION
+    );
+    if !right {
+        let _ = writeln!(
+            std::io::stderr(),
+            "SKIPPED {check}: {} is not {}",
+            area::YOSYS,
+            area::YOSYS_VERSION
+        );
+    }
+    right
+}
+
+fn usage(subject: &Subject, family: &Family) -> Usage {
+    let folder = tools::folder(&format!("area-{}-{}", subject.name, family.name));
+    let found = area::synthesise(&folder, &subject.files(), subject.name, family);
+    found.unwrap().usage
+}
+
+#[test]
+fn area_is_exactly_what_the_table_says() {
+    if !require("area budgets") {
+        return;
+    }
+    let mut found = String::from(HEAD);
+    for subject in area::subjects().unwrap() {
+        let _ = writeln!(found, "\n[{}] # {}", subject.name, subject.title);
+        for family in [XC6S, ICE40] {
+            let Usage { lut, ff } = usage(&subject, &family);
+            let _ = writeln!(found, "{} = {{ lut = {lut}, ff = {ff} }}", family.name);
+            let ceiling = match (subject.name, family.name) {
+                ("channel", "xc6s") => 300,
+                ("card", "xc6s") => 900,
+                _ => continue,
+            };
+            assert!(lut <= ceiling, "{}: {lut} LUT, aim {ceiling}", subject.name);
+        }
+    }
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(TABLE);
+    if std::env::var_os("UPDATE_EXPECT").is_some() {
+        std::fs::write(&path, &found).unwrap();
+    }
+    let expected = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(
+        found == expected,
+        "area has changed; if that is meant: UPDATE_EXPECT=1 cargo test area\n{}",
+        difference(&expected, &found)
+    );
+}
+
+/// Lines that differ.
+fn difference(expected: &str, found: &str) -> String {
+    let lines = expected.lines().zip(found.lines());
+    let mut section = "";
+    let mut text = String::new();
+    for (old, new) in lines {
+        if new.starts_with('[') {
+            section = new;
+        }
+        if old != new {
+            let _ = writeln!(text, "{section}: {new}, table: {old}");
+        }
+    }
+    text
+}

@@ -1,0 +1,104 @@
+//! Formal equivalence: the emitted CRC blocks against references written by hand, for all words.
+
+use crate::tools;
+use endat_gen::area::subjects;
+use std::fmt::Write;
+use std::fs;
+
+/// The five equations as Liu et al. publish them for 29 position bits (2024): d[30] is F1, d[29] is F2, d[28] the LSB.
+const PUBLISHED: &str = "
+module reference(input [30:0] d, output [4:0] crc);
+    assign crc[0] = d[30]^d[25]^d[24]^d[23]^d[21]^d[20]^d[17]^d[15]^d[10]^d[9]^d[8]^d[6]^d[5]^d[2]^d[0];
+    assign crc[1] = d[30]^d[26]^d[23]^d[22]^d[20]^d[18]^d[17]^d[16]^d[15]^d[11]^d[8]^d[7]^d[5]^d[3]^d[2]^d[1]^d[0]^1'b1;
+    assign crc[2] = d[27]^d[24]^d[23]^d[21]^d[19]^d[18]^d[17]^d[16]^d[12]^d[9]^d[8]^d[6]^d[4]^d[3]^d[2]^d[1];
+    assign crc[3] = d[30]^d[28]^d[23]^d[22]^d[21]^d[19]^d[18]^d[15]^d[13]^d[8]^d[7]^d[6]^d[4]^d[3]^d[0]^1'b1;
+    assign crc[4] = d[29]^d[24]^d[23]^d[22]^d[20]^d[19]^d[16]^d[14]^d[9]^d[8]^d[7]^d[5]^d[4]^d[1];
+endmodule
+";
+
+/// Proves in yosys that `block` and the module `reference` have equal outputs; whether they have, and what yosys says.
+fn equal(test: &str, block: &str, wrapper: &str, reference: &str) -> (bool, String) {
+    let folder = tools::folder(&format!("formal-{test}"));
+    let subjects = subjects().unwrap();
+    let subject = subjects.iter().find(|s| s.name == block).unwrap();
+    let mut names = vec![];
+    for file in subject.files() {
+        fs::write(folder.join(&file.path), &file.text).unwrap();
+        names.push(file.path);
+    }
+    fs::write(folder.join("reference.v"), format!("{wrapper}{reference}")).unwrap();
+    let script = format!(
+        "read_verilog {} reference.v; proc; flatten; opt_clean; miter -equiv -flatten candidate reference both; hierarchy -top both; sat -verify -prove trigger 0 both",
+        names.join(" ")
+    );
+    tools::run("yosys", &folder, &["-q", "-p", &script])
+}
+
+#[test]
+fn published_equations_equal_the_block_for_31_bits() {
+    if !tools::require("yosys", "published CRC equations") {
+        return;
+    }
+    let wrapper = "module candidate(input [30:0] d, output [4:0] crc); crc5_fixed_31 block(.word(d), .crc(crc)); endmodule";
+    let (proved, text) = equal("published", "crc5_fixed_31", wrapper, PUBLISHED);
+    assert!(proved, "{text}");
+    // A reference with one term dropped is told apart, so the proof says something.
+    let wrong = PUBLISHED.replacen("^d[1];", ";", 1);
+    assert_ne!(wrong, PUBLISHED);
+    let (proved, text) = equal("published-wrong", "crc5_fixed_31", wrapper, &wrong);
+    assert!(!proved && text.contains("proof did fail"), "{text}");
+}
+
+/// A shift register as section 4 of every EnDat description has it, unrolled over `bits` bits, the first one in d[0].
+fn serial_reference(bits: usize) -> String {
+    let mut text = format!(
+        "module reference(input [{}:0] d, output [4:0] crc);\n    wire [4:0] r0 = 5'b11111;\n",
+        bits - 1
+    );
+    for i in 0..bits {
+        let _ = writeln!(
+            text,
+            "    wire e{i} = r{i}[4] ^ d[{i}];\n    wire [4:0] r{next} = {{r{i}[3], r{i}[2] ^ e{i}, r{i}[1], r{i}[0] ^ e{i}, e{i}}};",
+            next = i + 1
+        );
+    }
+    let _ = writeln!(text, "    assign crc = ~r{bits};\nendmodule");
+    text
+}
+
+/// One length after the other, the word aligned as the receiver does it: its last bit on top, or a multiple of 15 below.
+#[test]
+fn parallel_crc_equals_the_serial_one_for_every_length() {
+    if !tools::require("yosys", "CRC of every length") {
+        return;
+    }
+    let wrapper = |bits: usize, place: usize, covered: usize| {
+        let mut word = format!("d << {place}");
+        if place == 0 {
+            word = "d".into();
+        }
+        format!(
+            "module candidate(input [{}:0] d, output [4:0] crc); wire [49:0] word = {word}; crc5_parallel block(.word(word), .covered_mod_15(4'd{covered}), .crc(crc)); endmodule\n",
+            bits - 1
+        )
+    };
+    for bits in 2..=50 {
+        let mut place = 50 - bits;
+        while place >= 15 {
+            place -= 15;
+        }
+        for place in [place, 50 - bits] {
+            let name = format!("length-{bits}-{place}");
+            let wrapper = wrapper(bits, place, bits % 15);
+            let (proved, text) = equal(&name, "crc5_parallel", &wrapper, &serial_reference(bits));
+            assert!(proved, "{bits} bits at {place}: {text}");
+        }
+    }
+    let (proved, _) = equal(
+        "length-wrong",
+        "crc5_parallel",
+        &wrapper(31, 4, 2),
+        &serial_reference(31),
+    );
+    assert!(!proved);
+}

@@ -1,0 +1,304 @@
+//! The card synthesised for every family: it can be, its synchronisers stay flip-flops, and the netlists do what the RTL does.
+
+use super::{area::require, compile, is_core, quick_files, write};
+use crate::tools;
+use endat_gen::area::{self, Family, Synthesis, ECP5, GOWIN, ICE40, XC6S, XC7};
+use endat_gen::config::DEFAULT_PRESET;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+/// The card synthesised for a family.
+fn synthesised(family: &Family) -> Synthesis {
+    let files: Vec<_> = quick_files()
+        .iter()
+        .filter(|f| is_core(f))
+        .cloned()
+        .collect();
+    let folder = tools::folder(&format!("netlist-{}", family.name));
+    area::synthesise(&folder, &files, DEFAULT_PRESET, family).unwrap()
+}
+
+/// The same, made once for all tests.
+fn xc6s() -> &'static Synthesis {
+    static DONE: OnceLock<Synthesis> = OnceLock::new();
+    DONE.get_or_init(|| synthesised(&XC6S))
+}
+
+fn has_flip_flops(synthesis: &Synthesis) {
+    // Two channels with their results, configuration and counters.
+    assert!(synthesis.usage.ff > 1000, "{:?}", synthesis.usage);
+    let latches = synthesis
+        .cells
+        .keys()
+        .filter(|c| c.contains("LATCH") || c.starts_with("LD"));
+    assert_eq!(latches.count(), 0, "{:?}", synthesis.cells);
+}
+
+#[test]
+fn card_synthesises_for_7_series_and_gowin() {
+    if require("synthesis of the card") {
+        for family in [XC7, GOWIN] {
+            has_flip_flops(&synthesised(&family));
+        }
+    }
+}
+
+/// Names of the registers that the emitted text marks as synchroniser stages.
+fn marked_registers() -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for file in quick_files().iter().filter(|f| is_core(f)) {
+        let mut lines = file.text.lines();
+        while let Some(line) = lines.next() {
+            if line.contains("ASYNC_REG") {
+                let declaration = lines.next().unwrap().split('=').next().unwrap();
+                let name = declaration.split_whitespace().last().unwrap();
+                found.insert(name.to_owned());
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn synchronisers_of_the_card_stay_flip_flops() {
+    if !require("synchronisers in the netlist of the card") {
+        return;
+    }
+    let text = fs::read_to_string(&xc6s().json).unwrap();
+    let netlist: Value = serde_json::from_str(&text).unwrap();
+    let module = &netlist["modules"][DEFAULT_PRESET];
+    // The bit that every flip-flop drives.
+    let cells = module["cells"].as_object().unwrap().values();
+    let flip_flops: BTreeSet<u64> = cells
+        .filter(|c| matches!(c["type"].as_str(), Some("FDRE" | "FDSE")))
+        .map(|c| c["connections"]["Q"][0].as_u64().unwrap())
+        .collect();
+    let marked = marked_registers();
+    assert!(marked.len() >= 3, "{marked:?}");
+    let mut stages = 0;
+    for (name, net) in module["netnames"].as_object().unwrap() {
+        let last = name.rsplit('.').next().unwrap();
+        if !marked.contains(last) {
+            continue;
+        }
+        for bit in net["bits"].as_array().unwrap() {
+            let bit = bit.as_u64().unwrap_or_else(|| panic!("{name} is constant"));
+            assert!(
+                flip_flops.contains(&bit),
+                "{name} is not a flip-flop of its own"
+            );
+            stages += 1;
+        }
+    }
+    // Three stages for each DATA input and the trigger, two for the UART.
+    assert_eq!(stages, 3 + 3 + 3 + 2);
+}
+
+/// Cycles that are compared: reset, host commands, a frame that measures the delay, frames at the configured clock.
+const CYCLES: usize = 60_000;
+
+/// Pins of the card, inputs and outputs, without the clock.
+fn pins() -> (Vec<String>, Vec<String>) {
+    let mut inputs = vec!["rst_i".into(), "trigger_i".into(), "uart_rx_i".into()];
+    let mut outputs = vec!["uart_tx_o".into(), "led_status_o".into()];
+    for n in 0..2 {
+        inputs.push(format!("endat_data{n}_i"));
+        for end in ["clk{n}_o", "data{n}_o", "data{n}_oe"] {
+            outputs.push(format!("endat_{}", end.replace("{n}", &n.to_string())));
+        }
+        outputs.push(format!("led_channel{n}_o"));
+    }
+    (inputs, outputs)
+}
+
+fn joined(names: &[String], form: impl Fn(&String) -> String) -> String {
+    let formed: Vec<String> = names.iter().rev().map(form).collect();
+    formed.join(", ")
+}
+
+/// Stimulus and outputs of the RTL, one line a cycle, recorded while the card runs in its own test bench.
+fn recording() -> &'static str {
+    static TEXT: OnceLock<String> = OnceLock::new();
+    TEXT.get_or_init(|| {
+        let (folder, mut files) = write("recorder", quick_files());
+        let (inputs, outputs) = pins();
+        let pin = |name: &String| format!("{DEFAULT_PRESET}_tb.dut.{name}");
+        let text = format!(
+            "`timescale 1ns / 1ps
+module recorder;
+    integer file, cycle;
+    initial begin file = $fopen(\"recording.txt\"); cycle = 0; end
+    // Values just before the edge: nothing has moved yet.
+    always @(posedge {DEFAULT_PRESET}_tb.clk) begin
+        $fwrite(file, \"%b%b\\n\", {{{}}}, {{{}}});
+        cycle = cycle + 1;
+        if (cycle == {CYCLES}) begin $fclose(file); $finish; end
+    end
+endmodule
+",
+            joined(&outputs, pin),
+            joined(&inputs, pin)
+        );
+        fs::write(folder.join("recorder.v"), text).unwrap();
+        files.extend([format!("{DEFAULT_PRESET}_tb.v"), "recorder.v".into()]);
+        compile(
+            &folder,
+            "recorder",
+            &files,
+            &["-s", &format!("{DEFAULT_PRESET}_tb")],
+        );
+        let (good, text) = tools::run("vvp", &folder, &["-n", "sim.vvp"]);
+        assert!(
+            good && !text.contains("FAIL"),
+            "{}: {text}",
+            folder.display()
+        );
+        fs::read_to_string(folder.join("recording.txt")).unwrap()
+    })
+}
+
+/// A bench that plays the stimulus to a netlist and compares all outputs before every clock edge.
+fn player() -> String {
+    let (inputs, outputs) = pins();
+    let (i, o) = (inputs.len(), outputs.len());
+    let connect = |names: &[String], bus: &str| -> String {
+        let names = names.iter().enumerate();
+        names
+            .map(|(k, name)| format!(", .{name}({bus}[{k}])"))
+            .collect()
+    };
+    format!(
+        "`timescale 1ns / 1ps
+module player;
+    reg [{row_top}:0] recording [0:{last}];
+    reg clk;
+    reg [{i_top}:0] in;
+    reg [{o_top}:0] want;
+    wire [{o_top}:0] out;
+    integer cycle;
+    {DEFAULT_PRESET} dut (.clk_i(clk){ins}{outs});
+    initial begin
+        $readmemb(\"recording.txt\", recording);
+        clk = 1'b0;
+        for (cycle = 0; cycle <= {last}; cycle = cycle + 1) begin
+            {{want, in}} = recording[cycle];
+            #5;
+            if (out !== want) begin
+                $display(\"cycle %0d: %b instead of %b\", cycle, out, want);
+                $finish;
+            end
+            clk = 1'b1;
+            #5;
+            clk = 1'b0;
+        end
+        $display(\"PASS\");
+        $finish;
+    end
+endmodule
+",
+        row_top = i + o - 1,
+        i_top = i - 1,
+        o_top = o - 1,
+        last = CYCLES - 1,
+        ins = connect(&inputs, "in"),
+        outs = connect(&outputs, "out"),
+    )
+}
+
+/// The folder of Debian's yosys' own files: where yosys itself looks for them, beside its program. Its cell models are the
+/// ones that iverilog reads for every family.
+fn share() -> PathBuf {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let programs = std::env::split_paths(&path).map(|folder| folder.join("yosys"));
+    let program = programs
+        .filter(|p| p.is_file())
+        .find_map(|p| p.canonicalize().ok());
+    let program = program.expect("yosys is in the PATH");
+    program.parent().unwrap().join("../share/yosys")
+}
+
+/// Plays a recording to a card; what the player says.
+fn play(name: &str, recording: &str, card: &[(&str, &str)], options: &[String]) -> String {
+    let folder = tools::folder(&format!("gate-{name}"));
+    fs::write(folder.join("recording.txt"), recording).unwrap();
+    fs::write(folder.join("player.v"), player()).unwrap();
+    let mut arguments = vec!["-g2005", "-o", "sim.vvp", "-s", "player", "player.v"];
+    for (file, text) in card {
+        fs::write(folder.join(file), text).unwrap();
+        arguments.push(file);
+    }
+    arguments.extend(options.iter().map(String::as_str));
+    let (good, text) = tools::run("iverilog", &folder, &arguments);
+    assert!(good, "{}: {text}", folder.display());
+    tools::run("vvp", &folder, &["-n", "sim.vvp"]).1
+}
+
+/// The recording played back to the RTL: equal as it stands, and one wrong bit in the last cycle is noticed.
+#[test]
+fn player_compares_every_cycle() {
+    if !tools::require("iverilog", "recording of the card") {
+        return;
+    }
+    let core = quick_files().iter().filter(|f| is_core(f));
+    let card: Vec<_> = core.map(|f| (f.path.as_str(), f.text.as_str())).collect();
+    assert_eq!(play("rtl", recording(), &card, &[]), "PASS\n");
+    let (first, last) = recording().trim_end().rsplit_once('\n').unwrap();
+    let flipped = if last.starts_with('0') { "1" } else { "0" };
+    let spoilt = format!("{first}\n{flipped}{}\n", &last[1..]);
+    let said = play("spoilt", &spoilt, &card, &[]);
+    assert!(
+        said.starts_with(&format!("cycle {}:", CYCLES - 1)),
+        "{said}"
+    );
+    // The frames are in it: clocks, drivers and lights of both channels move.
+    let (_, outputs) = pins();
+    for (place, name) in outputs.iter().rev().enumerate() {
+        let bits: BTreeSet<u8> = recording().lines().map(|l| l.as_bytes()[place]).collect();
+        assert!(
+            bits.len() == 2 || name == "led_status_o",
+            "{name} does not move"
+        );
+    }
+}
+
+fn gate_level(family: &Family) {
+    let check = format!("gate level on {}", family.name);
+    if !(require(&check) && tools::require("iverilog", &check) && tools::require("yosys", &check)) {
+        return;
+    }
+    let synthesis = match family.name {
+        "xc6s" => xc6s().clone(),
+        _ => synthesised(family),
+    };
+    has_flip_flops(&synthesis);
+    let folder = share().join(match family.name {
+        "xc6s" => "xilinx",
+        name => name,
+    });
+    let options = [
+        "-DNO_ICE40_DEFAULT_ASSIGNMENTS".to_owned(),
+        format!("-I{}", folder.display()),
+        folder.join("cells_sim.v").display().to_string(),
+    ];
+    let netlist = fs::read_to_string(&synthesis.verilog).unwrap();
+    let card = [("netlist.v", netlist.as_str())];
+    assert_eq!(play(family.name, recording(), &card, &options), "PASS\n");
+}
+
+#[test]
+fn spartan_6_netlist_equals_the_rtl() {
+    gate_level(&XC6S);
+}
+
+#[test]
+fn ecp5_netlist_equals_the_rtl() {
+    gate_level(&ECP5);
+}
+
+#[test]
+fn ice40_netlist_equals_the_rtl() {
+    gate_level(&ICE40);
+}
