@@ -20,7 +20,7 @@ module endat_snapshot (
     input  wire         publish,
     // With publish: the position is good.
     input  wire         good,
-    // Strobe: replace cause and flags of the present result.
+    // Strobe: replace cause and flags of the present result; with flag 9 its position is not good any more.
     input  wire         late_fault,
     // Position of the frame.
     input  wire  [47:0] position_in,
@@ -82,19 +82,6 @@ module endat_snapshot (
     reg    [4:0] computed_next;
 
     always @* begin
-        is_fresh_next = is_fresh;
-        count_next = count;
-        received_next = received;
-        computed_next = computed;
-        if (publish) begin
-            is_fresh_next = good;
-            count_next = count + 16'd1;
-            received_next = crc_received_in;
-            computed_next = crc_computed_in;
-        end
-    end
-
-    always @* begin
         latched_next = latched;
         if (first_fall) begin
             latched_next = timestamp;
@@ -114,16 +101,30 @@ module endat_snapshot (
     always @* begin
         held_next = held;
         valid_next = valid;
+        is_fresh_next = is_fresh;
+        count_next = count;
         stamp_next = stamp;
         age_next = age;
+        received_next = received;
+        computed_next = computed;
         if (tick_us & !age_full) begin
             age_next = age + 16'd1;
+        end
+        if (publish) begin
+            is_fresh_next = good;
+            count_next = count + 16'd1;
+            received_next = crc_received_in;
+            computed_next = crc_computed_in;
         end
         if (take_good) begin
             held_next = position_in;
             stamp_next = latched;
             valid_next = 1'b1;
             age_next = 16'd0;
+        end
+        if (late_fault & flags_in[9]) begin
+            valid_next = 1'b0;
+            is_fresh_next = 1'b0;
         end
     end
     assign result_strobe = strobe;

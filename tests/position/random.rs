@@ -58,10 +58,11 @@ impl Story {
         // The frame that measures the delay has a period of its own.
         let shortest = period.min(timing::period_cycles(timing::CALIBRATION_HZ, rates.0));
         // A bit is sampled in the middle, to a cycle and a half: tracking, synchroniser, odd period. The rest of half a bit
-        // is for jitter of two edges and distortion, as far as the encoder takes its pulses: a tenth of a period.
+        // is for distortion, jitter of two edges, and jitter of the period that the encoder compares with, as far as it takes
+        // pulses: a tenth of a period.
         let room = (shortest / 2 * cycle - 3 * cycle / 2).min(shortest * cycle / 10);
         let jitter = (self.jitter * 0.2 * room as f64) as Time;
-        let distortion = (self.distortion * 0.5 * room as f64) as i64;
+        let distortion = (self.distortion * 0.35 * room as f64) as i64;
         setup.line.ns_per_m = self.ns_per_m;
         for path in [
             &mut setup.line.clock,
