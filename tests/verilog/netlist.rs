@@ -17,7 +17,8 @@ fn synthesised(family: &Family) -> Synthesis {
         .filter(|f| is_core(f))
         .cloned()
         .collect();
-    let folder = tools::folder(&format!("netlist-{}", family.name));
+    // Runners with a process for each test synthesise it more than once, at the same time.
+    let folder = tools::folder(&format!("netlist-{}-{}", family.name, std::process::id()));
     area::synthesise(&folder, &files, DEFAULT_PRESET, family).unwrap()
 }
 
