@@ -1,10 +1,10 @@
-//! The same stimulus on rust-hdl's kernels, on the interpreter of the design, and on the emitted Verilog under
+//! The same stimulus on rust-hdl's kernels, on every engine for the design, and on the emitted Verilog under
 //! iverilog: all outputs must agree in every cycle.
 
 use crate::tools;
 use endat_gen::verilog::{self, emitted_name, Header};
 use endat_hdl::elaborate::{Design, Direction};
-use endat_sim::engine::{Engine, Interpreter, Port, PortId};
+use endat_sim::engine::{Compiled, Engine, EngineError, Interpreter, Keep, Port, PortId};
 use std::fmt::Write;
 use std::fs;
 
@@ -68,7 +68,6 @@ pub fn three_way(
     stimulus: &Stimulus,
 ) -> Result<Recording, String> {
     let expected = record(kernel, stimulus);
-    let mut interpreter = Interpreter::new(design).map_err(|e| e.to_string())?;
     for port in design.top().ports.iter().filter(|p| !p.is_clock) {
         let net = &design.top().nets[port.net];
         let is_input = port.direction == Direction::Input;
@@ -86,19 +85,9 @@ pub fn three_way(
             return Err(format!("port {}: the stimulus does not drive it", net.name));
         }
     }
-    let interpreted = record(&mut interpreter, stimulus);
-    for (cycle, expected_row) in expected.cycles.iter().enumerate() {
-        for (port, want) in expected.outputs.iter().zip(expected_row) {
-            let at = interpreted.outputs.iter().position(|p| p.name == port.name);
-            let got = interpreted.cycles[cycle]
-                [at.ok_or(format!("interpreter: no port {}", port.name))?];
-            if got != *want {
-                return Err(format!(
-                    "interpreter, cycle {cycle}, port {}: {got:#x} instead of {want:#x}",
-                    port.name
-                ));
-            }
-        }
+    for (engine_name, mut engine) in engines(design)? {
+        let got = record(engine.as_mut(), stimulus);
+        agree(engine_name, &expected, &got)?;
     }
     if tools::require(
         "iverilog",
@@ -107,6 +96,42 @@ pub fn three_way(
         replay(name, design, stimulus, &expected)?;
     }
     Ok(expected)
+}
+
+/// Every engine that runs a design.
+fn engines(design: &Design) -> Result<Vec<(&'static str, Box<dyn Engine>)>, String> {
+    let error = |e: EngineError| e.to_string();
+    Ok(vec![
+        (
+            "interpreter",
+            Box::new(Interpreter::new(design).map_err(error)?),
+        ),
+        ("compiled", Box::new(Compiled::new(design).map_err(error)?)),
+        (
+            "compiled, all nets kept",
+            Box::new(Compiled::keeping(design, Keep::Nets).map_err(error)?),
+        ),
+        (
+            "compiled, portable",
+            Box::new(Compiled::portable(design, Keep::Registers).map_err(error)?),
+        ),
+    ])
+}
+
+fn agree(engine: &str, expected: &Recording, got: &Recording) -> Result<(), String> {
+    for (cycle, expected_row) in expected.cycles.iter().enumerate() {
+        for (port, want) in expected.outputs.iter().zip(expected_row) {
+            let at = got.outputs.iter().position(|p| p.name == port.name);
+            let got = got.cycles[cycle][at.ok_or(format!("{engine}: no port {}", port.name))?];
+            if got != *want {
+                return Err(format!(
+                    "{engine}, cycle {cycle}, port {}: {got:#x} instead of {want:#x}",
+                    port.name
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Runs the emitted Verilog on the stimulus under iverilog and compares every output in every cycle.

@@ -1,11 +1,32 @@
 //! Engines that run a design, one clock cycle at a time, behind one trait.
 
+mod compiled;
+mod flat;
+mod form;
 mod interpreter;
 mod kernel;
 mod program;
 
-pub use interpreter::{Interpreter, InterpreterError};
+pub use compiled::{Compiled, Saved};
+pub use form::Keep;
+pub use interpreter::Interpreter;
 pub use kernel::{Access, KernelEngine, Number, Pin};
+
+/// Why a design cannot be executed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum EngineError {
+    /// Nets that depend on each other without a register between them.
+    #[error("combinational loop: {}: put a register into it", .0.join(" -> "))]
+    Loop(Vec<String>),
+    /// A register has another clock than the first one.
+    #[error("register {register}: clock = {clock}: engines run one clock; use one clock input for all registers")]
+    SecondClock {
+        /// Hierarchical name of the register.
+        register: String,
+        /// Its clock.
+        clock: String,
+    },
+}
 
 /// Index of a port in [`Engine::ports`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,7 +43,7 @@ pub struct Port {
     pub is_input: bool,
 }
 
-/// Something that executes a design cycle by cycle: rust-hdl's kernels, or an interpreter of the `Design`.
+/// Something that executes a design cycle by cycle: rust-hdl's kernels, or one of the engines for a `Design`.
 ///
 /// A cycle is: set inputs, (optionally) read outputs, [`Engine::tick`]. Registers start at their power-up values.
 pub trait Engine {

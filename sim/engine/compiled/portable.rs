@@ -1,0 +1,93 @@
+//! The same form without a code generator: an interpreter over the same layout, for platforms that Cranelift does not know.
+
+use super::layout::Layout;
+use crate::engine::form::{evaluate, Commit, Form, Op};
+
+/// Executes a form; the state is that of the native code.
+#[derive(Debug)]
+pub(super) struct Portable;
+
+fn load(layout: &Layout, form: &Form, state: &[u64], net: usize) -> u128 {
+    let word = layout.place(net);
+    let high = if form.nets[net].width_bits > 64 {
+        u128::from(state[word + 1]) << 64
+    } else {
+        0
+    };
+    high | u128::from(state[word])
+}
+
+/// Stores a value; marks the readers if it is a new one.
+pub(super) fn store(layout: &Layout, form: &Form, state: &mut [u64], net: usize, value: u128) {
+    if load(layout, form, state, net) == value {
+        return;
+    }
+    let word = layout.place(net);
+    state[word] = value as u64;
+    if form.nets[net].width_bits > 64 {
+        state[word + 1] = (value >> 64) as u64;
+    }
+    layout.mark(state, net);
+}
+
+impl Portable {
+    /// Runs all segments that are marked, in order.
+    pub fn settle(&self, form: &Form, layout: &Layout, state: &mut [u64]) {
+        let mut values: Vec<u128> = vec![];
+        for word in layout.segment_words() {
+            while state[word] != 0 {
+                let index = 64 * word + state[word].trailing_zeros() as usize;
+                state[word] &= state[word] - 1;
+                let segment = &form.segments[index];
+                values.clear();
+                for node in &segment.nodes {
+                    let operands: [u128; 3] = {
+                        let mut found = [0; 3];
+                        for (place, operand) in found.iter_mut().zip(node.op.operands()) {
+                            *place = values[operand];
+                        }
+                        found
+                    };
+                    let value = match node.op {
+                        Op::Net(net) => load(layout, form, state, net),
+                        op => evaluate(&op, &operands, |n| segment.nodes[n].width_bits),
+                    };
+                    values.push(value & endat_hdl::elaborate::mask(node.width_bits));
+                }
+                for (net, node) in &segment.writes {
+                    store(layout, form, state, *net, values[*node]);
+                }
+            }
+        }
+    }
+
+    /// Loads all groups of registers that are marked.
+    pub fn commit(&self, form: &Form, layout: &Layout, state: &mut [u64]) {
+        let first = layout.group_words().start;
+        for word in layout.group_words() {
+            while state[word] != 0 {
+                let index = 64 * (word - first) + state[word].trailing_zeros() as usize;
+                state[word] &= state[word] - 1;
+                let Commit::Registers(registers) = &form.commits[index] else {
+                    unreachable!("memories come after all groups of registers")
+                };
+                for register in registers {
+                    let is_reset = register
+                        .reset
+                        .is_some_and(|reset| load(layout, form, state, reset) != 0);
+                    let value = if is_reset {
+                        register.start
+                    } else {
+                        load(layout, form, state, register.next)
+                    };
+                    store(layout, form, state, register.q, value);
+                }
+            }
+        }
+    }
+}
+
+/// The value of a net that is stored.
+pub(super) fn value(layout: &Layout, form: &Form, state: &[u64], net: usize) -> u128 {
+    load(layout, form, state, net)
+}
