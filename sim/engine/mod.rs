@@ -5,12 +5,14 @@ mod flat;
 mod form;
 mod interpreter;
 mod kernel;
+mod lanes;
 mod program;
 
 pub use compiled::{Compiled, Saved};
 pub use form::Keep;
 pub use interpreter::Interpreter;
 pub use kernel::{Access, KernelEngine, Number, Pin};
+pub use lanes::{LaneWords, Lanes};
 
 /// Why a design cannot be executed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

@@ -108,6 +108,27 @@ impl Layout {
         }
     }
 
+    /// Notes in a state that the registers and memories fed by a net are to be loaded.
+    pub fn mark_commits(&self, state: &mut [u64], net: usize) {
+        let first_commit = self.group_words().start;
+        for (word, bits) in self.marks[net].iter().filter(|(w, _)| *w >= first_commit) {
+            state[*word] |= bits;
+        }
+    }
+
+    /// Takes the marks of all memories: index of the memory, word and bit of its mark.
+    pub fn take_memories(&self, state: &mut [u64]) -> Vec<(usize, usize, u32)> {
+        let mut taken = vec![];
+        for (number, word) in self.memory_words().enumerate() {
+            while state[word] != 0 {
+                let bit = state[word].trailing_zeros();
+                state[word] &= state[word] - 1;
+                taken.push((64 * number + bit as usize, word, bit));
+            }
+        }
+        taken
+    }
+
     /// Notes that nothing is settled.
     pub fn mark_all(&self, state: &mut [u64]) {
         let mut set = |words: std::ops::Range<usize>, count: usize| {

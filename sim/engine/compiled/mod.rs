@@ -30,8 +30,6 @@ pub struct Compiled {
     fallback: Option<Arc<str>>,
     state: Vec<u64>,
     memories: Vec<Vec<u128>>,
-    /// Memories written in this cycle.
-    memories_again: Vec<(usize, u32)>,
     is_settled: bool,
 }
 
@@ -89,7 +87,6 @@ impl Compiled {
             code,
             fallback,
             state,
-            memories_again: vec![],
             is_settled: false,
         }
     }
@@ -97,6 +94,22 @@ impl Compiled {
     /// Why this runs in an interpreter instead of native code, if it does.
     pub fn fallback(&self) -> Option<&str> {
         self.fallback.as_deref()
+    }
+
+    /// debug
+    pub fn stats(&self) -> String {
+        format!(
+            "segments {} nodes {} commits {} regs {} words {}",
+            self.form.segments.len(),
+            self.form
+                .segments
+                .iter()
+                .map(|s| s.nodes.len())
+                .sum::<usize>(),
+            self.form.commits.len(),
+            self.form.registers.len(),
+            self.layout.words
+        )
     }
 
     /// Hierarchical names of all nets, dropped ones included.
@@ -141,11 +154,8 @@ impl Compiled {
         let flipped = value ^ (1 << bit);
         portable::store(&self.layout, &self.form, &mut self.state, register, flipped);
         // It is loaded again even if its input stays as it was.
-        let next = self.form.registers.iter().find(|r| r.q == register);
-        if let Some(register) = next {
-            for commit in &self.form.commit_readers[register.next] {
-                self.state[self.layout.group_words().start + commit / 64] |= 1 << (commit % 64);
-            }
+        if let Some(found) = self.form.registers.iter().find(|r| r.q == register) {
+            self.layout.mark_commits(&mut self.state, found.next);
         }
         self.is_settled = false;
     }
@@ -186,27 +196,19 @@ impl Compiled {
 
     /// Reads and writes the memories whose inputs have changed. Their inputs stay as they are until everything is loaded.
     fn serve_memories(&mut self) {
-        for word in self.layout.memory_words() {
-            while self.state[word] != 0 {
-                let bit = self.state[word].trailing_zeros();
-                self.state[word] &= self.state[word] - 1;
-                let index = 64 * (word - self.layout.memory_words().start) + bit as usize;
-                let nets = &self.form.memories[index];
-                let (layout, form) = (&self.layout, &self.form);
-                let value = |net, state: &[u64]| portable::value(layout, form, state, net);
-                let words = &mut self.memories[index];
-                let read = words[value(nets.read_address, &self.state) as usize];
-                if value(nets.write_enable, &self.state) != 0 {
-                    let address = value(nets.write_address, &self.state) as usize;
-                    words[address] = value(nets.write_data, &self.state);
-                    // The next cycle may read what was written.
-                    self.memories_again.push((word, bit));
-                }
-                portable::store(layout, form, &mut self.state, nets.read_data, read);
+        for (index, word, bit) in self.layout.take_memories(&mut self.state) {
+            let nets = &self.form.memories[index];
+            let (layout, form) = (&self.layout, &self.form);
+            let value = |net, state: &[u64]| portable::value(layout, form, state, net);
+            let words = &mut self.memories[index];
+            let read = words[value(nets.read_address, &self.state) as usize];
+            if value(nets.write_enable, &self.state) != 0 {
+                let address = value(nets.write_address, &self.state) as usize;
+                words[address] = value(nets.write_data, &self.state);
+                // The next cycle may read what was written.
+                self.state[word] |= 1 << bit;
             }
-        }
-        for (word, bit) in self.memories_again.drain(..) {
-            self.state[word] |= 1 << bit;
+            portable::store(layout, form, &mut self.state, nets.read_data, read);
         }
     }
 }

@@ -1,0 +1,331 @@
+//! Many copies of a design in one pass: each machine word holds one bit of each copy, a "lane".
+
+mod bits;
+mod lower;
+mod portable;
+
+use super::compiled::layout::Layout;
+use super::compiled::native::Native;
+use super::form::{Form, Keep, Place};
+use super::{EngineError, Port, PortId};
+use bits::BitSegment;
+use cranelift_codegen::ir::types::{I64, I64X2};
+use endat_hdl::elaborate::Design;
+use std::sync::Arc;
+
+/// Words that hold one bit of all lanes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LaneWords {
+    /// 64 lanes: a machine word.
+    One,
+    /// 128 lanes: a vector of two.
+    Two,
+}
+
+impl LaneWords {
+    /// How many words.
+    pub fn count(self) -> usize {
+        match self {
+            LaneWords::One => 1,
+            LaneWords::Two => 2,
+        }
+    }
+}
+
+#[derive(Clone)]
+enum Code {
+    Native(Native),
+    Portable(Arc<portable::Portable>),
+}
+
+/// Runs many copies of a [`Design`] side by side. A clone goes on from the same state, apart from the original.
+#[derive(Clone)]
+pub struct Lanes {
+    form: Arc<Form>,
+    layout: Arc<Layout>,
+    code: Code,
+    fallback: Option<Arc<str>>,
+    words: usize,
+    state: Vec<u64>,
+    /// For each memory its words, lane by lane.
+    memories: Vec<Vec<u128>>,
+    is_settled: bool,
+}
+
+impl Lanes {
+    /// Compiles a design; `keep` says what can be seen. All lanes start alike, at power-up.
+    ///
+    /// # Errors
+    /// If it has a combinational loop or a second clock.
+    pub fn new(design: &Design, keep: Keep, words: LaneWords) -> Result<Self, EngineError> {
+        let form = Form::new(design, keep)?;
+        let kind = match words {
+            LaneWords::One => I64,
+            LaneWords::Two => I64X2,
+        };
+        let layout = lower::layout(&form, kind);
+        let segments: Vec<BitSegment> = form.segments.iter().map(BitSegment::new).collect();
+        let lower = lower::Bits {
+            form: &form,
+            segments: &segments,
+            kind,
+        };
+        let native = Native::compile(&form, &layout, &lower);
+        Ok(Self::on(form, layout, segments, words, native))
+    }
+
+    /// The same without native code, as on a platform that the code generator does not know.
+    ///
+    /// # Errors
+    /// If it has a combinational loop or a second clock.
+    pub fn portable(design: &Design, keep: Keep, words: LaneWords) -> Result<Self, EngineError> {
+        let form = Form::new(design, keep)?;
+        let layout = Layout::new(&form, |width_bits| width_bits * words.count());
+        let segments: Vec<BitSegment> = form.segments.iter().map(BitSegment::new).collect();
+        Ok(Self::on(
+            form,
+            layout,
+            segments,
+            words,
+            Err("asked for".into()),
+        ))
+    }
+
+    fn on(
+        form: Form,
+        layout: Layout,
+        segments: Vec<BitSegment>,
+        words: LaneWords,
+        native: Result<Native, String>,
+    ) -> Self {
+        let words = words.count();
+        let mut state = vec![0; layout.words];
+        for register in &form.registers {
+            let place = layout.place(register.q);
+            for bit in 0..form.nets[register.q].width_bits {
+                if register.start >> bit & 1 == 1 {
+                    state[place + bit * words..][..words].fill(u64::MAX);
+                }
+            }
+        }
+        layout.mark_all(&mut state);
+        let (code, fallback) = match native {
+            Ok(native) => (Code::Native(native), None),
+            Err(why) => (
+                Code::Portable(portable::Portable::new(segments, words).into()),
+                Some(why.into()),
+            ),
+        };
+        let lanes = words * 64;
+        Self {
+            memories: form
+                .memories
+                .iter()
+                .map(|m| vec![0; m.words * lanes])
+                .collect(),
+            form: form.into(),
+            layout: layout.into(),
+            code,
+            fallback,
+            words,
+            state,
+            is_settled: false,
+        }
+    }
+
+    /// d
+    pub fn stats(&self) -> usize {
+        self.form
+            .segments
+            .iter()
+            .map(|s| BitSegment::new(s).gates.len())
+            .sum()
+    }
+
+    /// Why this runs in an interpreter instead of native code, if it does.
+    pub fn fallback(&self) -> Option<&str> {
+        self.fallback.as_deref()
+    }
+
+    /// Number of lanes.
+    pub fn lanes(&self) -> usize {
+        self.words * 64
+    }
+
+    /// Bytes of state that the lanes take together.
+    pub fn state_bytes(&self) -> usize {
+        let memories: usize = self.memories.iter().map(|m| m.len() * 16).sum();
+        self.state.len() * 8 + memories
+    }
+
+    /// Every port but the clock, in declaration order.
+    pub fn ports(&self) -> &[Port] {
+        &self.form.ports
+    }
+
+    /// The port called `name`.
+    ///
+    /// # Panics
+    /// If there is none: the name is written in a bench, not typed by a user.
+    pub fn port(&self, name: &str) -> PortId {
+        let found = self.form.ports.iter().position(|p| p.name == name);
+        PortId(found.unwrap_or_else(|| panic!("the design has no port {name}")))
+    }
+
+    /// Drives an input of one lane.
+    pub fn set(&mut self, port: PortId, lane: usize, value: u128) {
+        let net = self.form.port_nets[port.0];
+        if self.layout.slot(net).is_some() {
+            self.store(net, lane, value);
+            self.is_settled = false;
+        }
+    }
+
+    /// Drives an input of all lanes.
+    pub fn set_all(&mut self, port: PortId, value: u128) {
+        for bit in 0..self.form.ports[port.0].width_bits {
+            let word = if value >> bit & 1 == 1 { u64::MAX } else { 0 };
+            for part in 0..self.words {
+                self.set_word(port, bit, part, word);
+            }
+        }
+    }
+
+    /// Drives one bit of an input of the lanes `64 * part` to `64 * part + 63`.
+    pub fn set_word(&mut self, port: PortId, bit: usize, part: usize, lanes: u64) {
+        let net = self.form.port_nets[port.0];
+        let Some(place) = self.layout.slot(net) else {
+            return;
+        };
+        let word = &mut self.state[place + bit * self.words + part];
+        if *word != lanes {
+            *word = lanes;
+            self.layout.mark(&mut self.state, net);
+            self.is_settled = false;
+        }
+    }
+
+    /// The settled value of a port in one lane.
+    pub fn get(&mut self, port: PortId, lane: usize) -> u128 {
+        self.peek(self.form.port_nets[port.0], lane).unwrap_or(0)
+    }
+
+    /// One bit of a port of the lanes `64 * part` to `64 * part + 63`.
+    pub fn word(&mut self, port: PortId, bit: usize, part: usize) -> u64 {
+        match self.form.place(self.form.port_nets[port.0]) {
+            Place::Constant(value) if value >> bit & 1 == 1 => u64::MAX,
+            Place::Constant(_) | Place::Dropped => 0,
+            Place::Net(net) => {
+                self.settle();
+                self.state[self.layout.place(net) + bit * self.words + part]
+            }
+        }
+    }
+
+    /// Hierarchical names of all nets, dropped ones included.
+    pub fn nets(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.form.nets.iter().map(|n| n.name.as_str())
+    }
+
+    /// The registers that were not dropped, as indices of their outputs in [`Lanes::nets`].
+    pub fn registers(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.form.registers.iter().map(|r| r.q)
+    }
+
+    /// The settled value of a net in one lane, by its index in [`Lanes::nets`]; `None` if it was dropped.
+    pub fn peek(&mut self, net: usize, lane: usize) -> Option<u128> {
+        match self.form.place(net) {
+            Place::Constant(value) => Some(value),
+            Place::Dropped => None,
+            Place::Net(net) => {
+                self.settle();
+                Some(self.load(net, lane))
+            }
+        }
+    }
+
+    /// Flips a bit of a register in one lane, as an upset would; by the index of its output in [`Lanes::nets`].
+    ///
+    /// # Panics
+    /// If it is no register that was kept, or has no such bit.
+    pub fn flip(&mut self, register: usize, bit: usize, lane: usize) {
+        let found = self.form.registers.iter().find(|r| r.q == register);
+        let found = found.filter(|r| bit < self.form.nets[r.q].width_bits);
+        let next = found
+            .unwrap_or_else(|| panic!("net {register} has no register bit {bit}"))
+            .next;
+        self.settle();
+        let value = self.load(register, lane);
+        self.store(register, lane, value ^ 1 << bit);
+        // It is loaded again even if its input stays as it was.
+        self.layout.mark_commits(&mut self.state, next);
+        self.is_settled = false;
+    }
+
+    fn load(&self, net: usize, lane: usize) -> u128 {
+        let place = self.layout.place(net) + lane / 64;
+        (0..self.form.nets[net].width_bits)
+            .map(|bit| u128::from(self.state[place + bit * self.words] >> (lane % 64) & 1) << bit)
+            .sum()
+    }
+
+    fn store(&mut self, net: usize, lane: usize, value: u128) {
+        let place = self.layout.place(net) + lane / 64;
+        let mut is_changed = false;
+        for bit in 0..self.form.nets[net].width_bits {
+            let word = &mut self.state[place + bit * self.words];
+            let new = *word & !(1 << (lane % 64)) | ((value >> bit & 1) as u64) << (lane % 64);
+            is_changed |= *word != new;
+            *word = new;
+        }
+        if is_changed {
+            self.layout.mark(&mut self.state, net);
+        }
+    }
+
+    fn settle(&mut self) {
+        if self.is_settled {
+            return;
+        }
+        match &self.code {
+            Code::Native(native) => native.settle(&mut self.state),
+            Code::Portable(portable) => portable.settle(&self.layout, &mut self.state),
+        }
+        self.is_settled = true;
+    }
+
+    /// Reads and writes the memories whose inputs have changed. Their inputs stay as they are until everything is loaded.
+    fn serve_memories(&mut self) {
+        let mut again = vec![];
+        for (index, word, bit) in self.layout.take_memories(&mut self.state) {
+            let form = self.form.clone();
+            let nets = &form.memories[index];
+            for lane in 0..self.lanes() {
+                let first = lane * nets.words;
+                let read =
+                    self.memories[index][first + self.load(nets.read_address, lane) as usize];
+                if self.load(nets.write_enable, lane) != 0 {
+                    let address = first + self.load(nets.write_address, lane) as usize;
+                    self.memories[index][address] = self.load(nets.write_data, lane);
+                    // The next cycle may read what was written.
+                    again.push((word, bit));
+                }
+                self.store(nets.read_data, lane, read);
+            }
+        }
+        for (word, bit) in again {
+            self.state[word] |= 1 << bit;
+        }
+    }
+
+    /// One rising edge of the clock, in all lanes.
+    pub fn tick(&mut self) {
+        self.settle();
+        self.serve_memories();
+        match &self.code {
+            Code::Native(native) => native.commit(&mut self.state),
+            Code::Portable(portable) => portable.commit(&self.form, &self.layout, &mut self.state),
+        }
+        self.is_settled = false;
+    }
+}
