@@ -3,7 +3,25 @@ use endat_hdl::card::Card;
 use endat_hdl::elaborate::elaborate;
 use endat_sim::{bench::*, engine::*, scenario};
 use rust_hdl::prelude::Block;
-use std::time::Instant;
+#[derive(Clone, Copy)]
+struct Instant(u64);
+fn cpu() -> u64 {
+    std::fs::read_to_string("/proc/thread-self/schedstat")
+        .unwrap()
+        .split(' ')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap()
+}
+impl Instant {
+    fn now() -> Self {
+        Instant(cpu())
+    }
+    fn elapsed(&self) -> std::time::Duration {
+        std::time::Duration::from_nanos(cpu() - self.0)
+    }
+}
 fn main() {
     let card = load_preset(DEFAULT_PRESET).unwrap().card;
     let mut b = Card::new(&card);
@@ -52,58 +70,10 @@ fn main() {
     };
     run(&mut e);
     let s = scenario::named("paper").unwrap();
-    for w in [LaneWords::One, LaneWords::Two] {
-        let t = Instant::now();
-        let mut e = Lanes::new(&d, Keep::Outputs, w).unwrap();
-        println!(
-            "lanes compile {:?} {:?} state {} gates {}",
-            t.elapsed(),
-            e.fallback(),
-            e.state_bytes(),
-            e.stats()
-        );
-        let (rst, d0, d1, rx, clk) = (
-            e.port("rst_i"),
-            e.port("endat_data0_i"),
-            e.port("endat_data1_i"),
-            e.port("uart_rx_i"),
-            e.port("endat_clk0_o"),
-        );
-        e.set_all(rst, 1);
-        e.set_all(rx, 1);
-        let n = 200_000u64;
-        let t = Instant::now();
-        let mut x = 1u64;
-        let mut acc = 0;
-        for i in 0..n {
-            if i == 8 {
-                e.set_all(rst, 0);
-            }
-            if i > 10 {
-                for p in 0..w.count() {
-                    x = x
-                        .wrapping_mul(6364136223846793005)
-                        .wrapping_add(1442695040888963407);
-                    let y = x >> 32;
-                    e.set_word(d0, 0, p, y << 32 | y);
-                    e.set_word(d1, 0, p, x);
-                }
-            }
-            e.tick();
-            acc += e.word(clk, 0, 0).count_ones() as u64;
-        }
-        let s = t.elapsed().as_secs_f64();
-        println!(
-            "noise: {:.2} M lane-cycles/s {acc}  {:.0} ns/pass",
-            n as f64 * e.lanes() as f64 / s / 1e6,
-            s / n as f64 * 1e9
-        );
-    }
-    let links: Vec<_> = (0..2)
-        .map(|i| (PinNames::card(i), s.link(i.min(s.channels.len() - 1))))
-        .collect();
-    for keep in [Keep::Outputs, Keep::Registers] {
-        let e = Compiled::keeping(&d, keep).unwrap();
+    let s = scenario::named("paper").unwrap();
+    {
+        let e = Compiled::new(&d).unwrap();
+        let n = 300_000u64;
         let mut bench = Bench::new(
             e,
             100_000_000,
@@ -123,24 +93,84 @@ fn main() {
             bench.violations(0).len()
         );
     }
-    let _ = links;
-    let e = Interpreter::new(&d).unwrap();
-    let mut bench = Bench::new(
-        e,
-        100_000_000,
-        vec![
-            (PinNames::card(0), s.link(0)),
-            (PinNames::card(1), s.link(0)),
-        ],
-    );
-    bench.reset();
-    let n = 500_000;
-    let t = Instant::now();
-    bench.run_cycles(n);
-    let el = t.elapsed().as_secs_f64();
-    println!(
-        "interp models: {:.2} Mcycles/s frames {}",
-        n as f64 / el / 1e6,
-        bench.frames(0).len()
-    );
+    {
+        let e = Lanes::new(&d, Keep::Outputs, LaneWords::Two).unwrap();
+        let n = 200_000u64;
+        let mut b = LaneBench::new(
+            e,
+            100_000_000,
+            vec![
+                (PinNames::card(0), (0..128).map(|_| s.link(0)).collect()),
+                (PinNames::card(1), (0..128).map(|_| s.link(0)).collect()),
+            ],
+        );
+        b.set_all("uart_rx_i", 1);
+        b.set_all("rst_i", 1);
+        for _ in 0..8 {
+            b.tick();
+        }
+        b.set_all("rst_i", 0);
+        let t = Instant::now();
+        for _ in 0..n {
+            b.tick();
+        }
+        let el = t.elapsed().as_secs_f64();
+        println!(
+            "lanes card models: {:.2} M lane-cycles/s frames {}",
+            n as f64 * 128.0 / el / 1e6,
+            (0..128)
+                .map(|l| b.link(0, l).encoder().frames().len())
+                .sum::<usize>()
+        );
+    }
+    // channel
+    {
+        use endat_hdl::{channel::*, protocol::ModeCommand};
+        use endat_sim::{encoder::EncoderConfig, line::LineConfig};
+        let mut c = Channel::new(FixedTimes::at(128_000_000));
+        c.connect_all();
+        let d = elaborate(&c, "channel").unwrap();
+        let e = Lanes::new(&d, Keep::Outputs, LaneWords::Two).unwrap();
+        let mut set = ChannelSettings::new(
+            128_000_000,
+            16_000_000,
+            ModeCommand::SendPositionAddInfo,
+            29,
+        );
+        set.first_low_extra_cycles = 4;
+        let links = (0..128)
+            .map(|i| {
+                let mut c = EncoderConfig::endat22(29).seed(i);
+                c.tcal = 600_000;
+                c.tm = 1_250_000..=1_250_000;
+                Link::new(LineConfig::cable(i as f64 / 2.0), c)
+            })
+            .collect();
+        let mut b = LaneBench::new(e, 128_000_000, vec![(PinNames::channel(), links)]);
+        for l in 0..128 {
+            b.configure(l, &set);
+        }
+        b.set_all("reset", 1);
+        for _ in 0..8 {
+            b.tick();
+        }
+        b.set_all("reset", 0);
+        let n = 100_000u64;
+        let t = Instant::now();
+        for _ in 0..n {
+            for p in 0..2 {
+                let busy = b.busy(p);
+                b.set_trigger(p, !busy);
+            }
+            b.tick();
+        }
+        let el = t.elapsed().as_secs_f64();
+        let fr = (0..128)
+            .map(|l| b.link(0, l).encoder().frames().len())
+            .sum::<usize>();
+        let good: usize = (0..128)
+            .map(|l| b.results(l).iter().filter(|r| r.cause == 0).count())
+            .sum();
+        println!("lanes channel: {:.2} M lane-cycles/s frames {} good {} -> {:.0} frames/s viol {:?} res {:?}", n as f64*128.0/el/1e6, fr, good, fr as f64/el, b.link(0,0).encoder().violations().iter().take(3).collect::<Vec<_>>(), b.results(0).last());
+    }
 }

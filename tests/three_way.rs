@@ -4,7 +4,9 @@
 use crate::tools;
 use endat_gen::verilog::{self, emitted_name, Header};
 use endat_hdl::elaborate::{Design, Direction};
-use endat_sim::engine::{Compiled, Engine, EngineError, Interpreter, Keep, Port, PortId};
+use endat_sim::engine::{
+    Compiled, Engine, EngineError, Interpreter, Keep, LaneWords, Lanes, Port, PortId,
+};
 use std::fmt::Write;
 use std::fs;
 
@@ -89,6 +91,7 @@ pub fn three_way(
         let got = record(engine.as_mut(), stimulus);
         agree(engine_name, &expected, &got)?;
     }
+    lanes_agree(design, stimulus, &expected)?;
     if tools::require(
         "iverilog",
         &format!("three-way check of {name}: emitted Verilog"),
@@ -116,6 +119,68 @@ fn engines(design: &Design) -> Result<Vec<(&'static str, Box<dyn Engine>)>, Stri
             Box::new(Compiled::portable(design, Keep::Registers).map_err(error)?),
         ),
     ])
+}
+
+/// Lane `n` is given the stimulus from cycle `n` on; it must give what the compiled engine gives for that alone.
+fn lanes_agree(design: &Design, stimulus: &Stimulus, expected: &Recording) -> Result<(), String> {
+    let error = |e: EngineError| e.to_string();
+    let made = [
+        (
+            "64 lanes",
+            Lanes::new(design, Keep::Outputs, LaneWords::One),
+        ),
+        (
+            "128 lanes",
+            Lanes::new(design, Keep::Registers, LaneWords::Two),
+        ),
+        (
+            "128 lanes, portable",
+            Lanes::portable(design, Keep::Outputs, LaneWords::Two),
+        ),
+    ];
+    let from = |lane: usize| {
+        let mut moved = stimulus.clone();
+        moved
+            .cycles
+            .rotate_left(lane % stimulus.cycles.len().max(1));
+        moved
+    };
+    for (name, lanes) in made {
+        let mut lanes = lanes.map_err(error)?;
+        let inputs: Vec<PortId> = stimulus.inputs.iter().map(|n| lanes.port(n)).collect();
+        let outputs: Vec<PortId> = expected
+            .outputs
+            .iter()
+            .map(|p| lanes.port(&p.name))
+            .collect();
+        let watched = [0, 1, 31, lanes.lanes() / 2, lanes.lanes() - 1];
+        let mut got: Vec<Vec<Vec<u128>>> = vec![vec![]; watched.len()];
+        for cycle in 0..stimulus.cycles.len() {
+            for lane in 0..lanes.lanes() {
+                let row = &stimulus.cycles[(cycle + lane) % stimulus.cycles.len()];
+                for (port, value) in inputs.iter().zip(row) {
+                    lanes.set(*port, lane, *value);
+                }
+            }
+            for (lane, rows) in watched.iter().zip(&mut got) {
+                rows.push(outputs.iter().map(|id| lanes.get(*id, *lane)).collect());
+            }
+            lanes.tick();
+        }
+        for (lane, rows) in watched.iter().zip(got) {
+            let mut alone = Compiled::new(design).map_err(error)?;
+            let want = match lane {
+                0 => expected,
+                lane => &record(&mut alone, &from(*lane)),
+            };
+            let rows = Recording {
+                outputs: expected.outputs.clone(),
+                cycles: rows,
+            };
+            agree(&format!("{name}, lane {lane}"), want, &rows)?;
+        }
+    }
+    Ok(())
 }
 
 fn agree(engine: &str, expected: &Recording, got: &Recording) -> Result<(), String> {

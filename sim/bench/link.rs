@@ -36,6 +36,9 @@ pub struct Link {
     line: Line,
     encoder: Encoder,
     clock: bool,
+    /// When the line and the encoder have something to do next.
+    line_due: Time,
+    encoder_due: Time,
     trace: Option<LinkTrace>,
 }
 
@@ -43,8 +46,11 @@ impl Link {
     /// An encoder on a line, both at rest.
     pub fn new(line: LineConfig, encoder: EncoderConfig) -> Self {
         let encoder = Encoder::new(encoder);
+        let line = Line::new(line, encoder.output());
         Self {
-            line: Line::new(line, encoder.output()),
+            line_due: line.next_event(),
+            encoder_due: encoder.next_event().unwrap_or(Time::MAX),
+            line,
             encoder,
             clock: true,
             trace: None,
@@ -77,26 +83,36 @@ impl Link {
         self.trace.as_ref()
     }
 
+    /// When something happens next, if the receiver keeps its pins as they are.
+    pub fn next_event(&self) -> Time {
+        self.line_due.min(self.encoder_due)
+    }
+
     /// Lets everything happen that is due by `time`.
     pub fn advance_to(&mut self, time: Time) {
         loop {
-            let line = self.line.next_event().unwrap_or(Time::MAX);
-            let encoder = self.encoder.next_event().unwrap_or(Time::MAX);
-            let next = line.min(encoder);
+            let next = self.next_event();
             if next > time {
                 return;
             }
-            if encoder <= line {
+            if self.encoder_due <= self.line_due {
                 self.encoder.advance(next);
+                self.ask_encoder(next);
             } else if let Some(Arrival::Clock(level)) = self.line.advance(next) {
                 let data = self.line.receiver_at_encoder();
                 self.encoder.clock_edge(next, level, data);
+                self.ask_encoder(next);
             }
-            self.line.set_encoder(next, self.encoder.output());
+            self.line_due = self.line.next_event();
             if self.trace.is_some() {
                 self.note(next);
             }
         }
+    }
+
+    fn ask_encoder(&mut self, time: Time) {
+        self.line.set_encoder(time, self.encoder.output());
+        self.encoder_due = self.encoder.next_event().unwrap_or(Time::MAX);
     }
 
     /// The receiver's pins at `time`.
@@ -109,6 +125,7 @@ impl Link {
             self.line.set_clock(time, clock);
         }
         self.line.set_receiver(time, data);
+        self.line_due = self.line.next_event();
         if self.trace.is_some() {
             self.note(time);
         }

@@ -4,12 +4,15 @@
 //! the design the DATA levels of that moment, ticks it, and takes its outputs to the lines at that same moment. Pins of the
 //! design have no delay of their own: put them into the line's transceivers.
 
+mod lanes;
 mod link;
 mod record;
+mod sampler;
 mod settings;
 #[cfg(test)]
 mod tests;
 
+pub use lanes::LaneBench;
 pub use link::{Link, LinkTrace};
 pub use record::{ChannelResult, Cycles, Watched};
 pub use settings::ChannelSettings;
@@ -18,9 +21,10 @@ use crate::{
     encoder::{Drive, FrameLog, Violation},
     engine::{Engine, PortId},
     line::{Conflict, Sample},
-    Time, US,
+    Time,
 };
 use record::ResultPorts;
+use sampler::Sampler;
 
 /// Names of the pins of one EnDat port in a design.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,9 +73,11 @@ struct Port {
     data_i: PortId,
     sample_strobe: Option<PortId>,
     data: Option<bool>,
-    /// Moments at which DATA was sampled, not yet looked up in the line's history.
-    sampled: Vec<Time>,
-    samples: Vec<Sample>,
+    /// When the link has something to do next.
+    due: Time,
+    /// The pins as they were taken to the line.
+    pins: Option<(bool, Drive)>,
+    sampler: Sampler,
 }
 
 /// Inputs that the bench drives by itself, where the design has them.
@@ -83,8 +89,18 @@ struct TimeBase {
 
 /// Cycles for which the bench holds reset, and a trigger pin.
 const PULSE_CYCLES: u64 = 8;
-/// A sample is looked up when the line has gone on for this long, so that the next change is known.
-const SAMPLE_SETTLES: Time = 20 * US;
+
+/// When an edge of a clock is, rounded to the picosecond.
+fn edge_time(cycle: u64, hz: u64) -> Time {
+    let hz = u128::from(hz);
+    ((u128::from(cycle) * 1_000_000_000_000 + hz / 2) / hz) as Time
+}
+
+/// Whether a microsecond ends with this cycle.
+fn is_tick_us(cycle: u64, hz: u64) -> bool {
+    let us = |cycle: u64| u128::from(cycle) * 1_000_000 / u128::from(hz);
+    us(cycle) != us(cycle - 1)
+}
 
 /// A design on its bench.
 pub struct Bench<E> {
@@ -95,7 +111,6 @@ pub struct Bench<E> {
     base: TimeBase,
     trigger_until: u64,
     trigger_level: bool,
-    sample_latency_cycles: u64,
     results: Vec<ChannelResult>,
     result_ports: Option<ResultPorts>,
     watched: Vec<Watched>,
@@ -122,11 +137,12 @@ impl<E: Engine> Bench<E> {
                 data_i: engine.port(&names.data_i),
                 sample_strobe: find(&names.sample_strobe),
                 data: None,
-                sampled: Vec::new(),
-                samples: Vec::new(),
+                due: 0,
+                pins: None,
+                sampler: Sampler::default(),
             })
             .collect();
-        let result_ports = ResultPorts::find(&engine);
+        let result_ports = ResultPorts::find(engine.ports());
         Self {
             engine,
             system_hz,
@@ -135,7 +151,6 @@ impl<E: Engine> Bench<E> {
             base,
             trigger_until: 0,
             trigger_level: false,
-            sample_latency_cycles: 0,
             results: Vec::new(),
             result_ports,
             watched: Vec::new(),
@@ -173,7 +188,9 @@ impl<E: Engine> Bench<E> {
 
     /// Sets how many cycles before the strobe's the sampled level was at the pin (synchroniser and filter).
     pub fn set_sample_latency(&mut self, cycles: u64) {
-        self.sample_latency_cycles = cycles;
+        for port in &mut self.ports {
+            port.sampler.latency_cycles = cycles;
+        }
     }
 
     /// From now on every change of this port of the design is kept.
@@ -239,8 +256,7 @@ impl<E: Engine> Bench<E> {
 
     /// When an edge of the system clock is.
     pub fn time_of(&self, cycle: u64) -> Time {
-        let hz = u128::from(self.system_hz);
-        ((u128::from(cycle) * 1_000_000_000_000 + hz / 2) / hz) as Time
+        edge_time(cycle, self.system_hz)
     }
 
     /// When the latest edge of the system clock was.
@@ -275,7 +291,7 @@ impl<E: Engine> Bench<E> {
 
     /// The samples that the design took on link `index`, with what was on the line; the latest ones appear after 20 us.
     pub fn samples(&self, index: usize) -> &[Sample] {
-        &self.ports[index].samples
+        &self.ports[index].sampler.samples
     }
 
     /// The results that the design delivered (block `Channel` only).
@@ -299,7 +315,11 @@ impl<E: Engine> Bench<E> {
         let now = self.now();
         self.drive_base();
         for port in &mut self.ports {
-            port.link.advance_to(now);
+            if port.due <= now {
+                port.link.advance_to(now);
+                port.due = port.link.next_event();
+                port.sampler.look_up(&mut port.link, now);
+            }
             let data = port.link.data();
             if port.data != Some(data) {
                 port.data = Some(data);
@@ -317,7 +337,11 @@ impl<E: Engine> Bench<E> {
             } else {
                 Drive::Released
             };
-            port.link.set_pins(now, clock, drive);
+            if port.pins != Some((clock, drive)) {
+                port.pins = Some((clock, drive));
+                port.link.set_pins(now, clock, drive);
+                port.due = port.link.next_event();
+            }
         }
         self.note_outputs(now);
     }
@@ -370,8 +394,7 @@ impl<E: Engine> Bench<E> {
             self.engine.set(id, u128::from(last & 0xFFFF_FFFF));
         }
         if let Some(id) = self.base.tick_us {
-            let us = |cycle: u64| u128::from(cycle) * 1_000_000 / u128::from(self.system_hz);
-            let tick = us(self.cycle) != us(last);
+            let tick = is_tick_us(self.cycle, self.system_hz);
             self.engine.set(id, u128::from(tick));
         }
         let trigger = last < self.trigger_until;
@@ -385,10 +408,11 @@ impl<E: Engine> Bench<E> {
 
     fn note_outputs(&mut self, now: Time) {
         if let Some(ports) = &self.result_ports {
-            if let Some(result) = ports.read(&mut self.engine, self.cycle, now) {
-                self.results.push(result);
+            if self.engine.get(ports.strobe()) != 0 {
+                let value = |id| self.engine.get(id);
+                self.results.push(ports.result(value, self.cycle, now));
             } else if let Some(last) = self.results.last_mut() {
-                let cause = ports.cause(&mut self.engine);
+                let cause = ports.cause(|id| self.engine.get(id));
                 if cause != last.cause {
                     last.late_cause = Some(cause);
                 }
@@ -397,29 +421,15 @@ impl<E: Engine> Bench<E> {
         for w in &mut self.watched {
             w.note(now, self.engine.get(w.port()));
         }
-        let latency = self.sample_latency_cycles;
-        let pin_time = self.time_of(self.cycle.saturating_sub(latency));
         for port in &mut self.ports {
             if let Some(strobe) = port.sample_strobe {
                 if self.engine.get(strobe) != 0 {
-                    port.sampled.push(pin_time);
+                    port.sampler.strobe(self.cycle, self.system_hz);
                 }
             }
-            port.look_up_samples(now);
+            if port.sampler.is_open() {
+                port.sampler.look_up(&mut port.link, now);
+            }
         }
-    }
-}
-
-impl Port {
-    fn look_up_samples(&mut self, now: Time) {
-        let line = self.link.line();
-        let settled = |t: &Time| t + SAMPLE_SETTLES < now || line.sample(*t).until.is_some();
-        let ready = self.sampled.iter().take_while(|t| settled(t)).count();
-        for time in self.sampled.drain(..ready) {
-            self.samples.push(self.link.line().sample(time));
-        }
-        let oldest = self.sampled.first().copied().unwrap_or(now);
-        let keep = oldest.min(now.saturating_sub(SAMPLE_SETTLES));
-        self.link.line_mut().forget_before(keep);
     }
 }

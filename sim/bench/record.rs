@@ -56,6 +56,7 @@ impl ChannelResult {
 /// Ports of a result; those that the design does not have read as 0.
 pub(super) struct ResultPorts {
     strobe: PortId,
+    cause_bits: usize,
     fields: [Option<PortId>; 12],
 }
 
@@ -63,54 +64,61 @@ pub(super) struct ResultPorts {
 const CAUSE: usize = 6;
 
 impl ResultPorts {
-    pub(super) fn find(engine: &impl Engine) -> Option<Self> {
-        let find = |name: &str| {
-            engine
-                .ports()
-                .iter()
-                .position(|p| p.name == name)
-                .map(PortId)
-        };
+    pub(super) fn find(ports: &[Port]) -> Option<Self> {
+        let find = |name: &str| ports.iter().position(|p| p.name == name).map(PortId);
+        let fields = [
+            "position",
+            "position_valid",
+            "fresh",
+            "sequence",
+            "first_fall_timestamp",
+            "age_us",
+            "cause",
+            "flags",
+            "crc_received",
+            "crc_computed",
+            "recovery_cycles",
+            "delay_cycles",
+        ]
+        .map(find);
         Some(Self {
             strobe: find("result_strobe")?,
-            fields: [
-                "position",
-                "position_valid",
-                "fresh",
-                "sequence",
-                "first_fall_timestamp",
-                "age_us",
-                "cause",
-                "flags",
-                "crc_received",
-                "crc_computed",
-                "recovery_cycles",
-                "delay_cycles",
-            ]
-            .map(find),
+            cause_bits: fields[CAUSE].map_or(0, |id| ports[id.0].width_bits),
+            fields,
         })
     }
 
-    /// The cause as it stands now.
-    pub(super) fn cause(&self, engine: &mut impl Engine) -> u64 {
-        self.fields[CAUSE].map_or(0, |id| engine.get(id) as u64)
+    /// HIGH in the cycle of a result.
+    pub(super) fn strobe(&self) -> PortId {
+        self.strobe
     }
 
-    pub(super) fn read(
+    /// Where the cause is.
+    pub(super) fn cause_port(&self) -> Option<PortId> {
+        self.fields[CAUSE]
+    }
+
+    /// Width of the cause; 0 if the design has none.
+    pub(super) fn cause_bits(&self) -> usize {
+        self.cause_bits
+    }
+
+    /// The cause as it stands now; `get` reads a port.
+    pub(super) fn cause(&self, mut get: impl FnMut(PortId) -> u128) -> u64 {
+        self.fields[CAUSE].map_or(0, |id| get(id) as u64)
+    }
+
+    /// The result that stands at the ports; `get` reads one.
+    pub(super) fn result(
         &self,
-        engine: &mut impl Engine,
+        mut get: impl FnMut(PortId) -> u128,
         cycle: u64,
         time: Time,
-    ) -> Option<ChannelResult> {
-        if engine.get(self.strobe) == 0 {
-            return None;
-        }
-        let values = self
-            .fields
-            .map(|id| id.map_or(0, |id| engine.get(id) as u64));
+    ) -> ChannelResult {
+        let values = self.fields.map(|id| id.map_or(0, |id| get(id) as u64));
         let [position, position_valid, fresh, sequence, first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles] =
             values;
-        Some(ChannelResult {
+        ChannelResult {
             cycle,
             time,
             position,
@@ -126,7 +134,7 @@ impl ResultPorts {
             crc_computed,
             recovery_cycles,
             delay_cycles,
-        })
+        }
     }
 }
 

@@ -215,20 +215,14 @@ impl Line {
         }
     }
 
-    /// When something arrives next.
-    pub fn next_event(&self) -> Option<Time> {
-        [
-            self.clock.next(),
-            self.data_out.next(),
-            self.data_in.next(),
-            match self.glitch {
-                Some((_, end)) => Some(end),
-                None => self.glitches.front().map(|g| g.at),
-            },
-        ]
-        .into_iter()
-        .flatten()
-        .min()
+    /// When something arrives next; [`Time::MAX`] if nothing is underway.
+    pub fn next_event(&self) -> Time {
+        let glitch = match self.glitch {
+            Some((_, end)) => end,
+            None => self.glitches.front().map_or(Time::MAX, |g| g.at),
+        };
+        let data = self.data_out.next().min(self.data_in.next());
+        glitch.min(self.clock.next()).min(data)
     }
 
     /// Lets one thing arrive that is due at `time`.

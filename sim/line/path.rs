@@ -33,6 +33,8 @@ pub(super) struct Path<T> {
     flight: Time,
     rng: Rng,
     underway: VecDeque<(Time, T)>,
+    /// When the first of them arrives.
+    next: Time,
     arrived: T,
 }
 
@@ -43,6 +45,7 @@ impl<T: Edge> Path<T> {
             flight,
             rng: Rng::new(seed),
             underway: VecDeque::new(),
+            next: Time::MAX,
             arrived: at_rest,
         }
     }
@@ -63,19 +66,21 @@ impl<T: Edge> Path<T> {
         if before != value {
             self.underway.push_back((arrival, value));
         }
+        self.next = self.underway.front().map_or(Time::MAX, |p| p.0);
     }
 
-    /// When the next change arrives.
-    pub(super) fn next(&self) -> Option<Time> {
-        self.underway.front().map(|p| p.0)
+    /// When the next change arrives; [`Time::MAX`] if none is underway.
+    pub(super) fn next(&self) -> Time {
+        self.next
     }
 
     /// Takes over a change that has arrived by `time`.
     pub(super) fn arrive(&mut self, time: Time) -> Option<T> {
-        if self.next()? > time {
+        if self.next > time {
             return None;
         }
         self.arrived = self.underway.pop_front()?.1;
+        self.next = self.underway.front().map_or(Time::MAX, |p| p.0);
         Some(self.arrived)
     }
 

@@ -13,7 +13,8 @@ const OFF: Output = Output {
 /// Lets everything arrive up to `until` and notes the clock at the encoder.
 fn run(line: &mut Line, until: Time) -> Vec<(Time, bool)> {
     let mut clock = Vec::new();
-    while let Some(t) = line.next_event().filter(|t| *t <= until) {
+    while line.next_event() <= until {
+        let t = line.next_event();
         if let Some(Arrival::Clock(level)) = line.advance(t) {
             clock.push((t, level));
         }

@@ -150,7 +150,10 @@ impl Builder<'_> {
                 self.graph.add(Op::Shr(inner, by), width)
             }
             ExprKind::Select(inner, index) => {
-                let (inner, index) = (self.expr(inner), self.expr(index));
+                let (mut inner, index) = (self.expr(inner), self.expr(index));
+                if self.graph.width_bits(inner) < width {
+                    inner = self.graph.add(Op::Extend(inner), width);
+                }
                 self.graph.add(Op::Shr(inner, index), width)
             }
             ExprKind::Unary(op, inner) => {
