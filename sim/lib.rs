@@ -4,6 +4,7 @@
 //! system clock.
 
 pub mod bench;
+pub mod campaign;
 pub mod diagram;
 pub mod encoder;
 pub mod engine;

@@ -42,6 +42,7 @@ pub struct LaneBench {
     /// The causes at the end of the last cycle, bit by bit.
     causes: Vec<u64>,
     delivered: Vec<Vec<ChannelResult>>,
+    delivered_count: usize,
     keeps_samples: bool,
 }
 
@@ -92,6 +93,7 @@ impl LaneBench {
             causes: vec![0; results.as_ref().map_or(0, ResultPorts::cause_bits) * words],
             results,
             delivered: vec![vec![]; engine.lanes()],
+            delivered_count: 0,
             engine,
             keeps_samples: false,
         }
@@ -158,6 +160,11 @@ impl LaneBench {
         &self.delivered[lane]
     }
 
+    /// Number of results that all lanes together delivered.
+    pub fn delivered(&self) -> usize {
+        self.delivered_count
+    }
+
     /// Which of the lanes `64 * part` to `64 * part + 63` are busy.
     pub fn busy(&mut self, part: usize) -> u64 {
         self.busy.map_or(0, |id| self.engine.word(id, 0, part))
@@ -212,6 +219,7 @@ impl LaneBench {
                 let value = |id: PortId| self.engine.get(id, lane);
                 let result = ports.result(value, self.cycle, now);
                 self.delivered[lane].push(result);
+                self.delivered_count += 1;
                 if !self.keeps_samples {
                     self.ports
                         .iter_mut()

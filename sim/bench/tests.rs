@@ -1,4 +1,5 @@
 use super::*;
+use crate::US;
 use crate::{
     encoder::{Defect, EncoderConfig, FrameEnd, PositionSource, Symbol},
     line::{End, LineConfig, Who},

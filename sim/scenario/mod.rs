@@ -65,7 +65,7 @@ pub struct RunOptions {
 }
 
 /// Ports of the block `Channel` that are worth a place in a waveform.
-const WATCHED: [&str; 9] = [
+pub(crate) const WATCHED: [&str; 9] = [
     "trigger",
     "trigger_i",
     "busy",

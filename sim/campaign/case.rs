@@ -1,0 +1,240 @@
+//! One case: a channel, an encoder and a line, and what a sound run of them looks like.
+
+use crate::{
+    bench::{Bench, ChannelResult, ChannelSettings, Link},
+    encoder::{EncoderConfig, FrameEnd, FrameLog, Symbol, Violation},
+    engine::Engine,
+    frame::CRC_BITS,
+    line::{Conflict, LineConfig, Sample, Who},
+    Time, MS,
+};
+use endat_hdl::{
+    channel::{Channel, FixedTimes},
+    elaborate::{elaborate, Design, ElaborateError},
+    protocol::ModeCommand,
+    transaction::cause,
+};
+use rust_hdl::prelude::Block;
+
+/// From the pin to the register that takes a sample, without filter.
+pub const SAMPLE_LATENCY_CYCLES: u64 = 3;
+/// Longer than any frame with its time-outs.
+const FRAME_LIMIT: Time = 5 * MS;
+/// Cycles in reset, and after it, before the first trigger.
+pub(super) const RESET_CYCLES: u64 = 8;
+
+/// A channel with its encoder. It is reset, and then triggered whenever it is idle, until it has delivered its frames; the first
+/// one measures the delay.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// What it is, in a few words.
+    pub title: String,
+    /// System clock in hertz.
+    pub system_hz: u64,
+    /// Configuration of the channel.
+    pub settings: ChannelSettings,
+    /// The encoder.
+    pub encoder: EncoderConfig,
+    /// The line.
+    pub line: LineConfig,
+    /// Results to wait for.
+    pub frames: usize,
+}
+
+/// The parts of a case that are fixed when its design is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct DesignKey {
+    pub system_hz: u64,
+    abort_us: u64,
+    ready_low_cycles: u64,
+}
+
+impl DesignKey {
+    /// The channel with these times.
+    pub fn design(&self) -> Result<Design, ElaborateError> {
+        let mut block = Channel::new(FixedTimes {
+            abort_us: self.abort_us,
+            ready_low_cycles: self.ready_low_cycles,
+            ..FixedTimes::at(self.system_hz)
+        });
+        block.connect_all();
+        elaborate(&block, "channel")
+    }
+}
+
+/// What a case left behind.
+#[derive(Clone, Copy, Debug)]
+pub struct Traces<'a> {
+    /// What the channel delivered.
+    pub results: &'a [ChannelResult],
+    /// What the encoder saw.
+    pub frames: &'a [FrameLog],
+    /// What the encoder found wrong.
+    pub violations: &'a [(Time, Violation)],
+    /// Both ends driving at once.
+    pub conflicts: &'a [Conflict],
+    /// The samples of DATA that the channel took.
+    pub samples: &'a [Sample],
+}
+
+impl Case {
+    pub(super) fn key(&self) -> DesignKey {
+        DesignKey {
+            system_hz: self.system_hz,
+            abort_us: self.settings.abort_us,
+            ready_low_cycles: self.settings.ready_low_cycles,
+        }
+    }
+
+    /// The design that the case runs on.
+    ///
+    /// # Errors
+    /// If the channel cannot be elaborated: a fault of this program.
+    pub fn design(&self) -> Result<Design, ElaborateError> {
+        self.key().design()
+    }
+
+    pub(super) fn link(&self) -> Link {
+        Link::new(self.line.clone(), self.encoder.clone())
+    }
+
+    pub(super) fn latency_cycles(&self) -> u64 {
+        SAMPLE_LATENCY_CYCLES + self.settings.filter_cycles
+    }
+
+    /// The longest that the case may take, in system clock cycles.
+    pub(super) fn limit_cycles(&self) -> u64 {
+        let limit = u128::from(FRAME_LIMIT) * (self.frames as u128 + 1);
+        (limit * u128::from(self.system_hz) / 1_000_000_000_000) as u64
+    }
+
+    /// Bits from the start bit to the last CRC bit.
+    pub fn answer_bits(&self) -> Option<u32> {
+        let command = ModeCommand::from_code(self.settings.command)?;
+        Some(command.answer_bits(self.settings.position_bits))
+    }
+
+    /// Runs the case alone, on an engine for [`Case::design`], keeping what waveforms and drawings need.
+    pub fn run_alone<E: Engine>(&self, engine: E, is_recorded: bool) -> Bench<E> {
+        let pins = crate::bench::PinNames::channel();
+        let mut bench = Bench::new(engine, self.system_hz, vec![(pins, self.link())]);
+        bench.set_sample_latency(self.latency_cycles());
+        if is_recorded {
+            bench.record_links();
+            for name in crate::scenario::WATCHED {
+                if bench.has_port(name) {
+                    bench.watch(name);
+                }
+            }
+        }
+        bench.configure(&self.settings);
+        bench.reset();
+        let end = self.limit_cycles();
+        loop {
+            let is_idle = bench.get("busy") == 0;
+            let is_done = bench.results().len() >= self.frames;
+            if is_idle && is_done || bench.cycle() >= end {
+                break;
+            }
+            if is_idle && !is_done {
+                bench.trigger();
+            }
+            bench.tick();
+        }
+        bench
+    }
+
+    /// Whether all frames were good and by the rules; if not, what was wrong first.
+    ///
+    /// # Errors
+    /// What was wrong.
+    pub fn check(&self, traces: &Traces<'_>) -> Result<(), String> {
+        if let Some((time, violation)) = traces.violations.first() {
+            return Err(format!("{violation}, at {:.3} us", *time as f64 / 1e6));
+        }
+        if let Some(conflict) = traces.conflicts.first() {
+            return Err(format!(
+                "{conflict}, at {:.3} us",
+                conflict.from as f64 / 1e6
+            ));
+        }
+        let counts = (traces.results.len(), traces.frames.len());
+        if counts != (self.frames, self.frames) {
+            return Err(format!(
+                "{} results of {} frames instead of {}",
+                counts.0, counts.1, self.frames
+            ));
+        }
+        for (frame, result) in traces.frames.iter().zip(traces.results) {
+            self.check_frame(frame, result)
+                .map_err(|what| format!("frame {}: {what}", frame.index))?;
+        }
+        self.check_samples(traces.samples)
+    }
+
+    fn check_frame(&self, frame: &FrameLog, result: &ChannelResult) -> Result<(), String> {
+        let bit = |i| u64::from(frame.answer.get(frame.answer.len - CRC_BITS + i));
+        let crc_sent = (0..CRC_BITS).fold(0, |crc, i| crc << 1 | bit(i));
+        let edges = frame.expected_rising_edges();
+        let checks = [
+            (
+                frame.end == FrameEnd::Complete,
+                "is not complete at the encoder",
+            ),
+            (
+                Some(frame.rising_edges) == edges,
+                "has not exactly its clock pulses",
+            ),
+            (
+                frame.command == Some(self.settings.command),
+                "has another mode command",
+            ),
+            (
+                Some(frame.answer.len) == self.answer_bits(),
+                "has another length",
+            ),
+            (
+                frame.is_true_answer(self.settings.position_bits, frame.has_f2),
+                "is not what the encoder should send",
+            ),
+            (
+                (result.last_cause(), result.flags) == (cause::NONE, 0),
+                "is refused",
+            ),
+            (
+                result.fresh && result.position_valid,
+                "gives no fresh position",
+            ),
+            (result.position == frame.position, "gives another position"),
+            (
+                (result.crc_received, result.crc_computed) == (crc_sent, crc_sent),
+                "gives another CRC",
+            ),
+        ];
+        match checks.iter().find(|(is_good, _)| !is_good) {
+            Some((_, what)) => Err(format!("{what}: {result:?}, {frame:?}")),
+            None => Ok(()),
+        }
+    }
+
+    /// Every sample is of the encoder's LOW, of the answer bits one after the other, or of the HIGH after them.
+    fn check_samples(&self, samples: &[Sample]) -> Result<(), String> {
+        let mut next = 0;
+        for sample in samples {
+            let wrong = |what: &str| Err(format!("a sample {what}: {sample:?}"));
+            match sample.who {
+                Who::Encoder(Symbol::Lead) if next == 0 => {}
+                Who::Encoder(Symbol::Bit(i)) if u32::from(i) == next => next += 1,
+                Who::Encoder(Symbol::Tail) if Some(next) == self.answer_bits() => next = 0,
+                _ => return wrong("is not of the bit that comes next"),
+            }
+            if sample.glitch {
+                return wrong("is of a glitch");
+            }
+        }
+        match next {
+            0 => Ok(()),
+            _ => Err("samples are missing at the end of a frame".into()),
+        }
+    }
+}

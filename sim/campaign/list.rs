@@ -1,0 +1,137 @@
+//! The named campaigns.
+
+use super::Case;
+use crate::{
+    bench::ChannelSettings,
+    encoder::EncoderConfig,
+    line::{Jitter, LineConfig},
+    rng::Rng,
+    Time, NS, US,
+};
+use endat_hdl::{
+    protocol::{ModeCommand, POSITION_BITS},
+    timing,
+};
+
+/// System clock and EnDat clock in hertz, that every width and cable is tried at.
+pub const RATES: [(u64, u64); 10] = [
+    (100_000_000, 100_000),
+    (100_000_000, 200_000),
+    (100_000_000, 1_000_000),
+    (100_000_000, 2_000_000),
+    (100_000_000, 3_125_000),
+    (100_000_000, 4_000_000),
+    (100_000_000, 6_250_000),
+    (100_000_000, 8_333_333),
+    (100_000_000, 12_500_000),
+    (128_000_000, 16_000_000),
+];
+/// The cables that every width and rate is tried on, in metres.
+pub const CABLES_M: [f64; 4] = [0.0, 1.0, 20.0, 100.0];
+/// Quiet time after an aborted frame: longer than the encoder's own time-out, short enough to be simulated.
+const ABORT_US: u64 = 50;
+
+impl Case {
+    /// A sound encoder on a sound cable, with fitting settings. The recovery time is short, where that is allowed.
+    pub fn new(
+        (system_hz, endat_hz): (u64, u64),
+        command: ModeCommand,
+        position_bits: u32,
+        cable_m: f64,
+    ) -> Self {
+        let mut encoder =
+            EncoderConfig::endat22(position_bits).seed(u64::from(position_bits) + endat_hz);
+        encoder.tm = if command.has_f2() && endat_hz > 1_000_000 {
+            1_250 * NS..=3_750 * NS
+        } else {
+            10 * US..=12 * US
+        };
+        let settings = ChannelSettings {
+            abort_us: ABORT_US,
+            ..ChannelSettings::new(system_hz, endat_hz, command, position_bits)
+        };
+        Self {
+            title: format!(
+                "{:06b}, {position_bits} bits, {:.3} MHz, {cable_m:.0} m",
+                command.code(),
+                endat_hz as f64 / 1e6
+            ),
+            system_hz,
+            settings,
+            encoder,
+            line: LineConfig::cable(cable_m),
+            frames: 2,
+        }
+    }
+}
+
+/// Every width, command, rate and cable: 3840 cases.
+pub fn sweep() -> Vec<Case> {
+    let mut cases = vec![];
+    for rates in RATES {
+        for cable_m in CABLES_M {
+            for command in ModeCommand::ALL {
+                cases.extend(POSITION_BITS.map(|bits| Case::new(rates, command, bits, cable_m)));
+            }
+        }
+    }
+    cases
+}
+
+/// Random cases within the limits of line, encoder and core: jitter, distortion, cable, times, filter, window.
+pub fn random(count: usize, seed: u64) -> Vec<Case> {
+    let mut rng = Rng::new(seed);
+    (0..count).map(|_| random_case(&mut rng)).collect()
+}
+
+/// A part between 0 and 1.
+fn part(rng: &mut Rng) -> f64 {
+    (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+}
+
+fn random_case(rng: &mut Rng) -> Case {
+    let rates = RATES[rng.in_range(0, RATES.len() as u64 - 1) as usize];
+    let command = ModeCommand::ALL[rng.in_range(0, 1) as usize];
+    let bits = rng.in_range(
+        u64::from(*POSITION_BITS.start()),
+        u64::from(*POSITION_BITS.end()),
+    ) as u32;
+    let mut case = Case::new(rates, command, bits, 100.0 * part(rng));
+    case.frames = 5;
+    let cycle: Time = 1_000_000 * US / rates.0;
+    let period = case.settings.period_cycles;
+    let half = period / 2;
+    // The frame that measures the delay has a period of its own.
+    let shortest = period.min(timing::period_cycles(timing::CALIBRATION_HZ, rates.0));
+    // A bit is sampled in the middle, to a cycle and a half: tracking, synchroniser, odd period. The rest of half a bit
+    // is for distortion, jitter of two edges, and jitter of the period that the encoder compares with, as far as it takes
+    // pulses: a tenth of a period.
+    let room = (shortest / 2 * cycle - 3 * cycle / 2).min(shortest * cycle / 10);
+    let jitter = (part(rng) * 0.2 * room as f64) as Time;
+    let distortion = ((2.0 * part(rng) - 1.0) * 0.35 * room as f64) as i64;
+    case.line.ns_per_m = 4.5 + 2.5 * part(rng);
+    let transceivers = rng.in_range(0, 60 * NS);
+    for path in [
+        &mut case.line.clock,
+        &mut case.line.data_in,
+        &mut case.line.data_out,
+    ] {
+        path.transceivers = transceivers + distortion.unsigned_abs();
+        path.jitter = Jitter::Uniform(jitter);
+        path.fall_later = distortion;
+    }
+    case.line.seed = rng.next_u64();
+    case.encoder.seed = rng.next_u64();
+    case.encoder.clock_to_data = rng.in_range(0, 200 * NS);
+    case.encoder.tcal = rng.in_range(0, 12 * US);
+    case.encoder.tcal_jitter = rng.in_range(0, 3 * US);
+    // A filter must let the shortest bit through.
+    let longest = half.saturating_sub(3).min(15);
+    case.settings.filter_cycles = rng.in_range(0, longest);
+    // The window has room for the jitter of two edges, twice, and for two cycles.
+    let least = 2 + (4 * jitter).div_ceil(cycle);
+    let most = (half - 1).min(63);
+    case.settings.start_window_cycles = rng.in_range(least.min(most), most);
+    case.title = format!("{}, random line and encoder", case.title);
+    case
+}

@@ -1,0 +1,11 @@
+//! Campaigns: thousands of cases side by side, each with its own channel settings, encoder and line.
+
+mod case;
+mod list;
+mod run;
+#[cfg(test)]
+mod tests;
+
+pub use case::{Case, Traces, SAMPLE_LATENCY_CYCLES};
+pub use list::{random, sweep, CABLES_M, RATES};
+pub use run::{run, CampaignError, Outcome, RunOptions};

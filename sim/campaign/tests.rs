@@ -1,0 +1,63 @@
+use super::*;
+use crate::engine::{Compiled, LaneWords};
+
+/// A failing check shows what the lanes left behind.
+fn digest(traces: &Traces<'_>) -> Result<(), String> {
+    Err(format!("{traces:?}"))
+}
+
+#[test]
+fn a_lane_leaves_what_the_case_leaves_alone() {
+    let cases = random(70, 7);
+    let traced = run(&cases, RunOptions::default(), |_, t| digest(t), |_| {}).unwrap();
+    for index in [0, 1, 33, 69] {
+        let case = &cases[index];
+        let engine = Compiled::new(&case.design().unwrap()).unwrap();
+        let bench = case.run_alone(engine, false);
+        let alone = Traces {
+            results: bench.results(),
+            frames: bench.frames(0),
+            violations: bench.violations(0),
+            conflicts: &bench.conflicts(0),
+            samples: bench.samples(0),
+        };
+        assert_eq!(traced[index].failure, digest(&alone).err(), "case {index}");
+        assert_eq!(traced[index].cycles, bench.cycle(), "case {index}");
+    }
+}
+
+#[test]
+fn outcomes_do_not_depend_on_threads_and_lanes() {
+    let cases = random(150, 8);
+    let with = |threads, lanes| {
+        let options = RunOptions {
+            threads,
+            lanes,
+            samples: true,
+        };
+        run(&cases, options, |_, t| digest(t), |_| {}).unwrap()
+    };
+    let one = with(1, LaneWords::One);
+    assert!(one == with(3, LaneWords::Two));
+    assert_eq!(one.len(), cases.len());
+    assert!(one.iter().all(|o| o.frames == 5));
+}
+
+#[test]
+fn a_broken_case_is_found_and_the_others_are_not() {
+    let mut cases = random(100, 9);
+    cases[42].encoder = cases[42]
+        .encoder
+        .clone()
+        .defect(3, crate::encoder::Defect::CrcXor(1));
+    let outcomes = run(&cases, RunOptions::default(), Case::check, |_| {}).unwrap();
+    let failed: Vec<usize> = (0..100)
+        .filter(|i| outcomes[*i].failure.is_some())
+        .collect();
+    assert_eq!(failed, [42]);
+    let what = outcomes[42].failure.as_ref().unwrap();
+    assert!(
+        what.starts_with("frame 3: is not what the encoder should send"),
+        "{what}"
+    );
+}
