@@ -8,7 +8,7 @@ use endat_hdl::channel::{Channel, FixedTimes};
 use endat_hdl::elaborate::elaborate;
 use endat_sim::bench::Bench;
 use endat_sim::diagram::frame_svg;
-use endat_sim::engine::Interpreter;
+use endat_sim::engine::Compiled;
 use endat_sim::scenario::{self, ChannelReport, FrameReport, Report, RunOptions, Scenario};
 use endat_sim::wave::Wave;
 use rust_hdl::prelude::Block;
@@ -121,10 +121,7 @@ fn chosen(arguments: &SimArgs, scenario: &Scenario) -> Result<Vec<usize>, GenErr
     }
 }
 
-fn run_channel(
-    scenario: &Scenario,
-    index: usize,
-) -> Result<(Bench<Interpreter>, Report), GenError> {
+fn run_channel(scenario: &Scenario, index: usize) -> Result<(Bench<Compiled>, Report), GenError> {
     let fault = |e: &dyn std::fmt::Display| {
         GenError::input(format!(
             "design: {e}; this is a fault of endat-gen, please report it"
@@ -138,7 +135,7 @@ fn run_channel(
     });
     block.connect_all();
     let design = elaborate(&block, "channel").map_err(|e| fault(&e))?;
-    let engine = Interpreter::new(&design).map_err(|e| fault(&e))?;
+    let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
     let options = RunOptions {
         record: true,
         sample_latency_cycles: SAMPLE_LATENCY_CYCLES + settings.filter_cycles,
@@ -149,7 +146,7 @@ fn run_channel(
 /// Writes waveforms and drawing; returns one message for each file.
 fn draw(
     arguments: &SimArgs,
-    bench: &Bench<Interpreter>,
+    bench: &Bench<Compiled>,
     scenario: &Scenario,
 ) -> Result<Vec<String>, GenError> {
     let mut written = Vec::new();

@@ -29,7 +29,7 @@ pub const RATES: [(u64, u64); 10] = [
 /// The cables that every width and rate is tried on, in metres.
 pub const CABLES_M: [f64; 4] = [0.0, 1.0, 20.0, 100.0];
 /// Quiet time after an aborted frame: longer than the encoder's own time-out, short enough to be simulated.
-const ABORT_US: u64 = 50;
+pub const ABORT_US: u64 = 50;
 
 impl Case {
     /// A sound encoder on a sound cable, with fitting settings. The recovery time is short, where that is allowed.
@@ -78,60 +78,110 @@ pub fn sweep() -> Vec<Case> {
     cases
 }
 
-/// Random cases within the limits of line, encoder and core: jitter, distortion, cable, times, filter, window.
+/// Random cases within the limits of line, encoder and core.
 pub fn random(count: usize, seed: u64) -> Vec<Case> {
     let mut rng = Rng::new(seed);
-    (0..count).map(|_| random_case(&mut rng)).collect()
+    (0..count).map(|_| Story::random(&mut rng).case()).collect()
 }
 
-/// A part between 0 and 1.
-fn part(rng: &mut Rng) -> f64 {
-    (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+/// A case that is different in everything, as parts of what the rate allows: every story is within the limits of line, encoder
+/// and core, and must give good frames.
+#[derive(Clone, Copy, Debug)]
+pub struct Story {
+    /// Index in [`RATES`].
+    pub rates: usize,
+    /// EnDat 2.2, with F2.
+    pub f2: bool,
+    /// Width of the position.
+    pub position_bits: u32,
+    /// Cable in metres.
+    pub cable_m: f64,
+    /// Its delay.
+    pub ns_per_m: f64,
+    /// Delay of driver and receiver.
+    pub transceivers: Time,
+    /// Clock edge to DATA edge at the encoder.
+    pub clock_to_data: Time,
+    /// Calculation time.
+    pub tcal: Time,
+    /// How much longer it may be in a frame.
+    pub tcal_jitter: Time,
+    /// Jitter of every edge, 0 to 1.
+    pub jitter: f64,
+    /// How much later falling edges are, -1 to 1.
+    pub distortion: f64,
+    /// Input filter, 0 to 1.
+    pub filter: f64,
+    /// Window of the start bit, 0 to 1.
+    pub window: f64,
+    /// Seed of encoder and line.
+    pub seed: u64,
 }
 
-fn random_case(rng: &mut Rng) -> Case {
-    let rates = RATES[rng.in_range(0, RATES.len() as u64 - 1) as usize];
-    let command = ModeCommand::ALL[rng.in_range(0, 1) as usize];
-    let bits = rng.in_range(
-        u64::from(*POSITION_BITS.start()),
-        u64::from(*POSITION_BITS.end()),
-    ) as u32;
-    let mut case = Case::new(rates, command, bits, 100.0 * part(rng));
-    case.frames = 5;
-    let cycle: Time = 1_000_000 * US / rates.0;
-    let period = case.settings.period_cycles;
-    let half = period / 2;
-    // The frame that measures the delay has a period of its own.
-    let shortest = period.min(timing::period_cycles(timing::CALIBRATION_HZ, rates.0));
-    // A bit is sampled in the middle, to a cycle and a half: tracking, synchroniser, odd period. The rest of half a bit
-    // is for distortion, jitter of two edges, and jitter of the period that the encoder compares with, as far as it takes
-    // pulses: a tenth of a period.
-    let room = (shortest / 2 * cycle - 3 * cycle / 2).min(shortest * cycle / 10);
-    let jitter = (part(rng) * 0.2 * room as f64) as Time;
-    let distortion = ((2.0 * part(rng) - 1.0) * 0.35 * room as f64) as i64;
-    case.line.ns_per_m = 4.5 + 2.5 * part(rng);
-    let transceivers = rng.in_range(0, 60 * NS);
-    for path in [
-        &mut case.line.clock,
-        &mut case.line.data_in,
-        &mut case.line.data_out,
-    ] {
-        path.transceivers = transceivers + distortion.unsigned_abs();
-        path.jitter = Jitter::Uniform(jitter);
-        path.fall_later = distortion;
+impl Story {
+    fn random(rng: &mut Rng) -> Self {
+        // A part between 0 and 1.
+        let part = |rng: &mut Rng| (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+        Self {
+            rates: rng.in_range(0, RATES.len() as u64 - 1) as usize,
+            f2: rng.in_range(0, 1) == 1,
+            position_bits: rng.in_range(1, 48) as u32,
+            cable_m: 100.0 * part(rng),
+            ns_per_m: 4.5 + 2.5 * part(rng),
+            transceivers: rng.in_range(0, 60 * NS),
+            clock_to_data: rng.in_range(0, 200 * NS),
+            tcal: rng.in_range(0, 12 * US),
+            tcal_jitter: rng.in_range(0, 3 * US),
+            jitter: part(rng),
+            distortion: 2.0 * part(rng) - 1.0,
+            filter: part(rng),
+            window: part(rng),
+            seed: rng.next_u64(),
+        }
     }
-    case.line.seed = rng.next_u64();
-    case.encoder.seed = rng.next_u64();
-    case.encoder.clock_to_data = rng.in_range(0, 200 * NS);
-    case.encoder.tcal = rng.in_range(0, 12 * US);
-    case.encoder.tcal_jitter = rng.in_range(0, 3 * US);
-    // A filter must let the shortest bit through.
-    let longest = half.saturating_sub(3).min(15);
-    case.settings.filter_cycles = rng.in_range(0, longest);
-    // The window has room for the jitter of two edges, twice, and for two cycles.
-    let least = 2 + (4 * jitter).div_ceil(cycle);
-    let most = (half - 1).min(63);
-    case.settings.start_window_cycles = rng.in_range(least.min(most), most);
-    case.title = format!("{}, random line and encoder", case.title);
-    case
+
+    /// The case.
+    pub fn case(&self) -> Case {
+        let rates = RATES[self.rates];
+        let command = ModeCommand::ALL[usize::from(self.f2)];
+        let mut case = Case::new(rates, command, self.position_bits, self.cable_m);
+        case.title += ", random line and encoder";
+        case.frames = 5;
+        let cycle = 1_000_000 * US / rates.0;
+        let period = case.settings.period_cycles;
+        let half = period / 2;
+        // The frame that measures the delay has a period of its own.
+        let shortest = period.min(timing::period_cycles(timing::CALIBRATION_HZ, rates.0));
+        // A bit is sampled in the middle, to a cycle and a half: tracking, synchroniser, odd period. The rest of half a bit
+        // is for distortion, jitter of two edges, and jitter of the period that the encoder compares with, as far as it
+        // takes pulses: a tenth of a period, of which an odd period takes half a cycle.
+        let pulses = shortest * cycle / 10 - period % 2 * cycle / 2;
+        let room = (shortest / 2 * cycle - 3 * cycle / 2).min(pulses);
+        let jitter = (self.jitter * 0.2 * room as f64) as Time;
+        let distortion = (self.distortion * 0.3 * room as f64) as i64;
+        case.line.ns_per_m = self.ns_per_m;
+        for path in [
+            &mut case.line.clock,
+            &mut case.line.data_in,
+            &mut case.line.data_out,
+        ] {
+            path.transceivers = self.transceivers + distortion.unsigned_abs();
+            path.jitter = Jitter::Uniform(jitter);
+            path.fall_later = distortion;
+        }
+        case.line.seed = self.seed;
+        case.encoder.seed = self.seed;
+        case.encoder.clock_to_data = self.clock_to_data;
+        case.encoder.tcal = self.tcal;
+        case.encoder.tcal_jitter = self.tcal_jitter;
+        // A filter must let the shortest bit through.
+        let longest = half.saturating_sub(3).min(15);
+        case.settings.filter_cycles = (self.filter * (longest + 1) as f64) as u64;
+        // The window has room for the jitter of two edges, twice, and for two cycles.
+        let least = 2 + (4 * jitter).div_ceil(cycle);
+        let most = (half - 1).min(63);
+        let span = most.saturating_sub(least) as f64;
+        case.settings.start_window_cycles = (least + (self.window * span) as u64).min(most);
+        case
+    }
 }

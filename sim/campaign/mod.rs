@@ -7,5 +7,5 @@ mod run;
 mod tests;
 
 pub use case::{Case, Traces, SAMPLE_LATENCY_CYCLES};
-pub use list::{random, sweep, CABLES_M, RATES};
+pub use list::{random, sweep, Story, ABORT_US, CABLES_M, RATES};
 pub use run::{run, CampaignError, Outcome, RunOptions};

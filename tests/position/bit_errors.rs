@@ -5,7 +5,7 @@ use endat_hdl::{
     protocol::ModeCommand::{SendPosition, SendPositionAddInfo},
     transaction::cause,
 };
-use endat_sim::{encoder::Defect, engine::Interpreter};
+use endat_sim::{encoder::Defect, engine::Compiled};
 
 /// Longest burst that a CRC5 is sure to see.
 const BURST_BITS: u32 = 5;
@@ -36,7 +36,7 @@ fn bursts() -> impl Iterator<Item = (u32, u128)> {
 /// Sends a frame with each mask, every one between two good ones. `judge` gets the mask and what became of the frame.
 fn with_masks(
     setup: &Setup,
-    measured: &Interpreter,
+    measured: &Compiled,
     masks: &[u128],
     mut judge: impl FnMut(u128, &mut Rig),
 ) {

@@ -5,7 +5,7 @@ use endat_hdl::{
     elaborate::elaborate,
 };
 use endat_sim::{
-    engine::{Engine, Interpreter},
+    engine::{Compiled, Engine},
     rng::Rng,
 };
 use rust_hdl::prelude::Block;
@@ -40,14 +40,14 @@ fn vectors() -> Vec<Vector> {
     all
 }
 
-fn interpreter(mut block: impl Block) -> Interpreter {
+fn compiled(mut block: impl Block) -> Compiled {
     block.connect_all();
     let design = elaborate(&block, "crc").expect("the block elaborates");
-    Interpreter::new(&design).expect("no loop")
+    Compiled::new(&design).expect("no loop")
 }
 
 /// Every place that the run-time block may be given a word of this length at: the last bit at the top or a multiple of 15 below.
-fn parallel(engine: &mut Interpreter, bits: &[bool]) -> Vec<u8> {
+fn parallel(engine: &mut Compiled, bits: &[bool]) -> Vec<u8> {
     let (word, length, crc) = (
         engine.port("word"),
         engine.port("covered_mod_15"),
@@ -70,7 +70,7 @@ fn fixed(bits: &[bool]) -> Option<u8> {
     macro_rules! lengths {
         ($($n:literal)*) => {
             match bits.len() {
-                $($n => interpreter(Crc5Fixed::<$n>::default()),)*
+                $($n => compiled(Crc5Fixed::<$n>::default()),)*
                 _ => return None,
             }
         };
@@ -82,7 +82,7 @@ fn fixed(bits: &[bool]) -> Option<u8> {
 }
 
 /// Clears the register, takes the bits and the CRC behind them; whether the block finds them right.
-fn serial_accepts(engine: &mut Interpreter, bits: &[bool], crc: u8) -> bool {
+fn serial_accepts(engine: &mut Compiled, bits: &[bool], crc: u8) -> bool {
     let [clear, enable, bit, ok] =
         ["clear", "enable", "bit", "residue_ok"].map(|name| engine.port(name));
     engine.set(clear, 1);
@@ -141,8 +141,8 @@ fn library(bits: &[bool]) -> u8 {
 #[test]
 fn every_published_vector_holds_in_all_blocks() {
     let (mut any_length, mut serial) = (
-        interpreter(Crc5Parallel::default()),
-        interpreter(Crc5Serial::default()),
+        compiled(Crc5Parallel::default()),
+        compiled(Crc5Serial::default()),
     );
     let (mut at_run_time, mut at_fixed_length) = (0, 0);
     for v in vectors() {
@@ -175,8 +175,8 @@ fn every_published_vector_holds_in_all_blocks() {
 #[test]
 fn random_words_of_every_length_agree_with_the_library() {
     let (mut any_length, mut serial) = (
-        interpreter(Crc5Parallel::default()),
-        interpreter(Crc5Serial::default()),
+        compiled(Crc5Parallel::default()),
+        compiled(Crc5Serial::default()),
     );
     let mut rng = Rng::new(5);
     for length in 1..=MAX_COVERED_BITS {

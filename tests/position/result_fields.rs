@@ -4,7 +4,7 @@ use super::rig::*;
 use endat_hdl::{channel, protocol::ModeCommand::SendPositionAddInfo, transaction::cause};
 use endat_sim::{
     encoder::Defect,
-    engine::{Engine, Interpreter},
+    engine::{Compiled, Engine},
     Time, NS, US,
 };
 
@@ -71,7 +71,7 @@ fn the_age_counts_microseconds_through_bad_frames_and_stops_at_its_end() {
     // A tick in every other cycle, for speed.
     let engine = rig.engine();
     let [tick_us, age] = ["tick_us", "age_us"].map(|n| engine.port(n));
-    let run = |engine: &mut Interpreter, ticks: u32| {
+    let run = |engine: &mut Compiled, ticks: u32| {
         for _ in 0..ticks {
             for level in [1, 0] {
                 engine.set(tick_us, level);

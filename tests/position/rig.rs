@@ -4,14 +4,15 @@ use endat_hdl::{
     channel::{Channel, FixedTimes},
     elaborate::elaborate,
     protocol::ModeCommand,
-    transaction::cause,
 };
+pub use endat_sim::campaign::{ABORT_US, RATES};
 use endat_sim::{
     bench::{Bench, ChannelResult, ChannelSettings, Link},
-    encoder::{Defect, EncoderConfig, FrameEnd, FrameLog, Symbol},
-    engine::Interpreter,
+    campaign::{Case, Traces, SAMPLE_LATENCY_CYCLES},
+    encoder::{Defect, EncoderConfig, FrameLog},
+    engine::Compiled,
     frame::{crc5, CRC_BITS},
-    line::{LineConfig, Sample, Who},
+    line::LineConfig,
     Time, MS, US,
 };
 use rust_hdl::prelude::Block;
@@ -23,35 +24,14 @@ use std::{
 /// System clock and EnDat clock, in hertz.
 pub type Rates = (u64, u64);
 
-/// The rates that every width and cable is tried at.
-pub const RATES: [Rates; 10] = [
-    (100_000_000, 100_000),
-    (100_000_000, 200_000),
-    (100_000_000, 1_000_000),
-    (100_000_000, 2_000_000),
-    (100_000_000, 3_125_000),
-    (100_000_000, 4_000_000),
-    (100_000_000, 6_250_000),
-    (100_000_000, 8_333_333),
-    (100_000_000, 12_500_000),
-    (128_000_000, 16_000_000),
-];
 /// The setting of the acquisition card.
 pub const CARD: Rates = (100_000_000, 3_125_000);
-/// The cables that every width and rate is tried on, in metres.
-pub const CABLES_M: [f64; 4] = [0.0, 1.0, 20.0, 100.0];
-/// The commands whose answers the core takes.
-pub const COMMANDS: [ModeCommand; 2] = ModeCommand::ALL;
 
-/// Quiet time after an aborted frame: longer than the encoder's own time-out, short enough to be simulated.
-pub const ABORT_US: u64 = 50;
-/// From the pin to the register that takes a sample, without filter.
-const SAMPLE_LATENCY_CYCLES: u64 = 3;
 /// Longer than any frame with its time-outs.
 pub const FRAME_LIMIT: Time = 5 * MS;
 
 /// A channel on its bench.
-pub type Rig = Bench<Interpreter>;
+pub type Rig = Bench<Compiled>;
 
 /// The times that are fixed in the channels of these tests.
 fn fixed_times(system_hz: u64) -> FixedTimes {
@@ -62,8 +42,8 @@ fn fixed_times(system_hz: u64) -> FixedTimes {
 }
 
 /// A channel after power-up. The design is made once for each system clock.
-pub fn engine(system_hz: u64) -> Interpreter {
-    static MADE: OnceLock<Mutex<BTreeMap<u64, Interpreter>>> = OnceLock::new();
+pub fn engine(system_hz: u64) -> Compiled {
+    static MADE: OnceLock<Mutex<BTreeMap<u64, Compiled>>> = OnceLock::new();
     let mut made = MADE
         .get_or_init(Mutex::default)
         .lock()
@@ -72,7 +52,7 @@ pub fn engine(system_hz: u64) -> Interpreter {
         let mut block = Channel::new(fixed_times(system_hz));
         block.connect_all();
         let design = elaborate(&block, "channel").expect("the channel elaborates");
-        Interpreter::new(&design).expect("the channel has no loop")
+        Compiled::new(&design).expect("the channel has no loop")
     };
     made.entry(system_hz).or_insert_with(make).clone()
 }
@@ -93,19 +73,12 @@ pub struct Setup {
 impl Setup {
     /// A sound encoder on a sound cable, with fitting settings. The recovery time is short, where that is allowed.
     pub fn new(rates: Rates, command: ModeCommand, position_bits: u32, cable_m: f64) -> Self {
-        let (system_hz, endat_hz) = rates;
-        let mut encoder =
-            EncoderConfig::endat22(position_bits).seed(u64::from(position_bits) + endat_hz);
-        encoder.tm = if command.has_f2() && endat_hz > 1_000_000 {
-            1_250_000..=3_750_000
-        } else {
-            10 * US..=12 * US
-        };
+        let case = Case::new(rates, command, position_bits, cable_m);
         Self {
-            system_hz,
-            settings: ChannelSettings::new(system_hz, endat_hz, command, position_bits),
-            encoder,
-            line: LineConfig::cable(cable_m),
+            system_hz: case.system_hz,
+            settings: case.settings,
+            encoder: case.encoder,
+            line: case.line,
         }
     }
 
@@ -159,7 +132,7 @@ impl Setup {
     }
 
     /// A channel that goes on from some idle state, with a new line and encoder.
-    pub fn on(&self, engine: Interpreter) -> Rig {
+    pub fn on(&self, engine: Compiled) -> Rig {
         let pins = endat_sim::bench::PinNames::channel();
         let mut rig = Bench::new(engine, self.system_hz, vec![(pins, self.link())]);
         rig.configure(&self.settings);
@@ -167,7 +140,7 @@ impl Setup {
     }
 
     /// An idle channel that has measured the delay of this line, with a good position.
-    pub fn measured(&self) -> Interpreter {
+    pub fn measured(&self) -> Compiled {
         let mut sound = self.clone();
         sound.encoder.defects.clear();
         let mut rig = sound.fresh();
@@ -228,53 +201,22 @@ pub fn crc_sent(frame: &FrameLog) -> u64 {
 
 /// Asserts that all frames so far were good and by the rules. The channel must be idle.
 pub fn assert_sound(setup: &Setup, rig: &Rig) {
-    assert_eq!(rig.violations(0), [], "{setup:?}");
-    assert_eq!(rig.conflicts(0), [], "{setup:?}");
-    let (frames, results) = (rig.frames(0), rig.results());
-    assert_eq!(frames.len(), results.len(), "{setup:?}");
-    for (frame, result) in frames.iter().zip(results) {
-        let what = || format!("{frame:?}\n{result:?}\n{setup:?}");
-        assert_eq!(frame.end, FrameEnd::Complete, "{}", what());
-        assert_eq!(
-            Some(frame.rising_edges),
-            frame.expected_rising_edges(),
-            "{}",
-            what()
-        );
-        assert_eq!(frame.command, Some(setup.settings.command), "{}", what());
-        assert!(frame.is_true_answer(setup.settings.position_bits, frame.has_f2));
-        assert_eq!(frame.answer.len, setup.answer_bits(), "{}", what());
-        assert_eq!(
-            (result.last_cause(), result.flags, result.fresh),
-            (cause::NONE, 0, true),
-            "{}",
-            what()
-        );
-        assert_eq!(result.position, frame.position, "{}", what());
-        assert_eq!(result.crc_received, crc_sent(frame), "{}", what());
-        assert_eq!(result.crc_computed, crc_sent(frame), "{}", what());
+    let case = Case {
+        title: String::new(),
+        system_hz: setup.system_hz,
+        settings: setup.settings,
+        encoder: setup.encoder.clone(),
+        line: setup.line.clone(),
+        frames: rig.results().len(),
+    };
+    let traces = Traces {
+        results: rig.results(),
+        frames: rig.frames(0),
+        violations: rig.violations(0),
+        conflicts: &rig.conflicts(0),
+        samples: rig.samples(0),
+    };
+    if let Err(what) = case.check(&traces) {
+        panic!("{what}\n{setup:?}");
     }
-    assert_samples_in_order(rig.samples(0), setup);
-}
-
-/// Every sample is of the encoder's LOW, of the answer bits one after the other, or of the HIGH after them.
-fn assert_samples_in_order(samples: &[Sample], setup: &Setup) {
-    let mut next = 0;
-    for sample in samples {
-        let what = || format!("{sample:?} {setup:?}");
-        match sample.who {
-            Who::Encoder(Symbol::Lead) => assert_eq!(next, 0, "{}", what()),
-            Who::Encoder(Symbol::Bit(i)) => {
-                assert_eq!(u32::from(i), next, "{}", what());
-                next += 1;
-            }
-            Who::Encoder(Symbol::Tail) => {
-                assert_eq!(next, setup.answer_bits(), "{}", what());
-                next = 0;
-            }
-            _ => panic!("sample of an undefined phase: {}", what()),
-        }
-        assert!(!sample.glitch, "{}", what());
-    }
-    assert_eq!(next, 0, "a frame's samples are missing: {setup:?}");
 }

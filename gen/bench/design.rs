@@ -1,0 +1,53 @@
+//! The card that is run.
+
+use crate::config::{load_preset, DEFAULT_PRESET};
+use crate::error::GenError;
+use crate::verilog::{print_files, Header};
+use endat_hdl::card::Card;
+use endat_hdl::elaborate::{elaborate, Design};
+use rust_hdl::prelude::Block;
+use std::path::Path;
+
+/// The two-channel card, elaborated.
+pub struct CardDesign {
+    /// Name of the top module.
+    pub name: String,
+    /// The design.
+    pub design: Design,
+    /// System clock.
+    pub system_hz: u64,
+    /// Baud rate of the host link.
+    pub baud: u64,
+}
+
+impl CardDesign {
+    /// The block itself.
+    pub fn block() -> Result<Card, GenError> {
+        let mut block = Card::new(&load_preset(DEFAULT_PRESET)?.card);
+        block.connect_all();
+        Ok(block)
+    }
+
+    /// The card of the preset.
+    pub fn new() -> Result<Self, GenError> {
+        let card = load_preset(DEFAULT_PRESET)?.card;
+        let design =
+            elaborate(&Self::block()?, DEFAULT_PRESET).map_err(|e| super::fault(&e))?;
+        Ok(Self {
+            name: DEFAULT_PRESET.into(),
+            design,
+            system_hz: card.system_hz,
+            baud: card.baud,
+        })
+    }
+
+    /// Writes its Verilog into a folder; the names of the files.
+    pub fn write(&self, folder: &Path) -> Result<Vec<String>, GenError> {
+        let files: Vec<_> = print_files(&self.design, &Header::default())
+            .into_iter()
+            .map(|(path, text)| crate::artifact::Artifact::new(path, text))
+            .collect();
+        crate::artifact::write(folder, &files)?;
+        Ok(files.into_iter().map(|f| f.path).collect())
+    }
+}
