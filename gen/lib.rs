@@ -9,6 +9,7 @@
 
 pub mod area;
 pub mod artifact;
+pub mod bench;
 pub mod board;
 pub mod cli;
 pub mod config;

@@ -31,8 +31,7 @@ impl CardDesign {
     /// The card of the preset.
     pub fn new() -> Result<Self, GenError> {
         let card = load_preset(DEFAULT_PRESET)?.card;
-        let design =
-            elaborate(&Self::block()?, DEFAULT_PRESET).map_err(|e| super::fault(&e))?;
+        let design = elaborate(&Self::block()?, DEFAULT_PRESET).map_err(|e| super::fault(&e))?;
         Ok(Self {
             name: DEFAULT_PRESET.into(),
             design,

@@ -49,8 +49,8 @@ fn played(
         cycles: rows.len() as u64,
         seconds: start.elapsed().as_secs_f64(),
         ready_s,
-        frames: 0,
         digest: Some(digest),
+        compared_cycles: rows.len() as u64,
         ..Measured::default()
     })
 }
@@ -77,7 +77,9 @@ pub fn kernels(stimulus: &Stimulus, cycles: usize) -> Result<Measured, GenError>
 /// The plain engine.
 pub fn plain(card: &CardDesign, stimulus: &Stimulus, cycles: usize) -> Result<Measured, GenError> {
     played("plain engine", &stimulus.rows[..cycles], || {
-        Ok(Box::new(Interpreter::new(&card.design).map_err(|e| fault(&e))?))
+        Ok(Box::new(
+            Interpreter::new(&card.design).map_err(|e| fault(&e))?,
+        ))
     })
 }
 
@@ -88,7 +90,9 @@ pub fn compiled(
     cycles: usize,
 ) -> Result<Measured, GenError> {
     played("compiled engine", &stimulus.rows[..cycles], || {
-        Ok(Box::new(Compiled::new(&card.design).map_err(|e| fault(&e))?))
+        Ok(Box::new(
+            Compiled::new(&card.design).map_err(|e| fault(&e))?,
+        ))
     })
 }
 
@@ -110,7 +114,9 @@ pub fn compiled_with_models(card: &CardDesign, cycles: usize) -> Result<Measured
         bench.tick();
         let engine = bench.engine();
         let word = outputs.iter().enumerate();
-        digest.add(word.fold(0, |word, (place, id)| word | (engine.get(*id) as u64) << place));
+        digest.add(word.fold(0, |word, (place, id)| {
+            word | (engine.get(*id) as u64) << place
+        }));
     }
     let seconds = start.elapsed().as_secs_f64();
     Ok(Measured {
@@ -120,17 +126,28 @@ pub fn compiled_with_models(card: &CardDesign, cycles: usize) -> Result<Measured
         ready_s,
         frames: (bench.frames(0).len() + bench.frames(1).len()) as u64,
         digest: Some(digest),
+        compared_cycles: cycles as u64,
         ..Measured::default()
     })
 }
 
 /// The lane engine with an encoder and a line for each channel of each lane, a bench on every processor. The digest is of lane 0.
 pub fn lanes(card: &CardDesign, words: LaneWords, cycles: usize) -> Result<Measured, GenError> {
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    lanes_on(card, words, cycles, threads)
+}
+
+/// The same with so many benches.
+pub fn lanes_on(
+    card: &CardDesign,
+    words: LaneWords,
+    cycles: usize,
+    threads: usize,
+) -> Result<Measured, GenError> {
     let start = Instant::now();
     let engine = Lanes::new(&card.design, Keep::Outputs, words).map_err(|e| fault(&e))?;
     let ready_s = start.elapsed().as_secs_f64();
     let state_bytes = engine.state_bytes() as u64 / engine.lanes() as u64;
-    let threads = thread::available_parallelism().map_or(1, usize::from);
     let run = |number: usize| {
         let engine = engine.clone();
         let lanes = engine.lanes();
@@ -188,6 +205,7 @@ pub fn lanes(card: &CardDesign, words: LaneWords, cycles: usize) -> Result<Measu
         ready_s,
         frames: found.iter().map(|(_, frames)| frames).sum(),
         digest: found.first().map(|(digest, _)| *digest),
+        compared_cycles: cycles as u64,
         state_bytes: Some(state_bytes),
     })
 }

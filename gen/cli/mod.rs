@@ -1,6 +1,7 @@
 //! The command line: arguments in, an [`Outcome`] out. Results are text for stdout, messages are lines for stderr.
 
 mod area;
+mod bench;
 mod crc_command;
 mod emit;
 mod sim;
@@ -70,6 +71,8 @@ enum Command {
     Crc(crc_command::CrcArgs),
     /// Measure the area, and the speed, of card, channel and blocks with yosys and nextpnr
     Area(area::AreaArgs),
+    /// Measure the simulators, this project's and others
+    Bench(bench::BenchArgs),
 }
 
 /// Which configuration.
@@ -138,6 +141,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Sim(arguments)) => sim::run(&arguments),
         Some(Command::Crc(arguments)) => crc_command::run(&arguments),
         Some(Command::Area(arguments)) => area::run(&arguments),
+        Some(Command::Bench(arguments)) => bench::run(&arguments),
     }
 }
 

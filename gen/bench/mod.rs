@@ -1,0 +1,153 @@
+//! Speed of the simulators: the card with its encoders, the same stimulus everywhere, results compared, all in one run.
+
+mod design;
+mod frames;
+mod instructions;
+mod outside;
+mod report;
+mod rust_engines;
+mod stimulus;
+
+pub use report::{Report, Row};
+
+use crate::error::GenError;
+use design::CardDesign;
+use endat_sim::engine::LaneWords;
+use outside::Verilator;
+use std::path::PathBuf;
+use stimulus::{Digest, Stimulus};
+
+fn fault(e: &dyn std::fmt::Display) -> GenError {
+    GenError::input(format!(
+        "bench: {e}; this is a fault of endat-gen or of a tool, please report it"
+    ))
+}
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Cycles for the fast engines; the slow ones run a part of them.
+    pub cycles: usize,
+    /// Run outside simulators as well.
+    pub outside: bool,
+    /// Count instructions, with valgrind.
+    pub instructions: bool,
+}
+
+/// One engine on one stimulus.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Measured {
+    name: &'static str,
+    /// Clock cycles, summed over all copies.
+    cycles: u64,
+    seconds: f64,
+    /// From the design to the first cycle.
+    ready_s: f64,
+    /// Frames that encoders saw.
+    frames: u64,
+    digest: Option<Digest>,
+    /// Cycles that the digest is of.
+    compared_cycles: u64,
+    /// Bytes that a copy takes.
+    state_bytes: Option<u64>,
+}
+
+/// A folder for the tools' files that goes away again.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new() -> Self {
+        Self(std::env::temp_dir().join(format!("endat-gen-bench-{}", std::process::id())))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // Nothing better can be done about a folder that stays.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Measures; `progress` is told what comes next.
+pub fn run(options: Options, progress: &dyn Fn(&str)) -> Result<Report, GenError> {
+    let card = CardDesign::new()?;
+    let cycles = options.cycles;
+    // So that the slow engines take about as long as the fast ones.
+    let (slowest, slow) = ((cycles / 200).max(1), (cycles / 20).max(1));
+    progress("recording the stimulus");
+    let stimulus = Stimulus::record(&card, cycles)?;
+    let scratch = Scratch::new();
+    let mut alone = vec![];
+    let mut models = vec![];
+    progress("rust-hdl kernels");
+    alone.push(rust_engines::kernels(&stimulus, slowest)?);
+    progress("plain engine");
+    alone.push(rust_engines::plain(&card, &stimulus, slow)?);
+    progress("compiled engine");
+    alone.push(rust_engines::compiled(&card, &stimulus, cycles)?);
+    models.push(rust_engines::compiled_with_models(&card, cycles)?);
+    for words in [LaneWords::One, LaneWords::Two] {
+        progress("lane engine");
+        models.push(rust_engines::lanes(&card, words, slow)?);
+    }
+    let mut version = None;
+    if options.outside {
+        progress("iverilog");
+        alone.push(outside::iverilog(
+            &card,
+            &stimulus,
+            slowest,
+            &scratch.0.join("iverilog"),
+        )?);
+        match Verilator::find() {
+            None => progress("Verilator is not there"),
+            Some(verilator) => {
+                progress("Verilator, the card alone");
+                let folder = scratch.0.join("verilator");
+                alone.push(verilator.play(&card, &stimulus, cycles, &folder)?);
+                progress("Verilator with models in C++");
+                let folder = scratch.0.join("verilator-models");
+                models.push(verilator.with_models(&card, cycles, &folder)?);
+                version = Some(verilator.version.clone());
+            }
+        }
+    }
+    progress("checked frames in lanes");
+    let frames = frames::measure()?;
+    let mut report = Report::new(version, frames);
+    for (row, has_models) in alone
+        .iter()
+        .map(|r| (r, false))
+        .chain(models.iter().map(|r| (r, true)))
+    {
+        let length = row.compared_cycles as usize;
+        let reference = if has_models {
+            rust_engines::compiled_with_models(&card, length)?
+        } else {
+            rust_engines::compiled(&card, &stimulus, length)?
+        };
+        report.add(row, has_models, row.digest == reference.digest);
+    }
+    if options.instructions {
+        progress("instructions, with valgrind");
+        report.instructions = instructions::measure()?;
+    }
+    Ok(report)
+}
+
+/// Runs one engine alone for a number of cycles, for [`Options::instructions`].
+pub fn run_one(engine: &str, cycles: usize) -> Result<(), GenError> {
+    let card = CardDesign::new()?;
+    match engine {
+        "plain" => rust_engines::plain(&card, &Stimulus::record(&card, cycles)?, cycles)?,
+        "compiled" => rust_engines::compiled(&card, &Stimulus::record(&card, cycles)?, cycles)?,
+        "models" => rust_engines::compiled_with_models(&card, cycles)?,
+        "lanes" => rust_engines::lanes_on(&card, LaneWords::Two, cycles, 1)?,
+        other => {
+            return Err(GenError::input(format!(
+                "--only = {other:?}: unknown engine; choose plain, compiled, models or lanes"
+            )))
+        }
+    };
+    Ok(())
+}

@@ -1,0 +1,76 @@
+//! `bench`: measures the simulators.
+
+use super::{to_json, Outcome};
+use crate::bench::{self, Options};
+use crate::error::GenError;
+use clap::{Args, Subcommand};
+use std::io::Write;
+
+/// Arguments of `bench`.
+#[derive(Args)]
+pub struct BenchArgs {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Subcommand)]
+enum What {
+    /// The card on the same stimulus in every engine and in other simulators; results are compared
+    Engines(EnginesArgs),
+}
+
+#[derive(Args)]
+struct EnginesArgs {
+    /// Cycles for the fast engines; slow ones run a part of them
+    #[arg(long, value_name = "N", default_value_t = 2_000_000)]
+    cycles: usize,
+    /// Only this project's own engines
+    #[arg(long)]
+    own: bool,
+    /// Count instructions with valgrind: takes minutes
+    #[arg(long)]
+    instructions: bool,
+    /// Run one engine and print nothing
+    #[arg(long, value_name = "ENGINE", hide = true)]
+    only: Option<String>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Fewest cycles: the slow engines run a part of them.
+const CYCLES_MIN: usize = 1000;
+/// Most cycles: a byte of stimulus is kept for each.
+const CYCLES_MAX: usize = 1_000_000_000;
+
+/// Runs the command.
+pub fn run(arguments: &BenchArgs) -> Result<Outcome, GenError> {
+    let What::Engines(arguments) = &arguments.what;
+    if !(CYCLES_MIN..=CYCLES_MAX).contains(&arguments.cycles) {
+        return Err(GenError::input(format!(
+            "--cycles = {}: outside {CYCLES_MIN}..{CYCLES_MAX}; choose a number in that range",
+            arguments.cycles
+        )));
+    }
+    if let Some(engine) = &arguments.only {
+        bench::run_one(engine, arguments.cycles)?;
+        return Ok(Outcome::default());
+    }
+    let options = Options {
+        cycles: arguments.cycles,
+        outside: !arguments.own,
+        instructions: arguments.instructions,
+    };
+    // A progress line that cannot be written is no reason to stop.
+    let progress = |what: &str| drop(writeln!(std::io::stderr(), "bench: {what}"));
+    let report = bench::run(options, &progress)?;
+    let mut outcome = Outcome::good(if arguments.json {
+        to_json(&report)?
+    } else {
+        report.to_string()
+    });
+    if !report.is_equal() {
+        outcome.exit_code = 1;
+    }
+    Ok(outcome)
+}
