@@ -4,6 +4,7 @@ mod cli;
 mod config;
 mod constraints;
 mod elaborate;
+mod engines;
 mod position;
 mod program;
 mod sim;

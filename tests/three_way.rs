@@ -102,7 +102,7 @@ pub fn three_way(
 }
 
 /// Every engine that runs a design.
-fn engines(design: &Design) -> Result<Vec<(&'static str, Box<dyn Engine>)>, String> {
+pub fn engines(design: &Design) -> Result<Vec<(&'static str, Box<dyn Engine>)>, String> {
     let error = |e: EngineError| e.to_string();
     Ok(vec![
         (
@@ -122,7 +122,11 @@ fn engines(design: &Design) -> Result<Vec<(&'static str, Box<dyn Engine>)>, Stri
 }
 
 /// Lane `n` is given the stimulus from cycle `n` on; it must give what the compiled engine gives for that alone.
-fn lanes_agree(design: &Design, stimulus: &Stimulus, expected: &Recording) -> Result<(), String> {
+pub fn lanes_agree(
+    design: &Design,
+    stimulus: &Stimulus,
+    expected: &Recording,
+) -> Result<(), String> {
     let error = |e: EngineError| e.to_string();
     let made = [
         (
@@ -183,7 +187,7 @@ fn lanes_agree(design: &Design, stimulus: &Stimulus, expected: &Recording) -> Re
     Ok(())
 }
 
-fn agree(engine: &str, expected: &Recording, got: &Recording) -> Result<(), String> {
+pub fn agree(engine: &str, expected: &Recording, got: &Recording) -> Result<(), String> {
     for (cycle, expected_row) in expected.cycles.iter().enumerate() {
         for (port, want) in expected.outputs.iter().zip(expected_row) {
             let at = got.outputs.iter().position(|p| p.name == port.name);

@@ -23,7 +23,7 @@ pub struct Frames {
 
 /// 29 position bits at 16 MHz from 128 MHz, cables up to 100 m, recovery time 1.25 us: results, pulses, CRC and times of every
 /// frame are checked.
-pub fn measure() -> Result<Frames, GenError> {
+pub fn measure(frames: usize) -> Result<Frames, GenError> {
     let case = |n: usize| {
         let metres = (n % 100) as f64;
         let mut case = Case::new(
@@ -35,7 +35,7 @@ pub fn measure() -> Result<Frames, GenError> {
         case.encoder.seed = n as u64;
         case.encoder.tcal = 600 * NS;
         case.encoder.tm = 1_250 * NS..=1_250 * NS;
-        case.frames = 1000;
+        case.frames = frames;
         case
     };
     let cases: Vec<Case> = (0..256).map(case).collect();

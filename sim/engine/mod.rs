@@ -3,13 +3,15 @@
 mod compiled;
 mod flat;
 mod form;
+mod instrument;
 mod interpreter;
 mod kernel;
 mod lanes;
 mod program;
 
-pub use compiled::{Compiled, Saved};
+pub use compiled::{Compiled, NetCoverage, Saved};
 pub use form::Keep;
+pub use instrument::Instruments;
 pub use interpreter::Interpreter;
 pub use kernel::{Access, KernelEngine, Number, Pin};
 pub use lanes::{LaneWords, Lanes};
@@ -20,6 +22,9 @@ pub enum EngineError {
     /// Nets that depend on each other without a register between them.
     #[error("combinational loop: {}: put a register into it", .0.join(" -> "))]
     Loop(Vec<String>),
+    /// An instrument is asked for on a net that is not there.
+    #[error("net = {0}: is not in the design; give the hierarchical name of a net, with dots")]
+    UnknownNet(String),
     /// A register has another clock than the first one.
     #[error("register {register}: clock = {clock}: engines run one clock; use one clock input for all registers")]
     SecondClock {

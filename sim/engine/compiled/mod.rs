@@ -6,7 +6,7 @@ mod portable;
 mod words;
 
 use super::form::{Form, Keep, Place};
-use super::{Engine, EngineError, Port, PortId};
+use super::{Engine, EngineError, Instruments, Port, PortId};
 use endat_hdl::elaborate::{mask, Design};
 use layout::Layout;
 use native::Native;
@@ -40,6 +40,21 @@ pub struct Saved {
     memories: Vec<Vec<u128>>,
 }
 
+/// What a register or port did.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NetCoverage {
+    /// Hierarchical name.
+    pub name: String,
+    /// Width.
+    pub width_bits: usize,
+    /// Bits that have risen.
+    pub rose: u128,
+    /// Bits that have fallen.
+    pub fell: u128,
+    /// For a register that holds a state: every state, and whether it was reached.
+    pub states: Option<Vec<(String, bool)>>,
+}
+
 impl Compiled {
     /// Compiles a design of which only the outputs can be seen; its registers hold their start values.
     ///
@@ -54,7 +69,19 @@ impl Compiled {
     /// # Errors
     /// If it has a combinational loop or a second clock.
     pub fn keeping(design: &Design, keep: Keep) -> Result<Self, EngineError> {
-        let form = Form::new(design, keep)?;
+        Self::instrumented(design, keep, &Instruments::default())
+    }
+
+    /// Compiles a design with instruments.
+    ///
+    /// # Errors
+    /// If it has a combinational loop or a second clock, or a net for an instrument is not there.
+    pub fn instrumented(
+        design: &Design,
+        keep: Keep,
+        instruments: &Instruments,
+    ) -> Result<Self, EngineError> {
+        let form = Form::new(design, keep, instruments)?;
         let layout = words::layout(&form);
         let native = Native::compile(&form, &layout, &words::Words(&form));
         Ok(Self::on(form, layout, native))
@@ -65,7 +92,7 @@ impl Compiled {
     /// # Errors
     /// If it has a combinational loop or a second clock.
     pub fn portable(design: &Design, keep: Keep) -> Result<Self, EngineError> {
-        let form = Form::new(design, keep)?;
+        let form = Form::new(design, keep, &Instruments::default())?;
         let layout = words::layout(&form);
         Ok(Self::on(form, layout, Err("asked for".into())))
     }
@@ -94,22 +121,6 @@ impl Compiled {
     /// Why this runs in an interpreter instead of native code, if it does.
     pub fn fallback(&self) -> Option<&str> {
         self.fallback.as_deref()
-    }
-
-    /// debug
-    pub fn stats(&self) -> String {
-        format!(
-            "segments {} nodes {} commits {} regs {} words {}",
-            self.form.segments.len(),
-            self.form
-                .segments
-                .iter()
-                .map(|s| s.nodes.len())
-                .sum::<usize>(),
-            self.form.commits.len(),
-            self.form.registers.len(),
-            self.layout.words
-        )
     }
 
     /// Hierarchical names of all nets, dropped ones included.
@@ -181,6 +192,58 @@ impl Compiled {
         self.state.copy_from_slice(&saved.state);
         self.memories.clone_from(&saved.memories);
         self.is_settled = false;
+    }
+
+    /// The net of a hierarchical name.
+    pub fn net(&self, name: &str) -> Option<usize> {
+        self.form.nets.iter().position(|n| n.name == name)
+    }
+
+    /// Forces the bits of a net that are set in `mask` to those of `value`; a mask of 0 lets go.
+    ///
+    /// # Panics
+    /// If the net was not named in [`Instruments::forced`].
+    pub fn force(&mut self, net: usize, mask: u128, value: u128) {
+        let force = self.form.instruments.forces.get(&net);
+        let force = *force.unwrap_or_else(|| panic!("net {net} cannot be forced"));
+        let bits = mask & endat_hdl::elaborate::mask(self.form.nets[net].width_bits);
+        for (net, value) in [(force.mask, bits), (force.value, value & bits)] {
+            portable::store(&self.layout, &self.form, &mut self.state, net, value);
+        }
+        self.is_settled = false;
+    }
+
+    /// What registers and ports did so far, if [`Instruments::coverage`] is built in.
+    pub fn coverage(&mut self) -> Vec<NetCoverage> {
+        let form = self.form.clone();
+        let covered = form.instruments.covered.iter();
+        let read = |this: &mut Self, net| this.peek(net).unwrap_or(0);
+        covered
+            .map(|c| NetCoverage {
+                name: form.nets[c.net].name.clone(),
+                width_bits: form.nets[c.net].width_bits,
+                rose: read(self, c.rose),
+                fell: read(self, c.fell),
+                states: c.states.as_ref().map(|(net, names)| {
+                    let seen = read(self, *net);
+                    let states = names.iter().enumerate();
+                    states
+                        .map(|(index, name)| (name.clone(), seen >> index & 1 == 1))
+                        .collect()
+                }),
+            })
+            .collect()
+    }
+
+    /// Runs until a condition on the engine holds after a cycle; false if it has not within `cycles`.
+    pub fn run_until(&mut self, cycles: u64, mut stop: impl FnMut(&mut Self) -> bool) -> bool {
+        for _ in 0..cycles {
+            self.tick();
+            if stop(self) {
+                return true;
+            }
+        }
+        false
     }
 
     fn settle(&mut self) {

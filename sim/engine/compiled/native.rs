@@ -5,8 +5,8 @@ use crate::engine::form::{Commit, Form};
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::types::I64;
 use cranelift_codegen::ir::{
-    AbiParam, Block, BlockCall, InstBuilder, JumpTableData, MemFlagsData, TrapCode, UserFuncName,
-    Value,
+    AbiParam, Block, BlockCall, InstBuilder, JumpTableData, MemFlagsData, TrapCode, Type,
+    UserFuncName, Value,
 };
 use cranelift_codegen::settings::{self, Configurable};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
@@ -37,17 +37,26 @@ impl Code<'_, '_> {
     }
 
     /// Loads a value of any type from a word of the state.
-    pub fn load(&mut self, kind: cranelift_codegen::ir::Type, word: usize) -> Value {
+    pub fn load(&mut self, kind: Type, word: usize) -> Value {
+        self.check(kind, word);
         let (state, offset) = (self.state, Self::offset(word));
         self.builder.ins().load(kind, Self::flags(), state, offset)
     }
 
     /// Stores a value at a word of the state.
     pub fn store(&mut self, value: Value, word: usize) {
+        let kind = self.builder.func.dfg.value_type(value);
+        self.check(kind, word);
         let (state, offset) = (self.state, Self::offset(word));
         self.builder
             .ins()
             .store(Self::flags(), value, state, offset);
+    }
+
+    /// Every access of the code that is made lies within the state: this is checked here, once, not when it runs.
+    fn check(&self, kind: Type, word: usize) {
+        let end = word + kind.bytes().div_ceil(8) as usize;
+        assert!(end <= self.layout.words, "word {word} is not in the state");
     }
 
     fn offset(word: usize) -> i32 {
@@ -214,7 +223,7 @@ impl Native {
     /// Runs all segments that are marked, in order.
     pub fn settle(&self, state: &mut [u64]) {
         assert_eq!(state.len(), self.words);
-        // The code touches nothing but these words: `Code` loads and stores at places of the layout only.
+        // The code touches nothing but these words: see `Code::check`.
         (self.settle)(state.as_mut_ptr());
     }
 

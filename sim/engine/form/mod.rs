@@ -13,6 +13,7 @@ mod graph;
 pub use graph::{evaluate, Node, NodeId, Op};
 
 use super::flat::{Flat, FlatMemory, FlatNet, FlatRegister};
+use super::instrument::{fit, Fitted, Instruments};
 use super::{EngineError, Port};
 use build::Known;
 use endat_hdl::elaborate::Design;
@@ -77,6 +78,7 @@ pub(super) struct Form {
     pub commit_readers: Vec<Vec<usize>>,
     pub ports: Vec<Port>,
     pub port_nets: Vec<usize>,
+    pub instruments: Fitted,
 }
 
 /// Where the value of a net is found.
@@ -94,13 +96,18 @@ impl Form {
     /// Brings a design into this form.
     ///
     /// # Errors
-    /// If it has a combinational loop or a second clock.
-    pub fn new(design: &Design, keep: Keep) -> Result<Self, EngineError> {
+    /// If it has a combinational loop or a second clock, or a net for an instrument is not there.
+    pub fn new(
+        design: &Design,
+        keep: Keep,
+        instruments: &Instruments,
+    ) -> Result<Self, EngineError> {
         let mut flat = Flat::new(design)?;
+        let fitted = fit(&mut flat, design, instruments)?;
         let copies = separate_inputs(&mut flat);
         let is_input = inputs_of_state(&flat);
         let mut known: Vec<Known> = (0..flat.nets.len()).map(Known::Net).collect();
-        for net in undriven(&flat, &copies) {
+        for net in undriven(&flat, &copies, &fitted) {
             known[net] = Known::Constant(0);
         }
         let mut segments = vec![];
@@ -146,6 +153,7 @@ impl Form {
             known,
             ports: flat.ports,
             port_nets: flat.port_nets,
+            instruments: fitted,
         };
         form.drop_dead(keep);
         form.group();
@@ -164,6 +172,8 @@ impl Form {
 
     fn roots(&self, keep: Keep) -> Vec<usize> {
         let mut roots = self.port_nets.clone();
+        roots.extend(self.instruments.inputs());
+        roots.extend(self.instruments.observed());
         if keep != Keep::Outputs {
             roots.extend(self.registers.iter().map(|r| r.q));
             roots.extend(self.memories.iter().map(|m| m.read_data));
@@ -365,12 +375,13 @@ fn separate_inputs(flat: &mut Flat) -> Vec<(usize, usize)> {
 }
 
 /// Nets that nothing drives: they are 0.
-fn undriven(flat: &Flat, copies: &[(usize, usize)]) -> Vec<usize> {
+fn undriven(flat: &Flat, copies: &[(usize, usize)], fitted: &Fitted) -> Vec<usize> {
     let mut is_driven = vec![false; flat.nets.len()];
     let mut drive = |net: usize| is_driven[net] = true;
     flat.registers.iter().for_each(|r| drive(r.q));
     flat.memories.iter().for_each(|m| drive(m.read_data));
     copies.iter().for_each(|(_, to)| drive(*to));
+    fitted.inputs().for_each(&mut drive);
     let inputs = flat.ports.iter().zip(&flat.port_nets);
     inputs
         .filter(|(port, _)| port.is_input)

@@ -7,7 +7,7 @@ mod portable;
 use super::compiled::layout::Layout;
 use super::compiled::native::Native;
 use super::form::{Form, Keep, Place};
-use super::{EngineError, Port, PortId};
+use super::{EngineError, Instruments, Port, PortId};
 use bits::BitSegment;
 use cranelift_codegen::ir::types::{I64, I64X2};
 use endat_hdl::elaborate::Design;
@@ -58,7 +58,7 @@ impl Lanes {
     /// # Errors
     /// If it has a combinational loop or a second clock.
     pub fn new(design: &Design, keep: Keep, words: LaneWords) -> Result<Self, EngineError> {
-        let form = Form::new(design, keep)?;
+        let form = Form::new(design, keep, &Instruments::default())?;
         let kind = match words {
             LaneWords::One => I64,
             LaneWords::Two => I64X2,
@@ -79,7 +79,7 @@ impl Lanes {
     /// # Errors
     /// If it has a combinational loop or a second clock.
     pub fn portable(design: &Design, keep: Keep, words: LaneWords) -> Result<Self, EngineError> {
-        let form = Form::new(design, keep)?;
+        let form = Form::new(design, keep, &Instruments::default())?;
         let layout = Layout::new(&form, |width_bits| width_bits * words.count());
         let segments: Vec<BitSegment> = form.segments.iter().map(BitSegment::new).collect();
         Ok(Self::on(
@@ -131,15 +131,6 @@ impl Lanes {
             state,
             is_settled: false,
         }
-    }
-
-    /// d
-    pub fn stats(&self) -> usize {
-        self.form
-            .segments
-            .iter()
-            .map(|s| BitSegment::new(s).gates.len())
-            .sum()
     }
 
     /// Why this runs in an interpreter instead of native code, if it does.
