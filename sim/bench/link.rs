@@ -66,6 +66,11 @@ impl Link {
         &self.encoder
     }
 
+    /// The encoder, to make something wrong with it.
+    pub fn encoder_mut(&mut self) -> &mut Encoder {
+        &mut self.encoder
+    }
+
     /// From now on every change is kept.
     pub fn record(&mut self) {
         self.trace = Some(LinkTrace::default());
