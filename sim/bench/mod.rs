@@ -253,6 +253,11 @@ impl<E: Engine> Bench<E> {
         &self.ports[index].link
     }
 
+    /// A link, to make something wrong with its encoder.
+    pub fn link_mut(&mut self, index: usize) -> &mut Link {
+        &mut self.ports[index].link
+    }
+
     /// Number of links.
     pub fn link_count(&self) -> usize {
         self.ports.len()

@@ -65,7 +65,7 @@ impl Default for InfoValues {
     fn default() -> Self {
         Self {
             reference_done: false,
-            diagnostics: vec![0x0064, 0x0150, 0x0232],
+            diagnostics: vec![0x6400, 0x5001, 0x3202],
             position_2_offset: 0,
             temperatures: [2954, 2982], // 22.2 and 25.0 degrees C
             sensors: 0,
