@@ -4,6 +4,8 @@
 //! the design the DATA levels of that moment, ticks it, and takes its outputs to the lines at that same moment. Pins of the
 //! design have no delay of their own: put them into the line's transceivers.
 
+#[cfg(test)]
+mod command_tests;
 mod link;
 mod record;
 mod settings;
