@@ -35,13 +35,13 @@ impl Rig {
         b.set("parameter", parameter.into());
         let result = b.frame(5 * MS).expect("a result");
         assert!(b.run_until_done(MS, |b| b.get("busy") == 0));
-        u64::from(result.cause)
+        result.cause
     }
 
     fn good(&mut self, code: u8, address: u8, parameter: u16) -> u64 {
         let cause = self.exchange(code, address, parameter);
         let frame = self.0.frames(0).last().unwrap();
-        assert_eq!(cause, u64::from(cause::NONE), "{frame:?}");
+        assert_eq!(cause, cause::NONE, "{frame:?}");
         assert_eq!(frame.end, FrameEnd::Complete, "{frame:?}");
         assert_eq!(frame.expected_rising_edges(), Some(frame.rising_edges));
         self.0.get("reply") as u64

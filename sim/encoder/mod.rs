@@ -294,7 +294,7 @@ impl Encoder {
         self.config.causes.push(cause);
     }
 
-    /// A word of an area that the encoder has (block 0), whichever area is selected. Alarms and warnings are those of the last frame.
+    /// A word of an area that the encoder has (block 0), whichever area is selected, as of the last frame.
     pub fn word(&self, mrs: u8, address: u8) -> Option<u16> {
         self.memory.check_area(mrs, 0).ok()?;
         let place = self.memory.place_in(mrs, 0, address).ok()?;

@@ -90,15 +90,44 @@ fn the_mode_is_left_with_the_clock_high_for_the_recovery_time() {
 #[test]
 fn a_clock_that_comes_back_too_soon_is_noticed() {
     let mut m = master(LatchEdge::AfterLow);
+    m.encoder.config.tm = 20 * US..=20 * US;
     go_on(&mut m, 1); // in the gap
-    m.wait(8 * US);
+    m.wait(15 * US); // longer than in the middle of a frame, and not as long as tm
     m.pulse(Drive::Released, 500 * NS);
     let high = Violation::PulseWidth {
         high: true,
-        width: 8_500 * NS,
+        width: 15_500 * NS,
         edge: FIRST,
     };
     assert_eq!(m.violations(), [high]);
+    assert!(m.last().continuous);
+}
+
+#[test]
+fn the_clock_keeps_its_rate() {
+    let mut m = master(LatchEdge::AfterLow);
+    go_on(&mut m, 1);
+    m.half = 300 * NS;
+    m.pulse(Drive::Released, 500 * NS); // takes a position
+    assert_eq!(m.violations(), []);
+    m.pulse(Drive::Released, 300 * NS);
+    assert!(matches!(
+        m.violations()[0],
+        Violation::PulseWidth { high: true, .. }
+    ));
+}
+
+#[test]
+fn data_is_low_for_one_cell_before_the_start_bit() {
+    for (edge, start) in [(LatchEdge::InHigh, 2), (LatchEdge::AfterLow, 1)] {
+        let mut m = master(edge);
+        m.encoder.config.tcal = 0;
+        let seen = go_on(&mut m, 4);
+        assert_eq!(seen[0].drive, Drive::Low);
+        assert_eq!(seen[1].symbol, Symbol::Bit(0));
+        assert_eq!(m.last().start_edge, Some(start));
+        assert_eq!(m.last().period, US, "known before it is measured again");
+    }
 }
 
 #[test]

@@ -170,10 +170,28 @@ fn an_alarm_sets_both_error_bits_in_opposite_senses() {
     assert_eq!(bits[..2], [true, true]);
     let mut config = quick().cause(alarm);
     config.plate.alarms = 0b011;
+    config.plate.warnings = 0b011;
+    config.causes[0].warnings = 0b100;
     let mut m = Master::new(config, 2_000_000);
     m.wait(3 * MS);
     m.position22(POSITION_22, 0, 0); // an alarm that it cannot tell
     assert_eq!(m.encoder.word(area::OPERATING_STATUS, 0), Some(0));
+    assert_eq!(m.encoder.word(area::OPERATING_STATUS, 1), Some(0));
+}
+
+#[test]
+fn an_alarm_during_the_calculation_is_told_in_the_same_frame() {
+    // At 1 MHz the frame begins at 10 us and the start bit comes at 20.5 us.
+    for (at, told) in [(20, true), (21, false)] {
+        let alarm = Cause {
+            during: at * US..at * US + 1,
+            alarms: 1,
+            warnings: 0,
+        };
+        let mut m = Master::new(quick().cause(alarm), 1_000_000);
+        assert_eq!(m.position22_with_alarm(POSITION_22), [told, !told]);
+        assert_eq!(m.position22_with_alarm(POSITION_22), [true, false]);
+    }
 }
 
 #[test]

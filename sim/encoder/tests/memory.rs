@@ -105,7 +105,11 @@ fn the_manufacturers_words_are_protected() {
         m.position22(WRITE_22, address, !word);
         assert_eq!(m.last().refused, Some(ErrorSource::Protected));
         m.wait(13 * MS);
+        m.select(0x46, 1);
+        let acknowledged = m.position22(POSITION_22, 0, 0)[0].data;
+        assert_eq!(acknowledged, u16::from(address) << 8 | word >> 8);
         assert_eq!(m.encoder.word(mrs, address), Some(word));
+        m.select(0x4F, 0);
     }
 }
 
@@ -229,6 +233,20 @@ fn alarms_are_latched_and_cleared_in_three_ways() {
 }
 
 #[test]
+fn alarms_and_warnings_are_cleared_one_by_one() {
+    let mut m = master();
+    m.encoder.add_cause(Cause {
+        during: MS..2 * MS,
+        alarms: 1,
+        warnings: 1,
+    });
+    m.wait(3 * MS);
+    write(&mut m, 0xB9, 1, 0);
+    assert_eq!(read(&mut m, 0xB9, 0), Some(1));
+    assert_eq!(read(&mut m, 0xB9, 1), Some(0));
+}
+
+#[test]
 fn an_alarm_with_a_lasting_cause_comes_back() {
     let mut m = master();
     m.encoder.add_cause(Cause {
@@ -256,12 +274,13 @@ fn error_sources_stay_until_they_are_reset() {
 
 #[test]
 fn the_datum_shift_moves_the_position() {
-    let mut m = master();
+    let mut config = EncoderConfig::endat22(25).position(PositionSource::Fixed(0x1234));
+    config.tac = 0..=0;
+    let mut m = Master::new(config, 2_000_000);
     write(&mut m, 0xA7, 0, 0xFFFE);
+    m.position22(POSITION_22, 0, 0);
+    assert_eq!(m.last().position, 0x1_1232, "word 0 is the low one");
     write(&mut m, 0xA7, 1, 0xFFFF);
     m.position22(POSITION_22, 0, 0);
-    assert_eq!(m.last().position, 0x1232);
-    write(&mut m, 0xA7, 1, 0);
-    m.position22(POSITION_22, 0, 0);
-    assert_eq!(m.last().position, (0x1234 + 0xFFFE) & 0x1FFF);
+    assert_eq!(m.last().position, 0x1232, "the shift is signed");
 }

@@ -97,6 +97,18 @@ fn nobody_is_listening_for_50_ms_after_a_reset() {
     let violation = Violation::DuringReset { after: early };
     assert_eq!(after(early), (false, vec![violation]));
     assert_eq!(after(50 * MS), (true, vec![]));
+    let mut m = Master::new(quick(), 2_000_000);
+    m.ask(RESET, 0, 0);
+    for _ in 0..2 {
+        m.pulses(POSITION_22, 250 * NS, 32);
+        m.wait(40 * US);
+        assert!(!m.encoder.is_ready(m.now));
+    }
+    assert_eq!(
+        m.violations().len(),
+        2,
+        "a frame does not shorten the reset"
+    );
 }
 
 #[test]
@@ -175,6 +187,8 @@ fn a_plugged_in_encoder_needs_its_start_up_time() {
         assert_eq!(absent, !there, "{time} us");
     }
     let mut plugged = m(801 * US);
+    let seen: Vec<Symbol> = plugged.outputs.iter().map(|o| o.1.symbol).collect();
+    assert_eq!(seen, [Symbol::Idle, Symbol::Absent, Symbol::Idle]);
     plugged.position22(POSITION_22, 0, 0);
     assert_eq!(plugged.violations(), []);
     // Plugged in while the clock runs: deaf until the clock has been HIGH for long.

@@ -92,10 +92,12 @@ fn a_stop_high_after_the_last_bit_is_no_end() {
 fn the_pause_before_a_supplement_lets_the_encoder_release() {
     let (m, _) = with_supplement(|m| {
         m.half = 200 * NS;
-        m.pause = 499 * NS;
+        m.pause = 300 * NS;
     });
-    let early = Violation::EarlySupplement { pause: 499 * NS };
+    let early = Violation::EarlySupplement { pause: 300 * NS };
     assert_eq!(m.violations(), [early]);
+    let late = Time::from(35u32) * 400 * NS; // the supplement, from R'1 to the end of its last HIGH
+    assert_eq!(m.drives(Symbol::Listening), m.now + 200 * NS - late);
     let (m, seen) = with_supplement(|m| {
         m.half = 200 * NS;
         m.pause = 500 * NS;
@@ -142,6 +144,9 @@ fn a_block_address_makes_the_supplement_longer() {
     m.ask(SELECT, area::SECTION_2, 1);
     assert_eq!(m.ask(READ, 0xFE, 0).unwrap().data, 0, "another block");
     m.infos = 1;
+    m.position22(TEST_22, area::SECTION_2, 0); // no block after other commands
+    assert_eq!(m.last().rising_edges, TO_LAST_BIT + 30 + 35);
+    assert_eq!(m.violations(), []);
     let mut m = Master::new(quick(), 1_000_000);
     select(&mut m, Some(4));
     assert_eq!(m.last().refused, Some(ErrorSource::Block));
