@@ -340,7 +340,8 @@ impl<'a> Diagram<'a> {
         let f = self.frame;
         let bits = f.answer.iter().collect::<Vec<_>>();
         let tail = f.head_len().saturating_sub(crate::frame::CRC_BITS) as usize;
-        let crc = f.crc;
+        let crc = bits[tail..].iter().take(crate::frame::CRC_BITS as usize);
+        let crc = crc.fold(0, |c, b| c << 1 | u32::from(*b));
         let head = 2 + usize::from(f.has_f2);
         let position = bits
             .get(head..tail)

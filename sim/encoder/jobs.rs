@@ -204,12 +204,12 @@ impl Encoder {
         self.status.clear(time);
     }
 
-    /// Whether the short recovery time is selected.
+    /// Whether the short recovery time is selected, and there is one.
     pub(super) fn short_recovery(&self) -> bool {
         let word = self
             .memory
             .word(area::OPERATING_STATUS, status_word::FUNCTION);
-        word & 0b11 == SHORT_RECOVERY
+        self.config.tm_short.is_some() && word & 0b11 == SHORT_RECOVERY
     }
 
     fn start_write(&mut self, time: Time, place: Place, data: u16) {

@@ -9,9 +9,7 @@ use crate::{Time, US};
 impl Encoder {
     /// The last rising edge of a frame.
     pub(super) fn complete(&mut self, time: Time) {
-        let short = self.config.tm_short.is_some()
-            && self.short_recovery()
-            && self.work.command.is_some_and(Command::is_endat22);
+        let short = self.short_recovery() && self.work.command.is_some_and(Command::is_endat22);
         let tm = if short {
             self.work.tm_short
         } else {

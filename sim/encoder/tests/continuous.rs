@@ -104,6 +104,20 @@ fn a_clock_that_comes_back_too_soon_is_noticed() {
 }
 
 #[test]
+fn the_high_cell_is_as_long_as_the_others() {
+    let mut m = master(LatchEdge::InHigh);
+    go_on(&mut m, 0);
+    m.wait(3 * US);
+    m.pulse(Drive::Released, 500 * NS);
+    let high = Violation::PulseWidth {
+        high: true,
+        width: 3_500 * NS,
+        edge: FIRST,
+    };
+    assert_eq!(m.violations(), [high]);
+}
+
+#[test]
 fn the_clock_keeps_its_rate() {
     let mut m = master(LatchEdge::AfterLow);
     go_on(&mut m, 1);
@@ -132,7 +146,7 @@ fn data_is_low_for_one_cell_before_the_start_bit() {
 
 #[test]
 fn a_clock_that_stays_low_ends_the_mode_too() {
-    for pulses in [1, 5, 12] {
+    for pulses in [0, 1, 5, 12] {
         let mut m = master(LatchEdge::AfterLow);
         m.encoder.config.max_clock_low = 30 * US;
         go_on(&mut m, pulses);

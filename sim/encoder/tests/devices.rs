@@ -58,11 +58,17 @@ fn identity_words_are_laid_out_as_described() {
     config.plate.serial_number = 0x9ABC_DEF0;
     config.plate.alarms = 0x0055;
     config.plate.warnings = 0x0011;
+    config.plate.infos_1 = 0x0102;
+    config.plate.infos_2 = 0x0304;
+    config.tcal = 4_550 * NS;
     let mut m = Master::new(config, 1_000_000);
     let words: Vec<u16> = (24..30).map(|word| read(&mut m, word)).collect();
     // Word 27 ends and word 29 begins with a letter; the number lies between them, high byte first.
     assert_eq!(words, [0x4944, 0x5678, 0x1234, 0x9A41, 0xBCDE, 0x5AF0]);
     assert_eq!([read(&mut m, 35), read(&mut m, 36)], [0x0055, 0x0011]);
+    assert_eq!([read(&mut m, 8), read(&mut m, 39)], [2, 5]);
+    let words = [0, 1].map(|address| m.encoder.word(area::MANUFACTURER_22, address));
+    assert_eq!(words, [Some(0x0102), Some(0x0304)], "infos 1 and 2");
 }
 
 #[test]

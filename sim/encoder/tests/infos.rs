@@ -137,6 +137,31 @@ fn parts_of_a_position_belong_together() {
 }
 
 #[test]
+fn other_positions_have_the_width_of_the_first() {
+    let mut config = quick().position(PositionSource::Fixed(0));
+    config.values.position_2_offset = -1;
+    config.values.asynchronous_offset = -2;
+    let mut m = Master::new(config, 2_000_000);
+    m.select(0x42, 1);
+    m.select(0x56, 2);
+    assert_eq!(sent(&mut m), [(0x16, 0x1FFE), (0x02, 0x1FFF)]);
+}
+
+#[test]
+fn a_21_position_has_no_information() {
+    let mut m = master();
+    m.select(0x4C, 1);
+    assert_eq!(
+        m.exchange(POSITION_21, Parameter::default()).unwrap().len(),
+        20
+    );
+    assert_eq!(
+        (m.last().answer.len, m.last().end),
+        (20, FrameEnd::Complete)
+    );
+}
+
+#[test]
 fn a_warning_is_told_by_every_information_and_by_no_error_bit() {
     let warning = Cause {
         during: MS..2 * MS,

@@ -247,6 +247,21 @@ fn alarms_and_warnings_are_cleared_one_by_one() {
 }
 
 #[test]
+fn an_alarm_after_the_clearing_write_stays() {
+    let mut m = master();
+    m.ask(SELECT, 0xB9, 0);
+    m.ask(WRITE, 0, 0);
+    let written = m.last().last_rise + 12 * MS;
+    m.encoder.add_cause(Cause {
+        during: written + MS..written + 2 * MS,
+        alarms: 1,
+        warnings: 0,
+    });
+    m.wait(20 * MS);
+    assert_eq!(m.position22_with_alarm(POSITION_22), [true, false]);
+}
+
+#[test]
 fn an_alarm_with_a_lasting_cause_comes_back() {
     let mut m = master();
     m.encoder.add_cause(Cause {

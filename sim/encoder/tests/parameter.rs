@@ -41,6 +41,8 @@ fn a_parameter_command_follows_the_drawing() {
         assert_eq!(Parameter::from_word(number(&bits[1..25])), want);
         assert_eq!(number(&bits[25..]), u32::from(want.crc()));
         let log = m.last();
+        let fields_of_bits = [0, 1, 8, 9, 24, 25, 29].map(|i| log.field(i).to_string());
+        assert_eq!(fields_of_bits, ["S", "A7", "A0", "P15", "P0", "C4", "C0"]);
         assert_eq!((log.parameter, log.reply), (Some(fields), Some(want)));
         assert_eq!((log.kind, log.crc), (AnswerKind::Parameter, want.crc()));
         assert_eq!((log.rising_edges, log.start_edge), (65, Some(35)));
@@ -151,6 +153,8 @@ fn test_values_are_forty_bits_behind_f1() {
     );
     assert_eq!(m.last().end, FrameEnd::Complete);
     assert_eq!(m.last().kind, AnswerKind::TestValues);
+    let fields_of_bits = [0, 1, 2, 41, 42, 46].map(|i| m.last().field(i).to_string());
+    assert_eq!(fields_of_bits, ["S", "F1", "D0", "D39", "C4", "C0"]);
     m.wait(200 * US);
     let bits = m.exchange(TEST_VALUES, Parameter::default()).unwrap();
     assert!(bits[1], "F1 tells the alarm here too");

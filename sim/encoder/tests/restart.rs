@@ -62,6 +62,16 @@ fn the_short_recovery_time_needs_more_than_1_mhz() {
 }
 
 #[test]
+fn an_encoder_without_short_recovery_time_takes_the_long_one() {
+    let mut config = quick();
+    config.tm_short = None;
+    let mut m = Master::new(config, 1_000_000);
+    set_recovery(&mut m, SHORT_RECOVERY);
+    assert!(recovery(&mut m, POSITION_22) >= 10 * US);
+    assert_eq!(m.violations(), []);
+}
+
+#[test]
 fn a_reset_drops_every_selection_and_keeps_the_memory() {
     let mut m = Master::new(quick(), 2_000_000);
     set_recovery(&mut m, SHORT_RECOVERY);
@@ -78,6 +88,14 @@ fn a_reset_drops_every_selection_and_keeps_the_memory() {
     assert_eq!(m.ask(READ, 7, 0), None, "no area is selected");
     m.ask(SELECT, area::OPERATING_PARAMETERS, 0);
     assert_eq!(m.ask(READ, 7, 0).unwrap().data, 0x7777);
+    m.ask(RESET, 0, 0);
+    m.wait(51 * MS);
+    m.select(0x47, 1);
+    assert_eq!(
+        m.position22(POSITION_22, 0, 0)[0].data,
+        0,
+        "no acknowledgement"
+    );
 }
 
 #[test]
