@@ -40,6 +40,19 @@ pub enum ErrorSource {
 }
 
 impl ErrorSource {
+    /// All that this encoder tells.
+    pub const ALL: [Self; 9] = [
+        Self::ModeCommand,
+        Self::MrsCode,
+        Self::NotCompleted,
+        Self::MrsNotAllowed,
+        Self::Address,
+        Self::Protected,
+        Self::ClearProtection,
+        Self::Block,
+        Self::InfoNotSupported,
+    ];
+
     /// Its bit in the additional information 0x59. Where the bits are is not published; number n stands in bit n - 1 here.
     pub fn bit(self) -> u16 {
         1 << (self as u16 - 1)

@@ -1,6 +1,6 @@
 //! What the manufacturer wrote into the memory. Names of the words as in Beckhoff's object list of the AX8000.
 
-use super::EncoderConfig;
+use super::{EncoderConfig, ErrorSource};
 use crate::US;
 
 /// Words 0 to 47 of the encoder manufacturer's areas; 0 to 3 do not exist. Masks (4 to 7), memory allocation (9 to 12), the
@@ -38,7 +38,7 @@ pub(super) fn manufacturer_22(config: &EncoderConfig) -> Vec<u16> {
     w[15] = plate.revolutions;
     w[25] = (config.max_clock_hz / 1000) as u16;
     (w[28], w[29]) = halves(plate.measuring_steps);
-    w[35] = 0b1_0111_1100_0111; // the sources of `ErrorSource`, in its bits
+    w[35] = ErrorSource::ALL.iter().fold(0, |all, s| all | s.bit());
     w[45] = 1; // time stamp in us: an assumption
     w
 }

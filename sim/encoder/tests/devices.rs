@@ -69,6 +69,8 @@ fn identity_words_are_laid_out_as_described() {
     assert_eq!([read(&mut m, 8), read(&mut m, 39)], [2, 5]);
     let words = [0, 1].map(|address| m.encoder.word(area::MANUFACTURER_22, address));
     assert_eq!(words, [Some(0x0102), Some(0x0304)], "infos 1 and 2");
+    let sources = m.encoder.word(area::MANUFACTURER_22, 35);
+    assert_eq!(sources, Some(0x17C7), "error sources 1 to 3, 7 to 11, 13");
 }
 
 #[test]

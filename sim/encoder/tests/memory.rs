@@ -194,7 +194,7 @@ fn nothing_else_is_accessed_while_busy() {
     m.select(0x4C, 1); // an information is no memory
     assert_eq!(m.last().refused, None);
     m.wait(13 * MS);
-    assert_eq!(m.encoder.word(0xA7, 0x0E), None.or(Some(0)), "not yet seen");
+    assert_eq!(m.encoder.word(0xA7, 0x0E), Some(0), "not yet seen");
     m.position22(POSITION_22, 0, 0);
     assert_eq!(m.encoder.word(0xA7, 0x0E), Some(0xCAFE));
     assert_eq!(m.encoder.word(0xA7, 0), Some(0));

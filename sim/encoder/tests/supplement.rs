@@ -96,7 +96,7 @@ fn the_pause_before_a_supplement_lets_the_encoder_release() {
     });
     let early = Violation::EarlySupplement { pause: 300 * NS };
     assert_eq!(m.violations(), [early]);
-    let late = Time::from(35u32) * 400 * NS; // the supplement, from R'1 to the end of its last HIGH
+    let late = 35 * 400 * NS; // the supplement, from R'1 to the end of its last HIGH
     assert_eq!(m.drives(Symbol::Listening), m.now + 200 * NS - late);
     let (m, seen) = with_supplement(|m| {
         m.half = 200 * NS;
