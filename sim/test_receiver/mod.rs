@@ -5,11 +5,12 @@
 //! and gives `reply`, `info_1`, `info_2` (24 covered bits each) and `info_errors` (CRC errors, bits as in `infos`).
 
 mod command;
+mod decode;
+mod supplement;
 
 use crate::{
     bench::ChannelSettings,
     engine::{Engine, Port, PortId},
-    frame::crc5,
 };
 
 /// What can be made wrong in it, to see the bench object.
@@ -64,10 +65,6 @@ const OUTPUTS: [(&str, usize); 22] = [
     ("delay_cycles", 10),
 ];
 const CALIBRATION_HZ: u64 = 200_000;
-/// Microseconds for which the clock is LOW before a supplement.
-const PAUSE_US: u64 = 2;
-/// Rising edges of a supplement.
-const SUPPLEMENT_EDGES: u32 = 35;
 /// Cycles from the pin to the sampled register.
 pub const LATENCY: u64 = 2;
 
@@ -241,7 +238,7 @@ impl TestReceiver {
         if self.start.is_some() && self.rises.len() as i64 >= self.last_rise() {
             if self.has_supplement() {
                 self.put("endat_clk", 0);
-                let until = self.cycle + PAUSE_US * self.system_hz / 1_000_000;
+                let until = self.cycle + supplement::PAUSE_US * self.system_hz / 1_000_000;
                 self.phase = Phase::Park { until };
             }
             return;
@@ -343,49 +340,6 @@ impl TestReceiver {
         }
     }
 
-    /// Takes the answer apart and returns the cause.
-    fn decode(&mut self) -> u128 {
-        let is_position = !command::has_parameter(self.at("command"));
-        let (head, infos) = self.bits.split_at(self.head_bits());
-        let bit = |i: usize| u128::from(head[i]);
-        let fields_at = 2 + usize::from(self.has_f2());
-        let crc_at = head.len() - 5;
-        let received = (crc_at..head.len()).fold(0, |c, i| c << 1 | bit(i));
-        let computed = u128::from(crc5(head[1..crc_at].iter().copied()));
-        let (f1, f2) = match (is_position, fields_at) {
-            (true, 3) => (bit(1), bit(2)),
-            (true, _) => (bit(1), 1),
-            (false, _) => (0, 1),
-        };
-        let (reply, _) = command::block(&head[1..]);
-        self.position = match is_position {
-            true => (fields_at..crc_at).rev().fold(0, |p, i| p << 1 | bit(i)),
-            false => self.position,
-        };
-        let blocks: Vec<_> = infos.chunks(30).map(|b| command::block(&b[1..])).collect();
-        // Information 2 comes first.
-        let names = [("info_2", 2), ("info_1", 1)];
-        let selected = self.at("infos");
-        let expected = names.iter().filter(|n| selected & n.1 != 0);
-        let mut errors = 0;
-        for ((name, mask), (covered, good)) in expected.zip(&blocks) {
-            self.put(name, *covered);
-            errors |= if *good { 0 } else { u128::from(*mask) };
-        }
-        self.put("info_errors", errors);
-        if !is_position {
-            self.put("reply", reply);
-        }
-        self.put("crc_received", received);
-        self.put("crc_computed", computed);
-        match (received == computed, f1, f2) {
-            (false, _, _) => 4,
-            (_, 1, _) => 5,
-            (_, _, 0) => 6,
-            _ => 0,
-        }
-    }
-
     fn abort(&mut self) {
         self.put("endat_clk", 1);
         self.put("data_oe", 0);
@@ -433,39 +387,6 @@ impl TestReceiver {
                 self.phase = Phase::Idle;
             }
         }
-    }
-}
-
-impl TestReceiver {
-    fn park(&mut self, until: u64) {
-        self.take_bit();
-        if self.bits.len() == self.answer_bits() && self.cycle >= until {
-            self.phase = Phase::Supplement;
-            self.supplement_edges = 0;
-            self.next_edge = self.cycle;
-        }
-    }
-
-    fn supplement(&mut self) {
-        if self.cycle < self.next_edge {
-            return;
-        }
-        self.next_edge = self.cycle + self.period / 2;
-        if self.at("endat_clk") == 0 {
-            self.put("endat_clk", 1);
-            self.supplement_edges += 1;
-            if self.supplement_edges == SUPPLEMENT_EDGES {
-                let cause = self.decode();
-                self.finish(cause);
-                self.phase = Phase::Recover { since: self.cycle };
-            }
-            return;
-        }
-        self.put("endat_clk", 0);
-        let (address, parameter) = (self.at("address"), self.at("parameter"));
-        let bit = command::supplement_bit(self.supplement_edges, address, parameter);
-        self.put("data_oe", u128::from(bit.is_some()));
-        self.put("data_o", u128::from(bit == Some(true)));
     }
 }
 

@@ -217,3 +217,20 @@ fn a_plugged_in_encoder_needs_its_start_up_time() {
     m.wait(40 * US);
     m.position22(POSITION_22, 0, 0);
 }
+
+#[test]
+fn an_encoder_may_be_without_supply_at_first() {
+    let mut config = quick();
+    config.start_up = MS;
+    config.unplugged = vec![0..2 * MS];
+    let mut m = Master::new(config, 2_000_000);
+    m.wait(0);
+    m.pulses(POSITION_22, 250 * NS, 32);
+    m.wait(2_999 * US - m.now);
+    assert_eq!(m.encoder.output().drive, Drive::Released);
+    assert_eq!(m.encoder.frames().len(), 0);
+    m.wait(2 * US);
+    assert_eq!(m.encoder.output().symbol, Symbol::Idle);
+    m.position22(POSITION_22, 0, 0);
+    assert_eq!(m.violations(), []);
+}
