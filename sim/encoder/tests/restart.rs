@@ -222,7 +222,7 @@ fn a_plugged_in_encoder_needs_its_start_up_time() {
 fn an_encoder_may_be_without_supply_at_first() {
     let mut config = quick();
     config.start_up = MS;
-    config.unplugged = vec![0..2 * MS];
+    config.unplugged.push(0..2 * MS);
     let mut m = Master::new(config, 2_000_000);
     m.wait(0);
     m.pulses(POSITION_22, 250 * NS, 32);
