@@ -42,6 +42,19 @@ impl AnswerBits {
         self.len += 1;
     }
 
+    /// Appends the low `width` bits of `value`, MSB first.
+    pub fn push_msb_first(&mut self, value: u64, width: u32) {
+        (0..width)
+            .rev()
+            .for_each(|i| self.push(value >> i & 1 != 0));
+    }
+
+    /// Appends all bits of `other`.
+    pub fn append(&mut self, other: &AnswerBits) {
+        self.word |= other.word << self.len;
+        self.len += other.len;
+    }
+
     /// The bits in transmission order.
     pub fn iter(&self) -> impl Iterator<Item = bool> + '_ {
         (0..self.len).map(|i| self.get(i))
@@ -92,11 +105,97 @@ impl PositionAnswer {
     pub fn bits_with_crc(&self, crc: u8) -> AnswerBits {
         let mut bits = AnswerBits::default();
         bits.push(true);
-        self.covered().iter().for_each(|b| bits.push(b));
-        (0..CRC_BITS)
-            .rev()
-            .for_each(|i| bits.push(crc >> i & 1 != 0));
+        bits.append(&self.covered());
+        bits.push_msb_first(crc.into(), CRC_BITS);
         bits
+    }
+}
+
+/// An 8-bit and a 16-bit field, as a receiver sends them and an encoder answers them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Parameter {
+    /// MRS code, address or port.
+    pub address: u8,
+    /// Parameter, or whatever goes with the 8 bits.
+    pub data: u16,
+}
+
+impl Parameter {
+    /// Both fields in one number: address in bits 23..16.
+    pub fn from_word(word: u32) -> Self {
+        Self {
+            address: (word >> 16) as u8,
+            data: word as u16,
+        }
+    }
+
+    /// Both fields in one number: address in bits 23..16.
+    pub fn word(&self) -> u32 {
+        u32::from(self.address) << 16 | u32::from(self.data)
+    }
+
+    fn covered(&self) -> AnswerBits {
+        let mut bits = AnswerBits::default();
+        bits.push_msb_first(self.word().into(), 24);
+        bits
+    }
+
+    /// The CRC of these fields.
+    pub fn crc(&self) -> u8 {
+        crc5(self.covered().iter())
+    }
+
+    /// The whole answer with this CRC: start bit, both fields, CRC.
+    pub fn bits_with_crc(&self, crc: u8) -> AnswerBits {
+        self.block(true, crc)
+    }
+
+    fn block(&self, first: bool, crc: u8) -> AnswerBits {
+        let mut bits = AnswerBits::default();
+        bits.push(first);
+        bits.append(&self.covered());
+        bits.push_msb_first(crc.into(), CRC_BITS);
+        bits
+    }
+}
+
+/// One additional information of an EnDat 2.2 answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Info {
+    /// WRN: at least one warning.
+    pub warning: bool,
+    /// RM: the reference run is done.
+    pub reference: bool,
+    /// Busy: a memory request is in progress.
+    pub busy: bool,
+    /// MRS code that selected it; its low five bits are sent.
+    pub code: u8,
+    /// What it says.
+    pub content: u16,
+}
+
+impl Info {
+    /// Length in bits, the leading LOW and the CRC included.
+    pub const BITS: u32 = 30;
+
+    /// The covered bits as two fields: status and code, content.
+    pub fn fields(&self) -> Parameter {
+        let status = [self.warning, self.reference, self.busy];
+        let status = status.iter().fold(0, |s, bit| s << 1 | u8::from(*bit));
+        Parameter {
+            address: status << 5 | self.code & 0x1F,
+            data: self.content,
+        }
+    }
+
+    /// The CRC of this information.
+    pub fn crc(&self) -> u8 {
+        self.fields().crc()
+    }
+
+    /// The whole block with this CRC: LOW, covered bits, CRC.
+    pub fn bits_with_crc(&self, crc: u8) -> AnswerBits {
+        self.fields().block(false, crc)
     }
 }
 
@@ -113,6 +212,20 @@ pub enum Field {
     Position(u32),
     /// Bit of the CRC, 4 = first sent.
     Crc(u32),
+    /// Bit of the echoed MRS code, address or port, 7 = first sent.
+    Address(u32),
+    /// Bit of the parameter, or of the content of an additional information, 15 = first sent.
+    Data(u32),
+    /// LOW that begins an additional information.
+    InfoLow,
+    /// Collective warning WRN.
+    Warning,
+    /// Reference run done RM.
+    Reference,
+    /// Memory request in progress.
+    Busy,
+    /// Bit of the code of an additional information, 4 = first sent.
+    Code(u32),
     /// Beyond the answer.
     None,
 }
@@ -132,6 +245,29 @@ pub fn position_field(index: u32, has_f2: bool, position_bits: u32) -> Field {
     }
 }
 
+/// The field that bit `index` of an answer with a parameter belongs to.
+pub fn parameter_field(index: u32) -> Field {
+    match index {
+        0 => Field::Start,
+        1..=8 => Field::Address(8 - index),
+        9..=24 => Field::Data(24 - index),
+        25..=29 => Field::Crc(29 - index),
+        _ => Field::None,
+    }
+}
+
+/// The field that bit `index` of an additional information belongs to.
+pub fn info_field(index: u32) -> Field {
+    match index {
+        0 => Field::InfoLow,
+        1 => Field::Warning,
+        2 => Field::Reference,
+        3 => Field::Busy,
+        4..=8 => Field::Code(8 - index),
+        _ => parameter_field(index),
+    }
+}
+
 impl std::fmt::Display for Field {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -140,6 +276,13 @@ impl std::fmt::Display for Field {
             Self::F2 => f.write_str("F2"),
             Self::Position(i) => write!(f, "D{i}"),
             Self::Crc(i) => write!(f, "C{i}"),
+            Self::Address(i) => write!(f, "A{i}"),
+            Self::Data(i) => write!(f, "P{i}"),
+            Self::InfoLow => f.write_str("0"),
+            Self::Warning => f.write_str("WRN"),
+            Self::Reference => f.write_str("RM"),
+            Self::Busy => f.write_str("BSY"),
+            Self::Code(i) => write!(f, "I{i}"),
             Self::None => f.write_str("-"),
         }
     }
@@ -178,6 +321,19 @@ mod tests {
     }
 
     #[test]
+    fn fields_of_parameters_and_infos_follow_the_frame() {
+        let text = |field: fn(u32) -> Field| {
+            let names: Vec<_> = (0..31).map(|i| field(i).to_string()).collect();
+            names.join(" ")
+        };
+        let tail = "P15 P14 P13 P12 P11 P10 P9 P8 P7 P6 P5 P4 P3 P2 P1 P0 C4 C3 C2 C1 C0 -";
+        let head = "S A7 A6 A5 A4 A3 A2 A1 A0";
+        assert_eq!(text(parameter_field), format!("{head} {tail}"));
+        let head = "0 WRN RM BSY I4 I3 I2 I1 I0";
+        assert_eq!(text(info_field), format!("{head} {tail}"));
+    }
+
+    #[test]
     fn every_published_crc_vector_holds() {
         let text = include_str!("../tests/data/crc_vectors.json");
         let file: serde_json::Value = serde_json::from_str(text).unwrap();
@@ -196,6 +352,13 @@ mod tests {
                 want,
                 "{v}"
             );
+            if let Some(byte) = v.get("byte8_hex").filter(|b| !b.is_null()) {
+                let fields = Parameter {
+                    address: hex(byte) as u8,
+                    data: hex(&v["word16_hex"]) as u16,
+                };
+                assert_eq!(fields.crc(), want, "{v}");
+            }
             let Some(position) = v.get("position_hex").filter(|p| !p.is_null()) else {
                 continue;
             };

@@ -39,6 +39,8 @@ pub struct Link {
     /// When the line and the encoder have something to do next.
     line_due: Time,
     encoder_due: Time,
+    /// The encoder was changed from outside.
+    is_changed: bool,
     trace: Option<LinkTrace>,
 }
 
@@ -53,6 +55,7 @@ impl Link {
             line,
             encoder,
             clock: true,
+            is_changed: false,
             trace: None,
         }
     }
@@ -70,6 +73,12 @@ impl Link {
     /// The encoder.
     pub fn encoder(&self) -> &Encoder {
         &self.encoder
+    }
+
+    /// The encoder, to make something wrong with it.
+    pub fn encoder_mut(&mut self) -> &mut Encoder {
+        self.is_changed = true;
+        &mut self.encoder
     }
 
     /// From now on every change is kept.
@@ -90,6 +99,9 @@ impl Link {
 
     /// Lets everything happen that is due by `time`.
     pub fn advance_to(&mut self, time: Time) {
+        if std::mem::take(&mut self.is_changed) {
+            self.ask_encoder(time);
+        }
         loop {
             let next = self.next_event();
             if next > time {

@@ -4,6 +4,8 @@
 //! the design the DATA levels of that moment, ticks it, and takes its outputs to the lines at that same moment. Pins of the
 //! design have no delay of their own: put them into the line's transceivers.
 
+#[cfg(test)]
+mod command_tests;
 mod lanes;
 mod link;
 mod record;
@@ -267,6 +269,14 @@ impl<E: Engine> Bench<E> {
     /// The link on pin set `index`.
     pub fn link(&self, index: usize) -> &Link {
         &self.ports[index].link
+    }
+
+    /// A link, to make something wrong with its encoder.
+    pub fn link_mut(&mut self, index: usize) -> &mut Link {
+        let port = &mut self.ports[index];
+        // Whatever is changed there may have something to do at once.
+        port.due = 0;
+        &mut port.link
     }
 
     /// Number of links.

@@ -339,8 +339,9 @@ impl<'a> Diagram<'a> {
     fn group_texts(&self, group: Group) -> Vec<String> {
         let f = self.frame;
         let bits = f.answer.iter().collect::<Vec<_>>();
-        let tail = bits.len().saturating_sub(crate::frame::CRC_BITS as usize);
-        let crc = bits[tail..].iter().fold(0, |c, b| c << 1 | u32::from(*b));
+        let tail = f.head_len().saturating_sub(crate::frame::CRC_BITS) as usize;
+        let crc = bits[tail..].iter().take(crate::frame::CRC_BITS as usize);
+        let crc = crc.fold(0, |c, b| c << 1 | u32::from(*b));
         let head = 2 + usize::from(f.has_f2);
         let position = bits
             .get(head..tail)
@@ -408,7 +409,8 @@ fn group_of(s: &Segment) -> Group {
         Meaning::Answer(_, Field::Position(_)) => Group::Position,
         Meaning::Answer(_, Field::Crc(_)) => Group::Crc,
         Meaning::Recovery => Group::Recovery,
-        Meaning::Answer(_, Field::None) | Meaning::Absent | Meaning::Glitch => Group::Other,
+        // Only the first part of an answer is drawn with brackets.
+        Meaning::Answer(..) | Meaning::Absent | Meaning::Glitch => Group::Other,
     }
 }
 

@@ -1,5 +1,6 @@
-//! What kind of encoder it is and how it is wrong.
+//! What kind of encoder it is.
 
+use super::{Cause, Defect, InfoValues, TypePlate};
 use crate::{rng::Rng, Time, MS, NS, US};
 use std::{
     ops::{Range, RangeInclusive},
@@ -46,63 +47,14 @@ impl std::fmt::Debug for PositionSource {
     }
 }
 
-/// Something wrong with one frame, to be noticed by the receiver.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Defect {
-    /// Stays LOW instead of answering.
-    NoStartBit,
-    /// Needs this much longer for its calculation.
-    LateStart(Time),
-    /// Answers at this rising edge (1 = first), however early that is.
-    StartAtEdge(u32),
-    /// Sends these error bits (with a CRC that fits them); good are F1 = 0, F2 = 1.
-    ErrorBits {
-        /// First error bit, 1 = error.
-        f1: bool,
-        /// Second error bit, 0 = error.
-        f2: bool,
-    },
-    /// Sends the CRC with these bits inverted.
-    CrcXor(u8),
-    /// Inverts the answer bits whose number (0 = start bit) is set in the mask.
-    FlipBits(u128),
-    /// From this answer bit to the end of the recovery time the line is held at `level`.
-    StuckFrom {
-        /// First wrong bit, 0 = start bit.
-        bit: u32,
-        /// The level.
-        level: bool,
-    },
-    /// From this answer bit (0 = start bit) to the end of the recovery time nobody drives the line.
-    OpenFrom(u32),
-    /// Does not drive the line from the first falling edge to the end of the recovery time.
-    Open,
-    /// Holds the line HIGH this much longer than the recovery time.
-    LateFall(Time),
-    /// Goes HIGH again, 1 us after the recovery time, for this long.
-    HighWhenIdle(Time),
-    /// Sends a position this many bits wider (or narrower).
-    WiderBy(i32),
-    /// Answers as an EnDat 2.1 encoder: without F2.
-    WithoutF2,
-    /// Does not see the clock pulse that ends in this rising edge.
-    MissEdge(u32),
-    /// Takes this rising edge for two.
-    DoubleEdge(u32),
-    /// Drives the wrong level for a moment.
-    Glitch {
-        /// From the first falling edge.
-        after: Time,
-        /// How long.
-        width: Time,
-    },
-    /// Goes dead (as after a loss of supply) this long after the first falling edge, for this long.
-    BrownOut {
-        /// From the first falling edge.
-        after: Time,
-        /// How long until it is ready again.
-        length: Time,
-    },
+/// The falling edge that takes the next position in continuous clock mode; descriptions leave both readings. `R(c)` launches
+/// the last CRC bit, `R(c+1)` the HIGH cell, `R(c+2)` LOW.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LatchEdge {
+    /// `F(c+2)`, in the HIGH cell.
+    InHigh,
+    /// `F(c+3)`, the first one after DATA has gone LOW.
+    AfterLow,
 }
 
 /// An encoder: its type plate, its times and its defects.
@@ -134,6 +86,34 @@ pub struct EncoderConfig {
     pub ready_low: Time,
     /// Largest deviation of a HIGH or LOW phase from half a period, as a part of the period.
     pub pulse_variation: f64,
+    /// Recovery time of EnDat 2.2 commands when the short one is selected; none = it cannot be selected.
+    pub tm_short: Option<RangeInclusive<Time>>,
+    /// Access time tac of memory commands, from the last bit of the command to the answer or the end of Busy (at most 12 ms).
+    pub tac: RangeInclusive<Time>,
+    /// How long a write keeps the memory busy (at most 12 ms).
+    pub write_time: RangeInclusive<Time>,
+    /// Pause that EnDat 2.1 commands with a parameter need between each other (old encoders: 1 ms).
+    pub parameter_gap: Time,
+    /// How long it does not listen after a reset command.
+    pub reset_time: Time,
+    /// From being plugged in until it is ready.
+    pub start_up: Time,
+    /// CLOCK LOW after the last bit of an answer until DATA is released for the supplement. Not published; it must hold the
+    /// last bit until the receiver has sampled it.
+    pub park_release: Time,
+    /// Fewest LOW bits before the start bit of a supplement: what TI's driver sends; the least is not published.
+    pub supplement_zeros: u32,
+    /// Whether the clock may go on after an EnDat 2.1 position, and which edge then takes the next one.
+    pub continuous: Option<LatchEdge>,
+    /// Whether the error reset 101101 also ends the additional informations: HEIDENHAIN's FAQ says so, TI's driver does not
+    /// count on it.
+    pub error_reset_stops_infos: bool,
+    /// What the manufacturer wrote into it.
+    pub plate: TypePlate,
+    /// What the additional informations say.
+    pub values: InfoValues,
+    /// What will be wrong with it, and when.
+    pub causes: Vec<Cause>,
     /// Defects, each with the frames (0 = first) that have it.
     pub defects: Vec<(RangeInclusive<u64>, Defect)>,
     /// When the encoder is not connected.
@@ -159,6 +139,19 @@ impl EncoderConfig {
             max_clock_high: 10 * US,
             ready_low: 500 * NS,
             pulse_variation: 0.1,
+            tm_short: Some(1_250 * NS..=3_750 * NS),
+            tac: 100 * US..=MS,
+            write_time: 12 * MS..=12 * MS,
+            parameter_gap: 0,
+            reset_time: 50 * MS,
+            start_up: 0,
+            park_release: 500 * NS,
+            supplement_zeros: 7,
+            continuous: None,
+            error_reset_stops_infos: false,
+            plate: TypePlate::rotary(position_bits.min(31)),
+            values: InfoValues::default(),
+            causes: Vec::new(),
             defects: Vec::new(),
             unplugged: Vec::new(),
             seed: 1,
@@ -170,6 +163,8 @@ impl EncoderConfig {
         Self {
             endat22: false,
             tcal: 9 * US,
+            tm_short: None,
+            parameter_gap: MS,
             ..Self::endat22(position_bits)
         }
     }
@@ -191,10 +186,38 @@ impl EncoderConfig {
         self
     }
 
+    /// Adds something that will be wrong.
+    pub fn cause(mut self, cause: Cause) -> Self {
+        self.causes.push(cause);
+        self
+    }
+
+    /// Allows continuous clock mode.
+    pub fn continuous(mut self, edge: LatchEdge) -> Self {
+        self.continuous = Some(edge);
+        self
+    }
+
     /// Sets the seed.
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = seed;
         self
+    }
+
+    /// The supply or the plug going off and on. A plug that is pulled before the encoder has started leaves it off.
+    pub(super) fn supply(&self) -> Vec<(Time, bool)> {
+        let mut absent: Vec<Range<Time>> = Vec::new();
+        for r in &self.unplugged {
+            let end = r.end.saturating_add(self.start_up);
+            match absent.last_mut() {
+                Some(last) if last.end >= r.start => last.end = end,
+                _ => absent.push(r.start..end),
+            }
+        }
+        let events = absent
+            .iter()
+            .flat_map(|r| [(r.start, false), (r.end, true)]);
+        events.collect()
     }
 
     pub(super) fn defects_of(&self, frame: u64) -> Vec<Defect> {

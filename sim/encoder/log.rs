@@ -1,14 +1,19 @@
-//! What an encoder notes down: one record for each frame, and everything the receiver did wrong.
+//! What an encoder notes down: one record for each frame.
 
+use super::ErrorSource;
 use crate::{
-    frame::{position_field, AnswerBits, Field, PositionAnswer},
+    frame::{
+        info_field, parameter_field, position_field, AnswerBits, Field, Info, Parameter,
+        PositionAnswer, CRC_BITS,
+    },
     Time,
 };
 
 /// How a frame ended, seen from the encoder.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FrameEnd {
     /// It is still going on.
+    #[default]
     Running,
     /// All bits were clocked out and the recovery time was respected.
     Complete,
@@ -20,8 +25,33 @@ pub enum FrameEnd {
     Lost,
 }
 
+/// What an answer consists of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AnswerKind {
+    /// There is none (yet).
+    #[default]
+    None,
+    /// F1, perhaps F2, position, perhaps additional informations.
+    Position,
+    /// 8 and 16 bits.
+    Parameter,
+    /// F1 and 40 bits.
+    TestValues,
+}
+
+/// What the receiver sent after an answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Supplement {
+    /// LOW bits before the start bit.
+    pub zeros: u32,
+    /// MRS code, address or port, and its data.
+    pub fields: Parameter,
+    /// Block address, after the MRS code 0xBF only.
+    pub block: Option<u8>,
+}
+
 /// One frame as the encoder saw it. Edges are counted and timed at the encoder.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct FrameLog {
     /// Number of the frame, 0 = first.
     pub index: u64,
@@ -49,6 +79,26 @@ pub struct FrameLog {
     pub has_f2: bool,
     /// Width of the position in the answer.
     pub position_bits: u32,
+    /// Taken in continuous clock mode: it has no mode command of its own, and edges count from `first_fall`.
+    pub continuous: bool,
+    /// What the receiver sent with an EnDat 2.1 command.
+    pub parameter: Option<Parameter>,
+    /// What the answer consists of.
+    pub kind: AnswerKind,
+    /// The error bits that were sent.
+    pub errors: (bool, Option<bool>),
+    /// MRS code, address or port and data that were answered.
+    pub reply: Option<Parameter>,
+    /// CRC of position, test values or parameter, as sent.
+    pub crc: u8,
+    /// Additional informations in the order sent (2 before 1), each with its CRC as sent.
+    pub infos: Vec<(Info, u8)>,
+    /// What the receiver sent after the answer.
+    pub supplement: Option<Supplement>,
+    /// Rising edges of the supplement, less the one that would end a frame without it.
+    pub supplement_edges: u32,
+    /// Why the encoder did not do what was asked.
+    pub refused: Option<ErrorSource>,
     /// DATA fell at the end of the recovery time.
     pub data_fall: Option<Time>,
     /// How it ended.
@@ -56,17 +106,44 @@ pub struct FrameLog {
 }
 
 impl FrameLog {
-    /// Rising edges that this frame must have: `s` + answer bits; none if the answer never began.
+    pub(super) fn new(index: u64, time: Time, position: u64, position_bits: u32) -> Self {
+        Self {
+            index,
+            first_fall: time,
+            first_rise: time,
+            last_rise: time,
+            position,
+            position_bits,
+            ..Self::default()
+        }
+    }
+
+    /// Rising edges that this frame must have: `s` + answer bits + supplement; none if the answer never began.
     pub fn expected_rising_edges(&self) -> Option<u32> {
-        self.start_edge.map(|s| s + self.answer.len)
+        self.start_edge
+            .map(|s| s + self.answer.len + self.supplement_edges)
+    }
+
+    /// Length of the first part of the answer, without additional informations.
+    pub fn head_len(&self) -> u32 {
+        self.answer.len - Info::BITS * self.infos.len() as u32
     }
 
     /// What bit `index` of the answer is.
     pub fn field(&self, index: u32) -> Field {
-        position_field(index, self.has_f2, self.position_bits)
+        let head = self.head_len();
+        match self.kind {
+            AnswerKind::None => Field::None,
+            AnswerKind::Parameter => parameter_field(index),
+            AnswerKind::TestValues => position_field(index, false, head - 2 - CRC_BITS),
+            AnswerKind::Position if index < head || index >= self.answer.len => {
+                position_field(index.min(head), self.has_f2, self.position_bits)
+            }
+            AnswerKind::Position => info_field((index - head) % Info::BITS),
+        }
     }
 
-    /// Whether the answer is, bit by bit, what a sound encoder would send for this position.
+    /// Whether the answer is, bit by bit, what a sound encoder would send for this position and these additional informations.
     pub fn is_true_answer(&self, position_bits: u32, f2: bool) -> bool {
         let good = PositionAnswer {
             f1: false,
@@ -74,96 +151,10 @@ impl FrameLog {
             position: self.position,
             position_bits,
         };
-        self.answer == good.bits()
-    }
-}
-
-/// A rule that the receiver broke.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Violation {
-    /// The clock stopped in the middle of the answer.
-    TooFewPulses {
-        /// Rising edges seen.
-        seen: u32,
-        /// Rising edges the frame should have had.
-        expected: u32,
-    },
-    /// The clock went on after the last bit of the answer.
-    TooManyPulses {
-        /// Rising edges the frame should have had.
-        expected: u32,
-    },
-    /// The clock stopped before the answer began. Right after a start time-out, wrong otherwise.
-    StoppedBeforeAnswer {
-        /// Rising edges seen.
-        seen: u32,
-    },
-    /// The clock fell within the recovery time, or before DATA had been LOW for tR.
-    EarlyRestart {
-        /// How long after the last rising edge.
-        after: Time,
-    },
-    /// The mean clock period is longer than 10 us or shorter than the encoder takes.
-    ClockRate {
-        /// The mean period.
-        period: Time,
-    },
-    /// A HIGH phase, or a LOW phase that is no pause, differs too much from half a period.
-    PulseWidth {
-        /// Whether it was a HIGH phase.
-        high: bool,
-        /// How long it was.
-        width: Time,
-        /// The rising edge before or after which it was.
-        edge: u32,
-    },
-    /// The clock was LOW for too long.
-    ClockLowTooLong,
-    /// A mode command that the encoder does not know; it stays silent.
-    UnknownCommand(u8),
-    /// DATA was driven by nobody when a bit of the mode command was taken.
-    CommandNotDriven {
-        /// The rising edge.
-        edge: u32,
-    },
-}
-
-impl std::fmt::Display for Violation {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let us = |t: &Time| *t as f64 / 1e6;
-        match self {
-            Self::TooFewPulses { seen, expected } => {
-                write!(
-                    f,
-                    "too few clock pulses: {seen} rising edges, expected {expected}"
-                )
-            }
-            Self::TooManyPulses { expected } => {
-                write!(f, "too many clock pulses: more than {expected}")
-            }
-            Self::StoppedBeforeAnswer { seen } => {
-                write!(f, "clock stopped after {seen} pulses, before the answer")
-            }
-            Self::EarlyRestart { after } => write!(
-                f,
-                "new frame {:.3} us after the last rising edge: encoder was not ready",
-                us(after)
-            ),
-            Self::ClockRate { period } => {
-                write!(f, "clock period of {:.4} us is out of range", us(period))
-            }
-            Self::PulseWidth { high, width, edge } => write!(
-                f,
-                "clock {} for {:.4} us at rising edge {edge}: too far from half a period",
-                if *high { "HIGH" } else { "LOW" },
-                us(width)
-            ),
-            Self::ClockLowTooLong => f.write_str("clock LOW for too long"),
-            Self::UnknownCommand(c) => write!(f, "unknown mode command {c:06b}"),
-            Self::CommandNotDriven { edge } => write!(
-                f,
-                "nobody drove DATA at rising edge {edge}, in the mode command"
-            ),
+        let mut bits = good.bits();
+        for (info, _) in &self.infos {
+            bits.append(&info.bits_with_crc(info.crc()));
         }
+        self.answer == bits
     }
 }

@@ -9,18 +9,54 @@
 //! DATA  idle| released      | command bits | released|  LOW            | S  ..   | CRC0     | HIGH for tm | LOW = idle
 //! ```
 //!
+//! An EnDat 2.1 command with a parameter has 24 more bits after the mode command, and everything behind them is 24 edges later. After
+//! the EnDat 2.2 commands with a supplement the clock is parked LOW behind the last bit:
+//!
+//! ```text
+//!       R(c) F(c+1)     R'1 F'1 R'2 F'2      F'8 R'9 F'9 R'10     F'32 R'33 F'33 R'34 F'34 R'35
+//! CLOCK _|~~~|____________|~~|__|~~|__|~ .. ~|__|~~|__|~~|__|~ .. ~|__|~~~|___|~~~|___|~~~~~~~~~~~~~~~
+//! DATA   CRC0 ..| released  | 0     ..   0   | 1   | 8 and 16 bits        | LOW | HIGH for tm    | LOW = idle
+//! ```
+//!
 //! It is strict: what the receiver does wrong is noted as a [`Violation`]. It shares no code with the core.
 
+mod answer;
+mod clock_check;
+mod command;
 mod config;
+mod continuous;
+mod defect;
+mod device;
+mod infos;
+mod jobs;
+mod listen;
 mod log;
-mod protocol;
+mod memory;
+mod recovery;
+mod status;
+mod supplement;
 #[cfg(test)]
 mod tests;
+mod violation;
+mod words;
 
-pub use config::{Defect, EncoderConfig, PositionSource};
-pub use log::{FrameEnd, FrameLog, Violation};
+pub use command::Command;
+pub use config::{EncoderConfig, LatchEdge, PositionSource};
+pub use defect::Defect;
+pub use device::{
+    Device, TypePlate, DEVICES, ECI_1119, ECN_113, EQN_1337, LC_416, LIC_4117, RCN_8510, ROQ_437,
+};
+pub use infos::InfoValues;
+pub use log::{AnswerKind, FrameEnd, FrameLog, Supplement};
+pub use memory::{area, status_word, LONG_RECOVERY, SHORT_RECOVERY};
+pub use status::{Cause, ErrorSource};
+pub use violation::Violation;
 
 use crate::{rng::Rng, Time};
+use infos::{Parts, Selection};
+use jobs::Registers;
+use memory::Memory;
+use status::Status;
 use std::collections::VecDeque;
 
 /// What a driver does to DATA.
@@ -96,8 +132,10 @@ pub struct Output {
 enum State {
     /// Waits for the first falling edge.
     Idle,
-    /// From there to the edge after the last answer bit.
+    /// From there to the edge after the last bit of answer and supplement.
     Frame,
+    /// Continuous clock mode: from the edge after an answer to the one that takes the next position.
+    Gap,
     /// DATA HIGH for tm.
     Recovery,
     /// Lost in the protocol: waits until the clock has been HIGH for long.
@@ -106,20 +144,45 @@ enum State {
     Off,
 }
 
+/// Where a frame stands.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+enum Phase {
+    /// The command comes in.
+    #[default]
+    Listen,
+    /// LOW until the answer is ready.
+    Wait,
+    /// Answer bits go out; this one is next.
+    Answer(u32),
+    /// CLOCK LOW between answer and supplement.
+    Park {
+        /// When DATA is released.
+        release: Time,
+    },
+    /// The supplement comes in.
+    Supplement,
+}
+
 /// Working data of the frame in progress.
 #[derive(Default)]
 struct Work {
     /// Falling edges as counted, and as they came.
     falls: u32,
     true_falls: u32,
-    command: u8,
-    request: Option<protocol::Request>,
+    phase: Phase,
+    /// Bits of command, parameter or supplement so far.
+    shift: u64,
+    command: Option<Command>,
+    /// The answer begins not before this.
+    ready: Time,
+    /// Rising edges and bits of the supplement so far.
+    supplement: supplement::Progress,
     nominal: Time,
     last_high: Time,
     missed: bool,
-    next_bit: Option<u32>,
     tcal: Time,
     tm: Time,
+    tm_short: Time,
     defects: Vec<Defect>,
 }
 
@@ -148,6 +211,15 @@ pub struct Encoder {
     supply: VecDeque<(Time, bool)>,
     /// End of the recovery time.
     recovery_end: Option<Time>,
+    /// Restarts after a reset command: from when to when.
+    reset: Option<(Time, Time)>,
+    memory: Memory,
+    status: Status,
+    selection: Selection,
+    registers: Registers,
+    parts: Parts,
+    /// A memory request in progress, and when it will be done.
+    job: Option<(Time, jobs::Work)>,
     /// When the clock will have kept its level for too long.
     watchdog: Option<Time>,
     frames: Vec<FrameLog>,
@@ -157,10 +229,6 @@ pub struct Encoder {
 impl Encoder {
     /// An encoder, ready at time 0 with CLOCK HIGH.
     pub fn new(config: EncoderConfig) -> Self {
-        let supply = config
-            .unplugged
-            .iter()
-            .flat_map(|r| [(r.start, false), (r.end, true)]);
         Self {
             rng: Rng::new(config.seed),
             state: State::Idle,
@@ -175,8 +243,15 @@ impl Encoder {
             glitching: false,
             pending: VecDeque::new(),
             glitch_ends: VecDeque::new(),
-            supply: supply.collect(),
+            supply: config.supply().into(),
             recovery_end: None,
+            reset: None,
+            memory: Memory::new(&config),
+            status: Status::default(),
+            selection: Selection::default(),
+            registers: Registers::default(),
+            parts: Parts::default(),
+            job: None,
             watchdog: None,
             frames: Vec::new(),
             violations: Vec::new(),
@@ -208,9 +283,22 @@ impl Encoder {
         output
     }
 
-    /// Ready for a frame: DATA has been LOW for tR.
+    /// Ready for a frame: DATA has been LOW for tR, and no reset is going on.
     pub fn is_ready(&self, time: Time) -> bool {
-        self.state == State::Idle && time >= self.ready_at
+        let in_reset = self.reset.is_some_and(|r| time < r.1);
+        self.state == State::Idle && time >= self.ready_at && !in_reset
+    }
+
+    /// From now on this is, or will be, wrong with it too.
+    pub fn add_cause(&mut self, cause: Cause) {
+        self.config.causes.push(cause);
+    }
+
+    /// A word of an area that the encoder has (block 0), whichever area is selected, as of the last frame.
+    pub fn word(&self, mrs: u8, address: u8) -> Option<u16> {
+        self.memory.check_area(mrs, 0).ok()?;
+        let place = self.memory.place_in(mrs, 0, address).ok()?;
+        Some(self.memory.get(place, &self.status))
     }
 
     /// When it acts next without being asked.
@@ -263,64 +351,7 @@ impl Encoder {
         } else {
             self.fall(time, width);
         }
-        self.watchdog = match self.state {
-            State::Frame | State::Deaf if level => Some(time + self.config.max_clock_high),
-            State::Frame => Some(time + self.config.max_clock_low),
-            _ => None,
-        };
-    }
-
-    fn clock_stopped(&mut self, time: Time) {
-        let back_to_idle = |this: &mut Self| {
-            this.state = State::Idle;
-            this.ready_at = time + this.config.ready_low;
-            this.emit(time, Drive::Low, Symbol::Idle);
-        };
-        match self.state {
-            State::Frame => {
-                let log = self.log();
-                log.end = FrameEnd::Stopped;
-                let seen = log.rising_edges;
-                let violation = match log.expected_rising_edges() {
-                    _ if !self.clock => Violation::ClockLowTooLong,
-                    Some(expected) => Violation::TooFewPulses { seen, expected },
-                    None => Violation::StoppedBeforeAnswer { seen },
-                };
-                self.violate(time, violation);
-                back_to_idle(self);
-                if !self.clock {
-                    self.state = State::Deaf;
-                }
-            }
-            State::Deaf => back_to_idle(self),
-            _ => {}
-        }
-    }
-
-    fn switch(&mut self, time: Time, on: bool) {
-        self.pending.clear();
-        self.recovery_end = None;
-        self.watchdog = None;
-        if let Some(f) = self.frames.last_mut() {
-            if f.end == FrameEnd::Running {
-                f.end = FrameEnd::Lost;
-            }
-        }
-        self.work.defects.clear();
-        if on {
-            self.state = if self.clock { State::Idle } else { State::Deaf };
-            self.ready_at = time + self.config.ready_low;
-            self.output = Output {
-                drive: Drive::Low,
-                symbol: Symbol::Idle,
-            };
-        } else {
-            self.state = State::Off;
-            self.output = Output {
-                drive: Drive::Released,
-                symbol: Symbol::Absent,
-            };
-        }
+        self.watchdog = self.patience().map(|span| time + span);
     }
 
     /// Changes the output at `time`, as far as the frame's defects let it.
@@ -351,6 +382,10 @@ impl Encoder {
 
     fn sum_defects(&self, value: impl Fn(&Defect) -> u128) -> u128 {
         self.work.defects.iter().fold(0, |sum, d| sum ^ value(d))
+    }
+
+    fn launch(&mut self, clock_edge: Time, drive: Drive, symbol: Symbol) {
+        self.emit(clock_edge + self.config.clock_to_data, drive, symbol);
     }
 
     fn log(&mut self) -> &mut FrameLog {

@@ -200,7 +200,7 @@ impl Lowered<'_> {
                     shifted = code.builder.ins().ireduce(I64, shifted);
                 }
                 let by = self.constant_of(b).unwrap_or(0);
-                if by as usize + width >= self.width(a) {
+                if by.saturating_add(width as u128) >= self.width(a) as u128 {
                     shifted
                 } else {
                     cut(code, shifted, width)

@@ -1,11 +1,16 @@
 //! A plain behavioural EnDat receiver with the ports of the block `Channel`, to try the bench out without the core.
 //!
-//! It is not the core and shares nothing with it; it works on lists where hardware would use counters.
+//! It is not the core and shares nothing with it; it works on lists where hardware would use counters. Beyond the block's ports it
+//! takes `address` and `parameter` for the commands that send them, `infos` (bit 0: additional information 1 is expected, bit 1: 2),
+//! and gives `reply`, `info_1`, `info_2` (24 covered bits each) and `info_errors` (CRC errors, bits as in `infos`).
+
+mod command;
+mod decode;
+mod supplement;
 
 use crate::{
     bench::ChannelSettings,
     engine::{Engine, Port, PortId},
-    frame::crc5,
 };
 
 /// What can be made wrong in it, to see the bench object.
@@ -25,14 +30,21 @@ pub enum Bug {
     Command(u8),
 }
 
-const INPUTS: [(&str, usize); 5] = [
+const INPUTS: [(&str, usize); 8] = [
+    ("address", 8),
+    ("parameter", 16),
+    ("infos", 2),
     ("reset", 1),
     ("tick_us", 1),
     ("timestamp", 32),
     ("trigger", 1),
     ("data_i", 1),
 ];
-const OUTPUTS: [(&str, usize); 18] = [
+const OUTPUTS: [(&str, usize); 22] = [
+    ("reply", 24),
+    ("info_1", 24),
+    ("info_2", 24),
+    ("info_errors", 2),
     ("endat_clk", 1),
     ("data_o", 1),
     ("data_oe", 1),
@@ -60,9 +72,20 @@ pub const LATENCY: u64 = 2;
 enum Phase {
     Idle,
     Run,
-    Recover { since: u64 },
-    Abort { until: u64 },
-    Settle { low_since: u64 },
+    /// CLOCK LOW until then, before a supplement.
+    Park {
+        until: u64,
+    },
+    Supplement,
+    Recover {
+        since: u64,
+    },
+    Abort {
+        until: u64,
+    },
+    Settle {
+        low_since: u64,
+    },
 }
 
 pub struct TestReceiver {
@@ -76,6 +99,7 @@ pub struct TestReceiver {
     /// Cycle of the next clock edge.
     next_edge: u64,
     falls: u32,
+    supplement_edges: u32,
     rises: Vec<u64>,
     period: u64,
     start: Option<u64>,
@@ -115,6 +139,7 @@ impl TestReceiver {
             sync: [false; 3],
             next_edge: 0,
             falls: 0,
+            supplement_edges: 0,
             rises: Vec::new(),
             period: 0,
             start: None,
@@ -146,11 +171,33 @@ impl TestReceiver {
     }
 
     fn has_f2(&self) -> bool {
-        self.at("command") == 0b111_000
+        command::has_f2(self.at("command"))
+    }
+
+    fn has_supplement(&self) -> bool {
+        command::has_supplement(self.at("command"))
+    }
+
+    /// Bits of the answer before additional informations.
+    fn head_bits(&self) -> usize {
+        let position_bits = self.at("position_bits") as usize;
+        6 + command::payload_bits(self.at("command"), position_bits)
     }
 
     fn answer_bits(&self) -> usize {
-        7 + usize::from(self.has_f2()) + self.at("position_bits") as usize
+        let infos = match self.has_f2() {
+            true => self.at("infos").count_ones() as usize,
+            false => 0,
+        };
+        self.head_bits() + 30 * infos
+    }
+
+    /// An edge of a frame without parameter as the edge of this frame.
+    fn later(&self, edge: u32) -> u32 {
+        match command::has_parameter(self.at("command")) {
+            true => edge + 24,
+            false => edge,
+        }
     }
 
     fn begin(&mut self) {
@@ -189,6 +236,11 @@ impl TestReceiver {
             return;
         }
         if self.start.is_some() && self.rises.len() as i64 >= self.last_rise() {
+            if self.has_supplement() {
+                self.put("endat_clk", 0);
+                let until = self.cycle + supplement::PAUSE_US * self.system_hz / 1_000_000;
+                self.phase = Phase::Park { until };
+            }
             return;
         }
         self.put("endat_clk", 0);
@@ -199,15 +251,19 @@ impl TestReceiver {
             _ => self.at("command"),
         };
         let release = match self.bug {
-            Bug::LateRelease(n) => 9 + n,
-            _ => 9,
+            Bug::LateRelease(n) => self.later(9) + n,
+            _ => self.later(9),
         };
+        let fields = self.at("address") << 16 | self.at("parameter");
         match self.falls {
             2 => {
                 self.put("data_oe", 1);
                 self.put("data_o", 0);
             }
             3..=8 => self.put("data_o", u128::from(command >> (8 - self.falls) & 1)),
+            n @ 9..=32 if n < release && self.later(0) > 0 => {
+                self.put("data_o", u128::from(fields >> (32 - n) & 1));
+            }
             n if n == release => self.put("data_oe", 0),
             _ => {}
         }
@@ -219,7 +275,12 @@ impl TestReceiver {
             Bug::ExtraPulses(n) if !self.calibrating => n,
             _ => 0,
         };
-        (self.start_edge + self.answer_bits()) as i64 + extra
+        (self.start_edge + self.edges_from_start()) as i64 + extra
+    }
+
+    /// From the edge of the start bit to the last one; a supplement replaces the edge that ends other frames.
+    fn edges_from_start(&self) -> usize {
+        self.answer_bits() - usize::from(self.has_supplement())
     }
 
     /// Whether the encoder needs one more edge even if it has already begun its answer as early as is still possible.
@@ -230,14 +291,15 @@ impl TestReceiver {
         let excluded = |t: &u64| t + delay + self.period / 2 < self.cycle;
         let possible = self.rises.iter().take_while(|t| excluded(t)).count() + 1;
         // The last edge of the frame is kept back: after it the clock must stay HIGH.
-        self.rises.len() + 1 < possible.max(11) + self.answer_bits()
+        self.rises.len() + 1 < possible.max(self.later(11) as usize) + self.edges_from_start()
     }
 
     fn look_for_start(&mut self) {
-        let armed = self.falls > 10
+        let before = self.later(10);
+        let armed = self.falls > before
             && self
                 .rises
-                .get(9)
+                .get(before as usize - 1)
                 .is_some_and(|t| self.cycle > t + self.delay.unwrap_or(self.period));
         if armed && self.sync[1] && !self.sync[2] {
             let c = self.cycle;
@@ -252,8 +314,9 @@ impl TestReceiver {
             self.put("delay_cycles", u128::from(delay - LATENCY));
         }
         let limit = self.at("start_timeout_us") * self.system_hz / 1_000_000;
-        let waiting = self.start.is_none() && self.rises.len() > 10;
-        if waiting && self.cycle - self.rises[10] > limit {
+        let earliest = self.rises.get(before as usize);
+        let late = earliest.is_some_and(|t| self.cycle - t > limit);
+        if self.start.is_none() && late {
             self.abort();
             self.finish(2);
         }
@@ -274,25 +337,6 @@ impl TestReceiver {
         if self.cycle == due && self.bits.len() < self.answer_bits() {
             self.bits.push(self.sync[1]);
             self.put("sample_strobe", 1);
-        }
-    }
-
-    /// Takes the answer apart and returns the cause.
-    fn decode(&mut self) -> u128 {
-        let bit = |i: usize| u128::from(self.bits[i]);
-        let head = 2 + usize::from(self.has_f2());
-        let width = self.at("position_bits") as usize;
-        self.position = (0..width).fold(0, |p, i| p | bit(head + i) << i);
-        let received = (0..5).fold(0, |c, i| c << 1 | bit(head + width + i));
-        let computed = u128::from(crc5(self.bits[1..head + width].iter().copied()));
-        let (f1, f2) = (bit(1), if head == 3 { bit(2) } else { 1 });
-        self.put("crc_received", received);
-        self.put("crc_computed", computed);
-        match (received == computed, f1, f2) {
-            (false, _, _) => 4,
-            (_, 1, _) => 5,
-            (_, _, 0) => 6,
-            _ => 0,
         }
     }
 
@@ -329,6 +373,9 @@ impl TestReceiver {
             self.look_for_start();
         }
         self.take_bit();
+        if self.has_supplement() {
+            return;
+        }
         let all_bits = self.bits.len() == self.answer_bits();
         let all_edges = self.rises.len() as i64 >= self.last_rise();
         if self.phase == Phase::Run && self.start.is_some() && all_bits && all_edges {
@@ -365,6 +412,8 @@ impl Engine for TestReceiver {
         match self.phase {
             Phase::Idle if self.at("trigger") == 1 => self.begin(),
             Phase::Run => self.run(),
+            Phase::Park { until } => self.park(until),
+            Phase::Supplement => self.supplement(),
             Phase::Recover { since } => {
                 // The tail comes one signal delay after the last edge: LOW before that is a bit of the answer.
                 let waited = self.cycle - since;
