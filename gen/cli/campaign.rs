@@ -1,0 +1,181 @@
+//! `campaign`: thousands of cases in lanes; one of them again, alone, with waveforms and a drawing.
+
+use super::{sim, to_json, Outcome};
+use crate::error::GenError;
+use clap::{Args, ValueEnum};
+use endat_sim::campaign::{self, Case, RunOptions, Traces};
+use endat_sim::engine::{Compiled, LaneWords};
+use serde_json::json;
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// Arguments of `campaign`.
+#[derive(Args)]
+pub struct CampaignArgs {
+    /// What to run
+    name: Name,
+    /// Number of random cases
+    #[arg(long, value_name = "N", default_value_t = 10_000)]
+    cases: usize,
+    /// Seed of the random cases
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Threads [default: one for each processor]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    threads: usize,
+    /// Run only this case, alone
+    #[arg(long, value_name = "INDEX")]
+    case: Option<usize>,
+    /// With --case: write the waveforms, and a GTKWave layout beside them
+    #[arg(long, value_name = "FILE", requires = "case")]
+    vcd: Option<PathBuf>,
+    /// With --case: draw a frame as a timing diagram
+    #[arg(long, value_name = "FILE", requires = "case")]
+    svg: Option<PathBuf>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Name {
+    /// Every width, position command, rate and cable
+    Sweep,
+    /// Random jitter, distortion, cable, encoder times, filter and window, within their limits
+    Random,
+}
+
+/// Most random cases: all are made before the first one runs.
+const CASES_MAX: usize = 1_000_000;
+/// Failures that are shown.
+const SHOWN: usize = 10;
+
+/// Runs the command.
+pub fn run(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
+    if !(1..=CASES_MAX).contains(&arguments.cases) {
+        return Err(GenError::input(format!(
+            "--cases = {}: outside 1..{CASES_MAX}; choose a number in that range",
+            arguments.cases
+        )));
+    }
+    let cases = match arguments.name {
+        Name::Sweep => campaign::sweep(),
+        Name::Random => campaign::random(arguments.cases, arguments.seed),
+    };
+    match arguments.case {
+        Some(index) => alone(arguments, &cases, index),
+        None => all(arguments, &cases),
+    }
+}
+
+fn fault(e: &dyn std::fmt::Display) -> GenError {
+    GenError::input(format!(
+        "campaign: {e}; this is a fault of endat-gen, please report it"
+    ))
+}
+
+/// What to type to see one case alone.
+fn replay(arguments: &CampaignArgs, index: usize) -> String {
+    let random = format!(" --cases {} --seed {}", arguments.cases, arguments.seed);
+    let (name, random) = match arguments.name {
+        Name::Sweep => ("sweep", ""),
+        Name::Random => ("random", random.as_str()),
+    };
+    format!("cargo run --release -- campaign {name}{random} --case {index} --vcd case.vcd --svg case.svg")
+}
+
+fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, GenError> {
+    let options = RunOptions {
+        threads: arguments.threads,
+        lanes: LaneWords::Two,
+        samples: true,
+    };
+    let start = Instant::now();
+    let shown_percent = AtomicUsize::new(0);
+    let progress = |done: usize| {
+        let percent = 100 * done / cases.len();
+        if shown_percent.fetch_max(percent, Ordering::Relaxed) / 10 < percent / 10 {
+            // A progress line that cannot be written is no reason to stop.
+            let _ = writeln!(std::io::stderr(), "{done} of {} cases", cases.len());
+        }
+    };
+    let outcomes = campaign::run(cases, options, Case::check, progress).map_err(|e| fault(&e))?;
+    let seconds = start.elapsed().as_secs_f64();
+    let frames: usize = outcomes.iter().map(|o| o.frames).sum();
+    let cycles: u64 = outcomes.iter().map(|o| o.cycles).sum();
+    let failed: Vec<(usize, &str)> = outcomes
+        .iter()
+        .enumerate()
+        .filter_map(|(index, o)| Some((index, o.failure.as_deref()?)))
+        .collect();
+    let mut outcome = Outcome::default();
+    outcome.exit_code = u8::from(!failed.is_empty()).into();
+    outcome.stdout = if arguments.json {
+        let failures = failed.iter().map(|(index, what)| {
+            json!({"case": index, "title": cases[*index].title, "failure": what, "replay": replay(arguments, *index)})
+        });
+        to_json(&json!({
+            "cases": cases.len(),
+            "frames": frames,
+            "cycles": cycles,
+            "seconds": seconds,
+            "failures": failures.collect::<Vec<_>>(),
+        }))?
+    } else {
+        let mut text = format!(
+            "{} cases, {frames} frames checked, {cycles} system clock cycles in {seconds:.1} s: {} failed\n",
+            cases.len(),
+            failed.len()
+        );
+        for (index, what) in failed.iter().take(SHOWN) {
+            text += &format!(
+                "case {index} ({}): {what}\n    {}\n",
+                cases[*index].title,
+                replay(arguments, *index)
+            );
+        }
+        text
+    };
+    Ok(outcome)
+}
+
+fn alone(arguments: &CampaignArgs, cases: &[Case], index: usize) -> Result<Outcome, GenError> {
+    let Some(case) = cases.get(index) else {
+        return Err(GenError::input(format!(
+            "--case = {index}: outside 0..{}; choose a case of this campaign",
+            cases.len() - 1
+        )));
+    };
+    let design = case.design().map_err(|e| fault(&e))?;
+    let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
+    let bench = case.run_alone(engine, true);
+    let traces = Traces {
+        results: bench.results(),
+        frames: bench.frames(0),
+        violations: bench.violations(0),
+        conflicts: &bench.conflicts(0),
+        samples: bench.samples(0),
+    };
+    let failure = case.check(&traces).err();
+    let mut outcome = Outcome::default();
+    outcome.exit_code = u8::from(failure.is_some()).into();
+    let files = sim::Files {
+        vcd: arguments.vcd.as_deref(),
+        svg: arguments.svg.as_deref(),
+    };
+    outcome.messages = sim::draw(&files, &bench, &case.title)?;
+    outcome.stdout = if arguments.json {
+        to_json(&json!({
+            "case": index,
+            "title": case.title,
+            "frames": traces.frames.len(),
+            "failure": failure,
+        }))?
+    } else {
+        let verdict = failure.as_deref().unwrap_or("good");
+        format!("case {index} ({}): {verdict}\n", case.title)
+    };
+    Ok(outcome)
+}
