@@ -4,6 +4,8 @@ mod cli;
 mod config;
 mod constraints;
 mod elaborate;
+mod files;
+mod pages;
 mod position;
 mod program;
 mod sim;

@@ -2,7 +2,7 @@
 
 use super::{to_json, Outcome};
 use crate::artifact::{self, Artifact};
-use crate::error::GenError;
+use crate::error::{shown, GenError};
 use clap::Args;
 use endat_hdl::channel::{Channel, FixedTimes};
 use endat_hdl::elaborate::elaborate;
@@ -25,7 +25,12 @@ pub struct SimArgs {
     #[arg(long)]
     list: bool,
     /// Run only this channel of the scenario [default: all; waveforms and drawing are of the first one run]
-    #[arg(long, value_name = "N", conflicts_with = "list")]
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with = "list",
+        allow_negative_numbers = true
+    )]
     channel: Option<String>,
     /// Write the waveforms, and a GTKWave layout beside them
     #[arg(long, value_name = "FILE", conflicts_with = "list")]
@@ -57,7 +62,8 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
     };
     let Some(scenario) = scenario::named(name) else {
         return Err(GenError::input(format!(
-            "sim {name}: unknown scenario; known scenarios: {}",
+            "scenario = {}: unknown scenario; known scenarios: {}",
+            shown(name),
             known()
         )));
     };
@@ -113,7 +119,8 @@ fn chosen(arguments: &SimArgs, scenario: &Scenario) -> Result<Vec<usize>, GenErr
         Some(text) => match text.parse::<usize>() {
             Ok(index) if index < count => Ok(vec![index]),
             _ => Err(GenError::input(format!(
-                "--channel = {text:?}: outside 0..{}; choose a channel of {}",
+                "--channel = {}: outside 0..{}; choose a channel of {}",
+                shown(text),
                 count - 1,
                 scenario.name
             ))),
@@ -146,62 +153,95 @@ fn run_channel(
     Ok(scenario.run_channel(index, engine, options))
 }
 
+/// A file to be written: the option that asked for it, its place, its text.
+type File = (&'static str, PathBuf, String);
+
 /// Writes waveforms and drawing; returns one message for each file.
 fn draw(
     arguments: &SimArgs,
     bench: &Bench<Interpreter>,
     scenario: &Scenario,
 ) -> Result<Vec<String>, GenError> {
-    let mut written = Vec::new();
+    let mut files: Vec<File> = Vec::new();
     if let Some(path) = &arguments.vcd {
-        let name = file_name(path)?;
+        let name = file_name("--vcd", path)?;
         let wave = Wave::of(bench);
         let mut bytes = Vec::new();
         wave.write_vcd(&mut bytes)
             .map_err(|e| GenError::io("write", path, &e, "give another file"))?;
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        files.push(("--vcd", path.clone(), text));
         let layout = path.with_extension("gtkw");
-        if layout == *path {
-            return Err(GenError::input(format!(
-                "--vcd = {}: is the name of the layout beside it; give a name that ends in .vcd",
-                path.display()
-            )));
-        }
-        written.extend(write(path, &String::from_utf8_lossy(&bytes))?);
-        written.extend(write(&layout, &wave.gtkw(&name))?);
+        files.push(("--vcd", layout, wave.gtkw(&name)));
     }
     if let Some(path) = &arguments.svg {
         let link = bench.link(0);
         let title = format!("{}: {}", scenario.name, scenario.summary);
         let drawing = frame_svg(link, DRAWN_FRAME, &title).or_else(|| frame_svg(link, 0, &title));
-        match drawing {
-            Some(svg) => written.extend(write(path, &svg)?),
-            None => {
-                return Err(GenError::input(format!(
-                    "--svg = {}: this scenario has no frame to draw; leave it out",
-                    path.display()
-                )))
-            }
-        }
+        let drawing = drawing.ok_or_else(|| {
+            GenError::input(format!(
+                "--svg = {}: this scenario has no frame to draw; leave it out",
+                path.display()
+            ))
+        })?;
+        files.push(("--svg", path.clone(), drawing));
+    }
+    check_places(&files)?;
+    let mut written = Vec::new();
+    for (option, path, text) in &files {
+        written.extend(write(option, path, text)?);
     }
     Ok(written)
 }
 
-fn file_name(path: &Path) -> Result<String, GenError> {
+/// Refuses two files in one place: the layout of the waveforms, too, has one.
+fn check_places(files: &[File]) -> Result<(), GenError> {
+    for (index, (option, path, _)) in files.iter().enumerate() {
+        for (other, taken, _) in &files[..index] {
+            if place(path) == place(taken) {
+                let text = if option == other {
+                    "is the name of the layout beside it; give a name that ends in .vcd".into()
+                } else {
+                    format!("is the place of a file of {other}; give another file")
+                };
+                return Err(GenError::input(format!(
+                    "{option} = {}: {text}",
+                    path.display()
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn folder(path: &Path) -> &Path {
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty());
+    parent.unwrap_or(Path::new("."))
+}
+
+/// One spelling for all the ways to name a file.
+fn place(path: &Path) -> PathBuf {
+    let whole = std::fs::canonicalize(path);
+    whole.unwrap_or_else(|_| {
+        let folder = folder(path);
+        let folder = std::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
+        folder.join(path.file_name().unwrap_or_default())
+    })
+}
+
+fn file_name(option: &str, path: &Path) -> Result<String, GenError> {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
     name.ok_or_else(|| {
         GenError::input(format!(
-            "{}: is not the name of a file; give one",
-            path.display()
+            "{option} = {}: is not the name of a file; give one",
+            shown(&path.display().to_string())
         ))
     })
 }
 
-fn write(path: &Path, text: &str) -> Result<Vec<String>, GenError> {
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let files = artifact::write(folder, &[Artifact::new(file_name(path)?, text)])?;
+fn write(option: &str, path: &Path, text: &str) -> Result<Vec<String>, GenError> {
+    let artifact = Artifact::new(file_name(option, path)?, text);
+    let files = artifact::write(folder(path), &[artifact], "give another file")?;
     Ok(files
         .iter()
         .map(|_| format!("wrote {}", path.display()))
