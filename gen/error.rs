@@ -96,9 +96,8 @@ fn printable(c: char) -> Vec<char> {
 /// A word as it stands in a message: in quotes when it would not be seen otherwise.
 pub fn shown(text: &str) -> String {
     let plain = |c: char| !c.is_whitespace() && !c.is_control() && c != '"';
-    let short = shorten(text);
-    if !short.is_empty() && short.chars().all(plain) {
-        short
+    if !text.is_empty() && text.chars().all(plain) {
+        shorten(text)
     } else {
         format!("{:?}", text.chars().take(60).collect::<String>())
     }

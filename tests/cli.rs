@@ -376,6 +376,19 @@ fn explain_keeps_its_columns_and_tells_the_clock_of_the_calibration_frame() {
     assert!(calibration.contains("us at 100000 Hz") && calibration.contains("us at 200000 Hz"));
     let value: serde_json::Value =
         serde_json::from_str(&good(&["explain", "--json", "--config", &file])).unwrap();
+    good(&[
+        "emit",
+        "--config",
+        &file,
+        "--out",
+        &dir.path("o"),
+        "--name",
+        "slow",
+    ]);
+    for cycles in [1_000, 500] {
+        let block = format!("o/slow/endat_channel_calibration_period_cycles{cycles}.v");
+        assert!(dir.0.join(&block).exists(), "{block}");
+    }
     assert_eq!(
         value["channels"][0]["calibration_us"],
         value["channels"][0]["frame_us"]

@@ -47,7 +47,7 @@ pub struct CrcArgs {
     )]
     f2: Option<String>,
     /// Covered bits in the order of transmission, instead of the fields
-    #[arg(long, value_name = "BITS")]
+    #[arg(long, value_name = "BITS", allow_negative_numbers = true)]
     raw: Option<String>,
     /// CRC that was received, decimal, 0x... or 0b...; exit code 1 when it is wrong
     #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
