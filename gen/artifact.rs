@@ -2,11 +2,16 @@
 
 use crate::error::GenError;
 use sha2::{Digest, Sha256};
-use std::fs;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// Name of the list of all other files.
 pub const MANIFEST: &str = "MANIFEST";
+/// How the files of the blocks begin; no card is called so.
+pub const BLOCK_PREFIX: &str = "endat_";
+/// Largest file of an earlier emission that is looked at.
+const FILE_BYTES_MAX: u64 = 1 << 24;
 
 /// One file to be emitted.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,24 +40,53 @@ pub fn sha256(bytes: &[u8]) -> String {
         .collect()
 }
 
-/// The list of files with size and SHA-256, one a line.
+/// The list of files, as `sha256sum -c` reads it.
 pub fn manifest(artifacts: &[Artifact]) -> Artifact {
-    let lines = artifacts.iter().map(|a| {
-        format!(
-            "{}  {:>8}  {}\n",
-            sha256(a.text.as_bytes()),
-            a.text.len(),
-            a.path
-        )
-    });
+    let lines = artifacts
+        .iter()
+        .map(|a| format!("{}  {}\n", sha256(a.text.as_bytes()), a.path));
     Artifact::new(MANIFEST, lines.collect::<String>())
 }
 
-/// File names in the text of a MANIFEST.
-fn listed(manifest: &str) -> impl Iterator<Item = &str> {
-    manifest
-        .lines()
-        .filter_map(|line| line.split_whitespace().nth(2))
+/// Digests and file names in the text of a MANIFEST; what is no plain file name is passed over.
+fn listed(manifest: &str) -> impl Iterator<Item = (&str, &str)> {
+    manifest.lines().filter_map(|line| {
+        let (digest, name) = line.split_once(char::is_whitespace)?;
+        let name = name.split_whitespace().last()?;
+        (!name.contains(['/', '\\', ':']) && name != "." && name != "..").then_some((digest, name))
+    })
+}
+
+/// The bytes of a regular file of at most `bytes_max` bytes; anything else is an error before it is opened.
+pub fn read_regular(path: &Path, bytes_max: u64) -> io::Result<Vec<u8>> {
+    let metadata = fs::metadata(path)?;
+    if metadata.is_dir() {
+        return Err(io::Error::other("is a folder, not a file"));
+    }
+    if !metadata.is_file() {
+        return Err(io::Error::other("is not a regular file"));
+    }
+    if metadata.len() > bytes_max {
+        let text = format!("has {} bytes, at most {bytes_max} are read", metadata.len());
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, text));
+    }
+    fs::read(path)
+}
+
+/// Whether the file at `path` holds `text`; one that is missing does not.
+fn holds(path: &Path, text: &str) -> io::Result<bool> {
+    match read_regular(path, text.len() as u64) {
+        Ok(bytes) => Ok(bytes == text.as_bytes()),
+        Err(e)
+            if matches!(
+                e.kind(),
+                io::ErrorKind::FileTooLarge | io::ErrorKind::NotFound
+            ) =>
+        {
+            Ok(false)
+        }
+        Err(e) => Err(e),
+    }
 }
 
 /// What differs between `folder` and the artefacts; empty when nothing does. Never writes.
@@ -60,70 +94,118 @@ pub fn differences(folder: &Path, artifacts: &[Artifact]) -> Vec<String> {
     let mut found = Vec::new();
     for artifact in artifacts {
         let path = folder.join(&artifact.path);
-        match fs::read(&path) {
-            Ok(bytes) if bytes == artifact.text.as_bytes() => {}
-            Ok(_) => found.push(format!(
+        match holds(&path, &artifact.text) {
+            Ok(true) => {}
+            Ok(false) if path.exists() => found.push(format!(
                 "{}: is not what the configuration gives",
                 path.display()
             )),
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-                found.push(format!("{}: is missing", path.display()))
-            }
-            Err(e) => found.push(format!("{}: cannot read: {e}", path.display())),
+            Ok(false) => found.push(format!("{}: is missing", path.display())),
+            Err(e) => found.push(format!("{}: {e}; move it away first", path.display())),
         }
     }
-    found.extend(leftovers(folder, artifacts));
+    let left = leftovers(folder, artifacts);
+    let stale = left
+        .removable
+        .iter()
+        .map(|path| format!("{}: is no longer emitted; emit removes it", path.display()));
+    found.extend(stale);
+    found.extend(left.kept);
     found
 }
 
-/// Files of an earlier emission that are no longer emitted.
-pub fn leftovers(folder: &Path, artifacts: &[Artifact]) -> Vec<String> {
-    let earlier = fs::read_to_string(folder.join(MANIFEST)).unwrap_or_default();
-    listed(&earlier)
-        .filter(|name| !artifacts.iter().any(|a| a.path == *name) && !name.contains(['/', '\\']))
-        .map(|name| folder.join(name))
-        .filter(|path| path.exists())
-        .map(|path| format!("{}: is no longer emitted; delete it", path.display()))
-        .collect()
+/// Files in the folder of an emission that do not belong to it.
+#[derive(Default)]
+pub struct Leftovers {
+    /// Files of an earlier emission, as it left them.
+    pub removable: Vec<PathBuf>,
+    /// What is to be said about those that only their owner may remove.
+    pub kept: Vec<String>,
+}
+
+/// Compares the MANIFEST of an earlier emission, and the blocks that lie there, with the artefacts.
+pub fn leftovers(folder: &Path, artifacts: &[Artifact]) -> Leftovers {
+    let mut left = Leftovers::default();
+    // A file system may not tell capital letters from small ones.
+    let emitted = |name: &str| artifacts.iter().any(|a| a.path.eq_ignore_ascii_case(name));
+    let manifest = read_regular(&folder.join(MANIFEST), FILE_BYTES_MAX).unwrap_or_default();
+    let manifest = String::from_utf8_lossy(&manifest);
+    let mut known = BTreeSet::new();
+    for (digest, name) in listed(&manifest).filter(|(_, name)| !emitted(name)) {
+        let path = folder.join(name);
+        if !known.insert(name) || !path.exists() {
+            continue;
+        }
+        match read_regular(&path, FILE_BYTES_MAX) {
+            Ok(bytes) if sha256(&bytes) == digest => left.removable.push(path),
+            _ => left.kept.push(format!(
+                "{}: is no longer emitted, but has been changed; delete it or move it away",
+                path.display()
+            )),
+        }
+    }
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut blocks: Vec<String> = entries
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .filter(|name| name.starts_with(BLOCK_PREFIX) && name.ends_with(".v"))
+        .filter(|name| !emitted(name) && !known.contains(name.as_str()))
+        .collect();
+    blocks.sort();
+    left.kept.extend(blocks.iter().map(|name| {
+        format!(
+            "{}: is not of this card, but `{BLOCK_PREFIX}*.v` takes it in; delete it or move it away",
+            folder.join(name).display()
+        )
+    }));
+    left
 }
 
 /// A file waiting under a temporary name beside its place.
 struct Staged {
     from: PathBuf,
     to: PathBuf,
+    /// Its place as the user named it.
+    shown: PathBuf,
 }
 
-/// Writes the artefacts that differ and returns their paths; after an error no file has changed.
-pub fn write(folder: &Path, artifacts: &[Artifact]) -> Result<Vec<PathBuf>, GenError> {
-    let remedy = "give another folder with --out";
+/// Writes the artefacts that differ and returns their paths; after an error no file has changed. `remedy` ends a message.
+pub fn write(
+    folder: &Path,
+    artifacts: &[Artifact],
+    remedy: &str,
+) -> Result<Vec<PathBuf>, GenError> {
     fs::create_dir_all(folder).map_err(|e| GenError::io("make the folder", folder, &e, remedy))?;
     let mut staged: Vec<Staged> = Vec::new();
     for artifact in artifacts {
-        let to = folder.join(&artifact.path);
-        if fs::read(&to).is_ok_and(|bytes| bytes == artifact.text.as_bytes()) {
-            continue;
-        }
-        let from = folder.join(format!(".{}.part{}", artifact.path, std::process::id()));
-        let written = if to.is_dir() {
-            Err(std::io::Error::other("a folder is in its place"))
-        } else {
-            fs::write(&from, &artifact.text)
-        };
-        staged.push(Staged { from, to });
+        let path = folder.join(&artifact.path);
+        let written = holds(&path, &artifact.text).and_then(|same| {
+            if same {
+                return Ok(());
+            }
+            // A link stays, and what it leads to is renewed.
+            let to = fs::canonicalize(&path).unwrap_or_else(|_| path.clone());
+            let from = to.with_file_name(format!(".{}.part{}", artifact.path, std::process::id()));
+            let written = fs::write(&from, &artifact.text);
+            staged.push(Staged {
+                from,
+                to,
+                shown: path.clone(),
+            });
+            written
+        });
         if let Err(e) = written {
             discard(&staged);
-            let last = &staged[staged.len() - 1];
-            return Err(GenError::io("write", &last.to, &e, remedy));
+            return Err(GenError::io("write", &path, &e, remedy));
         }
     }
     for index in 0..staged.len() {
-        let Staged { from, to } = &staged[index];
+        let Staged { from, to, shown } = &staged[index];
         if let Err(e) = fs::rename(from, to) {
             discard(&staged[index..]);
-            return Err(GenError::io("write", to, &e, remedy));
+            return Err(GenError::io("write", shown, &e, remedy));
         }
     }
-    Ok(staged.into_iter().map(|s| s.to).collect())
+    Ok(staged.into_iter().map(|s| s.shown).collect())
 }
 
 fn discard(staged: &[Staged]) {
@@ -138,10 +220,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_manifest_lists_size_and_digest() {
+    fn the_manifest_lists_digest_and_name() {
         let text = manifest(&[Artifact::new("a.v", "abc")]).text;
         let digest = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        assert_eq!(text, format!("{digest}         3  a.v\n"));
-        assert_eq!(listed(&text).collect::<Vec<_>>(), ["a.v"]);
+        assert_eq!(text, format!("{digest}  a.v\n"));
+        assert_eq!(listed(&text).collect::<Vec<_>>(), [(digest, "a.v")]);
     }
 }

@@ -1,6 +1,7 @@
 //! Boards: pin tables, and the clock manager that makes the system clock.
 
 use crate::config::Kind;
+use endat_hdl::config::{SYSTEM_HZ_MAX, SYSTEM_HZ_MIN};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -116,6 +117,14 @@ impl Board {
         format!("use {}", ranges.collect::<Vec<_>>().join(", "))
     }
 
+    /// Every connector position with its pin.
+    pub fn places(&self) -> impl Iterator<Item = (String, &String)> {
+        self.connectors.iter().flat_map(|(name, pins)| {
+            let pins = pins.iter().enumerate();
+            pins.map(move |(n, pin)| (format!("{name}{n}"), pin))
+        })
+    }
+
     /// Connector and position of a pin, such as `C3`.
     pub fn position(&self, pin: &str) -> String {
         let found = self.connectors.iter().find_map(|(name, pins)| {
@@ -181,7 +190,10 @@ pub fn pll(oscillator_hz: u64, system_hz: u64) -> Result<Pll, String> {
     if let Some((_, pll)) = pll_settings(oscillator_hz).find(|(hz, _)| *hz == system_hz) {
         return Ok(pll);
     }
-    let all = || pll_settings(oscillator_hz).map(|(hz, _)| hz);
+    let all = || {
+        let all = pll_settings(oscillator_hz).map(|(hz, _)| hz);
+        all.filter(|hz| (SYSTEM_HZ_MIN..=SYSTEM_HZ_MAX).contains(hz))
+    };
     let below = all().filter(|hz| *hz < system_hz).max();
     let above = all().filter(|hz| *hz > system_hz).min();
     let near: Vec<String> = below
@@ -253,5 +265,9 @@ mod tests {
         assert!(pll(32_000_000, 99_999_999)
             .unwrap_err()
             .contains("use 99200000 or 100000000 Hz"));
+        // The next one up, 256 MHz, is more than the core is made for.
+        assert!(pll(32_000_000, 249_000_000)
+            .unwrap_err()
+            .ends_with("use 248000000 Hz"));
     }
 }

@@ -75,3 +75,53 @@ impl fmt::Display for GenError {
 }
 
 impl std::error::Error for GenError {}
+
+/// At most 60 characters, on one line, without control characters.
+pub fn shorten(text: &str) -> String {
+    let mut short: String = text.chars().take(60).flat_map(printable).collect();
+    if text.chars().nth(60).is_some() {
+        short.push_str("...");
+    }
+    short
+}
+
+fn printable(c: char) -> Vec<char> {
+    if c.is_control() {
+        c.escape_default().collect()
+    } else {
+        vec![c]
+    }
+}
+
+/// A word as it stands in a message: in quotes when it would not be seen otherwise.
+pub fn shown(text: &str) -> String {
+    let plain = |c: char| !c.is_whitespace() && !c.is_control() && c != '"';
+    if !text.is_empty() && text.chars().all(plain) {
+        shorten(text)
+    } else {
+        format!("{:?}", text.chars().take(60).collect::<String>())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_in_messages_stay_on_one_line() {
+        assert_eq!(shorten("a\nb\u{7}"), "a\\nb\\u{7}");
+        assert_eq!(shorten(&"x".repeat(61)), format!("{}...", "x".repeat(60)));
+    }
+
+    #[test]
+    fn a_word_that_would_not_be_seen_stands_in_quotes() {
+        for (text, wanted) in [
+            ("2", "2"),
+            ("", "\"\""),
+            ("a b", "\"a b\""),
+            ("\n", "\"\\n\""),
+        ] {
+            assert_eq!(shown(text), wanted);
+        }
+    }
+}

@@ -1,8 +1,8 @@
 //! `explain`: what a configuration really becomes, as text and as data.
 
 use crate::config::Project;
-use endat_hdl::config::{ChannelConfig, READ_REQUEST_BYTES, RESULT_WORDS};
-use endat_hdl::timing::{deviation_ppm, CALIBRATION_HZ};
+use endat_hdl::config::{read_bytes, ChannelConfig};
+use endat_hdl::timing::deviation_ppm;
 use serde::Serialize;
 use std::fmt;
 
@@ -64,7 +64,9 @@ pub struct ChannelReport {
     pub sure_sampling_hz: f64,
     /// The same with the longest cable, tR and the latency of the core: what the configuration is checked against.
     pub worst_case_sampling_hz: f64,
-    /// Length of the first frame, which measures the propagation delay at 200 kHz, in microseconds.
+    /// Clock of the first frame, which measures the propagation delay, in hertz.
+    pub calibration_hz: f64,
+    /// Length of that frame, in microseconds.
     pub calibration_us: f64,
     /// Longest propagation delay planned for, in ns.
     pub delay_max_ns: u64,
@@ -142,6 +144,7 @@ fn channel(config: &ChannelConfig, encoder: &str, system_hz: u64) -> ChannelRepo
         highest_sampling_hz: 1e6 / cycle_min_us,
         sure_sampling_hz: 1e6 / cycle_max_us,
         worst_case_sampling_hz: 1e6 / us(config.cycle_max_cycles(system_hz)),
+        calibration_hz: 1e6 / us(config.calibration_period_cycles(system_hz)),
         calibration_us: us(config.calibration_cycles(system_hz)),
         delay_max_ns: request.delay_max_ns(),
         filter_ns: us(config.filter_cycles) * 1e3,
@@ -187,7 +190,7 @@ pub fn report(project: &Project) -> Report {
         link: LinkReport {
             baud: Rate::new(card.baud, card.actual_baud()),
             read_hz: card.read_hz,
-            bytes_per_read: READ_REQUEST_BYTES + 4 * RESULT_WORDS * card.channels.len() as u64,
+            bytes_per_read: read_bytes(card.channels.len()),
             needed_baud,
             used_percent: needed_baud as f64 * 100.0 / card.actual_baud(),
             highest_read_hz: card.highest_read_hz(),
@@ -227,7 +230,10 @@ const ROWS: [Row; 17] = [
         }
     }),
     ("mode command", |c| c.command.clone()),
-    ("position", |c| format!("{} bits", c.position_bits)),
+    ("position", |c| {
+        let unit = if c.position_bits == 1 { "bit" } else { "bits" };
+        format!("{} {unit}", c.position_bits)
+    }),
     ("clock asked", |c| format!("{} Hz", c.clock.requested_hz)),
     ("clock made", |c| {
         format!("{} Hz", number(c.clock.actual_hz, 1))
@@ -270,7 +276,11 @@ const ROWS: [Row; 17] = [
     }),
     ("start time-out", |c| format!("{} us", c.start_timeout_us)),
     ("calibration frame", |c| {
-        format!("{} us", number(c.calibration_us, 1))
+        format!(
+            "{} us at {} Hz",
+            number(c.calibration_us, 1),
+            number(c.calibration_hz, 0)
+        )
     }),
 ];
 
@@ -307,12 +317,18 @@ impl fmt::Display for Report {
         let heads: Vec<String> = (0..self.channels.len())
             .map(|n| format!("channel {n}"))
             .collect();
-        line(f, "", &heads)?;
-        for (head, cell) in ROWS {
-            line(f, head, &self.channels.iter().map(cell).collect::<Vec<_>>())?;
+        let cells: Vec<Vec<String>> = ROWS
+            .iter()
+            .map(|(_, cell)| self.channels.iter().map(cell).collect())
+            .collect();
+        let widest = cells.iter().flatten().map(|cell| cell.chars().count());
+        let width = widest.max().unwrap_or(0).max(COLUMN_MIN);
+        line(f, "", &heads, width)?;
+        for ((head, _), cells) in ROWS.iter().zip(&cells) {
+            line(f, head, cells, width)?;
         }
         writeln!(f)?;
-        writeln!(f, "tm is the recovery time; the first frame after reset measures the cable at {CALIBRATION_HZ} Hz and takes longer.")
+        writeln!(f, "tm is the recovery time; the calibration frame, the first after reset, measures the delay of the cable.")
     }
 }
 
@@ -324,10 +340,13 @@ fn list(words: &[&str]) -> String {
     }
 }
 
-fn line(f: &mut fmt::Formatter<'_>, head: &str, cells: &[String]) -> fmt::Result {
+/// Narrowest column of a channel.
+const COLUMN_MIN: usize = 24;
+
+fn line(f: &mut fmt::Formatter<'_>, head: &str, cells: &[String], width: usize) -> fmt::Result {
     let mut text = format!("{head:<18}");
     for cell in cells {
-        text.push_str(&format!(" {cell:<24}"));
+        text.push_str(&format!(" {cell:<width$}"));
     }
     writeln!(f, "{}", text.trim_end())
 }
@@ -353,8 +372,8 @@ mod tests {
             // As long as the first frame of the scenario `paper` on the elaborated channel.
             assert!((channel.calibration_us - 239.34).abs() < 1e-9);
         }
-        assert_eq!(report.link.bytes_per_read, 38);
-        assert_eq!(report.link.used_percent, 19.0);
+        assert_eq!(report.link.bytes_per_read, 62);
+        assert_eq!(report.link.used_percent, 31.0);
     }
 
     #[test]

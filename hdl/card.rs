@@ -73,7 +73,7 @@ fn times(card: &CardConfig, channel: &ChannelConfig) -> FixedTimes {
     FixedTimes {
         ready_low_cycles: channel.ready_low_cycles,
         abort_us: channel.abort_us,
-        ..FixedTimes::at(card.system_hz)
+        calibration_period_cycles: channel.calibration_period_cycles(card.system_hz),
     }
 }
 

@@ -31,6 +31,13 @@ pub const BLOCK_STRIDE: u16 = 8;
 /// Most channels that the map and the decoder take.
 pub const CHANNELS_MAX: usize = 8;
 
+/// Words of the burst that gives the results of all channels of one moment, from [`RESULT_BASE`] on; the words between
+/// two blocks are read too.
+pub const fn result_words(channels: usize) -> u64 {
+    let blocks_before = channels.saturating_sub(1) as u64;
+    BLOCK_STRIDE as u64 * blocks_before + RESULT.registers.len() as u64
+}
+
 /// What a host may do with a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Access {

@@ -12,6 +12,9 @@
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
 
+pub mod cause;
+mod new;
+
 use crate::reg::Reg;
 use rust_hdl::prelude::*;
 
@@ -32,43 +35,6 @@ pub enum Phase {
     Recovery,
     /// Quiet after an aborted frame.
     Abort,
-}
-
-/// Why a frame gave no position: the codes of the status register.
-pub mod cause {
-    /// The frame is good.
-    pub const NONE: u64 = 0;
-    /// Data was high when the frame was to start.
-    pub const DATA_NOT_LOW: u64 = 1;
-    /// No start bit within its time.
-    pub const NO_START_BIT: u64 = 2;
-    /// A start bit at a time that does not fit the propagation delay.
-    pub const START_WINDOW: u64 = 3;
-    /// The CRC is wrong.
-    pub const CRC: u64 = 4;
-    /// Error bit 1 is set: the encoder reports an alarm.
-    pub const F1: u64 = 5;
-    /// Error bit 2 is clear: the encoder reports an alarm.
-    pub const F2: u64 = 6;
-    /// Data stayed high after the frame.
-    pub const DATA_NOT_FALLING: u64 = 7;
-    /// A trigger came while a frame was under way.
-    pub const TRIGGER_OVERRUN: u64 = 8;
-    /// Name of a code.
-    pub fn name(code: u64) -> &'static str {
-        match code {
-            NONE => "none",
-            DATA_NOT_LOW => "data not low before start",
-            NO_START_BIT => "no start bit",
-            START_WINDOW => "start bit outside its window",
-            CRC => "CRC",
-            F1 => "F1",
-            F2 => "F2",
-            DATA_NOT_FALLING => "data not falling after the frame",
-            TRIGGER_OVERRUN => "trigger overrun",
-            _ => "unknown",
-        }
-    }
 }
 
 /// Sequence, time-outs and verdict of one channel.
@@ -184,89 +150,6 @@ pub struct Transaction {
     verdict: Signal<Local, Bit>,
     primary: Signal<Local, Bits<4>>,
     lost: Signal<Local, Bit>,
-}
-
-impl Transaction {
-    /// A transaction with the times that no encoder changes: data low before a frame, quiet after an abort.
-    pub fn new(ready_low_cycles: u64, abort_us: u64) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            trigger: Default::default(),
-            calibrate: Default::default(),
-            level: Default::default(),
-            sample: Default::default(),
-            center: Default::default(),
-            hunting: Default::default(),
-            started: Default::default(),
-            start_refused: Default::default(),
-            frame_done: Default::default(),
-            serial_ok: Default::default(),
-            parallel_ok: Default::default(),
-            f1: Default::default(),
-            f2: Default::default(),
-            outstanding: Default::default(),
-            cells_left: Default::default(),
-            first_low_extra_cycles: Default::default(),
-            start_timeout_us: Default::default(),
-            recovery_limit_cycles: Default::default(),
-            start: Default::default(),
-            run: Default::default(),
-            abort: Default::default(),
-            hold_low: Default::default(),
-            drain: Default::default(),
-            stop: Default::default(),
-            acquire: Default::default(),
-            busy: Default::default(),
-            publish: Default::default(),
-            good: Default::default(),
-            late_fault: Default::default(),
-            cause: Default::default(),
-            flags: Default::default(),
-            recovery_cycles: Default::default(),
-            ready_low_cycles: Constant::new(ready_low_cycles.into()),
-            abort_us: Constant::new(abort_us.into()),
-            phase: Default::default(),
-            timer: Default::default(),
-            timer_limit: Default::default(),
-            timer_hit: Default::default(),
-            timer_step: Default::default(),
-            hold: Default::default(),
-            start_now: Default::default(),
-            run_now: Default::default(),
-            extra: Default::default(),
-            stop_now: Reg::new(true),
-            calibrated: Default::default(),
-            acquiring: Default::default(),
-            overrun: Default::default(),
-            stalled: Default::default(),
-            all_sent: Default::default(),
-            tail_sampled: Default::default(),
-            recovery: Default::default(),
-            seen: Default::default(),
-            taken: Default::default(),
-            gave_up: Default::default(),
-            gave_up_late: Default::default(),
-            publish_now: Default::default(),
-            good_now: Default::default(),
-            late_now: Default::default(),
-            cause_now: Default::default(),
-            flags_now: Default::default(),
-            limit: Default::default(),
-            in_us: Default::default(),
-            timer_clear: Default::default(),
-            accept: Default::default(),
-            give_up: Default::default(),
-            idle: Default::default(),
-            found: Default::default(),
-            told: Default::default(),
-            crc_bad: Default::default(),
-            verdict: Default::default(),
-            primary: Default::default(),
-            lost: Default::default(),
-        }
-    }
 }
 
 impl Logic for Transaction {

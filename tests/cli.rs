@@ -93,47 +93,6 @@ fn unchanged_files_keep_their_time_and_a_changed_one_comes_back() {
 }
 
 #[test]
-fn check_finds_every_kind_of_staleness_and_never_writes() {
-    let dir = Dir::new("check");
-    let out = dir.path("o");
-    let check = ["emit", "--check", "--out", &out];
-    let nothing = bad(&check, 1);
-    assert!(nothing.contains("README.md: is missing"), "{nothing}");
-    assert_eq!(dir.files(), vec![]);
-    good(&["emit", "--out", &out]);
-    assert!(good(&check).ends_with("up to date\n"));
-    let folder = dir.0.join("o/s6_two_channel");
-    fs::write(folder.join("README.md"), "x").unwrap();
-    fs::remove_file(folder.join("s6_two_channel.ucf")).unwrap();
-    fs::write(folder.join("old.v"), "x").unwrap();
-    let manifest = fs::read_to_string(folder.join("MANIFEST")).unwrap();
-    fs::write(
-        folder.join("MANIFEST"),
-        format!("{manifest}0  1  old.v\n0  1  ../../o.v\n"),
-    )
-    .unwrap();
-    let before = dir.files();
-    let found = bad(&check, 1);
-    for text in [
-        "README.md: is not what",
-        "s6_two_channel.ucf: is missing",
-        "MANIFEST: is not what",
-        "old.v: is no longer emitted; delete it",
-    ] {
-        assert!(found.contains(text), "{text}\n{found}");
-    }
-    assert!(
-        !found.contains("o.v: is no longer emitted; delete it\n../"),
-        "{found}"
-    );
-    assert!(
-        found.ends_with(&format!("renew with: cargo run -- emit --out {out}")),
-        "{found}"
-    );
-    assert_eq!(dir.files(), before);
-}
-
-#[test]
 fn a_file_that_cannot_be_written_leaves_all_others_alone() {
     let dir = Dir::new("blocked");
     let folder = dir.0.join("o/s6_two_channel");
@@ -142,7 +101,7 @@ fn a_file_that_cannot_be_written_leaves_all_others_alone() {
     let message = bad(&["emit", "--out", &dir.path("o")], 2);
     assert!(
         message.contains(
-            "MANIFEST: cannot write: a folder is in its place; give another folder with --out"
+            "MANIFEST: cannot write: is a folder, not a file; give another folder with --out"
         ),
         "{message}"
     );
@@ -166,24 +125,14 @@ fn another_name_names_everything() {
 }
 
 #[test]
-fn the_name_of_a_block_may_name_the_card_too() {
+fn no_card_is_called_like_a_block() {
     let dir = Dir::new("block-name");
-    for name in ["endat_channel", "Endat_Channel"] {
-        good(&["emit", "--out", &dir.path("o"), "--name", name]);
-        let files: Vec<String> = fs::read_dir(dir.0.join("o").join(name))
-            .unwrap()
-            .map(|e| e.unwrap().file_name().into_string().unwrap())
-            .collect();
-        let lower: std::collections::BTreeSet<String> =
-            files.iter().map(|f| f.to_lowercase()).collect();
-        assert_eq!(lower.len(), files.len(), "{files:?}");
-        let manifest = fs::read_to_string(dir.0.join("o").join(name).join("MANIFEST")).unwrap();
-        assert_eq!(
-            manifest.lines().count() + 1,
-            files.len(),
-            "a file was written twice"
-        );
+    for name in ["endat", "endat_channel", "Endat_Card"] {
+        let message = bad(&["emit", "--out", &dir.path("o"), "--name", name], 2);
+        let remedy = format!("for example `my_{}`", name.to_lowercase());
+        assert!(message.contains(&remedy), "{message}");
     }
+    assert_eq!(dir.files(), vec![]);
 }
 
 #[test]
@@ -214,7 +163,7 @@ fn bad_files_are_refused_with_what_to_do() {
         (dir.path("none.toml"), "cannot read: No such file"),
         (
             dir.0.display().to_string(),
-            "is a folder, not a configuration; give a TOML file",
+            "cannot read: is a folder, not a file; give a TOML file",
         ),
         (
             dir.write("empty.toml", b""),
@@ -234,7 +183,7 @@ fn bad_files_are_refused_with_what_to_do() {
         ),
         (
             dir.write("large.toml", &vec![b'#'; (1 << 20) + 1]),
-            "a configuration at most 1048576",
+            "has 1048577 bytes, at most 1048576 are read",
         ),
     ];
     for (file, text) in &rows {
@@ -290,6 +239,7 @@ fn wrong_usage_ends_with_two() {
             "4",
         ],
         &["crc", "--position", "0", "--bits", "0"],
+        &["crc", "--position", "0", "--bits", "-1"],
         &["crc", "--position", "0", "--bits", "49"],
         &["crc", "--position", "0", "--bits", "4", "--f1", "2"],
         &["crc", "--position", "0", "--bits", "4", "--received", "32"],
@@ -302,6 +252,53 @@ fn wrong_usage_ends_with_two() {
         bad(arguments, 2);
     }
     bad(&["crc", "--raw", &"0".repeat(129)], 2);
+}
+
+#[test]
+fn a_wrong_word_stands_beside_its_option_with_one_limit() {
+    let rows: &[(&[&str], &str)] = &[
+        (
+            &["--bits", "abc"],
+            "--bits = abc: is not a number from 1 to 48",
+        ),
+        (&["--bits", "0"], "--bits = 0: outside 1..48"),
+        (&["--bits", "49"], "--bits = 49: outside 1..48"),
+        (&["--bits", "-1"], "--bits = -1: outside 1..48"),
+        (&["--bits", "4", "--f1", "-1"], "--f1 = -1: outside 0..1"),
+    ];
+    for (arguments, wanted) in rows {
+        let message = bad(&[&["crc", "--position", "1"], *arguments].concat(), 2);
+        assert!(message.starts_with(wanted), "{message}");
+    }
+    for (position, wanted) in [
+        ("abc", "is not a number from 0 to 15"),
+        ("-1", "outside 0..15"),
+        ("16", "outside 0..15"),
+        ("99999999999999999999999", "outside 0..15"),
+    ] {
+        let message = bad(&["crc", "--bits", "4", "--position", position], 2);
+        let wanted = format!("--position = {position}: {wanted}");
+        assert!(message.starts_with(&wanted), "{message}");
+    }
+    for (arguments, wanted) in [
+        (vec!["sim", "nope"], "scenario = nope: unknown scenario"),
+        (vec!["sim", ""], "scenario = \"\": unknown scenario"),
+        (
+            vec!["sim", "paper", "--channel", "2"],
+            "--channel = 2: outside 0..1",
+        ),
+        (
+            vec!["sim", "paper", "--channel", "-1"],
+            "--channel = -1: outside 0..1",
+        ),
+        (
+            vec!["explain", "--preset", ""],
+            "--preset = \"\": unknown preset",
+        ),
+    ] {
+        let message = bad(&arguments, 2);
+        assert!(message.starts_with(wanted), "{message}");
+    }
 }
 
 #[cfg(unix)]
@@ -355,6 +352,47 @@ fn explain_shows_the_deviation_of_an_inexact_clock() {
     assert!(row("clock made").contains("8333333.3 Hz"));
     assert!(row("deviation").contains("+4016 ppm"));
     assert!(row("period").contains("12 cycles"));
+}
+
+#[test]
+fn explain_keeps_its_columns_and_tells_the_clock_of_the_calibration_frame() {
+    let dir = Dir::new("slow");
+    let text = good(&["presets", "--show", "s6_two_channel"])
+        .replacen("\"RCN 8510\"", &format!("\"{}\"", "x".repeat(40)), 1)
+        .replacen(
+            "position_bits = 29",
+            "position_bits = 1\nclock_hz = 100_000",
+            1,
+        )
+        .replacen("sample_hz = 10_000", "sample_hz = 1_000", 1);
+    let file = dir.write("slow.toml", text.as_bytes());
+    let table = good(&["explain", "--config", &file]);
+    let row = |head: &str| table.lines().find(|l| l.starts_with(head)).unwrap();
+    let second = table.lines().find_map(|l| l.find("channel 1")).unwrap();
+    assert_eq!(row("encoder").find("RCN 8510"), Some(second));
+    assert!(row("position").contains(" 1 bit "));
+    // As slow as all other frames of that channel.
+    let calibration = row("calibration frame");
+    assert!(calibration.contains("us at 100000 Hz") && calibration.contains("us at 200000 Hz"));
+    let value: serde_json::Value =
+        serde_json::from_str(&good(&["explain", "--json", "--config", &file])).unwrap();
+    good(&[
+        "emit",
+        "--config",
+        &file,
+        "--out",
+        &dir.path("o"),
+        "--name",
+        "slow",
+    ]);
+    for cycles in [1_000, 500] {
+        let block = format!("o/slow/endat_channel_calibration_period_cycles{cycles}.v");
+        assert!(dir.0.join(&block).exists(), "{block}");
+    }
+    assert_eq!(
+        value["channels"][0]["calibration_us"],
+        value["channels"][0]["frame_us"]
+    );
 }
 
 #[test]

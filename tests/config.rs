@@ -70,8 +70,8 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         // types
         ("system_hz = 100_000_000", "system_hz = \"fast\"", "clock.system_hz = \"fast\": is a string, must be a whole number"),
         ("system_hz = 100_000_000", "system_hz = 1e8", "clock.system_hz = 1e8: is a float, must be a whole number"),
-        ("system_hz = 100_000_000", "system_hz = -1", "clock.system_hz = -1: outside 0.."),
-        ("system_hz = 100_000_000", "system_hz = 99999999999999999999999999999999999999999", "outside 0.."),
+        ("system_hz = 100_000_000", "system_hz = -1", "clock.system_hz = -1: outside 8000000..250000000"),
+        ("system_hz = 100_000_000", "system_hz = 99999999999999999999999999999999999999999", "outside 8000000..250000000"),
         ("system_hz = 100_000_000", "system_hz = true", "is a boolean, must be a whole number"),
         ("name = \"s6_two_channel\"", "name = 6", "name = 6: is an integer, must be text in quotes"),
         ("command = \"111000\"", "command = 111000", "channel[0].command = 111000: is an integer, must be text in quotes"),
@@ -84,14 +84,14 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("clock_hz = 3_125_000", "clock_hz = 9_000_000", "endat.clock_hz = 9000000: would become 9090909 Hz (+10101 ppm), more than the allowed 5000 ppm"),
         ("clock_hz = 3_125_000", "clock_hz = 16_000_000", "needs a system clock of at least 128000000 Hz"),
         ("clock_hz = 3_125_000", "clock_hz = 99_000", "outside 100000..16000000"),
-        ("tst_ns = 2_000", "tst_ns = 1_000", "endat.tst_ns = 1000: outside 2000..10000"),
+        ("tst_ns = 2_000", "tst_ns = 1_000", "endat.tst_ns = 1000: neither 0 nor in 2000..10000"),
         ("filter_ns = 20", "filter_ns = 1_000", "endat.filter_ns = 1000: is 100 cycles, more than 15"),
         ("start_window_ns = 80", "start_window_ns = 0", "endat.start_window_ns = 0: is 0 cycles, outside 1..15"),
         ("start_window_ns = 80", "start_window_ns = 160", "use 10..150 ns"),
-        ("tcal_max_ns = 5_000", "tcal_max_ns = 0", "endat.tcal_max_ns = 0: outside 1..50000000"),
-        ("recovery_min_ns = 10_000", "recovery_min_ns = 40_000", "above recovery_max_ns = 30000; exchange the two"),
-        ("recovery_min_ns = 10_000", "recovery_min_ns = 100", "below 1250 ns"),
-        ("recovery_max_ns = 30_000", "recovery_max_ns = 4_000_000_000", "the longest the counter can time"),
+        ("tcal_max_ns = 5_000", "tcal_max_ns = 0", "endat.tcal_max_ns = 0: outside 1..4082800"),
+        ("recovery_min_ns = 10_000", "recovery_min_ns = 40_000", "above recovery_max_ns = 30000; lower it, or raise recovery_max_ns"),
+        ("recovery_min_ns = 10_000", "recovery_min_ns = 100", "outside 1250..80390"),
+        ("recovery_max_ns = 30_000", "recovery_max_ns = 4_000_000_000", "outside 1250..80390"),
         ("cable_m = 100", "cable_m = 1_000", "endat.cable_m = 1000: outside 0..150"),
         ("position_bits = 29", "position_bits = 0", "channel[0].position_bits = 0: outside 1..48"),
         ("position_bits = 29", "position_bits = 49", "channel[0].position_bits = 49: outside 1..48"),
@@ -101,12 +101,12 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("command = \"111000\"", "command = \"\"", "a mode command is six binary digits"),
         ("command = \"111000\"", "command = \"0000111\"", "a mode command is six binary digits"),
         ("sample_hz = 10_000", "sample_hz = 0", "trigger.sample_hz = 0: outside 6..1000000"),
-        ("sample_hz = 10_000", "sample_hz = 25_000", "takes up to 49.1 us, so at most 20379 Hz"),
+        ("sample_hz = 10_000", "sample_hz = 25_000", "takes up to 49.07 us, the largest part from recovery_max_ns = 30000, so at most 20379 Hz"),
         ("[\"pin\", \"timer\"]", "[\"pin\", \"button\"]", "trigger.sources = \"button\": unknown trigger; use pin, timer, register"),
         ("[\"pin\", \"timer\"]", "[\"pin\", \"pin\"]", "trigger.sources = \"pin\": stands twice"),
-        ("baud = 2_000_000", "baud = 9_000", "link.baud = 9000: outside 9600.."),
-        ("baud = 2_000_000", "baud = 115_200", "the link is too slow: reading 2 channels 1000 times a second takes 380000 bit/s"),
-        ("baud = 2_000_000", "baud = 4_000_000", "more than 3000000 bit/s, the most that papilio_pro passes on"),
+        ("baud = 2_000_000", "baud = 9_000", "link.baud = 9000: outside 9600..3000000 (the most that the board passes on"),
+        ("baud = 2_000_000", "baud = 115_200", "the link is too slow: reading 62 bytes 1000 times a second takes 620000 bit/s"),
+        ("baud = 2_000_000", "baud = 4_000_000", "link.baud = 4000000: outside 9600..3000000"),
         ("read_hz = 1_000", "read_hz = 0", "link.read_hz = 0: outside 1..1000000"),
         // names
         ("name = \"s6_two_channel\"", "name = \"module\"", "name = \"module\": is a reserved word"),
@@ -125,7 +125,32 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("[pins]", "[pins]\ntrigger_i = \"C0\"", "P114 already carries endat_clk0_o"),
         ("[pins]", "[pins]\nendat_clk2_o = \"A0\"", "pins.endat_clk2_o = \"A0\": no such signal; signals: trigger_i"),
         ("[pins]", "[pins]\ntrigger_i = 5", "pins.trigger_i = 5: is an integer, must be text in quotes"),
+        // negative and huge numbers, with the range that counts
+        ("position_bits = 29", "position_bits = -3", "channel[0].position_bits = -3: outside 1..48"),
+        ("cable_m = 100", "cable_m = -1", "endat.cable_m = -1: outside 0..150"),
+        ("filter_ns = 20", "filter_ns = -1", "endat.filter_ns = -1: outside 0..150"),
+        ("start_window_ns = 80", "start_window_ns = -1", "endat.start_window_ns = -1: outside 10..630"),
+        ("recovery_max_ns = 30_000", "recovery_max_ns = -1", "endat.recovery_max_ns = -1: outside 1250.."),
+        ("tst_ns = 2_000", "tst_ns = -1", "endat.tst_ns = -1: neither 0 nor in 2000..10000"),
+        ("baud = 2_000_000", "baud = 1", "link.baud = 1: outside 9600..3000000"),
+        ("baud = 2_000_000", "baud = -1", "link.baud = -1: outside 9600..3000000"),
+        ("baud = 2_000_000", "baud = 12_500_001", "link.baud = 12500001: outside 9600..3000000"),
+        ("read_hz = 1_000", "read_hz = -1", "link.read_hz = -1: outside 1..1000000"),
+        ("clock_hz = 3_125_000", "clock_hz = -1", "endat.clock_hz = -1: outside 100000..16000000"),
+        ("clock_hz = 3_125_000", "clock_hz = 3.125e6", "endat.clock_hz = 3.125e6: is a float"),
+        ("system_hz = 100_000_000", "system_hz = 249_000_000", "use 248000000 Hz"),
+        // the share that is to blame
+        ("tcal_max_ns = 5_000", "tcal_max_ns = 4_090_000", "endat.tcal_max_ns = 4090000: outside 1..4082800"),
+        ("recovery_max_ns = 30_000", "recovery_max_ns = 3_750", "endat.recovery_max_ns = 3750: below recovery_min_ns = 10000; add recovery_min_ns = 1250"),
+        // text
+        ("encoder = \"RCN 8510\"", "encoder = \"a\\nb\"", "channel[0].encoder = \"a\\nb\": has the character '\\n', which cannot be seen"),
+        ("encoder = \"RCN 8510\"", "encoder = \"\\u001b[31m\"", "has the character '\\u{1b}'"),
+        ("encoder = \"RCN 8510\"", "encoder = \"a\\u202eb\"", "has the character '\\u{202e}'"),
+        ("encoder = \"RCN 8510\"", "encoder = \"12345678901234567890123456789012345678901\"", "has 41 characters, at most 40 are allowed"),
+        ("name = \"s6_two_channel\"", "name = \"Endat_card\"", "name = \"Endat_card\": begins like the files of the blocks"),
         // syntax
+        ("command = \"111000\"", "command = 000111", "not TOML: unexpected leading zero, expected nothing; put it in quotes: command = \"000111\""),
+        ("baud = 2_000_000", "baud = 2\nbaud = 2_000_000", "not TOML: duplicate key; baud stands twice, remove one"),
         ("[clock]", "[clock", "not TOML:"),
         ("baud = 2_000_000", "baud = ", "not TOML:"),
         ("baud = 2_000_000", "baud = 2_000_000 bit", "not TOML:"),
@@ -277,6 +302,96 @@ fn a_mistake_in_the_common_keys_is_told_once_not_for_each_channel() {
 }
 
 #[test]
+fn what_follows_from_another_mistake_is_not_told() {
+    let second = PRESET
+        .find("[[channel]]                     # channel 1")
+        .unwrap();
+    let end = PRESET.find("[trigger]").unwrap();
+    let single = format!("{}{}", &PRESET[..second], &PRESET[end..]);
+    let rows = [
+        (
+            single.replacen("[[channel]]    ", "[channel]", 1),
+            "channel = ",
+        ),
+        (
+            format!("{}{}", &PRESET[..second], &PRESET[end..]).replacen(
+                "[clock]",
+                "channel = 5\n[clock]",
+                1,
+            ),
+            "not TOML",
+        ),
+        // sample_hz is what read_hz would be
+        (
+            changed("read_hz = 1_000", "")
+                .0
+                .replacen("sample_hz = 10_000", "sample_hz = 0", 1),
+            "trigger.sample_hz = 0: outside",
+        ),
+    ];
+    for (text, wanted) in rows {
+        let found = refuse(&text);
+        assert!(
+            found.len() == 1 && found[0].text.starts_with(wanted),
+            "{found:#?}"
+        );
+    }
+    let no_channels = "name = \"x\"\nchannel = 5\n[clock]\nsystem_hz = 100_000_000\n[board]\nname = \"papilio_pro\"\n\
+         [trigger]\nsample_hz = 10_000\n[link]\nbaud = 1_000_000\nread_hz = 1\n";
+    let found = refuse(no_channels);
+    assert!(
+        found.len() == 1 && found[0].text.starts_with("channel = 5: is an integer"),
+        "{found:#?}"
+    );
+    // The rest of the file is judged all the same.
+    let found = refuse(&no_channels.replacen("baud = 1_000_000", "baud = 1", 1));
+    assert_eq!(found.len(), 2, "{found:#?}");
+}
+
+#[test]
+fn too_many_channels_are_one_mistake_on_the_line_of_the_first_one_too_many() {
+    let more = "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n".repeat(3);
+    let (text, line) = changed("[trigger]", &format!("{more}[trigger]"));
+    let found = refuse(&text);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert_eq!(found[0].line, line + 6);
+    assert!(found[0]
+        .text
+        .starts_with("channel = 5 tables: a card has 1..4 channels"));
+}
+
+#[test]
+fn a_frame_that_waits_too_long_for_the_encoder_blames_tcal() {
+    let (text, line) = changed("tcal_max_ns = 5_000", "tcal_max_ns = 100_000");
+    let found = refuse(&text);
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert!(found[0].line != line && found[0].text.contains("channel 0"));
+    assert!(
+        found[0].text.ends_with("takes up to 144.11 us, the largest part from tcal_max_ns = 100000, so at most 6939 Hz; lower it, or shorten tcal_max_ns, or shorten recovery_max_ns, or raise clock_hz"),
+        "{}",
+        found[0].text
+    );
+}
+
+#[test]
+fn a_file_with_only_a_name_is_checked_as_a_whole() {
+    let found = refuse("name = \"x\"");
+    let has = |text: &str| {
+        found
+            .iter()
+            .any(|d| d.line == 0 && d.text.starts_with(text))
+    };
+    assert!(
+        has("channel = 0 tables: a card has 1..4 channels"),
+        "{found:#?}"
+    );
+    assert!(
+        has("board.name: is missing; add, for example, `name = \"papilio_pro\"` below `[board]`"),
+        "{found:#?}"
+    );
+}
+
+#[test]
 fn channels_without_pins_say_which_pins_they_need() {
     let third =
         "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\nclock_hz = 1_000_000\n\n[trigger]";
@@ -286,6 +401,12 @@ fn channels_without_pins_say_which_pins_they_need() {
     assert!(found[0]
         .text
         .contains("has no usual pin for it; add, for example, `endat_clk2_o = \"A0\"` to [pins]"));
+    let advised: String = found
+        .iter()
+        .map(|d| format!("{}\n", d.text.split('`').nth(1).unwrap()))
+        .collect();
+    let followed = text.replacen("[pins]", &format!("[pins]\n{advised}"), 1);
+    assert_eq!(parse("card.toml", &followed).map(|p| p.pins.len()), Ok(20));
     let pins = "[pins]\nendat_clk2_o = \"A0\"\nendat_data2_o = \"A1\"\nendat_data2_oe = \"A2\"\nendat_data2_i = \"P58\"\nled_channel2_o = \"b0\"\n";
     let project = parse("card.toml", &text.replacen("[pins]", pins, 1)).unwrap();
     assert_eq!(project.card.channels.len(), 3);

@@ -1,10 +1,13 @@
 //! Tests of the whole system, one module per topic.
 
+mod campaign;
 mod cli;
 mod config;
 mod constraints;
 mod elaborate;
 mod engines;
+mod files;
+mod pages;
 mod position;
 mod program;
 mod sim;

@@ -55,7 +55,7 @@ fn the_real_frame_has_its_66_rising_edges_and_can_be_looked_at() {
     assert!(dir.0.join("real.gtkw").exists());
     assert!(
         bad(&["sim", "real-1", "--svg", &dir.0.display().to_string()], 2)
-            .contains("a folder is in its place")
+            .contains("is a folder, not a file")
     );
     assert!(bad(&["sim", "real-1", "--vcd", "/"], 2).contains("is not the name of a file"));
 }

@@ -101,8 +101,11 @@ pub fn three_way(
     Ok(expected)
 }
 
+/// An engine and what it is called.
+type Named = (&'static str, Box<dyn Engine>);
+
 /// Every engine that runs a design.
-pub fn engines(design: &Design) -> Result<Vec<(&'static str, Box<dyn Engine>)>, String> {
+pub fn engines(design: &Design) -> Result<Vec<Named>, String> {
     let error = |e: EngineError| e.to_string();
     Ok(vec![
         (

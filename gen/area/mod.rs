@@ -138,7 +138,7 @@ pub fn synthesise(
     top: &str,
     family: &Family,
 ) -> Result<Synthesis, GenError> {
-    crate::artifact::write(folder, files)?;
+    crate::artifact::write(folder, files, "make room there")?;
     let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
     let file = |end: &str| folder.join(format!("{}-{top}{end}", family.name));
     let local = |end: &str| format!("{}-{top}{end}", family.name);

@@ -52,6 +52,9 @@ struct Measured {
     state_bytes: Option<u64>,
 }
 
+/// What to do if the folder for the tools' files cannot be written.
+const SCRATCH_REMEDY: &str = "make the folder for temporary files writable";
+
 /// A folder for the tools' files that goes away again.
 struct Scratch(PathBuf);
 

@@ -55,7 +55,7 @@ pub fn iverilog(
         Artifact::new("play.v", bench),
         Artifact::new("rows.hex", rows),
     ];
-    write(folder, &more)?;
+    write(folder, &more, super::SCRATCH_REMEDY)?;
     files.push("play.v".into());
     let mut arguments = vec!["-g2005", "-o", "play.vvp", "-s", "play"];
     arguments.extend(files.iter().map(String::as_str));
@@ -158,7 +158,11 @@ impl Verilator {
         cycles: usize,
     ) -> Result<Measured, GenError> {
         let start = Instant::now();
-        write(folder, &[Artifact::new("bench.cpp", source)])?;
+        write(
+            folder,
+            &[Artifact::new("bench.cpp", source)],
+            super::SCRATCH_REMEDY,
+        )?;
         self.build(folder, card, "bench.cpp")?;
         let ready_s = start.elapsed().as_secs_f64();
         let program = folder.join("obj_dir/bench");

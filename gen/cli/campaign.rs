@@ -1,6 +1,7 @@
 //! `campaign`: thousands of cases in lanes; one of them again, alone, with waveforms and a drawing.
 
-use super::{sim, to_json, Outcome};
+use super::pictures::{draw, Pictures};
+use super::{to_json, Outcome};
 use crate::error::GenError;
 use clap::{Args, ValueEnum};
 use endat_sim::campaign::{self, Case, RunOptions, Traces};
@@ -110,9 +111,7 @@ fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, GenError> {
         .enumerate()
         .filter_map(|(index, o)| Some((index, o.failure.as_deref()?)))
         .collect();
-    let mut outcome = Outcome::default();
-    outcome.exit_code = u8::from(!failed.is_empty()).into();
-    outcome.stdout = if arguments.json {
+    let stdout = if arguments.json {
         let failures = failed.iter().map(|(index, what)| {
             json!({"case": index, "title": cases[*index].title, "failure": what, "replay": replay(arguments, *index)})
         });
@@ -138,7 +137,11 @@ fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, GenError> {
         }
         text
     };
-    Ok(outcome)
+    Ok(Outcome {
+        stdout,
+        exit_code: u8::from(!failed.is_empty()),
+        ..Outcome::default()
+    })
 }
 
 fn alone(arguments: &CampaignArgs, cases: &[Case], index: usize) -> Result<Outcome, GenError> {
@@ -159,14 +162,12 @@ fn alone(arguments: &CampaignArgs, cases: &[Case], index: usize) -> Result<Outco
         samples: bench.samples(0),
     };
     let failure = case.check(&traces).err();
-    let mut outcome = Outcome::default();
-    outcome.exit_code = u8::from(failure.is_some()).into();
-    let files = sim::Files {
+    let files = Pictures {
         vcd: arguments.vcd.as_deref(),
         svg: arguments.svg.as_deref(),
     };
-    outcome.messages = sim::draw(&files, &bench, &case.title)?;
-    outcome.stdout = if arguments.json {
+    let messages = draw(&files, &bench, &case.title)?;
+    let stdout = if arguments.json {
         to_json(&json!({
             "case": index,
             "title": case.title,
@@ -177,5 +178,9 @@ fn alone(arguments: &CampaignArgs, cases: &[Case], index: usize) -> Result<Outco
         let verdict = failure.as_deref().unwrap_or("good");
         format!("case {index} ({}): {verdict}\n", case.title)
     };
-    Ok(outcome)
+    Ok(Outcome {
+        stdout,
+        messages,
+        exit_code: u8::from(failure.is_some()),
+    })
 }

@@ -2,9 +2,10 @@
 
 use super::{to_json, Outcome};
 use crate::crc::{self, CoveredBit};
-use crate::error::GenError;
+use crate::error::{shown, GenError};
 use clap::Args;
 use endat_hdl::protocol::POSITION_BITS;
+use std::ops::RangeInclusive;
 
 /// Arguments of `crc`.
 ///
@@ -17,45 +18,68 @@ pub struct CrcArgs {
         value_name = "NUMBER",
         requires = "bits",
         required_unless_present = "raw",
-        conflicts_with = "raw"
+        conflicts_with = "raw",
+        allow_negative_numbers = true
     )]
     position: Option<String>,
     /// Position bits, 1 to 48
-    #[arg(long, value_name = "COUNT", requires = "position")]
+    #[arg(
+        long,
+        value_name = "COUNT",
+        requires = "position",
+        allow_negative_numbers = true
+    )]
     bits: Option<String>,
     /// Error bit F1, 1 = error
-    #[arg(long, value_name = "BIT", requires = "position")]
+    #[arg(
+        long,
+        value_name = "BIT",
+        requires = "position",
+        allow_negative_numbers = true
+    )]
     f1: Option<String>,
     /// Error bit F2 of EnDat 2.2, 0 = error; leave out for EnDat 2.1
-    #[arg(long, value_name = "BIT", requires = "position")]
+    #[arg(
+        long,
+        value_name = "BIT",
+        requires = "position",
+        allow_negative_numbers = true
+    )]
     f2: Option<String>,
     /// Covered bits in the order of transmission, instead of the fields
-    #[arg(long, value_name = "BITS")]
+    #[arg(long, value_name = "BITS", allow_negative_numbers = true)]
     raw: Option<String>,
     /// CRC that was received, decimal, 0x... or 0b...; exit code 1 when it is wrong
-    #[arg(long, value_name = "NUMBER")]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     received: Option<String>,
     /// As JSON
     #[arg(long)]
     json: bool,
 }
 
-/// A number as people type it.
-fn number(flag: &str, text: &str, max: u64) -> Result<u64, GenError> {
-    let plain = text.replace('_', "").to_ascii_lowercase();
-    let parsed = match (plain.strip_prefix("0x"), plain.strip_prefix("0b")) {
-        (Some(digits), _) => u64::from_str_radix(digits, 16),
-        (_, Some(digits)) => u64::from_str_radix(digits, 2),
-        _ => plain.parse(),
+/// A number as people type it, within `range`.
+fn number(flag: &str, text: &str, range: RangeInclusive<u64>) -> Result<u64, GenError> {
+    let (low, high) = (range.start(), range.end());
+    let fail = |what: String| {
+        let text = shown(text);
+        Err(GenError::input(format!("{flag} = {text}: {what}")))
     };
-    match parsed {
-        Ok(value) if value <= max => Ok(value),
-        Ok(value) => Err(GenError::input(format!(
-            "{flag} = {text}: {value} is more than {max}; give a smaller number"
-        ))),
-        Err(_) => Err(GenError::input(format!(
-            "{flag} = {text:?}: is not a number from 0 to {max}; write 123, 0x7B or 0b1111011"
-        ))),
+    let plain = text.replace('_', "").to_ascii_lowercase();
+    let (digits, radix) = match (plain.strip_prefix("0x"), plain.strip_prefix("0b")) {
+        (Some(digits), _) => (digits, 16),
+        (_, Some(digits)) => (digits, 2),
+        _ => (plain.strip_prefix('-').unwrap_or(&plain), 10),
+    };
+    if digits.is_empty() || !digits.chars().all(|c| c.is_digit(radix)) {
+        return fail(format!(
+            "is not a number from {low} to {high}; write 123, 0x7B or 0b1111011"
+        ));
+    }
+    match u64::from_str_radix(digits, radix) {
+        Ok(value) if range.contains(&value) && !plain.starts_with('-') => Ok(value),
+        _ => fail(format!(
+            "outside {low}..{high}; give a number in that range"
+        )),
     }
 }
 
@@ -64,26 +88,18 @@ fn fields(arguments: &CrcArgs) -> Result<Vec<CoveredBit>, GenError> {
         |value: &Option<String>, default: &str| value.clone().unwrap_or_else(|| default.into());
     let bits = text(&arguments.bits, "0");
     let (low, high) = (*POSITION_BITS.start(), *POSITION_BITS.end());
-    let width = number("--bits", &bits, u64::from(high))? as u32;
-    if width < low {
-        return Err(GenError::input(format!(
-            "--bits = {bits}: outside {low}..{high}; give the encoder's position bits"
-        )));
-    }
-    let position_text = text(&arguments.position, "0");
-    let position = number("--position", &position_text, u64::MAX)?;
-    if position >> width != 0 {
-        return Err(GenError::input(format!(
-            "--position = {position_text}: needs {} bits, --bits is {width}; give a position below {}",
-            u64::BITS - position.leading_zeros(),
-            1u64 << width
-        )));
-    }
-    let f1 = number("--f1", &text(&arguments.f1, "0"), 1)? as u8;
+    let width = number("--bits", &bits, u64::from(low)..=u64::from(high))? as u32;
+    let position = text(&arguments.position, "0");
+    let position = number("--position", &position, 0..=(1 << width) - 1).map_err(|error| {
+        let messages = error.messages().iter();
+        let told = messages.map(|m| format!("{m}; --bits is {width}"));
+        GenError::Input(told.collect())
+    })?;
+    let f1 = number("--f1", &text(&arguments.f1, "0"), 0..=1)? as u8;
     let f2 = arguments
         .f2
         .as_ref()
-        .map(|f2| number("--f2", f2, 1))
+        .map(|f2| number("--f2", f2, 0..=1))
         .transpose()?;
     Ok(crc::position_bits(
         f1,
@@ -96,11 +112,12 @@ fn fields(arguments: &CrcArgs) -> Result<Vec<CoveredBit>, GenError> {
 fn raw(text: &str) -> Result<Vec<CoveredBit>, GenError> {
     let digits: Vec<char> = text.chars().filter(|c| !matches!(c, '_' | ' ')).collect();
     if let Some(bad) = digits.iter().find(|c| !matches!(c, '0' | '1')) {
-        return Err(GenError::input(format!("--raw = {text:?}: has the character {bad:?}; write only 0 and 1, first transmitted bit first")));
+        return Err(GenError::input(format!("--raw = {}: has the character {bad:?}; write only 0 and 1, first transmitted bit first", shown(text))));
     }
     if digits.is_empty() || digits.len() > crc::BITS_MAX {
         return Err(GenError::input(format!(
-            "--raw: has {} bits, outside 1..{}; give the covered bits of one block",
+            "--raw = {}: has {} bits, outside 1..{}; give the covered bits of one block",
+            shown(text),
             digits.len(),
             crc::BITS_MAX
         )));
@@ -122,7 +139,7 @@ pub fn run(arguments: &CrcArgs) -> Result<Outcome, GenError> {
     let received = arguments
         .received
         .as_ref()
-        .map(|r| number("--received", r, 31))
+        .map(|r| number("--received", r, 0..=31))
         .transpose()?;
     let explanation = crc::explain(bits, received.map(|r| r as u8));
     let stdout = if arguments.json {

@@ -51,11 +51,22 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
         found.push(format!("renew with: {}", repair(arguments)));
         return Err(GenError::CheckFailed(found));
     }
-    let written = artifact::write(&folder, &artifacts)?;
+    let left = artifact::leftovers(&folder, &artifacts);
+    let written = artifact::write(&folder, &artifacts, "give another folder with --out")?;
     let mut lines: String = written
         .iter()
         .map(|path| format!("{}\n", path.display()))
         .collect();
+    let mut messages = left.kept;
+    for path in left.removable {
+        match std::fs::remove_file(&path) {
+            Ok(()) => lines.push_str(&format!("{}: removed\n", path.display())),
+            Err(e) => messages.push(format!(
+                "{}: is no longer emitted, and cannot be removed: {e}; delete it",
+                path.display()
+            )),
+        }
+    }
     if lines.is_empty() {
         lines = format!(
             "{}: {} files, up to date\n",
@@ -64,7 +75,7 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
         );
     }
     Ok(Outcome {
-        messages: artifact::leftovers(&folder, &artifacts),
+        messages,
         ..Outcome::good(lines)
     })
 }

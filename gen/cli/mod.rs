@@ -2,8 +2,10 @@
 
 mod area;
 mod bench;
+mod campaign;
 mod crc_command;
 mod emit;
+mod pictures;
 mod sim;
 
 use crate::config::{self, Project};
@@ -73,6 +75,8 @@ enum Command {
     Area(area::AreaArgs),
     /// Measure the simulators, this project's and others
     Bench(bench::BenchArgs),
+    /// Run thousands of cases side by side and check every frame
+    Campaign(campaign::CampaignArgs),
 }
 
 /// Which configuration.
@@ -142,6 +146,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Crc(arguments)) => crc_command::run(&arguments),
         Some(Command::Area(arguments)) => area::run(&arguments),
         Some(Command::Bench(arguments)) => bench::run(&arguments),
+        Some(Command::Campaign(arguments)) => campaign::run(&arguments),
     }
 }
 

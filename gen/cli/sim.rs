@@ -1,19 +1,17 @@
 //! `sim`: runs a named scenario of the bench on the channel, as elaborated for emission.
 
+use super::pictures::{draw, Pictures};
 use super::{to_json, Outcome};
-use crate::artifact::{self, Artifact};
-use crate::error::GenError;
+use crate::error::{shown, GenError};
 use clap::Args;
 use endat_hdl::channel::{Channel, FixedTimes};
 use endat_hdl::elaborate::elaborate;
 use endat_sim::bench::Bench;
-use endat_sim::diagram::frame_svg;
 use endat_sim::engine::Compiled;
 use endat_sim::scenario::{self, ChannelReport, FrameReport, Report, RunOptions, Scenario};
-use endat_sim::wave::Wave;
 use rust_hdl::prelude::Block;
 use serde_json::{json, Value};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments of `sim`.
 #[derive(Args)]
@@ -25,7 +23,12 @@ pub struct SimArgs {
     #[arg(long)]
     list: bool,
     /// Run only this channel of the scenario [default: all; waveforms and drawing are of the first one run]
-    #[arg(long, value_name = "N", conflicts_with = "list")]
+    #[arg(
+        long,
+        value_name = "N",
+        conflicts_with = "list",
+        allow_negative_numbers = true
+    )]
     channel: Option<String>,
     /// Write the waveforms, and a GTKWave layout beside them
     #[arg(long, value_name = "FILE", conflicts_with = "list")]
@@ -40,8 +43,6 @@ pub struct SimArgs {
 
 /// Cycles from the pin to the register that takes a sample, without the filter: synchroniser and level.
 const SAMPLE_LATENCY_CYCLES: u64 = 3;
-/// The frame that is drawn: the first at the full clock.
-const DRAWN_FRAME: usize = 1;
 
 /// Runs the command.
 pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
@@ -57,7 +58,8 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
     };
     let Some(scenario) = scenario::named(name) else {
         return Err(GenError::input(format!(
-            "sim {name}: unknown scenario; known scenarios: {}",
+            "scenario = {}: unknown scenario; known scenarios: {}",
+            shown(name),
             known()
         )));
     };
@@ -67,7 +69,12 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
     for (order, index) in channels.into_iter().enumerate() {
         let (bench, report) = run_channel(&scenario, index)?;
         if order == 0 {
-            outcome.messages.extend(draw(arguments, &bench, &scenario)?);
+            let files = Pictures {
+                vcd: arguments.vcd.as_deref(),
+                svg: arguments.svg.as_deref(),
+            };
+            let title = format!("{}: {}", scenario.name, scenario.summary);
+            outcome.messages.extend(draw(&files, &bench, &title)?);
         }
         if !report.complaints().is_empty() {
             outcome.exit_code = 1;
@@ -113,7 +120,8 @@ fn chosen(arguments: &SimArgs, scenario: &Scenario) -> Result<Vec<usize>, GenErr
         Some(text) => match text.parse::<usize>() {
             Ok(index) if index < count => Ok(vec![index]),
             _ => Err(GenError::input(format!(
-                "--channel = {text:?}: outside 0..{}; choose a channel of {}",
+                "--channel = {}: outside 0..{}; choose a channel of {}",
+                shown(text),
                 count - 1,
                 scenario.name
             ))),
@@ -141,68 +149,6 @@ fn run_channel(scenario: &Scenario, index: usize) -> Result<(Bench<Compiled>, Re
         sample_latency_cycles: SAMPLE_LATENCY_CYCLES + settings.filter_cycles,
     };
     Ok(scenario.run_channel(index, engine, options))
-}
-
-/// Writes waveforms and drawing; returns one message for each file.
-fn draw(
-    arguments: &SimArgs,
-    bench: &Bench<Compiled>,
-    scenario: &Scenario,
-) -> Result<Vec<String>, GenError> {
-    let mut written = Vec::new();
-    if let Some(path) = &arguments.vcd {
-        let name = file_name(path)?;
-        let wave = Wave::of(bench);
-        let mut bytes = Vec::new();
-        wave.write_vcd(&mut bytes)
-            .map_err(|e| GenError::io("write", path, &e, "give another file"))?;
-        let layout = path.with_extension("gtkw");
-        if layout == *path {
-            return Err(GenError::input(format!(
-                "--vcd = {}: is the name of the layout beside it; give a name that ends in .vcd",
-                path.display()
-            )));
-        }
-        written.extend(write(path, &String::from_utf8_lossy(&bytes))?);
-        written.extend(write(&layout, &wave.gtkw(&name))?);
-    }
-    if let Some(path) = &arguments.svg {
-        let link = bench.link(0);
-        let title = format!("{}: {}", scenario.name, scenario.summary);
-        let drawing = frame_svg(link, DRAWN_FRAME, &title).or_else(|| frame_svg(link, 0, &title));
-        match drawing {
-            Some(svg) => written.extend(write(path, &svg)?),
-            None => {
-                return Err(GenError::input(format!(
-                    "--svg = {}: this scenario has no frame to draw; leave it out",
-                    path.display()
-                )))
-            }
-        }
-    }
-    Ok(written)
-}
-
-fn file_name(path: &Path) -> Result<String, GenError> {
-    let name = path.file_name().map(|n| n.to_string_lossy().into_owned());
-    name.ok_or_else(|| {
-        GenError::input(format!(
-            "{}: is not the name of a file; give one",
-            path.display()
-        ))
-    })
-}
-
-fn write(path: &Path, text: &str) -> Result<Vec<String>, GenError> {
-    let folder = path
-        .parent()
-        .filter(|p| !p.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let files = artifact::write(folder, &[Artifact::new(file_name(path)?, text)])?;
-    Ok(files
-        .iter()
-        .map(|_| format!("wrote {}", path.display()))
-        .collect())
 }
 
 fn us(time: endat_sim::Time) -> f64 {

@@ -6,8 +6,9 @@ mod schema;
 
 pub use names::{check_name, NAME_MAX};
 
+use crate::artifact::read_regular;
 use crate::board::{Assignment, Board, Pll};
-use crate::error::{Diagnostic, GenError};
+use crate::error::{shown, Diagnostic, GenError};
 use endat_hdl::config::CardConfig;
 use std::path::Path;
 
@@ -19,7 +20,7 @@ pub const PRESETS: &[(&str, &str)] = &[(
 /// The preset that the program emits when nothing else is asked for.
 pub const DEFAULT_PRESET: &str = "s6_two_channel";
 /// Largest configuration file; a larger one is not a configuration.
-const FILE_BYTES_MAX: usize = 1 << 20;
+const FILE_BYTES_MAX: u64 = 1 << 20;
 
 /// What a port of the top level is for; decides its constraints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,7 +89,7 @@ pub fn preset(name: &str) -> Result<&'static str, GenError> {
         let known: Vec<&str> = PRESETS.iter().map(|(n, _)| *n).collect();
         GenError::input(format!(
             "--preset = {}: unknown preset; known presets: {}",
-            reader::shorten(name),
+            shown(name),
             known.join(", ")
         ))
     })
@@ -102,13 +103,8 @@ pub fn load_preset(name: &str) -> Result<Project, GenError> {
 /// A configuration file, read and checked.
 pub fn load_file(path: &Path) -> Result<Project, GenError> {
     let remedy = "give a TOML file; `endat-gen presets --show NAME` prints one to start from";
-    if path.is_dir() {
-        return Err(GenError::input(format!(
-            "{}: is a folder, not a configuration; {remedy}",
-            path.display()
-        )));
-    }
-    let bytes = std::fs::read(path).map_err(|e| GenError::io("read", path, &e, remedy))?;
+    let bytes =
+        read_regular(path, FILE_BYTES_MAX).map_err(|e| GenError::io("read", path, &e, remedy))?;
     let file = path.display().to_string();
     Ok(parse(&file, text_of(&file, &bytes)?)?)
 }
@@ -122,15 +118,6 @@ fn text_of<'b>(file: &str, bytes: &'b [u8]) -> Result<&'b str, Vec<Diagnostic>> 
             text,
         }])
     };
-    if bytes.len() > FILE_BYTES_MAX {
-        return fail(
-            0,
-            format!(
-                "has {} bytes, a configuration at most {FILE_BYTES_MAX}; give a TOML file",
-                bytes.len()
-            ),
-        );
-    }
     let line_of = |byte: usize| bytes[..byte].iter().filter(|b| **b == b'\n').count() + 1;
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     if bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF") {
@@ -190,6 +177,5 @@ mod tests {
         assert!(line(b"a\n\n\0").starts_with("f:3: has a zero byte"));
         assert!(line(b"\xFF\xFEa").contains("UTF-16"));
         assert_eq!(text_of("f", b"\xEF\xBB\xBFa"), Ok("a"));
-        assert!(line(&vec![b' '; FILE_BYTES_MAX + 1]).contains("at most"));
     }
 }

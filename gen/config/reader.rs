@@ -2,7 +2,8 @@
 //!
 //! `serde` stops at the first problem; a configuration is a form, and a form is checked as a whole.
 
-use crate::error::Diagnostic;
+use crate::error::{shorten, Diagnostic};
+use endat_hdl::config::Limits;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -62,7 +63,8 @@ impl<'t> Source<'t> {
     pub fn into_diagnostics(self) -> Vec<Diagnostic> {
         let mut all = self.diagnostics.into_inner();
         all.sort_by_key(|d| d.line);
-        all.dedup();
+        let mut seen = BTreeSet::new();
+        all.retain(|d| seen.insert((d.line, d.text.clone())));
         all
     }
 }
@@ -81,7 +83,7 @@ pub struct Table<'s, 't> {
     source: &'s Source<'t>,
     table: &'s DeTable<'t>,
     path: String,
-    /// Line of the table's head.
+    /// Line of the table's head; 0 when it is missing.
     pub line: usize,
     known: RefCell<BTreeSet<&'static str>>,
 }
@@ -138,8 +140,8 @@ impl<'s, 't> Table<'s, 't> {
         })
     }
 
-    /// An integer, if the key is there.
-    pub fn integer(&self, key: &'static str) -> Option<At<u64>> {
+    /// An integer, if the key is there; `limits` are told when it is negative or beyond every number of hardware.
+    pub fn integer(&self, key: &'static str, limits: &Limits) -> Option<At<u64>> {
         let spanned = self.get(key)?;
         let Some(integer) = spanned.get_ref().as_integer() else {
             self.wrong_type(
@@ -154,12 +156,8 @@ impl<'s, 't> Table<'s, 't> {
                 self.at(value as u64, spanned)
             }
             _ => {
-                let text = format!(
-                    "{} = {}: outside 0..{}; choose a value in that range",
-                    self.name(key),
-                    self.excerpt(&spanned.span()),
-                    u64::from(u32::MAX) * 1_000
-                );
+                let (name, value) = (self.name(key), self.excerpt(&spanned.span()));
+                let text = format!("{name} = {value}: {limits}");
                 self.source.complain(&spanned.span(), text);
                 None
             }
@@ -167,9 +165,14 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// An integer that must be there.
-    pub fn required_integer(&self, key: &'static str, example: &str) -> Option<At<u64>> {
+    pub fn required_integer(
+        &self,
+        key: &'static str,
+        example: &str,
+        limits: &Limits,
+    ) -> Option<At<u64>> {
         self.require(key, example)?;
-        self.integer(key)
+        self.integer(key, limits)
     }
 
     /// A string, if the key is there.
@@ -221,19 +224,19 @@ impl<'s, 't> Table<'s, 't> {
                 if let Some((spanned, None)) = other {
                     self.wrong_type(key, spanned, &format!("a table headed [{path}]"));
                 }
-                Table::new(self.source, empty, path, 1)
+                Table::new(self.source, empty, path, 0)
             }
         }
     }
 
-    /// An array of tables; empty when missing.
-    pub fn tables(&self, key: &'static str) -> Vec<Table<'s, 't>> {
+    /// An array of tables; empty when missing, `None` when it is something else.
+    pub fn tables(&self, key: &'static str) -> Option<Vec<Table<'s, 't>>> {
         let Some(spanned) = self.get(key) else {
-            return Vec::new();
+            return Some(Vec::new());
         };
         let Some(array) = spanned.get_ref().as_array() else {
             self.wrong_type(key, spanned, &format!("tables headed [[{key}]]"));
-            return Vec::new();
+            return None;
         };
         let mut all = Vec::new();
         for (index, item) in array.iter().enumerate() {
@@ -247,10 +250,13 @@ impl<'s, 't> Table<'s, 't> {
                         line,
                     ));
                 }
-                None => self.wrong_type(key, item, &format!("a table headed [[{key}]]")),
+                None => {
+                    self.wrong_type(key, item, &format!("a table headed [[{key}]]"));
+                    return None;
+                }
             }
         }
-        all
+        Some(all)
     }
 
     /// Every key with its text, for tables whose keys are names of things.
@@ -270,8 +276,13 @@ impl<'s, 't> Table<'s, 't> {
 
     fn require(&self, key: &'static str, example: &str) -> Option<()> {
         if self.get(key).is_none() {
+            // Without its table there is no line to add it to.
+            let place = match self.line {
+                0 => format!(" below `[{}]`", self.path),
+                _ => String::new(),
+            };
             let text = format!(
-                "{}: is missing; add, for example, `{key} = {example}`",
+                "{}: is missing; add, for example, `{key} = {example}`{place}",
                 self.name(key)
             );
             self.source.complain_line(self.line, text);
@@ -349,23 +360,6 @@ fn article(kind: &str) -> String {
     format!("{} {kind}", if an { "an" } else { "a" })
 }
 
-/// At most 60 characters, on one line, without control characters.
-pub fn shorten(text: &str) -> String {
-    let mut short: String = text.chars().take(60).flat_map(printable).collect();
-    if text.chars().nth(60).is_some() {
-        short.push_str("...");
-    }
-    short
-}
-
-fn printable(c: char) -> Vec<char> {
-    if c.is_control() {
-        c.escape_default().collect()
-    } else {
-        vec![c]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -377,11 +371,5 @@ mod tests {
         assert_eq!(nearest("colour", &known), None);
         assert_eq!(distance("abc", "abc"), 0);
         assert_eq!(distance("abc", "acb"), 2);
-    }
-
-    #[test]
-    fn values_in_messages_stay_on_one_line() {
-        assert_eq!(shorten("a\nb\u{7}"), "a\\nb\\u{7}");
-        assert_eq!(shorten(&"x".repeat(61)), format!("{}...", "x".repeat(60)));
     }
 }

@@ -3,11 +3,12 @@
 use super::reader::{At, Source, Table};
 use super::{check_name, Kind, Project};
 use crate::board::{self, Assignment, Board};
+use crate::error::shorten;
 use endat_hdl::config::*;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::timing::{cycles_at_most, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use toml::de::DeTable;
 
 /// Keys that `[endat]` gives for all channels and a `[[channel]]` may give for itself.
@@ -23,6 +24,8 @@ const LINE_KEYS: [&str; 8] = [
 ];
 /// The usual longest calculation time of EnDat 2.2 encoders, in ns.
 const TCAL_MAX_NS: u64 = 5_000;
+/// Longest name of an encoder, in characters: a column of a report.
+const ENCODER_MAX: usize = 40;
 /// Longest cable when none is given, in metres.
 const CABLE_M: u64 = 100;
 
@@ -41,11 +44,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let (document, errors) = DeTable::parse_recoverable(source.text());
     for error in &errors {
         let line = error.span().map_or(0, |span| source.line(span.start));
-        let text = format!(
-            "not TOML: {}; correct the line",
-            error.message().replace('\n', ", ")
-        );
-        source.complain_line(line, text);
+        source.complain_line(line, not_toml(source, error, line));
     }
     if !errors.is_empty() {
         return None;
@@ -53,81 +52,91 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let empty = DeTable::new();
     let root = Table::root(source, document.get_ref());
     let name = read_name(&root);
-    let clock = root.table("clock", &empty);
-    let system = clock.required_integer("system_hz", "100_000_000");
-    let endat = root.table("endat", &empty);
-    let defaults = read_line_keys(&endat);
-    let tables = root.tables("channel");
-    let channels: Vec<Option<Channel>> = tables
-        .iter()
-        .map(|t| read_channel(t, &defaults, system.as_ref()))
-        .collect();
-    let trigger = root.table("trigger", &empty);
-    let sample = trigger.required_integer("sample_hz", "10_000");
-    let sources = read_sources(&trigger);
-    let link = root.table("link", &empty);
-    let baud = link.required_integer("baud", "2_000_000");
-    let read_hz = link.integer("read_hz");
     let board_table = root.table("board", &empty);
     let board = read_board(&board_table);
+    let clock = root.table("clock", &empty);
+    let system_limits = limits("system_hz", None);
+    let system = clock.required_integer("system_hz", "100_000_000", &system_limits);
+    let system_hz = system.as_ref().map(|s| s.value);
+    let system_hz = system_hz.filter(|hz| system_limits.contains(*hz));
+    let endat = root.table("endat", &empty);
+    let defaults = read_line_keys(&endat, system_hz);
+    let tables = root.tables("channel");
+    let channels: Option<Vec<Option<Channel>>> = tables.as_ref().map(|tables| {
+        let channels = tables.iter();
+        channels
+            .map(|t| read_channel(t, &defaults, system_hz))
+            .collect()
+    });
+    let trigger = root.table("trigger", &empty);
+    let sample_limits = limits("sample_hz", system_hz);
+    let sample = trigger.required_integer("sample_hz", "10_000", &sample_limits);
+    let sources = read_sources(&trigger);
+    let link = root.table("link", &empty);
+    let baud_max = board.as_ref().map(|b| b.uart_baud_max);
+    let baud_limits = limits("baud", system_hz).at_most(baud_max.unwrap_or(u64::MAX), BAUD_NOTE);
+    let baud = link.required_integer("baud", "2_000_000", &baud_limits);
+    let read_hz = link.integer("read_hz", &limits("read_hz", system_hz));
     let pins = root.table("pins", &empty);
-    for table in tables
-        .iter()
-        .chain([&clock, &endat, &trigger, &link, &board_table, &root])
+    for table in
+        tables
+            .iter()
+            .flatten()
+            .chain([&clock, &endat, &trigger, &link, &board_table, &root])
     {
         table.finish();
     }
-    if let (Some(board), Some(system)) = (&board, &system) {
-        if (SYSTEM_HZ_MIN..=SYSTEM_HZ_MAX).contains(&system.value) {
-            if let Err(text) = board::pll(board.oscillator_hz, system.value) {
-                clock.complain(system.line, "system_hz", &system.value.to_string(), &text);
-            }
+    if let (Some(board), Some(system), true) = (&board, &system, system_hz.is_some()) {
+        if let Err(text) = board::pll(board.oscillator_hz, system.value) {
+            clock.complain(system.line, "system_hz", &system.value.to_string(), &text);
         }
     }
-    if let (Some(board), Some(baud)) = (&board, &baud) {
-        if baud.value > board.uart_baud_max {
-            let text = format!(
-                "more than {} bit/s, the most that {} passes on; lower it",
-                board.uart_baud_max, board.name
-            );
-            link.complain(baud.line, "baud", &baud.value.to_string(), &text);
-        }
-    }
-    let assignments = board
-        .as_ref()
-        .map(|board| assign_pins(source, &pins, board, tables.len()));
-    // Numbers are judged together, and only when every one of them could be read.
-    let (system, sample, baud) = (system?, sample?, baud?);
-    let channels: Vec<Channel> = channels.into_iter().collect::<Option<_>>()?;
-    let request = CardRequest {
-        system_hz: system.value,
-        channels: channels.iter().map(|c| c.request.clone()).collect(),
-        sample_hz: sample.value,
-        sources: sources?,
-        baud: baud.value,
-        read_hz: read_hz.as_ref().map_or(sample.value, |r| r.value),
+    // The pins of a card with too many channels would only repeat that complaint.
+    let count = tables.as_ref().map(Vec::len);
+    let count = count.filter(|count| CHANNELS.contains(count));
+    let assignments = match (&board, count) {
+        (Some(board), Some(count)) => Some(assign_pins(source, &pins, board, count)),
+        _ => None,
     };
-    let card = match CardConfig::resolve(&request) {
+    let usual_read_hz = sample.as_ref().map(|s| s.value);
+    let usual_read_hz = usual_read_hz
+        .filter(|hz| !link.has("read_hz") && limits("read_hz", system_hz).contains(*hz));
+    let requests = channels.as_ref().map(|channels| {
+        let requests = channels.iter();
+        requests
+            .map(|c| c.as_ref().map(|c| c.request.clone()))
+            .collect()
+    });
+    let draft = CardDraft {
+        system_hz: system.as_ref().map(|s| s.value),
+        channels: requests,
+        sample_hz: sample.as_ref().map(|s| s.value),
+        sources,
+        baud: baud.as_ref().map(|b| b.value),
+        baud_max,
+        read_hz: read_hz.as_ref().map(|r| r.value).or(usual_read_hz),
+    };
+    let channels = channels.unwrap_or_default();
+    let card = match draft.resolve() {
         Ok(card) => card,
         Err(problems) => {
+            let line = |at: &Option<At<u64>>| at.as_ref().map_or(0, |at| at.line);
             let lines = [
-                (Section::Clock, "system_hz", &system),
-                (Section::Trigger, "sample_hz", &sample),
-                (Section::Link, "baud", &baud),
-                (
-                    Section::Link,
-                    "read_hz",
-                    read_hz.as_ref().unwrap_or(&sample),
-                ),
+                (Section::Clock, "system_hz", line(&system)),
+                (Section::Trigger, "sample_hz", line(&sample)),
+                (Section::Link, "baud", line(&baud)),
+                (Section::Link, "read_hz", line(&read_hz)),
             ];
+            let heads: Vec<usize> = tables.iter().flatten().map(|t| t.line).collect();
             for problem in problems {
-                report(source, &problem, &channels, &lines);
+                report(source, &problem, &channels, &heads, &lines);
             }
             return None;
         }
     };
+    let channels: Vec<Channel> = channels.into_iter().collect::<Option<_>>()?;
     let (name, board, pins) = (name?, board?, assignments?);
-    let pll = board::pll(board.oscillator_hz, system.value).ok()?;
+    let pll = board::pll(board.oscillator_hz, card.system_hz).ok()?;
     let hash = Sha256::digest(canonical(&card, &board, &pins))[..6]
         .iter()
         .map(|b| format!("{b:02x}"))
@@ -147,6 +156,26 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         pins,
         hash,
     })
+}
+
+/// What the parser says about a line, and what to do about the usual mistakes.
+fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String {
+    let message = error.message().replace('\n', ", ");
+    let written = source.text().lines().nth(line.saturating_sub(1));
+    let (key, value) = written.and_then(|l| l.split_once('=')).unwrap_or_default();
+    let value = value.split('#').next().unwrap_or_default().trim();
+    let digits = value.len() > 1 && value.chars().all(|c| c.is_ascii_digit() || c == '_');
+    let remedy = match () {
+        () if digits && value.starts_with('0') => {
+            format!("put it in quotes: {} = \"{value}\"", key.trim())
+        }
+        () if message.contains("duplicate key") => {
+            let span = error.span().and_then(|span| source.text().get(span));
+            format!("{} stands twice, remove one", span.unwrap_or(key).trim())
+        }
+        () => "correct the line".into(),
+    };
+    format!("not TOML: {message}; {}", shorten(&remedy))
 }
 
 /// The resolved configuration as text, one number a line: what it means, not how the file spells it.
@@ -199,37 +228,47 @@ fn read_name(root: &Table<'_, '_>) -> Option<String> {
     }
 }
 
-fn read_line_keys(table: &Table<'_, '_>) -> BTreeMap<&'static str, (String, At<u64>)> {
-    let read = LINE_KEYS
-        .iter()
-        .filter_map(|key| Some((*key, (table.name(key), table.integer(key)?))));
-    read.collect()
+/// What was written for the keys of a line; `None` for what could not be read.
+type LineKeys = BTreeMap<&'static str, Option<(String, At<u64>)>>;
+
+fn read_line_keys(table: &Table<'_, '_>, system_hz: Option<u64>) -> LineKeys {
+    let written = LINE_KEYS.iter().filter_map(|key| {
+        let value = table.integer(key, &limits(key, system_hz));
+        let place = |at| (table.name(key), at);
+        table.has(key).then(|| (*key, value.map(place)))
+    });
+    written.collect()
 }
 
 fn read_channel(
     table: &Table<'_, '_>,
-    defaults: &BTreeMap<&'static str, (String, At<u64>)>,
-    system: Option<&At<u64>>,
+    defaults: &LineKeys,
+    system_hz: Option<u64>,
 ) -> Option<Channel> {
-    let encoder = table.string("encoder").map_or(String::new(), |e| e.value);
-    let position = table.required_integer("position_bits", "29");
+    let encoder = read_encoder(table);
+    let limits = limits("position_bits", system_hz);
+    let position = table.required_integer("position_bits", "29", &limits);
     let command = table.required_string("command", "\"111000\"");
     let command = command.and_then(|c| read_command(table, c));
     let mut keys = defaults.clone();
-    keys.extend(read_line_keys(table));
-    let value = |key: &str| keys.get(key).map(|(_, at)| at.value);
-    if value("clock_hz").is_none() && !table.has("clock_hz") {
+    keys.extend(read_line_keys(table, system_hz));
+    if !keys.contains_key("clock_hz") {
         let text = format!(
             "{}: is missing; add `clock_hz = 3_125_000` here or in [endat]",
             table.name("clock_hz")
         );
         table.complain_plain(text);
     }
-    let mut places: Places = keys
-        .iter()
-        .map(|(key, (path, at))| (*key, (path.clone(), at.line)))
-        .collect();
-    let (position, command, clock_hz) = (position?, command?, value("clock_hz")?);
+    let (encoder, position, command) = (encoder?, position?, command?);
+    let mut values = BTreeMap::new();
+    let mut places = Places::new();
+    for (key, written) in keys {
+        let (path, at) = written?;
+        values.insert(key, at.value);
+        places.insert(key, (path, at.line));
+    }
+    let value = |key: &str| values.get(key).copied();
+    let clock_hz = value("clock_hz")?;
     places.insert(
         "position_bits",
         (table.name("position_bits"), position.line),
@@ -242,7 +281,7 @@ fn read_channel(
         position_bits: position.value,
         filter_ns: value("filter_ns").unwrap_or(0),
         start_window_ns: value("start_window_ns")
-            .unwrap_or_else(|| usual_window_ns(clock_hz, system.map_or(0, |s| s.value))),
+            .unwrap_or_else(|| usual_window_ns(clock_hz, system_hz.unwrap_or(0))),
         tcal_max_ns: value("tcal_max_ns").unwrap_or(TCAL_MAX_NS),
         recovery_min_ns: value("recovery_min_ns").unwrap_or(RECOVERY_MIN_NS),
         recovery_max_ns: value("recovery_max_ns").unwrap_or(RECOVERY_MAX_NS),
@@ -253,6 +292,32 @@ fn read_channel(
         encoder,
         places,
     })
+}
+
+/// The encoder's name, which goes into reports and comments; empty when none is given.
+fn read_encoder(table: &Table<'_, '_>) -> Option<String> {
+    let Some(encoder) = table.string("encoder") else {
+        return (!table.has("encoder")).then(String::new);
+    };
+    let invisible = |c: &char| {
+        c.is_control()
+            || matches!(c, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
+    };
+    let count = encoder.value.chars().count();
+    let text = if let Some(bad) = encoder.value.chars().find(invisible) {
+        format!("has the character {bad:?}, which cannot be seen; remove it")
+    } else if count > ENCODER_MAX {
+        format!("has {count} characters, at most {ENCODER_MAX} are allowed; shorten it")
+    } else {
+        return Some(encoder.value);
+    };
+    table.complain(
+        encoder.line,
+        "encoder",
+        &format!("{:?}", encoder.value),
+        &text,
+    );
+    None
 }
 
 /// A quarter of a period, as far as the counter of the start window reaches.
@@ -368,7 +433,7 @@ fn assign_pins(
     board: &Board,
     channels: usize,
 ) -> Vec<Assignment> {
-    let ports = card_ports(channels.min(*CHANNELS.end()));
+    let ports = card_ports(channels);
     let moved = pins.free_strings();
     for (signal, at) in &moved {
         if !ports.iter().any(|(port, _)| port == signal) {
@@ -377,6 +442,16 @@ fn assign_pins(
             pins.complain(at.line, signal, &format!("{:?}", at.value), &text);
         }
     }
+    let taken: BTreeSet<String> = ports
+        .iter()
+        .filter_map(|(signal, _)| {
+            let user = moved.iter().find(|(s, _)| s == signal);
+            user.map(|(_, at)| &at.value)
+                .or_else(|| board.usual_place(signal))
+        })
+        .filter_map(|word| board.pin(word).ok())
+        .collect();
+    let mut free = board.places().filter(|(_, pin)| !taken.contains(*pin));
     let mut all = vec![Assignment {
         signal: OSCILLATOR_PORT.into(),
         kind: Kind::Oscillator,
@@ -389,8 +464,9 @@ fn assign_pins(
             .map(|at| &at.value)
             .or_else(|| board.usual_place(&signal))
         else {
+            let place = free.next().map_or(String::new(), |(place, _)| place);
             let text = format!(
-                "{}: {} has no usual pin for it; add, for example, `{signal} = \"A0\"` to [pins]",
+                "{}: {} has no usual pin for it; add, for example, `{signal} = \"{place}\"` to [pins]",
                 pins.name(&signal),
                 board.name
             );
@@ -440,42 +516,35 @@ fn assign_pins(
 fn report(
     source: &Source<'_>,
     problem: &Problem,
-    channels: &[Channel],
-    lines: &[(Section, &str, &At<u64>)],
+    channels: &[Option<Channel>],
+    heads: &[usize],
+    lines: &[(Section, &str, usize)],
 ) {
+    let key = problem.key;
     let (path, line) = match problem.section {
+        Section::Channel(index) if key == "channel" => {
+            ("channel".into(), heads.get(index).copied().unwrap_or(0))
+        }
         Section::Channel(index) => {
-            let place = channels
-                .get(index)
-                .and_then(|c| c.places.get(problem.key).or(c.places.get("channel")));
-            let (path, line) = place.cloned().unwrap_or(("channel".into(), 0));
-            let inherited = path.ends_with(problem.key);
-            (
-                if inherited {
-                    path
-                } else {
-                    format!("channel[{index}].{}", problem.key)
-                },
-                line,
-            )
+            let places = channels.get(index).and_then(Option::as_ref);
+            let place = places.and_then(|c| c.places.get(key).or(c.places.get("channel")));
+            let (path, line) = place.cloned().unwrap_or_default();
+            let inherited = path.ends_with(key);
+            let own = || format!("channel[{index}].{key}");
+            (if inherited { path } else { own() }, line)
         }
         section => {
-            let line = lines
-                .iter()
-                .find(|(s, key, _)| *s == section && *key == problem.key)
-                .map_or(0, |(_, _, at)| at.line);
+            let found = lines.iter().find(|(s, k, _)| *s == section && *k == key);
             let table = match section {
                 Section::Clock => "clock",
                 Section::Trigger => "trigger",
                 _ => "link",
             };
-            (format!("{table}.{}", problem.key), line)
+            (
+                format!("{table}.{key}"),
+                found.map_or(0, |(.., line)| *line),
+            )
         }
-    };
-    let path = if channels.is_empty() && problem.key == "channel" {
-        "channel".into()
-    } else {
-        path
     };
     source.complain_line(
         line,

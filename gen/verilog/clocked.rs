@@ -1,7 +1,8 @@
 //! Registers and memories as Verilog text.
 
 use super::expression::{literal, Helpers};
-use super::module::{comment, vector, ModulePrinter, INDENT};
+use super::module::ModulePrinter;
+use super::text::{comment, vector, INDENT};
 use endat_hdl::elaborate::{Memory, NetId, Register};
 
 /// Clock and reset, and the registers that have both.

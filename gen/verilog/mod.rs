@@ -7,6 +7,7 @@ mod clocked;
 mod expression;
 mod module;
 mod names;
+mod text;
 
 pub use names::emitted_name;
 

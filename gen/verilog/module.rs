@@ -1,12 +1,12 @@
 //! One module as Verilog text.
 
 use super::expression::{literal, range, Helper, Helpers};
+use super::text::{comment, ranges, upper, vector, INDENT};
 use endat_hdl::elaborate::{
     mask, Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Statement,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-pub(super) const INDENT: &str = "    ";
 /// Keeps a synchroniser stage a flip-flop: Vivado and XST, then yosys and other tools.
 const SYNCHRONISER: &str = "(* ASYNC_REG = \"TRUE\", SHREG_EXTRACT = \"NO\", keep = \"true\" *)";
 
@@ -476,43 +476,4 @@ fn direct_next(module: &Module) -> BTreeMap<NetId, Expr> {
         _ => None,
     };
     module.processes.iter().filter_map(single).collect()
-}
-
-/// The ranges of set bits, as lowest bit and width.
-fn ranges(mut bits: u128) -> impl Iterator<Item = (usize, usize)> {
-    std::iter::from_fn(move || {
-        if bits == 0 {
-            return None;
-        }
-        let low = bits.trailing_zeros() as usize;
-        let width = (bits >> low).trailing_ones() as usize;
-        bits &= !(mask(width) << low);
-        Some((low, width))
-    })
-}
-
-pub(super) fn vector(width_bits: usize) -> String {
-    match width_bits {
-        1 => String::new(),
-        _ => format!("[{}:0]", width_bits - 1),
-    }
-}
-
-pub(super) fn comment(lines: &[String], pad: &str) -> String {
-    let line = |line: &String| format!("{}\n", format!("{pad}// {line}").trim_end());
-    lines.iter().map(line).collect()
-}
-
-/// `NoStartBit` becomes `NO_START_BIT`.
-fn upper(name: &str) -> String {
-    let mut out = String::new();
-    let mut previous_is_lower = false;
-    for c in name.chars() {
-        if c.is_ascii_uppercase() && previous_is_lower {
-            out.push('_');
-        }
-        previous_is_lower = !c.is_ascii_uppercase();
-        out.push(c.to_ascii_uppercase());
-    }
-    out
 }

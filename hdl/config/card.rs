@@ -1,54 +1,218 @@
 //! Card requests into cycles: sampling timer and host link.
 
 use super::*;
+use crate::protocol::LEAD_PULSES;
+use crate::regs::result_words;
 use crate::timing::*;
 
-impl CardConfig {
-    /// Converts and checks a whole card; `Err` has every problem found.
-    pub fn resolve(request: &CardRequest) -> Result<Self, Vec<Problem>> {
+/// Where the upper limit of the UART rate comes from when it is not the system clock.
+pub const BAUD_NOTE: &str = "the most that the board passes on to the host";
+
+impl CardDraft {
+    /// Converts and checks what is there; `Err` has every problem found, none when only something is missing.
+    pub fn resolve(&self) -> Result<CardConfig, Vec<Problem>> {
         let mut problems = Vec::new();
-        let system_hz = request.system_hz;
         let mut check = Check {
             section: Section::Clock,
             problems: &mut problems,
         };
-        let clock_good = check.range("system_hz", system_hz, SYSTEM_HZ_MIN..=SYSTEM_HZ_MAX);
-        if !CHANNELS.contains(&request.channels.len()) {
-            let (low, high) = (CHANNELS.start(), CHANNELS.end());
-            check.section = Section::Channel(0);
-            check.fail(
-                "channel",
-                format!("{} tables", request.channels.len()),
-                format!("a card has {low}..{high} channels; write one [[channel]] table for each"),
-            );
-        }
-        if !clock_good {
+        let clock = self
+            .system_hz
+            .filter(|hz| check.within("system_hz", *hz, &limits("system_hz", None)));
+        let count = self.channels.as_ref().map(Vec::len);
+        let count = count.filter(|count| {
+            let good = CHANNELS.contains(count);
+            if !good {
+                let (low, high) = (CHANNELS.start(), CHANNELS.end());
+                check.section = Section::Channel(*high);
+                check.fail(
+                    "channel",
+                    format!("{count} tables"),
+                    format!(
+                        "a card has {low}..{high} channels; write one [[channel]] table for each"
+                    ),
+                );
+            }
+            good
+        });
+        let Some(system_hz) = clock else {
             // Without a believable system clock every other number would only repeat this complaint.
             return Err(problems);
-        }
+        };
         let mut channels = Vec::new();
-        for (index, channel) in request.channels.iter().enumerate() {
-            match ChannelConfig::resolve(channel, system_hz, index) {
-                Ok(channel) => channels.push(channel),
-                Err(more) => problems.extend(more),
+        for (index, channel) in self.channels.iter().flatten().enumerate() {
+            match channel
+                .as_ref()
+                .map(|c| ChannelConfig::resolve(c, system_hz, index))
+            {
+                Some(Ok(channel)) => channels.push((index, channel)),
+                Some(Err(more)) => problems.extend(more),
+                None => {}
             }
         }
-        let sample_period_cycles = check_sampling(&mut problems, request, &channels);
-        let uart_bit_cycles = check_link(&mut problems, request);
-        if !problems.is_empty() {
-            return Err(problems);
+        let sample_period_cycles = self.check_sampling(&mut problems, system_hz, &channels);
+        let uart_bit_cycles = self.check_link(&mut problems, system_hz, count);
+        let whole = count == Some(channels.len());
+        match (sample_period_cycles, uart_bit_cycles, self) {
+            (
+                Some(sample_period_cycles),
+                Some(uart_bit_cycles),
+                &Self {
+                    sample_hz: Some(sample_hz),
+                    sources: Some(sources),
+                    baud: Some(baud),
+                    read_hz: Some(read_hz),
+                    ..
+                },
+            ) if whole && problems.is_empty() => Ok(CardConfig {
+                system_hz,
+                channels: channels.into_iter().map(|(_, c)| c).collect(),
+                sample_period_cycles,
+                sample_hz,
+                sources,
+                uart_bit_cycles,
+                baud,
+                read_hz,
+                hash: 0,
+            }),
+            _ => Err(problems),
         }
-        Ok(Self {
-            system_hz,
-            channels,
-            sample_period_cycles,
-            sample_hz: request.sample_hz,
-            sources: request.sources,
-            uart_bit_cycles,
-            baud: request.baud,
-            read_hz: request.read_hz,
-            hash: 0,
-        })
+    }
+
+    fn check_sampling(
+        &self,
+        problems: &mut Vec<Problem>,
+        system_hz: u64,
+        channels: &[(usize, ChannelConfig)],
+    ) -> Option<u64> {
+        let mut check = Check {
+            section: Section::Trigger,
+            problems,
+        };
+        let sample_hz = self.sample_hz?;
+        if !check.within(
+            "sample_hz",
+            sample_hz,
+            &limits("sample_hz", Some(system_hz)),
+        ) {
+            return None;
+        }
+        let period = period_cycles(sample_hz, system_hz);
+        let longest = channels
+            .iter()
+            .rev()
+            .max_by_key(|(_, c)| c.cycle_max_cycles(system_hz));
+        let timer = self.sources.is_some_and(|s| s.timer);
+        if let Some((index, channel)) = longest.filter(|_| timer) {
+            let cycles = channel.cycle_max_cycles(system_hz);
+            if cycles > period {
+                check.fail(
+                    "sample_hz",
+                    sample_hz,
+                    too_long(*index, channel, cycles, system_hz),
+                );
+            }
+        }
+        Some(period)
+    }
+
+    fn check_link(
+        &self,
+        problems: &mut Vec<Problem>,
+        system_hz: u64,
+        channels: Option<usize>,
+    ) -> Option<u64> {
+        let mut check = Check {
+            section: Section::Link,
+            problems,
+        };
+        let system = Some(system_hz);
+        let read_hz = self
+            .read_hz
+            .filter(|hz| check.within("read_hz", *hz, &limits("read_hz", system)));
+        let baud = self.baud?;
+        let most = self.baud_max.unwrap_or(u64::MAX);
+        let baud_limits = limits("baud", system).at_most(most, BAUD_NOTE);
+        if !check.within("baud", baud, &baud_limits) {
+            return None;
+        }
+        let bit_cycles = period_cycles(baud, system_hz);
+        let ppm = deviation_ppm(system_hz as f64 / bit_cycles as f64, baud as f64);
+        if ppm.abs() > UART_TOLERANCE_PPM as f64 {
+            let nearest = (system_hz + bit_cycles / 2) / bit_cycles;
+            check.fail(
+                "baud",
+                baud,
+                format!("would become {nearest} bit/s ({ppm:+.0} ppm), more than the allowed {UART_TOLERANCE_PPM} ppm; use a rate that divides clock.system_hz = {system_hz}"),
+            );
+        }
+        if let (Some(read_hz), Some(channels)) = (read_hz, channels) {
+            let needed = needed_baud(read_hz, channels);
+            if needed > baud {
+                let most = baud / needed_baud(1, channels);
+                check.fail(
+                    "baud",
+                    baud,
+                    format!("the link is too slow: reading {} bytes {read_hz} times a second takes {needed} bit/s; raise baud, or set link.read_hz to {most} or less", read_bytes(channels)),
+                );
+            }
+        }
+        Some(bit_cycles)
+    }
+}
+
+/// Why a trigger would come before a channel is ready, with the shares that can be shortened, the longest first.
+fn too_long(index: usize, channel: &ChannelConfig, cycles: u64, system_hz: u64) -> String {
+    let frame = channel.frame_time(system_hz);
+    let waiting = (frame.lead_pulses - u64::from(LEAD_PULSES)) * channel.period_cycles;
+    let request = &channel.request;
+    let recovery = cycles_at_least(request.recovery_max_ns, system_hz);
+    let mut shares = [
+        (
+            waiting,
+            "shorten tcal_max_ns",
+            "tcal_max_ns",
+            request.tcal_max_ns,
+        ),
+        (
+            frame.frame_cycles - waiting,
+            "raise clock_hz",
+            "clock_hz",
+            request.clock_hz,
+        ),
+        (
+            recovery,
+            "shorten recovery_max_ns",
+            "recovery_max_ns",
+            request.recovery_max_ns,
+        ),
+    ];
+    shares.sort_by_key(|(cycles, ..)| std::cmp::Reverse(*cycles));
+    let (_, _, key, value) = shares[0];
+    let remedies: Vec<&str> = shares
+        .iter()
+        .filter(|(cycles, ..)| *cycles > 0)
+        .map(|(_, remedy, ..)| *remedy)
+        .collect();
+    format!(
+        "a frame of channel {index} with its recovery time takes up to {} us, the largest part from {key} = {value}, so at most {} Hz; lower it, or {}",
+        microseconds(cycles, system_hz),
+        system_hz / cycles,
+        remedies.join(", or ")
+    )
+}
+
+/// Rounded up to nanoseconds, without needless zeros.
+fn microseconds(cycles: u64, system_hz: u64) -> String {
+    let ns = (u128::from(cycles) * 1_000_000_000).div_ceil(u128::from(system_hz));
+    let text = format!("{}.{:03}", ns / 1_000, ns % 1_000);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+impl CardConfig {
+    /// Converts and checks a whole card; `Err` has every problem found.
+    pub fn resolve(request: &CardRequest) -> Result<Self, Vec<Problem>> {
+        CardDraft::from(request).resolve()
     }
 
     /// Sampling rate that the timer really makes, in hertz.
@@ -72,83 +236,13 @@ impl CardConfig {
     }
 }
 
-/// Bits per second of `read_hz` reads of `channels` results, request and answer one after the other.
+/// Bytes on the line when a host reads the results of all channels in one burst: request, then every word from the
+/// first result to the last (`docs/host-link.md`).
+pub const fn read_bytes(channels: usize) -> u64 {
+    READ_REQUEST_BYTES + 4 * result_words(channels)
+}
+
+/// Bits per second of `read_hz` such reads, request and answer one after the other.
 pub const fn needed_baud(read_hz: u64, channels: usize) -> u64 {
-    let bytes = READ_REQUEST_BYTES + 4 * RESULT_WORDS * channels as u64;
-    read_hz.saturating_mul(bytes * UART_BITS_PER_BYTE)
-}
-
-fn check_sampling(
-    problems: &mut Vec<Problem>,
-    request: &CardRequest,
-    channels: &[ChannelConfig],
-) -> u64 {
-    let mut check = Check {
-        section: Section::Trigger,
-        problems,
-    };
-    let system_hz = request.system_hz;
-    let slowest_hz = system_hz.div_ceil(max_of(TIMER_BITS));
-    if !check.range("sample_hz", request.sample_hz, slowest_hz..=1_000_000) {
-        return 0;
-    }
-    let period = period_cycles(request.sample_hz, system_hz);
-    let longest = channels.iter().map(|c| c.cycle_max_cycles(system_hz)).max();
-    match longest {
-        Some(longest) if request.sources.timer && longest > period => {
-            check.fail(
-                "sample_hz",
-                request.sample_hz,
-                format!(
-                    "a frame with its recovery time takes up to {:.1} us, so at most {} Hz; lower it, or raise clock_hz, or shorten recovery_max_ns",
-                    longest as f64 * 1e6 / system_hz as f64,
-                    system_hz / longest
-                ),
-            );
-        }
-        _ => {}
-    }
-    period
-}
-
-fn check_link(problems: &mut Vec<Problem>, request: &CardRequest) -> u64 {
-    let mut check = Check {
-        section: Section::Link,
-        problems,
-    };
-    let system_hz = request.system_hz;
-    if !check.range(
-        "baud",
-        request.baud,
-        9_600..=system_hz / UART_BIT_CYCLES_MIN,
-    ) {
-        return 0;
-    }
-    let bit_cycles = period_cycles(request.baud, system_hz);
-    let ppm = deviation_ppm(system_hz as f64 / bit_cycles as f64, request.baud as f64);
-    if ppm.abs() > UART_TOLERANCE_PPM as f64 {
-        let nearest = (system_hz + bit_cycles / 2) / bit_cycles;
-        check.fail(
-            "baud",
-            request.baud,
-            format!("would become {nearest} bit/s ({ppm:+.0} ppm), more than the allowed {UART_TOLERANCE_PPM} ppm; use a rate that divides clock.system_hz = {system_hz}"),
-        );
-    }
-    if !check.range("read_hz", request.read_hz, 1..=1_000_000) {
-        return bit_cycles;
-    }
-    let needed = needed_baud(request.read_hz, request.channels.len());
-    if needed > request.baud {
-        let most = request.baud / needed_baud(1, request.channels.len());
-        check.fail(
-            "baud",
-            request.baud,
-            format!(
-                "the link is too slow: reading {} channels {} times a second takes {needed} bit/s; raise baud, or set link.read_hz to {most} or less",
-                request.channels.len(),
-                request.read_hz
-            ),
-        );
-    }
-    bit_cycles
+    read_hz.saturating_mul(read_bytes(channels) * UART_BITS_PER_BYTE)
 }

@@ -1,7 +1,10 @@
 //! Channel requests into cycles, and the length of a frame.
 
+use super::limits::{
+    cycles_at_most_ns, cycles_to_ns_up, recovery_most_ns, start_wait_ns, tcal_most_ns,
+};
 use super::*;
-use crate::protocol::{LEAD_PULSES, MAX_POSITION_BITS, POSITION_BITS};
+use crate::protocol::LEAD_PULSES;
 use crate::timing::*;
 
 impl ChannelConfig {
@@ -16,67 +19,56 @@ impl ChannelConfig {
             section: Section::Channel(index),
             problems: &mut problems,
         };
-        let position_good = check.range(
-            "position_bits",
-            request.position_bits,
-            u64::from(*POSITION_BITS.start())..=u64::from(MAX_POSITION_BITS),
+        let system = Some(system_hz);
+        let mut check_one = |key, value| check.within(key, value, &limits(key, system));
+        let position_good = check_one("position_bits", request.position_bits);
+        let cable_good = check_one("cable_m", request.cable_m);
+        let clock_good = check_one("clock_hz", request.clock_hz);
+        // What is wrong itself must not narrow what another may be.
+        let cable_m = if cable_good { request.cable_m } else { 0 };
+        let tcal_clock_hz = if clock_good {
+            request.clock_hz
+        } else {
+            CALIBRATION_HZ
+        };
+        let tcal_most_ns = tcal_most_ns(tcal_clock_hz, cable_m);
+        check.within(
+            "tcal_max_ns",
+            request.tcal_max_ns,
+            &Limits::new(1..=tcal_most_ns),
         );
-        let cable_good = check.range("cable_m", request.cable_m, 0..=CABLE_M_MAX);
-        // One second is far beyond any encoder and keeps every sum below in range.
-        let tcal_good = check.range("tcal_max_ns", request.tcal_max_ns, 1..=50_000_000);
-        check_recovery(&mut check, request);
-        let period = check_clock(&mut check, request.clock_hz, system_hz);
-        let mut resolved = period.map(|period_cycles| {
+        check_recovery(&mut check, request, recovery_most_ns(system_hz, cable_m));
+        let period = clock_good
+            .then(|| check_clock(&mut check, request.clock_hz, system_hz))
+            .flatten();
+        let resolved = period.map(|period_cycles| {
             let half = period_cycles / 2;
             Self {
                 period_cycles,
                 first_low_extra_cycles: check_tst(&mut check, request, half, system_hz),
                 command: request.command,
-                position_bits: 0,
+                position_bits: if position_good {
+                    request.position_bits as u32
+                } else {
+                    0
+                },
                 filter_cycles: check_filter(&mut check, request, half, system_hz),
                 start_window_cycles: check_window(&mut check, request, half, system_hz),
-                start_timeout_us: 0,
-                recovery_limit_cycles: 0,
+                start_timeout_us: request
+                    .tcal_max_ns
+                    .saturating_add(start_wait_ns(request.clock_hz, cable_m))
+                    .div_ceil(1_000)
+                    + 1,
+                recovery_limit_cycles: cycles_at_least(
+                    request.recovery_max_ns.min(1_000_000_000) + delay_max_ns(cable_m),
+                    system_hz,
+                ) + INPUT_LATENCY_CYCLES,
                 // DATA must be low for longer than tR.
                 ready_low_cycles: cycles_at_least(READY_LOW_NS, system_hz) + 1,
                 abort_us: ABORT_US,
                 request: request.clone(),
             }
         });
-        if let (Some(config), true) = (resolved.as_mut(), position_good && cable_good && tcal_good)
-        {
-            config.position_bits = request.position_bits as u32;
-            // The calibration frame is the slow one: two of its periods may pass before a start edge is seen.
-            let slowest_hz = request.clock_hz.min(CALIBRATION_HZ);
-            let wait_ns = request.tcal_max_ns
-                + request.delay_max_ns()
-                + 2 * 1_000_000_000u64.div_ceil(slowest_hz);
-            config.start_timeout_us = wait_ns.div_ceil(1_000) + 1;
-            let timeout_us_max = max_of(START_TIMEOUT_BITS);
-            if config.start_timeout_us > timeout_us_max {
-                let most_ns = request
-                    .tcal_max_ns
-                    .saturating_sub((config.start_timeout_us - timeout_us_max) * 1_000);
-                check.fail(
-                    "tcal_max_ns",
-                    request.tcal_max_ns,
-                    format!("the wait for the start bit would be {} us, more than {timeout_us_max}; use {most_ns} or less", config.start_timeout_us),
-                );
-            }
-            let limit_ns = request.recovery_max_ns.min(1_000_000_000) + request.delay_max_ns();
-            config.recovery_limit_cycles =
-                cycles_at_least(limit_ns, system_hz) + INPUT_LATENCY_CYCLES;
-            let limit_cycles_max = max_of(RECOVERY_LIMIT_BITS);
-            if config.recovery_limit_cycles > limit_cycles_max {
-                let most_us =
-                    cycles_to_ns(limit_cycles_max - INPUT_LATENCY_CYCLES, system_hz) / 1_000;
-                check.fail(
-                    "recovery_max_ns",
-                    request.recovery_max_ns,
-                    format!("with the cable delay more than {most_us} us, the longest the counter can time at this system clock; lower it"),
-                );
-            }
-        }
         match resolved {
             Some(config) if problems.is_empty() => Ok(config),
             _ => Err(problems),
@@ -107,9 +99,14 @@ impl ChannelConfig {
         }
     }
 
+    /// Clock period of the frame that measures the propagation delay: never shorter than the ordinary one.
+    pub fn calibration_period_cycles(&self, system_hz: u64) -> u64 {
+        period_cycles(CALIBRATION_HZ, system_hz).max(self.period_cycles)
+    }
+
     /// First falling to last rising edge of the frame that measures the propagation delay.
     pub fn calibration_cycles(&self, system_hz: u64) -> u64 {
-        let period = period_cycles(CALIBRATION_HZ, system_hz);
+        let period = self.calibration_period_cycles(system_hz);
         let first_low = period / 2 + self.first_low_extra_cycles;
         let tcal_cycles = cycles_at_least(self.request.tcal_max_ns, system_hz);
         let lead = tcal_cycles
@@ -131,37 +128,41 @@ impl ChannelConfig {
     }
 }
 
-fn check_recovery(check: &mut Check<'_>, request: &ChannelRequest) {
+fn check_recovery(check: &mut Check<'_>, request: &ChannelRequest, most_ns: u64) {
     let (low, high) = (request.recovery_min_ns, request.recovery_max_ns);
-    if low > high {
-        check.fail(
-            "recovery_min_ns",
-            low,
-            format!("above recovery_max_ns = {high}; exchange the two"),
-        );
-    }
-    if low < SHORT_RECOVERY_MIN_NS {
-        check.fail(
-            "recovery_min_ns",
-            low,
-            format!("below {SHORT_RECOVERY_MIN_NS} ns, the shortest an encoder can be set to; use {RECOVERY_MIN_NS} or {SHORT_RECOVERY_MIN_NS}"),
-        );
-    } else if low < RECOVERY_MIN_NS
-        && (!request.command.has_f2() || request.clock_hz <= TST_FROM_HZ)
-    {
-        check.fail(
-            "recovery_min_ns",
-            low,
-            format!("a recovery time below {RECOVERY_MIN_NS} ns exists only with the command 111000 and a clock above {TST_FROM_HZ} Hz; use {RECOVERY_MIN_NS}"),
-        );
+    let limits = Limits::new(SHORT_RECOVERY_MIN_NS..=most_ns);
+    let low_good = check.within("recovery_min_ns", low, &limits);
+    let high_good = check.within("recovery_max_ns", high, &limits);
+    let may_be_short = request.command.has_f2() && request.clock_hz > TST_FROM_HZ;
+    let condition = format!("a recovery time below {RECOVERY_MIN_NS} ns exists only with the command 111000 and a clock above {TST_FROM_HZ} Hz");
+    if low_good && low < RECOVERY_MIN_NS && !may_be_short {
+        let text = format!("{condition}; use {RECOVERY_MIN_NS}");
+        check.fail("recovery_min_ns", low, text);
+    } else if low_good && high_good && low > high {
+        // The usual shortest time may not have been written at all.
+        let (key, value, text) = match low == RECOVERY_MIN_NS {
+            true if may_be_short => (
+                "recovery_max_ns",
+                high,
+                format!("below recovery_min_ns = {low}; add recovery_min_ns = {SHORT_RECOVERY_MIN_NS}, if the encoder is set to short"),
+            ),
+            true => (
+                "recovery_max_ns",
+                high,
+                format!("{condition}; use at least {RECOVERY_MIN_NS}"),
+            ),
+            false => (
+                "recovery_min_ns",
+                low,
+                format!("above recovery_max_ns = {high}; lower it, or raise recovery_max_ns"),
+            ),
+        };
+        check.fail(key, value, text);
     }
 }
 
 /// The period in cycles, if the rate can be made well enough.
 fn check_clock(check: &mut Check<'_>, clock_hz: u64, system_hz: u64) -> Option<u64> {
-    if !check.range("clock_hz", clock_hz, ENDAT_HZ_MIN..=ENDAT_HZ_MAX) || system_hz == 0 {
-        return None;
-    }
     let period = period_cycles(clock_hz, system_hz);
     if period < PERIOD_CYCLES_MIN {
         check.fail(
@@ -209,7 +210,7 @@ fn check_tst(check: &mut Check<'_>, request: &ChannelRequest, half: u64, system_
     if tst == 0 {
         return 0;
     }
-    if !check.range("tst_ns", tst, TST_MIN_NS..=TST_MAX_NS) {
+    if !check.within("tst_ns", tst, &limits("tst_ns", Some(system_hz))) {
         return 0;
     }
     let extra = match cycles_at_least(tst, system_hz).saturating_sub(half) {
@@ -256,14 +257,4 @@ fn check_window(check: &mut Check<'_>, request: &ChannelRequest, half: u64, syst
         );
     }
     cycles
-}
-
-/// Longest whole number of ns that [`cycles_at_least`] turns into no more than `cycles`.
-fn cycles_at_most_ns(cycles: u64, system_hz: u64) -> u64 {
-    (u128::from(cycles) * 1_000_000_000 / u128::from(system_hz.max(1))) as u64
-}
-
-/// Shortest whole number of ns that [`cycles_at_most`] turns into no fewer than `cycles`.
-fn cycles_to_ns_up(cycles: u64, system_hz: u64) -> u64 {
-    (u128::from(cycles) * 1_000_000_000).div_ceil(u128::from(system_hz.max(1))) as u64
 }

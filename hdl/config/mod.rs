@@ -9,8 +9,10 @@
 
 mod card;
 mod channel;
+mod limits;
 
-pub use card::needed_baud;
+pub use card::{needed_baud, read_bytes, BAUD_NOTE};
+pub use limits::{limits, Limits};
 
 use crate::protocol::ModeCommand;
 use crate::timing::{TST_FROM_HZ, TST_MIN_NS};
@@ -47,8 +49,6 @@ pub const UART_TOLERANCE_PPM: u64 = 20_000;
 pub const UART_BITS_PER_BYTE: u64 = 10;
 /// Bytes of a UARTBone read request (command, length, address).
 pub const READ_REQUEST_BYTES: u64 = 6;
-/// Words of one channel that a host reads per result: position (2), time stamp, status with sequence number.
-pub const RESULT_WORDS: u64 = 4;
 /// Longest cable that the delay budget is made for, in metres.
 pub const CABLE_M_MAX: u64 = 150;
 /// Constant part of the propagation delay, in ns (PWM 20: tD = 0.2 us + 0.01 us/m).
@@ -102,6 +102,39 @@ pub struct CardRequest {
     pub read_hz: u64,
 }
 
+/// A request in which what could not be read is missing; what depends on it is not judged.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct CardDraft {
+    /// System clock of the core, in hertz.
+    pub system_hz: Option<u64>,
+    /// The encoder ports.
+    pub channels: Option<Vec<Option<ChannelRequest>>>,
+    /// Sampling rate of the timer trigger, in hertz.
+    pub sample_hz: Option<u64>,
+    /// Which triggers are enabled after reset.
+    pub sources: Option<TriggerSources>,
+    /// Rate of the host UART, in bit/s.
+    pub baud: Option<u64>,
+    /// The fastest that the board passes on to the host, in bit/s.
+    pub baud_max: Option<u64>,
+    /// How often the host reads the results of all channels, in hertz.
+    pub read_hz: Option<u64>,
+}
+
+impl From<&CardRequest> for CardDraft {
+    fn from(request: &CardRequest) -> Self {
+        Self {
+            system_hz: Some(request.system_hz),
+            channels: Some(request.channels.iter().cloned().map(Some).collect()),
+            sample_hz: Some(request.sample_hz),
+            sources: Some(request.sources),
+            baud: Some(request.baud),
+            baud_max: None,
+            read_hz: Some(request.read_hz),
+        }
+    }
+}
+
 /// Trigger sources enabled after reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TriggerSources {
@@ -118,7 +151,7 @@ pub struct TriggerSources {
 pub enum Section {
     /// `[clock]`
     Clock,
-    /// The channel with this index.
+    /// The channel with this index; with the key `channel` their number.
     Channel(usize),
     /// `[trigger]`
     Trigger,
@@ -213,7 +246,7 @@ pub struct FrameTime {
 impl ChannelRequest {
     /// Longest propagation delay tD of the line, in ns (PWM 20).
     pub const fn delay_max_ns(&self) -> u64 {
-        DELAY_BASE_NS + DELAY_NS_PER_M * self.cable_m
+        delay_max_ns(self.cable_m)
     }
 
     /// The start time tST that receivers use at a clock rate: none below 1 MHz.
@@ -224,6 +257,11 @@ impl ChannelRequest {
             0
         }
     }
+}
+
+/// Longest propagation delay tD of a cable, in ns (PWM 20).
+const fn delay_max_ns(cable_m: u64) -> u64 {
+    DELAY_BASE_NS + DELAY_NS_PER_M * cable_m
 }
 
 /// Largest number in `bits` bits.
@@ -247,16 +285,11 @@ impl Check<'_> {
         });
     }
 
-    /// Whether `value` is in `range`; reports it when not.
-    fn range(&mut self, key: &'static str, value: u64, range: RangeInclusive<u64>) -> bool {
-        let inside = range.contains(&value);
+    /// Whether `value` is within `limits`; reports it when not.
+    fn within(&mut self, key: &'static str, value: u64, limits: &Limits) -> bool {
+        let inside = limits.contains(value);
         if !inside {
-            let (low, high) = (range.start(), range.end());
-            self.fail(
-                key,
-                value,
-                format!("outside {low}..{high}; choose a value in that range"),
-            );
+            self.fail(key, value, limits.to_string());
         }
         inside
     }

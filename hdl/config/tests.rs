@@ -190,7 +190,7 @@ fn the_card_of_the_paper_resolves_to_these_cycles() {
     assert_eq!(channel.abort_us, 30_000);
     assert_eq!(config.sample_period_cycles, 10_000);
     assert_eq!(config.uart_bit_cycles, 50);
-    assert_eq!(config.needed_baud(), 380_000);
+    assert_eq!(config.needed_baud(), 620_000);
     assert_eq!(
         channel.cycle_max_cycles(config.system_hz),
         1_704 + 120 + 3_000 + 51 + 32
@@ -224,29 +224,29 @@ fn problem(change: impl Fn(&mut CardRequest)) -> Problem {
 fn each_limit_is_refused_with_its_key_and_remedy() {
     type Change = fn(&mut CardRequest);
     let cases: [(Change, &str, &str); 23] = [
-        (|c| c.channels[1].tcal_max_ns = 4_083_000, "tcal_max_ns", "the wait for the start bit would be 4096 us, more than 4095; use 4082000 or less"),
+        (|c| c.channels[1].tcal_max_ns = 4_083_000, "tcal_max_ns", "outside 1..4082800; choose a value in that range"),
         (|c| c.system_hz = 1_000_000, "system_hz", "outside 8000000..250000000"),
         (|c| c.channels.clear(), "channel", "1..4 channels"),
         (|c| c.channels[1].clock_hz = 99_999, "clock_hz", "outside 100000..16000000"),
         (|c| c.channels[1].clock_hz = 16_000_000, "clock_hz", "needs a system clock of at least 128000000 Hz"),
         (|c| c.channels[1].clock_hz = 9_000_000, "clock_hz", "would become 9090909 Hz (+10101 ppm), more than the allowed 5000 ppm; use 8333333 or 9090909 Hz"),
         (|c| { c.system_hz = 250_000_000; c.channels[1].clock_hz = 100_000; c.sample_hz = 1_000 }, "clock_hz", "at most 2047 can be timed; use at least 122130 Hz"),
-        (|c| c.channels[1].tst_ns = 1_999, "tst_ns", "outside 2000..10000"),
-        (|c| c.channels[1].tst_ns = 10_001, "tst_ns", "outside 2000..10000"),
+        (|c| c.channels[1].tst_ns = 1_999, "tst_ns", "neither 0 nor in 2000..10000"),
+        (|c| c.channels[1].tst_ns = 10_001, "tst_ns", "neither 0 nor in 2000..10000"),
         (|c| c.channels[1].position_bits = 0, "position_bits", "outside 1..48"),
         (|c| c.channels[1].position_bits = 49, "position_bits", "outside 1..48"),
         (|c| c.channels[1].filter_ns = 151, "filter_ns", "is 16 cycles, more than 15"),
         (|c| c.channels[1].start_window_ns = 9, "start_window_ns", "outside 1..15"),
         (|c| c.channels[1].start_window_ns = 160, "start_window_ns", "use 10..150 ns"),
-        (|c| c.channels[1].tcal_max_ns = 0, "tcal_max_ns", "outside 1..50000000"),
+        (|c| c.channels[1].tcal_max_ns = 0, "tcal_max_ns", "outside 1..4082800"),
         (|c| c.channels[1].cable_m = 151, "cable_m", "outside 0..150"),
-        (|c| c.channels[1].recovery_min_ns = 1_249, "recovery_min_ns", "below 1250 ns"),
-        (|c| c.channels[1].recovery_min_ns = 30_001, "recovery_min_ns", "exchange the two"),
-        (|c| { c.channels[1].recovery_max_ns = 80_391; c.sample_hz = 1_000 }, "recovery_max_ns", "the longest the counter can time"),
+        (|c| c.channels[1].recovery_min_ns = 1_249, "recovery_min_ns", "outside 1250..80390"),
+        (|c| c.channels[1].recovery_min_ns = 30_001, "recovery_min_ns", "above recovery_max_ns = 30000; lower it, or raise recovery_max_ns"),
+        (|c| { c.channels[1].recovery_max_ns = 80_391; c.sample_hz = 1_000 }, "recovery_max_ns", "outside 1250..80390"),
         (|c| c.sample_hz = 20_382, "sample_hz", "so at most 20379 Hz"),
         (|c| c.sample_hz = 5, "sample_hz", "outside 6..1000000"),
         (|c| c.baud = 7_000_000, "baud", "would become 7142857 bit/s (+20408 ppm)"),
-        (|c| c.read_hz = 10_000, "baud", "takes 3800000 bit/s; raise baud, or set link.read_hz to 5263 or less"),
+        (|c| c.read_hz = 10_000, "baud", "takes 6200000 bit/s; raise baud, or set link.read_hz to 3225 or less"),
     ];
     for (change, key, text) in cases {
         let problem = problem(change);

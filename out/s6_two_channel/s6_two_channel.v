@@ -8,7 +8,7 @@
 //   system clock       100000000 Hz = 32000000 Hz * 25 / 1 / 8
 //   sampling           10000 Hz, as asked, triggers: pin, timer
 //   host link          2000000 bit/s, as asked
-//   reading            38 bytes, 1000 times a second: 380000 bit/s, 19 % of the link; at most 5263 a second
+//   reading            62 bytes, 1000 times a second: 620000 bit/s, 31 % of the link; at most 3225 a second
 //
 //                      channel 0                channel 1
 //   encoder            RCN 8510                 RCN 8510
@@ -27,9 +27,9 @@
 //   input filter       20 ns                    20 ns
 //   start window       +-80 ns                  +-80 ns
 //   start time-out     18 us                    18 us
-//   calibration frame  239.3 us                 239.3 us
+//   calibration frame  239.3 us at 200000 Hz    239.3 us at 200000 Hz
 //
-//   tm is the recovery time; the first frame after reset measures the cable at 200000 Hz and takes longer.
+//   tm is the recovery time; the calibration frame, the first after reset, measures the delay of the cable.
 //
 // Ports of s6_two_channel:
 //   clk_i           in    1  System clock.

@@ -6,7 +6,7 @@ use crate::{
     engine::{EngineError, Keep, LaneWords, Lanes},
 };
 use endat_hdl::elaborate::ElaborateError;
-use std::collections::BTreeMap;
+use std::collections::btree_map::{BTreeMap, Entry};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;
 use std::{panic, thread};
@@ -96,9 +96,12 @@ pub fn run(
     let batches = batches(cases, options.lanes.count() * 64);
     let mut engines: BTreeMap<DesignKey, Lanes> = BTreeMap::new();
     for batch in &batches {
-        if !engines.contains_key(&batch.key) {
-            let lanes = Lanes::new(&batch.key.design()?, Keep::Outputs, options.lanes)?;
-            engines.insert(batch.key, lanes);
+        if let Entry::Vacant(place) = engines.entry(batch.key) {
+            place.insert(Lanes::new(
+                &batch.key.design()?,
+                Keep::Outputs,
+                options.lanes,
+            )?);
         }
     }
     let outcomes: Mutex<Vec<Option<Outcome>>> = Mutex::new(vec![None; cases.len()]);

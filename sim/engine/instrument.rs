@@ -3,7 +3,7 @@
 use super::flat::{Flat, FlatNet, FlatProcess, FlatRegister};
 use super::EngineError;
 use endat_hdl::elaborate::{BinaryOp, Design, Expr, ExprKind, Statement, UnaryOp};
-use std::collections::BTreeMap;
+use std::collections::btree_map::{BTreeMap, Entry};
 
 /// What is built in besides the design.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
@@ -67,9 +67,9 @@ pub(super) fn fit(
     for name in &instruments.forced {
         let net = flat.nets.iter().position(|n| n.name == *name);
         let net = net.ok_or_else(|| EngineError::UnknownNet(name.clone()))?;
-        if !fitted.forces.contains_key(&net) {
-            let force = force(flat, net);
-            fitted.forces.insert(net, force);
+        // A second one would stand between the first one and the readers.
+        if let Entry::Vacant(place) = fitted.forces.entry(net) {
+            place.insert(force(flat, net));
         }
     }
     if instruments.coverage {

@@ -226,9 +226,11 @@ impl fmt::Display for Report {
                 timing::deviation_ppm(actual, s.endat_hz as f64),
                 line.cable_m,
             )?;
+            let widest = c.frames.iter().map(|r| result(r).len()).max();
+            let width = widest.unwrap_or(0).max(RESULT_MIN);
             writeln!(
                 f,
-                "  {:>11}  {:<27} {:>14} {:>14}  {:>7}  {:>5} {:>8} {:>8} {:>8}",
+                "  {:>11}  {:<width$} {:>14} {:>14}  {:>7}  {:>5} {:>8} {:>8} {:>8}",
                 "trigger us",
                 "result",
                 "position",
@@ -239,7 +241,7 @@ impl fmt::Display for Report {
                 "frame us",
                 "tm us"
             )?;
-            c.frames.iter().try_for_each(|r| row(f, r))?;
+            c.frames.iter().try_for_each(|r| row(f, r, width))?;
             if c.samples.count > 0 {
                 writeln!(
                     f,
@@ -257,16 +259,22 @@ impl fmt::Display for Report {
     }
 }
 
-fn row(f: &mut fmt::Formatter<'_>, r: &FrameReport) -> fmt::Result {
+/// Narrowest column of results.
+const RESULT_MIN: usize = 27;
+
+/// The verdict of the core in words.
+fn result(r: &FrameReport) -> String {
+    let words = |r: &ChannelResult| match (r.last_cause(), r.fresh, r.position_valid) {
+        (0, true, _) => "good".into(),
+        (_, true, _) => format!("good, {}", r.cause_name()),
+        (_, false, true) => format!("held: {}", r.cause_name()),
+        (_, false, false) => format!("none: {}", r.cause_name()),
+    };
+    r.result.as_ref().map_or_else(|| "-".into(), words)
+}
+
+fn row(f: &mut fmt::Formatter<'_>, r: &FrameReport, width: usize) -> fmt::Result {
     let dash = || "-".to_owned();
-    let result = r.result.as_ref().map_or_else(dash, |r| {
-        match (r.last_cause(), r.fresh, r.position_valid) {
-            (0, true, _) => "good".into(),
-            (_, true, _) => format!("good, {}", r.cause_name()),
-            (_, false, true) => format!("held: {}", r.cause_name()),
-            (_, false, false) => format!("none: {}", r.cause_name()),
-        }
-    });
     let position = r
         .result
         .as_ref()
@@ -277,9 +285,9 @@ fn row(f: &mut fmt::Formatter<'_>, r: &FrameReport) -> fmt::Result {
     let answered = frame.filter(|l| l.start_edge.is_some());
     writeln!(
         f,
-        "  {:>11}  {:<27} {:>14} {:>14}  {:>7}  {:>5} {:>8} {:>8} {:>8}",
+        "  {:>11}  {:<width$} {:>14} {:>14}  {:>7}  {:>5} {:>8} {:>8} {:>8}",
         text(r.trigger.map(|t| format!("{:.3}", us(t)))),
-        result,
+        result(r),
         position,
         text(frame.map(|l| format!("{:#X}", l.position))),
         text(frame.map(|l| match l.expected_rising_edges() {

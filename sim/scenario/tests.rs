@@ -58,6 +58,25 @@ fn names_are_unique_and_found() {
 }
 
 #[test]
+fn the_columns_of_a_report_stand_below_their_heads() {
+    let mut long = 0;
+    for s in all() {
+        let report = run(&s, 0, Bug::None).to_string();
+        let table: Vec<&str> = report
+            .lines()
+            .skip_while(|l| !l.contains("trigger us"))
+            .take_while(|l| !l.contains("samples"))
+            .collect();
+        let rows = table.iter().filter(|l| l.len() > 80);
+        assert!(rows.clone().all(|l| l.len() == table[0].len()), "{report}");
+        long += rows
+            .filter(|l| l.contains("data not low before start"))
+            .count();
+    }
+    assert!(long > 0, "no result is longer than the narrowest column");
+}
+
+#[test]
 fn the_report_reads_well() {
     let report = run(&named("alarm").unwrap(), 0, Bug::None).to_string();
     let lines: Vec<&str> = report.lines().map(str::trim_end).collect();

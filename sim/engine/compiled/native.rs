@@ -246,7 +246,7 @@ fn define(
     name: &str,
     layout: &Layout,
     body: impl FnOnce(&mut Code<'_, '_>),
-) -> Result<FuncId, ModuleError> {
+) -> Result<FuncId, Box<ModuleError>> {
     let mut context = module.make_context();
     let pointer = module.target_config().pointer_type();
     context.func.signature.params.push(AbiParam::new(pointer));
@@ -265,7 +265,8 @@ fn define(
     builder.ins().return_(&[]);
     builder.seal_all_blocks();
     builder.finalize(module.target_config());
-    let id = module.declare_function(name, Linkage::Local, &context.func.signature)?;
-    module.define_function(id, &mut context)?;
+    let id = module.declare_function(name, Linkage::Local, &context.func.signature);
+    let id = id.map_err(Box::new)?;
+    module.define_function(id, &mut context).map_err(Box::new)?;
     Ok(id)
 }

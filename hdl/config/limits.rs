@@ -1,0 +1,111 @@
+//! What each key may be, whatever the other keys say.
+
+use super::*;
+use crate::protocol::POSITION_BITS;
+use crate::timing::*;
+
+/// The values that one key may have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Limits {
+    range: RangeInclusive<u64>,
+    /// 0 is good too, and stands for "none".
+    or_zero: bool,
+    note: &'static str,
+}
+
+impl Limits {
+    pub(super) const fn new(range: RangeInclusive<u64>) -> Self {
+        Self {
+            range,
+            or_zero: false,
+            note: "",
+        }
+    }
+
+    /// The same with another upper end, if that is lower; `note` says where it comes from.
+    pub fn at_most(self, high: u64, note: &'static str) -> Self {
+        match high < *self.range.end() {
+            true => Self {
+                range: *self.range.start()..=high,
+                note,
+                ..self
+            },
+            false => self,
+        }
+    }
+
+    /// Whether a value is good.
+    pub fn contains(&self, value: u64) -> bool {
+        self.range.contains(&value) || (self.or_zero && value == 0)
+    }
+}
+
+/// What is wrong with a value outside, and the remedy.
+impl fmt::Display for Limits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (low, high) = (self.range.start(), self.range.end());
+        match self.or_zero {
+            true => write!(f, "neither 0 nor in {low}..{high}")?,
+            false => write!(f, "outside {low}..{high}")?,
+        }
+        if !self.note.is_empty() {
+            write!(f, " ({})", self.note)?;
+        }
+        write!(f, "; choose a value in that range")
+    }
+}
+
+/// What a key may be at this system clock, or at any when it is not known.
+pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
+    let (slow, fast) = system_hz.map_or((SYSTEM_HZ_MIN, SYSTEM_HZ_MAX), |hz| (hz, hz));
+    let range = match key {
+        "system_hz" => SYSTEM_HZ_MIN..=SYSTEM_HZ_MAX,
+        "clock_hz" => ENDAT_HZ_MIN..=ENDAT_HZ_MAX,
+        "tst_ns" => TST_MIN_NS..=TST_MAX_NS,
+        "position_bits" => u64::from(*POSITION_BITS.start())..=u64::from(*POSITION_BITS.end()),
+        "cable_m" => 0..=CABLE_M_MAX,
+        "tcal_max_ns" => 1..=tcal_most_ns(CALIBRATION_HZ, 0),
+        "recovery_min_ns" | "recovery_max_ns" => SHORT_RECOVERY_MIN_NS..=recovery_most_ns(slow, 0),
+        "filter_ns" => 0..=cycles_at_most_ns(max_of(FILTER_BITS), slow),
+        "start_window_ns" => {
+            cycles_to_ns_up(1, fast)..=cycles_to_ns_up(max_of(START_WINDOW_BITS), slow)
+        }
+        "sample_hz" => slow.div_ceil(max_of(TIMER_BITS))..=1_000_000,
+        "baud" => 9_600..=fast / UART_BIT_CYCLES_MIN,
+        "read_hz" => 1..=1_000_000,
+        _ => 0..=u64::MAX,
+    };
+    Limits {
+        or_zero: key == "tst_ns",
+        ..Limits::new(range)
+    }
+}
+
+/// Longest calculation time whose wait for the start bit can still be timed, also in the calibration frame.
+pub(super) fn tcal_most_ns(clock_hz: u64, cable_m: u64) -> u64 {
+    let wait_ns = 1_000 * (max_of(START_TIMEOUT_BITS) - 1);
+    wait_ns - start_wait_ns(clock_hz, cable_m)
+}
+
+/// How much longer than tcal a start bit may keep us waiting: cable, and two periods of the slowest frame, which may
+/// pass before a start edge is seen.
+pub(super) fn start_wait_ns(clock_hz: u64, cable_m: u64) -> u64 {
+    let slowest_hz = clock_hz.min(CALIBRATION_HZ);
+    delay_max_ns(cable_m) + 2 * 1_000_000_000u64.div_ceil(slowest_hz)
+}
+
+/// Longest recovery time that can be timed behind this cable.
+pub(super) fn recovery_most_ns(system_hz: u64, cable_m: u64) -> u64 {
+    let cycles = max_of(RECOVERY_LIMIT_BITS) - INPUT_LATENCY_CYCLES;
+    cycles_at_most_ns(cycles, system_hz) - delay_max_ns(cable_m)
+}
+
+/// Longest whole number of ns that [`cycles_at_least`] turns into no more than `cycles`.
+pub(super) fn cycles_at_most_ns(cycles: u64, system_hz: u64) -> u64 {
+    (u128::from(cycles) * 1_000_000_000 / u128::from(system_hz.max(1))) as u64
+}
+
+/// Shortest whole number of ns that [`cycles_at_most`] turns into no fewer than `cycles`.
+pub(super) fn cycles_to_ns_up(cycles: u64, system_hz: u64) -> u64 {
+    (u128::from(cycles) * 1_000_000_000).div_ceil(u128::from(system_hz.max(1))) as u64
+}

@@ -1,0 +1,87 @@
+//! The campaigns of the command line.
+
+use endat_gen::cli;
+use endat_sim::campaign;
+use endat_sim::encoder::Defect;
+use endat_sim::engine::Compiled;
+use serde_json::Value;
+
+fn run(arguments: &[&str]) -> cli::Outcome {
+    let program = std::iter::once("endat-gen");
+    cli::run(program.chain(arguments.iter().copied()))
+}
+
+#[test]
+fn a_random_campaign_is_clean_and_says_how_much_it_did() {
+    let outcome = run(&[
+        "campaign", "random", "--cases", "300", "--seed", "4", "--json",
+    ]);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    let report: Value = serde_json::from_str(&outcome.stdout).unwrap();
+    assert_eq!(report["cases"], 300);
+    assert_eq!(report["frames"], 300 * 5);
+    assert_eq!(report["failures"], Value::Array(vec![]));
+    assert!(report["cycles"].as_u64().unwrap() > 1_000_000);
+}
+
+/// The line that is printed for a failing case runs that very case again.
+#[test]
+fn one_case_is_the_same_alone() {
+    let folder = crate::tools::folder("campaign");
+    let (vcd, svg) = (folder.join("case.vcd"), folder.join("case.svg"));
+    let outcome = run(&[
+        "campaign",
+        "random",
+        "--cases",
+        "300",
+        "--seed",
+        "4",
+        "--case",
+        "217",
+        "--vcd",
+        vcd.to_str().unwrap(),
+        "--svg",
+        svg.to_str().unwrap(),
+    ]);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    let case = &campaign::random(300, 4)[217];
+    assert_eq!(outcome.stdout, format!("case 217 ({}): good\n", case.title));
+    assert!(std::fs::read_to_string(vcd)
+        .unwrap()
+        .contains("$enddefinitions"));
+    assert!(std::fs::read_to_string(svg).unwrap().starts_with("<svg"));
+}
+
+#[test]
+fn what_is_wrong_with_a_case_is_said_alike_alone_and_in_lanes() {
+    let mut cases = campaign::random(3, 4);
+    cases[1].encoder = cases[1].encoder.clone().defect(2, Defect::NoStartBit);
+    let outcomes =
+        campaign::run(&cases, Default::default(), campaign::Case::check, |_| {}).unwrap();
+    let case = &cases[1];
+    let bench = case.run_alone(Compiled::new(&case.design().unwrap()).unwrap(), false);
+    let traces = campaign::Traces {
+        results: bench.results(),
+        frames: bench.frames(0),
+        violations: bench.violations(0),
+        conflicts: &bench.conflicts(0),
+        samples: bench.samples(0),
+    };
+    assert!(outcomes[1].failure.is_some());
+    assert_eq!(outcomes[1].failure, case.check(&traces).err());
+}
+
+#[test]
+fn bad_arguments_are_refused_with_their_limits() {
+    for (arguments, text) in [
+        (["--cases", "0"], "--cases = 0: outside 1..1000000"),
+        (["--case", "20000"], "--case = 20000: outside 0..9999"),
+    ] {
+        let outcome = run(&["campaign", "random", arguments[0], arguments[1]]);
+        assert_eq!(outcome.exit_code, 2);
+        assert!(
+            outcome.messages.iter().any(|m| m.contains(text)),
+            "{outcome:?}"
+        );
+    }
+}

@@ -1,0 +1,220 @@
+//! Files: what an emission leaves behind, and places that are no files.
+
+use crate::program::{bad, good, run, Dir};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+#[test]
+fn check_finds_every_kind_of_staleness_and_never_writes() {
+    let dir = Dir::new("check");
+    let out = dir.path("o");
+    let check = ["emit", "--check", "--out", &out];
+    let nothing = bad(&check, 1);
+    assert!(nothing.contains("README.md: is missing"), "{nothing}");
+    assert_eq!(dir.files(), vec![]);
+    good(&["emit", "--out", &out]);
+    assert!(good(&check).ends_with("up to date\n"));
+    let folder = dir.0.join("o/s6_two_channel");
+    fs::write(folder.join("README.md"), "x").unwrap();
+    fs::remove_file(folder.join("s6_two_channel.ucf")).unwrap();
+    fs::write(folder.join("old.v"), "x").unwrap();
+    let manifest = fs::read_to_string(folder.join("MANIFEST")).unwrap();
+    fs::write(
+        folder.join("MANIFEST"),
+        format!("{manifest}0  old.v\n0  ../../o.v\n"),
+    )
+    .unwrap();
+    let before = dir.files();
+    let found = bad(&check, 1);
+    for text in [
+        "README.md: is not what",
+        "s6_two_channel.ucf: is missing",
+        "MANIFEST: is not what",
+        "old.v: is no longer emitted, but has been changed; delete it",
+    ] {
+        assert!(found.contains(text), "{text}\n{found}");
+    }
+    assert!(!found.contains("../o.v"), "{found}");
+    assert!(
+        found.ends_with(&format!("renew with: cargo run -- emit --out {out}")),
+        "{found}"
+    );
+    assert_eq!(dir.files(), before);
+}
+
+/// A card of its own in `o/card`: the preset with one text replaced.
+fn emit(dir: &Dir, from: &str, to: &str) -> (PathBuf, Vec<String>) {
+    let text = good(&["presets", "--show", "s6_two_channel"]).replace("s6_two_channel", "card");
+    let file = dir.write("card.toml", text.replacen(from, to, 1).as_bytes());
+    let outcome = run(&["emit", "--config", &file, "--out", &dir.path("o")]);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    (dir.0.join("o/card"), outcome.messages)
+}
+
+/// A block that exists with two sources of triggers and not with three.
+fn block_of(folder: &Path, other: &[String]) -> String {
+    let names = names(folder);
+    let own = names.iter().find(|n| !other.contains(n));
+    own.expect("configurations with different blocks").clone()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_file_that_is_no_longer_emitted_goes_unless_its_owner_changed_it() {
+    let other = Dir::new("stale-other");
+    let (fresh, _) = emit(&other, "[\"pin\", \"timer\"]", "[]");
+    let expected = names(&fresh);
+    let dir = Dir::new("stale");
+    let (folder, _) = emit(&dir, "", "");
+    let block = block_of(&folder, &expected);
+    let config = dir.path("card.toml");
+    let check = [
+        "emit",
+        "--check",
+        "--config",
+        &config,
+        "--out",
+        &dir.path("o"),
+    ];
+    fs::copy(other.0.join("card.toml"), &config).unwrap();
+    let found = bad(&check, 1);
+    assert!(
+        found.contains(&format!("{block}: is no longer emitted; emit removes it")),
+        "{found}"
+    );
+    fs::write(folder.join("mine.txt"), "x").unwrap();
+    let (_, messages) = emit(&dir, "[\"pin\", \"timer\"]", "[]");
+    assert_eq!(messages, [""; 0]);
+    let mut left = names(&folder);
+    left.retain(|n| n != "mine.txt");
+    assert_eq!(left, expected);
+    assert!(folder.join("mine.txt").exists(), "not ours");
+    good(&check);
+
+    // The way back, with a block that its owner has changed.
+    let changed = block_of(&folder, &{
+        let third = Dir::new("stale-third");
+        names(&emit(&third, "", "").0)
+    });
+    fs::write(folder.join(&changed), "// mine").unwrap();
+    let (_, messages) = emit(&dir, "", "");
+    let text = format!("{changed}: is no longer emitted, but has been changed");
+    assert!(
+        messages.len() == 1 && messages[0].contains(&text),
+        "{messages:?}"
+    );
+    // The MANIFEST has forgotten it, the commands of the README would still compile it.
+    assert!(bad(&check, 1).contains(&format!("{changed}: is not of this card")));
+    assert!(folder.join(&changed).exists());
+}
+
+#[test]
+fn the_manifest_is_what_sha256sum_reads() {
+    let dir = Dir::new("sha256sum");
+    let (folder, _) = emit(&dir, "", "");
+    let manifest = fs::read_to_string(folder.join("MANIFEST")).unwrap();
+    assert_eq!(manifest.lines().count() + 1, names(&folder).len());
+    for line in manifest.lines() {
+        let (digest, name) = line.split_once("  ").unwrap();
+        assert!(digest.len() == 64 && folder.join(name).is_file(), "{line}");
+    }
+    let check = Command::new("sha256sum")
+        .args(["-c", "--quiet", "MANIFEST"])
+        .current_dir(&folder)
+        .status();
+    assert!(check.map_or(true, |status| status.success()));
+}
+
+#[test]
+fn two_files_in_one_place_are_refused() {
+    let dir = Dir::new("one-place");
+    let (out, same) = (dir.path("x.out"), dir.path("../cli-one-place/x.out"));
+    let rows = [
+        ["--svg", &out, "--vcd", &out],
+        ["--svg", &same, "--vcd", &out],
+        ["--svg", &dir.path("x.gtkw"), "--vcd", &dir.path("x.vcd")],
+    ];
+    for files in rows {
+        let message = bad(&[&["sim", "paper"], &files[..]].concat(), 2);
+        assert!(
+            message.contains("is the place of a file of --vcd; give another file"),
+            "{message}"
+        );
+    }
+    assert!(bad(&["sim", "paper", "--vcd", &dir.path("x.gtkw")], 2)
+        .contains("give a name that ends in .vcd"));
+    assert_eq!(dir.files(), vec![]);
+}
+
+#[cfg(unix)]
+#[test]
+fn what_is_no_regular_file_is_neither_read_nor_replaced() {
+    use std::os::unix::fs::FileTypeExt;
+    let dir = Dir::new("irregular");
+    let pipe = dir.path("pipe");
+    if !Command::new("mkfifo")
+        .arg(&pipe)
+        .status()
+        .is_ok_and(|s| s.success())
+    {
+        return;
+    }
+    let rows: [&[&str]; 4] = [
+        &["explain", "--config", &pipe],
+        &["emit", "--config", &pipe],
+        &["sim", "paper", "--svg", &pipe],
+        &["sim", "paper", "--vcd", &pipe],
+    ];
+    for arguments in rows {
+        let message = bad(arguments, 2);
+        assert!(
+            message.contains(": is not a regular file; give "),
+            "{message}"
+        );
+    }
+    assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
+    let (folder, _) = emit(&dir, "", "");
+    fs::remove_file(folder.join("README.md")).unwrap();
+    fs::rename(&pipe, folder.join("README.md")).unwrap();
+    let config = dir.path("card.toml");
+    let out = dir.path("o");
+    let found = bad(&["emit", "--check", "--config", &config, "--out", &out], 1);
+    assert!(
+        found.contains("README.md: is not a regular file; move it away first"),
+        "{found}"
+    );
+    bad(&["emit", "--config", &config, "--out", &out], 2);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_a_file_stays_a_link() {
+    let dir = Dir::new("link");
+    let target = dir.write("target.svg", b"old");
+    let link = dir.0.join("link.svg");
+    std::os::unix::fs::symlink(&target, &link).unwrap();
+    let outcome = run(&["sim", "paper", "--svg", &link.display().to_string()]);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    assert!(fs::read_to_string(&target).unwrap().starts_with("<svg"));
+}
+
+#[test]
+fn sim_names_a_remedy_that_it_has() {
+    let dir = Dir::new("sim-remedy");
+    let folder = dir.0.display().to_string();
+    let message = bad(&["sim", "paper", "--svg", &folder], 2);
+    assert!(
+        message.ends_with("cannot write: is a folder, not a file; give another file"),
+        "{message}"
+    );
+}

@@ -1,0 +1,76 @@
+//! Pages: figures in the documentation are those of the program.
+
+use endat_gen::area::XC6S;
+use endat_hdl::config::{needed_baud, read_bytes, CHANNELS};
+use endat_hdl::regs::result_words;
+
+const README: &str = include_str!("../README.md");
+
+/// Cells of the first row that begins with this text.
+fn row<'p>(page: &'p str, head: &str) -> Vec<&'p str> {
+    let row = page.lines().find(|l| l.starts_with(head));
+    let row = row.unwrap_or_else(|| panic!("no row {head}"));
+    row.trim_matches('|').split('|').map(str::trim).collect()
+}
+
+#[test]
+fn the_sizes_in_the_readme_are_those_of_the_area_table() {
+    let table: toml::Table = include_str!("data/area.toml").parse().unwrap();
+    let figure = |subject: &str, kind: &str| table[subject][XC6S.name][kind].as_integer().unwrap();
+    for (head, subject) in [("| one port", "channel"), ("| two-channel card", "card")] {
+        let cells = row(README, head);
+        let wanted = ["lut", "ff"].map(|kind| figure(subject, kind).to_string());
+        assert_eq!(cells[1..3], wanted, "{head}");
+    }
+    let peer: f64 = row(README, "| public peer")[1].parse().unwrap();
+    let ratio = figure("channel", "lut") as f64 / peer;
+    assert_eq!(row(README, "| one port")[3], format!("LUT {ratio:.2}"));
+    let share = figure("card", "lut") as f64 / 5720.0 * 100.0;
+    let share = format!("{share:.1} % of the LX9's 5720 LUTs");
+    assert_eq!(row(README, "| two-channel card")[3], share);
+}
+
+#[test]
+fn the_burst_in_the_host_link_page_is_the_one_that_is_counted() {
+    let page = include_str!("../docs/host-link.md");
+    let table = page.split_once("| channels |").unwrap().1;
+    for channels in CHANNELS {
+        let figures = [
+            result_words(channels),
+            read_bytes(channels),
+            2_000_000 / needed_baud(1, channels),
+        ];
+        let cells = row(table, &format!("| {channels} |"));
+        assert_eq!(cells[1..], figures.map(|n| n.to_string()));
+    }
+    assert!(page.contains(&format!("02 {:02X} 00 00 01 80", result_words(2))));
+}
+
+#[test]
+fn every_command_is_on_the_page() {
+    let page = include_str!("../docs/command-line.md");
+    let help = crate::program::good(&["--help"]);
+    let list = help.split_once("Commands:").unwrap().1;
+    let list = list.split_once("\n\n").unwrap().0;
+    let mut count = 0;
+    for line in list
+        .lines()
+        .filter(|l| l.starts_with("  ") && !l.starts_with("   "))
+    {
+        let command = line.split_whitespace().next().unwrap();
+        count += 1;
+        assert!(
+            command == "help" || page.contains(&format!("| `{command} ")),
+            "{command}"
+        );
+    }
+    assert!(count >= 7, "{help}");
+}
+
+#[test]
+fn every_key_of_the_preset_is_on_the_page() {
+    let page = include_str!("../docs/configuration.md");
+    for words in ["1 to 4 of them", "`[]`", "6 at 100 MHz", "--name my_card"] {
+        assert!(page.contains(words), "{words}");
+    }
+}
