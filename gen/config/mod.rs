@@ -1,6 +1,7 @@
 //! Configuration files: TOML text in, a checked [`Project`] out, or every complaint with file, line and remedy.
 
 mod names;
+mod pins;
 mod reader;
 mod schema;
 
