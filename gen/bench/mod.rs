@@ -140,6 +140,9 @@ pub fn run(options: Options, progress: &dyn Fn(&str)) -> Result<Report, GenError
 
 /// Runs one engine alone for a number of cycles, for [`Options::instructions`].
 pub fn run_one(engine: &str, cycles: usize) -> Result<(), GenError> {
+    if engine == "frames" {
+        return frames::measure(cycles).map(drop);
+    }
     let card = CardDesign::new()?;
     match engine {
         "plain" => rust_engines::plain(&card, &Stimulus::record(&card, cycles)?, cycles)?,
@@ -148,7 +151,7 @@ pub fn run_one(engine: &str, cycles: usize) -> Result<(), GenError> {
         "lanes" => rust_engines::lanes_on(&card, LaneWords::Two, cycles, 1)?,
         other => {
             return Err(GenError::input(format!(
-                "--only = {other:?}: unknown engine; choose plain, compiled, models or lanes"
+                "--only = {other:?}: unknown engine; choose plain, compiled, models, lanes or frames"
             )))
         }
     };

@@ -126,6 +126,16 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
     }
 }
 
+/// Says so if the simulation was not at its full speed.
+fn with_engine(mut outcome: Outcome) -> Outcome {
+    if let Err(why) = endat_sim::engine::has_native_code() {
+        let text =
+            format!("no native code on this machine ({why}): simulated in the slower interpreter");
+        outcome.messages.push(text);
+    }
+    outcome
+}
+
 fn execute(cli: Cli) -> Result<Outcome, GenError> {
     match cli.command {
         None => emit::run(&emit::EmitArgs::default()),
@@ -142,11 +152,11 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
                 report.to_string()
             }))
         }
-        Some(Command::Sim(arguments)) => sim::run(&arguments),
+        Some(Command::Sim(arguments)) => sim::run(&arguments).map(with_engine),
         Some(Command::Crc(arguments)) => crc_command::run(&arguments),
         Some(Command::Area(arguments)) => area::run(&arguments),
-        Some(Command::Bench(arguments)) => bench::run(&arguments),
-        Some(Command::Campaign(arguments)) => campaign::run(&arguments),
+        Some(Command::Bench(arguments)) => bench::run(&arguments).map(with_engine),
+        Some(Command::Campaign(arguments)) => campaign::run(&arguments).map(with_engine),
     }
 }
 

@@ -120,15 +120,3 @@ fn the_drawing_is_the_same_every_time_and_renders() {
     drop(pipe);
     assert!(child.wait().unwrap().success());
 }
-
-#[test]
-#[ignore = "writes files to look at: ENDAT_DRAW=folder cargo test -p endat-sim draw -- --ignored"]
-fn draw_every_scenario() {
-    let Some(folder) = std::env::var_os("ENDAT_DRAW") else {
-        return;
-    };
-    for s in scenario::all() {
-        let path = std::path::Path::new(&folder).join(format!("{}.svg", s.name));
-        std::fs::write(path, drawing(s.name, 1)).unwrap();
-    }
-}

@@ -9,7 +9,7 @@ mod kernel;
 mod lanes;
 mod program;
 
-pub use compiled::{Compiled, NetCoverage, Saved};
+pub use compiled::{has_native_code, Compiled, NetCoverage, Saved};
 pub use form::Keep;
 pub use instrument::Instruments;
 pub use interpreter::Interpreter;

@@ -9,6 +9,7 @@ use super::form::{Form, Keep, Place};
 use super::{Engine, EngineError, Instruments, Port, PortId};
 use endat_hdl::elaborate::{mask, Design};
 use layout::Layout;
+pub use native::has_native_code;
 use native::Native;
 use portable::Portable;
 use std::sync::Arc;

@@ -171,6 +171,14 @@ impl Drop for CodeMemory {
     }
 }
 
+/// Whether there is native code on this machine; if not, why: engines then run in an interpreter.
+///
+/// # Errors
+/// What the code generator says.
+pub fn has_native_code() -> Result<(), String> {
+    cranelift_native::builder().map(drop).map_err(str::to_owned)
+}
+
 impl Native {
     /// Compiles a form.
     ///
