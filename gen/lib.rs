@@ -17,6 +17,7 @@ pub mod constraints;
 pub mod crc;
 pub mod error;
 pub mod explain;
+mod scratch;
 pub mod template;
 pub mod testbench;
 pub mod verilog;

@@ -60,13 +60,7 @@ fn what_is_wrong_with_a_case_is_said_alike_alone_and_in_lanes() {
         campaign::run(&cases, Default::default(), campaign::Case::check, |_| {}).unwrap();
     let case = &cases[1];
     let bench = case.run_alone(Compiled::new(&case.design().unwrap()).unwrap(), false);
-    let traces = campaign::Traces {
-        results: bench.results(),
-        frames: bench.frames(0),
-        violations: bench.violations(0),
-        conflicts: &bench.conflicts(0),
-        samples: bench.samples(0),
-    };
+    let traces = campaign::Traces::of(&bench);
     assert!(outcomes[1].failure.is_some());
     assert_eq!(outcomes[1].failure, case.check(&traces).err());
 }

@@ -3,9 +3,9 @@
 use super::{speed, subjects, synthesise, version, Device, Speed, Usage, DEVICES, ICE40, XC6S};
 use super::{YOSYS, YOSYS_VERSION};
 use crate::error::GenError;
+use crate::scratch::Scratch;
 use serde::Serialize;
 use std::fmt;
-use std::path::PathBuf;
 
 /// Somebody else's receiver on the same tools: position only, no CRC check, no propagation delay compensation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -68,22 +68,6 @@ pub struct Report {
     pub peers: [Peer; 3],
 }
 
-/// A folder for the tools' files that goes away again.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new() -> Self {
-        Self(std::env::temp_dir().join(format!("endat-gen-area-{}", std::process::id())))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        // Nothing better can be done about a folder that stays.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 /// Measures everything; with `with_speed`, card and channel are also placed and routed.
 pub fn report(with_speed: bool) -> Result<Report, GenError> {
     let version = version()?;
@@ -92,7 +76,7 @@ pub fn report(with_speed: bool) -> Result<Report, GenError> {
             "{YOSYS} = {version:?}: figures are made with {YOSYS_VERSION} and differ between versions; `pip install {YOSYS}==0.70.0.0.post1259`"
         )));
     }
-    let scratch = Scratch::new();
+    let scratch = Scratch::new("area");
     let mut lines = vec![];
     for subject in subjects()? {
         let files = subject.files();

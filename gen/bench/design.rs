@@ -46,7 +46,7 @@ impl CardDesign {
             .into_iter()
             .map(|(path, text)| crate::artifact::Artifact::new(path, text))
             .collect();
-        crate::artifact::write(folder, &files, super::SCRATCH_REMEDY)?;
+        crate::artifact::write(folder, &files, crate::scratch::REMEDY)?;
         Ok(files.into_iter().map(|f| f.path).collect())
     }
 }

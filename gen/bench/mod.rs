@@ -9,12 +9,13 @@ mod rust_engines;
 mod stimulus;
 
 pub use report::{Report, Row};
+pub use rust_engines::card_kernels;
 
 use crate::error::GenError;
+use crate::scratch::Scratch;
 use design::CardDesign;
 use endat_sim::engine::LaneWords;
 use outside::Verilator;
-use std::path::PathBuf;
 use stimulus::{Digest, Stimulus};
 
 fn fault(e: &dyn std::fmt::Display) -> GenError {
@@ -52,25 +53,6 @@ struct Measured {
     state_bytes: Option<u64>,
 }
 
-/// What to do if the folder for the tools' files cannot be written.
-const SCRATCH_REMEDY: &str = "make the folder for temporary files writable";
-
-/// A folder for the tools' files that goes away again.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new() -> Self {
-        Self(std::env::temp_dir().join(format!("endat-gen-bench-{}", std::process::id())))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        // Nothing better can be done about a folder that stays.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
 /// Measures; `progress` is told what comes next.
 pub fn run(options: Options, progress: &dyn Fn(&str)) -> Result<Report, GenError> {
     let card = CardDesign::new()?;
@@ -79,7 +61,7 @@ pub fn run(options: Options, progress: &dyn Fn(&str)) -> Result<Report, GenError
     let (slowest, slow) = ((cycles / 200).max(1), (cycles / 20).max(1));
     progress("recording the stimulus");
     let stimulus = Stimulus::record(&card, cycles)?;
-    let scratch = Scratch::new();
+    let scratch = Scratch::new("bench");
     let mut alone = vec![];
     let mut models = vec![];
     progress("rust-hdl kernels");
@@ -149,11 +131,9 @@ pub fn run_one(engine: &str, cycles: usize) -> Result<(), GenError> {
         "compiled" => rust_engines::compiled(&card, &Stimulus::record(&card, cycles)?, cycles)?,
         "models" => rust_engines::compiled_with_models(&card, cycles)?,
         "lanes" => rust_engines::lanes_on(&card, LaneWords::Two, cycles, 1)?,
-        other => {
-            return Err(GenError::input(format!(
-                "--only = {other:?}: unknown engine; choose plain, compiled, models, lanes or frames"
-            )))
-        }
+        other => return Err(GenError::input(format!(
+            "--only = {other:?}: unknown engine; choose plain, compiled, models, lanes or frames"
+        ))),
     };
     Ok(())
 }

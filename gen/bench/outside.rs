@@ -55,7 +55,7 @@ pub fn iverilog(
         Artifact::new("play.v", bench),
         Artifact::new("rows.hex", rows),
     ];
-    write(folder, &more, super::SCRATCH_REMEDY)?;
+    write(folder, &more, crate::scratch::REMEDY)?;
     files.push("play.v".into());
     let mut arguments = vec!["-g2005", "-o", "play.vvp", "-s", "play"];
     arguments.extend(files.iter().map(String::as_str));
@@ -161,7 +161,7 @@ impl Verilator {
         write(
             folder,
             &[Artifact::new("bench.cpp", source)],
-            super::SCRATCH_REMEDY,
+            crate::scratch::REMEDY,
         )?;
         self.build(folder, card, "bench.cpp")?;
         let ready_s = start.elapsed().as_secs_f64();

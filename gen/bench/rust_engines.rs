@@ -4,8 +4,11 @@ use super::design::CardDesign;
 use super::stimulus::{encoder, line, links, Digest, Stimulus, INPUTS, OUTPUTS, RESET_CYCLES};
 use super::{fault, Measured};
 use crate::error::GenError;
+use endat_hdl::card::Card;
 use endat_sim::bench::{Bench, LaneBench, Link, PinNames};
-use endat_sim::engine::{Compiled, Engine, Interpreter, Keep, LaneWords, Lanes, PortId};
+use endat_sim::engine::{
+    Compiled, Engine, Interpreter, Keep, KernelEngine, LaneWords, Lanes, PortId,
+};
 use endat_sim::kernel_engine;
 use std::thread;
 use std::time::Instant;
@@ -55,22 +58,25 @@ fn played(
     })
 }
 
+/// The card as rust-hdl's own kernels run it.
+pub fn card_kernels(card: Card) -> KernelEngine<Card> {
+    kernel_engine!(card; clk_i; in rst_i, trigger_i, uart_rx_i; out uart_tx_o, led_status_o)
+        .input("endat_data0_i", |b| &mut b.endat_data_i[0])
+        .input("endat_data1_i", |b| &mut b.endat_data_i[1])
+        .output("endat_clk0_o", |b| &mut b.endat_clk_o[0])
+        .output("endat_clk1_o", |b| &mut b.endat_clk_o[1])
+        .output("endat_data0_o", |b| &mut b.endat_data_o[0])
+        .output("endat_data1_o", |b| &mut b.endat_data_o[1])
+        .output("endat_data0_oe", |b| &mut b.endat_data_oe[0])
+        .output("endat_data1_oe", |b| &mut b.endat_data_oe[1])
+        .output("led_channel0_o", |b| &mut b.led_channel_o[0])
+        .output("led_channel1_o", |b| &mut b.led_channel_o[1])
+}
+
 /// rust-hdl's own kernels.
 pub fn kernels(stimulus: &Stimulus, cycles: usize) -> Result<Measured, GenError> {
     played("rust-hdl kernels", &stimulus.rows[..cycles], || {
-        let card = CardDesign::block()?;
-        let engine = kernel_engine!(card; clk_i; in rst_i, trigger_i, uart_rx_i; out uart_tx_o, led_status_o)
-            .input("endat_data0_i", |b| &mut b.endat_data_i[0])
-            .input("endat_data1_i", |b| &mut b.endat_data_i[1])
-            .output("endat_clk0_o", |b| &mut b.endat_clk_o[0])
-            .output("endat_clk1_o", |b| &mut b.endat_clk_o[1])
-            .output("endat_data0_o", |b| &mut b.endat_data_o[0])
-            .output("endat_data1_o", |b| &mut b.endat_data_o[1])
-            .output("endat_data0_oe", |b| &mut b.endat_data_oe[0])
-            .output("endat_data1_oe", |b| &mut b.endat_data_oe[1])
-            .output("led_channel0_o", |b| &mut b.led_channel_o[0])
-            .output("led_channel1_o", |b| &mut b.led_channel_o[1]);
-        Ok(Box::new(engine))
+        Ok(Box::new(card_kernels(CardDesign::block()?)))
     })
 }
 

@@ -154,13 +154,7 @@ fn alone(arguments: &CampaignArgs, cases: &[Case], index: usize) -> Result<Outco
     let design = case.design().map_err(|e| fault(&e))?;
     let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
     let bench = case.run_alone(engine, true);
-    let traces = Traces {
-        results: bench.results(),
-        frames: bench.frames(0),
-        violations: bench.violations(0),
-        conflicts: &bench.conflicts(0),
-        samples: bench.samples(0),
-    };
+    let traces = Traces::of(&bench);
     let failure = case.check(&traces).err();
     let files = Pictures {
         vcd: arguments.vcd.as_deref(),

@@ -63,7 +63,7 @@ impl DesignKey {
 }
 
 /// What a case left behind.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Traces<'a> {
     /// What the channel delivered.
     pub results: &'a [ChannelResult],
@@ -72,9 +72,22 @@ pub struct Traces<'a> {
     /// What the encoder found wrong.
     pub violations: &'a [(Time, Violation)],
     /// Both ends driving at once.
-    pub conflicts: &'a [Conflict],
+    pub conflicts: Vec<Conflict>,
     /// The samples of DATA that the channel took.
     pub samples: &'a [Sample],
+}
+
+impl<'a> Traces<'a> {
+    /// What a bench of one channel has.
+    pub fn of<E: Engine>(bench: &'a Bench<E>) -> Self {
+        Self {
+            results: bench.results(),
+            frames: bench.frames(0),
+            violations: bench.violations(0),
+            conflicts: bench.conflicts(0),
+            samples: bench.samples(0),
+        }
+    }
 }
 
 impl Case {

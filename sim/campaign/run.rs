@@ -196,12 +196,11 @@ fn run_batch(
     bench.finish_samples();
     let outcome = |(lane, case): (usize, &&Case)| {
         let encoder = bench.link(0, lane).encoder();
-        let conflicts = bench.link(0, lane).line().conflicts(bench.now());
         let traces = Traces {
             results: bench.results(lane),
             frames: encoder.frames(),
             violations: encoder.violations(),
-            conflicts: &conflicts,
+            conflicts: bench.link(0, lane).line().conflicts(bench.now()),
             samples: bench.samples(0, lane),
         };
         Outcome {

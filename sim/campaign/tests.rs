@@ -14,13 +14,7 @@ fn a_lane_leaves_what_the_case_leaves_alone() {
         let case = &cases[index];
         let engine = Compiled::new(&case.design().unwrap()).unwrap();
         let bench = case.run_alone(engine, false);
-        let alone = Traces {
-            results: bench.results(),
-            frames: bench.frames(0),
-            violations: bench.violations(0),
-            conflicts: &bench.conflicts(0),
-            samples: bench.samples(0),
-        };
+        let alone = Traces::of(&bench);
         assert_eq!(traced[index].failure, digest(&alone).err(), "case {index}");
         assert_eq!(traced[index].cycles, bench.cycle(), "case {index}");
     }

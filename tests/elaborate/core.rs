@@ -92,18 +92,7 @@ fn the_card_agrees() {
     let mut block = Card::new(&project.card);
     block.connect_all();
     let design = elaborate(&block, &project.name).unwrap();
-    let mut kernel =
-        kernel_engine!(block; clk_i; in rst_i, trigger_i, uart_rx_i; out uart_tx_o, led_status_o)
-            .input("endat_data0_i", |b| &mut b.endat_data_i[0])
-            .input("endat_data1_i", |b| &mut b.endat_data_i[1])
-            .output("endat_clk0_o", |b| &mut b.endat_clk_o[0])
-            .output("endat_clk1_o", |b| &mut b.endat_clk_o[1])
-            .output("endat_data0_o", |b| &mut b.endat_data_o[0])
-            .output("endat_data1_o", |b| &mut b.endat_data_o[1])
-            .output("endat_data0_oe", |b| &mut b.endat_data_oe[0])
-            .output("endat_data1_oe", |b| &mut b.endat_data_oe[1])
-            .output("led_channel0_o", |b| &mut b.led_channel_o[0])
-            .output("led_channel1_o", |b| &mut b.led_channel_o[1]);
+    let mut kernel = endat_gen::bench::card_kernels(block);
     let lines = [
         ("trigger_i", 300),
         ("uart_rx_i", 100),

@@ -209,13 +209,7 @@ pub fn assert_sound(setup: &Setup, rig: &Rig) {
         line: setup.line.clone(),
         frames: rig.results().len(),
     };
-    let traces = Traces {
-        results: rig.results(),
-        frames: rig.frames(0),
-        violations: rig.violations(0),
-        conflicts: &rig.conflicts(0),
-        samples: rig.samples(0),
-    };
+    let traces = Traces::of(rig);
     if let Err(what) = case.check(&traces) {
         panic!("{what}\n{setup:?}");
     }

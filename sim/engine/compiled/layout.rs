@@ -129,6 +129,15 @@ impl Layout {
         taken
     }
 
+    /// Takes the lowest mark in some of the words: its number, counted from the first of them.
+    pub fn take_lowest(state: &mut [u64], words: std::ops::Range<usize>) -> Option<usize> {
+        let first = words.start;
+        let word = words.into_iter().find(|word| state[*word] != 0)?;
+        let bit = state[word].trailing_zeros() as usize;
+        state[word] &= state[word] - 1;
+        Some(64 * (word - first) + bit)
+    }
+
     /// Notes that nothing is settled.
     pub fn mark_all(&self, state: &mut [u64]) {
         let mut set = |words: std::ops::Range<usize>, count: usize| {

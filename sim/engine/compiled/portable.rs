@@ -34,54 +34,45 @@ impl Portable {
     /// Runs all segments that are marked, in order.
     pub fn settle(&self, form: &Form, layout: &Layout, state: &mut [u64]) {
         let mut values: Vec<u128> = vec![];
-        for word in layout.segment_words() {
-            while state[word] != 0 {
-                let index = 64 * word + state[word].trailing_zeros() as usize;
-                state[word] &= state[word] - 1;
-                let segment = &form.segments[index];
-                values.clear();
-                for node in &segment.nodes {
-                    let operands: [u128; 3] = {
-                        let mut found = [0; 3];
-                        for (place, operand) in found.iter_mut().zip(node.op.operands()) {
-                            *place = values[operand];
-                        }
-                        found
-                    };
-                    let value = match node.op {
-                        Op::Net(net) => load(layout, form, state, net),
-                        op => evaluate(&op, &operands, |n| segment.nodes[n].width_bits),
-                    };
-                    values.push(value & endat_hdl::elaborate::mask(node.width_bits));
-                }
-                for (net, node) in &segment.writes {
-                    store(layout, form, state, *net, values[*node]);
-                }
+        while let Some(index) = Layout::take_lowest(state, layout.segment_words()) {
+            let segment = &form.segments[index];
+            values.clear();
+            for node in &segment.nodes {
+                let operands: [u128; 3] = {
+                    let mut found = [0; 3];
+                    for (place, operand) in found.iter_mut().zip(node.op.operands()) {
+                        *place = values[operand];
+                    }
+                    found
+                };
+                let value = match node.op {
+                    Op::Net(net) => load(layout, form, state, net),
+                    op => evaluate(&op, &operands, |n| segment.nodes[n].width_bits),
+                };
+                values.push(value & endat_hdl::elaborate::mask(node.width_bits));
+            }
+            for (net, node) in &segment.writes {
+                store(layout, form, state, *net, values[*node]);
             }
         }
     }
 
     /// Loads all groups of registers that are marked.
     pub fn commit(&self, form: &Form, layout: &Layout, state: &mut [u64]) {
-        let first = layout.group_words().start;
-        for word in layout.group_words() {
-            while state[word] != 0 {
-                let index = 64 * (word - first) + state[word].trailing_zeros() as usize;
-                state[word] &= state[word] - 1;
-                let Commit::Registers(registers) = &form.commits[index] else {
-                    unreachable!("memories come after all groups of registers")
+        while let Some(index) = Layout::take_lowest(state, layout.group_words()) {
+            let Commit::Registers(registers) = &form.commits[index] else {
+                unreachable!("memories come after all groups of registers")
+            };
+            for register in registers {
+                let is_reset = register
+                    .reset
+                    .is_some_and(|reset| load(layout, form, state, reset) != 0);
+                let value = if is_reset {
+                    register.start
+                } else {
+                    load(layout, form, state, register.next)
                 };
-                for register in registers {
-                    let is_reset = register
-                        .reset
-                        .is_some_and(|reset| load(layout, form, state, reset) != 0);
-                    let value = if is_reset {
-                        register.start
-                    } else {
-                        load(layout, form, state, register.next)
-                    };
-                    store(layout, form, state, register.q, value);
-                }
+                store(layout, form, state, register.q, value);
             }
         }
     }

@@ -18,31 +18,25 @@ impl Portable {
     /// Runs all segments that are marked, in order.
     pub fn settle(&self, layout: &Layout, state: &mut [u64]) {
         let mut values: Vec<u64> = vec![];
-        for word in layout.segment_words() {
-            while state[word] != 0 {
-                let index = 64 * word + state[word].trailing_zeros() as usize;
-                state[word] &= state[word] - 1;
-                let segment = &self.segments[index];
-                for part in 0..self.words {
-                    values.clear();
-                    for gate in &segment.gates {
-                        let v = |bit: usize| values[bit];
-                        let value = match *gate {
-                            Gate::Constant(value) => 0u64.wrapping_sub(value.into()),
-                            Gate::Net(net, bit) => {
-                                state[layout.place(net) + bit * self.words + part]
-                            }
-                            Gate::Not(a) => !v(a),
-                            Gate::And(a, b) => v(a) & v(b),
-                            Gate::Or(a, b) => v(a) | v(b),
-                            Gate::Xor(a, b) => v(a) ^ v(b),
-                            Gate::Mux(c, a, b) => v(a) & v(c) | v(b) & !v(c),
-                        };
-                        values.push(value);
-                    }
-                    for (net, number, bit) in &segment.writes {
-                        self.store(layout, state, (*net, *number, part), values[*bit]);
-                    }
+        while let Some(index) = Layout::take_lowest(state, layout.segment_words()) {
+            let segment = &self.segments[index];
+            for part in 0..self.words {
+                values.clear();
+                for gate in &segment.gates {
+                    let v = |bit: usize| values[bit];
+                    let value = match *gate {
+                        Gate::Constant(value) => 0u64.wrapping_sub(value.into()),
+                        Gate::Net(net, bit) => state[layout.place(net) + bit * self.words + part],
+                        Gate::Not(a) => !v(a),
+                        Gate::And(a, b) => v(a) & v(b),
+                        Gate::Or(a, b) => v(a) | v(b),
+                        Gate::Xor(a, b) => v(a) ^ v(b),
+                        Gate::Mux(c, a, b) => v(a) & v(c) | v(b) & !v(c),
+                    };
+                    values.push(value);
+                }
+                for (net, number, bit) in &segment.writes {
+                    self.store(layout, state, (*net, *number, part), values[*bit]);
                 }
             }
         }
@@ -50,25 +44,20 @@ impl Portable {
 
     /// Loads all groups of registers that are marked.
     pub fn commit(&self, form: &Form, layout: &Layout, state: &mut [u64]) {
-        let first = layout.group_words().start;
-        for word in layout.group_words() {
-            while state[word] != 0 {
-                let index = 64 * (word - first) + state[word].trailing_zeros() as usize;
-                state[word] &= state[word] - 1;
-                let Commit::Registers(registers) = &form.commits[index] else {
-                    unreachable!("memories come after all groups of registers")
-                };
-                for register in registers {
-                    for part in 0..self.words {
-                        let reset = register
-                            .reset
-                            .map_or(0, |net| state[layout.place(net) + part]);
-                        for bit in 0..form.nets[register.q].width_bits {
-                            let next = layout.place(register.next) + bit * self.words + part;
-                            let start = 0u64.wrapping_sub((register.start >> bit & 1) as u64);
-                            let value = state[next] & !reset | start & reset;
-                            self.store(layout, state, (register.q, bit, part), value);
-                        }
+        while let Some(index) = Layout::take_lowest(state, layout.group_words()) {
+            let Commit::Registers(registers) = &form.commits[index] else {
+                unreachable!("memories come after all groups of registers")
+            };
+            for register in registers {
+                for part in 0..self.words {
+                    let reset = register
+                        .reset
+                        .map_or(0, |net| state[layout.place(net) + part]);
+                    for bit in 0..form.nets[register.q].width_bits {
+                        let next = layout.place(register.next) + bit * self.words + part;
+                        let start = 0u64.wrapping_sub((register.start >> bit & 1) as u64);
+                        let value = state[next] & !reset | start & reset;
+                        self.store(layout, state, (register.q, bit, part), value);
                     }
                 }
             }
