@@ -70,6 +70,8 @@ fn bad_arguments_are_refused_with_their_limits() {
     for (arguments, text) in [
         (["--cases", "0"], "--cases = 0: outside 1..1000000"),
         (["--case", "20000"], "--case = 20000: outside 0..9999"),
+        (["--threads", "-1"], "--threads = -1: outside 1..1024"),
+        (["--seed", "x"], "--seed = x: is not a number"),
     ] {
         let outcome = run(&["campaign", "random", arguments[0], arguments[1]]);
         assert_eq!(outcome.exit_code, 2);

@@ -131,9 +131,11 @@ pub fn run_one(engine: &str, cycles: usize) -> Result<(), GenError> {
         "compiled" => rust_engines::compiled(&card, &Stimulus::record(&card, cycles)?, cycles)?,
         "models" => rust_engines::compiled_with_models(&card, cycles)?,
         "lanes" => rust_engines::lanes_on(&card, LaneWords::Two, cycles, 1)?,
-        other => return Err(GenError::input(format!(
+        other => {
+            return Err(GenError::input(format!(
             "--only = {other:?}: unknown engine; choose plain, compiled, models, lanes or frames"
-        ))),
+        )))
+        }
     };
     Ok(())
 }

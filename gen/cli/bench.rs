@@ -1,5 +1,6 @@
 //! `bench`: measures the simulators.
 
+use super::number::number;
 use super::{to_json, Outcome};
 use crate::bench::{self, Options};
 use crate::error::GenError;
@@ -22,8 +23,13 @@ enum What {
 #[derive(Args)]
 struct EnginesArgs {
     /// Cycles for the fast engines; slow ones run a part of them
-    #[arg(long, value_name = "N", default_value_t = 2_000_000)]
-    cycles: usize,
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "2000000",
+        allow_negative_numbers = true
+    )]
+    cycles: String,
     /// Only this project's own engines
     #[arg(long)]
     own: bool,
@@ -39,25 +45,20 @@ struct EnginesArgs {
 }
 
 /// Fewest cycles: the slow engines run a part of them.
-const CYCLES_MIN: usize = 1000;
+const CYCLES_MIN: u64 = 1000;
 /// Most cycles: a byte of stimulus is kept for each.
-const CYCLES_MAX: usize = 1_000_000_000;
+const CYCLES_MAX: u64 = 1_000_000_000;
 
 /// Runs the command.
 pub fn run(arguments: &BenchArgs) -> Result<Outcome, GenError> {
     let What::Engines(arguments) = &arguments.what;
-    if !(CYCLES_MIN..=CYCLES_MAX).contains(&arguments.cycles) {
-        return Err(GenError::input(format!(
-            "--cycles = {}: outside {CYCLES_MIN}..{CYCLES_MAX}; choose a number in that range",
-            arguments.cycles
-        )));
-    }
+    let cycles = number("--cycles", &arguments.cycles, CYCLES_MIN..=CYCLES_MAX)? as usize;
     if let Some(engine) = &arguments.only {
-        bench::run_one(engine, arguments.cycles)?;
+        bench::run_one(engine, cycles)?;
         return Ok(Outcome::default());
     }
     let options = Options {
-        cycles: arguments.cycles,
+        cycles,
         outside: !arguments.own,
         instructions: arguments.instructions,
     };

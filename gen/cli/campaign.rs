@@ -1,5 +1,6 @@
 //! `campaign`: thousands of cases in lanes; one of them again, alone, with waveforms and a drawing.
 
+use super::number::number;
 use super::pictures::{draw, Pictures};
 use super::{to_json, Outcome};
 use crate::error::GenError;
@@ -18,17 +19,27 @@ pub struct CampaignArgs {
     /// What to run
     name: Name,
     /// Number of random cases
-    #[arg(long, value_name = "N", default_value_t = 10_000)]
-    cases: usize,
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "10000",
+        allow_negative_numbers = true
+    )]
+    cases: String,
     /// Seed of the random cases
-    #[arg(long, value_name = "S", default_value_t = 1)]
-    seed: u64,
+    #[arg(
+        long,
+        value_name = "S",
+        default_value = "1",
+        allow_negative_numbers = true
+    )]
+    seed: String,
     /// Threads [default: one for each processor]
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
-    threads: usize,
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    threads: Option<String>,
     /// Run only this case, alone
-    #[arg(long, value_name = "INDEX")]
-    case: Option<usize>,
+    #[arg(long, value_name = "INDEX", allow_negative_numbers = true)]
+    case: Option<String>,
     /// With --case: write the waveforms, and a GTKWave layout beside them
     #[arg(long, value_name = "FILE", requires = "case")]
     vcd: Option<PathBuf>,
@@ -49,24 +60,25 @@ enum Name {
 }
 
 /// Most random cases: all are made before the first one runs.
-const CASES_MAX: usize = 1_000_000;
+const CASES_MAX: u64 = 1_000_000;
+/// Most threads.
+const THREADS_MAX: u64 = 1024;
 /// Failures that are shown.
 const SHOWN: usize = 10;
 
 /// Runs the command.
 pub fn run(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
-    if !(1..=CASES_MAX).contains(&arguments.cases) {
-        return Err(GenError::input(format!(
-            "--cases = {}: outside 1..{CASES_MAX}; choose a number in that range",
-            arguments.cases
-        )));
-    }
+    let count = number("--cases", &arguments.cases, 1..=CASES_MAX)?;
+    let seed = number("--seed", &arguments.seed, 0..=u64::MAX)?;
     let cases = match arguments.name {
         Name::Sweep => campaign::sweep(),
-        Name::Random => campaign::random(arguments.cases, arguments.seed),
+        Name::Random => campaign::random(count as usize, seed),
     };
-    match arguments.case {
-        Some(index) => alone(arguments, &cases, index),
+    match &arguments.case {
+        Some(index) => {
+            let index = number("--case", index, 0..=cases.len() as u64 - 1)? as usize;
+            alone(arguments, &cases[index], index)
+        }
         None => all(arguments, &cases),
     }
 }
@@ -88,8 +100,12 @@ fn replay(arguments: &CampaignArgs, index: usize) -> String {
 }
 
 fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, GenError> {
+    let threads = match &arguments.threads {
+        Some(text) => number("--threads", text, 1..=THREADS_MAX)? as usize,
+        None => 0,
+    };
     let options = RunOptions {
-        threads: arguments.threads,
+        threads,
         lanes: LaneWords::Two,
         samples: true,
     };
@@ -144,13 +160,7 @@ fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, GenError> {
     })
 }
 
-fn alone(arguments: &CampaignArgs, cases: &[Case], index: usize) -> Result<Outcome, GenError> {
-    let Some(case) = cases.get(index) else {
-        return Err(GenError::input(format!(
-            "--case = {index}: outside 0..{}; choose a case of this campaign",
-            cases.len() - 1
-        )));
-    };
+fn alone(arguments: &CampaignArgs, case: &Case, index: usize) -> Result<Outcome, GenError> {
     let design = case.design().map_err(|e| fault(&e))?;
     let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
     let bench = case.run_alone(engine, true);

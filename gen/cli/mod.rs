@@ -5,6 +5,7 @@ mod bench;
 mod campaign;
 mod crc_command;
 mod emit;
+mod number;
 mod pictures;
 mod sim;
 

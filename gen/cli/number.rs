@@ -1,0 +1,30 @@
+//! Numbers on the command line, with their limits in the message.
+
+use crate::error::{shown, GenError};
+use std::ops::RangeInclusive;
+
+/// A number as people type it, within `range`.
+pub fn number(flag: &str, text: &str, range: RangeInclusive<u64>) -> Result<u64, GenError> {
+    let (low, high) = (range.start(), range.end());
+    let fail = |what: String| {
+        let text = shown(text);
+        Err(GenError::input(format!("{flag} = {text}: {what}")))
+    };
+    let plain = text.replace('_', "").to_ascii_lowercase();
+    let (digits, radix) = match (plain.strip_prefix("0x"), plain.strip_prefix("0b")) {
+        (Some(digits), _) => (digits, 16),
+        (_, Some(digits)) => (digits, 2),
+        _ => (plain.strip_prefix('-').unwrap_or(&plain), 10),
+    };
+    if digits.is_empty() || !digits.chars().all(|c| c.is_digit(radix)) {
+        return fail(format!(
+            "is not a number from {low} to {high}; write 123, 0x7B or 0b1111011"
+        ));
+    }
+    match u64::from_str_radix(digits, radix) {
+        Ok(value) if range.contains(&value) && !plain.starts_with('-') => Ok(value),
+        _ => fail(format!(
+            "outside {low}..{high}; give a number in that range"
+        )),
+    }
+}
