@@ -9,7 +9,7 @@ pub(in crate::engine) struct Layout {
     slots: Vec<Option<usize>>,
     segments: usize,
     /// Commits that load registers; those of memories follow.
-    groups: usize,
+    pub groups: usize,
     memories: usize,
     /// Words in all.
     pub words: usize,

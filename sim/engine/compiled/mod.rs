@@ -11,14 +11,13 @@ use endat_hdl::elaborate::{mask, Design};
 use layout::Layout;
 pub use native::has_native_code;
 use native::Native;
-use portable::Portable;
 use std::sync::Arc;
 
 /// What executes the form.
 #[derive(Clone)]
 enum Code {
     Native(Native),
-    Portable(Arc<Portable>),
+    Portable,
 }
 
 /// Runs a [`Design`] as native code. A clone goes on from the same state, apart from the original.
@@ -106,7 +105,7 @@ impl Compiled {
         layout.mark_all(&mut state);
         let (code, fallback) = match native {
             Ok(native) => (Code::Native(native), None),
-            Err(why) => (Code::Portable(Portable.into()), Some(why.into())),
+            Err(why) => (Code::Portable, Some(why.into())),
         };
         Self {
             memories: form.memories.iter().map(|m| vec![0; m.words]).collect(),
@@ -253,7 +252,7 @@ impl Compiled {
         }
         match &self.code {
             Code::Native(native) => native.settle(&mut self.state),
-            Code::Portable(portable) => portable.settle(&self.form, &self.layout, &mut self.state),
+            Code::Portable => portable::settle(&self.form, &self.layout, &mut self.state),
         }
         self.is_settled = true;
     }
@@ -303,7 +302,7 @@ impl Engine for Compiled {
         self.serve_memories();
         match &self.code {
             Code::Native(native) => native.commit(&mut self.state),
-            Code::Portable(portable) => portable.commit(&self.form, &self.layout, &mut self.state),
+            Code::Portable => portable::commit(&self.form, &self.layout, &mut self.state),
         }
         self.is_settled = false;
     }

@@ -1,7 +1,7 @@
 //! Native code for a form, made by Cranelift. All `unsafe` of the engines is here.
 
 use super::layout::Layout;
-use crate::engine::form::{Commit, Form};
+use crate::engine::form::Form;
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::types::I64;
 use cranelift_codegen::ir::{
@@ -210,10 +210,10 @@ impl Native {
                 lower.segment(code, n)
             });
         });
-        let is_group = |c: &&Commit| matches!(c, Commit::Registers(_));
-        let groups = form.commits.iter().filter(is_group).count();
         let commit = define(&mut module, "commit", layout, |code| {
-            code.for_each_set_bit(layout.group_words(), groups, |code, n| lower.group(code, n));
+            code.for_each_set_bit(layout.group_words(), layout.groups, |code, n| {
+                lower.group(code, n)
+            });
         });
         let (settle, commit) = (
             settle.map_err(|e| e.to_string())?,
