@@ -74,6 +74,7 @@ fn times(card: &CardConfig, channel: &ChannelConfig) -> FixedTimes {
         ready_low_cycles: channel.ready_low_cycles,
         abort_us: channel.abort_us,
         calibration_period_cycles: channel.calibration_period_cycles(card.system_hz),
+        ..FixedTimes::at(card.system_hz)
     }
 }
 
@@ -183,6 +184,13 @@ impl Logic for Card {
             self.channel[i].start_timeout_us.next = self.registers[i].start_timeout_us.val();
             self.channel[i].recovery_limit_cycles.next =
                 self.registers[i].recovery_limit_cycles.val();
+
+            self.channel[i].request_command.next = 0.into();
+            self.channel[i].request_parameter.next = 0.into();
+            self.channel[i].request_ride.next = false;
+            self.channel[i].request_own.next = false;
+            self.channel[i].request_cancel.next = false;
+            self.channel[i].hold_off.next = false;
 
             self.registers[i].trigger.next = self.trigger.trigger.val();
             self.registers[i].busy.next = self.channel[i].busy.val();

@@ -8,14 +8,20 @@
 //!                +------ LineDelay -> Receiver -> Snapshot -> position, cause, ...
 //! ```
 //!
+//! With [`Features::requests`] the channel sends all mode commands: a request rides on the next triggered position frame (EnDat 2.2), or
+//! has a frame of its own. [`AddInfo`] keeps the record of the additional informations that follow each position.
+//!
 //! The first frame after reset, after an aborted frame and after `calibrate` runs at the calibration clock and
 //! measures the propagation delay; all others run at the configured clock. Configuration inputs may change while no
 //! frame is under way.
 
+use crate::add_info::AddInfo;
 use crate::clock_gen::ClockGen;
 use crate::command_sender::CommandSender;
+use crate::command_shape::CommandShape;
 use crate::input_filter::InputFilter;
 use crate::line_delay::LineDelay;
+use crate::protocol::{PARAMETER_BITS, TEST_VALUE_BITS};
 use crate::receiver::Receiver;
 use crate::reg::Reg;
 use crate::snapshot::Snapshot;
@@ -53,8 +59,20 @@ pub struct Channel {
     pub period_cycles: Signal<In, Bits<11>>,
     /// How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     pub first_low_extra_cycles: Signal<In, Bits<11>>,
-    /// Mode command.
+    /// Mode command of a triggered frame.
     pub command: Signal<In, Bits<6>>,
+    /// Mode command of a request.
+    pub request_command: Signal<In, Bits<6>>,
+    /// What it sends besides: MRS code, address or port in the upper 8 bits, data below.
+    pub request_parameter: Signal<In, Bits<24>>,
+    /// Strobe: send the request, a position command with supplement or not, with the next trigger.
+    pub request_ride: Signal<In, Bit>,
+    /// Strobe: send the request in a frame of its own as soon as the line is free. It is not published.
+    pub request_own: Signal<In, Bit>,
+    /// Strobe: forget the request if it has not begun.
+    pub request_cancel: Signal<In, Bit>,
+    /// No frame may begin: triggers are lost, and counted as such.
+    pub hold_off: Signal<In, Bit>,
     /// Position width, 1..=48 bits.
     pub position_bits: Signal<In, Bits<6>>,
     /// Pulses on the data line of at most this many system clock cycles are ignored.
@@ -88,7 +106,7 @@ pub struct Channel {
     /// Primary cause of the last result, see [`crate::transaction::cause`].
     pub cause: Signal<Out, Bits<4>>,
     /// Raw flags of the last result.
-    pub flags: Signal<Out, Bits<10>>,
+    pub flags: Signal<Out, Bits<12>>,
     /// CRC received in the last whole frame.
     pub crc_received: Signal<Out, Bits<5>>,
     /// CRC computed for the last whole frame.
@@ -99,6 +117,32 @@ pub struct Channel {
     pub delay_cycles: Signal<Out, Bits<10>>,
     /// A trigger would not be taken.
     pub busy: Signal<Out, Bit>,
+    /// Strobe: a trigger has been lost.
+    pub displaced: Signal<Out, Bit>,
+    /// Strobe: a frame, triggered or not, has ended; `over_cause` to `reply_good` are of it.
+    pub over: Signal<Out, Bit>,
+    /// The frame had the request.
+    pub over_request: Signal<Out, Bit>,
+    /// Primary cause of the frame, as `cause`.
+    pub over_cause: Signal<Out, Bits<4>>,
+    /// Raw flags of the frame, as `flags`.
+    pub over_flags: Signal<Out, Bits<12>>,
+    /// Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
+    pub reply: Signal<Out, Bits<48>>,
+    /// Its CRC is right.
+    pub reply_good: Signal<Out, Bit>,
+    /// The encoder sends after each EnDat 2.2 position: bit 0 additional information 1, bit 1 additional information 2.
+    pub info_active: Signal<Out, Bits<2>>,
+    /// Additional information 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
+    pub info_1: Signal<Out, Bits<24>>,
+    /// Additional information 2 as it came last.
+    pub info_2: Signal<Out, Bits<24>>,
+    /// Additional informations in the last frame: bit 0 information 1, bit 1 information 2.
+    pub info_came: Signal<Out, Bits<2>>,
+    /// Their CRCs are right.
+    pub info_good: Signal<Out, Bits<2>>,
+    /// The propagation delay is known: frames run at the full clock, requests may ride.
+    pub calibrated: Signal<Out, Bit>,
     /// Strobe: the data line is sampled for a bit of the answer.
     pub sample_strobe: Signal<Out, Bit>,
     filter: InputFilter,
@@ -108,9 +152,27 @@ pub struct Channel {
     receiver: Receiver,
     transaction: Transaction,
     snapshot: Snapshot,
+    shape: CommandShape,
+    add_info: AddInfo,
     clk_pin: Reg<Bit>,
     data_pin: Reg<Bit>,
     oe_pin: Reg<Bit>,
+    own_wanted: Reg<Bit>,
+    ride_wanted: Reg<Bit>,
+    frame_command: Reg<Bits<6>>,
+    frame_own: Reg<Bit>,
+    frame_ride: Reg<Bit>,
+    info_taken: Reg<Bit>,
+    reply_taken: Reg<Bit>,
+    reply_word: Reg<Bits<48>>,
+    reply_right: Reg<Bit>,
+    has_requests: Constant<Bit>,
+    parameter_bits: Constant<Bits<6>>,
+    test_value_bits: Constant<Bits<6>>,
+    command_now: Signal<Local, Bits<6>>,
+    payload_bits: Signal<Local, Bits<6>>,
+    word: Signal<Local, Bits<24>>,
+    crc_ok: Signal<Local, Bit>,
     period: Signal<Local, Bits<11>>,
     calibration_period_cycles: Constant<Bits<11>>,
 }
@@ -120,10 +182,14 @@ pub struct Channel {
 pub struct FixedTimes {
     /// Clock period of the frame that measures the propagation delay, in system clock cycles (1..=2047).
     pub calibration_period_cycles: u64,
-    /// Data must have been low this long before a frame (tR), in system clock cycles (1..=32767).
+    /// Data must have been low this long before a frame (tR), in system clock cycles (1..=65535).
     pub ready_low_cycles: u64,
-    /// Quiet time after an aborted frame, in microseconds (1..=32767).
+    /// Quiet time after an aborted frame, in microseconds (1..=65535).
     pub abort_us: u64,
+    /// Clock LOW between an answer and its supplement, in system clock cycles (1..=65535).
+    pub park_cycles: u64,
+    /// Longest wait for the answer to a command with a parameter, in microseconds (1..=65535).
+    pub parameter_timeout_us: u64,
 }
 
 impl FixedTimes {
@@ -133,13 +199,32 @@ impl FixedTimes {
             calibration_period_cycles: timing::period_cycles(timing::CALIBRATION_HZ, system_hz),
             ready_low_cycles: timing::cycles_at_least(timing::READY_LOW_NS, system_hz),
             abort_us: timing::ABORT_US,
+            park_cycles: timing::cycles_at_least(timing::PARK_NS, system_hz),
+            parameter_timeout_us: timing::PARAMETER_TIMEOUT_US,
         }
     }
 }
 
+/// What a channel can do besides triggered positions; what it cannot takes no logic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Features {
+    /// All mode commands and additional information.
+    pub requests: bool,
+}
+
+impl Features {
+    /// Everything.
+    pub const ALL: Self = Self { requests: true };
+}
+
 impl Channel {
-    /// A channel with these fixed times.
+    /// A channel with these fixed times, for triggered positions without additional information.
     pub fn new(times: FixedTimes) -> Self {
+        Self::with(times, Features::default())
+    }
+
+    /// A channel with these fixed times and features.
+    pub fn with(times: FixedTimes, features: Features) -> Self {
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -151,6 +236,12 @@ impl Channel {
             period_cycles: Default::default(),
             first_low_extra_cycles: Default::default(),
             command: Default::default(),
+            request_command: Default::default(),
+            request_parameter: Default::default(),
+            request_ride: Default::default(),
+            request_own: Default::default(),
+            request_cancel: Default::default(),
+            hold_off: Default::default(),
             position_bits: Default::default(),
             filter_cycles: Default::default(),
             start_window_cycles: Default::default(),
@@ -173,17 +264,48 @@ impl Channel {
             recovery_cycles: Default::default(),
             delay_cycles: Default::default(),
             busy: Default::default(),
+            displaced: Default::default(),
+            over: Default::default(),
+            over_request: Default::default(),
+            over_cause: Default::default(),
+            over_flags: Default::default(),
+            reply: Default::default(),
+            reply_good: Default::default(),
+            info_active: Default::default(),
+            info_1: Default::default(),
+            info_2: Default::default(),
+            info_came: Default::default(),
+            info_good: Default::default(),
+            calibrated: Default::default(),
             sample_strobe: Default::default(),
             filter: Default::default(),
             clock_gen: Default::default(),
-            sender: Default::default(),
+            sender: CommandSender::new(features.requests),
             delay: Default::default(),
-            receiver: Default::default(),
-            transaction: Transaction::new(times.ready_low_cycles, times.abort_us),
+            receiver: Receiver::new(features.requests),
+            transaction: Transaction::new(times, features.requests),
             snapshot: Default::default(),
+            shape: CommandShape::new(features.requests),
+            add_info: Default::default(),
             clk_pin: Reg::new(true),
             data_pin: Default::default(),
             oe_pin: Default::default(),
+            own_wanted: Default::default(),
+            ride_wanted: Default::default(),
+            frame_command: Default::default(),
+            frame_own: Default::default(),
+            frame_ride: Default::default(),
+            info_taken: Default::default(),
+            reply_taken: Default::default(),
+            reply_word: Default::default(),
+            reply_right: Default::default(),
+            has_requests: Constant::new(features.requests),
+            parameter_bits: Constant::new(u64::from(PARAMETER_BITS).into()),
+            test_value_bits: Constant::new(u64::from(TEST_VALUE_BITS).into()),
+            command_now: Default::default(),
+            payload_bits: Default::default(),
+            word: Default::default(),
+            crc_ok: Default::default(),
             period: Default::default(),
             calibration_period_cycles: Constant::new(times.calibration_period_cycles.into()),
         }
@@ -203,8 +325,32 @@ impl Logic for Channel {
             delay,
             receiver,
             transaction,
-            snapshot
+            snapshot,
+            add_info
         );
+        dff_setup!(
+            self,
+            clock,
+            own_wanted,
+            ride_wanted,
+            frame_command,
+            frame_own,
+            frame_ride,
+            info_taken,
+            reply_taken,
+            reply_word,
+            reply_right
+        );
+        self.own_wanted.reset.next = self.reset.val();
+        self.ride_wanted.reset.next = self.reset.val();
+        self.frame_command.reset.next = self.reset.val();
+        self.frame_own.reset.next = self.reset.val();
+        self.frame_ride.reset.next = self.reset.val();
+        self.info_taken.reset.next = self.reset.val();
+        self.reply_taken.reset.next = self.reset.val();
+        self.reply_word.reset.next = self.reset.val();
+        self.reply_right.reset.next = self.reset.val();
+        self.add_info.reset.next = self.reset.val();
         self.clk_pin.reset.next = self.reset.val();
         self.data_pin.reset.next = self.reset.val();
         self.oe_pin.reset.next = self.reset.val();
@@ -221,6 +367,51 @@ impl Logic for Channel {
             self.period.next = self.calibration_period_cycles.val();
         }
 
+        // Which command the next frame has is settled before it begins, and stays until all has been told of it.
+        self.command_now.next = self.command.val();
+        self.payload_bits.next = self.position_bits.val();
+        if self.has_requests.val() {
+            self.command_now.next = self.frame_command.q.val();
+            if self.shape.has_parameter.val() {
+                self.payload_bits.next = self.parameter_bits.val();
+            }
+            if self.shape.has_test_values.val() {
+                self.payload_bits.next = self.test_value_bits.val();
+            }
+        }
+        if self.transaction.begun.val() {
+            if self.frame_own.q.val() {
+                self.own_wanted.d.next = false;
+            }
+            if self.frame_ride.q.val() {
+                self.ride_wanted.d.next = false;
+            }
+        } else {
+            if self.transaction.is_at_rest.val() & self.has_requests.val() {
+                self.frame_command.d.next = self.command.val();
+                self.frame_own.d.next = self.own_wanted.q.val();
+                self.frame_ride.d.next = self.ride_wanted.q.val()
+                    & self.transaction.calibrated.val()
+                    & !self.own_wanted.q.val();
+                if self.own_wanted.q.val()
+                    | (self.ride_wanted.q.val() & self.transaction.calibrated.val())
+                {
+                    self.frame_command.d.next = self.request_command.val();
+                }
+            }
+        }
+        if self.request_own.val() & self.has_requests.val() {
+            self.own_wanted.d.next = true;
+        }
+        if self.request_ride.val() & self.has_requests.val() {
+            self.ride_wanted.d.next = true;
+        }
+        if self.request_cancel.val() {
+            self.own_wanted.d.next = false;
+            self.ride_wanted.d.next = false;
+        }
+        self.shape.command.next = self.command_now.val();
+
         self.filter.pin.next = self.data_i.val();
         self.filter.filter_cycles.next = self.filter_cycles.val();
 
@@ -233,7 +424,10 @@ impl Logic for Channel {
         self.sender.start.next = self.transaction.start.val();
         self.sender.fall.next = self.clock_gen.fall.val();
         self.sender.abort.next = self.transaction.abort.val();
-        self.sender.command.next = self.command.val();
+        self.sender.start_supplement.next = self.transaction.start_supplement.val();
+        self.sender.command.next = self.command_now.val();
+        self.sender.has_parameter.next = self.shape.has_parameter.val();
+        self.sender.parameter_word.next = self.request_parameter.val();
 
         self.delay.drain.next = self.transaction.drain.val();
         self.delay.run.next = self.transaction.run.val();
@@ -251,9 +445,13 @@ impl Logic for Channel {
         self.receiver.sample.next = self.delay.sample.val();
         self.receiver.level.next = self.filter.level.val();
         self.receiver.edge_in_window.next = self.delay.edge_in_window.val();
-        self.receiver.position_bits.next = self.position_bits.val();
-        // The 2.2 commands begin with another bit than 000111.
-        self.receiver.has_f2.next = self.command.val().get_bit(5);
+        self.receiver.payload_bits.next = self.payload_bits.val();
+        self.receiver.has_f1.next = self.shape.has_f1.val();
+        self.receiver.has_f2.next = self.shape.has_f2.val();
+        self.receiver.has_parameter.next = self.shape.has_parameter.val();
+        self.receiver.has_supplement.next = self.shape.has_supplement.val();
+        self.receiver.infos.next = self.add_info.infos.val();
+        self.receiver.start_supplement.next = self.transaction.start_supplement.val();
 
         self.transaction.tick_us.next = self.tick_us.val();
         self.transaction.trigger.next = self.trigger.val();
@@ -264,7 +462,15 @@ impl Logic for Channel {
         self.transaction.hunting.next = self.receiver.hunting.val();
         self.transaction.started.next = self.receiver.started.val();
         self.transaction.start_refused.next = self.receiver.start_refused.val();
-        self.transaction.frame_done.next = self.receiver.done.val();
+        self.transaction.answer_done.next = self.receiver.done.val();
+        self.transaction.finished.next = self.receiver.finished.val();
+        self.transaction.info_missing.next = self.receiver.info_missing.val();
+        self.transaction.is_known.next = self.shape.is_known.val();
+        self.transaction.has_parameter.next = self.shape.has_parameter.val();
+        self.transaction.has_supplement.next = self.shape.has_supplement.val();
+        self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.q.val();
+        self.transaction.is_own.next = self.frame_own.q.val();
+        self.transaction.hold_off.next = self.hold_off.val();
         self.transaction.serial_ok.next = self.receiver.serial_ok.val();
         self.transaction.parallel_ok.next = self.receiver.parallel_ok.val();
         self.transaction.f1.next = self.receiver.f1.val();
@@ -281,11 +487,44 @@ impl Logic for Channel {
         self.snapshot.publish.next = self.transaction.publish.val();
         self.snapshot.good.next = self.transaction.good.val();
         self.snapshot.late_fault.next = self.transaction.late_fault.val();
-        self.snapshot.position_in.next = self.receiver.position.val();
+        self.snapshot.position_in.next = self.receiver.payload.val();
         self.snapshot.crc_received_in.next = self.receiver.crc_received.val();
         self.snapshot.crc_computed_in.next = self.receiver.crc_computed.val();
         self.snapshot.cause_in.next = self.transaction.cause.val();
         self.snapshot.flags_in.next = self.transaction.flags.val();
+
+        // What comes MSB first stands the other way round in the payload.
+        self.word.next = 0.into();
+        for i in 0..24 {
+            self.word.next = self
+                .word
+                .val()
+                .replace_bit(23 - i, self.receiver.payload.val().get_bit(i));
+        }
+        self.crc_ok.next = self.receiver.serial_ok.val() & self.receiver.parallel_ok.val();
+        self.info_taken.d.next = self.receiver.info_done.val();
+        self.reply_taken.d.next = self.receiver.done.val() & self.frame_own.q.val();
+        if self.reply_taken.q.val() {
+            self.reply_word.d.next = self.receiver.payload.val();
+            if self.shape.has_parameter.val() {
+                self.reply_word.d.next = bit_cast::<48, 24>(self.word.val());
+            }
+            self.reply_right.d.next = self.crc_ok.val();
+        }
+        if self.transaction.start.val() {
+            self.reply_right.d.next = false;
+        }
+
+        self.add_info.start.next = self.transaction.start.val();
+        self.add_info.has_f2.next = self.shape.has_f2.val();
+        self.add_info.has_supplement.next = self.shape.has_supplement.val();
+        self.add_info.command.next = self.command_now.val();
+        self.add_info.mrs.next = self.request_parameter.val().get_bits::<8>(16);
+        self.add_info.info_done.next = self.info_taken.q.val() & self.has_requests.val();
+        self.add_info.crc_ok.next = self.crc_ok.val();
+        self.add_info.word.next = self.word.val();
+        self.add_info.over.next = self.transaction.over.val() & self.has_requests.val();
+        self.add_info.flags.next = self.transaction.flags.val();
 
         self.clk_pin.d.next = self.clock_gen.endat_clk.val();
         self.data_pin.d.next = self.sender.data.val();
@@ -308,6 +547,19 @@ impl Logic for Channel {
         self.recovery_cycles.next = self.transaction.recovery_cycles.val();
         self.delay_cycles.next = self.delay.delay_cycles.val();
         self.busy.next = self.transaction.busy.val();
+        self.displaced.next = self.transaction.displaced.val();
+        self.over.next = self.transaction.over.val();
+        self.over_request.next = self.frame_own.q.val() | self.frame_ride.q.val();
+        self.over_cause.next = self.transaction.cause.val();
+        self.over_flags.next = self.transaction.flags.val();
+        self.reply.next = self.reply_word.q.val();
+        self.reply_good.next = self.reply_right.q.val();
+        self.info_active.next = self.add_info.active.val();
+        self.info_1.next = self.add_info.info_1.val();
+        self.info_2.next = self.add_info.info_2.val();
+        self.info_came.next = self.add_info.came.val();
+        self.info_good.next = self.add_info.good.val();
+        self.calibrated.next = self.transaction.calibrated.val();
         self.sample_strobe.next = self.delay.sample.val() & !self.receiver.skipping.val();
     }
 }

@@ -45,7 +45,7 @@ pub struct ChannelRegisters {
     /// Primary cause.
     pub cause: Signal<In, Bits<4>>,
     /// Raw flags.
-    pub flags: Signal<In, Bits<10>>,
+    pub flags: Signal<In, Bits<12>>,
     /// CRC as received.
     pub crc_received: Signal<In, Bits<5>>,
     /// CRC as computed.
@@ -190,7 +190,7 @@ impl Logic for ChannelRegisters {
         self.word[4].next = bit_cast::<32, 5>(self.crc_received.val())
             | (bit_cast::<32, 5>(self.crc_computed.val()) << 5)
             | (bit_cast::<32, 10>(self.delay_cycles.val()) << 10)
-            | (bit_cast::<32, 10>(self.flags.val()) << 20);
+            | (bit_cast::<32, 12>(self.flags.val()) << 20);
         self.word[5].next = bit_cast::<32, 16>(self.age_us.val())
             | (bit_cast::<32, 13>(self.recovery_cycles.val()) << 16);
         for i in 0..self._words {

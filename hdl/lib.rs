@@ -12,11 +12,13 @@
 //! Reading order: [`protocol`] and [`timing`] (facts), [`reg`] (the only registers), then the blocks
 //! from left to right in the drawing, [`channel`], [`card`]. [`elaborate`] turns any block into a typed `Design`.
 
+pub mod add_info;
 pub mod card;
 pub mod channel;
 pub mod channel_registers;
 pub mod clock_gen;
 pub mod command_sender;
+pub mod command_shape;
 pub mod config;
 pub mod config_ring;
 pub mod crc5;

@@ -4,47 +4,156 @@
 //! HEIDENHAIN PWM 20 user's manual (Nov 2014), EnDat interface description;
 //! Texas Instruments motor-control SDK, `position_sense/endat` (public source) for counts the brochures leave out.
 
-/// A 6-bit mode command, sent MSB first.
+/// A 6-bit mode command, sent MSB first; the names are the encoder's view.
 ///
-/// The right triplet of the code is the complement of the left one in the 2.1 commands and in `111000`.
+/// The right triplet of the code repeats the left one: complemented in the 2.1 commands and in `111000`, as it is in the 2.2
+/// commands that are followed by a supplement, and in `010010`. So an encoder can refuse a spoilt command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ModeCommand {
-    /// `000111`: encoder sends its position (EnDat 2.1 frame: start, F1, position, CRC).
+    /// `000111`: send position (EnDat 2.1 frame: start, F1, position, CRC).
     SendPosition,
-    /// `111000`: encoder sends its position (EnDat 2.2 frame: start, F1, F2, position, CRC), then any selected additional information.
+    /// `001110`: select a memory area; the answer repeats MRS code and data.
+    SelectMemory,
+    /// `011100`: receive parameter: writes a word; the answer repeats address and data.
+    ReceiveParameter,
+    /// `100011`: send parameter: reads a word.
+    SendParameter,
+    /// `101010`: receive reset: like a power cycle.
+    ReceiveReset,
+    /// `010101`: send test values: F1 and 40 bits.
+    SendTestValues,
+    /// `110001`: receive test command: port and data.
+    ReceiveTestCommand,
+    /// `111000`: send position (EnDat 2.2 frame: start, F1, F2, position, CRC), then any selected additional information.
     SendPositionAddInfo,
+    /// `001001`: the same, then a supplement that selects a memory area or an additional information.
+    PositionSelectMemory,
+    /// `011011`: the same, then a supplement that writes a word.
+    PositionReceiveParameter,
+    /// `100100`: the same, then a supplement that asks for a word.
+    PositionSendParameter,
+    /// `101101`: the same, then a supplement that clears errors and warnings.
+    PositionErrorReset,
+    /// `110110`: the same, then a supplement with a test command.
+    PositionTestCommand,
+    /// `010010`: receive communication command: address and data.
+    ReceiveCommunication,
 }
 
 impl ModeCommand {
-    /// Every command this version of the core sends.
-    pub const ALL: [Self; 2] = [Self::SendPosition, Self::SendPositionAddInfo];
+    /// Every command; the first seven are EnDat 2.1.
+    pub const ALL: [Self; 14] = [
+        Self::SendPosition,
+        Self::SelectMemory,
+        Self::ReceiveParameter,
+        Self::SendParameter,
+        Self::ReceiveReset,
+        Self::SendTestValues,
+        Self::ReceiveTestCommand,
+        Self::SendPositionAddInfo,
+        Self::PositionSelectMemory,
+        Self::PositionReceiveParameter,
+        Self::PositionSendParameter,
+        Self::PositionErrorReset,
+        Self::PositionTestCommand,
+        Self::ReceiveCommunication,
+    ];
+    /// The commands that bring a position and ask for nothing else: what a trigger sends.
+    pub const POSITION: [Self; 2] = [Self::SendPosition, Self::SendPositionAddInfo];
 
     /// The six bits as they stand in the tables of the interface description.
     pub const fn code(self) -> u8 {
         match self {
             Self::SendPosition => 0b000_111,
+            Self::SelectMemory => 0b001_110,
+            Self::ReceiveParameter => 0b011_100,
+            Self::SendParameter => 0b100_011,
+            Self::ReceiveReset => 0b101_010,
+            Self::SendTestValues => 0b010_101,
+            Self::ReceiveTestCommand => 0b110_001,
             Self::SendPositionAddInfo => 0b111_000,
+            Self::PositionSelectMemory => 0b001_001,
+            Self::PositionReceiveParameter => 0b011_011,
+            Self::PositionSendParameter => 0b100_100,
+            Self::PositionErrorReset => 0b101_101,
+            Self::PositionTestCommand => 0b110_110,
+            Self::ReceiveCommunication => 0b010_010,
         }
     }
 
-    /// The command with this code, if the core can send it.
+    /// The command with this code.
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|c| c.code() == code)
     }
 
+    /// Whether only an EnDat 2.2 encoder knows it.
+    pub const fn is_endat22(self) -> bool {
+        self.has_f2() || matches!(self, Self::ReceiveCommunication)
+    }
+
+    /// Whether the answer is a position.
+    pub const fn is_position(self) -> bool {
+        matches!(self, Self::SendPosition) || self.has_f2()
+    }
+
     /// Whether the answer carries F2 after F1 (EnDat 2.2 position frame).
     pub const fn has_f2(self) -> bool {
-        matches!(self, Self::SendPositionAddInfo)
+        matches!(self, Self::SendPositionAddInfo) || self.has_supplement()
     }
 
-    /// Error bits in the answer: F1, or F1 and F2.
+    /// Whether 8 and 16 bits follow the mode command, and the answer has the same fields.
+    pub const fn has_parameter(self) -> bool {
+        matches!(
+            self,
+            Self::SelectMemory
+                | Self::ReceiveParameter
+                | Self::SendParameter
+                | Self::ReceiveReset
+                | Self::ReceiveTestCommand
+                | Self::ReceiveCommunication
+        )
+    }
+
+    /// Whether 8 and 16 bits follow the answer.
+    pub const fn has_supplement(self) -> bool {
+        matches!(
+            self,
+            Self::PositionSelectMemory
+                | Self::PositionReceiveParameter
+                | Self::PositionSendParameter
+                | Self::PositionErrorReset
+                | Self::PositionTestCommand
+        )
+    }
+
+    /// Error bits in the answer: none, F1, or F1 and F2.
     pub const fn error_bits(self) -> u32 {
-        1 + self.has_f2() as u32
+        match self.has_parameter() {
+            true => 0,
+            false => 1 + self.has_f2() as u32,
+        }
     }
 
-    /// Bits from the start bit to the last CRC bit (`L`) for a position of `position_bits`.
+    /// Bits between error bits and CRC, for a position of `position_bits`.
+    pub const fn payload_bits(self, position_bits: u32) -> u32 {
+        match self {
+            Self::SendTestValues => TEST_VALUE_BITS,
+            _ if self.has_parameter() => PARAMETER_BITS,
+            _ => position_bits,
+        }
+    }
+
+    /// Bits from the start bit to the last CRC bit (`L`) for a position of `position_bits`, without additional information.
     pub const fn answer_bits(self, position_bits: u32) -> u32 {
-        START_BITS + self.error_bits() + position_bits + CRC_BITS
+        START_BITS + self.error_bits() + self.payload_bits(position_bits) + CRC_BITS
+    }
+
+    /// Complete clock pulses before the earliest start bit: the command with what belongs to it, and 2T on either side.
+    pub const fn lead_pulses(self) -> u32 {
+        match self.has_parameter() {
+            true => LEAD_PULSES + PARAMETER_BITS,
+            false => LEAD_PULSES,
+        }
     }
 }
 
@@ -58,6 +167,18 @@ pub const FIRST_COMMAND_FALL: u32 = 3;
 pub const DRIVER_OFF_FALL: u32 = FIRST_COMMAND_FALL + MODE_COMMAND_BITS;
 /// Complete clock pulses before the earliest start bit: 2T + mode command + 2T (PWM 20; other receivers agree).
 pub const LEAD_PULSES: u32 = 2 + MODE_COMMAND_BITS + 2;
+/// Bits of an MRS code, address or port, and of the data that follow it.
+pub const PARAMETER_BITS: u32 = 8 + 16;
+/// Bits of the test values (TI, C2000).
+pub const TEST_VALUE_BITS: u32 = 40;
+/// Bits of an additional information: a LOW bit, 24 bits, CRC.
+pub const INFO_BITS: u32 = 1 + PARAMETER_BITS + CRC_BITS;
+/// Additional informations in one answer, at most.
+pub const INFOS_MAX: u32 = 2;
+/// LOW bits before the start bit of a supplement (TI; fewer may do).
+pub const SUPPLEMENT_ZEROS: u32 = 7;
+/// Rising clock edges of a supplement: zeros, start bit, 24 bits, and three around them (TI capture).
+pub const SUPPLEMENT_PULSES: u32 = SUPPLEMENT_ZEROS + 1 + PARAMETER_BITS + 3;
 /// Start bits of an answer.
 pub const START_BITS: u32 = 1;
 /// Bits of the CRC.
@@ -80,10 +201,22 @@ mod tests {
     #[test]
     fn mode_commands_carry_their_redundancy() {
         for c in ModeCommand::ALL {
-            assert_eq!(c.code() >> 3, !c.code() & 0b111, "{c:?}");
+            let (left, right) = (c.code() >> 3, c.code() & 0b111);
+            let repeats = c.has_supplement() || c == ModeCommand::ReceiveCommunication;
+            assert_eq!(left ^ right, if repeats { 0 } else { 0b111 }, "{c:?}");
             assert_eq!(ModeCommand::from_code(c.code()), Some(c));
         }
         assert_eq!(ModeCommand::from_code(0), None);
+        let known = (0..64).filter(|c| ModeCommand::from_code(*c).is_some());
+        assert_eq!(known.count(), 14, "no code twice");
+    }
+
+    #[test]
+    fn lengths_are_those_of_the_sources() {
+        assert_eq!(ModeCommand::SendParameter.answer_bits(13), 30);
+        assert_eq!(ModeCommand::SendTestValues.answer_bits(13), 47);
+        assert_eq!(ModeCommand::ReceiveReset.lead_pulses(), 34);
+        assert_eq!((INFO_BITS, SUPPLEMENT_PULSES), (30, 35));
     }
 
     #[test]

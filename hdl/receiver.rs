@@ -1,10 +1,14 @@
-//! Receiver: takes the bits of a position frame from the start bit to the last CRC bit.
+//! Receiver: takes the bits of an answer from the start bit to the last CRC bit.
 //!
 //! ```text
-//! field     Skip      Start     F1   F2   Position ............  Crc ........  Done
+//! field     Skip      Start     F1   F2   Payload  ............  Crc ........  Done
 //! sample    /\ x10    /\        /\   /\   /\ /\ /\ ... /\        /\ /\ /\ /\ /\
 //! align     __________________________________________/~~~~\____________________
 //! ```
+//!
+//! An additional information goes the same way behind the CRC: `Separator`, `Payload` of 24 bits, `Crc`. So does the answer to a
+//! command with a parameter, without F1 and F2; what comes MSB first there is turned round where it is read. During a supplement
+//! cells are only counted.
 //!
 //! The position arrives LSB first. It is shifted in at one of four places, 15 bits apart, so that the parallel CRC
 //! sees it at the right distance from the end, and while the CRC bits arrive it is shifted down to bit 0 with at most 16
@@ -30,12 +34,16 @@ pub enum Field {
     F1,
     /// Error bit 2 (EnDat 2.2 frames).
     F2,
-    /// Position, LSB first.
-    Position,
+    /// Position, LSB first, or what an answer has in its place.
+    Payload,
     /// CRC, MSB first.
     Crc,
-    /// The frame is complete.
+    /// LOW before an additional information.
+    Separator,
+    /// The answer is complete.
     Done,
+    /// Cells of the supplement: the line is ours or undefined.
+    Supplement,
 }
 
 /// Receiver of one channel.
@@ -57,10 +65,20 @@ pub struct Receiver {
     pub level: Signal<In, Bit>,
     /// The start edge of this cell lies in its window.
     pub edge_in_window: Signal<In, Bit>,
-    /// Position width, 1..=48 bits.
-    pub position_bits: Signal<In, Bits<6>>,
+    /// Bits between error bits and CRC, 1..=48.
+    pub payload_bits: Signal<In, Bits<6>>,
+    /// The answer begins with F1.
+    pub has_f1: Signal<In, Bit>,
     /// The frame carries F2.
     pub has_f2: Signal<In, Bit>,
+    /// 24 bits are sent before the answer, and the answer is 24 bits.
+    pub has_parameter: Signal<In, Bit>,
+    /// The clock is parked LOW after the answer.
+    pub has_supplement: Signal<In, Bit>,
+    /// Additional informations that follow the position, 0..=2.
+    pub infos: Signal<In, Bits<2>>,
+    /// One-cycle strobe: the supplement begins.
+    pub start_supplement: Signal<In, Bit>,
     /// The line is undefined: samples are not looked at.
     pub skipping: Signal<Out, Bit>,
     /// The start bit may come now.
@@ -73,10 +91,16 @@ pub struct Receiver {
     pub started: Signal<Out, Bit>,
     /// Cells still to come, this one included.
     pub cells_left: Signal<Out, Bits<7>>,
-    /// Strobe: position, error bits, CRC and verdict are valid.
+    /// Strobe: payload, error bits, CRC and verdict of the answer without additional information are valid.
     pub done: Signal<Out, Bit>,
-    /// Position, bit 0 = LSB, zeros above its width.
-    pub position: Signal<Out, Bits<48>>,
+    /// Strobe: payload and verdict of an additional information are valid.
+    pub info_done: Signal<Out, Bit>,
+    /// Strobe: an additional information should begin, but the line is HIGH.
+    pub info_missing: Signal<Out, Bit>,
+    /// Strobe: the answer with all its additional informations, or the supplement, is complete.
+    pub finished: Signal<Out, Bit>,
+    /// Payload, bit 0 = the bit received first, zeros above its width.
+    pub payload: Signal<Out, Bits<48>>,
     /// Error bit 1, high = alarm.
     pub f1: Signal<Out, Bit>,
     /// Error bit 2, low = alarm; high in frames without it.
@@ -109,11 +133,20 @@ pub struct Receiver {
     refused: Reg<Bit>,
     shift_now: Reg<Bit>,
     bit_now: Reg<Bit>,
-    last_position: Reg<Bit>,
+    last_payload: Reg<Bit>,
     hunting_now: Reg<Bit>,
     started_now: Reg<Bit>,
+    skip_rounds: Reg<Bits<2>>,
+    infos_left: Reg<Bits<2>>,
+    in_info: Reg<Bit>,
+    missing: Reg<Bit>,
+    supplement_over: Reg<Bit>,
+    has_all: Constant<Bit>,
     skip_from: Constant<Bits<4>>,
+    long_skip_from: Constant<Bits<4>>,
     fixed_cells: Constant<Bits<7>>,
+    supplement_cells: Constant<Bits<7>>,
+    info_bits: Constant<Bits<6>>,
     skip_step: Signal<Local, Bit>,
     covered_bit: Signal<Local, Bit>,
     shift: Signal<Local, Bit>,
@@ -126,11 +159,18 @@ pub struct Receiver {
     covered_next: Signal<Local, Bits<4>>,
     crc_bit: Signal<Local, Bit>,
     start_sample: Signal<Local, Bit>,
+    separator: Signal<Local, Bit>,
     shifted: Signal<Local, Bits<50>>,
+    width: Signal<Local, Bits<6>>,
+    cells_after: Signal<Local, Bits<7>>,
+    cells_around: Signal<Local, Bits<7>>,
 }
 
-impl Default for Receiver {
-    fn default() -> Self {
+impl Receiver {
+    /// A receiver of every answer, or of positions without additional information only.
+    pub fn new(has_all: bool) -> Self {
+        let lead = u64::from(protocol::LEAD_PULSES);
+        let order = ORDER_OF_X as u64;
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -140,8 +180,13 @@ impl Default for Receiver {
             sample: Default::default(),
             level: Default::default(),
             edge_in_window: Default::default(),
-            position_bits: Default::default(),
+            payload_bits: Default::default(),
+            has_f1: Default::default(),
             has_f2: Default::default(),
+            has_parameter: Default::default(),
+            has_supplement: Default::default(),
+            infos: Default::default(),
+            start_supplement: Default::default(),
             skipping: Default::default(),
             hunting: Default::default(),
             start_found: Default::default(),
@@ -149,7 +194,10 @@ impl Default for Receiver {
             started: Default::default(),
             cells_left: Default::default(),
             done: Default::default(),
-            position: Default::default(),
+            info_done: Default::default(),
+            info_missing: Default::default(),
+            finished: Default::default(),
+            payload: Default::default(),
             f1: Default::default(),
             f2: Default::default(),
             crc_received: Default::default(),
@@ -176,14 +224,25 @@ impl Default for Receiver {
             refused: Default::default(),
             shift_now: Default::default(),
             bit_now: Default::default(),
-            last_position: Default::default(),
+            last_payload: Default::default(),
             hunting_now: Default::default(),
             started_now: Default::default(),
-            skip_from: Constant::new((ORDER_OF_X as u64 - u64::from(protocol::LEAD_PULSES)).into()),
-            fixed_cells: Constant::new(
-                u64::from(protocol::LEAD_PULSES + protocol::START_BITS + 1 + protocol::CRC_BITS)
-                    .into(),
+            skip_rounds: Default::default(),
+            infos_left: Default::default(),
+            in_info: Default::default(),
+            missing: Default::default(),
+            supplement_over: Default::default(),
+            has_all: Constant::new(has_all),
+            skip_from: Constant::new((order - lead).into()),
+            // 34 cells are 4 and two more rounds of the counter.
+            long_skip_from: Constant::new(
+                (3 * order - lead - u64::from(protocol::PARAMETER_BITS)).into(),
             ),
+            fixed_cells: Constant::new(
+                (lead + u64::from(protocol::START_BITS + 1 + protocol::CRC_BITS)).into(),
+            ),
+            supplement_cells: Constant::new(u64::from(protocol::SUPPLEMENT_PULSES).into()),
+            info_bits: Constant::new(u64::from(protocol::PARAMETER_BITS).into()),
             skip_step: Default::default(),
             covered_bit: Default::default(),
             shift: Default::default(),
@@ -196,7 +255,11 @@ impl Default for Receiver {
             covered_next: Default::default(),
             crc_bit: Default::default(),
             start_sample: Default::default(),
+            separator: Default::default(),
             shifted: Default::default(),
+            width: Default::default(),
+            cells_after: Default::default(),
+            cells_around: Default::default(),
         }
     }
 }
@@ -237,18 +300,57 @@ impl Logic for Receiver {
         self.started_now.reset.next = self.reset.val();
         self.shift_now.reset.next = self.reset.val();
         self.bit_now.reset.next = self.reset.val();
-        self.last_position.reset.next = self.reset.val();
+        self.last_payload.reset.next = self.reset.val();
         clock!(
             self,
             clock,
             shift_now,
             bit_now,
-            last_position,
+            last_payload,
             refused,
             hunting_now,
             started_now
         );
+        dff_setup!(
+            self,
+            clock,
+            skip_rounds,
+            infos_left,
+            in_info,
+            missing,
+            supplement_over
+        );
+        self.skip_rounds.reset.next = self.reset.val();
+        self.infos_left.reset.next = self.reset.val();
+        self.in_info.reset.next = self.reset.val();
+        self.missing.reset.next = self.reset.val();
+        self.supplement_over.reset.next = self.reset.val();
         self.serial.reset.next = self.reset.val();
+
+        // Cells behind this CRC: the edge that ends the frame, 30 for each additional information.
+        self.cells_after.next = 1.into();
+        self.width.next = self.payload_bits.val();
+        if self.has_all.val() {
+            if self.infos_left.q.val() == 1 {
+                self.cells_after.next = 31.into();
+            }
+            if self.infos_left.q.val() == 2 {
+                self.cells_after.next = 61.into();
+            }
+            // Parked before that edge.
+            if self.has_supplement.val() {
+                self.cells_after.next = 0.into();
+                if self.infos_left.q.val() == 1 {
+                    self.cells_after.next = 30.into();
+                }
+                if self.infos_left.q.val() == 2 {
+                    self.cells_after.next = 60.into();
+                }
+            }
+            if self.in_info.q.val() {
+                self.width.next = self.info_bits.val();
+            }
+        }
 
         self.skip_step.next = self.sample.val();
         if self.acquire.val() {
@@ -258,9 +360,12 @@ impl Logic for Receiver {
             (self.field.q.val() == Field::Start) & self.sample.val() & self.level.val();
         self.covered_bit.next = false;
         self.crc_bit.next = false;
-        self.last_position.d.next = false;
-        self.take_crc.d.next = self.last_position.q.val();
+        self.last_payload.d.next = false;
+        self.take_crc.d.next = self.last_payload.q.val();
         self.last_taken.d.next = false;
+        self.separator.next = false;
+        self.missing.d.next = false;
+        self.supplement_over.d.next = false;
 
         if self.sample.val()
             & (self.field.q.val() != Field::Skip)
@@ -273,20 +378,26 @@ impl Logic for Receiver {
                 if self.skip_step.val() {
                     self.left.d.next = self.left.q.val() - 1;
                     if self.covered.q.val() == 14 {
-                        self.field.d.next = Field::Start;
+                        self.skip_rounds.d.next = self.skip_rounds.q.val() - 1;
+                        if !self.skip_rounds.q.val().any() | !self.has_all.val() {
+                            self.field.d.next = Field::Start;
+                        }
                     }
                 }
             }
             Field::Start => {
                 if self.start_sample.val() & self.edge_in_window.val() {
                     self.field.d.next = Field::F1;
+                    if !self.has_f1.val() & self.has_all.val() {
+                        self.field.d.next = Field::Payload;
+                    }
                 }
             }
             Field::F1 => {
                 if self.sample.val() {
                     self.covered_bit.next = true;
                     self.f1_bit.d.next = self.level.val();
-                    self.field.d.next = Field::Position;
+                    self.field.d.next = Field::Payload;
                     if self.has_f2.val() {
                         self.field.d.next = Field::F2;
                     }
@@ -296,15 +407,15 @@ impl Logic for Receiver {
                 if self.sample.val() {
                     self.covered_bit.next = true;
                     self.f2_bit.d.next = self.level.val();
-                    self.field.d.next = Field::Position;
+                    self.field.d.next = Field::Payload;
                 }
             }
-            Field::Position => {
+            Field::Payload => {
                 if self.sample.val() {
                     self.covered_bit.next = true;
-                    // Seven cells left: this bit, five of the CRC and the edge that ends the frame.
-                    if self.left.q.val() == 7 {
-                        self.last_position.d.next = true;
+                    // This bit, five of the CRC, and what comes behind.
+                    if self.left.q.val() == (self.cells_after.val() + 6) {
+                        self.last_payload.d.next = true;
                         self.field.d.next = Field::Crc;
                     }
                 }
@@ -312,22 +423,46 @@ impl Logic for Receiver {
             Field::Crc => {
                 if self.sample.val() {
                     self.crc_bit.next = true;
-                    if self.left.q.val() == 2 {
+                    if self.left.q.val() == (self.cells_after.val() + 1) {
                         self.last_taken.d.next = true;
+                        self.field.d.next = Field::Done;
+                        if self.infos_left.q.val().any() & self.has_all.val() {
+                            self.field.d.next = Field::Separator;
+                        }
+                    }
+                }
+            }
+            Field::Separator => {
+                if self.sample.val() {
+                    self.separator.next = true;
+                    self.in_info.d.next = true;
+                    self.infos_left.d.next = self.infos_left.q.val() - 1;
+                    self.field.d.next = Field::Payload;
+                    if self.level.val() | !self.has_all.val() {
+                        self.missing.d.next = true;
                         self.field.d.next = Field::Done;
                     }
                 }
             }
             Field::Done => {}
+            Field::Supplement => {
+                if self.sample.val() & (self.left.q.val() == 2) {
+                    self.supplement_over.d.next = true;
+                    self.field.d.next = Field::Done;
+                }
+                if !self.has_all.val() {
+                    self.field.d.next = Field::Done;
+                }
+            }
             _ => {
                 self.field.d.next = Field::Done;
             }
         }
 
         // Where a bit enters: the smallest of 5, 20, 35 and 50 bits that holds F1, F2 and the position.
-        self.in5.next = self.position_bits.val() <= 3;
-        self.in20.next = (self.position_bits.val() <= 18) & !self.in5.val();
-        self.in35.next = (self.position_bits.val() <= 33) & !self.in5.val() & !self.in20.val();
+        self.in5.next = self.width.val() <= 3;
+        self.in20.next = (self.width.val() <= 18) & !self.in5.val();
+        self.in35.next = (self.width.val() <= 33) & !self.in5.val() & !self.in20.val();
         self.in50.next = !self.in5.val() & !self.in20.val() & !self.in35.val();
         self.bit_in.next = self.bit_now.q.val() & !self.align.q.val();
         // One cycle later than the sample: the whole word hangs on this enable.
@@ -357,11 +492,14 @@ impl Logic for Receiver {
         if self.shift.val() | ((self.field.q.val() == Field::Skip) & self.skip_step.val()) {
             self.covered.d.next = self.covered_next.val();
         }
-        // Aligned when 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
+        // Aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
         self.align_first.d.next = self.take_crc.q.val();
         self.aligned_at.next = 5.into();
         if self.has_f2.val() {
             self.aligned_at.next = 6.into();
+        }
+        if self.has_all.val() & (!self.has_f1.val() | self.in_info.q.val()) {
+            self.aligned_at.next = 4.into();
         }
         if self.take_crc.q.val() {
             self.crc_calc.d.next = self.parallel.crc.val();
@@ -379,28 +517,70 @@ impl Logic for Receiver {
         }
         self.parallel.word.next = self.word.q.val();
         self.parallel.covered_mod_15.next = self.covered.q.val();
-        self.serial.clear.next = self.start.val();
+        self.serial.clear.next = self.start.val() | (self.separator.val() & self.has_all.val());
         self.serial.enable.next = self.covered_bit.val() | self.crc_bit.val();
         self.serial.bit.next = self.level.val();
         self.done_now.d.next = self.last_taken.q.val();
         self.parallel_equal.d.next = self.crc_bits.q.val() == self.crc_calc.q.val();
         self.serial_good.d.next = self.serial.residue_ok.val();
 
+        // A new block: no bits yet.
+        if self.has_all.val() & self.separator.val() {
+            self.word.d.next = 0.into();
+            self.covered.d.next = 0.into();
+            self.align.d.next = false;
+        }
+        // Cells of the frame besides payload and additional information.
+        self.cells_around.next = self.fixed_cells.val();
+        if self.has_f2.val() {
+            self.cells_around.next = self.fixed_cells.val() + 1;
+        }
+        if self.has_all.val() {
+            if self.has_supplement.val() {
+                self.cells_around.next = self.fixed_cells.val();
+            }
+            if self.infos.val() == 1 {
+                self.cells_around.next = self.fixed_cells.val() + 31;
+                if self.has_supplement.val() {
+                    self.cells_around.next = self.fixed_cells.val() + 30;
+                }
+            }
+            if self.infos.val() == 2 {
+                self.cells_around.next = self.fixed_cells.val() + 61;
+                if self.has_supplement.val() {
+                    self.cells_around.next = self.fixed_cells.val() + 60;
+                }
+            }
+            if self.has_parameter.val() {
+                self.cells_around.next = self.fixed_cells.val() + 23;
+            }
+        }
         if self.start.val() {
             self.field.d.next = Field::Skip;
-            self.left.d.next = bit_cast::<7, 6>(self.position_bits.val()) + self.fixed_cells.val();
-            if self.has_f2.val() {
-                self.left.d.next =
-                    bit_cast::<7, 6>(self.position_bits.val()) + self.fixed_cells.val() + 1;
-            }
+            self.left.d.next = bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_around.val();
             self.word.d.next = 0.into();
             // Skipped cells take the counter to 0, where the covered bits start from.
             self.covered.d.next = self.skip_from.val();
+            self.skip_rounds.d.next = 0.into();
             self.f2_bit.d.next = true;
             self.align.d.next = false;
+            self.in_info.d.next = false;
+            self.infos_left.d.next = self.infos.val();
+            if self.has_all.val() {
+                self.f1_bit.d.next = false;
+                if self.has_parameter.val() {
+                    self.covered.d.next = self.long_skip_from.val();
+                    self.skip_rounds.d.next = 2.into();
+                }
+            }
+        }
+        if self.start_supplement.val() & self.has_all.val() {
+            self.field.d.next = Field::Supplement;
+            self.left.d.next = self.supplement_cells.val();
         }
 
-        self.skipping.next = self.field.q.val() == Field::Skip;
+        self.skipping.next =
+            (self.field.q.val() == Field::Skip) | (self.field.q.val() == Field::Supplement);
         self.hunting_now.d.next = self.field.q.val() == Field::Start;
         self.hunting.next = self.hunting_now.q.val();
         self.start_found.next = self.start_sample.val() & self.edge_in_window.val();
@@ -411,7 +591,17 @@ impl Logic for Receiver {
         self.started.next = self.started_now.q.val();
         self.cells_left.next = self.left.q.val();
         self.done.next = self.done_now.q.val();
-        self.position.next = self.word.q.val().get_bits::<48>(0);
+        self.info_done.next = false;
+        self.info_missing.next = false;
+        self.finished.next = self.done_now.q.val();
+        if self.has_all.val() {
+            self.done.next = self.done_now.q.val() & !self.in_info.q.val();
+            self.info_done.next = self.done_now.q.val() & self.in_info.q.val();
+            self.info_missing.next = self.missing.q.val();
+            self.finished.next = (self.done_now.q.val() & !self.infos_left.q.val().any())
+                | self.supplement_over.q.val();
+        }
+        self.payload.next = self.word.q.val().get_bits::<48>(0);
         self.f1.next = self.f1_bit.q.val();
         self.f2.next = self.f2_bit.q.val();
         self.crc_received.next = self.crc_bits.q.val();

@@ -33,7 +33,7 @@ pub struct Snapshot {
     /// Primary cause.
     pub cause_in: Signal<In, Bits<4>>,
     /// Raw flags.
-    pub flags_in: Signal<In, Bits<10>>,
+    pub flags_in: Signal<In, Bits<12>>,
     /// Strobe: a new result can be read from this cycle on.
     pub result_strobe: Signal<Out, Bit>,
     /// Last good position, zeros above its width.
@@ -51,7 +51,7 @@ pub struct Snapshot {
     /// Primary cause of the last result.
     pub cause: Signal<Out, Bits<4>>,
     /// Raw flags of the last result.
-    pub flags: Signal<Out, Bits<10>>,
+    pub flags: Signal<Out, Bits<12>>,
     /// CRC received in the last whole frame.
     pub crc_received: Signal<Out, Bits<5>>,
     /// CRC computed for the last whole frame.
@@ -66,7 +66,7 @@ pub struct Snapshot {
     age: Reg<Bits<16>>,
     age_full: Reg<Bit>,
     cause_held: Reg<Bits<4>>,
-    flags_held: Reg<Bits<10>>,
+    flags_held: Reg<Bits<12>>,
     received: Reg<Bits<5>>,
     computed: Reg<Bits<5>>,
     take_good: Signal<Local, Bit>,

@@ -22,6 +22,10 @@ pub const RECOVERY_MAX_NS: u64 = 30_000;
 pub const READY_LOW_NS: u64 = 500;
 /// Quiet time after an aborted transfer, in microseconds (S2 block, ADDI driver).
 pub const ABORT_US: u64 = 30_000;
+/// Clock LOW between an answer and its supplement, in ns: as tST; up to 30 us are allowed (no source names a shortest time).
+pub const PARK_NS: u64 = 2_000;
+/// Longest wait for the answer to a command with a parameter, in microseconds: access takes up to 12 ms (PWM 20), TI waits 50 ms.
+pub const PARAMETER_TIMEOUT_US: u64 = 50_000;
 /// Largest deviation of the EnDat clock from the one asked for, in parts per million.
 pub const CLOCK_TOLERANCE_PPM: i64 = 5_000;
 /// Fewest system clock cycles in one EnDat clock period that the core can time.

@@ -7,6 +7,11 @@
 //! done      _______________________________________________/\_________________________
 //! ```
 //!
+//! With a supplement the clock stays LOW after the last CRC bit (`Park`), and `Frame` goes on until its cells are over.
+//!
+//! A frame is begun by a trigger, or by `own`, for a request that needs the line for itself. What becomes of the first is
+//! published; what becomes of either is told with `over`.
+//!
 //! Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
 //! off, 30 ms, then data low for longer than tR.
 //!
@@ -27,7 +32,7 @@ pub enum Phase {
     Ready,
     /// First low phase, held for tST.
     FirstLow,
-    /// Mode command, turnaround, waiting for the start bit, answer.
+    /// Mode command, turnaround, waiting for the start bit, answer; then the supplement.
     Frame,
     /// The last CRC bit has been taken; the cell after it must be high.
     Tail,
@@ -35,6 +40,8 @@ pub enum Phase {
     Recovery,
     /// Quiet after an aborted frame.
     Abort,
+    /// Clock LOW between answer and supplement.
+    Park,
 }
 
 /// Sequence, time-outs and verdict of one channel.
@@ -62,8 +69,24 @@ pub struct Transaction {
     pub started: Signal<In, Bit>,
     /// Strobe: a start bit outside its window.
     pub start_refused: Signal<In, Bit>,
-    /// Strobe: the frame has been taken whole.
-    pub frame_done: Signal<In, Bit>,
+    /// Strobe: the answer without additional information has been taken.
+    pub answer_done: Signal<In, Bit>,
+    /// Strobe: the answer with all that follows it has been taken, or the supplement is over.
+    pub finished: Signal<In, Bit>,
+    /// Strobe: an additional information has not come.
+    pub info_missing: Signal<In, Bit>,
+    /// The mode command of the next frame is one that the core sends.
+    pub is_known: Signal<In, Bit>,
+    /// 24 bits belong to the command; its answer may take long.
+    pub has_parameter: Signal<In, Bit>,
+    /// A supplement follows the answer.
+    pub has_supplement: Signal<In, Bit>,
+    /// Begin a frame without a trigger; `is_own` is high.
+    pub begin_own: Signal<In, Bit>,
+    /// The frame under way, or the next one, is not a trigger's.
+    pub is_own: Signal<In, Bit>,
+    /// No frame may begin.
+    pub hold_off: Signal<In, Bit>,
     /// Serial CRC verdict.
     pub serial_ok: Signal<In, Bit>,
     /// Parallel CRC verdict.
@@ -94,6 +117,8 @@ pub struct Transaction {
     pub drain: Signal<Out, Bit>,
     /// Keeps the clock high: no frame, or all its edges have been sent.
     pub stop: Signal<Out, Bit>,
+    /// One-cycle strobe: the supplement begins.
+    pub start_supplement: Signal<Out, Bit>,
     /// This frame measures the propagation delay.
     pub acquire: Signal<Out, Bit>,
     /// A trigger would not be taken.
@@ -104,17 +129,31 @@ pub struct Transaction {
     pub good: Signal<Out, Bit>,
     /// Strobe: data did not fall after a frame that has been published.
     pub late_fault: Signal<Out, Bit>,
-    /// Primary cause, with `publish` or `late_fault`.
+    /// Strobe, in the same cycle: a frame is begun, or refused.
+    pub begun: Signal<Out, Bit>,
+    /// No frame is under way, and all that there is to tell of the last one has been told.
+    pub is_at_rest: Signal<Out, Bit>,
+    /// Strobe: a frame has ended in whatever way, `cause` and `flags` are valid.
+    pub over: Signal<Out, Bit>,
+    /// Strobe: a trigger has been lost.
+    pub displaced: Signal<Out, Bit>,
+    /// The propagation delay is known.
+    pub calibrated: Signal<Out, Bit>,
+    /// Primary cause, with `publish`, `late_fault` or `over`.
     pub cause: Signal<Out, Bits<4>>,
-    /// Raw flags in the order of the cause codes: bit k stands for cause k + 1; bit 8 parallel CRC, bit 9 tail not high.
-    pub flags: Signal<Out, Bits<10>>,
+    /// Raw flags in the order of the cause codes: bit k stands for cause k + 1; then bit 8 parallel CRC, bit 9 tail not high,
+    /// bit 10 unknown command, bit 11 additional information missing.
+    pub flags: Signal<Out, Bits<12>>,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
-    ready_low_cycles: Constant<Bits<15>>,
-    abort_us: Constant<Bits<15>>,
+    has_all: Constant<Bit>,
+    ready_low_cycles: Constant<Bits<16>>,
+    abort_us: Constant<Bits<16>>,
+    park_cycles: Constant<Bits<16>>,
+    parameter_timeout_us: Constant<Bits<16>>,
     phase: Reg<Phase>,
-    timer: Reg<Bits<15>>,
-    timer_limit: Reg<Bits<15>>,
+    timer: Reg<Bits<16>>,
+    timer_limit: Reg<Bits<16>>,
     timer_hit: Reg<Bit>,
     timer_step: Reg<Bit>,
     hold: Reg<Bit>,
@@ -122,14 +161,21 @@ pub struct Transaction {
     run_now: Reg<Bit>,
     extra: Reg<Bit>,
     stop_now: Reg<Bit>,
-    calibrated: Reg<Bit>,
+    is_calibrated: Reg<Bit>,
     acquiring: Reg<Bit>,
     overrun: Reg<Bit>,
     stalled: Reg<Bit>,
     all_sent: Reg<Bit>,
     tail_sampled: Reg<Bit>,
     recovery: Reg<Bits<13>>,
-    seen: Reg<Bits<10>>,
+    in_supplement: Reg<Bit>,
+    supplement_now: Reg<Bit>,
+    answered: Reg<Bit>,
+    refused: Reg<Bit>,
+    ended: Reg<Bit>,
+    over_now: Reg<Bit>,
+    lost_now: Reg<Bit>,
+    seen: Reg<Bits<12>>,
     taken: Reg<Bit>,
     gave_up: Reg<Bit>,
     gave_up_late: Reg<Bit>,
@@ -137,15 +183,21 @@ pub struct Transaction {
     good_now: Reg<Bit>,
     late_now: Reg<Bit>,
     cause_now: Reg<Bits<4>>,
-    flags_now: Reg<Bits<10>>,
-    limit: Signal<Local, Bits<15>>,
+    flags_now: Reg<Bits<12>>,
+    limit: Signal<Local, Bits<16>>,
     in_us: Signal<Local, Bit>,
     timer_clear: Signal<Local, Bit>,
     accept: Signal<Local, Bit>,
     give_up: Signal<Local, Bit>,
     idle: Signal<Local, Bit>,
-    found: Signal<Local, Bits<10>>,
-    told: Signal<Local, Bits<10>>,
+    wanted: Signal<Local, Bit>,
+    refuse: Signal<Local, Bit>,
+    normal_end: Signal<Local, Bit>,
+    parking: Signal<Local, Bit>,
+    sent: Signal<Local, Bit>,
+    own: Signal<Local, Bit>,
+    found: Signal<Local, Bits<12>>,
+    told: Signal<Local, Bits<12>>,
     crc_bad: Signal<Local, Bit>,
     verdict: Signal<Local, Bit>,
     primary: Signal<Local, Bits<4>>,
@@ -168,7 +220,7 @@ impl Logic for Transaction {
             run_now,
             extra,
             stop_now,
-            calibrated,
+            is_calibrated,
             acquiring,
             overrun,
             stalled,
@@ -189,6 +241,17 @@ impl Logic for Transaction {
             cause_now,
             flags_now
         );
+        dff_setup!(
+            self,
+            clock,
+            in_supplement,
+            supplement_now,
+            answered,
+            refused,
+            ended,
+            over_now,
+            lost_now
+        );
         self.phase.reset.next = self.reset.val();
         self.timer.reset.next = self.reset.val();
         self.timer_step.reset.next = self.reset.val();
@@ -200,7 +263,7 @@ impl Logic for Transaction {
         self.run_now.reset.next = self.reset.val();
         self.start_now.reset.next = self.reset.val();
         self.hold.reset.next = self.reset.val();
-        self.calibrated.reset.next = self.reset.val();
+        self.is_calibrated.reset.next = self.reset.val();
         self.acquiring.reset.next = self.reset.val();
         self.overrun.reset.next = self.reset.val();
         self.stalled.reset.next = self.reset.val();
@@ -216,8 +279,23 @@ impl Logic for Transaction {
         self.late_now.reset.next = self.reset.val();
         self.cause_now.reset.next = self.reset.val();
         self.flags_now.reset.next = self.reset.val();
+        self.in_supplement.reset.next = self.reset.val();
+        self.supplement_now.reset.next = self.reset.val();
+        self.answered.reset.next = self.reset.val();
+        self.refused.reset.next = self.reset.val();
+        self.ended.reset.next = self.reset.val();
+        self.over_now.reset.next = self.reset.val();
+        self.lost_now.reset.next = self.reset.val();
 
-        self.limit.next = bit_cast::<15, 12>(self.start_timeout_us.val());
+        self.own.next = self.is_own.val() & self.has_all.val();
+        self.wanted.next = self.trigger.val() | (self.begin_own.val() & self.has_all.val());
+        self.refuse.next = false;
+        self.normal_end.next = false;
+        self.supplement_now.d.next = false;
+        self.limit.next = bit_cast::<16, 12>(self.start_timeout_us.val());
+        if self.has_all.val() & self.has_parameter.val() {
+            self.limit.next = self.parameter_timeout_us.val();
+        }
         self.in_us.next = false;
         self.timer_clear.next = false;
         self.accept.next = false;
@@ -246,7 +324,7 @@ impl Logic for Transaction {
             }
             Phase::Ready => {
                 self.timer_clear.next = true;
-                self.idle.next = true;
+                self.idle.next = !(self.hold_off.val() & self.has_all.val());
                 if self.level.val() {
                     self.phase.d.next = Phase::NotReady;
                     if self.trigger.val() {
@@ -254,18 +332,23 @@ impl Logic for Transaction {
                         self.give_up.next = true;
                     }
                 } else {
-                    if self.trigger.val() {
-                        self.accept.next = true;
-                        self.phase.d.next = Phase::Frame;
-                        if self.extra.q.val() {
-                            self.phase.d.next = Phase::FirstLow;
+                    if self.wanted.val() & self.idle.val() {
+                        if self.is_known.val() {
+                            self.accept.next = true;
+                            self.phase.d.next = Phase::Frame;
+                            if self.extra.q.val() {
+                                self.phase.d.next = Phase::FirstLow;
+                            }
+                        } else {
+                            self.found.next = 1024.into();
+                            self.refuse.next = true;
                         }
                     }
                 }
             }
             Phase::FirstLow => {
                 self.run_now.d.next = true;
-                self.limit.next = bit_cast::<15, 11>(self.first_low_extra_cycles.val());
+                self.limit.next = bit_cast::<16, 11>(self.first_low_extra_cycles.val());
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::Frame;
                     self.timer_clear.next = true;
@@ -283,9 +366,31 @@ impl Logic for Transaction {
                     self.found.next = 4.into();
                     self.give_up.next = true;
                 }
-                if self.frame_done.val() {
+                if self.answer_done.val() {
                     self.verdict.next = true;
+                }
+                if self.info_missing.val() & self.has_all.val() {
+                    self.found.next = 2048.into();
+                    self.give_up.next = true;
+                }
+                if self.finished.val() {
                     self.phase.d.next = Phase::Tail;
+                    if self.has_all.val() & self.has_supplement.val() & !self.in_supplement.q.val()
+                    {
+                        self.phase.d.next = Phase::Park;
+                    }
+                }
+            }
+            Phase::Park => {
+                self.run_now.d.next = true;
+                self.limit.next = self.park_cycles.val();
+                if self.timer_hit.q.val() {
+                    self.phase.d.next = Phase::Frame;
+                    self.in_supplement.d.next = true;
+                    self.supplement_now.d.next = true;
+                }
+                if !self.has_all.val() {
+                    self.give_up.next = true;
                 }
             }
             Phase::Tail => {
@@ -299,7 +404,7 @@ impl Logic for Transaction {
             }
             Phase::Recovery => {
                 self.run_now.d.next = !self.tail_sampled.q.val();
-                self.limit.next = bit_cast::<15, 13>(self.recovery_limit_cycles.val());
+                self.limit.next = bit_cast::<16, 13>(self.recovery_limit_cycles.val());
                 if self.sample.val() {
                     self.tail_sampled.d.next = true;
                 }
@@ -307,6 +412,7 @@ impl Logic for Transaction {
                     self.recovery.d.next = self.timer.q.val().get_bits::<13>(0);
                     self.timer_clear.next = true;
                     self.phase.d.next = Phase::NotReady;
+                    self.normal_end.next = true;
                 } else {
                     if self.timer_hit.q.val() {
                         self.found.next = 64.into();
@@ -331,12 +437,20 @@ impl Logic for Transaction {
                 self.give_up.next = true;
             }
         }
+        if self.verdict.val() {
+            self.answered.d.next = true;
+        }
+        if self.normal_end.val() {
+            self.answered.d.next = false;
+        }
         // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
         if self.gave_up.q.val() {
             self.phase.d.next = Phase::Abort;
             self.timer_clear.next = true;
             self.accept.next = false;
-            self.calibrated.d.next = false;
+            self.refuse.next = false;
+            self.answered.d.next = false;
+            self.is_calibrated.d.next = false;
         }
 
         self.timer_step.d.next = !self.in_us.val() | self.tick_us.val();
@@ -371,14 +485,15 @@ impl Logic for Transaction {
         self.taken.d.next = self.verdict.val();
         self.gave_up.d.next = self.give_up.val() & !self.gave_up.q.val();
         self.gave_up_late.d.next =
-            self.give_up.val() & !self.gave_up.q.val() & (self.phase.q.val() == Phase::Recovery);
+            self.give_up.val() & !self.gave_up.q.val() & self.answered.q.val();
+        self.refused.d.next = self.refuse.val();
         self.told.next = self.seen.q.val();
         self.good_now.d.next = false;
         if self.taken.q.val() {
             if self.crc_bad.val() {
                 self.told.next = self.told.val() | 8;
             } else {
-                self.calibrated.d.next = true;
+                self.is_calibrated.d.next = true;
                 self.good_now.d.next = !self.f1.val() & self.f2.val();
             }
             if self.f1.val() {
@@ -394,9 +509,14 @@ impl Logic for Transaction {
         if self.overrun.q.val() {
             self.told.next = self.told.val() | 128;
         }
-        self.publish_now.d.next =
-            self.taken.q.val() | (self.gave_up.q.val() & !self.gave_up_late.q.val());
-        self.late_now.d.next = self.gave_up_late.q.val();
+        self.publish_now.d.next = (self.taken.q.val()
+            | self.refused.q.val()
+            | (self.gave_up.q.val() & !self.gave_up_late.q.val()))
+            & !self.own.val();
+        self.late_now.d.next = self.gave_up_late.q.val() & !self.own.val();
+        // `over` comes with cause and flags of whatever ended the frame.
+        self.ended.d.next = self.normal_end.val();
+        self.over_now.d.next = self.ended.q.val() | self.gave_up.q.val() | self.refused.q.val();
         // One primary cause: CRC before F1 before F2, since error bits of a spoilt frame mean nothing.
         self.primary.next = 0.into();
         if self.told.val().get_bit(7) {
@@ -411,6 +531,9 @@ impl Logic for Transaction {
         if self.told.val().get_bit(3) {
             self.primary.next = 4.into();
         }
+        if self.told.val().get_bit(11) & self.has_all.val() {
+            self.primary.next = 10.into();
+        }
         if self.told.val().get_bit(6) | self.told.val().get_bit(9) {
             self.primary.next = 7.into();
         }
@@ -423,31 +546,51 @@ impl Logic for Transaction {
         if self.told.val().get_bit(0) {
             self.primary.next = 1.into();
         }
-        if self.taken.q.val() | self.gave_up.q.val() {
+        if self.told.val().get_bit(10) {
+            self.primary.next = 9.into();
+        }
+        if self.taken.q.val() | self.gave_up.q.val() | self.refused.q.val() {
             self.flags_now.d.next = self.told.val();
             self.cause_now.d.next = self.primary.val();
-            self.overrun.d.next = false;
+            if !self.own.val() {
+                self.overrun.d.next = false;
+            }
         }
-        self.lost.next = self.trigger.val() & !self.accept.val() & !self.idle.val();
+        self.lost.next = self.trigger.val()
+            & ((!self.accept.val() & !self.idle.val()) | (self.accept.val() & self.own.val()));
         if self.lost.val() {
             self.overrun.d.next = true;
         }
+        self.lost_now.d.next = self.lost.val();
         if self.accept.val() {
-            self.acquiring.d.next = !self.calibrated.q.val();
+            self.answered.d.next = false;
+            self.in_supplement.d.next = false;
+            self.acquiring.d.next = !self.is_calibrated.q.val();
             self.tail_sampled.d.next = false;
         }
         if self.calibrate.val() {
-            self.calibrated.d.next = false;
+            self.is_calibrated.d.next = false;
         }
         self.run.next = self.run_now.q.val();
         self.start_now.d.next = self.accept.val();
         self.start.next = self.start_now.q.val();
         self.abort.next = self.gave_up.q.val();
-        self.hold.d.next = (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val();
+        // Taking the start bit ends its cell; `started` comes when the comparison knows that.
+        self.sent.next = self.all_sent.q.val() & self.started.val();
+        self.parking.next = false;
+        if self.has_all.val() & self.has_supplement.val() & !self.in_supplement.q.val() {
+            self.parking.next = (self.sent.val() & (self.phase.q.val() == Phase::Frame))
+                | (self.phase.q.val() == Phase::Park);
+            self.sent.next = false;
+        }
+        self.hold.d.next =
+            (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val() | self.parking.val();
         self.hold_low.next = self.hold.q.val();
         self.drain.next = self.stalled.q.val();
-        // Taking the start bit ends its cell; `started` comes when the comparison knows that.
-        self.stop_now.d.next = (self.all_sent.q.val() & self.started.val()) | !self.run_now.q.val();
+        if self.has_all.val() {
+            self.drain.next = self.stalled.q.val() | (self.phase.q.val() == Phase::Park);
+        }
+        self.stop_now.d.next = self.sent.val() | !self.run_now.q.val();
         self.stop.next = self.stop_now.q.val();
         self.acquire.next = self.acquiring.q.val();
         self.busy.next = !self.idle.val();
@@ -456,6 +599,17 @@ impl Logic for Transaction {
         self.late_fault.next = self.late_now.q.val();
         self.cause.next = self.cause_now.q.val();
         self.flags.next = self.flags_now.q.val();
+        self.start_supplement.next = self.supplement_now.q.val();
+        self.over.next = self.over_now.q.val();
+        self.begun.next = self.accept.val() | self.refuse.val();
+        self.is_at_rest.next = ((self.phase.q.val() == Phase::NotReady)
+            | (self.phase.q.val() == Phase::Ready))
+            & !self.ended.q.val()
+            & !self.gave_up.q.val()
+            & !self.refused.q.val()
+            & !self.over_now.q.val();
+        self.displaced.next = self.lost_now.q.val();
+        self.calibrated.next = self.is_calibrated.q.val();
         self.recovery_cycles.next = self.recovery.q.val();
     }
 }

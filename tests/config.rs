@@ -96,7 +96,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("position_bits = 29", "position_bits = 0", "channel[0].position_bits = 0: outside 1..48"),
         ("position_bits = 29", "position_bits = 49", "channel[0].position_bits = 49: outside 1..48"),
         ("position_bits = 29", "position_bits = 29\nclock_hz = 9_000_000", "channel[0].clock_hz = 9000000: would become"),
-        ("command = \"111000\"", "command = \"101010\"", "channel[0].command = \"101010\": is not a mode command that this core sends"),
+        ("command = \"111000\"", "command = \"101010\"", "channel[0].command = \"101010\": is not a mode command that a trigger can send"),
         ("command = \"111000\"", "command = \"position\"", "a mode command is six binary digits"),
         ("command = \"111000\"", "command = \"\"", "a mode command is six binary digits"),
         ("command = \"111000\"", "command = \"0000111\"", "a mode command is six binary digits"),

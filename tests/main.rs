@@ -10,6 +10,7 @@ mod files;
 mod pages;
 mod position;
 mod program;
+mod requests;
 mod sim;
 mod three_way;
 mod tools;

@@ -5,7 +5,7 @@ use crate::config::{load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
 use crate::verilog::{print_files, Header};
 use endat_hdl::card::Card;
-use endat_hdl::channel::{Channel, FixedTimes};
+use endat_hdl::channel::{Channel, Features, FixedTimes};
 use endat_hdl::crc5::{Crc5Fixed, Crc5Parallel, Crc5Serial};
 use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::line_delay::LineDelay;
@@ -58,13 +58,21 @@ impl Subject {
 pub fn subjects() -> Result<Vec<Subject>, GenError> {
     let card = load_preset(DEFAULT_PRESET)?.card;
     let times = FixedTimes::at(card.system_hz);
-    let transaction = Transaction::new(times.ready_low_cycles, times.abort_us);
     Ok(vec![
         Subject::new("card", "two-channel card s6_two_channel", Card::new(&card))?,
         Subject::new("channel", "one position channel", Channel::new(times))?,
-        Subject::new("transaction", "order and time-outs", transaction)?,
+        Subject::new(
+            "channel_requests",
+            "the same with all mode commands and additional information",
+            Channel::with(times, Features { requests: true }),
+        )?,
+        Subject::new(
+            "transaction",
+            "order and time-outs",
+            Transaction::new(times, false),
+        )?,
         Subject::new("line_delay", "propagation delay", LineDelay::default())?,
-        Subject::new("receiver", "receiver with both CRCs", Receiver::default())?,
+        Subject::new("receiver", "receiver with both CRCs", Receiver::new(false))?,
         Subject::new("snapshot", "snapshot with time stamp", Snapshot::default())?,
         Subject::new(
             "crc5_parallel",

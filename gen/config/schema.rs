@@ -341,10 +341,12 @@ fn read_command(table: &Table<'_, '_>, command: At<String>) -> Option<ModeComman
         .ok()
         .filter(|_| digits.len() == 6);
     let known = "use 111000 (EnDat 2.2 position) or 000111 (EnDat 2.1 position)";
-    let found = code.and_then(ModeCommand::from_code);
+    let found = code
+        .and_then(ModeCommand::from_code)
+        .filter(|c| ModeCommand::POSITION.contains(c));
     if found.is_none() {
         let text = match code {
-            Some(_) => format!("is not a mode command that this core sends; {known}"),
+            Some(_) => format!("is not a mode command that a trigger can send; {known}"),
             None => format!("a mode command is six binary digits in quotes; {known}"),
         };
         table.complain(

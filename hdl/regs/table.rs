@@ -249,7 +249,7 @@ pub const RESULT: Block = Block {
     registers: &[
         word("status", 0, ReadOnly, "What became of the last trigger.", &[
             field("sequence", 0, 16, "", "Number of results, wrapping", zero),
-            field("cause", 16, 4, "", "Primary cause: 0 none, 1 data not low before start, 2 no start bit, 3 start bit outside its window, 4 CRC, 5 F1, 6 F2, 7 data not falling after the frame, 8 trigger overrun", zero),
+            field("cause", 16, 4, "", "Primary cause: 0 none, 1 data not low before start, 2 no start bit, 3 start bit outside its window, 4 CRC, 5 F1, 6 F2, 7 data not falling after the frame, 8 trigger overrun, 9 unknown mode command, 10 additional information missing", zero),
             field("valid", 20, 1, "", "There is a good position", zero),
             field("fresh", 21, 1, "", "The last result brought the position; 0 = held from an earlier one", zero),
         ]),
@@ -266,7 +266,7 @@ pub const RESULT: Block = Block {
             field("crc_received", 0, 5, "", "CRC as received", zero),
             field("crc_computed", 5, 5, "", "CRC as computed", zero),
             field("delay_cycles", 10, 10, "cycles", "Tracked line delay tD, synchroniser and filter included", zero),
-            field("flags", 20, 10, "", "Raw flags: bit k stands for cause k + 1; bit 8: parallel CRC; bit 9: data not high after the frame", zero),
+            field("flags", 20, 12, "", "Raw flags: bit k stands for cause k + 1 up to 8; bit 8: parallel CRC; bit 9: data not high after the frame; bit 10: unknown mode command; bit 11: additional information missing", zero),
         ]),
         word("age_recovery", 5, ReadOnly, "Age and recovery time.", &[
             field("age_us", 0, 16, "us", "Age of the position; stops at 65535", zero),

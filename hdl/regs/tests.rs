@@ -129,7 +129,7 @@ timestamp value 31:0
 evidence crc_received 4:0
 evidence crc_computed 9:5
 evidence delay_cycles 19:10
-evidence flags 29:20
+evidence flags 31:20
 age_recovery age_us 15:0
 age_recovery recovery_cycles 28:16
 ";

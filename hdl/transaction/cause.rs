@@ -18,6 +18,10 @@ pub const F2: u64 = 6;
 pub const DATA_NOT_FALLING: u64 = 7;
 /// A trigger came while a frame was under way.
 pub const TRIGGER_OVERRUN: u64 = 8;
+/// The mode command is not one that the core sends; nothing went out.
+pub const UNKNOWN_COMMAND: u64 = 9;
+/// An additional information that should follow the position did not come; the position is good.
+pub const INFO_MISSING: u64 = 10;
 
 /// Name of a code.
 pub fn name(code: u64) -> &'static str {
@@ -31,6 +35,8 @@ pub fn name(code: u64) -> &'static str {
         F2 => "F2",
         DATA_NOT_FALLING => "data not falling after the frame",
         TRIGGER_OVERRUN => "trigger overrun",
+        UNKNOWN_COMMAND => "unknown mode command",
+        INFO_MISSING => "additional information missing",
         _ => "unknown",
     }
 }

@@ -24,8 +24,20 @@ module endat_channel (
     input  wire  [10:0] period_cycles,
     // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     input  wire  [10:0] first_low_extra_cycles,
-    // Mode command.
+    // Mode command of a triggered frame.
     input  wire   [5:0] command,
+    // Mode command of a request.
+    input  wire   [5:0] request_command,
+    // What it sends besides: MRS code, address or port in the upper 8 bits, data below.
+    input  wire  [23:0] request_parameter,
+    // Strobe: send the request, a position command with supplement or not, with the next trigger.
+    input  wire         request_ride,
+    // Strobe: send the request in a frame of its own as soon as the line is free. It is not published.
+    input  wire         request_own,
+    // Strobe: forget the request if it has not begun.
+    input  wire         request_cancel,
+    // No frame may begin: triggers are lost, and counted as such.
+    input  wire         hold_off,
     // Position width, 1..=48 bits.
     input  wire   [5:0] position_bits,
     // Pulses on the data line of at most this many system clock cycles are ignored.
@@ -59,7 +71,7 @@ module endat_channel (
     // Primary cause of the last result, see cause.
     output wire   [3:0] cause,
     // Raw flags of the last result.
-    output wire   [9:0] flags,
+    output wire  [11:0] flags,
     // CRC received in the last whole frame.
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
@@ -70,11 +82,44 @@ module endat_channel (
     output wire   [9:0] delay_cycles,
     // A trigger would not be taken.
     output wire         busy,
+    // Strobe: a trigger has been lost.
+    output wire         displaced,
+    // Strobe: a frame, triggered or not, has ended; over_cause to reply_good are of it.
+    output wire         over,
+    // The frame had the request.
+    output wire         over_request,
+    // Primary cause of the frame, as cause.
+    output wire   [3:0] over_cause,
+    // Raw flags of the frame, as flags.
+    output wire  [11:0] over_flags,
+    // Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
+    output wire  [47:0] reply,
+    // Its CRC is right.
+    output wire         reply_good,
+    // The encoder sends after each EnDat 2.2 position: bit 0 additional information 1, bit 1 additional information 2.
+    output wire   [1:0] info_active,
+    // Additional information 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
+    output wire  [23:0] info_1,
+    // Additional information 2 as it came last.
+    output wire  [23:0] info_2,
+    // Additional informations in the last frame: bit 0 information 1, bit 1 information 2.
+    output wire   [1:0] info_came,
+    // Their CRCs are right.
+    output wire   [1:0] info_good,
+    // The propagation delay is known: frames run at the full clock, requests may ride.
+    output wire         calibrated,
     // Strobe: the data line is sampled for a bit of the answer.
     output wire         sample_strobe
 );
+    localparam         HAS_REQUESTS = 1'b0;
+    localparam   [5:0] PARAMETER_BITS = 6'd24;
+    localparam   [5:0] TEST_VALUE_BITS = 6'd40;
     localparam  [10:0] CALIBRATION_PERIOD_CYCLES = 11'd500;
 
+    reg    [5:0] command_now;
+    reg    [5:0] payload_bits;
+    reg   [23:0] word;
+    wire         crc_ok;
     reg   [10:0] period;
     wire         filter_level;
     wire         filter_rise;
@@ -94,28 +139,58 @@ module endat_channel (
     wire         receiver_started;
     wire   [6:0] receiver_cells_left;
     wire         receiver_done;
-    wire  [47:0] receiver_position;
+    wire         receiver_info_done;
+    wire         receiver_info_missing;
+    wire         receiver_finished;
+    wire  [47:0] receiver_payload;
     wire         receiver_f1;
     wire         receiver_f2;
     wire   [4:0] receiver_crc_received;
     wire   [4:0] receiver_crc_computed;
     wire         receiver_serial_ok;
     wire         receiver_parallel_ok;
+    wire         transaction_begin_own;
     wire         transaction_start;
     wire         transaction_run;
     wire         transaction_abort;
     wire         transaction_hold_low;
     wire         transaction_drain;
     wire         transaction_stop;
+    wire         transaction_start_supplement;
     wire         transaction_acquire;
     wire         transaction_publish;
     wire         transaction_good;
     wire         transaction_late_fault;
-    wire   [3:0] transaction_cause;
-    wire   [9:0] transaction_flags;
+    wire         transaction_begun;
+    wire         transaction_is_at_rest;
+    wire         shape_is_known;
+    wire         shape_has_f1;
+    wire         shape_has_f2;
+    wire         shape_has_parameter;
+    wire         shape_has_test_values;
+    wire         shape_has_supplement;
+    wire         add_info_info_done;
+    wire         add_info_over;
+    wire   [1:0] add_info_infos;
     reg          clk_pin = 1'b1;
     reg          data_pin = 1'b0;
     reg          oe_pin = 1'b0;
+    reg          own_wanted = 1'b0;
+    reg          own_wanted_next;
+    reg          ride_wanted = 1'b0;
+    reg          ride_wanted_next;
+    reg    [5:0] frame_command = 6'd0;
+    reg    [5:0] frame_command_next;
+    reg          frame_own = 1'b0;
+    reg          frame_own_next;
+    reg          frame_ride = 1'b0;
+    reg          frame_ride_next;
+    reg          info_taken = 1'b0;
+    reg          reply_taken = 1'b0;
+    reg   [47:0] reply_word = 48'd0;
+    reg   [47:0] reply_word_next;
+    reg          reply_right = 1'b0;
+    reg          reply_right_next;
 
     endat_input_filter u_filter (
         .clock(clock),
@@ -141,9 +216,12 @@ module endat_channel (
         .clock(clock),
         .reset(reset),
         .start(transaction_start),
+        .start_supplement(transaction_start_supplement),
         .fall(clock_gen_fall),
         .abort(transaction_abort),
-        .command(command),
+        .command(command_now),
+        .has_parameter(shape_has_parameter),
+        .parameter_word(request_parameter),
         .data(sender_data),
         .oe(sender_oe)
     );
@@ -174,8 +252,13 @@ module endat_channel (
         .sample(delay_sample),
         .level(filter_level),
         .edge_in_window(delay_edge_in_window),
-        .position_bits(position_bits),
-        .has_f2(command[5]),
+        .payload_bits(payload_bits),
+        .has_f1(shape_has_f1),
+        .has_f2(shape_has_f2),
+        .has_parameter(shape_has_parameter),
+        .has_supplement(shape_has_supplement),
+        .infos(add_info_infos),
+        .start_supplement(transaction_start_supplement),
         .skipping(receiver_skipping),
         .hunting(receiver_hunting),
         .start_found(receiver_start_found),
@@ -183,7 +266,10 @@ module endat_channel (
         .started(receiver_started),
         .cells_left(receiver_cells_left),
         .done(receiver_done),
-        .position(receiver_position),
+        .info_done(receiver_info_done),
+        .info_missing(receiver_info_missing),
+        .finished(receiver_finished),
+        .payload(receiver_payload),
         .f1(receiver_f1),
         .f2(receiver_f2),
         .crc_received(receiver_crc_received),
@@ -203,7 +289,15 @@ module endat_channel (
         .hunting(receiver_hunting),
         .started(receiver_started),
         .start_refused(receiver_start_refused),
-        .frame_done(receiver_done),
+        .answer_done(receiver_done),
+        .finished(receiver_finished),
+        .info_missing(receiver_info_missing),
+        .is_known(shape_is_known),
+        .has_parameter(shape_has_parameter),
+        .has_supplement(shape_has_supplement),
+        .begin_own(transaction_begin_own),
+        .is_own(frame_own),
+        .hold_off(hold_off),
         .serial_ok(receiver_serial_ok),
         .parallel_ok(receiver_parallel_ok),
         .f1(receiver_f1),
@@ -219,13 +313,19 @@ module endat_channel (
         .hold_low(transaction_hold_low),
         .drain(transaction_drain),
         .stop(transaction_stop),
+        .start_supplement(transaction_start_supplement),
         .acquire(transaction_acquire),
         .busy(busy),
         .publish(transaction_publish),
         .good(transaction_good),
         .late_fault(transaction_late_fault),
-        .cause(transaction_cause),
-        .flags(transaction_flags),
+        .begun(transaction_begun),
+        .is_at_rest(transaction_is_at_rest),
+        .over(over),
+        .displaced(displaced),
+        .calibrated(calibrated),
+        .cause(over_cause),
+        .flags(over_flags),
         .recovery_cycles(recovery_cycles)
     );
     endat_snapshot u_snapshot (
@@ -237,11 +337,11 @@ module endat_channel (
         .publish(transaction_publish),
         .good(transaction_good),
         .late_fault(transaction_late_fault),
-        .position_in(receiver_position),
+        .position_in(receiver_payload),
         .crc_received_in(receiver_crc_received),
         .crc_computed_in(receiver_crc_computed),
-        .cause_in(transaction_cause),
-        .flags_in(transaction_flags),
+        .cause_in(over_cause),
+        .flags_in(over_flags),
         .result_strobe(result_strobe),
         .position(position),
         .position_valid(position_valid),
@@ -254,6 +354,35 @@ module endat_channel (
         .crc_received(crc_received),
         .crc_computed(crc_computed)
     );
+    endat_command_shape u_shape (
+        .command(command_now),
+        .is_known(shape_is_known),
+        .has_f1(shape_has_f1),
+        .has_f2(shape_has_f2),
+        .has_parameter(shape_has_parameter),
+        .has_test_values(shape_has_test_values),
+        .has_supplement(shape_has_supplement)
+    );
+    endat_add_info u_add_info (
+        .clock(clock),
+        .reset(reset),
+        .start(transaction_start),
+        .has_f2(shape_has_f2),
+        .has_supplement(shape_has_supplement),
+        .command(command_now),
+        .mrs(request_parameter[23:16]),
+        .info_done(add_info_info_done),
+        .crc_ok(crc_ok),
+        .word(word),
+        .over(add_info_over),
+        .flags(over_flags),
+        .active(info_active),
+        .infos(add_info_infos),
+        .info_1(info_1),
+        .info_2(info_2),
+        .came(info_came),
+        .good(info_good)
+    );
 
     always @* begin
         period = period_cycles;
@@ -261,9 +390,111 @@ module endat_channel (
             period = CALIBRATION_PERIOD_CYCLES;
         end
     end
+
+    always @* begin
+        command_now = command;
+        if (HAS_REQUESTS) begin
+            command_now = frame_command;
+        end
+    end
+
+    always @* begin
+        payload_bits = position_bits;
+        if (HAS_REQUESTS) begin
+            if (shape_has_parameter) begin
+                payload_bits = PARAMETER_BITS;
+            end
+            if (shape_has_test_values) begin
+                payload_bits = TEST_VALUE_BITS;
+            end
+        end
+    end
+    assign transaction_begin_own = frame_own & own_wanted;
+
+    always @* begin
+        own_wanted_next = own_wanted;
+        ride_wanted_next = ride_wanted;
+        frame_command_next = frame_command;
+        frame_own_next = frame_own;
+        frame_ride_next = frame_ride;
+        if (transaction_begun) begin
+            if (frame_own) begin
+                own_wanted_next = 1'b0;
+            end
+            if (frame_ride) begin
+                ride_wanted_next = 1'b0;
+            end
+        end else if (transaction_is_at_rest & HAS_REQUESTS) begin
+            frame_command_next = command;
+            frame_own_next = own_wanted;
+            frame_ride_next = ride_wanted & calibrated & !own_wanted;
+            if (own_wanted | (ride_wanted & calibrated)) begin
+                frame_command_next = request_command;
+            end
+        end
+        if (request_own & HAS_REQUESTS) begin
+            own_wanted_next = 1'b1;
+        end
+        if (request_ride & HAS_REQUESTS) begin
+            ride_wanted_next = 1'b1;
+        end
+        if (request_cancel) begin
+            own_wanted_next = 1'b0;
+            ride_wanted_next = 1'b0;
+        end
+    end
+
+    always @* begin
+        word = 24'd0;
+        word = (word & 24'h7fffff) | ({23'd0, receiver_payload[0]} << 5'd23);
+        word = (word & 24'hbfffff) | ({23'd0, receiver_payload[1]} << 5'd22);
+        word = (word & 24'hdfffff) | ({23'd0, receiver_payload[2]} << 5'd21);
+        word = (word & 24'hefffff) | ({23'd0, receiver_payload[3]} << 5'd20);
+        word = (word & 24'hf7ffff) | ({23'd0, receiver_payload[4]} << 5'd19);
+        word = (word & 24'hfbffff) | ({23'd0, receiver_payload[5]} << 5'd18);
+        word = (word & 24'hfdffff) | ({23'd0, receiver_payload[6]} << 5'd17);
+        word = (word & 24'hfeffff) | ({23'd0, receiver_payload[7]} << 5'd16);
+        word = (word & 24'hff7fff) | ({23'd0, receiver_payload[8]} << 4'd15);
+        word = (word & 24'hffbfff) | ({23'd0, receiver_payload[9]} << 4'd14);
+        word = (word & 24'hffdfff) | ({23'd0, receiver_payload[10]} << 4'd13);
+        word = (word & 24'hffefff) | ({23'd0, receiver_payload[11]} << 4'd12);
+        word = (word & 24'hfff7ff) | ({23'd0, receiver_payload[12]} << 4'd11);
+        word = (word & 24'hfffbff) | ({23'd0, receiver_payload[13]} << 4'd10);
+        word = (word & 24'hfffdff) | ({23'd0, receiver_payload[14]} << 4'd9);
+        word = (word & 24'hfffeff) | ({23'd0, receiver_payload[15]} << 4'd8);
+        word = (word & 24'hffff7f) | ({23'd0, receiver_payload[16]} << 3'd7);
+        word = (word & 24'hffffbf) | ({23'd0, receiver_payload[17]} << 3'd6);
+        word = (word & 24'hffffdf) | ({23'd0, receiver_payload[18]} << 3'd5);
+        word = (word & 24'hffffef) | ({23'd0, receiver_payload[19]} << 3'd4);
+        word = (word & 24'hfffff7) | ({23'd0, receiver_payload[20]} << 2'd3);
+        word = (word & 24'hfffffb) | ({23'd0, receiver_payload[21]} << 2'd2);
+        word = (word & 24'hfffffd) | ({23'd0, receiver_payload[22]} << 1'b1);
+        word = (word & 24'hfffffe) | {23'd0, receiver_payload[23]};
+    end
+    assign crc_ok = receiver_serial_ok & receiver_parallel_ok;
+
+    always @* begin
+        reply_word_next = reply_word;
+        reply_right_next = reply_right;
+        if (reply_taken) begin
+            reply_word_next = receiver_payload;
+            if (shape_has_parameter) begin
+                reply_word_next = {24'd0, word};
+            end
+            reply_right_next = crc_ok;
+        end
+        if (transaction_start) begin
+            reply_right_next = 1'b0;
+        end
+    end
+    assign add_info_info_done = info_taken & HAS_REQUESTS;
+    assign add_info_over = over & HAS_REQUESTS;
     assign endat_clk = clk_pin;
     assign data_o = data_pin;
     assign data_oe = oe_pin;
+    assign over_request = frame_own | frame_ride;
+    assign reply = reply_word;
+    assign reply_good = reply_right;
     assign sample_strobe = delay_sample & !receiver_skipping;
 
     always @(posedge clock) begin
@@ -271,10 +502,28 @@ module endat_channel (
             clk_pin <= 1'b1;
             data_pin <= 1'b0;
             oe_pin <= 1'b0;
+            own_wanted <= 1'b0;
+            ride_wanted <= 1'b0;
+            frame_command <= 6'd0;
+            frame_own <= 1'b0;
+            frame_ride <= 1'b0;
+            info_taken <= 1'b0;
+            reply_taken <= 1'b0;
+            reply_word <= 48'd0;
+            reply_right <= 1'b0;
         end else begin
             clk_pin <= clock_gen_endat_clk;
             data_pin <= sender_data;
             oe_pin <= sender_oe;
+            own_wanted <= own_wanted_next;
+            ride_wanted <= ride_wanted_next;
+            frame_command <= frame_command_next;
+            frame_own <= frame_own_next;
+            frame_ride <= frame_ride_next;
+            info_taken <= receiver_info_done;
+            reply_taken <= receiver_done & frame_own;
+            reply_word <= reply_word_next;
+            reply_right <= reply_right_next;
         end
     end
 endmodule

@@ -31,7 +31,7 @@ module endat_channel_registers (
     // Primary cause.
     input  wire   [3:0] cause,
     // Raw flags.
-    input  wire   [9:0] flags,
+    input  wire  [11:0] flags,
     // CRC as received.
     input  wire   [4:0] crc_received,
     // CRC as computed.
@@ -164,7 +164,7 @@ module endat_channel_registers (
     assign word_1 = position[31:0];
     assign word_2 = {16'd0, position[47:32]};
     assign word_3 = first_fall_timestamp;
-    assign word_4 = {27'd0, crc_received} | ({27'd0, crc_computed} << 3'd5) | ({22'd0, delay_cycles} << 4'd10) | ({22'd0, flags} << 5'd20);
+    assign word_4 = {27'd0, crc_received} | ({27'd0, crc_computed} << 3'd5) | ({22'd0, delay_cycles} << 4'd10) | ({20'd0, flags} << 5'd20);
     assign word_5 = {16'd0, age_us} | ({19'd0, recovery_cycles} << 5'd16);
 
     always @* begin

@@ -4,7 +4,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Sends the six bits of a mode command, MSB first, on falling clock edges.
+// Sends what the receiver has to say, MSB first, on falling clock edges.
 module endat_command_sender (
     // System clock.
     input  wire         clock,
@@ -12,44 +12,93 @@ module endat_command_sender (
     input  wire         reset,
     // One-cycle strobe: the frame begins with the first falling edge.
     input  wire         start,
+    // One-cycle strobe: the next falling edge is the first one of the supplement.
+    input  wire         start_supplement,
     // Strobe of each later falling edge.
     input  wire         fall,
     // Releases the line at once.
     input  wire         abort,
     // The mode command.
     input  wire   [5:0] command,
+    // The parameter follows the mode command.
+    input  wire         has_parameter,
+    // MRS code, address or port in the upper 8 bits, data below.
+    input  wire  [23:0] parameter_word,
     // Level for the data line while oe is high.
-    output wire         data,
+    output reg          data,
     // Driver enable.
-    output wire         oe
+    output reg          oe
 );
-    wire   [7:0] cells;
+    localparam         HAS_ALL = 1'b0;
+    localparam   [4:0] PARAMETER_BITS = 5'd24;
+
+    reg    [7:0] cells;
     wire   [2:0] cell_now;
+    wire  [31:0] bits;
     reg    [3:0] cells_left = 4'd0;
     reg    [3:0] cells_left_next;
+    reg    [4:0] bits_left = 5'd0;
+    reg    [4:0] bits_left_next;
+    reg          in_supplement = 1'b0;
+    reg          in_supplement_next;
+
+    always @* begin
+        cells = {2'd0, command} << 1'b1;
+        if (in_supplement) begin
+            cells = 8'd2;
+        end
+    end
+    assign bits = {8'd0, parameter_word} << 1'b1;
+    assign cell_now = cells_left[2:0];
 
     always @* begin
         cells_left_next = cells_left;
+        bits_left_next = bits_left;
+        in_supplement_next = in_supplement;
         if (fall & (|cells_left)) begin
             cells_left_next = cells_left - 4'd1;
         end
+        data = cells[cell_now];
+        oe = |cell_now;
+        if (HAS_ALL) begin
+            if (fall & (|bits_left)) begin
+                bits_left_next = bits_left - 5'd1;
+            end
+            if (fall & (cells_left == 4'd1) & (has_parameter | in_supplement)) begin
+                bits_left_next = PARAMETER_BITS;
+            end
+            if (in_supplement) begin
+                oe = (|cells_left) & (cells_left != 4'd9);
+            end
+            if (|bits_left) begin
+                data = bits[bits_left];
+                oe = 1'b1;
+            end
+            if (start_supplement) begin
+                cells_left_next = 4'd9;
+                in_supplement_next = 1'b1;
+            end
+        end
         if (abort) begin
             cells_left_next = 4'd0;
+            bits_left_next = 5'd0;
         end
         if (start) begin
             cells_left_next = 4'd8;
+            bits_left_next = 5'd0;
+            in_supplement_next = 1'b0;
         end
     end
-    assign cells = {2'd0, command} << 1'b1;
-    assign cell_now = cells_left[2:0];
-    assign data = cells[cell_now];
-    assign oe = |cell_now;
 
     always @(posedge clock) begin
         if (reset) begin
             cells_left <= 4'd0;
+            bits_left <= 5'd0;
+            in_supplement <= 1'b0;
         end else begin
             cells_left <= cells_left_next;
+            bits_left <= bits_left_next;
+            in_supplement <= in_supplement_next;
         end
     end
 endmodule

@@ -22,10 +22,20 @@ module endat_receiver (
     input  wire         level,
     // The start edge of this cell lies in its window.
     input  wire         edge_in_window,
-    // Position width, 1..=48 bits.
-    input  wire   [5:0] position_bits,
+    // Bits between error bits and CRC, 1..=48.
+    input  wire   [5:0] payload_bits,
+    // The answer begins with F1.
+    input  wire         has_f1,
     // The frame carries F2.
     input  wire         has_f2,
+    // 24 bits are sent before the answer, and the answer is 24 bits.
+    input  wire         has_parameter,
+    // The clock is parked LOW after the answer.
+    input  wire         has_supplement,
+    // Additional informations that follow the position, 0..=2.
+    input  wire   [1:0] infos,
+    // One-cycle strobe: the supplement begins.
+    input  wire         start_supplement,
     // The line is undefined: samples are not looked at.
     output wire         skipping,
     // The start bit may come now.
@@ -38,10 +48,16 @@ module endat_receiver (
     output wire         started,
     // Cells still to come, this one included.
     output wire   [6:0] cells_left,
-    // Strobe: position, error bits, CRC and verdict are valid.
-    output wire         done,
-    // Position, bit 0 = LSB, zeros above its width.
-    output wire  [47:0] position,
+    // Strobe: payload, error bits, CRC and verdict of the answer without additional information are valid.
+    output reg          done,
+    // Strobe: payload and verdict of an additional information are valid.
+    output reg          info_done,
+    // Strobe: an additional information should begin, but the line is HIGH.
+    output reg          info_missing,
+    // Strobe: the answer with all its additional informations, or the supplement, is complete.
+    output reg          finished,
+    // Payload, bit 0 = the bit received first, zeros above its width.
+    output wire  [47:0] payload,
     // Error bit 1, high = alarm.
     output wire         f1,
     // Error bit 2, low = alarm; high in frames without it.
@@ -55,16 +71,22 @@ module endat_receiver (
     // The CRC of the stored word equals the received one.
     output wire         parallel_ok
 );
+    localparam         HAS_ALL = 1'b0;
     localparam   [3:0] SKIP_FROM = 4'd5;
+    localparam   [3:0] LONG_SKIP_FROM = 4'd11;
     localparam   [6:0] FIXED_CELLS = 7'd17;
+    localparam   [6:0] SUPPLEMENT_CELLS = 7'd35;
+    localparam   [5:0] INFO_BITS = 6'd24;
     // What the next sample is.
-    localparam   [2:0] FIELD_SKIP = 3'd0; // Cells before the earliest start bit: the line is undefined.
-    localparam   [2:0] FIELD_START = 3'd1; // Low, until the start bit.
-    localparam   [2:0] FIELD_F1 = 3'd2; // Error bit 1.
-    localparam   [2:0] FIELD_F2 = 3'd3; // Error bit 2 (EnDat 2.2 frames).
-    localparam   [2:0] FIELD_POSITION = 3'd4; // Position, LSB first.
-    localparam   [2:0] FIELD_CRC = 3'd5; // CRC, MSB first.
-    localparam   [2:0] FIELD_DONE = 3'd6; // The frame is complete.
+    localparam   [3:0] FIELD_SKIP = 4'd0; // Cells before the earliest start bit: the line is undefined.
+    localparam   [3:0] FIELD_START = 4'd1; // Low, until the start bit.
+    localparam   [3:0] FIELD_F1 = 4'd2; // Error bit 1.
+    localparam   [3:0] FIELD_F2 = 4'd3; // Error bit 2 (EnDat 2.2 frames).
+    localparam   [3:0] FIELD_PAYLOAD = 4'd4; // Position, LSB first, or what an answer has in its place.
+    localparam   [3:0] FIELD_CRC = 4'd5; // CRC, MSB first.
+    localparam   [3:0] FIELD_SEPARATOR = 4'd6; // LOW before an additional information.
+    localparam   [3:0] FIELD_DONE = 4'd7; // The answer is complete.
+    localparam   [3:0] FIELD_SUPPLEMENT = 4'd8; // Cells of the supplement: the line is ours or undefined.
 
     reg          skip_step;
     reg          covered_bit;
@@ -78,12 +100,17 @@ module endat_receiver (
     reg    [3:0] covered_next;
     reg          crc_bit;
     wire         start_sample;
+    reg          separator;
     reg   [49:0] shifted;
+    reg    [5:0] width;
+    reg    [6:0] cells_after;
+    reg    [6:0] cells_around;
     wire   [4:0] parallel_crc;
+    wire         serial_clear;
     wire         serial_enable;
     wire         serial_residue_ok;
-    reg    [2:0] field = FIELD_DONE;
-    reg    [2:0] field_next;
+    reg    [3:0] field = FIELD_DONE;
+    reg    [3:0] field_next;
     reg    [6:0] left = 7'd0;
     reg    [6:0] left_next;
     reg   [49:0] word = 50'd0;
@@ -110,10 +137,20 @@ module endat_receiver (
     reg          refused = 1'b0;
     reg          shift_now = 1'b0;
     reg          bit_now = 1'b0;
-    reg          last_position = 1'b0;
-    reg          last_position_next;
+    reg          last_payload = 1'b0;
+    reg          last_payload_next;
     reg          hunting_now = 1'b0;
     reg          started_now = 1'b0;
+    reg    [1:0] skip_rounds = 2'd0;
+    reg    [1:0] skip_rounds_next;
+    reg    [1:0] infos_left = 2'd0;
+    reg    [1:0] infos_left_next;
+    reg          in_info = 1'b0;
+    reg          in_info_next;
+    reg          missing = 1'b0;
+    reg          missing_next;
+    reg          supplement_over = 1'b0;
+    reg          supplement_over_next;
 
     endat_crc5_parallel u_parallel (
         .word(word),
@@ -123,11 +160,36 @@ module endat_receiver (
     endat_crc5_serial u_serial (
         .clock(clock),
         .reset(reset),
-        .clear(start),
+        .clear(serial_clear),
         .enable(serial_enable),
         .bit_value(level),
         .residue_ok(serial_residue_ok)
     );
+
+    always @* begin
+        cells_after = 7'd1;
+        width = payload_bits;
+        if (HAS_ALL) begin
+            if (infos_left == 2'd1) begin
+                cells_after = 7'd31;
+            end
+            if (infos_left == 2'd2) begin
+                cells_after = 7'd61;
+            end
+            if (has_supplement) begin
+                cells_after = 7'd0;
+                if (infos_left == 2'd1) begin
+                    cells_after = 7'd30;
+                end
+                if (infos_left == 2'd2) begin
+                    cells_after = 7'd60;
+                end
+            end
+            if (in_info) begin
+                width = INFO_BITS;
+            end
+        end
+    end
 
     always @* begin
         skip_step = sample;
@@ -136,9 +198,9 @@ module endat_receiver (
         end
     end
     assign start_sample = (field == FIELD_START) & sample & level;
-    assign in5 = position_bits <= 6'd3;
-    assign in20 = (position_bits <= 6'd18) & !in5;
-    assign in35 = (position_bits <= 6'd33) & !in5 & !in20;
+    assign in5 = width <= 6'd3;
+    assign in20 = (width <= 6'd18) & !in5;
+    assign in35 = (width <= 6'd33) & !in5 & !in20;
     assign in50 = !in5 & !in20 & !in35;
     assign bit_in = bit_now & !align;
     assign shift = shift_now | align;
@@ -171,6 +233,36 @@ module endat_receiver (
         if (has_f2) begin
             aligned_at = 4'd6;
         end
+        if (HAS_ALL & (!has_f1 | in_info)) begin
+            aligned_at = 4'd4;
+        end
+    end
+
+    always @* begin
+        cells_around = FIXED_CELLS;
+        if (has_f2) begin
+            cells_around = FIXED_CELLS + 7'd1;
+        end
+        if (HAS_ALL) begin
+            if (has_supplement) begin
+                cells_around = FIXED_CELLS;
+            end
+            if (infos == 2'd1) begin
+                cells_around = FIXED_CELLS + 7'd31;
+                if (has_supplement) begin
+                    cells_around = FIXED_CELLS + 7'd30;
+                end
+            end
+            if (infos == 2'd2) begin
+                cells_around = FIXED_CELLS + 7'd61;
+                if (has_supplement) begin
+                    cells_around = FIXED_CELLS + 7'd60;
+                end
+            end
+            if (has_parameter) begin
+                cells_around = FIXED_CELLS + 7'd23;
+            end
+        end
     end
 
     always @* begin
@@ -182,10 +274,16 @@ module endat_receiver (
         f2_bit_next = f2_bit;
         crc_calc_next = crc_calc;
         align_next = align;
+        skip_rounds_next = skip_rounds;
+        infos_left_next = infos_left;
+        in_info_next = in_info;
         covered_bit = 1'b0;
         crc_bit = 1'b0;
-        last_position_next = 1'b0;
+        last_payload_next = 1'b0;
         last_taken_next = 1'b0;
+        separator = 1'b0;
+        missing_next = 1'b0;
+        supplement_over_next = 1'b0;
         if (sample & (field != FIELD_SKIP) & (field != FIELD_START)) begin
             left_next = left - 7'd1;
         end
@@ -194,20 +292,26 @@ module endat_receiver (
                 if (skip_step) begin
                     left_next = left - 7'd1;
                     if (covered == 4'd14) begin
-                        field_next = FIELD_START;
+                        skip_rounds_next = skip_rounds - 2'd1;
+                        if (!(|skip_rounds) | !HAS_ALL) begin
+                            field_next = FIELD_START;
+                        end
                     end
                 end
             end
             FIELD_START: begin
                 if (start_sample & edge_in_window) begin
                     field_next = FIELD_F1;
+                    if (!has_f1 & HAS_ALL) begin
+                        field_next = FIELD_PAYLOAD;
+                    end
                 end
             end
             FIELD_F1: begin
                 if (sample) begin
                     covered_bit = 1'b1;
                     f1_bit_next = level;
-                    field_next = FIELD_POSITION;
+                    field_next = FIELD_PAYLOAD;
                     if (has_f2) begin
                         field_next = FIELD_F2;
                     end
@@ -217,14 +321,14 @@ module endat_receiver (
                 if (sample) begin
                     covered_bit = 1'b1;
                     f2_bit_next = level;
-                    field_next = FIELD_POSITION;
+                    field_next = FIELD_PAYLOAD;
                 end
             end
-            FIELD_POSITION: begin
+            FIELD_PAYLOAD: begin
                 if (sample) begin
                     covered_bit = 1'b1;
-                    if (left == 7'd7) begin
-                        last_position_next = 1'b1;
+                    if (left == (cells_after + 7'd6)) begin
+                        last_payload_next = 1'b1;
                         field_next = FIELD_CRC;
                     end
                 end
@@ -232,13 +336,37 @@ module endat_receiver (
             FIELD_CRC: begin
                 if (sample) begin
                     crc_bit = 1'b1;
-                    if (left == 7'd2) begin
+                    if (left == (cells_after + 7'd1)) begin
                         last_taken_next = 1'b1;
+                        field_next = FIELD_DONE;
+                        if ((|infos_left) & HAS_ALL) begin
+                            field_next = FIELD_SEPARATOR;
+                        end
+                    end
+                end
+            end
+            FIELD_SEPARATOR: begin
+                if (sample) begin
+                    separator = 1'b1;
+                    in_info_next = 1'b1;
+                    infos_left_next = infos_left - 2'd1;
+                    field_next = FIELD_PAYLOAD;
+                    if (level | !HAS_ALL) begin
+                        missing_next = 1'b1;
                         field_next = FIELD_DONE;
                     end
                 end
             end
             FIELD_DONE: begin
+            end
+            FIELD_SUPPLEMENT: begin
+                if (sample & (left == 7'd2)) begin
+                    supplement_over_next = 1'b1;
+                    field_next = FIELD_DONE;
+                end
+                if (!HAS_ALL) begin
+                    field_next = FIELD_DONE;
+                end
             end
             default: begin
                 field_next = FIELD_DONE;
@@ -257,16 +385,32 @@ module endat_receiver (
         if (align & !align_first & (covered == aligned_at)) begin
             align_next = 1'b0;
         end
+        if (HAS_ALL & separator) begin
+            word_next = 50'd0;
+            covered_next_2 = 4'd0;
+            align_next = 1'b0;
+        end
         if (start) begin
             field_next = FIELD_SKIP;
-            left_next = {1'b0, position_bits} + FIXED_CELLS;
-            if (has_f2) begin
-                left_next = {1'b0, position_bits} + FIXED_CELLS + 7'd1;
-            end
+            left_next = {1'b0, payload_bits} + cells_around;
             word_next = 50'd0;
             covered_next_2 = SKIP_FROM;
+            skip_rounds_next = 2'd0;
             f2_bit_next = 1'b1;
             align_next = 1'b0;
+            in_info_next = 1'b0;
+            infos_left_next = infos;
+            if (HAS_ALL) begin
+                f1_bit_next = 1'b0;
+                if (has_parameter) begin
+                    covered_next_2 = LONG_SKIP_FROM;
+                    skip_rounds_next = 2'd2;
+                end
+            end
+        end
+        if (start_supplement & HAS_ALL) begin
+            field_next = FIELD_SUPPLEMENT;
+            left_next = SUPPLEMENT_CELLS;
         end
     end
 
@@ -276,15 +420,28 @@ module endat_receiver (
             crc_bits_next = ((crc_bits << 1'b1) & 5'd30) | {4'd0, level};
         end
     end
+    assign serial_clear = start | (separator & HAS_ALL);
     assign serial_enable = covered_bit | crc_bit;
-    assign skipping = field == FIELD_SKIP;
+    assign skipping = (field == FIELD_SKIP) | (field == FIELD_SUPPLEMENT);
     assign hunting = hunting_now;
     assign start_found = start_sample & edge_in_window;
     assign start_refused = refused;
     assign started = started_now;
     assign cells_left = left;
-    assign done = done_now;
-    assign position = word[47:0];
+
+    always @* begin
+        done = done_now;
+        info_done = 1'b0;
+        info_missing = 1'b0;
+        finished = done_now;
+        if (HAS_ALL) begin
+            done = done_now & !in_info;
+            info_done = done_now & in_info;
+            info_missing = missing;
+            finished = (done_now & !(|infos_left)) | supplement_over;
+        end
+    end
+    assign payload = word[47:0];
     assign f1 = f1_bit;
     assign f2 = f2_bit;
     assign crc_received = crc_bits;
@@ -312,9 +469,14 @@ module endat_receiver (
             refused <= 1'b0;
             shift_now <= 1'b0;
             bit_now <= 1'b0;
-            last_position <= 1'b0;
+            last_payload <= 1'b0;
             hunting_now <= 1'b0;
             started_now <= 1'b0;
+            skip_rounds <= 2'd0;
+            infos_left <= 2'd0;
+            in_info <= 1'b0;
+            missing <= 1'b0;
+            supplement_over <= 1'b0;
         end else begin
             field <= field_next;
             left <= left_next;
@@ -324,7 +486,7 @@ module endat_receiver (
             f2_bit <= f2_bit_next;
             crc_bits <= crc_bits_next;
             crc_calc <= crc_calc_next;
-            take_crc <= last_position;
+            take_crc <= last_payload;
             align <= align_next;
             align_first <= take_crc;
             last_taken <= last_taken_next;
@@ -334,9 +496,14 @@ module endat_receiver (
             refused <= start_sample & !edge_in_window;
             shift_now <= covered_bit;
             bit_now <= level;
-            last_position <= last_position_next;
+            last_payload <= last_payload_next;
             hunting_now <= field == FIELD_START;
             started_now <= (field != FIELD_SKIP) & (field != FIELD_START);
+            skip_rounds <= skip_rounds_next;
+            infos_left <= infos_left_next;
+            in_info <= in_info_next;
+            missing <= missing_next;
+            supplement_over <= supplement_over_next;
         end
     end
 endmodule

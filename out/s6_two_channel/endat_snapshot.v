@@ -31,7 +31,7 @@ module endat_snapshot (
     // Primary cause.
     input  wire   [3:0] cause_in,
     // Raw flags.
-    input  wire   [9:0] flags_in,
+    input  wire  [11:0] flags_in,
     // Strobe: a new result can be read from this cycle on.
     output wire         result_strobe,
     // Last good position, zeros above its width.
@@ -49,7 +49,7 @@ module endat_snapshot (
     // Primary cause of the last result.
     output wire   [3:0] cause,
     // Raw flags of the last result.
-    output wire   [9:0] flags,
+    output wire  [11:0] flags,
     // CRC received in the last whole frame.
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
@@ -74,8 +74,8 @@ module endat_snapshot (
     reg          age_full = 1'b0;
     reg    [3:0] cause_held = 4'd0;
     reg    [3:0] cause_held_next;
-    reg    [9:0] flags_held = 10'd0;
-    reg    [9:0] flags_held_next;
+    reg   [11:0] flags_held = 12'd0;
+    reg   [11:0] flags_held_next;
     reg    [4:0] received = 5'd0;
     reg    [4:0] received_next;
     reg    [4:0] computed = 5'd0;
@@ -151,7 +151,7 @@ module endat_snapshot (
             age <= 16'd0;
             age_full <= 1'b0;
             cause_held <= 4'd0;
-            flags_held <= 10'd0;
+            flags_held <= 12'd0;
             received <= 5'd0;
             computed <= 5'd0;
         end else begin

@@ -28,8 +28,24 @@ module endat_transaction (
     input  wire         started,
     // Strobe: a start bit outside its window.
     input  wire         start_refused,
-    // Strobe: the frame has been taken whole.
-    input  wire         frame_done,
+    // Strobe: the answer without additional information has been taken.
+    input  wire         answer_done,
+    // Strobe: the answer with all that follows it has been taken, or the supplement is over.
+    input  wire         finished,
+    // Strobe: an additional information has not come.
+    input  wire         info_missing,
+    // The mode command of the next frame is one that the core sends.
+    input  wire         is_known,
+    // 24 bits belong to the command; its answer may take long.
+    input  wire         has_parameter,
+    // A supplement follows the answer.
+    input  wire         has_supplement,
+    // Begin a frame without a trigger; is_own is high.
+    input  wire         begin_own,
+    // The frame under way, or the next one, is not a trigger's.
+    input  wire         is_own,
+    // No frame may begin.
+    input  wire         hold_off,
     // Serial CRC verdict.
     input  wire         serial_ok,
     // Parallel CRC verdict.
@@ -57,9 +73,11 @@ module endat_transaction (
     // Keeps the clock low.
     output wire         hold_low,
     // The clock waits for the cells of all pulses sent.
-    output wire         drain,
+    output reg          drain,
     // Keeps the clock high: no frame, or all its edges have been sent.
     output wire         stop,
+    // One-cycle strobe: the supplement begins.
+    output wire         start_supplement,
     // This frame measures the propagation delay.
     output wire         acquire,
     // A trigger would not be taken.
@@ -70,41 +88,62 @@ module endat_transaction (
     output wire         good,
     // Strobe: data did not fall after a frame that has been published.
     output wire         late_fault,
-    // Primary cause, with publish or late_fault.
+    // Strobe, in the same cycle: a frame is begun, or refused.
+    output wire         begun,
+    // No frame is under way, and all that there is to tell of the last one has been told.
+    output wire         is_at_rest,
+    // Strobe: a frame has ended in whatever way, cause and flags are valid.
+    output wire         over,
+    // Strobe: a trigger has been lost.
+    output wire         displaced,
+    // The propagation delay is known.
+    output wire         calibrated,
+    // Primary cause, with publish, late_fault or over.
     output wire   [3:0] cause,
-    // Raw flags in the order of the cause codes: bit k stands for cause k + 1; bit 8 parallel CRC, bit 9 tail not high.
-    output wire   [9:0] flags,
+    // Raw flags in the order of the cause codes: bit k stands for cause k + 1; then bit 8 parallel CRC, bit 9 tail not high,
+    // bit 10 unknown command, bit 11 additional information missing.
+    output wire  [11:0] flags,
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles
 );
-    localparam  [14:0] READY_LOW_CYCLES = 15'd51;
-    localparam  [14:0] ABORT_US = 15'h7530;
+    localparam         HAS_ALL = 1'b0;
+    localparam  [15:0] READY_LOW_CYCLES = 16'd51;
+    localparam  [15:0] ABORT_US = 16'h7530;
+    localparam  [15:0] PARK_CYCLES = 16'd200;
+    localparam  [15:0] PARAMETER_TIMEOUT_US = 16'hc350;
     // What the wire is doing.
     localparam   [2:0] PHASE_NOT_READY = 3'd0; // Idle, but data has not yet been low for tR.
     localparam   [2:0] PHASE_READY = 3'd1; // Idle and ready for a trigger.
     localparam   [2:0] PHASE_FIRST_LOW = 3'd2; // First low phase, held for tST.
-    localparam   [2:0] PHASE_FRAME = 3'd3; // Mode command, turnaround, waiting for the start bit, answer.
+    localparam   [2:0] PHASE_FRAME = 3'd3; // Mode command, turnaround, waiting for the start bit, answer; then the supplement.
     localparam   [2:0] PHASE_TAIL = 3'd4; // The last CRC bit has been taken; the cell after it must be high.
     localparam   [2:0] PHASE_RECOVERY = 3'd5; // Clock and data high: recovery time tm.
     localparam   [2:0] PHASE_ABORT = 3'd6; // Quiet after an aborted frame.
+    localparam   [2:0] PHASE_PARK = 3'd7; // Clock LOW between answer and supplement.
 
-    reg   [14:0] limit;
+    reg   [15:0] limit;
     reg          in_us;
     reg          timer_clear;
     reg          accept;
     reg          give_up;
     reg          idle;
-    reg    [9:0] found;
-    reg    [9:0] told;
+    wire         wanted;
+    reg          refuse;
+    reg          normal_end;
+    reg          parking;
+    reg          sent;
+    wire         own;
+    reg   [11:0] found;
+    reg   [11:0] told;
     wire         crc_bad;
     reg          verdict;
     reg    [3:0] primary;
     wire         lost;
     reg    [2:0] phase = PHASE_NOT_READY;
     reg    [2:0] phase_next;
-    reg   [14:0] timer = 15'd0;
-    reg   [14:0] timer_next;
-    reg   [14:0] timer_limit = 15'd0;
+    reg   [15:0] timer = 16'd0;
+    reg   [15:0] timer_next;
+    reg   [15:0] timer_limit = 16'd0;
     reg          timer_hit = 1'b0;
     reg          timer_hit_next;
     reg          timer_step = 1'b0;
@@ -114,8 +153,8 @@ module endat_transaction (
     reg          run_now_next;
     reg          extra = 1'b0;
     reg          stop_now = 1'b1;
-    reg          calibrated = 1'b0;
-    reg          calibrated_next;
+    reg          is_calibrated = 1'b0;
+    reg          is_calibrated_next;
     reg          acquiring = 1'b0;
     reg          acquiring_next;
     reg          overrun = 1'b0;
@@ -127,7 +166,17 @@ module endat_transaction (
     reg          tail_sampled_next;
     reg   [12:0] recovery = 13'd0;
     reg   [12:0] recovery_next;
-    reg    [9:0] seen = 10'd0;
+    reg          in_supplement = 1'b0;
+    reg          in_supplement_next;
+    reg          supplement_now = 1'b0;
+    reg          supplement_now_next;
+    reg          answered = 1'b0;
+    reg          answered_next;
+    reg          refused = 1'b0;
+    reg          ended = 1'b0;
+    reg          over_now = 1'b0;
+    reg          lost_now = 1'b0;
+    reg   [11:0] seen = 12'd0;
     reg          taken = 1'b0;
     reg          gave_up = 1'b0;
     reg          gave_up_late = 1'b0;
@@ -137,8 +186,8 @@ module endat_transaction (
     reg          late_now = 1'b0;
     reg    [3:0] cause_now = 4'd0;
     reg    [3:0] cause_now_next;
-    reg    [9:0] flags_now = 10'd0;
-    reg    [9:0] flags_now_next;
+    reg   [11:0] flags_now = 12'd0;
+    reg   [11:0] flags_now_next;
 
     always @* begin
         stalled_next = stalled;
@@ -149,22 +198,32 @@ module endat_transaction (
             stalled_next = 1'b0;
         end
     end
+    assign own = is_own & HAS_ALL;
+    assign wanted = trigger | (begin_own & HAS_ALL);
     assign crc_bad = !(serial_ok & parallel_ok);
 
     always @* begin
         phase_next = phase;
-        calibrated_next = calibrated;
+        is_calibrated_next = is_calibrated;
         acquiring_next = acquiring;
         tail_sampled_next = tail_sampled;
         recovery_next = recovery;
-        limit = {3'd0, start_timeout_us};
+        in_supplement_next = in_supplement;
+        answered_next = answered;
+        refuse = 1'b0;
+        normal_end = 1'b0;
+        supplement_now_next = 1'b0;
+        limit = {4'd0, start_timeout_us};
+        if (HAS_ALL & has_parameter) begin
+            limit = PARAMETER_TIMEOUT_US;
+        end
         in_us = 1'b0;
         timer_clear = 1'b0;
         accept = 1'b0;
         give_up = 1'b0;
         idle = 1'b0;
         verdict = 1'b0;
-        found = 10'd0;
+        found = 12'd0;
         run_now_next = 1'b0;
         case (phase)
             PHASE_NOT_READY: begin
@@ -177,31 +236,36 @@ module endat_transaction (
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
                     if (trigger) begin
-                        found = 10'd1;
+                        found = 12'd1;
                         give_up = 1'b1;
                     end
                 end
             end
             PHASE_READY: begin
                 timer_clear = 1'b1;
-                idle = 1'b1;
+                idle = !(hold_off & HAS_ALL);
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
                     if (trigger) begin
-                        found = 10'd1;
+                        found = 12'd1;
                         give_up = 1'b1;
                     end
-                end else if (trigger) begin
-                    accept = 1'b1;
-                    phase_next = PHASE_FRAME;
-                    if (extra) begin
-                        phase_next = PHASE_FIRST_LOW;
+                end else if (wanted & idle) begin
+                    if (is_known) begin
+                        accept = 1'b1;
+                        phase_next = PHASE_FRAME;
+                        if (extra) begin
+                            phase_next = PHASE_FIRST_LOW;
+                        end
+                    end else begin
+                        found = 12'd1024;
+                        refuse = 1'b1;
                     end
                 end
             end
             PHASE_FIRST_LOW: begin
                 run_now_next = 1'b1;
-                limit = {4'd0, first_low_extra_cycles};
+                limit = {5'd0, first_low_extra_cycles};
                 if (timer_hit) begin
                     phase_next = PHASE_FRAME;
                     timer_clear = 1'b1;
@@ -212,16 +276,37 @@ module endat_transaction (
                 in_us = 1'b1;
                 timer_clear = !hunting;
                 if (timer_hit & hunting) begin
-                    found = 10'd2;
+                    found = 12'd2;
                     give_up = 1'b1;
                 end
                 if (start_refused) begin
-                    found = 10'd4;
+                    found = 12'd4;
                     give_up = 1'b1;
                 end
-                if (frame_done) begin
+                if (answer_done) begin
                     verdict = 1'b1;
+                end
+                if (info_missing & HAS_ALL) begin
+                    found = 12'd2048;
+                    give_up = 1'b1;
+                end
+                if (finished) begin
                     phase_next = PHASE_TAIL;
+                    if (HAS_ALL & has_supplement & !in_supplement) begin
+                        phase_next = PHASE_PARK;
+                    end
+                end
+            end
+            PHASE_PARK: begin
+                run_now_next = 1'b1;
+                limit = PARK_CYCLES;
+                if (timer_hit) begin
+                    phase_next = PHASE_FRAME;
+                    in_supplement_next = 1'b1;
+                    supplement_now_next = 1'b1;
+                end
+                if (!HAS_ALL) begin
+                    give_up = 1'b1;
                 end
             end
             PHASE_TAIL: begin
@@ -234,7 +319,7 @@ module endat_transaction (
             end
             PHASE_RECOVERY: begin
                 run_now_next = !tail_sampled;
-                limit = {2'd0, recovery_limit_cycles};
+                limit = {3'd0, recovery_limit_cycles};
                 if (sample) begin
                     tail_sampled_next = 1'b1;
                 end
@@ -242,12 +327,13 @@ module endat_transaction (
                     recovery_next = timer[12:0];
                     timer_clear = 1'b1;
                     phase_next = PHASE_NOT_READY;
+                    normal_end = 1'b1;
                 end else if (timer_hit) begin
-                    found = 10'd64;
+                    found = 12'd64;
                     give_up = 1'b1;
                 end
                 if (sample & !tail_sampled & !level) begin
-                    found = 10'd512;
+                    found = 12'd512;
                     give_up = 1'b1;
                 end
             end
@@ -263,58 +349,68 @@ module endat_transaction (
                 give_up = 1'b1;
             end
         endcase
+        if (verdict) begin
+            answered_next = 1'b1;
+        end
+        if (normal_end) begin
+            answered_next = 1'b0;
+        end
         if (gave_up) begin
             phase_next = PHASE_ABORT;
             timer_clear = 1'b1;
             accept = 1'b0;
-            calibrated_next = 1'b0;
+            refuse = 1'b0;
+            answered_next = 1'b0;
+            is_calibrated_next = 1'b0;
         end
         told = seen;
         good_now_next = 1'b0;
         if (taken) begin
             if (crc_bad) begin
-                told = told | 10'd8;
+                told = told | 12'd8;
             end else begin
-                calibrated_next = 1'b1;
+                is_calibrated_next = 1'b1;
                 good_now_next = !f1 & f2;
             end
             if (f1) begin
-                told = told | 10'd16;
+                told = told | 12'd16;
             end
             if (!f2) begin
-                told = told | 10'd32;
+                told = told | 12'd32;
             end
             if (!parallel_ok) begin
-                told = told | 10'd256;
+                told = told | 12'd256;
             end
         end
         if (overrun) begin
-            told = told | 10'd128;
+            told = told | 12'd128;
         end
         if (accept) begin
-            acquiring_next = !calibrated;
+            answered_next = 1'b0;
+            in_supplement_next = 1'b0;
+            acquiring_next = !is_calibrated;
             tail_sampled_next = 1'b0;
         end
         if (calibrate) begin
-            calibrated_next = 1'b0;
+            is_calibrated_next = 1'b0;
         end
     end
 
     always @* begin
         timer_next = timer;
         if (timer_step) begin
-            timer_next = timer + 15'd1;
+            timer_next = timer + 16'd1;
         end
         timer_hit_next = timer == timer_limit;
         if (timer_clear) begin
-            timer_next = 15'd0;
+            timer_next = 16'd0;
             timer_hit_next = 1'b0;
         end
         if (accept) begin
-            timer_next = 15'd2;
+            timer_next = 16'd2;
         end
         if ((phase == PHASE_TAIL) & center) begin
-            timer_next = 15'd1;
+            timer_next = 16'd1;
         end
     end
 
@@ -332,6 +428,9 @@ module endat_transaction (
         if (told[3]) begin
             primary = 4'd4;
         end
+        if (told[11] & HAS_ALL) begin
+            primary = 4'd10;
+        end
         if (told[6] | told[9]) begin
             primary = 4'd7;
         end
@@ -344,17 +443,22 @@ module endat_transaction (
         if (told[0]) begin
             primary = 4'd1;
         end
+        if (told[10]) begin
+            primary = 4'd9;
+        end
     end
-    assign lost = trigger & !accept & !idle;
+    assign lost = trigger & ((!accept & !idle) | (accept & own));
 
     always @* begin
         overrun_next = overrun;
         cause_now_next = cause_now;
         flags_now_next = flags_now;
-        if (taken | gave_up) begin
+        if (taken | gave_up | refused) begin
             flags_now_next = told;
             cause_now_next = primary;
-            overrun_next = 1'b0;
+            if (!own) begin
+                overrun_next = 1'b0;
+            end
         end
         if (lost) begin
             overrun_next = 1'b1;
@@ -363,8 +467,23 @@ module endat_transaction (
     assign run = run_now;
     assign start = start_now;
     assign abort = gave_up;
+
+    always @* begin
+        sent = all_sent & started;
+        parking = 1'b0;
+        if (HAS_ALL & has_supplement & !in_supplement) begin
+            parking = (sent & (phase == PHASE_FRAME)) | (phase == PHASE_PARK);
+            sent = 1'b0;
+        end
+    end
     assign hold_low = hold;
-    assign drain = stalled;
+
+    always @* begin
+        drain = stalled;
+        if (HAS_ALL) begin
+            drain = stalled | (phase == PHASE_PARK);
+        end
+    end
     assign stop = stop_now;
     assign acquire = acquiring;
     assign busy = !idle;
@@ -373,13 +492,19 @@ module endat_transaction (
     assign late_fault = late_now;
     assign cause = cause_now;
     assign flags = flags_now;
+    assign start_supplement = supplement_now;
+    assign over = over_now;
+    assign begun = accept | refuse;
+    assign is_at_rest = ((phase == PHASE_NOT_READY) | (phase == PHASE_READY)) & !ended & !gave_up & !refused & !over_now;
+    assign displaced = lost_now;
+    assign calibrated = is_calibrated;
     assign recovery_cycles = recovery;
 
     always @(posedge clock) begin
         if (reset) begin
             phase <= PHASE_NOT_READY;
-            timer <= 15'd0;
-            timer_limit <= 15'd0;
+            timer <= 16'd0;
+            timer_limit <= 16'd0;
             timer_hit <= 1'b0;
             timer_step <= 1'b0;
             hold <= 1'b0;
@@ -387,14 +512,21 @@ module endat_transaction (
             run_now <= 1'b0;
             extra <= 1'b0;
             stop_now <= 1'b1;
-            calibrated <= 1'b0;
+            is_calibrated <= 1'b0;
             acquiring <= 1'b0;
             overrun <= 1'b0;
             stalled <= 1'b0;
             all_sent <= 1'b0;
             tail_sampled <= 1'b0;
             recovery <= 13'd0;
-            seen <= 10'd0;
+            in_supplement <= 1'b0;
+            supplement_now <= 1'b0;
+            answered <= 1'b0;
+            refused <= 1'b0;
+            ended <= 1'b0;
+            over_now <= 1'b0;
+            lost_now <= 1'b0;
+            seen <= 12'd0;
             taken <= 1'b0;
             gave_up <= 1'b0;
             gave_up_late <= 1'b0;
@@ -402,32 +534,39 @@ module endat_transaction (
             good_now <= 1'b0;
             late_now <= 1'b0;
             cause_now <= 4'd0;
-            flags_now <= 10'd0;
+            flags_now <= 12'd0;
         end else begin
             phase <= phase_next;
             timer <= timer_next;
             timer_limit <= limit;
             timer_hit <= timer_hit_next;
             timer_step <= !in_us | tick_us;
-            hold <= (phase == PHASE_FIRST_LOW) | stalled;
+            hold <= (phase == PHASE_FIRST_LOW) | stalled | parking;
             start_now <= accept;
             run_now <= run_now_next;
             extra <= |first_low_extra_cycles;
-            stop_now <= (all_sent & started) | !run_now;
-            calibrated <= calibrated_next;
+            stop_now <= sent | !run_now;
+            is_calibrated <= is_calibrated_next;
             acquiring <= acquiring_next;
             overrun <= overrun_next;
             stalled <= stalled_next;
             all_sent <= {1'b0, outstanding} == cells_left;
             tail_sampled <= tail_sampled_next;
             recovery <= recovery_next;
+            in_supplement <= in_supplement_next;
+            supplement_now <= supplement_now_next;
+            answered <= answered_next;
+            refused <= refuse;
+            ended <= normal_end;
+            over_now <= ended | gave_up | refused;
+            lost_now <= lost;
             seen <= found;
             taken <= verdict;
             gave_up <= give_up & !gave_up;
-            gave_up_late <= give_up & !gave_up & (phase == PHASE_RECOVERY);
-            publish_now <= taken | (gave_up & !gave_up_late);
+            gave_up_late <= give_up & !gave_up & answered;
+            publish_now <= (taken | refused | (gave_up & !gave_up_late)) & !own;
             good_now <= good_now_next;
-            late_now <= gave_up_late;
+            late_now <= gave_up_late & !own;
             cause_now <= cause_now_next;
             flags_now <= flags_now_next;
         end

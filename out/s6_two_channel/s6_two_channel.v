@@ -153,12 +153,25 @@ module s6_two_channel (
     wire  [31:0] channel_0_first_fall_timestamp;
     wire  [15:0] channel_0_age_us;
     wire   [3:0] channel_0_cause;
-    wire   [9:0] channel_0_flags;
+    wire  [11:0] channel_0_flags;
     wire   [4:0] channel_0_crc_received;
     wire   [4:0] channel_0_crc_computed;
     wire  [12:0] channel_0_recovery_cycles;
     wire   [9:0] channel_0_delay_cycles;
     wire         channel_0_busy;
+    wire         channel_0_displaced;
+    wire         channel_0_over;
+    wire         channel_0_over_request;
+    wire   [3:0] channel_0_over_cause;
+    wire  [11:0] channel_0_over_flags;
+    wire  [47:0] channel_0_reply;
+    wire         channel_0_reply_good;
+    wire   [1:0] channel_0_info_active;
+    wire  [23:0] channel_0_info_1;
+    wire  [23:0] channel_0_info_2;
+    wire   [1:0] channel_0_info_came;
+    wire   [1:0] channel_0_info_good;
+    wire         channel_0_calibrated;
     wire         channel_0_sample_strobe;
     wire         channel_1_result_strobe;
     wire  [47:0] channel_1_position;
@@ -167,14 +180,27 @@ module s6_two_channel (
     wire  [31:0] channel_1_first_fall_timestamp;
     wire  [15:0] channel_1_age_us;
     wire   [3:0] channel_1_cause;
-    wire   [9:0] channel_1_flags;
+    wire  [11:0] channel_1_flags;
     wire   [4:0] channel_1_crc_received;
     wire   [4:0] channel_1_crc_computed;
     wire  [12:0] channel_1_recovery_cycles;
     wire   [9:0] channel_1_delay_cycles;
     wire         channel_1_busy;
+    wire         channel_1_displaced;
+    wire         channel_1_over;
+    wire         channel_1_over_request;
+    wire   [3:0] channel_1_over_cause;
+    wire  [11:0] channel_1_over_flags;
+    wire  [47:0] channel_1_reply;
+    wire         channel_1_reply_good;
+    wire   [1:0] channel_1_info_active;
+    wire  [23:0] channel_1_info_1;
+    wire  [23:0] channel_1_info_2;
+    wire   [1:0] channel_1_info_came;
+    wire   [1:0] channel_1_info_good;
+    wire         channel_1_calibrated;
     wire         channel_1_sample_strobe;
-    wire         _unused_ok = &{1'b0, bank_channel_skip[7:2], bank_calibrate[7:2], channel_0_sample_strobe, channel_1_sample_strobe};
+    wire         _unused_ok = &{1'b0, bank_channel_skip[7:2], bank_calibrate[7:2], channel_0_displaced, channel_0_over, channel_0_over_request, channel_0_over_cause, channel_0_over_flags, channel_0_reply, channel_0_reply_good, channel_0_info_active, channel_0_info_1, channel_0_info_2, channel_0_info_came, channel_0_info_good, channel_0_calibrated, channel_0_sample_strobe, channel_1_displaced, channel_1_over, channel_1_over_request, channel_1_over_cause, channel_1_over_flags, channel_1_reply, channel_1_reply_good, channel_1_info_active, channel_1_info_1, channel_1_info_2, channel_1_info_came, channel_1_info_good, channel_1_calibrated, channel_1_sample_strobe};
 
     endat_timebase u_timebase (
         .clock(clk_i),
@@ -324,6 +350,12 @@ module s6_two_channel (
         .period_cycles(registers_0_period_cycles),
         .first_low_extra_cycles(registers_0_first_low_extra_cycles),
         .command(registers_0_command),
+        .request_command(6'd0),
+        .request_parameter(24'd0),
+        .request_ride(1'b0),
+        .request_own(1'b0),
+        .request_cancel(1'b0),
+        .hold_off(1'b0),
         .position_bits(registers_0_position_bits),
         .filter_cycles(registers_0_filter_cycles),
         .start_window_cycles(registers_0_start_window_cycles),
@@ -346,6 +378,19 @@ module s6_two_channel (
         .recovery_cycles(channel_0_recovery_cycles),
         .delay_cycles(channel_0_delay_cycles),
         .busy(channel_0_busy),
+        .displaced(channel_0_displaced),
+        .over(channel_0_over),
+        .over_request(channel_0_over_request),
+        .over_cause(channel_0_over_cause),
+        .over_flags(channel_0_over_flags),
+        .reply(channel_0_reply),
+        .reply_good(channel_0_reply_good),
+        .info_active(channel_0_info_active),
+        .info_1(channel_0_info_1),
+        .info_2(channel_0_info_2),
+        .info_came(channel_0_info_came),
+        .info_good(channel_0_info_good),
+        .calibrated(channel_0_calibrated),
         .sample_strobe(channel_0_sample_strobe)
     );
     endat_channel u_channel_1 (
@@ -359,6 +404,12 @@ module s6_two_channel (
         .period_cycles(registers_1_period_cycles),
         .first_low_extra_cycles(registers_1_first_low_extra_cycles),
         .command(registers_1_command),
+        .request_command(6'd0),
+        .request_parameter(24'd0),
+        .request_ride(1'b0),
+        .request_own(1'b0),
+        .request_cancel(1'b0),
+        .hold_off(1'b0),
         .position_bits(registers_1_position_bits),
         .filter_cycles(registers_1_filter_cycles),
         .start_window_cycles(registers_1_start_window_cycles),
@@ -381,6 +432,19 @@ module s6_two_channel (
         .recovery_cycles(channel_1_recovery_cycles),
         .delay_cycles(channel_1_delay_cycles),
         .busy(channel_1_busy),
+        .displaced(channel_1_displaced),
+        .over(channel_1_over),
+        .over_request(channel_1_over_request),
+        .over_cause(channel_1_over_cause),
+        .over_flags(channel_1_over_flags),
+        .reply(channel_1_reply),
+        .reply_good(channel_1_reply_good),
+        .info_active(channel_1_info_active),
+        .info_1(channel_1_info_1),
+        .info_2(channel_1_info_2),
+        .info_came(channel_1_info_came),
+        .info_good(channel_1_info_good),
+        .calibrated(channel_1_calibrated),
         .sample_strobe(channel_1_sample_strobe)
     );
 

@@ -228,7 +228,7 @@ module s6_two_channel_tb;
     localparam integer EVIDENCE_CRC_RECEIVED_LSB = 0, EVIDENCE_CRC_RECEIVED_BITS = 5;
     localparam integer EVIDENCE_CRC_COMPUTED_LSB = 5, EVIDENCE_CRC_COMPUTED_BITS = 5;
     localparam integer EVIDENCE_DELAY_CYCLES_LSB = 10, EVIDENCE_DELAY_CYCLES_BITS = 10;
-    localparam integer EVIDENCE_FLAGS_LSB = 20, EVIDENCE_FLAGS_BITS = 10;
+    localparam integer EVIDENCE_FLAGS_LSB = 20, EVIDENCE_FLAGS_BITS = 12;
     localparam integer AGE_RECOVERY_AGE_US_LSB = 0, AGE_RECOVERY_AGE_US_BITS = 16;
     localparam integer AGE_RECOVERY_RECOVERY_CYCLES_LSB = 16, AGE_RECOVERY_RECOVERY_CYCLES_BITS = 13;
     // Causes.

@@ -70,7 +70,7 @@ pub fn sweep() -> Vec<Case> {
     let mut cases = vec![];
     for rates in RATES {
         for cable_m in CABLES_M {
-            for command in ModeCommand::ALL {
+            for command in ModeCommand::POSITION {
                 cases.extend(POSITION_BITS.map(|bits| Case::new(rates, command, bits, cable_m)));
             }
         }
@@ -143,7 +143,7 @@ impl Story {
     /// The case.
     pub fn case(&self) -> Case {
         let rates = RATES[self.rates];
-        let command = ModeCommand::ALL[usize::from(self.f2)];
+        let command = ModeCommand::POSITION[usize::from(self.f2)];
         let mut case = Case::new(rates, command, self.position_bits, self.cable_m);
         case.title += ", random line and encoder";
         case.frames = 5;

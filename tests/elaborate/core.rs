@@ -3,8 +3,9 @@
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::load_preset;
 use endat_hdl::card::Card;
-use endat_hdl::channel::{Channel, FixedTimes};
+use endat_hdl::channel::{Channel, Features, FixedTimes};
 use endat_hdl::elaborate::elaborate;
+use endat_hdl::protocol::ModeCommand;
 use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
 use rust_hdl::prelude::Block;
@@ -30,26 +31,43 @@ fn wandering(lines: &[(&str, u64)], cycles: usize, seed: u64) -> Stimulus {
 
 #[test]
 fn a_channel_agrees() {
+    channel_agrees("channel", Features::default());
+}
+
+#[test]
+fn a_channel_with_all_features_agrees() {
+    channel_agrees("channel_all", Features::ALL);
+}
+
+fn channel_agrees(name: &str, features: Features) {
     let times = FixedTimes {
         calibration_period_cycles: 24,
         ready_low_cycles: 9,
         abort_us: 5,
+        park_cycles: 20,
+        parameter_timeout_us: 30,
     };
-    let mut block = Channel::new(times);
+    let mut block = Channel::with(times, features);
     block.connect_all();
     let design = elaborate(&block, "channel").unwrap();
     let mut kernel = kernel_engine!(block; clock;
         in reset, tick_us, timestamp, trigger, calibrate, data_i, period_cycles, first_low_extra_cycles, command,
-        position_bits, filter_cycles, start_window_cycles, start_timeout_us, recovery_limit_cycles;
+        position_bits, filter_cycles, start_window_cycles, start_timeout_us, recovery_limit_cycles,
+        request_command, request_parameter, request_ride, request_own, request_cancel, hold_off;
         out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
         first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles, busy,
-        sample_strobe);
+        sample_strobe, displaced, over, over_request, over_cause, over_flags, reply, reply_good, info_active, info_1, info_2,
+        info_came, info_good, calibrated);
     let lines = [
         ("tick_us", 2),
         ("trigger", 8),
         ("calibrate", 700),
         ("data_i", 40),
         ("reset", 3000),
+        ("request_ride", 90),
+        ("request_own", 200),
+        ("request_cancel", 900),
+        ("hold_off", 600),
     ];
     let mut stimulus = wandering(&lines, 12_000, 3);
     let fixed = [
@@ -62,21 +80,27 @@ fn a_channel_agrees() {
         ("start_timeout_us", 20),
         ("recovery_limit_cycles", 300),
         ("timestamp", 0),
+        ("request_command", 0),
+        ("request_parameter", 0x5C_A3C5),
     ];
     for (name, value) in fixed {
         stimulus.inputs.push(name.into());
         for (cycle, row) in stimulus.cycles.iter_mut().enumerate() {
-            row.push(if name == "timestamp" {
-                cycle as u128
-            } else {
-                value
+            row.push(match name {
+                "timestamp" => cycle as u128,
+                "request_command" => {
+                    let commands = ModeCommand::ALL;
+                    commands[cycle / 50 % commands.len()].code().into()
+                }
+                _ => value,
             });
         }
     }
     for row in stimulus.cycles.iter_mut() {
         row[4] &= row[1] & row[0]; // reset is rare and short
+        row[8] &= row[1];
     }
-    let recording = three_way("channel", &mut kernel, &design, &stimulus).unwrap();
+    let recording = three_way(name, &mut kernel, &design, &stimulus).unwrap();
     // The stimulus is worth something: frames end, in different ways.
     let results: u128 = recording.output("result_strobe").iter().sum();
     let causes: BTreeSet<u128> = recording.output("cause").into_iter().collect();

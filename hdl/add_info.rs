@@ -1,0 +1,151 @@
+//! Additional information: which of the two the encoder sends, and what they said.
+//!
+//! ```text
+//! supplement 001001 with 0x40..0x4E -> info 1 follows every position, 0x4F -> no more
+//!                        0x50..0x5E -> info 2, in front of info 1,    0x5F -> no more
+//! 101010 -> none
+//! one is missing -> only those that came    the answer is longer than expected -> both
+//! ```
+//!
+//! The last line finds the truth again after a reset, another plug or a request that the encoder refused: each frame that contradicts
+//! the record corrects it, the second one at the latest; bit I4 of an information tells which of the two it is.
+//!
+//! Ref: TI motor-control SDK, `endat_drv.c` (order, selection); HEIDENHAIN EnDat FAQ (end of selection).
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Record of selections and contents of one channel.
+#[derive(LogicBlock, Default)]
+pub struct AddInfo {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe: a frame begins.
+    pub start: Signal<In, Bit>,
+    /// The frame has F2, so additional information may follow.
+    pub has_f2: Signal<In, Bit>,
+    /// A supplement follows.
+    pub has_supplement: Signal<In, Bit>,
+    /// Mode command of the frame.
+    pub command: Signal<In, Bits<6>>,
+    /// MRS code that the frame sends.
+    pub mrs: Signal<In, Bits<8>>,
+    /// Strobe: an additional information has been taken.
+    pub info_done: Signal<In, Bit>,
+    /// Its CRC is right.
+    pub crc_ok: Signal<In, Bit>,
+    /// Its bits WRN, RM, Busy, I4..I0, 16 bits.
+    pub word: Signal<In, Bits<24>>,
+    /// Strobe: the frame has ended.
+    pub over: Signal<In, Bit>,
+    /// Raw flags of the frame, with `over`.
+    pub flags: Signal<In, Bits<12>>,
+    /// The encoder sends: bit 0 info 1, bit 1 info 2.
+    pub active: Signal<Out, Bits<2>>,
+    /// How many follow the position of this frame.
+    pub infos: Signal<Out, Bits<2>>,
+    /// Info 1 as it came last.
+    pub info_1: Signal<Out, Bits<24>>,
+    /// Info 2 as it came last.
+    pub info_2: Signal<Out, Bits<24>>,
+    /// The last frame brought: bit 0 info 1, bit 1 info 2.
+    pub came: Signal<Out, Bits<2>>,
+    /// The CRC of those that came is right.
+    pub good: Signal<Out, Bits<2>>,
+    selected: Reg<Bits<2>>,
+    first: Reg<Bits<24>>,
+    second: Reg<Bits<24>>,
+    seen: Reg<Bits<2>>,
+    right: Reg<Bits<2>>,
+    is_second: Signal<Local, Bit>,
+    is_sent: Signal<Local, Bit>,
+    is_selection: Signal<Local, Bit>,
+    is_off: Signal<Local, Bit>,
+}
+
+impl Logic for AddInfo {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, selected, first, second, seen, right);
+        self.selected.reset.next = self.reset.val();
+        self.first.reset.next = self.reset.val();
+        self.second.reset.next = self.reset.val();
+        self.seen.reset.next = self.reset.val();
+        self.right.reset.next = self.reset.val();
+
+        // Two come in their order. One alone says itself which it is, if it can be believed.
+        self.is_second.next = self.selected.q.val().get_bit(1);
+        if self.selected.q.val().all() & self.seen.q.val().get_bit(1) {
+            self.is_second.next = false;
+        }
+        if self.crc_ok.val() & !self.selected.q.val().all() {
+            self.is_second.next = self.word.val().get_bit(20);
+        }
+        if self.info_done.val() {
+            if self.is_second.val() {
+                self.second.d.next = self.word.val();
+                self.seen.d.next = self.seen.q.val() | 2;
+            } else {
+                self.first.d.next = self.word.val();
+                self.seen.d.next = self.seen.q.val() | 1;
+            }
+            if self.crc_ok.val() {
+                self.right.d.next = self.right.q.val() | 1;
+                if self.is_second.val() {
+                    self.right.d.next = self.right.q.val() | 2;
+                }
+            }
+        }
+        if self.start.val() {
+            self.seen.d.next = 0.into();
+            self.right.d.next = 0.into();
+        }
+
+        // Whatever gives a frame up before its end leaves the supplement unsent.
+        self.is_sent.next = !self.flags.val().get_bit(0)
+            & !self.flags.val().get_bit(1)
+            & !self.flags.val().get_bit(2)
+            & !self.flags.val().get_bit(9)
+            & !self.flags.val().get_bit(10)
+            & !self.flags.val().get_bit(11);
+        // 001001 with 010x xxxx.
+        self.is_selection.next = self.has_supplement.val()
+            & (self.command.val() == 9)
+            & (self.mrs.val().get_bits::<3>(5) == 2);
+        self.is_off.next = self.mrs.val().get_bits::<4>(0).all();
+        if self.over.val() {
+            if self.has_f2.val() & self.seen.q.val().any() & !self.selected.q.val().all() {
+                self.selected.d.next = self.seen.q.val();
+            }
+            if self.is_selection.val() & self.is_sent.val() {
+                if self.mrs.val().get_bit(4) {
+                    self.selected.d.next = self.selected.q.val().replace_bit(1, !self.is_off.val());
+                } else {
+                    self.selected.d.next = self.selected.q.val().replace_bit(0, !self.is_off.val());
+                }
+            }
+            if self.flags.val().get_bit(11) {
+                self.selected.d.next = self.seen.q.val();
+            }
+            if self.flags.val().get_bit(9) & self.has_f2.val() {
+                self.selected.d.next = 3.into();
+            }
+            // 101010, whatever became of its answer.
+            if self.command.val() == 42 {
+                self.selected.d.next = 0.into();
+            }
+        }
+        self.active.next = self.selected.q.val();
+        self.infos.next = 0.into();
+        if self.has_f2.val() {
+            self.infos.next = bit_cast::<2, 1>(self.selected.q.val().get_bits::<1>(0))
+                + bit_cast::<2, 1>(self.selected.q.val().get_bits::<1>(1));
+        }
+        self.info_1.next = self.first.q.val();
+        self.info_2.next = self.second.q.val();
+        self.came.next = self.seen.q.val();
+        self.good.next = self.right.q.val();
+    }
+}

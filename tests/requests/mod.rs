@@ -1,0 +1,4 @@
+//! All mode commands and additional information, as the channel speaks them, against the encoder and line model.
+
+mod every_command;
+mod rig;
