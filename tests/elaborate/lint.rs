@@ -1,13 +1,15 @@
 //! The emitted text under the tools that read it: not one warning.
 
-use super::zoo::{Everything, Machine, Store, ThereAndBack};
+use super::zoo::{Everything, Machine, Store, Tables, ThereAndBack};
 use crate::tools;
 use endat_gen::config::load_preset;
 use endat_gen::verilog::{print_files, Header};
 use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, FixedTimes};
 use endat_hdl::elaborate::{elaborate, Design};
+use endat_hdl::memory::Rom;
 use endat_hdl::reg::{Reg, SyncReg};
+use endat_sim::rng::Rng;
 use rust_hdl::prelude::*;
 use std::fs;
 
@@ -17,6 +19,7 @@ fn designs() -> Vec<Design> {
         (Box::new(Machine::new(5)), "machine"),
         (Box::new(Everything::new(3)), "everything"),
         (Box::new(Store::default()), "store"),
+        (Box::new(Tables::default()), "tables"),
         (Box::new(ThereAndBack::default()), "there_and_back"),
         (
             Box::new(Channel::new(FixedTimes::at(100_000_000))),
@@ -76,6 +79,54 @@ fn yosys_finds_neither_problems_nor_latches() {
         );
         let (good, text) = tools::run("yosys", &folder, &["-q", "-p", &script]);
         assert!(good && text.is_empty(), "{}: {text}", folder.display());
+    }
+}
+
+/// 512 words of 20 bits.
+#[derive(LogicBlock)]
+struct Program {
+    pub clock: Signal<In, Clock>,
+    pub at: Signal<In, Bits<9>>,
+    pub word: Signal<Out, Bits<20>>,
+    words: Rom<20, 9>,
+}
+
+impl Logic for Program {
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, words);
+        self.words.read_address.next = self.at.val();
+        self.word.next = self.words.read_data.val();
+    }
+}
+
+/// No family builds it from look-up tables.
+#[test]
+fn a_read_only_memory_becomes_block_ram() {
+    if !tools::require("yosys", "block RAM in the netlist") {
+        return;
+    }
+    let mut rng = Rng::new(9);
+    let words: Vec<u64> = (0..512).map(|_| rng.next_u64() >> 44).collect();
+    let mut block = Program {
+        clock: Default::default(),
+        at: Default::default(),
+        word: Default::default(),
+        words: Rom::new(&words),
+    };
+    block.connect_all();
+    let (folder, files) = write(&elaborate(&block, "program").unwrap(), "rom");
+    for (synth, ram, count) in [
+        ("synth_ice40", "SB_RAM40_4K*", 3),
+        ("synth_ecp5", "DP16KD", 1),
+        ("synth_xilinx -family xc6s -flatten", "RAMB*", 1),
+    ] {
+        let script = format!(
+            "read_verilog {}; {synth} -top program; select -assert-count {count} t:{ram}",
+            files.join(" ")
+        );
+        let (good, text) = tools::run("yosys", &folder, &["-q", "-p", &script]);
+        assert!(good, "{synth}, {}: {text}", folder.display());
     }
 }
 
