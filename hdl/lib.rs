@@ -32,6 +32,7 @@ pub mod receiver;
 pub mod reg;
 pub mod register_bank;
 pub mod regs;
+pub mod sequencer;
 pub mod snapshot;
 #[cfg(test)]
 mod testing;

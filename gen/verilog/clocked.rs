@@ -70,30 +70,56 @@ impl ModulePrinter<'_> {
 
     pub fn memory(&mut self, memory: &Memory) -> String {
         let name = |net: NetId| self.module.nets[net].name.clone();
-        let (clock, enable) = (name(memory.clock), name(memory.write_enable));
-        let (write_address, write_data) = (name(memory.write_address), name(memory.write_data));
-        let (read_address, read_data) = (name(memory.read_address), name(memory.read_data));
-        let counter = self.unique(&format!("{}_word", memory.name));
-        let (vector, words) = (vector(memory.width_bits), memory.words);
-        let zero = literal(0, memory.width_bits);
+        let (clock, read_data) = (name(memory.clock), name(memory.read_data));
+        let read_address = name(memory.read_address);
         let word = &memory.name;
+        let write = memory.write.map_or(String::new(), |port| {
+            let (enable, address, data) = (name(port.enable), name(port.address), name(port.data));
+            format!(
+                "        if ({enable}) begin
+            {word}[{address}] <= {data};
+        end
+"
+            )
+        });
+        let start: String = (memory.start.iter().enumerate())
+            .map(|(index, value)| {
+                let value = literal(*value, memory.width_bits);
+                format!("        {word}[{index}] = {value};\n")
+            })
+            .collect();
+        let (counter, zeros) = self.zero_words(memory);
+        let vector = vector(memory.width_bits);
         let docs = comment(&memory.docs, INDENT);
         format!(
             "\n{docs}    reg {vector} {word} [0:{last}];
-    integer {counter};
-    initial begin
-        for ({counter} = 0; {counter} < {words}; {counter} = {counter} + 1) begin
-            {word}[{counter}] = {zero};
-        end
-    end
+{counter}    initial begin
+{start}{zeros}    end
     always @(posedge {clock}) begin
-        if ({enable}) begin
-            {word}[{write_address}] <= {write_data};
-        end
-        {read_data} <= {word}[{read_address}];
+{write}        {read_data} <= {word}[{read_address}];
     end
 ",
-            last = words - 1
+            last = memory.words - 1
+        )
+    }
+
+    /// Declares a counter and fills the words that have no start value of their own.
+    fn zero_words(&mut self, memory: &Memory) -> (String, String) {
+        let first = memory.start.len();
+        if first == memory.words {
+            return Default::default();
+        }
+        let counter = self.unique(&format!("{}_word", memory.name));
+        let (word, words) = (&memory.name, memory.words);
+        let zero = literal(0, memory.width_bits);
+        (
+            format!("{INDENT}integer {counter};\n"),
+            format!(
+                "        for ({counter} = {first}; {counter} < {words}; {counter} = {counter} + 1) begin
+            {word}[{counter}] = {zero};
+        end
+"
+            ),
         )
     }
 }

@@ -7,7 +7,7 @@ use super::plan::{plan, Dependencies};
 use super::scope::{drop_replaced, Scope, Symbol};
 use super::tree::{AtomNode, BlockNode};
 use super::{docs, ElaborateError};
-use crate::memory::MEMORY_TIMING;
+use crate::memory::{MEMORY_TIMING, ROM_TIMING};
 use crate::reg::{REG_TIMING, SYNC_REG_TIMING};
 use rust_hdl::prelude::{clog2, AtomKind, TypeDescriptor, TypeKind, Verilog};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -36,7 +36,7 @@ struct Builder {
 /// What a child block is.
 enum Kind {
     Register { is_synchroniser: bool },
-    Memory,
+    Memory { is_read_only: bool },
     Block,
 }
 
@@ -46,8 +46,10 @@ fn kind(child: &BlockNode) -> Kind {
         Kind::Register {
             is_synchroniser: is(SYNC_REG_TIMING),
         }
-    } else if is(MEMORY_TIMING) {
-        Kind::Memory
+    } else if is(MEMORY_TIMING) || is(ROM_TIMING) {
+        Kind::Memory {
+            is_read_only: is(ROM_TIMING),
+        }
     } else {
         Kind::Block
     }
@@ -59,7 +61,7 @@ impl Builder {
             return Err(block.error(
                 "update",
                 "has no kernel that can be read",
-                "put #[hdl_gen] before update, and use Reg, SyncReg or Memory for state",
+                "put #[hdl_gen] before update, and use Reg, SyncReg, Memory or Rom for state",
             ));
         };
         let mut draft = self.draft(block)?;
@@ -69,7 +71,7 @@ impl Builder {
                 Kind::Register { is_synchroniser } => {
                     self.register(&mut draft, child, is_synchroniser)?
                 }
-                Kind::Memory => draft.memory(child)?,
+                Kind::Memory { is_read_only } => draft.memory(child, is_read_only)?,
                 Kind::Block => {
                     let id = self.block(child)?;
                     self.instance(&mut draft, child, id)?;

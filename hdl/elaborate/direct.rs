@@ -110,8 +110,8 @@ impl Draft<'_> {
         for register in &self.module.registers {
             used.extend(register.reset.iter().chain([&register.clock]));
         }
-        for memory in &mut self.module.memories {
-            used.extend(memory.inputs_mut().map(|net| *net));
+        for memory in &self.module.memories {
+            used.extend(memory.inputs());
         }
         for (net, mut value) in sources {
             if used.contains(&net) {

@@ -25,6 +25,7 @@ pub const SOURCES: &[&str] = &[
     include_str!("../receiver.rs"),
     include_str!("../reg.rs"),
     include_str!("../register_bank.rs"),
+    include_str!("../sequencer.rs"),
     include_str!("../snapshot.rs"),
     include_str!("../timebase.rs"),
     include_str!("../transaction.rs"),

@@ -67,19 +67,20 @@ impl Draft<'_> {
         }
     }
 
-    pub(super) fn memory(&mut self, child: &BlockNode) -> Result<()> {
+    pub(super) fn memory(&mut self, child: &BlockNode, is_read_only: bool) -> Result<()> {
         let name = verilog_name(&child.name);
-        let mut nets = vec![];
-        for (port, direction) in [
+        let ports = [
             ("clock", Direction::Input),
             ("read_address", Direction::Input),
             ("read_data", Direction::Output),
             ("write_enable", Direction::Input),
             ("write_address", Direction::Input),
             ("write_data", Direction::Input),
-        ] {
+        ];
+        let mut nets = vec![];
+        for (port, direction) in ports.into_iter().take(if is_read_only { 3 } else { 6 }) {
             let Some(atom) = child.atom(port) else {
-                return Err(child.error(port, "is missing from a memory", "use Memory"));
+                return Err(child.error(port, "is missing from a memory", "use Memory or Rom"));
             };
             let free_name = self.free_name(&format!("{name}_{port}"));
             let net = self.net(free_name, atom.width_bits, None, vec![]);
@@ -101,9 +102,15 @@ impl Draft<'_> {
             clock: nets[0],
             read_address: nets[1],
             read_data: nets[2],
-            write_enable: nets[3],
-            write_address: nets[4],
-            write_data: nets[5],
+            write: match nets[3..] {
+                [enable, address, data] => Some(WritePort {
+                    enable,
+                    address,
+                    data,
+                }),
+                _ => None,
+            },
+            start: child.constants().map(|atom| atom.value).collect(),
             docs: self.docs(&child.name),
         });
         Ok(())

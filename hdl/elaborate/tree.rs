@@ -61,6 +61,12 @@ impl BlockNode {
         self.atoms.iter().find(|a| a.key == key)
     }
 
+    /// Its constants, in order.
+    pub fn constants(&self) -> impl Iterator<Item = &AtomNode> {
+        let is_constant = |a: &&AtomNode| matches!(a.kind, AtomKind::Constant);
+        self.atoms.iter().filter(is_constant)
+    }
+
     fn push_field(&mut self, name: &str) {
         let base = name.split('$').next().unwrap_or(name);
         if self.fields.last().is_none_or(|last| last != base) {

@@ -4,19 +4,6 @@ use super::design::*;
 use super::plan::for_each_read;
 use std::collections::{BTreeMap, BTreeSet};
 
-impl Memory {
-    pub(super) fn inputs_mut(&mut self) -> impl Iterator<Item = &mut NetId> {
-        [
-            &mut self.clock,
-            &mut self.read_address,
-            &mut self.write_enable,
-            &mut self.write_address,
-            &mut self.write_data,
-        ]
-        .into_iter()
-    }
-}
-
 impl Module {
     /// The bits of each net that something reads: a statement, a register, a memory, an instance.
     pub fn read_bits(&self) -> BTreeMap<NetId, u128> {
@@ -35,9 +22,7 @@ impl Module {
             }
         }
         for memory in &self.memories {
-            for net in memory.clone().inputs_mut() {
-                note(*net, u128::MAX);
-            }
+            memory.inputs().for_each(|net| note(net, u128::MAX));
         }
         for instance in &self.instances {
             let inputs = instance

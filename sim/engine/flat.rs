@@ -2,7 +2,7 @@
 
 use super::{EngineError, Port};
 use endat_hdl::elaborate::{
-    Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Process, Statement,
+    Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Process, Statement, WritePort,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,10 +20,23 @@ pub(super) struct FlatRegister {
 pub(super) struct FlatMemory {
     pub read_address: usize,
     pub read_data: usize,
-    pub write_enable: usize,
-    pub write_address: usize,
-    pub write_data: usize,
-    pub words: usize,
+    pub write: Option<WritePort>,
+    /// Every word at power-up.
+    pub start: Vec<u128>,
+}
+
+impl FlatMemory {
+    /// The nets that it reads.
+    pub fn inputs(&self) -> impl Iterator<Item = usize> {
+        let write = self.write.map(WritePort::nets);
+        std::iter::once(self.read_address).chain(write.into_iter().flatten())
+    }
+
+    /// The nets that it reads, to be changed.
+    pub fn inputs_mut(&mut self) -> impl Iterator<Item = &mut usize> {
+        let write = self.write.as_mut().map(WritePort::nets_mut);
+        std::iter::once(&mut self.read_address).chain(write.into_iter().flatten())
+    }
 }
 
 /// A net.
@@ -165,14 +178,14 @@ impl Builder<'_> {
         for memory in &module.memories {
             self.clocks
                 .push((nets[memory.read_data], nets[memory.clock]));
-            self.memories.push(FlatMemory {
-                read_address: nets[memory.read_address],
+            let mut flat = FlatMemory {
+                read_address: memory.read_address,
                 read_data: nets[memory.read_data],
-                write_enable: nets[memory.write_enable],
-                write_address: nets[memory.write_address],
-                write_data: nets[memory.write_data],
-                words: memory.words,
-            });
+                write: memory.write,
+                start: memory.start_words(),
+            };
+            flat.inputs_mut().for_each(|net| *net = nets[*net]);
+            self.memories.push(flat);
         }
         for instance in &module.instances {
             let child = &self.design.modules[instance.module];

@@ -58,7 +58,7 @@ impl Interpreter {
             values[register.q] = register.start;
         }
         let memory = |nets: FlatMemory| Memory {
-            words: vec![0; nets.words],
+            words: nets.start.clone(),
             nets,
         };
         Ok(Self {
@@ -129,8 +129,8 @@ impl Engine for Interpreter {
         let mut read = vec![];
         for Memory { nets, words } in &mut self.memories {
             read.push((nets.read_data, words[values[nets.read_address] as usize]));
-            if values[nets.write_enable] != 0 {
-                words[values[nets.write_address] as usize] = values[nets.write_data];
+            if let Some(write) = nets.write.filter(|write| values[write.enable] != 0) {
+                words[values[write.address] as usize] = values[write.data];
             }
         }
         for (next, register) in self.next.iter().zip(&*self.registers) {

@@ -1,11 +1,13 @@
 //! The real core, three ways, under stimulus that wanders through as many states as it can without an encoder.
 
+use super::zoo::random_stimulus;
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::load_preset;
 use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, Features, FixedTimes};
 use endat_hdl::elaborate::elaborate;
 use endat_hdl::protocol::ModeCommand;
+use endat_hdl::sequencer::Sequencer;
 use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
 use rust_hdl::prelude::Block;
@@ -27,6 +29,17 @@ fn wandering(lines: &[(&str, u64)], cycles: usize, seed: u64) -> Stimulus {
         inputs: lines.iter().map(|(name, _)| name.to_string()).collect(),
         cycles: (0..cycles).map(&mut cycle).collect(),
     }
+}
+
+/// 512 words for a sequencer, few of which go back to 0.
+pub fn random_program(seed: u64) -> Vec<u32> {
+    let mut rng = Rng::new(seed);
+    let mut word = || match (rng.next_u64() & 0xfffff) as u32 {
+        word if (5..8).contains(&(word >> 16)) => word & 0x2ffff,
+        word if word >> 16 == 15 => word % 6 | 0xf0000,
+        word => word,
+    };
+    (0..512).map(|_| word()).collect()
 }
 
 #[test]
@@ -135,4 +148,35 @@ fn the_card_agrees() {
         .filter(|w| w[0] != w[1])
         .count();
     assert!(edges > 20, "{edges} clock edges");
+}
+
+/// A random program, one word in eight of which goes to another place, with a host that reads and writes.
+#[test]
+fn a_sequencer_agrees() {
+    let mut block = Sequencer::new(&random_program(4));
+    block.connect_all();
+    let design = elaborate(&block, "sequencer").unwrap();
+    let memories = &design.top().memories;
+    let given: Vec<usize> = memories.iter().map(|m| m.start.len()).collect();
+    assert_eq!(given, [512, 0, 0]);
+    let mut kernel = kernel_engine!(block; clock;
+        in reset, restart, port_in, host_address, host_read, host_write, host_half, host_data;
+        out port_address, port_out, port_write, host_word);
+    let mut stimulus = random_stimulus(&kernel, 4000, 12);
+    for (name, period_cycles) in [
+        ("reset", 1500),
+        ("restart", 97),
+        ("host_read", 10),
+        ("host_write", 13),
+    ] {
+        let at = stimulus.inputs.iter().position(|n| n == name).unwrap();
+        for (cycle, row) in stimulus.cycles.iter_mut().enumerate() {
+            row[at] = (cycle % period_cycles == 0).into();
+        }
+    }
+    let seen = three_way("sequencer", &mut kernel, &design, &stimulus).unwrap();
+    let distinct = |name: &str| seen.output(name).into_iter().collect::<BTreeSet<_>>().len();
+    assert!(distinct("port_out") > 300, "{}", distinct("port_out"));
+    assert!(distinct("host_word") > 50, "{}", distinct("host_word"));
+    assert_eq!(distinct("port_write"), 2);
 }

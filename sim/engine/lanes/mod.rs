@@ -10,7 +10,7 @@ use super::form::{Form, Keep, Place};
 use super::{EngineError, Instruments, Port, PortId};
 use bits::BitSegment;
 use cranelift_codegen::ir::types::{I64, I64X2};
-use endat_hdl::elaborate::Design;
+use endat_hdl::elaborate::{Design, WritePort};
 use std::sync::Arc;
 
 /// Words that hold one bit of all lanes.
@@ -47,7 +47,7 @@ pub struct Lanes {
     fallback: Option<Arc<str>>,
     words: usize,
     state: Vec<u64>,
-    /// For each memory its words, lane by lane.
+    /// For each memory its words, lane by lane; once for all lanes if it is read-only.
     memories: Vec<Vec<u128>>,
     is_settled: bool,
 }
@@ -121,7 +121,7 @@ impl Lanes {
             memories: form
                 .memories
                 .iter()
-                .map(|m| vec![0; m.words * lanes])
+                .map(|m| m.start.repeat(if m.write.is_some() { lanes } else { 1 }))
                 .collect(),
             form: form.into(),
             layout: layout.into(),
@@ -292,12 +292,17 @@ impl Lanes {
             let form = self.form.clone();
             let nets = &form.memories[index];
             for lane in 0..self.lanes() {
-                let first = lane * nets.words;
+                let first = if nets.write.is_some() {
+                    lane * nets.start.len()
+                } else {
+                    0
+                };
                 let read =
                     self.memories[index][first + self.load(nets.read_address, lane) as usize];
-                if self.load(nets.write_enable, lane) != 0 {
-                    let address = first + self.load(nets.write_address, lane) as usize;
-                    self.memories[index][address] = self.load(nets.write_data, lane);
+                let is_written = |write: &WritePort| self.load(write.enable, lane) != 0;
+                if let Some(write) = nets.write.filter(is_written) {
+                    let address = first + self.load(write.address, lane) as usize;
+                    self.memories[index][address] = self.load(write.data, lane);
                     // The next cycle may read what was written.
                     again.push((word, bit));
                 }

@@ -1,0 +1,487 @@
+//! Sequencer: a small 16-bit accumulator machine that runs a program from block RAM, and shares its data with a host.
+//!
+//! ```text
+//!            +------ counter <- next, target, link, A           port_in -----\
+//!            v                                                  imm, A, link --> value --\
+//!         program --- imm + X --> low, high (RAM) ----------------------------------> (+) -> A -> port_out
+//!                                  ^         |                                        ^   |
+//!  host_address, host_data --------+         +--> host_word                           A   +-> C
+//!
+//! cycle       |  Fetch  | Operand | Execute |  Fetch  | ...
+//! program      counter-> word held
+//! RAM, read      host     operand    host      host
+//! RAM, write     host      host    ST only     host
+//! ```
+//!
+//! **Each instruction takes three cycles.** In the first the program memory is read, in the second the operand, at the end of the third
+//! all that the instruction does is done. Whatever needs no operand from RAM is computed in the second cycle already (`value`), so the third is one
+//! addition: of A or 0, and of the RAM's word or `value`.
+//!
+//! **The host** reads and writes in cycles in which the machine does not use that side of the RAM, so neither ever waits for the other. RAM
+//! is 128 words of 32 bits for the host, 256 of 16 bits for the machine: word 2n is the low half, word 2n + 1 the high half of word n.
+//!
+//! **Instructions** are `op` (bits 19..16) and `imm` (bits 15..0). An operand `m` is the RAM word at `imm[7:0]`, plus X if
+//! `imm[8]` (wrapping); with `imm[9]` the carry C takes part.
+//!
+//! | op | name | effect |
+//! |---|---|---|
+//! | 0 | LDI | A = imm |
+//! | 1 | LD m | A = m |
+//! | 2 | ST m | m = A |
+//! | 3 | ADD m | A = A + m (+ C), C = carry |
+//! | 4 | SUB m | A = A - m (- C), C = borrow |
+//! | 8 | ADDI | A = A + imm, C = carry |
+//! | 9 | ANDI | A = A and imm |
+//! | 10 | XORI | A = A xor imm |
+//! | 11 | IN | A = port `imm[4:0]` |
+//! | 12 | OUT | port `imm[4:0]` = A |
+//! | 13 | J | to `imm[8:0]` if `imm[15:13]` is 0 or: 1 and A = 0, 2 and A != 0, 3 and C, 4 and not C, 5 and `A[15]` |
+//! | 14 | CALL | link = address of the next one, to `imm[8:0]` |
+//! | 15 | `imm[3:0]` | 0 RET: to link; 1 TAX: X = `A[7:0]`; 2 LINK: A = link; 3 JMPA: to `A[8:0]`; 4 SHR: A = A / 2, C = `A[0]`; 5 SWAP: the bytes of A change places |
+//!
+//! Everything else goes to 0 and does nothing more, so a program that runs astray starts again. After `0x1ff` comes 0.
+
+pub mod assembler;
+#[cfg(test)]
+mod model;
+#[cfg(test)]
+mod tests;
+
+use crate::memory::{Memory, Rom};
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Words of a program.
+pub const PROGRAM_WORDS: usize = 512;
+/// Words of RAM, as the machine counts them: 16 bits each.
+pub const RAM_WORDS: usize = 256;
+/// Ports in each direction.
+pub const PORTS: usize = 32;
+/// Cycles of an instruction.
+pub const INSTRUCTION_CYCLES: u64 = 3;
+/// J 0: what stands behind the end of a program.
+const START_AGAIN: u64 = 13 << 16;
+
+/// What the machine is doing.
+#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+pub enum Cycle {
+    /// The program memory is read.
+    Fetch,
+    /// The instruction is there; its operand is read.
+    Operand,
+    /// Its effects are stored.
+    Execute,
+}
+
+/// Accumulator machine of 16 bits with its program and 128 words of 32 bits that it shares with a host.
+#[derive(LogicBlock)]
+pub struct Sequencer {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset: A, X, C and link become 0, the program begins at 0. RAM stays as it is.
+    pub reset: Signal<In, Bit>,
+    /// Strobe: the instruction at 0 begins in the next cycle. One that is in its third cycle is still done, an earlier one is
+    /// not. A, X, C and link stay as they are.
+    pub restart: Signal<In, Bit>,
+    /// Port of an IN or OUT, throughout its second and third cycle.
+    pub port_address: Signal<Out, Bits<5>>,
+    /// What the port at `port_address` has to say, in the same cycle; an IN takes it in its second cycle.
+    pub port_in: Signal<In, Bits<16>>,
+    /// A: what an OUT writes.
+    pub port_out: Signal<Out, Bits<16>>,
+    /// High for one cycle: `port_out` is for the port at `port_address`.
+    pub port_write: Signal<Out, Bit>,
+    /// Word of 32 bits that the host reads or writes; stays put from one strobe to the next, 8 cycles at least.
+    pub host_address: Signal<In, Bits<7>>,
+    /// Strobe: read the word into `host_word`.
+    pub host_read: Signal<In, Bit>,
+    /// The word as it was at one moment from `host_read` on; it is here from the third cycle after that strobe at the latest, until
+    /// the next one.
+    pub host_word: Signal<Out, Bits<32>>,
+    /// Strobe: write one half of the word.
+    pub host_write: Signal<In, Bit>,
+    /// The half to write: 1 = high. Stays put like `host_address`.
+    pub host_half: Signal<In, Bit>,
+    /// What to write. Stays put like `host_address`.
+    pub host_data: Signal<In, Bits<16>>,
+    /// The program.
+    program: Rom<20, 9>,
+    /// Even words of RAM.
+    low: Memory<16, 7>,
+    /// Odd words of RAM.
+    high: Memory<16, 7>,
+    cycle: Reg<Cycle>,
+    counter: Reg<Bits<9>>,
+    link: Reg<Bits<9>>,
+    accumulator: Reg<Bits<16>>,
+    is_zero: Reg<Bit>,
+    carry: Reg<Bit>,
+    index: Reg<Bits<8>>,
+    /// RAM word of the operand.
+    address: Reg<Bits<8>>,
+    /// What is added if no word of RAM is.
+    value: Reg<Bits<16>>,
+    takes_memory: Reg<Bit>,
+    adds: Reg<Bit>,
+    inverts: Reg<Bit>,
+    carry_in: Reg<Bit>,
+    shifted_out: Reg<Bit>,
+    loads: Reg<Bit>,
+    loads_carry: Reg<Bit>,
+    stores: Reg<Bit>,
+    writes_port: Reg<Bit>,
+    read_pending: Reg<Bit>,
+    write_pending: Reg<Bit>,
+    /// The RAM was read for the host in the last cycle.
+    is_for_host: Reg<Bit>,
+    word: Reg<Bits<32>>,
+    op: Signal<Local, Bits<4>>,
+    choice: Signal<Local, Bits<2>>,
+    special: Signal<Local, Bits<4>>,
+    immediate: Signal<Local, Bits<16>>,
+    is_execute: Signal<Local, Bit>,
+    operand_address: Signal<Local, Bits<8>>,
+    read_word: Signal<Local, Bits<7>>,
+    write_word: Signal<Local, Bits<7>>,
+    write_half: Signal<Local, Bit>,
+    is_written: Signal<Local, Bit>,
+    written: Signal<Local, Bits<16>>,
+    logic: Signal<Local, Bits<16>>,
+    takes_carry: Signal<Local, Bit>,
+    base: Signal<Local, Bits<16>>,
+    operand: Signal<Local, Bits<16>>,
+    sum: Signal<Local, Bits<18>>,
+    following: Signal<Local, Bits<9>>,
+    is_taken: Signal<Local, Bit>,
+}
+
+impl Sequencer {
+    /// A machine that runs `program`, from its first word on; see [`assembler`].
+    ///
+    /// # Panics
+    /// If it has more than [`PROGRAM_WORDS`] words, or one has more than 20 bits.
+    pub fn new(program: &[u32]) -> Self {
+        let mut words: Vec<u64> = program.iter().copied().map(u64::from).collect();
+        words.resize(words.len().max(PROGRAM_WORDS), START_AGAIN);
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            restart: Default::default(),
+            port_address: Default::default(),
+            port_in: Default::default(),
+            port_out: Default::default(),
+            port_write: Default::default(),
+            host_address: Default::default(),
+            host_read: Default::default(),
+            host_word: Default::default(),
+            host_write: Default::default(),
+            host_half: Default::default(),
+            host_data: Default::default(),
+            program: Rom::new(&words),
+            low: Default::default(),
+            high: Default::default(),
+            cycle: Reg::new(Cycle::Fetch),
+            counter: Default::default(),
+            link: Default::default(),
+            accumulator: Default::default(),
+            is_zero: Default::default(),
+            carry: Default::default(),
+            index: Default::default(),
+            address: Default::default(),
+            value: Default::default(),
+            takes_memory: Default::default(),
+            adds: Default::default(),
+            inverts: Default::default(),
+            carry_in: Default::default(),
+            shifted_out: Default::default(),
+            loads: Default::default(),
+            loads_carry: Default::default(),
+            stores: Default::default(),
+            writes_port: Default::default(),
+            read_pending: Default::default(),
+            write_pending: Default::default(),
+            is_for_host: Default::default(),
+            word: Default::default(),
+            op: Default::default(),
+            choice: Default::default(),
+            special: Default::default(),
+            immediate: Default::default(),
+            is_execute: Default::default(),
+            operand_address: Default::default(),
+            read_word: Default::default(),
+            write_word: Default::default(),
+            write_half: Default::default(),
+            is_written: Default::default(),
+            written: Default::default(),
+            logic: Default::default(),
+            takes_carry: Default::default(),
+            base: Default::default(),
+            operand: Default::default(),
+            sum: Default::default(),
+            following: Default::default(),
+            is_taken: Default::default(),
+        }
+    }
+}
+
+impl Logic for Sequencer {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self,
+            clock,
+            cycle,
+            counter,
+            link,
+            accumulator,
+            is_zero,
+            carry,
+            index,
+            address,
+            value,
+            takes_memory,
+            adds,
+            inverts,
+            carry_in,
+            shifted_out,
+            loads,
+            loads_carry,
+            stores,
+            writes_port,
+            read_pending,
+            write_pending,
+            is_for_host,
+            word
+        );
+        clock!(self, clock, program, low, high);
+        self.cycle.reset.next = self.reset.val() | self.restart.val();
+        self.counter.reset.next = self.reset.val() | self.restart.val();
+        self.link.reset.next = self.reset.val();
+        self.accumulator.reset.next = self.reset.val();
+        self.is_zero.reset.next = self.reset.val();
+        self.carry.reset.next = self.reset.val();
+        self.index.reset.next = self.reset.val();
+        self.address.reset.next = self.reset.val();
+        self.value.reset.next = self.reset.val();
+        self.takes_memory.reset.next = self.reset.val();
+        self.adds.reset.next = self.reset.val();
+        self.inverts.reset.next = self.reset.val();
+        self.carry_in.reset.next = self.reset.val();
+        self.shifted_out.reset.next = self.reset.val();
+        self.loads.reset.next = self.reset.val();
+        self.loads_carry.reset.next = self.reset.val();
+        self.stores.reset.next = self.reset.val();
+        self.writes_port.reset.next = self.reset.val();
+        self.read_pending.reset.next = self.reset.val();
+        self.write_pending.reset.next = self.reset.val();
+        self.is_for_host.reset.next = self.reset.val();
+        self.word.reset.next = self.reset.val();
+
+        self.cycle.d.next = Cycle::Fetch;
+        if self.cycle.q.val() == Cycle::Fetch {
+            self.cycle.d.next = Cycle::Operand;
+        }
+        if self.cycle.q.val() == Cycle::Operand {
+            self.cycle.d.next = Cycle::Execute;
+        }
+        self.is_execute.next = self.cycle.q.val() == Cycle::Execute;
+
+        // The counter moves at the end of the third cycle only, so the word stands throughout the second and third.
+        self.program.read_address.next = self.counter.q.val();
+        self.op.next = self.program.read_data.val().get_bits::<4>(16);
+        self.choice.next = self.program.read_data.val().get_bits::<2>(16);
+        self.special.next = self.program.read_data.val().get_bits::<4>(0);
+        self.immediate.next = self.program.read_data.val().get_bits::<16>(0);
+        self.port_address.next = self.program.read_data.val().get_bits::<5>(0);
+
+        // Second cycle: what is computed here counts in the third.
+        self.operand_address.next = self.program.read_data.val().get_bits::<8>(0);
+        if self.immediate.val().get_bit(8) {
+            self.operand_address.next =
+                self.program.read_data.val().get_bits::<8>(0) + self.index.q.val();
+        }
+        self.address.d.next = self.operand_address.val();
+        // Among the instructions that take `value`, two bits tell these four apart.
+        match self.choice.val().index() {
+            1 => self.logic.next = self.accumulator.q.val() & self.immediate.val(),
+            2 => self.logic.next = self.accumulator.q.val() ^ self.immediate.val(),
+            3 => self.logic.next = bit_cast::<16, 9>(self.link.q.val()),
+            _ => self.logic.next = self.immediate.val(),
+        }
+        self.value.d.next = self.logic.val();
+        self.takes_memory.d.next = false;
+        self.adds.d.next = false;
+        self.inverts.d.next = false;
+        self.carry_in.d.next = false;
+        self.shifted_out.d.next = false;
+        self.loads.d.next = false;
+        self.loads_carry.d.next = false;
+        self.stores.d.next = false;
+        self.writes_port.d.next = false;
+        self.takes_carry.next = self.immediate.val().get_bit(9) & self.carry.q.val();
+        match self.op.val().index() {
+            0 => self.loads.d.next = true,
+            1 => {
+                self.loads.d.next = true;
+                self.takes_memory.d.next = true;
+            }
+            2 => self.stores.d.next = true,
+            3 => {
+                self.loads.d.next = true;
+                self.loads_carry.d.next = true;
+                self.takes_memory.d.next = true;
+                self.adds.d.next = true;
+                self.carry_in.d.next = self.takes_carry.val();
+            }
+            4 => {
+                self.loads.d.next = true;
+                self.loads_carry.d.next = true;
+                self.takes_memory.d.next = true;
+                self.adds.d.next = true;
+                self.inverts.d.next = true;
+                self.carry_in.d.next = !self.takes_carry.val();
+            }
+            8 => {
+                self.loads.d.next = true;
+                self.loads_carry.d.next = true;
+                self.adds.d.next = true;
+            }
+            9 => self.loads.d.next = true,
+            10 => self.loads.d.next = true,
+            11 => {
+                self.loads.d.next = true;
+                self.value.d.next = self.port_in.val();
+            }
+            12 => self.writes_port.d.next = true,
+            15 => {
+                if self.special.val() == 2 {
+                    self.loads.d.next = true;
+                }
+                if self.special.val() == 4 {
+                    self.loads.d.next = true;
+                    self.loads_carry.d.next = true;
+                    self.shifted_out.d.next = self.accumulator.q.val().get_bit(0);
+                }
+                if self.special.val() == 5 {
+                    self.loads.d.next = true;
+                }
+                // What does not load A may have any value.
+                if self.special.val().get_bit(2) {
+                    self.value.d.next = self.accumulator.q.val() >> 1;
+                    if self.special.val().get_bit(0) {
+                        self.value.d.next = (self.accumulator.q.val() << 8)
+                            | bit_cast::<16, 8>(self.accumulator.q.val().get_bits::<8>(8));
+                    }
+                }
+            }
+            _ => {}
+        }
+
+        // Third cycle: the sum. Below its lowest bit stands a place where the carry comes in.
+        self.base.next = 0.into();
+        if self.adds.q.val() {
+            self.base.next = self.accumulator.q.val();
+        }
+        self.operand.next = self.value.q.val();
+        if self.takes_memory.q.val() {
+            self.operand.next = self.low.read_data.val();
+            if self.address.q.val().get_bit(0) {
+                self.operand.next = self.high.read_data.val();
+            }
+        }
+        if self.inverts.q.val() {
+            self.operand.next = !self.operand.val();
+        }
+        self.sum.next = ((bit_cast::<18, 16>(self.operand.val()) << 1)
+            | bit_cast::<18, 1>(self.carry_in.q.val().into()))
+            + ((bit_cast::<18, 16>(self.base.val()) << 1) | 1);
+        self.following.next = self.counter.q.val() + 1;
+        self.is_zero.d.next = !self.accumulator.q.val().any();
+        match self.program.read_data.val().get_bits::<3>(13).index() {
+            0 => self.is_taken.next = true,
+            1 => self.is_taken.next = self.is_zero.q.val(),
+            2 => self.is_taken.next = !self.is_zero.q.val(),
+            3 => self.is_taken.next = self.carry.q.val(),
+            4 => self.is_taken.next = !self.carry.q.val(),
+            5 => self.is_taken.next = self.accumulator.q.val().get_bit(15),
+            _ => self.is_taken.next = false,
+        }
+        if self.is_execute.val() {
+            if self.loads.q.val() {
+                self.accumulator.d.next = self.sum.val().get_bits::<16>(1);
+            }
+            if self.loads_carry.q.val() {
+                self.carry.d.next =
+                    (self.sum.val().get_bit(17) ^ self.inverts.q.val()) | self.shifted_out.q.val();
+            }
+            self.counter.d.next = self.following.val();
+            match self.op.val().index() {
+                5 => self.counter.d.next = 0.into(),
+                6 => self.counter.d.next = 0.into(),
+                7 => self.counter.d.next = 0.into(),
+                13 => {
+                    if self.is_taken.val() {
+                        self.counter.d.next = self.program.read_data.val().get_bits::<9>(0);
+                    }
+                }
+                14 => {
+                    self.link.d.next = self.following.val();
+                    self.counter.d.next = self.program.read_data.val().get_bits::<9>(0);
+                }
+                15 => match self.special.val().index() {
+                    0 => self.counter.d.next = self.link.q.val(),
+                    1 => self.index.d.next = self.accumulator.q.val().get_bits::<8>(0),
+                    2 => {}
+                    3 => self.counter.d.next = self.accumulator.q.val().get_bits::<9>(0),
+                    4 => {}
+                    5 => {}
+                    _ => self.counter.d.next = 0.into(),
+                },
+                _ => {}
+            }
+        }
+        self.port_out.next = self.accumulator.q.val();
+        self.port_write.next = self.is_execute.val() & self.writes_port.q.val();
+
+        // The RAM is read for the machine in its second cycle and written for it in its third, otherwise for the host.
+        self.read_word.next = self.host_address.val();
+        self.is_for_host.d.next = true;
+        if self.cycle.q.val() == Cycle::Operand {
+            self.read_word.next = self.operand_address.val().get_bits::<7>(1);
+            self.is_for_host.d.next = false;
+        }
+        self.low.read_address.next = self.read_word.val();
+        self.high.read_address.next = self.read_word.val();
+        if self.read_pending.q.val() & self.is_for_host.q.val() {
+            self.read_pending.d.next = false;
+            self.word.d.next = (bit_cast::<32, 16>(self.high.read_data.val()) << 16)
+                | bit_cast::<32, 16>(self.low.read_data.val());
+        }
+        if self.host_read.val() {
+            self.read_pending.d.next = true;
+        }
+        self.host_word.next = self.word.q.val();
+
+        self.write_word.next = self.host_address.val();
+        self.write_half.next = self.host_half.val();
+        self.written.next = self.host_data.val();
+        self.is_written.next = self.write_pending.q.val();
+        if self.is_execute.val() {
+            self.write_word.next = self.address.q.val().get_bits::<7>(1);
+            self.write_half.next = self.address.q.val().get_bit(0);
+            self.written.next = self.accumulator.q.val();
+            self.is_written.next = self.stores.q.val();
+        } else {
+            self.write_pending.d.next = false;
+        }
+        if self.host_write.val() {
+            self.write_pending.d.next = true;
+        }
+        self.low.write_address.next = self.write_word.val();
+        self.high.write_address.next = self.write_word.val();
+        self.low.write_data.next = self.written.val();
+        self.high.write_data.next = self.written.val();
+        self.low.write_enable.next = self.is_written.val() & !self.write_half.val();
+        self.high.write_enable.next = self.is_written.val() & self.write_half.val();
+    }
+}
