@@ -58,13 +58,22 @@ const CYCLES: usize = 4;
 /// A cycle may be this much longer than the limit.
 const OVER_MAX: Time = US;
 
-/// A cycle time that somebody has published.
+/// A time that somebody has published.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Published {
     /// Who.
     pub who: &'static str,
-    /// Time from one position to the next.
-    pub cycle_us: f64,
+    /// Their time.
+    pub us: f64,
+    /// It is that of the running clock; else the one from position to position.
+    pub is_frame: bool,
+}
+
+impl Published {
+    fn text(self) -> String {
+        let what = if self.is_frame { "frame" } else { "cycle" };
+        format!("{what} {} us, {}", self.us, self.who)
+    }
 }
 
 /// What is measured in a row.
@@ -84,7 +93,8 @@ const PUBLISHED: [Subject; 4] = [
         rate: (2 * MHZ, 100 * MHZ),
         published: Some(Published {
             who: "Kim et al.",
-            cycle_us: 35.0,
+            us: 35.0,
+            is_frame: true,
         }),
     },
     Subject {
@@ -93,7 +103,8 @@ const PUBLISHED: [Subject; 4] = [
         rate: (3_125_000, 100 * MHZ),
         published: Some(Published {
             who: "Liu et al.",
-            cycle_us: 100.0,
+            us: 100.0,
+            is_frame: false,
         }),
     },
     Subject {
@@ -102,7 +113,8 @@ const PUBLISHED: [Subject; 4] = [
         rate: (8 * MHZ, 128 * MHZ),
         published: Some(Published {
             who: "TI",
-            cycle_us: 62.5,
+            us: 62.5,
+            is_frame: false,
         }),
     },
     // Neither width nor clock is told.
@@ -111,8 +123,9 @@ const PUBLISHED: [Subject; 4] = [
         position_bits: 25,
         rate: (2 * MHZ, 128 * MHZ),
         published: Some(Published {
-            who: "FPGA receiver",
-            cycle_us: 40.0,
+            who: "receiver with GUI",
+            us: 40.0,
+            is_frame: false,
         }),
     },
 ];
@@ -210,8 +223,9 @@ impl Subject {
         let cable_m = options.cable_m as f64;
         let rates = (system_hz, clock_hz);
         let mut case = Case::new(rates, self.command, self.position_bits, cable_m);
-        // tST belongs to the EnDat 2.2 commands.
-        let has_tst = self.command.has_f2() && clock_hz >= TST_FROM_HZ;
+        // tST goes with delay compensation (PWM 20): EnDat 2.2, and lines longer than half a period.
+        let is_long = case.line.round_trip() * 2 * clock_hz > 1_000_000 * US;
+        let has_tst = clock_hz >= TST_FROM_HZ && (self.command.has_f2() || is_long);
         let tst_ns = if has_tst { TST_MIN_NS } else { 0 };
         case.settings = case.settings.start_time_ns(tst_ns, system_hz);
         case.settings.start_timeout_us += options.tcal_ns / 1_000;
@@ -256,16 +270,20 @@ fn figures(frames: &[FrameLog]) -> Option<Figures> {
     })
 }
 
-/// What is wrong with a row, if anything is.
+/// What is wrong with a row whose frames are good, if anything is.
 fn verdict(measured: Figures, limit: Figures) -> Option<String> {
-    if measured.pulses != limit.pulses {
-        return Some("pulses are not exact".into());
-    }
+    let us = |time: Time| format!("{:.3} us", us(time));
     if measured.cycle > limit.cycle + OVER_MAX {
-        return Some("more than 1 us over the limit".into());
+        let over = us(measured.cycle - limit.cycle);
+        return Some(format!("{over} over the limit, at most {}", us(OVER_MAX)));
     }
+    if measured.pulses != limit.pulses {
+        let (seen, needed) = (measured.pulses, limit.pulses);
+        return Some(format!("{seen} pulses instead of {needed}"));
+    }
+    // Edges are rounded to the picosecond.
     if measured.frame + NS < limit.frame || measured.cycle + NS < limit.cycle {
-        return Some("faster than the limit".into());
+        return Some("shorter than the protocol allows".into());
     }
     None
 }
@@ -359,9 +377,7 @@ impl fmt::Display for CycleTimes {
             "command bits    MHz       pulses              frame us    tm us            cycle us   over us  cycles/s  published"
         )?;
         for row in &self.rows {
-            let published = row
-                .published
-                .map_or(String::new(), |p| format!("{} us  {}", p.cycle_us, p.who));
+            let published = row.published.map_or(String::new(), |p| p.text());
             let text = format!(
                 "{} {:>4} {:>6.3} {:>4} {:>7} {:>9.3} {:>11} {:>7.3} {:>9.3} {:>11} {:>8.3} {:>9.0}  {published}",
                 row.command,
@@ -383,5 +399,84 @@ impl fmt::Display for CycleTimes {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMIT: Figures = Figures {
+        pulses: 44,
+        frame: 20 * US,
+        cycle: 30 * US,
+    };
+
+    #[test]
+    fn a_row_is_marked_if_it_is_not_at_the_limit() {
+        let row = |pulses, frame, cycle| {
+            let measured = Figures {
+                pulses,
+                frame,
+                cycle,
+            };
+            verdict(measured, LIMIT)
+        };
+        assert_eq!(row(44, 20 * US, 31 * US), None);
+        assert_eq!(row(44, 20 * US - 1, 30 * US - 1), None);
+        let slow = "1.001 us over the limit, at most 1.000 us";
+        assert_eq!(row(44, 20 * US, 31_001 * NS).as_deref(), Some(slow));
+        for pulses in [43, 45] {
+            let what = format!("{pulses} pulses instead of 44");
+            assert_eq!(row(pulses, 20 * US, 30 * US), Some(what));
+        }
+        let early = Some("shorter than the protocol allows".into());
+        assert_eq!(row(44, 20 * US, 30 * US - 2 * NS), early);
+        assert_eq!(row(44, 20 * US - 2 * NS, 30 * US), early);
+    }
+
+    #[test]
+    fn the_longest_of_the_frames_counts() {
+        let frame = |first_fall, last_rise, rising_edges| FrameLog {
+            first_fall,
+            last_rise,
+            rising_edges,
+            ..FrameLog::default()
+        };
+        let frames = [frame(0, 10, 44), frame(100, 112, 45), frame(190, 200, 44)];
+        let longest = Figures {
+            pulses: 45,
+            frame: 12,
+            cycle: 100,
+        };
+        assert_eq!(figures(&frames), Some(longest));
+        assert_eq!(figures(&frames[..1]), None);
+    }
+
+    #[test]
+    fn a_marked_row_says_what_is_wrong() {
+        let options = CycleTimeOptions {
+            position_bits: Some(1),
+            cable_m: 100,
+            tcal_ns: 5_000,
+            tm_ns: 1_250,
+        };
+        // More pulses fit on the line than the answer has bits: the clock must wait.
+        let short = Subject {
+            command: SendPositionAddInfo,
+            position_bits: 1,
+            rate: RATES_2_2[5],
+            published: None,
+        };
+        let row = measure(&short, &options, &mut BTreeMap::new()).unwrap();
+        let table = CycleTimes {
+            options,
+            round_trip_us: 1.25,
+            rows: vec![row],
+        };
+        assert!(!table.is_good());
+        assert!(table
+            .to_string()
+            .contains("^ WRONG: 1.977 us over the limit"));
     }
 }
