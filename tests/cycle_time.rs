@@ -78,3 +78,28 @@ fn cycle_time_holds_behind_a_long_cable_and_marks_what_does_not() {
     assert_eq!((outcome.exit_code, outcome.messages.len()), (1, 0));
     assert!(outcome.stdout.contains("^ WRONG: "), "{}", outcome.stdout);
 }
+
+#[test]
+fn the_cycle_times_in_the_documentation_are_those_of_the_program() {
+    let page = include_str!("../docs/simulation.md");
+    let text = good(&["bench", "cycle-time", "--json", "--tm-ns", "1250"]);
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    for row in report["rows"].as_array().unwrap() {
+        let figure = |key: &str| row[key].as_f64().unwrap();
+        let wanted = format!(
+            "| {} | {} | {} | {} | {:.2} | {} | {:.2} | {:.2} | {:.0} |",
+            row["command"].as_str().unwrap(),
+            row["position_bits"],
+            figure("clock_hz") / 1e6,
+            row["pulses"],
+            figure("frame_us"),
+            figure("tm_us"),
+            figure("cycle_us"),
+            figure("cycle_limit_us"),
+            figure("cycles_per_s"),
+        );
+        let is_usual = [25, 37].map(Into::into).contains(&row["position_bits"]);
+        let is_there = page.lines().any(|line| line == wanted);
+        assert!(!is_usual || is_there, "{wanted}");
+    }
+}
