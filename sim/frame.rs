@@ -212,10 +212,12 @@ pub enum Field {
     Position(u32),
     /// Bit of the CRC, 4 = first sent.
     Crc(u32),
-    /// Bit of the echoed MRS code, address or port, 7 = first sent.
+    /// Bit of the MRS code, address or port, 7 = first sent.
     Address(u32),
     /// Bit of the parameter, or of the content of an additional information, 15 = first sent.
     Data(u32),
+    /// Bit of a block address, 7 = first sent.
+    Block(u32),
     /// LOW that begins an additional information.
     InfoLow,
     /// Collective warning WRN.
@@ -278,6 +280,7 @@ impl std::fmt::Display for Field {
             Self::Crc(i) => write!(f, "C{i}"),
             Self::Address(i) => write!(f, "A{i}"),
             Self::Data(i) => write!(f, "P{i}"),
+            Self::Block(i) => write!(f, "B{i}"),
             Self::InfoLow => f.write_str("0"),
             Self::Warning => f.write_str("WRN"),
             Self::Reference => f.write_str("RM"),

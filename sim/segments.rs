@@ -1,11 +1,17 @@
 //! A recorded DATA line cut into pieces: who drove it, to which level, and what it meant.
 
+mod places;
+
+pub use places::first_falls;
+
 use crate::{
     bench::{Link, LinkTrace},
     encoder::{Drive, FrameLog, Output, Symbol},
+    frame::Field,
     line::{End, Who},
     Time,
 };
+use places::{frame_at, Places};
 
 /// Level of a line with several drivers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,10 +73,20 @@ pub enum Meaning {
     LeadIn,
     /// Bit of the mode command, 5 = first sent.
     Command(u32),
+    /// What the receiver sends after an EnDat 2.1 command.
+    Parameter(Field),
     /// Encoder's LOW before the start bit.
     Wait,
     /// Bit of an answer, 0 = start bit, and the bit's name.
-    Answer(u32, crate::frame::Field),
+    Answer(u32, Field),
+    /// CLOCK is LOW before a supplement.
+    Pause,
+    /// LOW bit before the start bit of a supplement, 1 = first sent.
+    SupplementZero(u32),
+    /// What the receiver sends after an EnDat 2.2 answer.
+    Supplement(Field),
+    /// Encoder's LOW after a supplement.
+    LeadOut,
     /// HIGH for the recovery time.
     Recovery,
     /// An encoder that is not there.
@@ -87,7 +103,12 @@ impl std::fmt::Display for Meaning {
             Self::LeadIn => f.write_str("lead-in"),
             Self::Command(i) => write!(f, "M{i}"),
             Self::Wait => f.write_str("wait"),
-            Self::Answer(_, field) => write!(f, "{field}"),
+            Self::Answer(_, field) | Self::Parameter(field) | Self::Supplement(field) => {
+                write!(f, "{field}")
+            }
+            Self::Pause => f.write_str("pause"),
+            Self::SupplementZero(_) => f.write_str("0"),
+            Self::LeadOut => f.write_str("lead-out"),
             Self::Recovery => f.write_str("recovery"),
             Self::Absent => f.write_str("absent"),
             Self::Glitch => f.write_str("glitch"),
@@ -117,7 +138,10 @@ pub fn data_segments(link: &Link, end: End, until: Time) -> Vec<Segment> {
     };
     let frames = link.encoder().frames();
     let changes = match end {
-        End::Receiver => receiver_end(trace, frames),
+        End::Receiver => {
+            let config = link.line().config();
+            receiver_end(trace, frames, config.flight() + config.clock.transceivers)
+        }
         End::Encoder => encoder_end(trace, frames),
     };
     let ends: Vec<Time> = changes
@@ -145,12 +169,13 @@ pub fn data_segments(link: &Link, end: End, until: Time) -> Vec<Segment> {
     segments
 }
 
-fn receiver_end(trace: &LinkTrace, frames: &[FrameLog]) -> Vec<Segment> {
-    let mut clock = FallCounter::new(&trace.clock_at_receiver);
+/// `flight` is how much later the encoder sees CLOCK.
+fn receiver_end(trace: &LinkTrace, frames: &[FrameLog], flight: Time) -> Vec<Segment> {
+    let mut places = Places::new(&trace.clock_at_receiver, frames, flight);
     let piece = |c: &crate::line::DataChange| {
         let (by, meaning) = match c.who {
-            Who::Nobody => (By::Nobody, Meaning::Turnaround),
-            Who::Receiver => (By::Receiver, receiver_meaning(clock.at(c.time))),
+            Who::Nobody => (By::Nobody, places.at(c.time).nobody()),
+            Who::Receiver => (By::Receiver, places.at(c.time).receiver()),
             Who::Encoder(s) => (By::Encoder, encoder_meaning(s, c.time, frames)),
             Who::Both => (By::Both, Meaning::Turnaround),
         };
@@ -168,8 +193,8 @@ fn receiver_end(trace: &LinkTrace, frames: &[FrameLog]) -> Vec<Segment> {
         }
     };
     let mut pieces: Vec<Segment> = trace.data_at_receiver.iter().map(piece).collect();
-    let mut clock = FallCounter::new(&trace.clock_at_receiver);
-    split_at_falls(&mut pieces, &trace.clock_at_receiver, |t| clock.at(t));
+    let places = Places::new(&trace.clock_at_receiver, frames, flight);
+    split_at_falls(&mut pieces, &trace.clock_at_receiver, places);
     pieces
 }
 
@@ -185,7 +210,7 @@ fn encoder_end(trace: &LinkTrace, frames: &[FrameLog]) -> Vec<Segment> {
         let receiver = value_at(&trace.receiver_at_encoder, time).unwrap_or(Drive::Released);
         (output, receiver)
     };
-    let mut clock = FallCounter::new(&trace.clock_at_encoder);
+    let mut places = Places::new(&trace.clock_at_encoder, frames, 0);
     let mut pieces: Vec<Segment> = times
         .into_iter()
         .map(|time| {
@@ -198,7 +223,7 @@ fn encoder_end(trace: &LinkTrace, frames: &[FrameLog]) -> Vec<Segment> {
                     })
                     | None,
                     Drive::Released,
-                ) => (Level::Floating, By::Nobody, Meaning::Turnaround),
+                ) => (Level::Floating, By::Nobody, places.at(time).nobody()),
                 (
                     Some(Output {
                         drive: Drive::Released,
@@ -209,7 +234,7 @@ fn encoder_end(trace: &LinkTrace, frames: &[FrameLog]) -> Vec<Segment> {
                 ) => (
                     Level::driven(r == Drive::High),
                     By::Receiver,
-                    receiver_meaning(clock.at(time)),
+                    places.at(time).receiver(),
                 ),
                 (Some(o), Drive::Released) => (
                     Level::driven(o.drive == Drive::High),
@@ -227,17 +252,13 @@ fn encoder_end(trace: &LinkTrace, frames: &[FrameLog]) -> Vec<Segment> {
             }
         })
         .collect();
-    let mut clock = FallCounter::new(&trace.clock_at_encoder);
-    split_at_falls(&mut pieces, &trace.clock_at_encoder, |t| clock.at(t));
+    let places = Places::new(&trace.clock_at_encoder, frames, 0);
+    split_at_falls(&mut pieces, &trace.clock_at_encoder, places);
     pieces
 }
 
 /// The receiver's bits have no marks of their own: equal neighbours are told apart by the falling edges that launch them.
-fn split_at_falls(
-    pieces: &mut Vec<Segment>,
-    clock: &[(Time, bool)],
-    mut falls_at: impl FnMut(Time) -> u32,
-) {
+fn split_at_falls(pieces: &mut Vec<Segment>, clock: &[(Time, bool)], mut places: Places<'_>) {
     let mut split = Vec::new();
     let ends: Vec<Time> = pieces
         .iter()
@@ -251,7 +272,7 @@ fn split_at_falls(
         while falls.next_if(|t| *t <= piece.from).is_some() {}
         while let Some(t) = falls.next_if(|t| *t < end) {
             if piece.by == By::Receiver {
-                let meaning = receiver_meaning(falls_at(t));
+                let meaning = places.at(t).receiver();
                 split.push(Segment {
                     from: t,
                     meaning,
@@ -263,27 +284,19 @@ fn split_at_falls(
     *pieces = split;
 }
 
-fn receiver_meaning(falls: u32) -> Meaning {
-    match falls {
-        3..=8 => Meaning::Command(8 - falls),
-        0..=2 => Meaning::LeadIn,
-        _ => Meaning::Turnaround,
-    }
-}
-
 fn encoder_meaning(symbol: Symbol, time: Time, frames: &[FrameLog]) -> Meaning {
     match symbol {
         Symbol::Idle => Meaning::Idle,
         Symbol::Listening => Meaning::Turnaround,
-        Symbol::Lead => Meaning::Wait,
+        Symbol::Lead => match frame_at(frames, time) {
+            Some(f) if f.start_edge.is_some() && time > f.start_time => Meaning::LeadOut,
+            _ => Meaning::Wait,
+        },
         Symbol::Tail => Meaning::Recovery,
         Symbol::Absent => Meaning::Absent,
         Symbol::Bit(i) => {
-            let next = frames.partition_point(|f| f.first_fall <= time);
-            let field = match next.checked_sub(1) {
-                Some(n) => frames[n].field(u32::from(i)),
-                None => crate::frame::Field::None,
-            };
+            let field = frame_at(frames, time);
+            let field = field.map_or(Field::None, |f| f.field(u32::from(i)));
             Meaning::Answer(u32::from(i), field)
         }
     }
@@ -294,52 +307,21 @@ fn value_at<T: Copy>(track: &[(Time, T)], time: Time) -> Option<T> {
     next.checked_sub(1).map(|i| track[i].1)
 }
 
-/// The first falling edge of each frame on a recorded clock.
-pub fn first_falls(clock: &[(Time, bool)]) -> Vec<Time> {
-    let mut counter = FallCounter::new(clock);
-    let falls = clock.iter().filter(|c| !c.1);
-    falls
-        .filter(|c| counter.at(c.0) == 1)
-        .map(|c| c.0)
-        .collect()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::US;
 
-/// Counts the falling clock edges of a frame, for moments in ascending order.
-struct FallCounter<'a> {
-    clock: &'a [(Time, bool)],
-    next_edge: usize,
-    last_edge: Time,
-    last_low: Time,
-    falls: u32,
-}
-
-/// A clock that has been HIGH for longer than this, and for longer than it was LOW before, has ended its frame.
-const FRAME_GAP: Time = crate::US;
-
-impl<'a> FallCounter<'a> {
-    fn new(clock: &'a [(Time, bool)]) -> Self {
-        Self {
-            clock,
-            next_edge: 0,
-            last_edge: 0,
-            last_low: 0,
-            falls: 0,
-        }
-    }
-
-    fn at(&mut self, time: Time) -> u32 {
-        while let Some((t, level)) = self.clock.get(self.next_edge).filter(|c| c.0 <= time) {
-            let width = *t - self.last_edge;
-            if *level {
-                self.last_low = width;
-            } else if width > FRAME_GAP.max(self.last_low * 3 / 2) {
-                self.falls = 1;
-            } else {
-                self.falls += 1;
-            }
-            self.last_edge = *t;
-            self.next_edge += 1;
-        }
-        self.falls
+    #[test]
+    fn low_behind_an_answer_is_not_the_wait_for_it() {
+        let frame = FrameLog {
+            first_fall: US,
+            start_edge: Some(13),
+            start_time: 6 * US,
+            ..FrameLog::default()
+        };
+        let at = |time| encoder_meaning(Symbol::Lead, time, std::slice::from_ref(&frame));
+        assert_eq!(at(5 * US), Meaning::Wait);
+        assert_eq!(at(20 * US), Meaning::LeadOut);
     }
 }

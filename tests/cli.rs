@@ -225,6 +225,8 @@ fn wrong_usage_ends_with_two() {
         &["sim", "paper", "--channel", "2"],
         &["sim", "paper", "--channel", "-1"],
         &["sim", "--list", "--vcd", "x.vcd"],
+        &["bench"],
+        &["bench", "cycle-time", "--clock-hz", "1"],
         &["crc"],
         &["crc", "--position", "1"],
         &["crc", "--bits", "4"],

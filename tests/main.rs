@@ -4,6 +4,7 @@ mod campaign;
 mod cli;
 mod config;
 mod constraints;
+mod cycle_time;
 mod elaborate;
 mod engines;
 mod files;

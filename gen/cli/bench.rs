@@ -1,10 +1,13 @@
-//! `bench`: measures the simulators.
+//! `bench`: measures the simulators, and the core in simulation.
 
 use super::number::number;
 use super::{to_json, Outcome};
-use crate::bench::{self, Options};
+use crate::bench::{self, CycleTimeOptions, Options};
 use crate::error::GenError;
 use clap::{Args, Subcommand};
+use endat_hdl::config::{CABLE_M_MAX, SHORT_RECOVERY_MIN_NS};
+use endat_hdl::protocol::POSITION_BITS;
+use endat_hdl::timing::RECOVERY_MAX_NS;
 use std::io::Write;
 
 /// Arguments of `bench`.
@@ -18,6 +21,8 @@ pub struct BenchArgs {
 enum What {
     /// The card on the same stimulus in every engine and in other simulators; results are compared
     Engines(EnginesArgs),
+    /// Time from one position to the next, measured in simulation, beside the protocol's limit and published systems
+    CycleTime(CycleTimeArgs),
 }
 
 #[derive(Args)]
@@ -44,14 +49,83 @@ struct EnginesArgs {
     json: bool,
 }
 
+#[derive(Args)]
+struct CycleTimeArgs {
+    /// Width of the position [default: 25 and 37]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    bits: Option<String>,
+    /// Length of the cable
+    #[arg(
+        long,
+        value_name = "M",
+        default_value = "1",
+        allow_negative_numbers = true
+    )]
+    cable_m: String,
+    /// Calculation time of the encoder
+    #[arg(
+        long,
+        value_name = "NS",
+        default_value = "5000",
+        allow_negative_numbers = true
+    )]
+    tcal_ns: String,
+    /// Recovery time of the encoder; below 10000 it holds only for 111000 above 1 MHz
+    #[arg(
+        long,
+        value_name = "NS",
+        default_value = "10000",
+        allow_negative_numbers = true
+    )]
+    tm_ns: String,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
 /// Fewest cycles: the slow engines run a part of them.
 const CYCLES_MIN: u64 = 1000;
 /// Most cycles: a byte of stimulus is kept for each.
 const CYCLES_MAX: u64 = 1_000_000_000;
 
+/// Longest calculation time that is tried.
+const TCAL_MAX_NS: u64 = 100_000;
+
 /// Runs the command.
 pub fn run(arguments: &BenchArgs) -> Result<Outcome, GenError> {
-    let What::Engines(arguments) = &arguments.what;
+    match &arguments.what {
+        What::Engines(arguments) => engines(arguments),
+        What::CycleTime(arguments) => cycle_time(arguments),
+    }
+}
+
+fn cycle_time(arguments: &CycleTimeArgs) -> Result<Outcome, GenError> {
+    let bits = u64::from(*POSITION_BITS.start())..=u64::from(*POSITION_BITS.end());
+    let bits = |text| number("--bits", text, bits);
+    let recovery = SHORT_RECOVERY_MIN_NS..=RECOVERY_MAX_NS;
+    let report = bench::cycle_times(CycleTimeOptions {
+        position_bits: arguments
+            .bits
+            .as_deref()
+            .map(bits)
+            .transpose()?
+            .map(|n| n as u32),
+        cable_m: number("--cable-m", &arguments.cable_m, 0..=CABLE_M_MAX)?,
+        tcal_ns: number("--tcal-ns", &arguments.tcal_ns, 0..=TCAL_MAX_NS)?,
+        tm_ns: number("--tm-ns", &arguments.tm_ns, recovery)?,
+    })?;
+    Ok(Outcome {
+        stdout: if arguments.json {
+            to_json(&report)?
+        } else {
+            report.to_string()
+        },
+        exit_code: u8::from(!report.is_good()),
+        ..Outcome::default()
+    })
+}
+
+fn engines(arguments: &EnginesArgs) -> Result<Outcome, GenError> {
     let cycles = number("--cycles", &arguments.cycles, CYCLES_MIN..=CYCLES_MAX)? as usize;
     if let Some(engine) = &arguments.only {
         bench::run_one(engine, cycles)?;

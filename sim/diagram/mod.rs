@@ -3,6 +3,7 @@
 //! CLOCK with its rising edges counted, DATA coloured by who drives it and cut into its fields, the times that matter, and an axis in
 //! microseconds. Long quiet spans are shortened and marked. If the cable is long, both ends are shown.
 
+mod groups;
 mod scale;
 mod svg;
 #[cfg(test)]
@@ -12,11 +13,11 @@ mod times;
 use crate::{
     bench::Link,
     encoder::FrameLog,
-    frame::Field,
     line::End,
     segments::{data_segments, first_falls, By, Level, Meaning, Segment},
     Time, US,
 };
+use groups::{bit_name, fill, groups, segment_fill, stroke};
 use scale::Scale;
 use svg::{text_width, Anchor, Svg};
 
@@ -31,7 +32,8 @@ path{fill:none}.clock{stroke:#111827;stroke-width:1.4}.grid{stroke:#e5e7eb;strok
 .both,.glitch{stroke:#dc2626;stroke-width:2.2}.axis{stroke:#6b7280;stroke-width:1}.dimline{stroke:#c2410c;stroke-width:1}\
 .bracket{stroke:#9ca3af;stroke-width:1}.cell{stroke:#ffffff;stroke-width:1.2}.gap{fill:#ffffff;stroke:none}.gapline{stroke:#9ca3af;stroke-width:1.1}\
 .f-receiver{fill:#dbeafe}.f-encoder{fill:#fef3c7}.f-nobody{fill:#f3f4f6}.f-both{fill:#fecaca}.f-start{fill:#fcd34d}.f-crc{fill:#fde68a}\
-.f-idle{fill:#fffbeb}";
+.f-idle{fill:#fffbeb}.f-address{fill:#fdba74}.f-data{fill:#ffedd5}.f-info{fill:#dfb8d3}\
+.f-sent-zero{fill:#eff6ff}.f-sent-start{fill:#60a5fa}.f-sent-address{fill:#93c5fd}.f-sent-data{fill:#bfdbfe}";
 
 /// Place of the first moment on the page.
 const LEFT: f64 = 118.0;
@@ -265,8 +267,8 @@ impl<'a> Diagram<'a> {
         let mut named = None;
         for s in &segments {
             let (a, b, y) = (self.x(s.from), self.x(s.until), y_of(s.level));
-            let cell_begins = matches!(s.meaning, Meaning::Answer(..) | Meaning::Command(_));
-            if cell_begins && before == Some(y) {
+            let name = bit_name(s.meaning);
+            if name.is_some() && before == Some(y) {
                 self.svg.line(&[(a, top + 9.0), (a, bottom - 9.0)], "cell");
             }
             let mut points = vec![(a, y), (b, y)];
@@ -279,12 +281,7 @@ impl<'a> Diagram<'a> {
             };
             self.svg.line(&points, class);
             before = Some(y);
-            if cell_begins && named != Some(s.meaning) {
-                let label = match s.meaning {
-                    Meaning::Command(i) => format!("M{i}"),
-                    Meaning::Answer(_, field) => field.to_string(),
-                    _ => String::new(),
-                };
+            if let Some(label) = name.filter(|_| named != Some(s.meaning)) {
                 if text_width(&label, 9.0) < b - a {
                     named = Some(s.meaning);
                     self.svg
@@ -304,24 +301,10 @@ impl<'a> Diagram<'a> {
 
     /// What the cells belong to, above them.
     fn field_brackets(&mut self, end: End, y: f64) {
-        let mut groups: Vec<(Group, Time, Time)> = Vec::new();
-        for s in self.segments_at(end) {
-            let group = group_of(s);
-            if s.meaning == Meaning::Glitch {
-                continue; // belongs to what it disturbs
-            }
-            match groups.last_mut() {
-                Some(last) if last.0 == group => last.2 = s.until,
-                _ => groups.push((group, s.from, s.until)),
-            }
-        }
-        for (group, from, until) in groups {
-            let (a, b) = (self.x(from), self.x(until));
-            let Some(text) = self
-                .group_texts(group)
-                .into_iter()
-                .find(|t| text_width(t, 11.0) < b - a - 2.0)
-            else {
+        for group in groups(self.segments_at(end), self.frame) {
+            let (a, b) = (self.x(group.from), self.x(group.until));
+            let fits = |t: &String| text_width(t, 11.0) < b - a - 2.0;
+            let Some(text) = group.texts(self.frame).into_iter().find(fits) else {
                 continue;
             };
             let (top, bottom) = (y + 10.0, y + 18.0);
@@ -333,110 +316,5 @@ impl<'a> Diagram<'a> {
             self.svg
                 .text((a + b) / 2.0, top, Anchor::Middle, "field", &text);
         }
-    }
-
-    /// Texts for a group, the longest first.
-    fn group_texts(&self, group: Group) -> Vec<String> {
-        let f = self.frame;
-        let bits = f.answer.iter().collect::<Vec<_>>();
-        let tail = f.head_len().saturating_sub(crate::frame::CRC_BITS) as usize;
-        let crc = bits[tail..].iter().take(crate::frame::CRC_BITS as usize);
-        let crc = crc.fold(0, |c, b| c << 1 | u32::from(*b));
-        let head = 2 + usize::from(f.has_f2);
-        let position = bits
-            .get(head..tail)
-            .unwrap_or_default()
-            .iter()
-            .enumerate()
-            .fold(0u64, |p, (i, b)| p | u64::from(*b) << i);
-        let texts = |list: &[&str]| list.iter().map(|t| (*t).to_owned()).collect();
-        match group {
-            Group::Idle => texts(&["idle", ""]),
-            Group::LeadIn => texts(&["lead-in"]),
-            Group::Command => {
-                let code = f.command.map_or(String::new(), |c| format!(" {c:06b}"));
-                vec![
-                    format!("mode command{code}"),
-                    "mode command".into(),
-                    "command".into(),
-                ]
-            }
-            Group::Turnaround => texts(&["nobody drives", "released", "off"]),
-            Group::Wait => texts(&["LOW until tcal has passed", "LOW until tcal", "wait"]),
-            Group::Start => texts(&["S"]),
-            Group::Errors if f.has_f2 => texts(&["F1, F2", "F"]),
-            Group::Errors => texts(&["F1", "F"]),
-            Group::Position => vec![
-                format!(
-                    "position {position:#X}, {} bits, LSB first",
-                    f.position_bits
-                ),
-                format!("position {position:#X}"),
-                "position".into(),
-                "D".into(),
-            ],
-            Group::Crc => vec![format!("CRC {crc:#04X}"), "CRC".into()],
-            Group::Recovery => texts(&["HIGH for the recovery time", "recovery time", "tm"]),
-            Group::Other => Vec::new(),
-        }
-    }
-}
-
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Group {
-    Idle,
-    LeadIn,
-    Command,
-    Turnaround,
-    Wait,
-    Start,
-    Errors,
-    Position,
-    Crc,
-    Recovery,
-    Other,
-}
-
-fn group_of(s: &Segment) -> Group {
-    match s.meaning {
-        Meaning::Idle => Group::Idle,
-        Meaning::LeadIn => Group::LeadIn,
-        Meaning::Command(_) => Group::Command,
-        Meaning::Turnaround => Group::Turnaround,
-        Meaning::Wait => Group::Wait,
-        Meaning::Answer(_, Field::Start) => Group::Start,
-        Meaning::Answer(_, Field::F1 | Field::F2) => Group::Errors,
-        Meaning::Answer(_, Field::Position(_)) => Group::Position,
-        Meaning::Answer(_, Field::Crc(_)) => Group::Crc,
-        Meaning::Recovery => Group::Recovery,
-        // Only the first part of an answer is drawn with brackets.
-        Meaning::Answer(..) | Meaning::Absent | Meaning::Glitch => Group::Other,
-    }
-}
-
-fn fill(by: By) -> &'static str {
-    match by {
-        By::Receiver => "f-receiver",
-        By::Encoder => "f-encoder",
-        By::Nobody => "f-nobody",
-        By::Both => "f-both",
-    }
-}
-
-fn segment_fill(s: &Segment) -> &'static str {
-    match (s.by, s.meaning) {
-        (By::Encoder, Meaning::Idle | Meaning::Wait | Meaning::Recovery) => "f-idle",
-        (By::Encoder, Meaning::Answer(_, Field::Start)) => "f-start",
-        (By::Encoder, Meaning::Answer(_, Field::Crc(_))) => "f-crc",
-        (by, _) => fill(by),
-    }
-}
-
-fn stroke(by: By) -> &'static str {
-    match by {
-        By::Receiver => "receiver",
-        By::Encoder => "encoder",
-        By::Nobody => "nobody",
-        By::Both => "both",
     }
 }

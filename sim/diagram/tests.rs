@@ -1,9 +1,13 @@
 use super::*;
 use crate::{
-    encoder::Defect,
+    bench::{Bench, ChannelSettings},
+    encoder::{area, Defect, EncoderConfig, PositionSource},
+    line::LineConfig,
     scenario::{self, RunOptions},
     test_receiver::TestReceiver,
+    MS,
 };
+use endat_hdl::protocol::ModeCommand::SendPosition;
 
 fn drawing(name: &str, frame: usize) -> String {
     let s = scenario::named(name).unwrap();
@@ -119,4 +123,131 @@ fn the_drawing_is_the_same_every_time_and_renders() {
     std::io::Write::write_all(&mut pipe, svg.as_bytes()).unwrap();
     drop(pipe);
     assert!(child.wait().unwrap().success());
+}
+
+/// The last of these exchanges (command, 8 bits, 16 bits, expected additional informations), after one that measures the delay.
+fn exchange(cable_m: f64, exchanges: &[(u8, u8, u16, u8)]) -> String {
+    const SYSTEM_HZ: u64 = 128_000_000;
+    let mut encoder = EncoderConfig::endat22(13).position(PositionSource::Fixed(0x0BAD));
+    encoder.tac = 0..=0;
+    encoder.values.test_values = 0x12_3456_789A;
+    let mut settings = ChannelSettings::new(SYSTEM_HZ, 4_000_000, SendPosition, 13);
+    settings.start_timeout_us = 2_000;
+    let link = Link::new(LineConfig::cable(cable_m), encoder);
+    let mut bench = Bench::channel(TestReceiver::new(SYSTEM_HZ), SYSTEM_HZ, &settings, link);
+    bench.record_links();
+    let first = [(0b000_111, 0, 0, 0)];
+    for (code, address, parameter, infos) in first.iter().chain(exchanges) {
+        bench.set("command", (*code).into());
+        bench.set("address", (*address).into());
+        bench.set("parameter", (*parameter).into());
+        bench.set("infos", (*infos).into());
+        assert_eq!(bench.frame(5 * MS).expect("a result").cause, 0);
+        assert!(bench.run_until_done(MS, |b| b.get("busy") == 0));
+    }
+    assert_eq!(bench.violations(0), []);
+    frame_svg(bench.link(0), exchanges.len(), "an exchange").unwrap()
+}
+
+fn names(letter: char, most: u32) -> impl Iterator<Item = String> {
+    (0..=most).rev().map(move |i| format!("{letter}{i}"))
+}
+
+/// The 8 and 16 bits that a receiver or an encoder sends.
+fn fields() -> impl Iterator<Item = String> {
+    names('A', 7).chain(names('P', 15))
+}
+
+fn words(text: &str) -> impl Iterator<Item = String> + '_ {
+    text.split(' ').map(String::from)
+}
+
+#[test]
+fn a_parameter_and_its_echo_have_names_and_values() {
+    let select = (0b001_110, area::OPERATING_PARAMETERS, 0, 0);
+    let svg = exchange(1.0, &[select, (0b011_100, 0x07, 0x5AC3, 0)]);
+    let bits = names('M', 5).chain(fields()).chain(words("S"));
+    let bits: Vec<String> = bits.chain(fields()).chain(names('C', 4)).collect();
+    assert_eq!(texts(&svg, "bit"), bits);
+    let crc = crate::frame::Parameter::from_word(0x07_5AC3).crc();
+    let wanted = [
+        "mode command 011100",
+        "address 0x07",
+        "parameter 0x5AC3",
+        "off",
+        "wait",
+        "S",
+        "address 0x07",
+        "parameter 0x5AC3",
+        &format!("CRC {crc:#04X}"),
+    ];
+    assert_eq!(texts(&svg, "field")[2..11], wanted);
+    for class in ["f-sent-address", "f-sent-data", "f-address", "f-data"] {
+        let count = svg.matches(&format!("<rect class=\"{class}\"")).count();
+        assert_eq!(
+            count,
+            if class.ends_with("data") { 16 } else { 8 },
+            "{class}"
+        );
+    }
+    let select = exchange(1.0, &[select]);
+    let fields = texts(&select, "field");
+    assert!(fields.contains(&"MRS code 0xA7".to_owned()), "{fields:?}");
+}
+
+#[test]
+fn test_values_are_called_so() {
+    let svg = exchange(1.0, &[(0b010_101, 0, 0, 0)]);
+    let fields = texts(&svg, "field");
+    let wanted = "test values 0x123456789A, 40 bits, LSB first".to_owned();
+    assert!(fields.contains(&wanted), "{fields:?}");
+}
+
+#[test]
+fn additional_informations_and_the_supplement_have_names_and_values() {
+    let select = [(0b001_001, 0x4C, 0, 0), (0b001_001, 0x5B, 0, 1)];
+    let last = (0b001_001, area::OPERATING_PARAMETERS, 0x5AC3, 3);
+    for cable_m in [1.0, 100.0] {
+        let svg = exchange(cable_m, &[select[0], select[1], last]);
+        let ends = if cable_m > 1.0 { 2 } else { 1 };
+        let info = || {
+            let head = words("0 WRN RM BSY").chain(names('I', 4));
+            head.chain(names('P', 15)).chain(names('C', 4))
+        };
+        let head = names('M', 5).chain(words("S F1 F2"));
+        let head = head.chain((0..13).map(|i| format!("D{i}")));
+        let answer = head.chain(names('C', 4)).chain(info()).chain(info());
+        let bits = answer.chain(words("0 0 0 0 0 0 0 S")).chain(fields());
+        let bits: Vec<String> = bits.collect();
+        assert_eq!(texts(&svg, "bit"), vec![bits; ends].concat(), "{cable_m} m");
+        let wanted = [
+            "position 0xBAD, 13 bits, LSB first",
+            "CRC",
+            "additional information 2, code 0x1B",
+            "content 0x",
+            "CRC",
+            "additional information 1, code 0x0C",
+            "content 0x0B8A",
+            "CRC",
+            "pause",
+            "7 zeros",
+            "S",
+            "MRS code 0xA7",
+            "parameter 0x5AC3",
+            "recovery time",
+            "idle",
+        ];
+        let fields = texts(&svg, "field");
+        let start = fields
+            .iter()
+            .position(|t| t.starts_with("position"))
+            .unwrap();
+        for (text, wanted) in fields[start..].iter().zip(wanted) {
+            assert!(text.contains(wanted), "{text}: {wanted}, {fields:?}");
+        }
+        for (class, count) in [("f-info", 18), ("f-sent-zero", 8), ("f-sent-start", 1)] {
+            let rects = svg.matches(&format!("<rect class=\"{class}\"")).count();
+            assert_eq!(rects, count * ends, "{class}");
+        }
+    }
 }
