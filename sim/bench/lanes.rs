@@ -2,6 +2,7 @@
 //!
 //! Everything is at the same moments as on a [`super::Bench`] with the same settings: a lane gives what the case gives alone.
 
+use super::pins::{find, Pins, TimeBase};
 use super::record::ResultPorts;
 use super::sampler::Sampler;
 use super::{edge_time, is_tick_us, ChannelResult, ChannelSettings, Link, PinNames};
@@ -16,11 +17,7 @@ struct Port {
     links: Vec<Link>,
     /// When each link has something to do next.
     due: Vec<Time>,
-    clock: PortId,
-    data_o: PortId,
-    data_oe: PortId,
-    data_i: PortId,
-    sample_strobe: Option<PortId>,
+    ids: Pins,
     /// DATA as it is at the designs' pins.
     data: Vec<u64>,
     /// CLOCK, driver and level as they were taken to the lines.
@@ -34,9 +31,7 @@ pub struct LaneBench {
     system_hz: u64,
     cycle: u64,
     ports: Vec<Port>,
-    tick_us: Option<PortId>,
-    timestamp: Option<PortId>,
-    trigger: Option<PortId>,
+    base: TimeBase,
     busy: Option<PortId>,
     results: Option<ResultPorts>,
     /// The causes at the end of the last cycle, bit by bit.
@@ -61,8 +56,6 @@ impl LaneBench {
     /// # Panics
     /// If there are not as many links as lanes.
     pub fn new(engine: Lanes, system_hz: u64, links: Vec<(PinNames, Vec<Link>)>) -> Self {
-        let find = |name: &str| engine.ports().iter().position(|p| p.name == name);
-        let find = |name: &str| find(name).map(PortId);
         let words = engine.lanes() / 64;
         let port = |(names, links): (PinNames, Vec<Link>)| {
             assert_eq!(links.len(), engine.lanes(), "one link for each lane");
@@ -70,11 +63,7 @@ impl LaneBench {
                 due: vec![0; links.len()],
                 samplers: vec![Sampler::default(); links.len()],
                 links,
-                clock: engine.port(&names.clock),
-                data_o: engine.port(&names.data_o),
-                data_oe: engine.port(&names.data_oe),
-                data_i: engine.port(&names.data_i),
-                sample_strobe: find(&names.sample_strobe),
+                ids: Pins::find(&names, engine.ports()),
                 data: vec![0; words],
                 // As links are made: CLOCK HIGH, DATA released.
                 pins: vec![[u64::MAX, 0, 0]; words],
@@ -86,10 +75,8 @@ impl LaneBench {
             system_hz,
             cycle: 0,
             ports,
-            tick_us: find("tick_us"),
-            timestamp: find("timestamp"),
-            trigger: find("trigger").or(find("trigger_i")),
-            busy: find("busy"),
+            base: TimeBase::find(engine.ports()),
+            busy: find(engine.ports(), "busy"),
             causes: vec![0; results.as_ref().map_or(0, ResultPorts::cause_bits) * words],
             results,
             delivered: vec![vec![]; engine.lanes()],
@@ -102,8 +89,8 @@ impl LaneBench {
     /// Drives the configuration inputs of one lane.
     pub fn configure(&mut self, lane: usize, settings: &ChannelSettings) {
         for (name, value) in settings.ports() {
-            if let Some(port) = self.engine.ports().iter().position(|p| p.name == name) {
-                self.engine.set(PortId(port), lane, value);
+            if let Some(port) = find(self.engine.ports(), name) {
+                self.engine.set(port, lane, value);
             }
         }
     }
@@ -172,7 +159,7 @@ impl LaneBench {
 
     /// Drives the trigger of the lanes `64 * part` to `64 * part + 63`.
     pub fn set_trigger(&mut self, part: usize, lanes: u64) {
-        if let Some(id) = self.trigger {
+        if let Some(id) = self.base.trigger {
             self.engine.set_word(id, 0, part, lanes);
         }
     }
@@ -182,10 +169,10 @@ impl LaneBench {
         self.cycle += 1;
         let now = self.now();
         let last = self.cycle - 1;
-        if let Some(id) = self.timestamp {
+        if let Some(id) = self.base.timestamp {
             self.engine.set_all(id, u128::from(last & 0xFFFF_FFFF));
         }
-        if let Some(id) = self.tick_us {
+        if let Some(id) = self.base.tick_us {
             let tick = is_tick_us(self.cycle, self.system_hz);
             self.engine.set_all(id, u128::from(tick));
         }
@@ -261,16 +248,16 @@ impl Port {
                 *data = *data & !(1 << bit) | u64::from(link.data()) << bit;
                 self.due[64 * part + bit] = link.next_event();
             }
-            engine.set_word(self.data_i, 0, part, *data);
+            engine.set_word(self.ids.data_i, 0, part, *data);
         }
     }
 
     /// Takes pins that have changed to the lines.
     fn take_pins(&mut self, engine: &mut Lanes, now: Time) {
         for part in 0..self.data.len() {
-            let clock = engine.word(self.clock, 0, part);
-            let driven = engine.word(self.data_oe, 0, part);
-            let level = engine.word(self.data_o, 0, part) & driven;
+            let clock = engine.word(self.ids.clock, 0, part);
+            let driven = engine.word(self.ids.data_oe, 0, part);
+            let level = engine.word(self.ids.data_o, 0, part) & driven;
             let before = std::mem::replace(&mut self.pins[part], [clock, driven, level]);
             let changed = clock ^ before[0] | driven ^ before[1] | level ^ before[2];
             for bit in bits(changed) {
@@ -290,7 +277,7 @@ impl Port {
     }
 
     fn take_samples(&mut self, engine: &mut Lanes, cycle: u64, system_hz: u64) {
-        let Some(strobe) = self.sample_strobe else {
+        let Some(strobe) = self.ids.sample_strobe else {
             return;
         };
         for part in 0..self.data.len() {

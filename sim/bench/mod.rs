@@ -8,6 +8,7 @@
 mod command_tests;
 mod lanes;
 mod link;
+mod pins;
 mod record;
 mod sampler;
 mod settings;
@@ -16,77 +17,29 @@ mod tests;
 
 pub use lanes::LaneBench;
 pub use link::{Link, LinkTrace};
+pub use pins::PinNames;
 pub use record::{ChannelResult, Cycles, Watched};
 pub use settings::ChannelSettings;
 
 use crate::{
     encoder::{Drive, FrameLog, Violation},
-    engine::{Engine, PortId},
+    engine::Engine,
     line::{Conflict, Sample},
     Time,
 };
+use pins::{Pins, TimeBase};
 use record::ResultPorts;
 use sampler::Sampler;
 
-/// Names of the pins of one EnDat port in a design.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PinNames {
-    /// CLOCK output.
-    pub clock: String,
-    /// DATA output.
-    pub data_o: String,
-    /// DATA driver enable.
-    pub data_oe: String,
-    /// DATA input.
-    pub data_i: String,
-    /// HIGH in the cycle after which the design takes a sample of DATA. Not every design has it.
-    pub sample_strobe: String,
-}
-
-impl PinNames {
-    /// Pins of the block `Channel`.
-    pub fn channel() -> Self {
-        Self {
-            clock: "endat_clk".into(),
-            data_o: "data_o".into(),
-            data_oe: "data_oe".into(),
-            data_i: "data_i".into(),
-            sample_strobe: "sample_strobe".into(),
-        }
-    }
-
-    /// Pins of channel `n` of the card.
-    pub fn card(n: usize) -> Self {
-        Self {
-            clock: format!("endat_clk{n}_o"),
-            data_o: format!("endat_data{n}_o"),
-            data_oe: format!("endat_data{n}_oe"),
-            data_i: format!("endat_data{n}_i"),
-            sample_strobe: format!("sample_strobe{n}"),
-        }
-    }
-}
-
 struct Port {
     link: Link,
-    clock: PortId,
-    data_o: PortId,
-    data_oe: PortId,
-    data_i: PortId,
-    sample_strobe: Option<PortId>,
+    ids: Pins,
     data: Option<bool>,
     /// When the link has something to do next.
     due: Time,
     /// The pins as they were taken to the line.
     pins: Option<(bool, Drive)>,
     sampler: Sampler,
-}
-
-/// Inputs that the bench drives by itself, where the design has them.
-struct TimeBase {
-    tick_us: Option<PortId>,
-    timestamp: Option<PortId>,
-    trigger: Option<PortId>,
 }
 
 /// Cycles for which the bench holds reset, and a trigger pin.
@@ -122,22 +75,12 @@ pub struct Bench<E> {
 impl<E: Engine> Bench<E> {
     /// A bench with the system clock `system_hz`, and a link on each named set of pins.
     pub fn new(engine: E, system_hz: u64, links: Vec<(PinNames, Link)>) -> Self {
-        let find = |name: &str| engine.ports().iter().position(|p| p.name == name);
-        let find = |name: &str| find(name).map(PortId);
-        let base = TimeBase {
-            tick_us: find("tick_us"),
-            timestamp: find("timestamp"),
-            trigger: find("trigger").or(find("trigger_i")),
-        };
+        let base = TimeBase::find(engine.ports());
         let ports = links
             .into_iter()
             .map(|(names, link)| Port {
                 link,
-                clock: engine.port(&names.clock),
-                data_o: engine.port(&names.data_o),
-                data_oe: engine.port(&names.data_oe),
-                data_i: engine.port(&names.data_i),
-                sample_strobe: find(&names.sample_strobe),
+                ids: Pins::find(&names, engine.ports()),
                 data: None,
                 due: 0,
                 pins: None,
@@ -333,7 +276,7 @@ impl<E: Engine> Bench<E> {
             let data = port.link.data();
             if port.data != Some(data) {
                 port.data = Some(data);
-                self.engine.set(port.data_i, u128::from(data));
+                self.engine.set(port.ids.data_i, u128::from(data));
             }
         }
         if let Some(cycles) = &mut self.cycles {
@@ -341,9 +284,9 @@ impl<E: Engine> Bench<E> {
         }
         self.engine.tick();
         for port in &mut self.ports {
-            let clock = self.engine.get(port.clock) != 0;
-            let drive = if self.engine.get(port.data_oe) != 0 {
-                Drive::level(self.engine.get(port.data_o) != 0)
+            let clock = self.engine.get(port.ids.clock) != 0;
+            let drive = if self.engine.get(port.ids.data_oe) != 0 {
+                Drive::level(self.engine.get(port.ids.data_o) != 0)
             } else {
                 Drive::Released
             };
@@ -432,7 +375,7 @@ impl<E: Engine> Bench<E> {
             w.note(now, self.engine.get(w.port()));
         }
         for port in &mut self.ports {
-            if let Some(strobe) = port.sample_strobe {
+            if let Some(strobe) = port.ids.sample_strobe {
                 if self.engine.get(strobe) != 0 {
                     port.sampler.strobe(self.cycle, self.system_hz);
                 }

@@ -1,5 +1,6 @@
 //! What the bench keeps of a design's ports.
 
+use super::pins::find;
 use crate::{
     engine::{Engine, Port, PortId},
     Time,
@@ -65,7 +66,7 @@ const CAUSE: usize = 6;
 
 impl ResultPorts {
     pub(super) fn find(ports: &[Port]) -> Option<Self> {
-        let find = |name: &str| ports.iter().position(|p| p.name == name).map(PortId);
+        let find = |name: &str| find(ports, name);
         let fields = [
             "position",
             "position_valid",

@@ -2,6 +2,7 @@ use super::*;
 use crate::US;
 use crate::{
     encoder::{Defect, EncoderConfig, FrameEnd, PositionSource, Symbol},
+    engine::PortId,
     line::{End, LineConfig, Who},
     test_receiver::{Bug, TestReceiver, LATENCY},
     MS, NS,

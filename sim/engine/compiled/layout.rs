@@ -118,15 +118,11 @@ impl Layout {
 
     /// Takes the marks of all memories: index of the memory, word and bit of its mark.
     pub fn take_memories(&self, state: &mut [u64]) -> Vec<(usize, usize, u32)> {
-        let mut taken = vec![];
-        for (number, word) in self.memory_words().enumerate() {
-            while state[word] != 0 {
-                let bit = state[word].trailing_zeros();
-                state[word] &= state[word] - 1;
-                taken.push((64 * number + bit as usize, word, bit));
-            }
-        }
-        taken
+        let words = self.memory_words();
+        let take = || Self::take_lowest(state, words.clone());
+        std::iter::from_fn(take)
+            .map(|index| (index, words.start + index / 64, (index % 64) as u32))
+            .collect()
     }
 
     /// Takes the lowest mark in some of the words: its number, counted from the first of them.

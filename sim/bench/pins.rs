@@ -1,0 +1,91 @@
+//! The ports of a design that a bench knows by name.
+
+use crate::engine::{Port, PortId};
+
+/// Names of the pins of one EnDat port in a design.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PinNames {
+    /// CLOCK output.
+    pub clock: String,
+    /// DATA output.
+    pub data_o: String,
+    /// DATA driver enable.
+    pub data_oe: String,
+    /// DATA input.
+    pub data_i: String,
+    /// HIGH in the cycle after which the design takes a sample of DATA. Not every design has it.
+    pub sample_strobe: String,
+}
+
+impl PinNames {
+    /// Pins of the block `Channel`.
+    pub fn channel() -> Self {
+        Self {
+            clock: "endat_clk".into(),
+            data_o: "data_o".into(),
+            data_oe: "data_oe".into(),
+            data_i: "data_i".into(),
+            sample_strobe: "sample_strobe".into(),
+        }
+    }
+
+    /// Pins of channel `n` of the card.
+    pub fn card(n: usize) -> Self {
+        Self {
+            clock: format!("endat_clk{n}_o"),
+            data_o: format!("endat_data{n}_o"),
+            data_oe: format!("endat_data{n}_oe"),
+            data_i: format!("endat_data{n}_i"),
+            sample_strobe: format!("sample_strobe{n}"),
+        }
+    }
+}
+
+/// The port called `name`, if there is one.
+pub(super) fn find(ports: &[Port], name: &str) -> Option<PortId> {
+    ports.iter().position(|p| p.name == name).map(PortId)
+}
+
+/// The pins of one EnDat port, as [`PinNames`] names them.
+pub(super) struct Pins {
+    pub(super) clock: PortId,
+    pub(super) data_o: PortId,
+    pub(super) data_oe: PortId,
+    pub(super) data_i: PortId,
+    pub(super) sample_strobe: Option<PortId>,
+}
+
+impl Pins {
+    /// # Panics
+    /// If the design does not have one of the four: names are written in a bench, not typed by a user.
+    pub(super) fn find(names: &PinNames, ports: &[Port]) -> Self {
+        let pin = |name: &str| {
+            find(ports, name).unwrap_or_else(|| panic!("the design has no port {name}"))
+        };
+        Self {
+            clock: pin(&names.clock),
+            data_o: pin(&names.data_o),
+            data_oe: pin(&names.data_oe),
+            data_i: pin(&names.data_i),
+            sample_strobe: find(ports, &names.sample_strobe),
+        }
+    }
+}
+
+/// Inputs that the bench drives by itself, where the design has them.
+pub(super) struct TimeBase {
+    pub(super) tick_us: Option<PortId>,
+    pub(super) timestamp: Option<PortId>,
+    pub(super) trigger: Option<PortId>,
+}
+
+impl TimeBase {
+    pub(super) fn find(ports: &[Port]) -> Self {
+        let find = |name| find(ports, name);
+        Self {
+            tick_us: find("tick_us"),
+            timestamp: find("timestamp"),
+            trigger: find("trigger").or(find("trigger_i")),
+        }
+    }
+}
