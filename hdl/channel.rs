@@ -71,8 +71,12 @@ pub struct Channel {
     pub request_own: Signal<In, Bit>,
     /// Strobe: forget the request if it has not begun.
     pub request_cancel: Signal<In, Bit>,
-    /// No frame may begin: triggers are lost, and counted as such.
+    /// No triggered frame may begin: triggers are lost, and counted as such.
     pub hold_off: Signal<In, Bit>,
+    /// Puts the EnDat clock LOW, for the pulse of the power-up sequence.
+    pub clock_low: Signal<In, Bit>,
+    /// Errors forced upon what is received, to try the error paths: bit 0 inverts F1, bit 1 inverts F2, bit 2 spoils the CRC.
+    pub forced: Signal<In, Bits<3>>,
     /// Position width, 1..=48 bits.
     pub position_bits: Signal<In, Bits<6>>,
     /// Pulses on the data line of at most this many system clock cycles are ignored.
@@ -117,6 +121,10 @@ pub struct Channel {
     pub delay_cycles: Signal<Out, Bits<10>>,
     /// A trigger would not be taken.
     pub busy: Signal<Out, Bit>,
+    /// The frame under way has the request.
+    pub request_runs: Signal<Out, Bit>,
+    /// DATA is HIGH, and no frame is on the wire.
+    pub line_high: Signal<Out, Bit>,
     /// Strobe: a trigger has been lost.
     pub displaced: Signal<Out, Bit>,
     /// Strobe: a frame, triggered or not, has ended; `over_cause` to `reply_good` are of it.
@@ -242,6 +250,8 @@ impl Channel {
             request_own: Default::default(),
             request_cancel: Default::default(),
             hold_off: Default::default(),
+            clock_low: Default::default(),
+            forced: Default::default(),
             position_bits: Default::default(),
             filter_cycles: Default::default(),
             start_window_cycles: Default::default(),
@@ -264,6 +274,8 @@ impl Channel {
             recovery_cycles: Default::default(),
             delay_cycles: Default::default(),
             busy: Default::default(),
+            request_runs: Default::default(),
+            line_high: Default::default(),
             displaced: Default::default(),
             over: Default::default(),
             over_request: Default::default(),
@@ -475,6 +487,12 @@ impl Logic for Channel {
         self.transaction.parallel_ok.next = self.receiver.parallel_ok.val();
         self.transaction.f1.next = self.receiver.f1.val();
         self.transaction.f2.next = self.receiver.f2.val();
+        if self.has_requests.val() {
+            self.transaction.f1.next = self.receiver.f1.val() ^ self.forced.val().get_bit(0);
+            self.transaction.f2.next = self.receiver.f2.val() ^ self.forced.val().get_bit(1);
+            self.transaction.serial_ok.next =
+                self.receiver.serial_ok.val() & !self.forced.val().get_bit(2);
+        }
         self.transaction.outstanding.next = self.delay.outstanding.val();
         self.transaction.cells_left.next = self.receiver.cells_left.val();
         self.transaction.first_low_extra_cycles.next = self.first_low_extra_cycles.val();
@@ -529,6 +547,9 @@ impl Logic for Channel {
         self.clk_pin.d.next = self.clock_gen.endat_clk.val();
         self.data_pin.d.next = self.sender.data.val();
         self.oe_pin.d.next = self.sender.oe.val();
+        if self.clock_low.val() & self.has_requests.val() {
+            self.clk_pin.d.next = false;
+        }
         self.endat_clk.next = self.clk_pin.q.val();
         self.data_o.next = self.data_pin.q.val();
         self.data_oe.next = self.oe_pin.q.val();
@@ -547,6 +568,9 @@ impl Logic for Channel {
         self.recovery_cycles.next = self.transaction.recovery_cycles.val();
         self.delay_cycles.next = self.delay.delay_cycles.val();
         self.busy.next = self.transaction.busy.val();
+        self.request_runs.next = (self.frame_own.q.val() | self.frame_ride.q.val())
+            & !self.transaction.is_at_rest.val();
+        self.line_high.next = self.filter.level.val() & !self.transaction.run.val();
         self.displaced.next = self.transaction.displaced.val();
         self.over.next = self.transaction.over.val();
         self.over_request.next = self.frame_own.q.val() | self.frame_ride.q.val();

@@ -23,6 +23,7 @@ pub mod config;
 pub mod config_ring;
 pub mod crc5;
 pub mod elaborate;
+pub mod encoder_port;
 pub mod half_period;
 pub mod input_filter;
 pub mod line_delay;
@@ -33,6 +34,7 @@ pub mod reg;
 pub mod register_bank;
 pub mod regs;
 pub mod sequencer;
+pub mod service;
 pub mod snapshot;
 #[cfg(test)]
 mod testing;

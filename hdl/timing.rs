@@ -26,6 +26,20 @@ pub const ABORT_US: u64 = 30_000;
 pub const PARK_NS: u64 = 2_000;
 /// Longest wait for the answer to a command with a parameter, in microseconds: access takes up to 12 ms (PWM 20), TI waits 50 ms.
 pub const PARAMETER_TIMEOUT_US: u64 = 50_000;
+/// Clock HIGH after power-up, in ms, until the pulse that follows (TI: at least 800).
+pub const POWER_UP_MS: u16 = 1_000;
+/// Clock HIGH after that pulse, in ms (TI: 380 to 420).
+pub const AFTER_PULSE_MS: u16 = 400;
+/// Wait after a reset, in ms (TI, ADDI driver).
+pub const RESET_MS: u16 = 50;
+/// Wait after a word has been written or a memory area selected, in ms (PWM 20: access takes up to 12 ms).
+pub const WRITE_MS: u16 = 12;
+/// Wait between other EnDat 2.1 commands with a parameter, in ms (TI, ADDI driver: for old encoders).
+pub const PARAMETER_GAP_MS: u16 = 1;
+/// Longest Busy before a request is given up, in ms: access takes up to 12 ms (PWM 20).
+pub const BUSY_MS: u16 = 50;
+/// Fastest clock of an encoder that knows EnDat 2.1 only, in kHz (PWM 20).
+pub const ENDAT21_MAX_KHZ: u16 = 2_000;
 /// Largest deviation of the EnDat clock from the one asked for, in parts per million.
 pub const CLOCK_TOLERANCE_PPM: i64 = 5_000;
 /// Fewest system clock cycles in one EnDat clock period that the core can time.

@@ -191,6 +191,7 @@ pub struct Transaction {
     give_up: Signal<Local, Bit>,
     idle: Signal<Local, Bit>,
     wanted: Signal<Local, Bit>,
+    triggered: Signal<Local, Bit>,
     refuse: Signal<Local, Bit>,
     normal_end: Signal<Local, Bit>,
     parking: Signal<Local, Bit>,
@@ -288,7 +289,9 @@ impl Logic for Transaction {
         self.lost_now.reset.next = self.reset.val();
 
         self.own.next = self.is_own.val() & self.has_all.val();
-        self.wanted.next = self.trigger.val() | (self.begin_own.val() & self.has_all.val());
+        self.triggered.next =
+            self.trigger.val() & !(self.hold_off.val() & self.has_all.val());
+        self.wanted.next = self.triggered.val() | (self.begin_own.val() & self.has_all.val());
         self.refuse.next = false;
         self.normal_end.next = false;
         self.supplement_now.d.next = false;
@@ -310,13 +313,13 @@ impl Logic for Transaction {
             Phase::NotReady => {
                 self.limit.next = self.ready_low_cycles.val();
                 self.timer_clear.next = self.level.val();
-                self.idle.next = self.level.val();
+                self.idle.next = self.level.val() & !(self.hold_off.val() & self.has_all.val());
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::Ready;
                 }
                 if self.level.val() {
                     self.phase.d.next = Phase::NotReady;
-                    if self.trigger.val() {
+                    if self.triggered.val() {
                         self.found.next = 1.into();
                         self.give_up.next = true;
                     }
@@ -327,12 +330,12 @@ impl Logic for Transaction {
                 self.idle.next = !(self.hold_off.val() & self.has_all.val());
                 if self.level.val() {
                     self.phase.d.next = Phase::NotReady;
-                    if self.trigger.val() {
+                    if self.triggered.val() {
                         self.found.next = 1.into();
                         self.give_up.next = true;
                     }
                 } else {
-                    if self.wanted.val() & self.idle.val() {
+                    if self.wanted.val() {
                         if self.is_known.val() {
                             self.accept.next = true;
                             self.phase.d.next = Phase::Frame;
@@ -593,7 +596,7 @@ impl Logic for Transaction {
         self.stop_now.d.next = self.sent.val() | !self.run_now.q.val();
         self.stop.next = self.stop_now.q.val();
         self.acquire.next = self.acquiring.q.val();
-        self.busy.next = !self.idle.val();
+        self.busy.next = !self.idle.val() | (self.begin_own.val() & self.has_all.val());
         self.publish.next = self.publish_now.q.val();
         self.good.next = self.good_now.q.val();
         self.late_fault.next = self.late_now.q.val();

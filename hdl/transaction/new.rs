@@ -103,6 +103,7 @@ impl Transaction {
             give_up: Default::default(),
             idle: Default::default(),
             wanted: Default::default(),
+            triggered: Default::default(),
             refuse: Default::default(),
             normal_end: Default::default(),
             parking: Default::default(),

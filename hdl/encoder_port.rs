@@ -1,0 +1,313 @@
+//! Encoder port: a channel, and its service where the configuration has one.
+//!
+//! ```text
+//! trigger, configuration --> Service --> Channel --> EnDat
+//!                               ^           |
+//! host --- RAM ------------------           +--> results
+//! ```
+//!
+//! For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
+
+use crate::channel::{Channel, Features, FixedTimes};
+use crate::service::program::ServiceTimes;
+use crate::service::Service;
+use rust_hdl::prelude::*;
+
+/// One encoder.
+#[derive(LogicBlock)]
+pub struct EncoderPort {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// Free-running time in system clock cycles.
+    pub timestamp: Signal<In, Bits<32>>,
+    /// One-cycle strobe: take a position.
+    pub trigger: Signal<In, Bit>,
+    /// Strobe: measure the propagation delay again with the next frame.
+    pub calibrate: Signal<In, Bit>,
+    /// Data line from the transceiver, asynchronous.
+    pub data_i: Signal<In, Bit>,
+    /// EnDat clock period, in system clock cycles; an odd one has the longer high phase.
+    pub period_cycles: Signal<In, Bits<11>>,
+    /// How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
+    pub first_low_extra_cycles: Signal<In, Bits<11>>,
+    /// Mode command of a triggered frame.
+    pub command: Signal<In, Bits<6>>,
+    /// Position width, 1..=48 bits.
+    pub position_bits: Signal<In, Bits<6>>,
+    /// Pulses on the data line of at most this many system clock cycles are ignored.
+    pub filter_cycles: Signal<In, Bits<4>>,
+    /// Largest distance of the start edge from its expected place, in system clock cycles.
+    pub start_window_cycles: Signal<In, Bits<6>>,
+    /// Longest wait for the start bit after the turnaround, in microseconds.
+    pub start_timeout_us: Signal<In, Bits<12>>,
+    /// Data must fall within this many system clock cycles after the frame.
+    pub recovery_limit_cycles: Signal<In, Bits<13>>,
+    /// EnDat clock to the transceiver, from a register.
+    pub endat_clk: Signal<Out, Bit>,
+    /// Data line to the transceiver, from a register.
+    pub data_o: Signal<Out, Bit>,
+    /// Driver enable of the data line, from a register.
+    pub data_oe: Signal<Out, Bit>,
+    /// Strobe: a new result can be read from this cycle on.
+    pub result_strobe: Signal<Out, Bit>,
+    /// Last good position, bit 0 = LSB, zeros above its width.
+    pub position: Signal<Out, Bits<48>>,
+    /// There is a good position.
+    pub position_valid: Signal<Out, Bit>,
+    /// The last result brought the position; low = held from an earlier frame.
+    pub fresh: Signal<Out, Bit>,
+    /// Number of results, wrapping.
+    pub sequence: Signal<Out, Bits<16>>,
+    /// Time of the first falling clock edge of the frame that brought the position, in system clock cycles.
+    pub first_fall_timestamp: Signal<Out, Bits<32>>,
+    /// Age of the position in microseconds; stops at 65535.
+    pub age_us: Signal<Out, Bits<16>>,
+    /// Primary cause of the last result, see [`crate::transaction::cause`].
+    pub cause: Signal<Out, Bits<4>>,
+    /// Raw flags of the last result.
+    pub flags: Signal<Out, Bits<12>>,
+    /// CRC received in the last whole frame.
+    pub crc_received: Signal<Out, Bits<5>>,
+    /// CRC computed for the last whole frame.
+    pub crc_computed: Signal<Out, Bits<5>>,
+    /// Recovery time tm of the last frame, in system clock cycles.
+    pub recovery_cycles: Signal<Out, Bits<13>>,
+    /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
+    pub delay_cycles: Signal<Out, Bits<10>>,
+    /// A trigger would not be taken.
+    pub busy: Signal<Out, Bit>,
+    /// The frame under way has the request.
+    pub request_runs: Signal<Out, Bit>,
+    /// DATA is HIGH, and no frame is on the wire.
+    pub line_high: Signal<Out, Bit>,
+    /// Strobe: a trigger has been lost.
+    pub displaced: Signal<Out, Bit>,
+    /// Strobe: a frame, triggered or not, has ended; `over_cause` to `reply_good` are of it.
+    pub over: Signal<Out, Bit>,
+    /// The frame had the request.
+    pub over_request: Signal<Out, Bit>,
+    /// Primary cause of the frame, as `cause`.
+    pub over_cause: Signal<Out, Bits<4>>,
+    /// Raw flags of the frame, as `flags`.
+    pub over_flags: Signal<Out, Bits<12>>,
+    /// Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
+    pub reply: Signal<Out, Bits<48>>,
+    /// Its CRC is right.
+    pub reply_good: Signal<Out, Bit>,
+    /// The encoder sends after each EnDat 2.2 position: bit 0 additional information 1, bit 1 additional information 2.
+    pub info_active: Signal<Out, Bits<2>>,
+    /// Additional information 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
+    pub info_1: Signal<Out, Bits<24>>,
+    /// Additional information 2 as it came last.
+    pub info_2: Signal<Out, Bits<24>>,
+    /// Additional informations in the last frame: bit 0 information 1, bit 1 information 2.
+    pub info_came: Signal<Out, Bits<2>>,
+    /// Their CRCs are right.
+    pub info_good: Signal<Out, Bits<2>>,
+    /// The propagation delay is known: frames run at the full clock, requests may ride.
+    pub calibrated: Signal<Out, Bit>,
+    /// Strobe: the data line is sampled for a bit of the answer.
+    pub sample_strobe: Signal<Out, Bit>,
+    /// The service's alarm: too many bad frames, or positions 1 and 2 apart.
+    pub alarm: Signal<Out, Bit>,
+    /// Word of the service's RAM that the host accesses; stays put from one strobe to the next, 8 cycles at least.
+    pub host_address: Signal<In, Bits<7>>,
+    /// Strobe: read it.
+    pub host_read: Signal<In, Bit>,
+    /// The word read; 0 without service.
+    pub host_word: Signal<Out, Bits<32>>,
+    /// Strobe: write one half of it.
+    pub host_write: Signal<In, Bit>,
+    /// The half: 1 = high. Write the low one last: it acts.
+    pub host_half: Signal<In, Bit>,
+    /// What to write.
+    pub host_data: Signal<In, Bits<16>>,
+    channel: Channel,
+    service: Vec<Service>,
+    _services: usize,
+}
+
+impl EncoderPort {
+    /// A port with these fixed times; with a service that initialises and takes requests if `service` is given.
+    /// `wants_short`: the encoder is set to the short recovery time.
+    pub fn new(times: FixedTimes, service: Option<&ServiceTimes>, wants_short: bool) -> Self {
+        let features = Features {
+            requests: service.is_some(),
+        };
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            tick_us: Default::default(),
+            timestamp: Default::default(),
+            trigger: Default::default(),
+            calibrate: Default::default(),
+            data_i: Default::default(),
+            period_cycles: Default::default(),
+            first_low_extra_cycles: Default::default(),
+            command: Default::default(),
+            position_bits: Default::default(),
+            filter_cycles: Default::default(),
+            start_window_cycles: Default::default(),
+            start_timeout_us: Default::default(),
+            recovery_limit_cycles: Default::default(),
+            endat_clk: Default::default(),
+            data_o: Default::default(),
+            data_oe: Default::default(),
+            result_strobe: Default::default(),
+            position: Default::default(),
+            position_valid: Default::default(),
+            fresh: Default::default(),
+            sequence: Default::default(),
+            first_fall_timestamp: Default::default(),
+            age_us: Default::default(),
+            cause: Default::default(),
+            flags: Default::default(),
+            crc_received: Default::default(),
+            crc_computed: Default::default(),
+            recovery_cycles: Default::default(),
+            delay_cycles: Default::default(),
+            busy: Default::default(),
+            request_runs: Default::default(),
+            line_high: Default::default(),
+            displaced: Default::default(),
+            over: Default::default(),
+            over_request: Default::default(),
+            over_cause: Default::default(),
+            over_flags: Default::default(),
+            reply: Default::default(),
+            reply_good: Default::default(),
+            info_active: Default::default(),
+            info_1: Default::default(),
+            info_2: Default::default(),
+            info_came: Default::default(),
+            info_good: Default::default(),
+            calibrated: Default::default(),
+            sample_strobe: Default::default(),
+            alarm: Default::default(),
+            host_address: Default::default(),
+            host_read: Default::default(),
+            host_word: Default::default(),
+            host_write: Default::default(),
+            host_half: Default::default(),
+            host_data: Default::default(),
+            channel: Channel::with(times, features),
+            service: service
+                .map(|times| Service::new(times, wants_short))
+                .into_iter()
+                .collect(),
+            _services: service.iter().count(),
+        }
+    }
+}
+
+impl Logic for EncoderPort {
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, channel);
+        self.channel.reset.next = self.reset.val();
+        self.channel.tick_us.next = self.tick_us.val();
+        self.channel.timestamp.next = self.timestamp.val();
+        self.channel.trigger.next = self.trigger.val();
+        self.channel.calibrate.next = self.calibrate.val();
+        self.channel.data_i.next = self.data_i.val();
+        self.channel.period_cycles.next = self.period_cycles.val();
+        self.channel.first_low_extra_cycles.next = self.first_low_extra_cycles.val();
+        self.channel.command.next = self.command.val();
+        self.channel.position_bits.next = self.position_bits.val();
+        self.channel.filter_cycles.next = self.filter_cycles.val();
+        self.channel.start_window_cycles.next = self.start_window_cycles.val();
+        self.channel.start_timeout_us.next = self.start_timeout_us.val();
+        self.channel.recovery_limit_cycles.next = self.recovery_limit_cycles.val();
+        self.channel.request_command.next = 0.into();
+        self.channel.request_parameter.next = 0.into();
+        self.channel.request_ride.next = false;
+        self.channel.request_own.next = false;
+        self.channel.request_cancel.next = false;
+        self.channel.hold_off.next = false;
+        self.channel.clock_low.next = false;
+        self.channel.forced.next = 0.into();
+        self.endat_clk.next = self.channel.endat_clk.val();
+        self.data_o.next = self.channel.data_o.val();
+        self.data_oe.next = self.channel.data_oe.val();
+        self.result_strobe.next = self.channel.result_strobe.val();
+        self.position.next = self.channel.position.val();
+        self.position_valid.next = self.channel.position_valid.val();
+        self.fresh.next = self.channel.fresh.val();
+        self.sequence.next = self.channel.sequence.val();
+        self.first_fall_timestamp.next = self.channel.first_fall_timestamp.val();
+        self.age_us.next = self.channel.age_us.val();
+        self.cause.next = self.channel.cause.val();
+        self.flags.next = self.channel.flags.val();
+        self.crc_received.next = self.channel.crc_received.val();
+        self.crc_computed.next = self.channel.crc_computed.val();
+        self.recovery_cycles.next = self.channel.recovery_cycles.val();
+        self.delay_cycles.next = self.channel.delay_cycles.val();
+        self.busy.next = self.channel.busy.val();
+        self.request_runs.next = self.channel.request_runs.val();
+        self.line_high.next = self.channel.line_high.val();
+        self.displaced.next = self.channel.displaced.val();
+        self.over.next = self.channel.over.val();
+        self.over_request.next = self.channel.over_request.val();
+        self.over_cause.next = self.channel.over_cause.val();
+        self.over_flags.next = self.channel.over_flags.val();
+        self.reply.next = self.channel.reply.val();
+        self.reply_good.next = self.channel.reply_good.val();
+        self.info_active.next = self.channel.info_active.val();
+        self.info_1.next = self.channel.info_1.val();
+        self.info_2.next = self.channel.info_2.val();
+        self.info_came.next = self.channel.info_came.val();
+        self.info_good.next = self.channel.info_good.val();
+        self.calibrated.next = self.channel.calibrated.val();
+        self.sample_strobe.next = self.channel.sample_strobe.val();
+        self.alarm.next = false;
+        self.host_word.next = 0.into();
+        for i in 0..self._services {
+            self.service[i].clock.next = self.clock.val();
+            self.service[i].reset.next = self.reset.val();
+            self.service[i].tick_us.next = self.tick_us.val();
+            self.service[i].over.next = self.channel.over.val();
+            self.service[i].over_request.next = self.channel.over_request.val();
+            self.service[i].over_cause.next = self.channel.over_cause.val();
+            self.service[i].over_flags.next = self.channel.over_flags.val();
+            self.service[i].reply.next = self.channel.reply.val();
+            self.service[i].reply_good.next = self.channel.reply_good.val();
+            self.service[i].info_active.next = self.channel.info_active.val();
+            self.service[i].info_1.next = self.channel.info_1.val();
+            self.service[i].info_2.next = self.channel.info_2.val();
+            self.service[i].info_good.next = self.channel.info_good.val();
+            self.service[i].request_runs.next = self.channel.request_runs.val();
+            self.service[i].line_high.next = self.channel.line_high.val();
+            self.service[i].displaced.next = self.channel.displaced.val();
+            self.service[i].sequence.next = self.channel.sequence.val();
+            self.service[i].position.next = self.channel.position.val();
+            self.service[i].fresh.next = self.channel.fresh.val();
+            self.service[i].delay_cycles.next = self.channel.delay_cycles.val();
+            self.service[i].period_cycles.next = self.period_cycles.val();
+            self.service[i].command.next = self.command.val();
+            self.service[i].position_bits.next = self.position_bits.val();
+            self.service[i].host_address.next = self.host_address.val();
+            self.service[i].host_read.next = self.host_read.val();
+            self.service[i].host_write.next = self.host_write.val();
+            self.service[i].host_half.next = self.host_half.val();
+            self.service[i].host_data.next = self.host_data.val();
+            self.channel.period_cycles.next = self.service[i].period_now_cycles.val();
+            self.channel.command.next = self.service[i].command_now.val();
+            self.channel.position_bits.next = self.service[i].position_bits_now.val();
+            self.channel.calibrate.next = self.calibrate.val() | self.service[i].calibrate.val();
+            self.channel.request_command.next = self.service[i].request_command.val();
+            self.channel.request_parameter.next = self.service[i].request_parameter.val();
+            self.channel.request_ride.next = self.service[i].request_ride.val();
+            self.channel.request_own.next = self.service[i].request_own.val();
+            self.channel.request_cancel.next = self.service[i].request_cancel.val();
+            self.channel.hold_off.next = self.service[i].hold_off.val();
+            self.channel.clock_low.next = self.service[i].clock_low.val();
+            self.channel.forced.next = self.service[i].forced.val();
+            self.alarm.next = self.service[i].alarm.val();
+            self.host_word.next = self.service[i].host_word.val();
+        }
+    }
+}

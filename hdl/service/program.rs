@@ -1,0 +1,374 @@
+//! The service's program: what it does, step by step.
+//!
+//! ```text
+//! start -> [power-up, initialisation] -> loop: end of a frame?   count it, keep its informations, prepare the next selection
+//!                                              request written?  send it, check its echo, wait as the command demands
+//!                                              control written?  initialise, clear
+//!                                              line HIGH for long, then LOW?  initialise
+//! ```
+//!
+//! Subroutines that call others keep their return address in a word of RAM. Conditions: after `sub` C means less, after `addi(minus(k))`
+//! C means at least k.
+
+mod events;
+mod initialise;
+mod position_2;
+mod requests;
+
+pub use initialise::{step_name, steps, Step};
+
+use super::map::{
+    control, input, input::status, output, output::acknowledge, output::control as level, state,
+    word,
+};
+use crate::sequencer::assembler::Assembler;
+use crate::timing;
+
+/// Times of a service, and what it does by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ServiceTimes {
+    /// Initialises the encoder after reset and after it has been plugged in.
+    pub initialise: bool,
+    /// Clock HIGH after power-up, before the pulse.
+    pub power_up_ms: u16,
+    /// Clock HIGH after the pulse.
+    pub after_pulse_ms: u16,
+    /// Wait after a reset.
+    pub reset_ms: u16,
+    /// Wait after a word has been written or an area selected.
+    pub write_ms: u16,
+    /// Wait after other commands with a parameter.
+    pub gap_ms: u16,
+    /// Longest Busy.
+    pub busy_ms: u16,
+    /// A request that has not ended by then has failed.
+    pub request_ms: u16,
+    /// DATA must be HIGH for so long to be taken for an open line.
+    pub unplugged_ms: u16,
+    /// System clock in kHz.
+    pub system_khz: u32,
+}
+
+impl ServiceTimes {
+    /// The protocol's times at a system clock of `system_hz`.
+    pub const fn at(system_hz: u64) -> Self {
+        Self {
+            initialise: true,
+            power_up_ms: timing::POWER_UP_MS,
+            after_pulse_ms: timing::AFTER_PULSE_MS,
+            reset_ms: timing::RESET_MS,
+            write_ms: timing::WRITE_MS,
+            gap_ms: timing::PARAMETER_GAP_MS,
+            busy_ms: timing::BUSY_MS,
+            request_ms: 200,
+            unplugged_ms: 5,
+            system_khz: (system_hz / 1_000) as u32,
+        }
+    }
+}
+
+/// The program's words of RAM.
+mod own {
+    use super::word;
+
+    const FIRST: u8 = 2 * word::PRIVATE;
+    pub const ZERO: u8 = FIRST;
+    /// Return addresses.
+    pub const FROM_EVENT: u8 = FIRST + 1;
+    pub const FROM_STORE: u8 = FIRST + 2;
+    pub const FROM_WAIT: u8 = FIRST + 3;
+    pub const FROM_OWN: u8 = FIRST + 4;
+    pub const FROM_STEP: u8 = FIRST + 5;
+    pub const FROM_INITIALISE: u8 = FIRST + 6;
+    /// Who uses the request: see [`super::requests::mailbox`].
+    pub const MAILBOX: u8 = FIRST + 7;
+    /// The request.
+    pub const MODE: u8 = FIRST + 8;
+    pub const ADDRESS: u8 = FIRST + 9;
+    pub const DATA: u8 = FIRST + 10;
+    /// How it is to go out.
+    pub const GO: u8 = FIRST + 11;
+    /// Cause and flags of its frame.
+    pub const RESULT: u8 = FIRST + 12;
+    pub const ERROR: u8 = FIRST + 13;
+    pub const BEGAN_US: u8 = FIRST + 14;
+    pub const BEGAN_MS: u8 = FIRST + 15;
+    pub const WAIT_FROM: u8 = FIRST + 16;
+    pub const WAIT_MS: u8 = FIRST + 17;
+    pub const OWN_FROM: u8 = FIRST + 18;
+    /// Levels at the control port.
+    pub const LEVELS: u8 = FIRST + 19;
+    /// While an event is handled.
+    pub const STATUS: u8 = FIRST + 20;
+    pub const CODE: u8 = FIRST + 21;
+    pub const CONTENT: u8 = FIRST + 22;
+    pub const INDEX: u8 = FIRST + 23;
+    pub const NUMBER: u8 = FIRST + 24;
+    /// An additional information of the list has come.
+    pub const MATCHED: u8 = FIRST + 25;
+    /// Which of the last m frames were bad, and how many; 2^(m-1); m.
+    pub const BAD: u8 = 2 * word::BAD_FRAMES;
+    pub const HISTORY: u8 = 2 * word::BAD_FRAMES + 1;
+    pub const LEAVING: u8 = FIRST + 26;
+    pub const WINDOW: u8 = FIRST + 27;
+    /// Place in the list of the code that was selected last.
+    pub const TURN: u8 = FIRST + 28;
+    /// DATA has been HIGH since then.
+    pub const HIGH_FROM: u8 = FIRST + 29;
+    pub const IS_HIGH: u8 = FIRST + 30;
+    /// Address and place of a word that is read.
+    pub const STEP: u8 = FIRST + 31;
+    pub const RETRIES: u8 = FIRST + 32;
+    pub const COUNT: u8 = FIRST + 33;
+    /// 32 bits.
+    pub const REST: u8 = FIRST + 34;
+    pub const DIVISOR: u8 = FIRST + 36;
+    /// What has been found: as the port.
+    pub const FOUND: u8 = FIRST + 37;
+    /// Which part of position 2 comes next: its code; 0 = the first.
+    pub const STAGE: u8 = FIRST + 38;
+    /// 48 bits: the position that position 2 belongs to.
+    pub const POSITION: u8 = FIRST + 39;
+    /// 64 bits: two to the position's width; difference of the positions.
+    pub const MODULUS: u8 = FIRST + 42;
+    pub const DIFFERENCE: u8 = FIRST + 46;
+    /// 64 bits: what is left of the tolerance.
+    pub const MARGIN: u8 = FIRST + 50;
+    pub const FROM_FAILED: u8 = FIRST + 54;
+    pub const STEP_RETURN: u8 = FIRST + 55;
+}
+
+/// Low half of a host word.
+const fn low(word: u8) -> u8 {
+    2 * word
+}
+
+/// High half of a host word.
+const fn high(word: u8) -> u8 {
+    2 * word + 1
+}
+
+/// What takes `k` away in an addition.
+const fn minus(k: u16) -> u16 {
+    0u16.wrapping_sub(k)
+}
+
+/// Sets a RAM word to a number.
+fn set(a: &mut Assembler, address: u8, value: u16) {
+    a.ldi(value).st(address);
+}
+
+/// Adds bits to a RAM word, whether they are there or not.
+fn set_bits(a: &mut Assembler, address: u8, bits: u16) {
+    a.ld(address).andi(!bits).addi(bits).st(address);
+}
+
+/// The program.
+///
+/// # Panics
+/// If it is longer than the sequencer takes: a fault of this file that every test shows.
+pub fn program(times: &ServiceTimes) -> Vec<u32> {
+    let mut a = Assembler::new();
+    start(&mut a, times);
+    main_loop(&mut a, times);
+    subroutines(&mut a);
+    events::event(&mut a, times);
+    events::store(&mut a);
+    position_2::position_2(&mut a);
+    requests::mailbox_request(&mut a, times);
+    requests::own_frame(&mut a, times);
+    requests::judge(&mut a);
+    if times.initialise {
+        initialise::initialise(&mut a, times);
+    }
+    match a.finish() {
+        Ok(words) => words,
+        Err(fault) => panic!("the service's program: {fault}"),
+    }
+}
+
+fn start(a: &mut Assembler, times: &ServiceTimes) {
+    a.ldi(0);
+    for word in [
+        own::ZERO,
+        own::MAILBOX,
+        own::IS_HIGH,
+        own::WINDOW,
+        own::TURN,
+        own::FOUND,
+        own::STAGE,
+        own::LEVELS,
+        low(word::STATE),
+        low(word::REQUEST_STATE),
+        low(word::PROGRESS),
+        high(word::PROGRESS),
+    ] {
+        a.st(word);
+    }
+    a.out(output::FOUND).out(output::PERIOD);
+    a.ldi(acknowledge::EVENT | acknowledge::MAILBOX | acknowledge::CONTROL);
+    a.out(output::ACKNOWLEDGE);
+    a.call("modulus");
+    if times.initialise {
+        set(a, own::LEVELS, level::HOLD_OFF);
+        a.out(output::CONTROL);
+        a.ldi(times.power_up_ms).call("wait");
+        a.ldi(level::HOLD_OFF | level::CLOCK_LOW)
+            .out(output::CONTROL);
+        // A microsecond or two: more than the 125 ns that are asked for.
+        a.inp(input::TIME_US).st(own::WAIT_FROM);
+        let pulse = a.here();
+        a.inp(input::TIME_US).sub(own::WAIT_FROM).addi(minus(2));
+        a.jnc(pulse);
+        a.ldi(level::HOLD_OFF).out(output::CONTROL);
+        a.ldi(times.after_pulse_ms).call("wait");
+        a.call("initialise");
+    } else {
+        a.ldi(0).out(output::CONTROL);
+    }
+}
+
+fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
+    a.place("main");
+    let (no_mailbox, no_clear, no_control) = (a.label(), a.label(), a.label());
+    a.call("look");
+    // One request at a time: the next one waits at the door.
+    a.ld(own::MAILBOX).jnz(no_mailbox);
+    a.inp(input::STATUS).andi(status::MAILBOX).jnz("mailbox");
+    a.place(no_mailbox);
+    a.inp(input::STATUS).andi(status::CONTROL).jz(no_control);
+    a.ld(own::MAILBOX).jnz(no_control);
+    a.ldi(acknowledge::CONTROL).out(output::ACKNOWLEDGE);
+    a.ld(low(word::CONTROL)).andi(control::CLEAR).jz(no_clear);
+    a.call("clear");
+    a.place(no_clear);
+    if times.initialise {
+        a.ld(low(word::CONTROL)).andi(control::INITIALISE);
+        a.jz(no_control);
+        a.call("initialise");
+    }
+    a.place(no_control);
+    a.inp(input::DISPLACED).st(low(word::LOST));
+    a.ld(low(word::FORCE)).out(output::FORCE);
+    window(a);
+    plug(a, times);
+    a.jmp("main");
+}
+
+/// Another m: the history begins again.
+fn window(a: &mut Assembler) {
+    let (same, more) = (a.label(), a.label());
+    a.ld(high(word::THRESHOLD)).sub(own::WINDOW).jz(same);
+    a.ld(high(word::THRESHOLD)).st(own::WINDOW).st(own::COUNT);
+    a.ldi(0).st(own::HISTORY).st(own::BAD);
+    set(a, own::LEAVING, 1);
+    a.place(more);
+    a.ld(own::COUNT).addi(minus(1)).st(own::COUNT).jz(same);
+    a.ld(own::LEAVING).add(own::LEAVING).st(own::LEAVING);
+    a.jnz(more);
+    // More than 16 are 16.
+    set(a, own::LEAVING, 1 << 15);
+    a.place(same);
+}
+
+/// An open line shows HIGH; when it is LOW again, there is an encoder to initialise.
+fn plug(a: &mut Assembler, times: &ServiceTimes) {
+    let (is_high, again, done) = (a.label(), a.label(), a.label());
+    a.inp(input::STATUS).andi(status::LINE_HIGH).jnz(is_high);
+    a.st(own::IS_HIGH);
+    a.ld(own::MAILBOX).jnz(done);
+    a.ld(low(word::STATE)).andi(state::UNPLUGGED).jz(done);
+    a.ld(low(word::STATE)).andi(!state::UNPLUGGED);
+    a.st(low(word::STATE));
+    if times.initialise {
+        a.call("initialise");
+    }
+    a.jmp(done);
+    a.place(is_high);
+    a.ld(own::IS_HIGH).jnz(again);
+    set(a, own::IS_HIGH, 1);
+    a.inp(input::TIME_MS).st(own::HIGH_FROM);
+    a.place(again);
+    a.inp(input::TIME_MS).sub(own::HIGH_FROM);
+    a.addi(minus(times.unplugged_ms)).jnc(done);
+    a.ld(low(word::STATE))
+        .andi(!(state::UNPLUGGED | state::INITIALISED));
+    a.addi(state::UNPLUGGED).st(low(word::STATE));
+    a.place(done);
+}
+
+fn subroutines(a: &mut Assembler) {
+    // Handles the end of a frame, if there is one; to be called where nothing but `event` may need the return address.
+    let nothing = a.label();
+    a.place("look");
+    a.inp(input::STATUS).andi(status::EVENT).jnz("event");
+    a.place(nothing).ret();
+
+    // Waits for A milliseconds at least.
+    a.place("wait").addi(1).st(own::WAIT_MS);
+    a.link().st(own::FROM_WAIT);
+    a.inp(input::TIME_MS).st(own::WAIT_FROM);
+    let again = a.here();
+    a.call("look");
+    a.inp(input::TIME_MS).sub(own::WAIT_FROM).sub(own::WAIT_MS);
+    a.jc(again);
+    a.ld(own::FROM_WAIT).jmpa();
+
+    // All counters and what is latched.
+    a.place("clear");
+    set(a, own::INDEX, 32);
+    let next = a.here();
+    a.ld(own::INDEX).addi(minus(1)).st(own::INDEX).tax();
+    a.ldi(0).st_x(low(word::COUNTERS));
+    a.ld(own::INDEX).jnz(next);
+    for word in [
+        low(word::COMPARISONS),
+        high(word::COMPARISONS),
+        own::HISTORY,
+        own::BAD,
+        high(word::LOST),
+    ] {
+        a.st(word);
+    }
+    a.ld(low(word::STATE));
+    a.andi(!(state::ALARM | state::POSITION_2))
+        .st(low(word::STATE));
+    a.ld(own::LEVELS).andi(!level::ALARM).st(own::LEVELS);
+    a.out(output::CONTROL).ret();
+
+    // Two to the position's width.
+    a.place("modulus");
+    let (configured, more) = (a.label(), a.label());
+    a.ld(own::FOUND).andi(63).jnz(configured);
+    a.inp(input::CONFIGURED).andi(63);
+    a.place(configured).st(own::COUNT);
+    a.ldi(0);
+    (1..4).for_each(|i| {
+        a.st(own::MODULUS + i);
+    });
+    set(a, own::MODULUS, 1);
+    a.place(more);
+    a.ld(own::MODULUS).add(own::MODULUS).st(own::MODULUS);
+    for i in 1..4 {
+        a.ld(own::MODULUS + i).adc(own::MODULUS + i);
+        a.st(own::MODULUS + i);
+    }
+    a.ld(own::COUNT).addi(minus(1)).st(own::COUNT).jnz(more);
+    a.ret();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sequencer::PROGRAM_WORDS;
+
+    #[test]
+    fn the_program_fits_with_and_without_initialisation() {
+        let mut times = ServiceTimes::at(100_000_000);
+        let whole = program(&times).len();
+        times.initialise = false;
+        let part = program(&times).len();
+        println!("{whole} words, {part} without initialisation");
+        assert!(part < whole && whole <= PROGRAM_WORDS);
+    }
+}

@@ -1,0 +1,188 @@
+//! The end of a frame: counters, threshold, additional informations, what they say about the request, the next selection.
+
+use super::requests::mailbox;
+use super::{high, low, minus, own, set, set_bits, ServiceTimes};
+use crate::protocol::ModeCommand;
+use crate::sequencer::assembler::Assembler;
+use crate::service::map::{
+    input, input::status, output, output::acknowledge, output::control as level, output::go,
+    request_state, state, word,
+};
+
+/// Flags at the cause port of a frame that ended before its supplement was out: data not low, no start bit, start window, tail, unknown
+/// command, information missing.
+const UNSENT: u16 = 0b1110_0000_0111 << 4;
+
+pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
+    a.place("event").link().st(own::FROM_EVENT);
+    a.inp(input::STATUS).st(own::STATUS);
+    a.inp(input::CAUSE).st(own::NUMBER).andi(15).st(own::INDEX);
+    a.ldi(acknowledge::EVENT).out(output::ACKNOWLEDGE);
+    let not_missed = a.label();
+    a.ld(own::STATUS).andi(status::MISSED).jz(not_missed);
+    a.ld(high(word::LOST)).addi(1).st(high(word::LOST));
+    a.place(not_missed);
+    a.call("count");
+    threshold(a);
+
+    // What the additional informations say goes into the slots of their codes.
+    a.ldi(0).st(own::MATCHED);
+    let (no_second, no_first) = (a.label(), a.label());
+    a.ld(own::STATUS).andi(status::INFO_2).jz(no_second);
+    a.inp(input::INFO_2).st(own::CONTENT);
+    a.inp(input::INFO_2_STATUS).st(high(word::INFO_STATUS));
+    a.call("store");
+    a.place(no_second);
+    a.ld(own::STATUS).andi(status::INFO_1).jz(no_first);
+    a.inp(input::INFO_1).st(own::CONTENT);
+    a.inp(input::INFO_1_STATUS).st(low(word::INFO_STATUS));
+    a.call("store");
+    a.place(no_first);
+
+    let (sent, fulfilled) = (a.label(), a.label());
+    a.ld(own::MAILBOX).jz("turn");
+    a.xori(mailbox::SENT).jz(sent);
+    a.ld(own::MAILBOX).xori(mailbox::RIDING).jnz("event_done");
+    a.ld(own::STATUS).andi(status::IS_REQUEST).jz("event_done");
+    let is_out = a.label();
+    a.ld(own::NUMBER).andi(UNSENT).jz(is_out);
+    a.ldi(request_state::FRAME).call("finish");
+    a.jmp("event_done");
+    a.place(is_out);
+    set(a, own::MAILBOX, mailbox::SENT);
+    a.ld(own::STATUS).andi(status::INFO_1_ACTIVE).jz(fulfilled);
+    a.jmp("event_done");
+
+    // Additional information 1 tells when the encoder is done, and what with.
+    a.place(sent);
+    let in_time = a.label();
+    a.inp(input::TIME_MS).sub(own::BEGAN_MS);
+    a.addi(minus(times.busy_ms)).jnc(in_time);
+    a.ldi(request_state::BUSY_TIMEOUT).call("finish");
+    a.jmp("event_done");
+    a.place(in_time);
+    a.ld(own::STATUS).andi(status::INFO_1_ACTIVE).jz(fulfilled);
+    a.ld(own::STATUS).andi(status::INFO_1).jz("event_done");
+    a.ld(low(word::INFO_STATUS)).andi(1 << 5).jnz("event_done");
+    a.ld(low(word::INFO_STATUS)).st(high(word::ANSWER));
+    a.ld(own::CONTENT).st(low(word::ANSWER));
+    answer_echo(a, fulfilled);
+    a.place(fulfilled);
+    a.ldi(request_state::OK).call("finish");
+    a.place("event_done");
+    a.ld(own::FROM_EVENT).jmpa();
+    turn(a);
+    count(a);
+}
+
+/// 0x47 repeats the MRS code, 0x45 and 0x46 repeat the address, in the upper byte.
+fn answer_echo(a: &mut Assembler, fulfilled: crate::sequencer::assembler::Handle) {
+    let (parameter, compare) = (a.label(), a.label());
+    a.ld(own::CODE).xori(7).jnz(parameter);
+    a.ld(own::MODE);
+    a.xori(ModeCommand::PositionSelectMemory.code().into())
+        .jnz(fulfilled);
+    // The selection of an additional information is not repeated.
+    a.ld(own::ADDRESS).andi(0xE0).xori(0x40).jz(fulfilled);
+    a.jmp(compare);
+    a.place(parameter);
+    a.ld(own::CODE).addi(minus(5)).jnc(fulfilled);
+    a.addi(minus(2)).jc(fulfilled);
+    a.ld(own::MODE);
+    a.xori(ModeCommand::PositionSendParameter.code().into())
+        .jz(compare);
+    a.ld(own::MODE);
+    a.xori(ModeCommand::PositionReceiveParameter.code().into())
+        .jnz(fulfilled);
+    a.place(compare);
+    a.ld(own::CONTENT).swap().andi(0xFF).sub(own::ADDRESS);
+    a.jz(fulfilled);
+    a.ldi(request_state::ADDRESS_ECHO).call("finish");
+    a.jmp("event_done");
+}
+
+/// Counts cause INDEX, in 32 bits.
+fn count(a: &mut Assembler) {
+    a.place("count");
+    a.ld(own::INDEX).add(own::INDEX).tax();
+    a.ld_x(low(word::COUNTERS))
+        .addi(1)
+        .st_x(low(word::COUNTERS));
+    a.ld_x(high(word::COUNTERS)).adc(own::ZERO);
+    a.st_x(high(word::COUNTERS)).ret();
+}
+
+/// n of the last m frames.
+fn threshold(a: &mut Assembler) {
+    let (stays, good, done) = (a.label(), a.label(), a.label());
+    a.ld(own::WINDOW).jz(done);
+    // The frame that leaves was a bad one if the history is that large.
+    a.ld(own::HISTORY).sub(own::LEAVING).jc(stays);
+    a.st(own::HISTORY);
+    a.ld(own::BAD).addi(minus(1)).st(own::BAD);
+    a.place(stays);
+    a.ld(own::HISTORY).add(own::HISTORY).st(own::HISTORY);
+    a.ld(own::INDEX).jz(good);
+    a.ld(own::HISTORY).addi(1).st(own::HISTORY);
+    a.ld(own::BAD).addi(1).st(own::BAD);
+    a.place(good);
+    a.ld(low(word::THRESHOLD)).jz(done);
+    a.ld(own::BAD).sub(low(word::THRESHOLD)).jc(done);
+    a.call("alarm");
+    set_bits(a, low(word::STATE), state::ALARM);
+    a.place(done);
+}
+
+/// Prepares the selection of the next code of the list.
+fn turn(a: &mut Assembler) {
+    let (go_on, select) = (a.label(), a.label());
+    a.place("turn");
+    a.ld(low(word::LIST_LENGTH)).jz("event_done");
+    // Only where triggers send 111000.
+    a.inp(input::CONFIGURED).andi(1 << 6).jz("event_done");
+    // A list of one is selected once.
+    a.ld(low(word::LIST_LENGTH)).xori(1).jnz(select);
+    a.ld(own::MATCHED).jnz("event_done");
+    a.place(select);
+    a.ld(own::TURN).addi(1).st(own::TURN);
+    a.sub(low(word::LIST_LENGTH)).jc(go_on);
+    set(a, own::TURN, 0);
+    a.place(go_on);
+    a.ldi(ModeCommand::PositionSelectMemory.code().into());
+    a.out(output::COMMAND);
+    a.ld(own::TURN).add(own::TURN).tax();
+    a.ld_x(low(word::LIST)).out(output::ADDRESS);
+    a.ldi(0).out(output::DATA);
+    a.ldi(go::RIDE).out(output::GO);
+    a.jmp("event_done");
+
+    a.place("alarm");
+    set_bits(a, own::LEVELS, level::ALARM);
+    a.out(output::CONTROL).ret();
+}
+
+/// Puts CONTENT of the information whose status byte is in A into the slots of its code.
+pub(super) fn store(a: &mut Assembler) {
+    let (next, other, done) = (a.label(), a.label(), a.label());
+    a.place("store").andi(0x1F).st(own::CODE);
+    a.link().st(own::FROM_STORE);
+    a.ldi(0).st(own::INDEX);
+    a.place(next);
+    a.ld(own::INDEX).sub(low(word::LIST_LENGTH)).jnc(done);
+    a.ld(own::INDEX)
+        .addi(minus(word::LIST_MAX.into()))
+        .jc(done);
+    a.ld(own::INDEX).add(own::INDEX).tax();
+    a.ld_x(low(word::LIST))
+        .andi(0x1F)
+        .sub(own::CODE)
+        .jnz(other);
+    a.ld(own::CONTENT).st_x(low(word::SLOTS));
+    a.inp(input::SEQUENCE).st_x(high(word::SLOTS));
+    set(a, own::MATCHED, 1);
+    a.place(other);
+    a.ld(own::INDEX).addi(1).st(own::INDEX).jmp(next);
+    a.place(done);
+    a.call("position_2");
+    a.ld(own::FROM_STORE).jmpa();
+}
