@@ -110,7 +110,6 @@ fn a_sequencer_is_small_and_has_its_memories_in_block_ram() {
             .filter(|(name, _)| name.starts_with(ram))
             .map(|(_, count)| count)
             .sum();
-        println!("{}: {:?} {:?}", family.name, found.usage, found.cells);
         assert_eq!(rams, count, "{}: {:?}", family.name, found.cells);
         assert!(
             found.usage.lut <= most_luts,
