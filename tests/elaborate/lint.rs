@@ -1,7 +1,8 @@
 //! The emitted text under the tools that read it: not one warning.
 
 use super::core::random_program;
-use super::zoo::{Everything, Machine, Store, Tables, ThereAndBack};
+use super::memories::{Store, Tables};
+use super::zoo::{Everything, Machine, ThereAndBack};
 use crate::tools;
 use endat_gen::area;
 use endat_gen::artifact::Artifact;
