@@ -14,8 +14,8 @@
 //! ```
 //!
 //! **Each instruction takes three cycles.** In the first the program memory is read, in the second the operand, at the end of the third
-//! all that the instruction does is done. Whatever needs no operand from RAM is computed in the second cycle already (`value`), so the third is one
-//! addition: of A or 0, and of the RAM's word or `value`.
+//! all that the instruction does is done. Whatever needs no operand from RAM is decided and computed in the second cycle already (`value`), so the third is one
+//! addition: of A or 0 (`base`), and of the RAM's word or `value`.
 //!
 //! **The host** reads and writes in cycles in which the machine does not use that side of the RAM, so neither ever waits for the other. RAM
 //! is 128 words of 32 bits for the host, 256 of 16 bits for the machine: word 2n is the low half, word 2n + 1 the high half of word n.
@@ -44,6 +44,7 @@
 pub mod assembler;
 #[cfg(test)]
 mod model;
+mod new;
 #[cfg(test)]
 mod tests;
 
@@ -59,8 +60,6 @@ pub const RAM_WORDS: usize = 256;
 pub const PORTS: usize = 32;
 /// Cycles of an instruction.
 pub const INSTRUCTION_CYCLES: u64 = 3;
-/// J 0: what stands behind the end of a program.
-const START_AGAIN: u64 = 13 << 16;
 
 /// What the machine is doing.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState)]
@@ -121,8 +120,9 @@ pub struct Sequencer {
     address: Reg<Bits<8>>,
     /// What is added if no word of RAM is.
     value: Reg<Bits<16>>,
+    /// What it is added to: A or 0.
+    base: Reg<Bits<16>>,
     takes_memory: Reg<Bit>,
-    adds: Reg<Bit>,
     inverts: Reg<Bit>,
     carry_in: Reg<Bit>,
     shifted_out: Reg<Bit>,
@@ -130,6 +130,9 @@ pub struct Sequencer {
     loads_carry: Reg<Bit>,
     stores: Reg<Bit>,
     writes_port: Reg<Bit>,
+    /// Where the counter goes.
+    way: Reg<Bits<2>>,
+    is_astray: Reg<Bit>,
     read_pending: Reg<Bit>,
     write_pending: Reg<Bit>,
     /// The RAM was read for the host in the last cycle.
@@ -140,6 +143,7 @@ pub struct Sequencer {
     special: Signal<Local, Bits<4>>,
     immediate: Signal<Local, Bits<16>>,
     is_execute: Signal<Local, Bit>,
+    offset: Signal<Local, Bits<8>>,
     operand_address: Signal<Local, Bits<8>>,
     read_word: Signal<Local, Bits<7>>,
     write_word: Signal<Local, Bits<7>>,
@@ -148,80 +152,11 @@ pub struct Sequencer {
     written: Signal<Local, Bits<16>>,
     logic: Signal<Local, Bits<16>>,
     takes_carry: Signal<Local, Bit>,
-    base: Signal<Local, Bits<16>>,
+    adds: Signal<Local, Bit>,
     operand: Signal<Local, Bits<16>>,
     sum: Signal<Local, Bits<18>>,
     following: Signal<Local, Bits<9>>,
     is_taken: Signal<Local, Bit>,
-}
-
-impl Sequencer {
-    /// A machine that runs `program`, from its first word on; see [`assembler`].
-    ///
-    /// # Panics
-    /// If it has more than [`PROGRAM_WORDS`] words, or one has more than 20 bits.
-    pub fn new(program: &[u32]) -> Self {
-        let mut words: Vec<u64> = program.iter().copied().map(u64::from).collect();
-        words.resize(words.len().max(PROGRAM_WORDS), START_AGAIN);
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            restart: Default::default(),
-            port_address: Default::default(),
-            port_in: Default::default(),
-            port_out: Default::default(),
-            port_write: Default::default(),
-            host_address: Default::default(),
-            host_read: Default::default(),
-            host_word: Default::default(),
-            host_write: Default::default(),
-            host_half: Default::default(),
-            host_data: Default::default(),
-            program: Rom::new(&words),
-            low: Default::default(),
-            high: Default::default(),
-            cycle: Reg::new(Cycle::Fetch),
-            counter: Default::default(),
-            link: Default::default(),
-            accumulator: Default::default(),
-            is_zero: Default::default(),
-            carry: Default::default(),
-            index: Default::default(),
-            address: Default::default(),
-            value: Default::default(),
-            takes_memory: Default::default(),
-            adds: Default::default(),
-            inverts: Default::default(),
-            carry_in: Default::default(),
-            shifted_out: Default::default(),
-            loads: Default::default(),
-            loads_carry: Default::default(),
-            stores: Default::default(),
-            writes_port: Default::default(),
-            read_pending: Default::default(),
-            write_pending: Default::default(),
-            is_for_host: Default::default(),
-            word: Default::default(),
-            op: Default::default(),
-            choice: Default::default(),
-            special: Default::default(),
-            immediate: Default::default(),
-            is_execute: Default::default(),
-            operand_address: Default::default(),
-            read_word: Default::default(),
-            write_word: Default::default(),
-            write_half: Default::default(),
-            is_written: Default::default(),
-            written: Default::default(),
-            logic: Default::default(),
-            takes_carry: Default::default(),
-            base: Default::default(),
-            operand: Default::default(),
-            sum: Default::default(),
-            following: Default::default(),
-            is_taken: Default::default(),
-        }
-    }
 }
 
 impl Logic for Sequencer {
@@ -240,7 +175,7 @@ impl Logic for Sequencer {
             address,
             value,
             takes_memory,
-            adds,
+            base,
             inverts,
             carry_in,
             shifted_out,
@@ -248,14 +183,21 @@ impl Logic for Sequencer {
             loads_carry,
             stores,
             writes_port,
+            way,
+            is_astray,
             read_pending,
             write_pending,
             is_for_host,
             word
         );
         clock!(self, clock, program, low, high);
+        self.is_execute.next = self.cycle.q.val() == Cycle::Execute;
         self.cycle.reset.next = self.reset.val() | self.restart.val();
-        self.counter.reset.next = self.reset.val() | self.restart.val();
+        self.counter.reset.next = self.reset.val()
+            | self.restart.val()
+            | (self.is_astray.q.val() & self.is_execute.val());
+        self.way.reset.next = self.reset.val();
+        self.is_astray.reset.next = self.reset.val();
         self.link.reset.next = self.reset.val();
         self.accumulator.reset.next = self.reset.val();
         self.is_zero.reset.next = self.reset.val();
@@ -264,7 +206,6 @@ impl Logic for Sequencer {
         self.address.reset.next = self.reset.val();
         self.value.reset.next = self.reset.val();
         self.takes_memory.reset.next = self.reset.val();
-        self.adds.reset.next = self.reset.val();
         self.inverts.reset.next = self.reset.val();
         self.carry_in.reset.next = self.reset.val();
         self.shifted_out.reset.next = self.reset.val();
@@ -284,8 +225,6 @@ impl Logic for Sequencer {
         if self.cycle.q.val() == Cycle::Operand {
             self.cycle.d.next = Cycle::Execute;
         }
-        self.is_execute.next = self.cycle.q.val() == Cycle::Execute;
-
         // The counter moves at the end of the third cycle only, so the word stands throughout the second and third.
         self.program.read_address.next = self.counter.q.val();
         self.op.next = self.program.read_data.val().get_bits::<4>(16);
@@ -295,11 +234,12 @@ impl Logic for Sequencer {
         self.port_address.next = self.program.read_data.val().get_bits::<5>(0);
 
         // Second cycle: what is computed here counts in the third.
-        self.operand_address.next = self.program.read_data.val().get_bits::<8>(0);
+        self.offset.next = 0.into();
         if self.immediate.val().get_bit(8) {
-            self.operand_address.next =
-                self.program.read_data.val().get_bits::<8>(0) + self.index.q.val();
+            self.offset.next = self.index.q.val();
         }
+        self.operand_address.next =
+            self.program.read_data.val().get_bits::<8>(0) + self.offset.val();
         self.address.d.next = self.operand_address.val();
         // Among the instructions that take `value`, two bits tell these four apart.
         match self.choice.val().index() {
@@ -310,7 +250,7 @@ impl Logic for Sequencer {
         }
         self.value.d.next = self.logic.val();
         self.takes_memory.d.next = false;
-        self.adds.d.next = false;
+        self.adds.next = false;
         self.inverts.d.next = false;
         self.carry_in.d.next = false;
         self.shifted_out.d.next = false;
@@ -330,21 +270,21 @@ impl Logic for Sequencer {
                 self.loads.d.next = true;
                 self.loads_carry.d.next = true;
                 self.takes_memory.d.next = true;
-                self.adds.d.next = true;
+                self.adds.next = true;
                 self.carry_in.d.next = self.takes_carry.val();
             }
             4 => {
                 self.loads.d.next = true;
                 self.loads_carry.d.next = true;
                 self.takes_memory.d.next = true;
-                self.adds.d.next = true;
+                self.adds.next = true;
                 self.inverts.d.next = true;
                 self.carry_in.d.next = !self.takes_carry.val();
             }
             8 => {
                 self.loads.d.next = true;
                 self.loads_carry.d.next = true;
-                self.adds.d.next = true;
+                self.adds.next = true;
             }
             9 => self.loads.d.next = true,
             10 => self.loads.d.next = true,
@@ -377,11 +317,41 @@ impl Logic for Sequencer {
             _ => {}
         }
 
-        // Third cycle: the sum. Below its lowest bit stands a place where the carry comes in.
-        self.base.next = 0.into();
-        if self.adds.q.val() {
-            self.base.next = self.accumulator.q.val();
+        match self.program.read_data.val().get_bits::<3>(13).index() {
+            0 => self.is_taken.next = true,
+            1 => self.is_taken.next = self.is_zero.q.val(),
+            2 => self.is_taken.next = !self.is_zero.q.val(),
+            3 => self.is_taken.next = self.carry.q.val(),
+            4 => self.is_taken.next = !self.carry.q.val(),
+            5 => self.is_taken.next = self.accumulator.q.val().get_bit(15),
+            _ => self.is_taken.next = false,
         }
+        // 0 to the next word, 1 to the target, 2 to the link, 3 to A.
+        self.way.d.next = 0.into();
+        self.is_astray.d.next = false;
+        match self.op.val().index() {
+            5 => self.is_astray.d.next = true,
+            6 => self.is_astray.d.next = true,
+            7 => self.is_astray.d.next = true,
+            13 => self.way.d.next = bit_cast::<2, 1>(self.is_taken.val().into()),
+            14 => self.way.d.next = 1.into(),
+            15 => match self.special.val().index() {
+                0 => self.way.d.next = 2.into(),
+                1 => {}
+                2 => {}
+                3 => self.way.d.next = 3.into(),
+                4 => {}
+                5 => {}
+                _ => self.is_astray.d.next = true,
+            },
+            _ => {}
+        }
+        self.is_zero.d.next = !self.accumulator.q.val().any();
+        // The reset of the flip-flops makes the 0, which costs no look-up tables.
+        self.base.d.next = self.accumulator.q.val();
+        self.base.reset.next = self.reset.val() | !self.adds.val();
+
+        // Third cycle: the sum. Below its lowest bit stands a place where the carry comes in.
         self.operand.next = self.value.q.val();
         if self.takes_memory.q.val() {
             self.operand.next = self.low.read_data.val();
@@ -394,18 +364,8 @@ impl Logic for Sequencer {
         }
         self.sum.next = ((bit_cast::<18, 16>(self.operand.val()) << 1)
             | bit_cast::<18, 1>(self.carry_in.q.val().into()))
-            + ((bit_cast::<18, 16>(self.base.val()) << 1) | 1);
+            + ((bit_cast::<18, 16>(self.base.q.val()) << 1) | 1);
         self.following.next = self.counter.q.val() + 1;
-        self.is_zero.d.next = !self.accumulator.q.val().any();
-        match self.program.read_data.val().get_bits::<3>(13).index() {
-            0 => self.is_taken.next = true,
-            1 => self.is_taken.next = self.is_zero.q.val(),
-            2 => self.is_taken.next = !self.is_zero.q.val(),
-            3 => self.is_taken.next = self.carry.q.val(),
-            4 => self.is_taken.next = !self.carry.q.val(),
-            5 => self.is_taken.next = self.accumulator.q.val().get_bit(15),
-            _ => self.is_taken.next = false,
-        }
         if self.is_execute.val() {
             if self.loads.q.val() {
                 self.accumulator.d.next = self.sum.val().get_bits::<16>(1);
@@ -414,30 +374,17 @@ impl Logic for Sequencer {
                 self.carry.d.next =
                     (self.sum.val().get_bit(17) ^ self.inverts.q.val()) | self.shifted_out.q.val();
             }
-            self.counter.d.next = self.following.val();
-            match self.op.val().index() {
-                5 => self.counter.d.next = 0.into(),
-                6 => self.counter.d.next = 0.into(),
-                7 => self.counter.d.next = 0.into(),
-                13 => {
-                    if self.is_taken.val() {
-                        self.counter.d.next = self.program.read_data.val().get_bits::<9>(0);
-                    }
-                }
-                14 => {
-                    self.link.d.next = self.following.val();
-                    self.counter.d.next = self.program.read_data.val().get_bits::<9>(0);
-                }
-                15 => match self.special.val().index() {
-                    0 => self.counter.d.next = self.link.q.val(),
-                    1 => self.index.d.next = self.accumulator.q.val().get_bits::<8>(0),
-                    2 => {}
-                    3 => self.counter.d.next = self.accumulator.q.val().get_bits::<9>(0),
-                    4 => {}
-                    5 => {}
-                    _ => self.counter.d.next = 0.into(),
-                },
-                _ => {}
+            match self.way.q.val().index() {
+                1 => self.counter.d.next = self.program.read_data.val().get_bits::<9>(0),
+                2 => self.counter.d.next = self.link.q.val(),
+                3 => self.counter.d.next = self.accumulator.q.val().get_bits::<9>(0),
+                _ => self.counter.d.next = self.following.val(),
+            }
+            if self.op.val() == 14 {
+                self.link.d.next = self.following.val();
+            }
+            if (self.op.val() == 15) & (self.special.val() == 1) {
+                self.index.d.next = self.accumulator.q.val().get_bits::<8>(0);
             }
         }
         self.port_out.next = self.accumulator.q.val();

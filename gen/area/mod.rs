@@ -40,7 +40,8 @@ pub struct Family {
 pub const XC6S: Family = Family {
     name: "xc6s",
     synth: "synth_xilinx -family xc6s -flatten",
-    lut: &["LUT", "SRL", "RAM"],
+    // not RAMB: block RAM
+    lut: &["LUT", "SRL", "RAM1", "RAM2", "RAM3", "RAM6"],
     ff: &["FD"],
 };
 /// iCE40.

@@ -18,6 +18,7 @@ mod expr;
 mod finish;
 mod index;
 mod loops;
+mod memory;
 mod names;
 mod plan;
 mod scope;

@@ -291,3 +291,86 @@ impl Assembler {
         call = 14, 0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_of_a_program_are_told_with_their_place() {
+        let message = |make: &dyn Fn(&mut Assembler) -> &mut Assembler| {
+            let mut a = Assembler::new();
+            make(&mut a);
+            a.finish().unwrap_err().to_string()
+        };
+        assert_eq!(
+            message(&|a| a.ldi(1).jmp("nowhere")),
+            "label = nowhere: is used at word 1 and never placed; place it with place(nowhere)"
+        );
+        assert_eq!(
+            message(&|a| a.place("x").ldi(1).place("x").ldi(2)),
+            "label = x: is placed at word 0 and again at word 1; rename one of them"
+        );
+        assert_eq!(
+            message(&|a| a.out(31).inp(32)),
+            "port = 32: is used at word 1, ports go from 0 to 31; use one of these"
+        );
+        let mut long = Assembler::new();
+        for _ in 0..513 {
+            long.ret();
+        }
+        assert_eq!(
+            long.finish().unwrap_err().to_string(),
+            "program = 513 words: the limit is 512; shorten it"
+        );
+        let mut a = Assembler::new();
+        let handle = a.label();
+        assert_eq!(
+            a.jmp(handle).finish(),
+            Err(AssemblerError::UnknownLabel {
+                name: "#0".into(),
+                word: 0
+            })
+        );
+    }
+
+    #[test]
+    fn instructions_have_their_words() {
+        let mut a = Assembler::new();
+        let start = a.here();
+        a.ldi(0xffff).ld(1).ld_x(2).st(3).st_x(4);
+        a.add(5)
+            .add_x(6)
+            .adc(7)
+            .adc_x(8)
+            .sub(9)
+            .sub_x(10)
+            .sbc(11)
+            .sbc_x(12);
+        a.addi(1).andi(2).xori(3).inp(30).out(31);
+        a.jmp("end")
+            .jz("end")
+            .jnz("end")
+            .jc("end")
+            .jnc("end")
+            .jneg(start)
+            .call("end");
+        a.ret()
+            .tax()
+            .link()
+            .jmpa()
+            .shr()
+            .swap()
+            .ldi_label("end")
+            .place("end");
+        assert_eq!(
+            a.finish().unwrap(),
+            [
+                0x0ffff, 0x10001, 0x10102, 0x20003, 0x20104, 0x30005, 0x30106, 0x30207, 0x30308,
+                0x40009, 0x4010a, 0x4020b, 0x4030c, 0x80001, 0x90002, 0xa0003, 0xb001e, 0xc001f,
+                0xd0020, 0xd2020, 0xd4020, 0xd6020, 0xd8020, 0xda000, 0xe0020, 0xf0000, 0xf0001,
+                0xf0002, 0xf0003, 0xf0004, 0xf0005, 0x00020
+            ]
+        );
+    }
+}

@@ -36,7 +36,7 @@ pub fn random_program(seed: u64) -> Vec<u32> {
     let mut rng = Rng::new(seed);
     let mut word = || match (rng.next_u64() & 0xfffff) as u32 {
         word if (5..8).contains(&(word >> 16)) => word & 0x2ffff,
-        word if word >> 16 == 15 => word % 6 | 0xf0000,
+        word if word >> 16 == 15 => (word % 6) | 0xf0000,
         word => word,
     };
     (0..512).map(|_| word()).collect()

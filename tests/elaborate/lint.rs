@@ -1,7 +1,8 @@
 //! The emitted text under the tools that read it: not one warning.
 
 use super::core::random_program;
-use super::zoo::{Everything, Machine, Store, Tables, ThereAndBack};
+use super::memories::{Store, Tables};
+use super::zoo::{Everything, Machine, ThereAndBack};
 use crate::tools;
 use endat_gen::area;
 use endat_gen::artifact::Artifact;
@@ -110,7 +111,6 @@ fn a_sequencer_is_small_and_has_its_memories_in_block_ram() {
             .filter(|(name, _)| name.starts_with(ram))
             .map(|(_, count)| count)
             .sum();
-        println!("{}: {:?} {:?}", family.name, found.usage, found.cells);
         assert_eq!(rams, count, "{}: {:?}", family.name, found.cells);
         assert!(
             found.usage.lut <= most_luts,

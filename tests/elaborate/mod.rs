@@ -4,6 +4,7 @@ mod core;
 mod errors;
 mod generator;
 mod lint;
+mod memories;
 mod mismatch;
 mod program;
 mod random;
