@@ -568,8 +568,8 @@ impl Logic for Channel {
         self.recovery_cycles.next = self.transaction.recovery_cycles.val();
         self.delay_cycles.next = self.delay.delay_cycles.val();
         self.busy.next = self.transaction.busy.val();
-        self.request_runs.next = (self.frame_own.q.val() | self.frame_ride.q.val())
-            & !self.transaction.is_at_rest.val();
+        self.request_runs.next =
+            (self.frame_own.q.val() | self.frame_ride.q.val()) & !self.transaction.is_at_rest.val();
         self.line_high.next = self.filter.level.val() & !self.transaction.run.val();
         self.displaced.next = self.transaction.displaced.val();
         self.over.next = self.transaction.over.val();

@@ -289,8 +289,7 @@ impl Logic for Transaction {
         self.lost_now.reset.next = self.reset.val();
 
         self.own.next = self.is_own.val() & self.has_all.val();
-        self.triggered.next =
-            self.trigger.val() & !(self.hold_off.val() & self.has_all.val());
+        self.triggered.next = self.trigger.val() & !(self.hold_off.val() & self.has_all.val());
         self.wanted.next = self.triggered.val() | (self.begin_own.val() & self.has_all.val());
         self.refuse.next = false;
         self.normal_end.next = false;

@@ -12,6 +12,7 @@ mod pages;
 mod position;
 mod program;
 mod requests;
+mod service;
 mod sim;
 mod three_way;
 mod tools;

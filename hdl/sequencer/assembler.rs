@@ -191,7 +191,7 @@ impl Assembler {
                     word: *word,
                 });
             };
-            // A label behind the last of 512 words is the first one, as it is for the machine.
+            // A label behind the last of 1024 words is the first one, as it is for the machine.
             words[*word] |= (place % PROGRAM_WORDS) as u32;
         }
         Ok(words)
@@ -321,7 +321,7 @@ mod tests {
         }
         assert_eq!(
             long.finish().unwrap_err().to_string(),
-            "program = 513 words: the limit is 512; shorten it"
+            "program = 1025 words: the limit is 1024; shorten it"
         );
         let mut a = Assembler::new();
         let handle = a.label();

@@ -31,7 +31,7 @@ fn wandering(lines: &[(&str, u64)], cycles: usize, seed: u64) -> Stimulus {
     }
 }
 
-/// 512 words for a sequencer, few of which go back to 0.
+/// 1024 words for a sequencer, few of which go back to 0.
 pub fn random_program(seed: u64) -> Vec<u32> {
     let mut rng = Rng::new(seed);
     let mut word = || match (rng.next_u64() & 0xfffff) as u32 {
@@ -39,7 +39,7 @@ pub fn random_program(seed: u64) -> Vec<u32> {
         word if word >> 16 == 15 => (word % 6) | 0xf0000,
         word => word,
     };
-    (0..512).map(|_| word()).collect()
+    (0..1024).map(|_| word()).collect()
 }
 
 #[test]
@@ -158,7 +158,7 @@ fn a_sequencer_agrees() {
     let design = elaborate(&block, "sequencer").unwrap();
     let memories = &design.top().memories;
     let given: Vec<usize> = memories.iter().map(|m| m.start.len()).collect();
-    assert_eq!(given, [512, 0, 0]);
+    assert_eq!(given, [1024, 0, 0]);
     let mut kernel = kernel_engine!(block; clock;
         in reset, restart, port_in, host_address, host_read, host_write, host_half, host_data;
         out port_address, port_out, port_write, host_word);

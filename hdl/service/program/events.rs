@@ -169,14 +169,9 @@ pub(super) fn store(a: &mut Assembler) {
     a.ldi(0).st(own::INDEX);
     a.place(next);
     a.ld(own::INDEX).sub(low(word::LIST_LENGTH)).jnc(done);
-    a.ld(own::INDEX)
-        .addi(minus(word::LIST_MAX.into()))
-        .jc(done);
+    a.ld(own::INDEX).addi(minus(word::LIST_MAX.into())).jc(done);
     a.ld(own::INDEX).add(own::INDEX).tax();
-    a.ld_x(low(word::LIST))
-        .andi(0x1F)
-        .sub(own::CODE)
-        .jnz(other);
+    a.ld_x(low(word::LIST)).andi(0x1F).sub(own::CODE).jnz(other);
     a.ld(own::CONTENT).st_x(low(word::SLOTS));
     a.inp(input::SEQUENCE).st_x(high(word::SLOTS));
     set(a, own::MATCHED, 1);

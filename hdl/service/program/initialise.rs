@@ -1,6 +1,6 @@
 //! Initialisation: a table of steps, each a request with a frame of its own at the calibration clock.
 
-use super::requests::code;
+use super::requests::{code, NEVER_BEGAN};
 use super::{high, low, minus, own, set_bits, ServiceTimes};
 use crate::config::PERIOD_BITS;
 use crate::protocol::{ModeCommand, MAX_POSITION_BITS};
@@ -146,6 +146,9 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(0).st(own::FOUND);
     a.out(output::FOUND).out(output::PERIOD);
     a.ld(low(word::PROGRESS)).st(high(word::PROGRESS));
+    // The line was never LOW: the next time it is, there is an encoder.
+    a.ld(own::RESULT).xori(NEVER_BEGAN).jnz("initialise_end");
+    set_bits(a, low(word::STATE), state::UNPLUGGED);
     a.jmp("initialise_end");
 
     exchange(a);
@@ -199,11 +202,9 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     counted(a);
     a.ld(low(plate("position_bits"))).andi(63).st(own::FOUND);
     a.jz("step_failed");
-    a.addi(minus(MAX_POSITION_BITS as u16 + 1)).jc("step_failed");
-    a.inp(input::CONFIGURED)
-        .andi(63)
-        .sub(own::FOUND)
-        .jz(same);
+    a.addi(minus(MAX_POSITION_BITS as u16 + 1))
+        .jc("step_failed");
+    a.inp(input::CONFIGURED).andi(63).sub(own::FOUND).jz(same);
     a.jmp("other_width");
     a.place(same).ret();
     a.place("other_width");

@@ -22,7 +22,7 @@ pub(super) mod mailbox {
 }
 
 /// Result of a request that never began: no cause of a frame.
-const NEVER_BEGAN: u16 = 15;
+pub(super) const NEVER_BEGAN: u16 = 15;
 
 /// Code of a command, as a number of the program.
 pub(super) fn code(command: ModeCommand) -> u16 {
@@ -31,7 +31,7 @@ pub(super) fn code(command: ModeCommand) -> u16 {
 
 /// From the main loop, and back to it.
 pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
-    let (is_own, ride, echoed) = (a.label(), a.label(), a.label());
+    let (is_own, ride) = (a.label(), a.label());
     a.place("mailbox");
     // A selection of the list that has begun is let go first: the channel sends it from the same place.
     a.ldi(go::CANCEL).out(output::GO);
@@ -71,12 +71,11 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.call("judge");
     a.st(own::ERROR);
     a.call("pause");
-    a.place(echoed);
     a.ld(own::ERROR).call("finish");
     a.jmp("main");
 
     // The wait that a command of its own demands.
-    let (reset, write, gap) = (a.label(), a.label(), a.label());
+    let (reset, write) = (a.label(), a.label());
     a.place("pause");
     a.ld(own::MODE);
     a.xori(code(ModeCommand::ReceiveReset)).jz(reset);
@@ -86,7 +85,6 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.xori(code(ModeCommand::SelectMemory)).jz(write);
     a.ldi(times.gap_ms).jmp("wait");
     a.place(write).ldi(times.write_ms).jmp("wait");
-    a.place(gap);
     // No trigger may disturb the encoder's start.
     a.place(reset).link().st(own::FROM_STEP);
     a.ldi(level::HOLD_OFF).out(output::CONTROL);

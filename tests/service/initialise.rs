@@ -1,0 +1,151 @@
+//! Initialisation: every device from nothing, what fails, and what happens after a plug.
+
+use super::rig::{quick, Rig, ENDAT_HZ};
+use endat_hdl::service::{
+    map::{plate, state, word, NAME_PLATE, PLATE_DELAY},
+    program::{step_name, steps},
+};
+use endat_sim::{
+    encoder::{area, Defect, EncoderConfig, Violation, DEVICES, LONG_RECOVERY, SHORT_RECOVERY},
+    MS, US,
+};
+
+/// What the step of this number does.
+fn step(number: u32) -> String {
+    match number {
+        0 => "none".into(),
+        n => step_name(steps()[n as usize - 1]),
+    }
+}
+
+/// The pulse of the power-up sequence looks like the beginning of a frame to an encoder that is there already.
+fn assert_only_the_pulse(rig: &Rig) {
+    let other = |v: &&(u64, Violation)| !matches!(v.1, Violation::StoppedBeforeAnswer { seen: 1 });
+    let others: Vec<_> = rig.bench.violations(0).iter().filter(other).collect();
+    assert!(others.is_empty(), "{others:?}");
+    assert_eq!(rig.bench.conflicts(0), []);
+}
+
+#[test]
+fn every_device_is_found_from_nothing() {
+    for device in DEVICES {
+        let encoder = quick(device.encoder());
+        let width = encoder.position_bits;
+        let mut rig = Rig::new(true, encoder, 13);
+        let failed = rig.initialised();
+        assert_eq!(step(failed), "none", "{}", device.name);
+        let endat22 = rig.state() & state::ENDAT22 != 0;
+        assert_eq!(endat22, device.endat22, "{}", device.name);
+        let name_plate = |rig: &mut Rig, name| rig.read(plate(name));
+        assert_eq!(name_plate(&mut rig, "position_bits") & 63, width);
+        let other = rig.state() & state::OTHER_WIDTH != 0;
+        assert_eq!(other, width != 13);
+        for entry in NAME_PLATE {
+            let value = rig.read(plate(entry.name));
+            let is_read = entry.mrs != area::MANUFACTURER_22 && entry.name != "recovery";
+            assert_eq!(value >> 16, u32::from(is_read || endat22), "{}", entry.name);
+            if value >> 16 == 1 && entry.mrs != area::OPERATING_STATUS {
+                let word = rig.bench.link(0).encoder().word(entry.mrs, entry.address);
+                assert_eq!(Some(value as u16), word, "{} {}", device.name, entry.name);
+            }
+        }
+        assert!(rig.read(PLATE_DELAY) & 0xFFFF > 5);
+        for _ in 0..3 {
+            rig.good_position();
+        }
+        let code = if endat22 { 0b111_000 } else { 0b000_111 };
+        assert_eq!(rig.bench.frames(0).last().unwrap().command, Some(code));
+        assert_only_the_pulse(&rig);
+    }
+}
+
+#[test]
+fn a_failed_step_is_told_and_positions_go_on_as_configured() {
+    // Frame 0 is the pulse; three tries of step 3, whose frames come after reset and selection.
+    let silent = EncoderConfig::endat22(25).defects(3..=5, Defect::NoStartBit);
+    let mut rig = Rig::new(true, quick(silent), 25);
+    let failed = rig.initialised();
+    assert_eq!(step(failed), "read alarms");
+    assert!(!rig.is_initialised());
+    rig.good_position();
+
+    // Two failures are forgiven.
+    let shaky = EncoderConfig::endat22(25).defects(3..=4, Defect::CrcXor(1));
+    let mut rig = Rig::new(true, quick(shaky), 25);
+    assert_eq!(rig.initialised(), 0);
+}
+
+#[test]
+fn the_slower_of_both_clocks_is_chosen() {
+    let mut encoder = quick(EncoderConfig::endat22(25));
+    encoder.max_clock_hz = 1_000_000;
+    let mut rig = Rig::new(true, encoder, 25);
+    assert_eq!(rig.initialised(), 0);
+    assert!(rig.state() & state::SLOWER != 0);
+    rig.good_position();
+    rig.good_position();
+    let period = rig.bench.frames(0).last().unwrap().period;
+    assert_eq!(period, 1_000_000);
+    assert_only_the_pulse(&rig);
+}
+
+#[test]
+fn recovery_is_set_as_wanted() {
+    for (short, want) in [(true, SHORT_RECOVERY), (false, LONG_RECOVERY)] {
+        let encoder = quick(EncoderConfig::endat22(25));
+        let mut rig = Rig::with(true, short, ENDAT_HZ, encoder, 25);
+        assert_eq!(rig.initialised(), 0);
+        rig.good_position();
+        rig.good_position();
+        let word = rig.bench.link(0).encoder().word(area::OPERATING_STATUS, 3);
+        assert_eq!(word, Some(want));
+        let us = rig.bench.get("recovery_cycles") / 32;
+        assert_eq!(us < 5, short, "{us} us");
+    }
+}
+
+#[test]
+fn an_encoder_that_is_plugged_in_later_is_found() {
+    let mut encoder = quick(EncoderConfig::endat22(25));
+    encoder.unplugged = vec![0..200 * MS];
+    let mut rig = Rig::new(true, encoder, 25);
+    let failed = rig.wait_for(word::PROGRESS, |p| p >> 16 != 0) >> 16;
+    assert_eq!(step(failed), "reset");
+    assert!(rig.state() & state::UNPLUGGED != 0);
+    rig.wait_for(word::STATE, |s| s as u16 & state::INITIALISED != 0);
+    assert!(rig.state() & state::UNPLUGGED == 0);
+    rig.good_position();
+}
+
+#[test]
+fn another_encoder_is_initialised_afresh_at_every_phase_of_a_frame() {
+    for phase in 0..12 {
+        let mut encoder = quick(EncoderConfig::endat22(25));
+        // In the middle of a frame; the plug stays out for longer than a glitch.
+        let out = 120 * MS + phase * 4 * US;
+        encoder.unplugged = vec![out..out + 8 * MS];
+        let mut rig = Rig::new(true, encoder, 25);
+        assert_eq!(rig.initialised(), 0);
+        while rig.bench.now() < 119 * MS + 500 * US {
+            rig.bench.run_cycles(100);
+        }
+        rig.good_position();
+        rig.bench.run_until(120 * MS);
+        rig.bench.trigger();
+        rig.bench.run_for(20 * MS);
+        assert!(
+            rig.read(word::PROGRESS) != 0 || !rig.is_initialised(),
+            "phase {phase}"
+        );
+        rig.wait_for(word::STATE, |s| s as u16 & state::INITIALISED != 0);
+        let before = rig.bench.results().len();
+        for _ in 0..2 {
+            rig.good_position();
+        }
+        let frames = rig.bench.frames(0);
+        for result in &rig.bench.results()[..before] {
+            let is_true = frames.iter().any(|f| f.position == result.position);
+            assert!(!result.fresh || is_true, "silently wrong: {result:?}");
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! An encoder port with its service on a bench, and a host at its memory.
+
+use endat_hdl::{
+    channel::FixedTimes,
+    elaborate::elaborate,
+    encoder_port::EncoderPort,
+    protocol::ModeCommand,
+    service::{
+        map::{request_state, state, word},
+        program::ServiceTimes,
+    },
+};
+use endat_sim::{
+    bench::{Bench, ChannelSettings, Link},
+    campaign::ABORT_US,
+    encoder::EncoderConfig,
+    engine::Compiled,
+    line::LineConfig,
+    Time, MS,
+};
+use rust_hdl::prelude::Block;
+use std::{
+    collections::BTreeMap,
+    sync::{Mutex, OnceLock, PoisonError},
+};
+
+/// System clock of these tests.
+pub const SYSTEM_HZ: u64 = 32_000_000;
+/// EnDat clock.
+pub const ENDAT_HZ: u64 = 2_000_000;
+/// Longer than any request or initialisation.
+const LIMIT: Time = 2_000 * MS;
+
+/// Short waits, so that a test does not take as long as a power-up.
+pub fn times(initialise: bool) -> ServiceTimes {
+    ServiceTimes {
+        initialise,
+        power_up_ms: 2,
+        after_pulse_ms: 2,
+        reset_ms: 3,
+        write_ms: 2,
+        gap_ms: 1,
+        busy_ms: 30,
+        request_ms: 60,
+        ..ServiceTimes::at(SYSTEM_HZ)
+    }
+}
+
+/// A port after power-up; made once for each of the two.
+fn engine(initialise: bool, wants_short: bool) -> Compiled {
+    static MADE: OnceLock<Mutex<BTreeMap<(bool, bool), Compiled>>> = OnceLock::new();
+    let mut made = MADE
+        .get_or_init(Mutex::default)
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner);
+    let make = || {
+        let fixed = FixedTimes {
+            abort_us: ABORT_US,
+            ..FixedTimes::at(SYSTEM_HZ)
+        };
+        let mut block = EncoderPort::new(fixed, Some(&times(initialise)), wants_short);
+        block.connect_all();
+        let design = elaborate(&block, "encoder_port").expect("the port elaborates");
+        Compiled::new(&design).expect("the port has no loop")
+    };
+    made.entry((initialise, wants_short))
+        .or_insert_with(make)
+        .clone()
+}
+
+/// An encoder for whose waits these tests have the time.
+pub fn quick(mut encoder: EncoderConfig) -> EncoderConfig {
+    encoder.tac = 0..=100_000_000;
+    encoder.write_time = 0..=MS;
+    encoder.reset_time = 2 * MS;
+    encoder.parameter_gap = encoder.parameter_gap.min(MS);
+    encoder
+}
+
+/// Port, line, encoder, host.
+pub struct Rig {
+    pub bench: Bench<Compiled>,
+}
+
+impl Rig {
+    /// After reset, not yet initialised if that is wanted.
+    pub fn new(initialise: bool, encoder: EncoderConfig, position_bits: u32) -> Self {
+        Self::with(initialise, false, ENDAT_HZ, encoder, position_bits)
+    }
+
+    pub fn with(
+        initialise: bool,
+        wants_short: bool,
+        endat_hz: u64,
+        encoder: EncoderConfig,
+        position_bits: u32,
+    ) -> Self {
+        let settings = ChannelSettings::new(
+            SYSTEM_HZ,
+            endat_hz,
+            ModeCommand::SendPositionAddInfo,
+            position_bits,
+        );
+        let link = Link::new(LineConfig::cable(20.0), encoder);
+        let engine = engine(initialise, wants_short);
+        let mut bench = Bench::channel(engine, SYSTEM_HZ, &settings, link);
+        bench.run_for(MS / 10);
+        Self { bench }
+    }
+
+    /// The host reads a word.
+    pub fn read(&mut self, word: u8) -> u32 {
+        self.bench.set("host_address", word.into());
+        self.bench.set("host_read", 1);
+        self.bench.tick();
+        self.bench.set("host_read", 0);
+        self.bench.run_cycles(8);
+        self.bench.get("host_word") as u32
+    }
+
+    /// The host writes a word, the high half first.
+    pub fn write(&mut self, word: u8, value: u32) {
+        self.bench.set("host_address", word.into());
+        for half in [1, 0] {
+            self.bench.set("host_half", half);
+            let data = value >> (16 * half) & 0xFFFF;
+            self.bench.set("host_data", data.into());
+            self.bench.set("host_write", 1);
+            self.bench.tick();
+            self.bench.set("host_write", 0);
+            self.bench.run_cycles(8);
+        }
+    }
+
+    /// Runs until a word is as wanted.
+    pub fn wait_for(&mut self, word: u8, done: impl Fn(u32) -> bool) -> u32 {
+        let end = self.bench.now() + LIMIT;
+        loop {
+            let value = self.read(word);
+            if done(value) {
+                return value;
+            }
+            assert!(self.bench.now() < end, "word {word} stays {value:#010x}");
+            self.bench.run_cycles(500);
+        }
+    }
+
+    /// Runs to the end of the initialisation; the step that failed, 0 = none.
+    pub fn initialised(&mut self) -> u32 {
+        self.wait_for(word::PROGRESS, |p| p & 0xFFFF != 0);
+        self.wait_for(word::PROGRESS, |p| p & 0xFFFF == 0) >> 16
+    }
+
+    /// State bits.
+    pub fn state(&mut self) -> u16 {
+        self.read(word::STATE) as u16
+    }
+
+    /// Whether the encoder has been initialised.
+    pub fn is_initialised(&mut self) -> bool {
+        self.state() & state::INITIALISED != 0
+    }
+
+    /// Sends a request and runs to its end, with a trigger every 200 us if it rides; the error and the answer.
+    pub fn request(&mut self, command: ModeCommand, address: u8, data: u16) -> (u16, u32) {
+        self.request_code(command.code(), address, data)
+    }
+
+    pub fn request_code(&mut self, code: u8, address: u8, data: u16) -> (u16, u32) {
+        let rides = ModeCommand::from_code(code).is_some_and(ModeCommand::has_f2);
+        let before = self.read(word::REQUEST_STATE) >> 16;
+        let fields = u32::from(address) << 16 | u32::from(data);
+        self.write(word::REQUEST, u32::from(code) << 24 | fields);
+        let end = self.bench.now() + LIMIT;
+        loop {
+            let state = self.read(word::REQUEST_STATE);
+            if state >> 16 != before {
+                assert_eq!(state as u16 & request_state::BUSY, 0);
+                let error = state as u16 >> request_state::ERROR_SHIFT;
+                return (error, self.read(word::ANSWER));
+            }
+            assert!(self.bench.now() < end, "the request does not end");
+            if rides {
+                self.bench.trigger();
+            }
+            self.bench.run_cycles(SYSTEM_HZ / 5_000);
+        }
+    }
+
+    /// A request that must be fulfilled; its answer.
+    pub fn good(&mut self, command: ModeCommand, address: u8, data: u16) -> u32 {
+        let (error, answer) = self.request(command, address, data);
+        assert_eq!(request_state::name(error), "fulfilled", "{command:?}");
+        answer
+    }
+
+    /// A triggered position, which must be right.
+    pub fn good_position(&mut self) {
+        let result = self.bench.frame(LIMIT).expect("a result");
+        let frame = self.bench.frames(0).last().expect("a frame");
+        assert_eq!(result.cause_name(), "none", "{result:?} {frame:?}");
+        assert_eq!(result.position, frame.position, "{result:?} {frame:?}");
+        assert!(self.bench.run_until_done(LIMIT, |b| b.get("busy") == 0));
+    }
+
+    /// Triggers `frames` frames, 200 us apart.
+    pub fn frames(&mut self, frames: usize) {
+        for _ in 0..frames {
+            self.bench.trigger();
+            self.bench.run_cycles(SYSTEM_HZ / 5_000);
+        }
+    }
+
+    /// Nothing that the encoder could complain of has happened.
+    pub fn assert_clean(&self) {
+        assert_eq!(self.bench.violations(0), []);
+        assert_eq!(self.bench.conflicts(0), []);
+    }
+}
