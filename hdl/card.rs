@@ -1,8 +1,8 @@
 //! Card: encoder ports, triggers and the host link, with the pins of a board.
 //!
 //! ```text
-//! trigger_i -> Trigger --+--> Channel 0 -> endat_clk0_o, endat_data0_o, endat_data0_oe <- endat_data0_i
-//!               ^        +--> Channel 1 -> ...
+//! trigger_i -> Trigger --+--> EncoderPort 0 -> endat_clk0_o, endat_data0_o, endat_data0_oe <- endat_data0_i
+//!               ^        +--> EncoderPort 1 -> ...
 //!               |             |   ^
 //!               |             v   | configuration
 //!               |     ChannelRegisters 0, 1
@@ -13,10 +13,12 @@
 //! `led_status_o` blinks slowly while every channel is well, quickly while the last result of one is an error;
 //! `led_channelN_o` is on while the channel's last result is a good position.
 
-use crate::channel::{Channel, FixedTimes};
+use crate::channel::FixedTimes;
 use crate::channel_registers::ChannelRegisters;
 use crate::config::{CardConfig, ChannelConfig};
+use crate::encoder_port::EncoderPort;
 use crate::register_bank::RegisterBank;
+use crate::service::program::ServiceTimes;
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
 use crate::uart_bridge::{UartBridge, TIMEOUT_US};
@@ -52,9 +54,11 @@ pub struct Card {
     bridge: UartBridge,
     bank: RegisterBank,
     registers: Vec<ChannelRegisters>,
-    channel: Vec<Channel>,
+    port: Vec<EncoderPort>,
     ring_link: Vec<Signal<Local, Bits<8>>>,
     read_link: Vec<Signal<Local, Bits<8>>>,
+    service_link: Vec<Signal<Local, Bits<32>>>,
+    selected: Vec<Signal<Local, Bits<32>>>,
     pending: Vec<Signal<Local, Bit>>,
     faulty: Vec<Signal<Local, Bit>>,
     slow_bit: Constant<Bits<5>>,
@@ -86,6 +90,15 @@ impl Card {
 
     /// A card with another limit on pauses within a host command, for quick tests.
     pub fn with_timeout(config: &CardConfig, timeout_us: u64) -> Self {
+        let service = ServiceTimes {
+            initialise: config.service.initialise,
+            ..ServiceTimes::at(config.system_hz)
+        };
+        Self::with_times(config, timeout_us, &service)
+    }
+
+    /// A card with other waits, too.
+    pub fn with_times(config: &CardConfig, timeout_us: u64, service: &ServiceTimes) -> Self {
         let channels = config.channels.len();
         fn each<T: Default>(n: usize) -> Vec<T> {
             (0..n).map(|_| T::default()).collect()
@@ -109,13 +122,18 @@ impl Card {
             registers: (0..channels)
                 .map(|i| ChannelRegisters::new(config, i))
                 .collect(),
-            channel: config
+            port: config
                 .channels
                 .iter()
-                .map(|c| Channel::new(times(config, c)))
+                .map(|c| {
+                    let service = config.service.requests.then_some(service);
+                    EncoderPort::new(times(config, c), service, c.wants_short_recovery())
+                })
                 .collect(),
             ring_link: each(channels + 1),
             read_link: each(channels + 1),
+            service_link: each(channels + 1),
+            selected: each(channels),
             pending: each(channels + 1),
             faulty: each(channels + 1),
             slow_bit: Constant::new(blink_bit(config.system_hz, 1).into()),
@@ -161,53 +179,57 @@ impl Logic for Card {
 
         // From the first channel to the last: read bytes and "some channel" signals. The ring runs the other way.
         self.read_link[0].next = 0.into();
+        self.service_link[0].next = 0.into();
         self.pending[0].next = false;
         self.faulty[0].next = false;
         self.bank.ring_in.next = self.ring_link[0].val();
         for i in 0..self._channels {
             self.registers[i].clock.next = self.clk_i.val();
             self.registers[i].reset.next = self.rst_i.val();
-            self.channel[i].clock.next = self.clk_i.val();
-            self.channel[i].reset.next = self.rst_i.val();
-            self.channel[i].tick_us.next = self.timebase.tick_us.val();
-            self.channel[i].timestamp.next = self.timebase.timestamp.val();
-            self.channel[i].trigger.next = self.trigger.trigger.val();
-            self.channel[i].calibrate.next = self.bank.calibrate.val().get_bit(i);
+            self.port[i].clock.next = self.clk_i.val();
+            self.port[i].reset.next = self.rst_i.val();
+            self.port[i].tick_us.next = self.timebase.tick_us.val();
+            self.port[i].timestamp.next = self.timebase.timestamp.val();
+            self.port[i].trigger.next = self.trigger.trigger.val();
+            self.port[i].calibrate.next = self.bank.calibrate.val().get_bit(i);
 
-            self.channel[i].period_cycles.next = self.registers[i].period_cycles.val();
-            self.channel[i].first_low_extra_cycles.next =
+            self.port[i].period_cycles.next = self.registers[i].period_cycles.val();
+            self.port[i].first_low_extra_cycles.next =
                 self.registers[i].first_low_extra_cycles.val();
-            self.channel[i].command.next = self.registers[i].command.val();
-            self.channel[i].position_bits.next = self.registers[i].position_bits.val();
-            self.channel[i].filter_cycles.next = self.registers[i].filter_cycles.val();
-            self.channel[i].start_window_cycles.next = self.registers[i].start_window_cycles.val();
-            self.channel[i].start_timeout_us.next = self.registers[i].start_timeout_us.val();
-            self.channel[i].recovery_limit_cycles.next =
-                self.registers[i].recovery_limit_cycles.val();
+            self.port[i].command.next = self.registers[i].command.val();
+            self.port[i].position_bits.next = self.registers[i].position_bits.val();
+            self.port[i].filter_cycles.next = self.registers[i].filter_cycles.val();
+            self.port[i].start_window_cycles.next = self.registers[i].start_window_cycles.val();
+            self.port[i].start_timeout_us.next = self.registers[i].start_timeout_us.val();
+            self.port[i].recovery_limit_cycles.next = self.registers[i].recovery_limit_cycles.val();
 
-            self.channel[i].request_command.next = 0.into();
-            self.channel[i].request_parameter.next = 0.into();
-            self.channel[i].request_ride.next = false;
-            self.channel[i].request_own.next = false;
-            self.channel[i].request_cancel.next = false;
-            self.channel[i].hold_off.next = false;
+            self.port[i].host_address.next = self.bank.service_address.val();
+            self.port[i].host_read.next = self.bank.service_read.val().get_bit(i);
+            self.port[i].host_write.next = self.bank.service_write.val().get_bit(i);
+            self.port[i].host_half.next = self.bank.service_half.val();
+            self.port[i].host_data.next = self.bank.service_data.val();
+            // A word that is not asked for is 0.
+            self.selected[i].next = 0.into();
+            if self.bank.service_channels.val().get_bit(i) {
+                self.selected[i].next = self.port[i].host_word.val();
+            }
+            self.service_link[i + 1].next = self.service_link[i].val() | self.selected[i].val();
 
             self.registers[i].trigger.next = self.trigger.trigger.val();
-            self.registers[i].busy.next = self.channel[i].busy.val();
-            self.registers[i].result_strobe.next = self.channel[i].result_strobe.val();
-            self.registers[i].position.next = self.channel[i].position.val();
-            self.registers[i].position_valid.next = self.channel[i].position_valid.val();
-            self.registers[i].fresh.next = self.channel[i].fresh.val();
-            self.registers[i].sequence.next = self.channel[i].sequence.val();
-            self.registers[i].first_fall_timestamp.next =
-                self.channel[i].first_fall_timestamp.val();
-            self.registers[i].age_us.next = self.channel[i].age_us.val();
-            self.registers[i].cause.next = self.channel[i].cause.val();
-            self.registers[i].flags.next = self.channel[i].flags.val();
-            self.registers[i].crc_received.next = self.channel[i].crc_received.val();
-            self.registers[i].crc_computed.next = self.channel[i].crc_computed.val();
-            self.registers[i].recovery_cycles.next = self.channel[i].recovery_cycles.val();
-            self.registers[i].delay_cycles.next = self.channel[i].delay_cycles.val();
+            self.registers[i].busy.next = self.port[i].busy.val();
+            self.registers[i].result_strobe.next = self.port[i].result_strobe.val();
+            self.registers[i].position.next = self.port[i].position.val();
+            self.registers[i].position_valid.next = self.port[i].position_valid.val();
+            self.registers[i].fresh.next = self.port[i].fresh.val();
+            self.registers[i].sequence.next = self.port[i].sequence.val();
+            self.registers[i].first_fall_timestamp.next = self.port[i].first_fall_timestamp.val();
+            self.registers[i].age_us.next = self.port[i].age_us.val();
+            self.registers[i].cause.next = self.port[i].cause.val();
+            self.registers[i].flags.next = self.port[i].flags.val();
+            self.registers[i].crc_received.next = self.port[i].crc_received.val();
+            self.registers[i].crc_computed.next = self.port[i].crc_computed.val();
+            self.registers[i].recovery_cycles.next = self.port[i].recovery_cycles.val();
+            self.registers[i].delay_cycles.next = self.port[i].delay_cycles.val();
 
             self.registers[i].load.next = self.bank.load.val();
             self.registers[i].word_skip.next = self.bank.word_skip.val();
@@ -220,13 +242,14 @@ impl Logic for Card {
             self.registers[i].ring_in.next = self.ring_link[i + 1].val();
             self.ring_link[i].next = self.registers[i].ring_out.val();
             self.pending[i + 1].next = self.pending[i].val() | self.registers[i].pending.val();
-            self.faulty[i + 1].next = self.faulty[i].val() | self.channel[i].cause.val().any();
+            self.faulty[i + 1].next =
+                self.faulty[i].val() | self.port[i].cause.val().any() | self.port[i].alarm.val();
 
-            self.channel[i].data_i.next = self.endat_data_i[i].val();
-            self.endat_clk_o[i].next = self.channel[i].endat_clk.val();
-            self.endat_data_o[i].next = self.channel[i].data_o.val();
-            self.endat_data_oe[i].next = self.channel[i].data_oe.val();
-            self.led_channel_o[i].next = self.channel[i].fresh.val();
+            self.port[i].data_i.next = self.endat_data_i[i].val();
+            self.endat_clk_o[i].next = self.port[i].endat_clk.val();
+            self.endat_data_o[i].next = self.port[i].data_o.val();
+            self.endat_data_oe[i].next = self.port[i].data_oe.val();
+            self.led_channel_o[i].next = self.port[i].fresh.val();
         }
         self.led_status_o.next = self
             .timebase
@@ -236,6 +259,7 @@ impl Logic for Card {
         for i in self._channels..self._links {
             self.ring_link[i].next = self.bank.ring_out.val();
             self.bank.channel_byte.next = self.read_link[i].val();
+            self.bank.service_word.next = self.service_link[i].val();
             self.bank.pending.next = self.pending[i].val();
             if self.faulty[i].val() {
                 self.led_status_o.next = self

@@ -26,7 +26,7 @@ pub struct RegisterBank {
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
     /// Word address, constant from `access` to `done`.
-    pub word_address: Signal<In, Bits<9>>,
+    pub word_address: Signal<In, Bits<11>>,
     /// The address fits `word_address`; otherwise a read gives 0 and a write does nothing.
     pub in_range: Signal<In, Bit>,
     /// Byte of the word, 0 = most significant.
@@ -63,6 +63,20 @@ pub struct RegisterBank {
     pub ring_in: Signal<In, Bits<8>>,
     /// Byte to the last channel's ring block.
     pub ring_out: Signal<Out, Bits<8>>,
+    /// Word of a service's RAM.
+    pub service_address: Signal<Out, Bits<7>>,
+    /// The channel that it belongs to, one bit per channel.
+    pub service_channels: Signal<Out, Bits<8>>,
+    /// Strobe, one bit per channel: read it.
+    pub service_read: Signal<Out, Bits<8>>,
+    /// The word read.
+    pub service_word: Signal<In, Bits<32>>,
+    /// Strobe, one bit per channel: write one half of it; the high one comes first.
+    pub service_write: Signal<Out, Bits<8>>,
+    /// The half: 1 = high.
+    pub service_half: Signal<Out, Bit>,
+    /// What is written.
+    pub service_data: Signal<Out, Bits<16>>,
     /// Triggers since reset.
     pub trigger_count: Signal<In, Bits<32>>,
     /// Strobe: trigger now.
@@ -99,6 +113,13 @@ pub struct RegisterBank {
     active_period: Reg<Bits<24>>,
     hold: Reg<Bit>,
     follow: Reg<Bit>,
+    service_skip: Reg<Bit>,
+    service_byte: Reg<Bits<8>>,
+    service_selected: Reg<Bits<8>>,
+    service_first: Reg<Bit>,
+    low_page: Signal<Local, Bit>,
+    low_address: Signal<Local, Bits<9>>,
+    service_page: Signal<Local, Bit>,
     at_end: Signal<Local, Bit>,
     at_word: Signal<Local, Bit>,
     block_end: Signal<Local, Bit>,
@@ -107,6 +128,7 @@ pub struct RegisterBank {
     result_page: Signal<Local, Bit>,
     head: Signal<Local, Bits<8>>,
     rom_word: Signal<Local, Bits<32>>,
+    has_service: Constant<Bit>,
     id: Constant<Bits<32>>,
     version: Constant<Bits<32>>,
     capabilities: Constant<Bits<32>>,
@@ -161,6 +183,13 @@ impl RegisterBank {
             ring_home: Default::default(),
             ring_in: Default::default(),
             ring_out: Default::default(),
+            service_address: Default::default(),
+            service_channels: Default::default(),
+            service_read: Default::default(),
+            service_word: Default::default(),
+            service_write: Default::default(),
+            service_half: Default::default(),
+            service_data: Default::default(),
             trigger_count: Default::default(),
             trigger_now: Default::default(),
             calibrate: Default::default(),
@@ -192,6 +221,13 @@ impl RegisterBank {
             active_period: Reg::new(u64::from(words[1]).into()),
             hold: Default::default(),
             follow: Default::default(),
+            service_skip: Reg::new(true),
+            service_byte: Default::default(),
+            service_selected: Default::default(),
+            service_first: Default::default(),
+            low_page: Default::default(),
+            low_address: Default::default(),
+            service_page: Default::default(),
             at_end: Default::default(),
             at_word: Default::default(),
             block_end: Default::default(),
@@ -200,6 +236,7 @@ impl RegisterBank {
             result_page: Default::default(),
             head: Default::default(),
             rom_word: Default::default(),
+            has_service: Constant::new(config.service.requests),
             id: card_word(config, "id"),
             version: card_word(config, "version"),
             capabilities: card_word(config, "capabilities"),
@@ -282,6 +319,18 @@ impl Logic for RegisterBank {
         self.active_period.reset.next = self.reset.val();
         self.hold.reset.next = self.reset.val();
         self.follow.reset.next = self.reset.val();
+        dff_setup!(
+            self,
+            clock,
+            service_skip,
+            service_byte,
+            service_selected,
+            service_first
+        );
+        self.service_skip.reset.next = self.reset.val();
+        self.service_selected.reset.next = self.reset.val();
+        self.service_first.reset.next = self.reset.val();
+        self.service_byte.reset.next = self.service_skip.q.val();
 
         // One turn per access. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
         self.block_end.next = self.byte_at.q.val() == 11;
@@ -310,8 +359,11 @@ impl Logic for RegisterBank {
         self.ring_home.next = !self.turn.q.val();
         self.done.next = self.done_now.q.val();
 
+        self.low_page.next = self.in_range.val() & !self.word_address.val().get_bits::<2>(9).any();
+        self.low_address.next = self.word_address.val().get_bits::<9>(0);
+
         // Configuration: the ring carries 3 of the 8 words that a block has room for.
-        self.config_page.d.next = self.in_range.val()
+        self.config_page.d.next = self.low_page.val()
             & self.word_address.val().get_bit(8)
             & !self.word_address.val().get_bit(7)
             & !self.word_address.val().get_bit(2);
@@ -338,7 +390,7 @@ impl Logic for RegisterBank {
         self.ring_out.next = self.head.val();
 
         // The card's own words.
-        self.card_page.next = self.in_range.val() & !self.word_address.val().get_bits::<5>(4).any();
+        self.card_page.next = self.low_page.val() & !self.word_address.val().get_bits::<5>(4).any();
         self.rom_word.next = 0.into();
         match self.word_address.val().get_bits::<3>(0).index() {
             0 => {
@@ -378,13 +430,13 @@ impl Logic for RegisterBank {
         }
         self.rom_skip.d.next = !self.card_page.val() | self.word_address.val().get_bit(3);
         self.count_skip.d.next =
-            !self.in_range.val() | (self.word_address.val() != self.trigger_count_at.val());
-        self.strobe.next = self.access.val() & self.write.val() & self.in_range.val();
+            !self.low_page.val() | (self.low_address.val() != self.trigger_count_at.val());
+        self.strobe.next = self.access.val() & self.write.val() & self.low_page.val();
         self.trigger_strobe.d.next = self.strobe.val()
-            & (self.word_address.val() == self.trigger_now_at.val())
+            & (self.low_address.val() == self.trigger_now_at.val())
             & self.write_data.val().get_bit(0);
         self.calibrate_strobe.d.next = 0.into();
-        if self.strobe.val() & (self.word_address.val() == self.calibrate_at.val()) {
+        if self.strobe.val() & (self.low_address.val() == self.calibrate_at.val()) {
             self.calibrate_strobe.d.next = self.write_data.val().get_bits::<8>(0);
         }
         self.trigger_now.next = self.trigger_strobe.q.val();
@@ -427,7 +479,7 @@ impl Logic for RegisterBank {
             _ => {}
         }
         self.result_page.next =
-            self.in_range.val() & self.word_address.val().get_bits::<2>(7).all();
+            self.low_page.val() & self.word_address.val().get_bits::<2>(7).all();
         self.skipped_channels.d.next = 255.into();
         if self.result_page.val() {
             match self.word_address.val().get_bits::<4>(3).index() {
@@ -461,10 +513,76 @@ impl Logic for RegisterBank {
         self.word_skip.next = self.skipped_words.q.val();
         self.channel_skip.next = self.skipped_channels.q.val();
 
+        // Services: 128 words each, from 0x400 on. A word is read whole with its first byte, and written in two halves, with
+        // the turn of the ring between them.
+        self.service_page.next =
+            self.has_service.val() & self.in_range.val() & self.word_address.val().get_bit(10);
+        self.service_selected.d.next = 0.into();
+        if self.service_page.val() {
+            match self.word_address.val().get_bits::<3>(7).index() {
+                0 => {
+                    self.service_selected.d.next = 1.into();
+                }
+                1 => {
+                    self.service_selected.d.next = 2.into();
+                }
+                2 => {
+                    self.service_selected.d.next = 4.into();
+                }
+                3 => {
+                    self.service_selected.d.next = 8.into();
+                }
+                4 => {
+                    self.service_selected.d.next = 16.into();
+                }
+                5 => {
+                    self.service_selected.d.next = 32.into();
+                }
+                6 => {
+                    self.service_selected.d.next = 64.into();
+                }
+                _ => {
+                    self.service_selected.d.next = 128.into();
+                }
+            }
+        }
+        self.service_first.d.next = self.access.val();
+        self.service_address.next = self.word_address.val().get_bits::<7>(0);
+        self.service_channels.next = self.service_selected.q.val();
+        self.service_read.next = 0.into();
+        if self.service_first.q.val() & !self.write_now.q.val() & !self.lane.val().any() {
+            self.service_read.next = self.service_selected.q.val();
+        }
+        self.service_write.next = 0.into();
+        if self.write_now.q.val() & (self.service_first.q.val() | self.done_now.q.val()) {
+            self.service_write.next = self.service_selected.q.val();
+        }
+        self.service_half.next = self.turn.q.val() | self.turning.q.val();
+        self.service_data.next = self.write_data.val().get_bits::<16>(0);
+        if self.turn.q.val() | self.turning.q.val() {
+            self.service_data.next = self.write_data.val().get_bits::<16>(16);
+        }
+        self.service_skip.d.next = !self.service_page.val();
+        match self.lane.val().index() {
+            0 => {
+                self.service_byte.d.next = self.service_word.val().get_bits::<8>(24);
+            }
+            1 => {
+                self.service_byte.d.next = self.service_word.val().get_bits::<8>(16);
+            }
+            2 => {
+                self.service_byte.d.next = self.service_word.val().get_bits::<8>(8);
+            }
+            _ => {
+                self.service_byte.d.next = self.service_word.val().get_bits::<8>(0);
+            }
+        }
+
         self.byte.d.next = self.rom_byte.q.val()
             | self.count_byte.q.val()
             | self.ring_byte.q.val()
-            | self.channel_byte.val();
+            | self.channel_byte.val()
+            | self.service_byte.q.val();
         self.read_byte.next = self.byte.q.val();
     }
 }

@@ -10,23 +10,27 @@
 //! constants come from this table; within a major version an offset never moves.
 
 mod markdown;
+mod service;
 mod table;
 
 pub use markdown::markdown;
+pub use service::SERVICE;
 pub use table::{CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT};
 
 use crate::config::CardConfig;
 use crate::config_ring::RING_WORDS;
 
 /// Major, minor and patch version of the register map.
-pub const VERSION: [u8; 3] = [0, 1, 0];
+pub const VERSION: [u8; 3] = [0, 2, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the configuration blocks; block 0 is the card's, block n + 1 that of channel n.
 pub const CONFIG_BASE: u16 = 0x100;
 /// First word of the result blocks; block n is that of channel n.
 pub const RESULT_BASE: u16 = 0x180;
-/// Words from one block to the next.
+/// First word of the service blocks; block n is that of channel n.
+pub const SERVICE_BASE: u16 = 0x400;
+/// Words from one block to the next, but for services.
 pub const BLOCK_STRIDE: u16 = 8;
 /// Most channels that the map and the decoder take.
 pub const CHANNELS_MAX: usize = 8;
@@ -122,6 +126,8 @@ pub struct Block {
     pub name: &'static str,
     /// First word, for channel 0.
     pub base: u16,
+    /// Words from one channel's to the next one's.
+    pub stride: u16,
     /// Whether every channel has one.
     pub per_channel: bool,
     /// Its words, lowest offset first.
@@ -132,7 +138,7 @@ impl Block {
     /// Word address of one of its registers.
     pub const fn address(&self, register: &Register, channel: usize) -> u16 {
         let block = if self.per_channel { channel as u16 } else { 0 };
-        self.base + BLOCK_STRIDE * block + register.offset
+        self.base + self.stride * block + register.offset
     }
 
     /// The register called `name`.
@@ -142,7 +148,13 @@ impl Block {
 }
 
 /// All blocks, lowest base first.
-pub const BLOCKS: [Block; 4] = [CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT];
+pub const BLOCKS: [Block; 5] = [CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT, SERVICE];
+
+/// The blocks that a card has.
+pub fn blocks(config: &CardConfig) -> impl Iterator<Item = Block> {
+    let count = BLOCKS.len() - usize::from(!config.service.requests);
+    BLOCKS.into_iter().take(count)
+}
 
 /// The words of a configuration block after reset; `channel` is `None` for the card's own.
 pub fn config_words(config: &CardConfig, channel: Option<usize>) -> [u32; RING_WORDS] {

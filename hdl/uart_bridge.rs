@@ -20,7 +20,7 @@ use rust_hdl::prelude::*;
 /// Longest pause within a command, in microseconds (LiteX: 100 ms).
 pub const TIMEOUT_US: u64 = 100_000;
 /// Bits of a register's word address; any higher address bit makes an access miss.
-pub const ADDRESS_BITS: u32 = 9;
+pub const ADDRESS_BITS: u32 = 11;
 
 /// What the next byte means.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState)]
@@ -53,7 +53,7 @@ pub struct UartBridge {
     /// Serial line to the host, from a register.
     pub tx: Signal<Out, Bit>,
     /// Word address of the access, constant from `access` to `done`.
-    pub word_address: Signal<Out, Bits<9>>,
+    pub word_address: Signal<Out, Bits<11>>,
     /// The host's 32-bit address fits `word_address`.
     pub in_range: Signal<Out, Bit>,
     /// Byte of the word, 0 = most significant; 0 in a write.
@@ -78,7 +78,7 @@ pub struct UartBridge {
     fixed: Reg<Bit>,
     writing: Reg<Bit>,
     words_left: Reg<Bits<8>>,
-    address: Reg<Bits<9>>,
+    address: Reg<Bits<11>>,
     out_of_range: Reg<Bit>,
     byte_lane: Reg<Bits<2>>,
     data: Reg<Bits<32>>,
@@ -95,7 +95,7 @@ pub struct UartBridge {
     stop_timer: Reg<Bit>,
     last_lane: Signal<Local, Bit>,
     next_lane: Signal<Local, Bit>,
-    next_address: Signal<Local, Bits<10>>,
+    next_address: Signal<Local, Bits<12>>,
     high_bits: Signal<Local, Bit>,
     timeout_us: Constant<Bits<17>>,
 }
@@ -304,15 +304,15 @@ impl Logic for UartBridge {
         if self.done.val() & self.writing.q.val() {
             self.step_address.d.next = !self.fixed.q.val();
         }
-        self.next_address.next = bit_cast::<10, 9>(self.address.q.val()) + 1;
+        self.next_address.next = bit_cast::<12, 11>(self.address.q.val()) + 1;
         if self.step_address.q.val() {
-            self.address.d.next = self.next_address.val().get_bits::<9>(0);
-            if self.next_address.val().get_bit(9) {
+            self.address.d.next = self.next_address.val().get_bits::<11>(0);
+            if self.next_address.val().get_bit(11) {
                 self.out_of_range.d.next = true;
             }
         }
         if (self.state.q.val() == BridgeState::Address) & self.receiver.strobe.val() {
-            self.address.d.next = bit_cast::<9, 8>(self.receiver.data.val());
+            self.address.d.next = bit_cast::<11, 8>(self.receiver.data.val());
             match self.byte_lane.q.val().index() {
                 0 => {
                     self.out_of_range.d.next = self.high_bits.val();
@@ -322,11 +322,11 @@ impl Logic for UartBridge {
                 }
                 2 => {
                     self.out_of_range.d.next =
-                        self.out_of_range.q.val() | self.receiver.data.val().get_bits::<7>(1).any();
+                        self.out_of_range.q.val() | self.receiver.data.val().get_bits::<5>(3).any();
                 }
                 _ => {
-                    self.address.d.next = bit_cast::<9, 8>(self.receiver.data.val())
-                        | (bit_cast::<9, 1>(self.address.q.val().get_bits::<1>(0)) << 8);
+                    self.address.d.next = bit_cast::<11, 8>(self.receiver.data.val())
+                        | (bit_cast::<11, 3>(self.address.q.val().get_bits::<3>(0)) << 8);
                 }
             }
         }

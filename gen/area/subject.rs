@@ -8,8 +8,10 @@ use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, Features, FixedTimes};
 use endat_hdl::crc5::{Crc5Fixed, Crc5Parallel, Crc5Serial};
 use endat_hdl::elaborate::{elaborate, Design};
+use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::line_delay::LineDelay;
 use endat_hdl::receiver::Receiver;
+use endat_hdl::service::program::ServiceTimes;
 use endat_hdl::snapshot::Snapshot;
 use endat_hdl::transaction::Transaction;
 use rust_hdl::prelude::Block;
@@ -58,12 +60,31 @@ impl Subject {
 pub fn subjects() -> Result<Vec<Subject>, GenError> {
     let card = load_preset(DEFAULT_PRESET)?.card;
     let times = FixedTimes::at(card.system_hz);
+    let service = |initialise| {
+        let times = ServiceTimes {
+            initialise,
+            ..ServiceTimes::at(card.system_hz)
+        };
+        EncoderPort::new(FixedTimes::at(card.system_hz), Some(&times), false)
+    };
+    let full = load_preset("s6_two_channel_service")?.card;
     Ok(vec![
+        Subject::new(
+            "card_service",
+            "the card with requests and initialisation",
+            Card::new(&full),
+        )?,
         Subject::new("card", "two-channel card s6_two_channel", Card::new(&card))?,
         Subject::new("channel", "one position channel", Channel::new(times))?,
         Subject::new(
+            "port_initialise",
+            "one port with requests and initialisation",
+            service(true),
+        )?,
+        Subject::new("port_requests", "one port with requests", service(false))?,
+        Subject::new(
             "channel_requests",
-            "the same with all mode commands and additional information",
+            "position channel with all mode commands and additional information, without service",
             Channel::with(times, Features { requests: true }),
         )?,
         Subject::new(

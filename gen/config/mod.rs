@@ -14,10 +14,16 @@ use endat_hdl::config::CardConfig;
 use std::path::Path;
 
 /// The presets that come with the program: name and text.
-pub const PRESETS: &[(&str, &str)] = &[(
-    "s6_two_channel",
-    include_str!("../presets/s6_two_channel.toml"),
-)];
+pub const PRESETS: &[(&str, &str)] = &[
+    (
+        "s6_two_channel",
+        include_str!("../presets/s6_two_channel.toml"),
+    ),
+    (
+        "s6_two_channel_service",
+        include_str!("../presets/s6_two_channel_service.toml"),
+    ),
+];
 /// The preset that the program emits when nothing else is asked for.
 pub const DEFAULT_PRESET: &str = "s6_two_channel";
 /// Largest configuration file; a larger one is not a configuration.

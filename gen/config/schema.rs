@@ -78,13 +78,18 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let baud_limits = limits("baud", system_hz).at_most(baud_max.unwrap_or(u64::MAX), BAUD_NOTE);
     let baud = link.required_integer("baud", "2_000_000", &baud_limits);
     let read_hz = link.integer("read_hz", &limits("read_hz", system_hz));
+    let service = root.table("service", &empty);
+    let parts = read_service(&service);
     let pins = root.table("pins", &empty);
-    for table in
-        tables
-            .iter()
-            .flatten()
-            .chain([&clock, &endat, &trigger, &link, &board_table, &root])
-    {
+    for table in tables.iter().flatten().chain([
+        &clock,
+        &endat,
+        &trigger,
+        &link,
+        &service,
+        &board_table,
+        &root,
+    ]) {
         table.finish();
     }
     if let (Some(board), Some(system), true) = (&board, &system, system_hz.is_some()) {
@@ -116,6 +121,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         baud: baud.as_ref().map(|b| b.value),
         baud_max,
         read_hz: read_hz.as_ref().map(|r| r.value).or(usual_read_hz),
+        service: parts.unwrap_or_default(),
     };
     let channels = channels.unwrap_or_default();
     let card = match draft.resolve() {
@@ -192,6 +198,9 @@ fn canonical(card: &CardConfig, board: &Board, pins: &[Assignment]) -> String {
         format!("part {}", board.part),
         format!("oscillator_hz {}", board.oscillator_hz),
     ];
+    if card.service.requests {
+        lines.push(format!("service initialise {}", card.service.initialise));
+    }
     for (n, c) in card.channels.iter().enumerate() {
         let numbers = [
             ("period_cycles", c.period_cycles),
@@ -396,6 +405,40 @@ fn read_sources(table: &Table<'_, '_>) -> Option<TriggerSources> {
         }
     }
     good.then_some(sources)
+}
+
+/// What each channel does besides positions; `None` for what could not be read.
+fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
+    let Some(words) = table.strings("parts") else {
+        return Some(ServiceParts::default());
+    };
+    let mut parts = ServiceParts::default();
+    let mut last = None;
+    for word in words {
+        let shown = format!("{:?}", word.value);
+        let part = match word.value.as_str() {
+            "requests" => &mut parts.requests,
+            "initialise" => &mut parts.initialise,
+            _ => {
+                let text = "unknown part; use requests, initialise";
+                table.complain(word.line, "parts", &shown, text);
+                return None;
+            }
+        };
+        if std::mem::replace(part, true) {
+            table.complain(word.line, "parts", &shown, "stands twice; remove one");
+            return None;
+        }
+        last = Some((word.line, shown));
+    }
+    match last {
+        Some((line, shown)) if parts.initialise && !parts.requests => {
+            let text = "initialisation is made of requests; add \"requests\"";
+            table.complain(line, "parts", &shown, text);
+            None
+        }
+        _ => Some(parts),
+    }
 }
 
 fn read_board(table: &Table<'_, '_>) -> Option<Board> {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::regs::tests::test_config;
-use crate::regs::{Access, Block as RegisterBlock, BLOCKS, CARD, CARD_CONFIG, RESULT};
+use crate::regs::{blocks, Access, Block as RegisterBlock, CARD, CARD_CONFIG, RESULT};
 use crate::testing::tick;
 use rust_hdl::prelude::Block;
 
@@ -62,7 +62,7 @@ impl Host {
                 self.falls[i].push(self.cycle);
             }
             self.clk[i] = pin.val();
-            self.calibrations[i] += usize::from(self.card.channel[i].calibrate.val());
+            self.calibrations[i] += usize::from(self.card.port[i].calibrate.val());
         }
         self.tx.push(self.card.uart_tx_o.val());
         self.cycle += 1;
@@ -115,7 +115,7 @@ fn address(block: RegisterBlock, register: &str, channel: usize) -> u16 {
 fn words() -> Vec<(u16, Access, u32)> {
     let config = test_config();
     let mut words = Vec::new();
-    for block in BLOCKS {
+    for block in blocks(&config) {
         for channel in 0..if block.per_channel { 2 } else { 1 } {
             for r in block.registers {
                 words.push((

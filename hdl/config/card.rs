@@ -62,6 +62,7 @@ impl CardDraft {
                     sources: Some(sources),
                     baud: Some(baud),
                     read_hz: Some(read_hz),
+                    service,
                     ..
                 },
             ) if whole && problems.is_empty() => Ok(CardConfig {
@@ -73,6 +74,7 @@ impl CardDraft {
                 uart_bit_cycles,
                 baud,
                 read_hz,
+                service,
                 hash: 0,
             }),
             _ => Err(problems),

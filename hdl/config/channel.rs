@@ -75,6 +75,11 @@ impl ChannelConfig {
         }
     }
 
+    /// Whether the encoder's recovery time is to be the short one.
+    pub const fn wants_short_recovery(&self) -> bool {
+        self.request.recovery_min_ns < RECOVERY_MIN_NS
+    }
+
     /// EnDat clock that the core really makes, in hertz.
     pub fn actual_hz(&self, system_hz: u64) -> f64 {
         system_hz as f64 / self.period_cycles as f64

@@ -100,6 +100,17 @@ pub struct CardRequest {
     pub baud: u64,
     /// How often the host reads the results of all channels, in hertz.
     pub read_hz: u64,
+    /// What each channel does besides positions.
+    pub service: ServiceParts,
+}
+
+/// What a channel does besides triggered positions; what is not asked for takes no logic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ServiceParts {
+    /// All mode commands, additional information, counters, alarm.
+    pub requests: bool,
+    /// Initialisation of the encoder after reset and after it has been plugged in; takes requests.
+    pub initialise: bool,
 }
 
 /// A request in which what could not be read is missing; what depends on it is not judged.
@@ -119,6 +130,8 @@ pub struct CardDraft {
     pub baud_max: Option<u64>,
     /// How often the host reads the results of all channels, in hertz.
     pub read_hz: Option<u64>,
+    /// What each channel does besides positions.
+    pub service: ServiceParts,
 }
 
 impl From<&CardRequest> for CardDraft {
@@ -131,6 +144,7 @@ impl From<&CardRequest> for CardDraft {
             baud: Some(request.baud),
             baud_max: None,
             read_hz: Some(request.read_hz),
+            service: request.service,
         }
     }
 }
@@ -224,6 +238,8 @@ pub struct CardConfig {
     pub baud: u64,
     /// How often the host reads, in hertz.
     pub read_hz: u64,
+    /// What each channel does besides positions.
+    pub service: ServiceParts,
     /// First 48 bits of the SHA-256 of the canonical configuration (0 until a generator sets it).
     pub hash: u64,
 }

@@ -30,6 +30,7 @@ fn card() -> CardRequest {
         },
         baud: 2_000_000,
         read_hz: 1_000,
+        service: Default::default(),
     }
 }
 

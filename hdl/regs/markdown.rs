@@ -1,6 +1,6 @@
 //! The register map as a Markdown page.
 
-use super::{Block, BLOCKS, BLOCK_STRIDE};
+use super::{blocks, Block};
 use crate::config::CardConfig;
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ pub fn markdown(config: &CardConfig) -> String {
          Word addresses; words are 32 bits wide. Bits of no field read as 0, except in configuration words, which keep what is\n\
          written there (write 0). Addresses not listed read as 0 and writing them does nothing.\n",
     );
-    for block in BLOCKS {
+    for block in blocks(config) {
         write_block(&mut text, &block, config);
     }
     text
@@ -22,8 +22,8 @@ fn write_block(text: &mut String, block: &Block, config: &CardConfig) {
     let _ = if block.per_channel {
         writeln!(
             text,
-            "\n## `{}<n>`: channel n at 0x{:03X} + {BLOCK_STRIDE} n\n",
-            block.name, block.base
+            "\n## `{}<n>`: channel n at 0x{:03X} + {} n\n",
+            block.name, block.base, block.stride
         )
     } else {
         writeln!(text, "\n## `{}` at 0x{:03X}\n", block.name, block.base)

@@ -52,6 +52,7 @@ fn of(config: &CardConfig, channel: usize, value: impl Fn(&ChannelConfig) -> u64
 pub const CARD: Block = Block {
     name: "card",
     base: 0,
+    stride: BLOCK_STRIDE,
     per_channel: false,
     registers: &[
         word("id", 0, ReadOnly, "Identification: the ASCII letters EnDt.", &[
@@ -65,7 +66,7 @@ pub const CARD: Block = Block {
         word("capabilities", 2, ReadOnly, "What this card has.", &[
             field("channels", 0, 8, "", "Encoder ports", |s, _| s.channels.len() as u64),
             field("max_position_bits", 8, 8, "bits", "Widest position", |_, _| MAX_POSITION_BITS as u64),
-            field("features", 16, 16, "", "bit 0: EnDat 2.2 position frames (111000); bit 1: line delay is measured; bit 2: trigger pin; bit 3: trigger timer", |_, _| 0b1111),
+            field("features", 16, 16, "", "bit 0: EnDat 2.2 position frames (111000); bit 1: line delay is measured; bit 2: trigger pin; bit 3: trigger timer; bit 4: requests; bit 5: initialisation", |s, _| 0b1111 | (s.service.requests as u64) << 4 | (s.service.initialise as u64) << 5),
         ]),
         word("system_hz", 3, ReadOnly, "System clock: the unit of every number of cycles.", &[
             field("value", 0, 32, "Hz", "Frequency", |s, _| s.system_hz),
@@ -89,6 +90,7 @@ pub const CARD: Block = Block {
 pub const CARD_CONFIG: Block = Block {
     name: "config",
     base: CONFIG_BASE,
+    stride: BLOCK_STRIDE,
     per_channel: false,
     registers: &[
         word(
@@ -148,6 +150,7 @@ pub const CARD_CONFIG: Block = Block {
 pub const CHANNEL_CONFIG: Block = Block {
     name: "config",
     base: CONFIG_BASE + BLOCK_STRIDE,
+    stride: BLOCK_STRIDE,
     per_channel: true,
     registers: &[
         word(
@@ -245,6 +248,7 @@ pub const CHANNEL_CONFIG: Block = Block {
 pub const RESULT: Block = Block {
     name: "result",
     base: RESULT_BASE,
+    stride: BLOCK_STRIDE,
     per_channel: true,
     registers: &[
         word("status", 0, ReadOnly, "What became of the last trigger.", &[

@@ -316,7 +316,7 @@ mod tests {
             "port = 32: is used at word 1, ports go from 0 to 31; use one of these"
         );
         let mut long = Assembler::new();
-        for _ in 0..513 {
+        for _ in 0..1025 {
             long.ret();
         }
         assert_eq!(

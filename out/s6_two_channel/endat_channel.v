@@ -36,8 +36,12 @@ module endat_channel (
     input  wire         request_own,
     // Strobe: forget the request if it has not begun.
     input  wire         request_cancel,
-    // No frame may begin: triggers are lost, and counted as such.
+    // No triggered frame may begin: triggers are lost, and counted as such.
     input  wire         hold_off,
+    // Puts the EnDat clock LOW, for the pulse of the power-up sequence.
+    input  wire         clock_low,
+    // Errors forced upon what is received, to try the error paths: bit 0 inverts F1, bit 1 inverts F2, bit 2 spoils the CRC.
+    input  wire   [2:0] forced,
     // Position width, 1..=48 bits.
     input  wire   [5:0] position_bits,
     // Pulses on the data line of at most this many system clock cycles are ignored.
@@ -82,6 +86,10 @@ module endat_channel (
     output wire   [9:0] delay_cycles,
     // A trigger would not be taken.
     output wire         busy,
+    // The frame under way has the request.
+    output wire         request_runs,
+    // DATA is HIGH, and no frame is on the wire.
+    output wire         line_high,
     // Strobe: a trigger has been lost.
     output wire         displaced,
     // Strobe: a frame, triggered or not, has ended; over_cause to reply_good are of it.
@@ -150,6 +158,9 @@ module endat_channel (
     wire         receiver_serial_ok;
     wire         receiver_parallel_ok;
     wire         transaction_begin_own;
+    reg          transaction_serial_ok;
+    reg          transaction_f1;
+    reg          transaction_f2;
     wire         transaction_start;
     wire         transaction_run;
     wire         transaction_abort;
@@ -173,6 +184,7 @@ module endat_channel (
     wire         add_info_over;
     wire   [1:0] add_info_infos;
     reg          clk_pin = 1'b1;
+    reg          clk_pin_next;
     reg          data_pin = 1'b0;
     reg          oe_pin = 1'b0;
     reg          own_wanted = 1'b0;
@@ -298,10 +310,10 @@ module endat_channel (
         .begin_own(transaction_begin_own),
         .is_own(frame_own),
         .hold_off(hold_off),
-        .serial_ok(receiver_serial_ok),
+        .serial_ok(transaction_serial_ok),
         .parallel_ok(receiver_parallel_ok),
-        .f1(receiver_f1),
-        .f2(receiver_f2),
+        .f1(transaction_f1),
+        .f2(transaction_f2),
         .outstanding(delay_outstanding),
         .cells_left(receiver_cells_left),
         .first_low_extra_cycles(first_low_extra_cycles),
@@ -445,6 +457,17 @@ module endat_channel (
     end
 
     always @* begin
+        transaction_serial_ok = receiver_serial_ok;
+        transaction_f1 = receiver_f1;
+        transaction_f2 = receiver_f2;
+        if (HAS_REQUESTS) begin
+            transaction_f1 = receiver_f1 ^ forced[0];
+            transaction_f2 = receiver_f2 ^ forced[1];
+            transaction_serial_ok = receiver_serial_ok & !forced[2];
+        end
+    end
+
+    always @* begin
         word = 24'd0;
         word = (word & 24'h7fffff) | ({23'd0, receiver_payload[0]} << 5'd23);
         word = (word & 24'hbfffff) | ({23'd0, receiver_payload[1]} << 5'd22);
@@ -489,9 +512,18 @@ module endat_channel (
     end
     assign add_info_info_done = info_taken & HAS_REQUESTS;
     assign add_info_over = over & HAS_REQUESTS;
+
+    always @* begin
+        clk_pin_next = clock_gen_endat_clk;
+        if (clock_low & HAS_REQUESTS) begin
+            clk_pin_next = 1'b0;
+        end
+    end
     assign endat_clk = clk_pin;
     assign data_o = data_pin;
     assign data_oe = oe_pin;
+    assign request_runs = (frame_own | frame_ride) & !transaction_is_at_rest;
+    assign line_high = filter_level & !transaction_run;
     assign over_request = frame_own | frame_ride;
     assign reply = reply_word;
     assign reply_good = reply_right;
@@ -512,7 +544,7 @@ module endat_channel (
             reply_word <= 48'd0;
             reply_right <= 1'b0;
         end else begin
-            clk_pin <= clock_gen_endat_clk;
+            clk_pin <= clk_pin_next;
             data_pin <= sender_data;
             oe_pin <= sender_oe;
             own_wanted <= own_wanted_next;

@@ -11,7 +11,7 @@ module endat_register_bank (
     // Synchronous reset.
     input  wire         reset,
     // Word address, constant from access to done.
-    input  wire   [8:0] word_address,
+    input  wire  [10:0] word_address,
     // The address fits word_address; otherwise a read gives 0 and a write does nothing.
     input  wire         in_range,
     // Byte of the word, 0 = most significant.
@@ -48,6 +48,20 @@ module endat_register_bank (
     input  wire   [7:0] ring_in,
     // Byte to the last channel's ring block.
     output wire   [7:0] ring_out,
+    // Word of a service's RAM.
+    output wire   [6:0] service_address,
+    // The channel that it belongs to, one bit per channel.
+    output wire   [7:0] service_channels,
+    // Strobe, one bit per channel: read it.
+    output reg    [7:0] service_read,
+    // The word read.
+    input  wire  [31:0] service_word,
+    // Strobe, one bit per channel: write one half of it; the high one comes first.
+    output reg    [7:0] service_write,
+    // The half: 1 = high.
+    output wire         service_half,
+    // What is written.
+    output reg   [15:0] service_data,
     // Triggers since reset.
     input  wire  [31:0] trigger_count,
     // Strobe: trigger now.
@@ -59,8 +73,9 @@ module endat_register_bank (
     // Period of the trigger timer.
     output wire  [23:0] period_cycles
 );
+    localparam         HAS_SERVICE = 1'b0;
     localparam  [31:0] ID = 32'h456e4474;
-    localparam  [31:0] VERSION = 32'h10000;
+    localparam  [31:0] VERSION = 32'h20000;
     localparam  [31:0] CAPABILITIES = 32'hf3002;
     localparam  [31:0] SYSTEM_HZ = 32'h5f5e100;
     localparam  [31:0] CONFIGURATION_HASH = 32'hcff72a77;
@@ -69,6 +84,9 @@ module endat_register_bank (
     localparam   [8:0] TRIGGER_NOW_AT = 9'd9;
     localparam   [8:0] CALIBRATE_AT = 9'd10;
 
+    wire         low_page;
+    wire   [8:0] low_address;
+    wire         service_page;
     wire         at_end;
     wire         at_word;
     wire         block_end;
@@ -120,7 +138,13 @@ module endat_register_bank (
     reg          hold = 1'b0;
     reg          hold_next;
     reg          follow = 1'b0;
-    wire         _unused_ok = &{1'b0, write_data[23:8], ring_word0[31:3], ring_word1[31:24], ring_word2[31:1]};
+    reg          service_skip = 1'b1;
+    reg    [7:0] service_byte = 8'd0;
+    reg    [7:0] service_byte_next;
+    reg    [7:0] service_selected = 8'd0;
+    reg    [7:0] service_selected_next;
+    reg          service_first = 1'b0;
+    wire         _unused_ok = &{1'b0, ring_word0[31:3], ring_word1[31:24], ring_word2[31:1]};
 
     endat_config_ring_w03 u_ring (
         .clock(clock),
@@ -160,6 +184,24 @@ module endat_register_bank (
             hold_next = ring_word2[0];
         end
     end
+
+    always @* begin
+        service_byte_next = service_byte;
+        case (lane)
+            2'd0: begin
+                service_byte_next = service_word[31:24];
+            end
+            2'd1: begin
+                service_byte_next = service_word[23:16];
+            end
+            2'd2: begin
+                service_byte_next = service_word[15:8];
+            end
+            default: begin
+                service_byte_next = service_word[7:0];
+            end
+        endcase
+    end
     assign block_end = byte_at == 4'd11;
     assign at_end = block_end & (block_at == LAST_BLOCK);
 
@@ -189,6 +231,8 @@ module endat_register_bank (
     assign ring_turn = turn;
     assign ring_home = !turn;
     assign done = done_now;
+    assign low_page = in_range & !(|word_address[10:9]);
+    assign low_address = word_address[8:0];
     assign at_word = turning & config_page & (block_at == word_address[6:3]) & (byte_at[3:2] == word_address[1:0]);
 
     always @* begin
@@ -199,7 +243,7 @@ module endat_register_bank (
     end
     assign take_byte = word_passes;
     assign ring_out = head;
-    assign card_page = in_range & !(|word_address[8:4]);
+    assign card_page = low_page & !(|word_address[8:4]);
 
     always @* begin
         rom_word = 32'd0;
@@ -246,11 +290,11 @@ module endat_register_bank (
             end
         endcase
     end
-    assign strobe = access & write & in_range;
+    assign strobe = access & write & low_page;
 
     always @* begin
         calibrate_strobe_next = 8'd0;
-        if (strobe & (word_address == CALIBRATE_AT)) begin
+        if (strobe & (low_address == CALIBRATE_AT)) begin
             calibrate_strobe_next = write_data[7:0];
         end
     end
@@ -285,7 +329,7 @@ module endat_register_bank (
             end
         endcase
     end
-    assign result_page = in_range & (&word_address[8:7]);
+    assign result_page = low_page & (&word_address[8:7]);
 
     always @* begin
         skipped_channels_next = 8'd255;
@@ -322,6 +366,63 @@ module endat_register_bank (
     end
     assign word_skip = skipped_words;
     assign channel_skip = skipped_channels;
+    assign service_page = HAS_SERVICE & in_range & word_address[10];
+
+    always @* begin
+        service_selected_next = 8'd0;
+        if (service_page) begin
+            case (word_address[9:7])
+                3'd0: begin
+                    service_selected_next = 8'd1;
+                end
+                3'd1: begin
+                    service_selected_next = 8'd2;
+                end
+                3'd2: begin
+                    service_selected_next = 8'd4;
+                end
+                3'd3: begin
+                    service_selected_next = 8'd8;
+                end
+                3'd4: begin
+                    service_selected_next = 8'd16;
+                end
+                3'd5: begin
+                    service_selected_next = 8'd32;
+                end
+                3'd6: begin
+                    service_selected_next = 8'd64;
+                end
+                default: begin
+                    service_selected_next = 8'd128;
+                end
+            endcase
+        end
+    end
+    assign service_address = word_address[6:0];
+    assign service_channels = service_selected;
+
+    always @* begin
+        service_read = 8'd0;
+        if (service_first & !write_now & !(|lane)) begin
+            service_read = service_selected;
+        end
+    end
+
+    always @* begin
+        service_write = 8'd0;
+        if (write_now & (service_first | done_now)) begin
+            service_write = service_selected;
+        end
+    end
+    assign service_half = turn | turning;
+
+    always @* begin
+        service_data = write_data[15:0];
+        if (turn | turning) begin
+            service_data = write_data[31:16];
+        end
+    end
     assign read_byte = byte_value;
 
     always @(posedge clock) begin
@@ -349,6 +450,9 @@ module endat_register_bank (
             active_period <= 24'h2710;
             hold <= 1'b0;
             follow <= 1'b0;
+            service_skip <= 1'b1;
+            service_selected <= 8'd0;
+            service_first <= 1'b0;
         end else begin
             turning <= turning_next;
             byte_at <= byte_at_next;
@@ -359,20 +463,23 @@ module endat_register_bank (
             ended <= turning & at_end;
             done_now <= ended;
             write_now <= write_now_next;
-            config_page <= in_range & word_address[8] & !word_address[7] & !word_address[2];
+            config_page <= low_page & word_address[8] & !word_address[7] & !word_address[2];
             skipped_words <= skipped_words_next;
             skipped_channels <= skipped_channels_next;
             rom_skip <= !card_page | word_address[3];
-            count_skip <= !in_range | (word_address != TRIGGER_COUNT_AT);
+            count_skip <= !low_page | (low_address != TRIGGER_COUNT_AT);
             count_held <= count_held_next;
             ring_byte <= ring_byte_next;
-            byte_value <= rom_byte | count_byte | ring_byte | channel_byte;
-            trigger_strobe <= strobe & (word_address == TRIGGER_NOW_AT) & write_data[0];
+            byte_value <= rom_byte | count_byte | ring_byte | channel_byte | service_byte;
+            trigger_strobe <= strobe & (low_address == TRIGGER_NOW_AT) & write_data[0];
             calibrate_strobe <= calibrate_strobe_next;
             active_sources <= active_sources_next;
             active_period <= active_period_next;
             hold <= hold_next;
             follow <= !(pending | reading | hold);
+            service_skip <= !service_page;
+            service_selected <= service_selected_next;
+            service_first <= access;
         end
     end
 
@@ -389,6 +496,14 @@ module endat_register_bank (
             count_byte <= 8'd0;
         end else begin
             count_byte <= count_byte_next;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (service_skip) begin
+            service_byte <= 8'd0;
+        end else begin
+            service_byte <= service_byte_next;
         end
     end
 endmodule

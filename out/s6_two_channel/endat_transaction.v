@@ -128,6 +128,7 @@ module endat_transaction (
     reg          give_up;
     reg          idle;
     wire         wanted;
+    wire         triggered;
     reg          refuse;
     reg          normal_end;
     reg          parking;
@@ -199,7 +200,8 @@ module endat_transaction (
         end
     end
     assign own = is_own & HAS_ALL;
-    assign wanted = trigger | (begin_own & HAS_ALL);
+    assign triggered = trigger & !(hold_off & HAS_ALL);
+    assign wanted = triggered | (begin_own & HAS_ALL);
     assign crc_bad = !(serial_ok & parallel_ok);
 
     always @* begin
@@ -229,13 +231,13 @@ module endat_transaction (
             PHASE_NOT_READY: begin
                 limit = READY_LOW_CYCLES;
                 timer_clear = level;
-                idle = level;
+                idle = level & !(hold_off & HAS_ALL);
                 if (timer_hit) begin
                     phase_next = PHASE_READY;
                 end
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
-                    if (trigger) begin
+                    if (triggered) begin
                         found = 12'd1;
                         give_up = 1'b1;
                     end
@@ -246,11 +248,11 @@ module endat_transaction (
                 idle = !(hold_off & HAS_ALL);
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
-                    if (trigger) begin
+                    if (triggered) begin
                         found = 12'd1;
                         give_up = 1'b1;
                     end
-                end else if (wanted & idle) begin
+                end else if (wanted) begin
                     if (is_known) begin
                         accept = 1'b1;
                         phase_next = PHASE_FRAME;
@@ -486,7 +488,7 @@ module endat_transaction (
     end
     assign stop = stop_now;
     assign acquire = acquiring;
-    assign busy = !idle;
+    assign busy = !idle | (begin_own & HAS_ALL);
     assign publish = publish_now;
     assign good = good_now;
     assign late_fault = late_now;

@@ -17,7 +17,7 @@ module endat_uart_bridge (
     // Serial line to the host, from a register.
     output wire         tx,
     // Word address of the access, constant from access to done.
-    output wire   [8:0] word_address,
+    output wire  [10:0] word_address,
     // The host's 32-bit address fits word_address.
     output wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
@@ -48,7 +48,7 @@ module endat_uart_bridge (
 
     wire         last_lane;
     reg          next_lane;
-    wire   [9:0] next_address;
+    wire  [11:0] next_address;
     wire         high_bits;
     wire   [7:0] receiver_data;
     wire         receiver_strobe;
@@ -62,8 +62,8 @@ module endat_uart_bridge (
     reg          writing_next;
     reg    [7:0] words_left = 8'd0;
     reg    [7:0] words_left_next;
-    reg    [8:0] address = 9'd0;
-    reg    [8:0] address_next;
+    reg   [10:0] address = 11'd0;
+    reg   [10:0] address_next;
     reg          out_of_range = 1'b0;
     reg          out_of_range_next;
     reg    [1:0] byte_lane = 2'd0;
@@ -136,7 +136,7 @@ module endat_uart_bridge (
     end
     assign last_lane = &byte_lane;
     assign high_bits = |receiver_data;
-    assign next_address = {1'b0, address} + 10'd1;
+    assign next_address = {1'b0, address} + 12'd1;
 
     always @* begin
         state_next = state;
@@ -239,13 +239,13 @@ module endat_uart_bridge (
             step_address_next = !fixed;
         end
         if (step_address) begin
-            address_next = next_address[8:0];
-            if (next_address[9]) begin
+            address_next = next_address[10:0];
+            if (next_address[11]) begin
                 out_of_range_next = 1'b1;
             end
         end
         if ((state == BRIDGE_STATE_ADDRESS) & receiver_strobe) begin
-            address_next = {1'b0, receiver_data};
+            address_next = {3'd0, receiver_data};
             case (byte_lane)
                 2'd0: begin
                     out_of_range_next = high_bits;
@@ -254,10 +254,10 @@ module endat_uart_bridge (
                     out_of_range_next = out_of_range | high_bits;
                 end
                 2'd2: begin
-                    out_of_range_next = out_of_range | (|receiver_data[7:1]);
+                    out_of_range_next = out_of_range | (|receiver_data[7:3]);
                 end
                 default: begin
-                    address_next = {1'b0, receiver_data} | ({8'd0, address[0]} << 4'd8);
+                    address_next = {3'd0, receiver_data} | ({8'd0, address[2:0]} << 4'd8);
                 end
             endcase
         end
@@ -282,7 +282,7 @@ module endat_uart_bridge (
             fixed <= 1'b0;
             writing <= 1'b0;
             words_left <= 8'd0;
-            address <= 9'd0;
+            address <= 11'd0;
             out_of_range <= 1'b0;
             byte_lane <= 2'd0;
             data <= 32'd0;

@@ -96,6 +96,11 @@ module s6_two_channel (
     wire   [7:0] read_link_0;
     wire   [7:0] read_link_1;
     wire   [7:0] read_link_2;
+    wire  [31:0] service_link_0;
+    wire  [31:0] service_link_1;
+    wire  [31:0] service_link_2;
+    reg   [31:0] selected_0;
+    reg   [31:0] selected_1;
     wire         pending_0;
     wire         pending_1;
     wire         pending_2;
@@ -106,7 +111,7 @@ module s6_two_channel (
     wire  [31:0] timebase_timestamp;
     wire         trigger_trigger;
     wire  [31:0] trigger_trigger_count;
-    wire   [8:0] bridge_word_address;
+    wire  [10:0] bridge_word_address;
     wire         bridge_in_range;
     wire   [1:0] bridge_lane;
     wire         bridge_access;
@@ -122,6 +127,12 @@ module s6_two_channel (
     wire         bank_ring_turn;
     wire         bank_ring_home;
     wire   [7:0] bank_ring_in;
+    wire   [6:0] bank_service_address;
+    wire   [7:0] bank_service_channels;
+    wire   [7:0] bank_service_read;
+    wire   [7:0] bank_service_write;
+    wire         bank_service_half;
+    wire  [15:0] bank_service_data;
     wire         bank_trigger_now;
     wire   [7:0] bank_calibrate;
     wire   [2:0] bank_sources;
@@ -146,61 +157,69 @@ module s6_two_channel (
     wire   [5:0] registers_1_start_window_cycles;
     wire  [11:0] registers_1_start_timeout_us;
     wire  [12:0] registers_1_recovery_limit_cycles;
-    wire         channel_0_result_strobe;
-    wire  [47:0] channel_0_position;
-    wire         channel_0_position_valid;
-    wire  [15:0] channel_0_sequence;
-    wire  [31:0] channel_0_first_fall_timestamp;
-    wire  [15:0] channel_0_age_us;
-    wire   [3:0] channel_0_cause;
-    wire  [11:0] channel_0_flags;
-    wire   [4:0] channel_0_crc_received;
-    wire   [4:0] channel_0_crc_computed;
-    wire  [12:0] channel_0_recovery_cycles;
-    wire   [9:0] channel_0_delay_cycles;
-    wire         channel_0_busy;
-    wire         channel_0_displaced;
-    wire         channel_0_over;
-    wire         channel_0_over_request;
-    wire   [3:0] channel_0_over_cause;
-    wire  [11:0] channel_0_over_flags;
-    wire  [47:0] channel_0_reply;
-    wire         channel_0_reply_good;
-    wire   [1:0] channel_0_info_active;
-    wire  [23:0] channel_0_info_1;
-    wire  [23:0] channel_0_info_2;
-    wire   [1:0] channel_0_info_came;
-    wire   [1:0] channel_0_info_good;
-    wire         channel_0_calibrated;
-    wire         channel_0_sample_strobe;
-    wire         channel_1_result_strobe;
-    wire  [47:0] channel_1_position;
-    wire         channel_1_position_valid;
-    wire  [15:0] channel_1_sequence;
-    wire  [31:0] channel_1_first_fall_timestamp;
-    wire  [15:0] channel_1_age_us;
-    wire   [3:0] channel_1_cause;
-    wire  [11:0] channel_1_flags;
-    wire   [4:0] channel_1_crc_received;
-    wire   [4:0] channel_1_crc_computed;
-    wire  [12:0] channel_1_recovery_cycles;
-    wire   [9:0] channel_1_delay_cycles;
-    wire         channel_1_busy;
-    wire         channel_1_displaced;
-    wire         channel_1_over;
-    wire         channel_1_over_request;
-    wire   [3:0] channel_1_over_cause;
-    wire  [11:0] channel_1_over_flags;
-    wire  [47:0] channel_1_reply;
-    wire         channel_1_reply_good;
-    wire   [1:0] channel_1_info_active;
-    wire  [23:0] channel_1_info_1;
-    wire  [23:0] channel_1_info_2;
-    wire   [1:0] channel_1_info_came;
-    wire   [1:0] channel_1_info_good;
-    wire         channel_1_calibrated;
-    wire         channel_1_sample_strobe;
-    wire         _unused_ok = &{1'b0, bank_channel_skip[7:2], bank_calibrate[7:2], channel_0_displaced, channel_0_over, channel_0_over_request, channel_0_over_cause, channel_0_over_flags, channel_0_reply, channel_0_reply_good, channel_0_info_active, channel_0_info_1, channel_0_info_2, channel_0_info_came, channel_0_info_good, channel_0_calibrated, channel_0_sample_strobe, channel_1_displaced, channel_1_over, channel_1_over_request, channel_1_over_cause, channel_1_over_flags, channel_1_reply, channel_1_reply_good, channel_1_info_active, channel_1_info_1, channel_1_info_2, channel_1_info_came, channel_1_info_good, channel_1_calibrated, channel_1_sample_strobe};
+    wire         port_0_result_strobe;
+    wire  [47:0] port_0_position;
+    wire         port_0_position_valid;
+    wire  [15:0] port_0_sequence;
+    wire  [31:0] port_0_first_fall_timestamp;
+    wire  [15:0] port_0_age_us;
+    wire   [3:0] port_0_cause;
+    wire  [11:0] port_0_flags;
+    wire   [4:0] port_0_crc_received;
+    wire   [4:0] port_0_crc_computed;
+    wire  [12:0] port_0_recovery_cycles;
+    wire   [9:0] port_0_delay_cycles;
+    wire         port_0_busy;
+    wire         port_0_request_runs;
+    wire         port_0_line_high;
+    wire         port_0_displaced;
+    wire         port_0_over;
+    wire         port_0_over_request;
+    wire   [3:0] port_0_over_cause;
+    wire  [11:0] port_0_over_flags;
+    wire  [47:0] port_0_reply;
+    wire         port_0_reply_good;
+    wire   [1:0] port_0_info_active;
+    wire  [23:0] port_0_info_1;
+    wire  [23:0] port_0_info_2;
+    wire   [1:0] port_0_info_came;
+    wire   [1:0] port_0_info_good;
+    wire         port_0_calibrated;
+    wire         port_0_sample_strobe;
+    wire         port_0_alarm;
+    wire  [31:0] port_0_host_word;
+    wire         port_1_result_strobe;
+    wire  [47:0] port_1_position;
+    wire         port_1_position_valid;
+    wire  [15:0] port_1_sequence;
+    wire  [31:0] port_1_first_fall_timestamp;
+    wire  [15:0] port_1_age_us;
+    wire   [3:0] port_1_cause;
+    wire  [11:0] port_1_flags;
+    wire   [4:0] port_1_crc_received;
+    wire   [4:0] port_1_crc_computed;
+    wire  [12:0] port_1_recovery_cycles;
+    wire   [9:0] port_1_delay_cycles;
+    wire         port_1_busy;
+    wire         port_1_request_runs;
+    wire         port_1_line_high;
+    wire         port_1_displaced;
+    wire         port_1_over;
+    wire         port_1_over_request;
+    wire   [3:0] port_1_over_cause;
+    wire  [11:0] port_1_over_flags;
+    wire  [47:0] port_1_reply;
+    wire         port_1_reply_good;
+    wire   [1:0] port_1_info_active;
+    wire  [23:0] port_1_info_1;
+    wire  [23:0] port_1_info_2;
+    wire   [1:0] port_1_info_came;
+    wire   [1:0] port_1_info_good;
+    wire         port_1_calibrated;
+    wire         port_1_sample_strobe;
+    wire         port_1_alarm;
+    wire  [31:0] port_1_host_word;
+    wire         _unused_ok = &{1'b0, bank_channel_skip[7:2], bank_service_channels[7:2], bank_service_read[7:2], bank_service_write[7:2], bank_calibrate[7:2], port_0_request_runs, port_0_line_high, port_0_displaced, port_0_over, port_0_over_request, port_0_over_cause, port_0_over_flags, port_0_reply, port_0_reply_good, port_0_info_active, port_0_info_1, port_0_info_2, port_0_info_came, port_0_info_good, port_0_calibrated, port_0_sample_strobe, port_1_request_runs, port_1_line_high, port_1_displaced, port_1_over, port_1_over_request, port_1_over_cause, port_1_over_flags, port_1_reply, port_1_reply_good, port_1_info_active, port_1_info_1, port_1_info_2, port_1_info_came, port_1_info_good, port_1_calibrated, port_1_sample_strobe};
 
     endat_timebase u_timebase (
         .clock(clk_i),
@@ -257,6 +276,13 @@ module s6_two_channel (
         .ring_home(bank_ring_home),
         .ring_in(bank_ring_in),
         .ring_out(ring_link_2),
+        .service_address(bank_service_address),
+        .service_channels(bank_service_channels),
+        .service_read(bank_service_read),
+        .service_word(service_link_2),
+        .service_write(bank_service_write),
+        .service_half(bank_service_half),
+        .service_data(bank_service_data),
         .trigger_count(trigger_trigger_count),
         .trigger_now(bank_trigger_now),
         .calibrate(bank_calibrate),
@@ -267,20 +293,20 @@ module s6_two_channel (
         .clock(clk_i),
         .reset(rst_i),
         .trigger(trigger_trigger),
-        .busy(channel_0_busy),
-        .result_strobe(channel_0_result_strobe),
-        .position(channel_0_position),
-        .position_valid(channel_0_position_valid),
+        .busy(port_0_busy),
+        .result_strobe(port_0_result_strobe),
+        .position(port_0_position),
+        .position_valid(port_0_position_valid),
         .fresh(led_channel0_o),
-        .sequence_value(channel_0_sequence),
-        .first_fall_timestamp(channel_0_first_fall_timestamp),
-        .age_us(channel_0_age_us),
-        .cause(channel_0_cause),
-        .flags(channel_0_flags),
-        .crc_received(channel_0_crc_received),
-        .crc_computed(channel_0_crc_computed),
-        .recovery_cycles(channel_0_recovery_cycles),
-        .delay_cycles(channel_0_delay_cycles),
+        .sequence_value(port_0_sequence),
+        .first_fall_timestamp(port_0_first_fall_timestamp),
+        .age_us(port_0_age_us),
+        .cause(port_0_cause),
+        .flags(port_0_flags),
+        .crc_received(port_0_crc_received),
+        .crc_computed(port_0_crc_computed),
+        .recovery_cycles(port_0_recovery_cycles),
+        .delay_cycles(port_0_delay_cycles),
         .pending(registers_0_pending),
         .load(bank_load),
         .word_skip(bank_word_skip),
@@ -305,20 +331,20 @@ module s6_two_channel (
         .clock(clk_i),
         .reset(rst_i),
         .trigger(trigger_trigger),
-        .busy(channel_1_busy),
-        .result_strobe(channel_1_result_strobe),
-        .position(channel_1_position),
-        .position_valid(channel_1_position_valid),
+        .busy(port_1_busy),
+        .result_strobe(port_1_result_strobe),
+        .position(port_1_position),
+        .position_valid(port_1_position_valid),
         .fresh(led_channel1_o),
-        .sequence_value(channel_1_sequence),
-        .first_fall_timestamp(channel_1_first_fall_timestamp),
-        .age_us(channel_1_age_us),
-        .cause(channel_1_cause),
-        .flags(channel_1_flags),
-        .crc_received(channel_1_crc_received),
-        .crc_computed(channel_1_crc_computed),
-        .recovery_cycles(channel_1_recovery_cycles),
-        .delay_cycles(channel_1_delay_cycles),
+        .sequence_value(port_1_sequence),
+        .first_fall_timestamp(port_1_first_fall_timestamp),
+        .age_us(port_1_age_us),
+        .cause(port_1_cause),
+        .flags(port_1_flags),
+        .crc_received(port_1_crc_received),
+        .crc_computed(port_1_crc_computed),
+        .recovery_cycles(port_1_recovery_cycles),
+        .delay_cycles(port_1_delay_cycles),
         .pending(registers_1_pending),
         .load(bank_load),
         .word_skip(bank_word_skip),
@@ -339,7 +365,7 @@ module s6_two_channel (
         .start_timeout_us(registers_1_start_timeout_us),
         .recovery_limit_cycles(registers_1_recovery_limit_cycles)
     );
-    endat_channel u_channel_0 (
+    endat_encoder_port u_port_0 (
         .clock(clk_i),
         .reset(rst_i),
         .tick_us(timebase_tick_us),
@@ -350,12 +376,6 @@ module s6_two_channel (
         .period_cycles(registers_0_period_cycles),
         .first_low_extra_cycles(registers_0_first_low_extra_cycles),
         .command(registers_0_command),
-        .request_command(6'd0),
-        .request_parameter(24'd0),
-        .request_ride(1'b0),
-        .request_own(1'b0),
-        .request_cancel(1'b0),
-        .hold_off(1'b0),
         .position_bits(registers_0_position_bits),
         .filter_cycles(registers_0_filter_cycles),
         .start_window_cycles(registers_0_start_window_cycles),
@@ -364,36 +384,45 @@ module s6_two_channel (
         .endat_clk(endat_clk0_o),
         .data_o(endat_data0_o),
         .data_oe(endat_data0_oe),
-        .result_strobe(channel_0_result_strobe),
-        .position(channel_0_position),
-        .position_valid(channel_0_position_valid),
+        .result_strobe(port_0_result_strobe),
+        .position(port_0_position),
+        .position_valid(port_0_position_valid),
         .fresh(led_channel0_o),
-        .sequence_value(channel_0_sequence),
-        .first_fall_timestamp(channel_0_first_fall_timestamp),
-        .age_us(channel_0_age_us),
-        .cause(channel_0_cause),
-        .flags(channel_0_flags),
-        .crc_received(channel_0_crc_received),
-        .crc_computed(channel_0_crc_computed),
-        .recovery_cycles(channel_0_recovery_cycles),
-        .delay_cycles(channel_0_delay_cycles),
-        .busy(channel_0_busy),
-        .displaced(channel_0_displaced),
-        .over(channel_0_over),
-        .over_request(channel_0_over_request),
-        .over_cause(channel_0_over_cause),
-        .over_flags(channel_0_over_flags),
-        .reply(channel_0_reply),
-        .reply_good(channel_0_reply_good),
-        .info_active(channel_0_info_active),
-        .info_1(channel_0_info_1),
-        .info_2(channel_0_info_2),
-        .info_came(channel_0_info_came),
-        .info_good(channel_0_info_good),
-        .calibrated(channel_0_calibrated),
-        .sample_strobe(channel_0_sample_strobe)
+        .sequence_value(port_0_sequence),
+        .first_fall_timestamp(port_0_first_fall_timestamp),
+        .age_us(port_0_age_us),
+        .cause(port_0_cause),
+        .flags(port_0_flags),
+        .crc_received(port_0_crc_received),
+        .crc_computed(port_0_crc_computed),
+        .recovery_cycles(port_0_recovery_cycles),
+        .delay_cycles(port_0_delay_cycles),
+        .busy(port_0_busy),
+        .request_runs(port_0_request_runs),
+        .line_high(port_0_line_high),
+        .displaced(port_0_displaced),
+        .over(port_0_over),
+        .over_request(port_0_over_request),
+        .over_cause(port_0_over_cause),
+        .over_flags(port_0_over_flags),
+        .reply(port_0_reply),
+        .reply_good(port_0_reply_good),
+        .info_active(port_0_info_active),
+        .info_1(port_0_info_1),
+        .info_2(port_0_info_2),
+        .info_came(port_0_info_came),
+        .info_good(port_0_info_good),
+        .calibrated(port_0_calibrated),
+        .sample_strobe(port_0_sample_strobe),
+        .alarm(port_0_alarm),
+        .host_address(bank_service_address),
+        .host_read(bank_service_read[0]),
+        .host_word(port_0_host_word),
+        .host_write(bank_service_write[0]),
+        .host_half(bank_service_half),
+        .host_data(bank_service_data)
     );
-    endat_channel u_channel_1 (
+    endat_encoder_port u_port_1 (
         .clock(clk_i),
         .reset(rst_i),
         .tick_us(timebase_tick_us),
@@ -404,12 +433,6 @@ module s6_two_channel (
         .period_cycles(registers_1_period_cycles),
         .first_low_extra_cycles(registers_1_first_low_extra_cycles),
         .command(registers_1_command),
-        .request_command(6'd0),
-        .request_parameter(24'd0),
-        .request_ride(1'b0),
-        .request_own(1'b0),
-        .request_cancel(1'b0),
-        .hold_off(1'b0),
         .position_bits(registers_1_position_bits),
         .filter_cycles(registers_1_filter_cycles),
         .start_window_cycles(registers_1_start_window_cycles),
@@ -418,46 +441,72 @@ module s6_two_channel (
         .endat_clk(endat_clk1_o),
         .data_o(endat_data1_o),
         .data_oe(endat_data1_oe),
-        .result_strobe(channel_1_result_strobe),
-        .position(channel_1_position),
-        .position_valid(channel_1_position_valid),
+        .result_strobe(port_1_result_strobe),
+        .position(port_1_position),
+        .position_valid(port_1_position_valid),
         .fresh(led_channel1_o),
-        .sequence_value(channel_1_sequence),
-        .first_fall_timestamp(channel_1_first_fall_timestamp),
-        .age_us(channel_1_age_us),
-        .cause(channel_1_cause),
-        .flags(channel_1_flags),
-        .crc_received(channel_1_crc_received),
-        .crc_computed(channel_1_crc_computed),
-        .recovery_cycles(channel_1_recovery_cycles),
-        .delay_cycles(channel_1_delay_cycles),
-        .busy(channel_1_busy),
-        .displaced(channel_1_displaced),
-        .over(channel_1_over),
-        .over_request(channel_1_over_request),
-        .over_cause(channel_1_over_cause),
-        .over_flags(channel_1_over_flags),
-        .reply(channel_1_reply),
-        .reply_good(channel_1_reply_good),
-        .info_active(channel_1_info_active),
-        .info_1(channel_1_info_1),
-        .info_2(channel_1_info_2),
-        .info_came(channel_1_info_came),
-        .info_good(channel_1_info_good),
-        .calibrated(channel_1_calibrated),
-        .sample_strobe(channel_1_sample_strobe)
+        .sequence_value(port_1_sequence),
+        .first_fall_timestamp(port_1_first_fall_timestamp),
+        .age_us(port_1_age_us),
+        .cause(port_1_cause),
+        .flags(port_1_flags),
+        .crc_received(port_1_crc_received),
+        .crc_computed(port_1_crc_computed),
+        .recovery_cycles(port_1_recovery_cycles),
+        .delay_cycles(port_1_delay_cycles),
+        .busy(port_1_busy),
+        .request_runs(port_1_request_runs),
+        .line_high(port_1_line_high),
+        .displaced(port_1_displaced),
+        .over(port_1_over),
+        .over_request(port_1_over_request),
+        .over_cause(port_1_over_cause),
+        .over_flags(port_1_over_flags),
+        .reply(port_1_reply),
+        .reply_good(port_1_reply_good),
+        .info_active(port_1_info_active),
+        .info_1(port_1_info_1),
+        .info_2(port_1_info_2),
+        .info_came(port_1_info_came),
+        .info_good(port_1_info_good),
+        .calibrated(port_1_calibrated),
+        .sample_strobe(port_1_sample_strobe),
+        .alarm(port_1_alarm),
+        .host_address(bank_service_address),
+        .host_read(bank_service_read[1]),
+        .host_word(port_1_host_word),
+        .host_write(bank_service_write[1]),
+        .host_half(bank_service_half),
+        .host_data(bank_service_data)
     );
 
     assign read_link_0 = 8'd0;
+    assign service_link_0 = 32'd0;
     assign pending_0 = 1'b0;
     assign faulty_0 = 1'b0;
     assign bank_ring_in = ring_link_0;
+
+    always @* begin
+        selected_0 = 32'd0;
+        if (bank_service_channels[0]) begin
+            selected_0 = port_0_host_word;
+        end
+    end
+    assign service_link_1 = service_link_0 | selected_0;
     assign registers_0_ring_in = ring_link_1;
     assign pending_1 = pending_0 | registers_0_pending;
-    assign faulty_1 = faulty_0 | (|channel_0_cause);
+    assign faulty_1 = faulty_0 | (|port_0_cause) | port_0_alarm;
+
+    always @* begin
+        selected_1 = 32'd0;
+        if (bank_service_channels[1]) begin
+            selected_1 = port_1_host_word;
+        end
+    end
+    assign service_link_2 = service_link_1 | selected_1;
     assign registers_1_ring_in = ring_link_2;
     assign pending_2 = pending_1 | registers_1_pending;
-    assign faulty_2 = faulty_1 | (|channel_1_cause);
+    assign faulty_2 = faulty_1 | (|port_1_cause) | port_1_alarm;
 
     always @* begin
         led_status_o = timebase_timestamp[SLOW_BIT];

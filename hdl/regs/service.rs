@@ -1,0 +1,228 @@
+//! The words of a service; their places come from [`crate::service::map`].
+
+use super::{Access, Block, Field, Register, SERVICE_BASE};
+use crate::config::CardConfig;
+use crate::service::map::{word as at, NAME_PLATE};
+use Access::{ReadOnly, ReadWrite};
+
+fn zero(_: &CardConfig, _: usize) -> u64 {
+    0
+}
+
+const fn field(
+    name: &'static str,
+    lsb: u32,
+    width: u32,
+    unit: &'static str,
+    meaning: &'static str,
+) -> Field {
+    Field {
+        name,
+        lsb,
+        width,
+        unit,
+        meaning,
+        start: zero,
+    }
+}
+
+const fn word(
+    name: &'static str,
+    offset: u8,
+    access: Access,
+    meaning: &'static str,
+    fields: &'static [Field],
+) -> Register {
+    Register {
+        name,
+        offset: offset as u16,
+        access,
+        meaning,
+        fields,
+    }
+}
+
+const VALUE: &[Field] = &[field("value", 0, 32, "", "Number")];
+const HIGH: &[Field] = &[field("value", 0, 16, "", "Bits 47..32")];
+const CODE: &[Field] = &[field("mrs", 0, 8, "", "MRS code 0x40..0x5E")];
+const SLOT: &[Field] = &[
+    field("value", 0, 16, "", "Content"),
+    field(
+        "sequence",
+        16,
+        16,
+        "",
+        "status.sequence of the frame that brought it: its age is the difference",
+    ),
+];
+const COUNT: &[Field] = &[field("frames", 0, 32, "", "Frames since clear, wrapping")];
+const PLATE: &[Field] = &[
+    field("value", 0, 16, "", "Word of the encoder"),
+    field("is_read", 16, 1, "", "It has been read"),
+];
+
+const fn list(name: &'static str, i: u8) -> Register {
+    word(name, at::LIST + i, ReadWrite, "A code of the list.", CODE)
+}
+
+const fn slot(name: &'static str, i: u8) -> Register {
+    word(
+        name,
+        at::SLOTS + i,
+        ReadOnly,
+        "What the additional information of that code said last.",
+        SLOT,
+    )
+}
+
+const fn frames(name: &'static str, cause: u8) -> Register {
+    word(
+        name,
+        at::COUNTERS + cause,
+        ReadOnly,
+        "Frames that ended with this cause.",
+        COUNT,
+    )
+}
+
+const fn plate(i: usize) -> Register {
+    let entry = &NAME_PLATE[i];
+    word(
+        entry.name,
+        at::NAME_PLATE + i as u8,
+        ReadOnly,
+        entry.meaning,
+        PLATE,
+    )
+}
+
+/// Requests, health, slots and name plate of a channel; cards without service do not have it. RAM: a reset does not clear it.
+pub const SERVICE: Block = Block {
+    name: "service",
+    base: SERVICE_BASE,
+    stride: 128,
+    per_channel: true,
+    registers: &[
+        word("request", at::REQUEST, ReadWrite, "Sends a request when written.", &[
+            field("data", 0, 16, "", "Data"),
+            field("address", 16, 8, "", "MRS code, address or port"),
+            field("command", 24, 6, "", "Mode command, any of the fourteen"),
+        ]),
+        word("request_state", at::REQUEST_STATE, ReadOnly, "What became of the request.", &[
+            field("busy", 0, 1, "", "It is under way"),
+            field("error", 4, 4, "", "0 fulfilled, 1 no answer, 2 echo of MRS code or address wrong, 3 echo of data wrong, 4 CRC, 5 unknown mode command, 6 frame went wrong, 7 encoder stayed busy"),
+            field("finished", 16, 16, "", "Requests finished, wrapping"),
+        ]),
+        word("answer", at::ANSWER, ReadOnly, "Answer to the last request; bits 31..0 of a longer one.", &[
+            field("data", 0, 16, "", "Data, or content of additional information 1"),
+            field("address", 16, 8, "", "Echo of MRS code, address or port; or WRN, RM, Busy, I4..I0"),
+        ]),
+        word("answer_more", at::ANSWER_MORE, ReadOnly, "Bits 47..32 of a longer answer.", HIGH),
+        word("duration", at::DURATION, ReadOnly, "How long the last request took.", &[
+            field("us", 0, 16, "us", "Modulo 65536"),
+            field("ms", 16, 16, "ms", "The same in milliseconds"),
+        ]),
+        word("control", at::CONTROL, ReadWrite, "Acts when written.", &[
+            field("initialise", 0, 1, "", "1: initialise the encoder"),
+            field("clear", 1, 1, "", "1: counters, alarm and position_2 to zero"),
+        ]),
+        word("force", at::FORCE, ReadWrite, "Errors forced upon what is received, to try the error paths; not for regular operation.", &[
+            field("f1", 0, 1, "", "Inverts F1"),
+            field("f2", 1, 1, "", "Inverts F2"),
+            field("crc", 2, 1, "", "Spoils the CRC"),
+        ]),
+        word("progress", at::PROGRESS, ReadOnly, "Initialisation.", &[
+            field("step", 0, 16, "", "Step under way; 0 = none"),
+            field("failed", 16, 16, "", "Step that failed; 0 = none"),
+        ]),
+        word("state", at::STATE, ReadOnly, "What is known and what is wrong.", &[
+            field("initialised", 0, 1, "", "The name plate is valid"),
+            field("alarm", 1, 1, "", "Too many bad frames; latched"),
+            field("position_2", 2, 1, "", "Position 2 was too far from position 1; latched"),
+            field("endat22", 3, 1, "", "The encoder knows EnDat 2.2"),
+            field("other_width", 4, 1, "", "The encoder has another width than configured; its own is used"),
+            field("slower", 5, 1, "", "The encoder takes only a slower clock than configured; that is used"),
+            field("unplugged", 6, 1, "", "DATA has been HIGH for long: no encoder, or an open line"),
+        ]),
+        word("lost", at::LOST, ReadOnly, "What did not get its turn.", &[
+            field("triggers", 0, 16, "", "Triggers that came while the line was not free, wrapping"),
+            field("ends", 16, 16, "", "Frames that ended before the one before was counted"),
+        ]),
+        word("threshold", at::THRESHOLD, ReadWrite, "Alarm: n bad frames of the last m.", &[
+            field("n", 0, 16, "frames", "0 = no alarm"),
+            field("m", 16, 16, "frames", "1..16; another m begins a new count"),
+        ]),
+        word("bad_frames", at::BAD_FRAMES, ReadOnly, "Bad frames of the last m.", &[
+            field("count", 0, 16, "frames", "How many"),
+            field("which", 16, 16, "", "Bit 0 = the last frame"),
+        ]),
+        word("offset_low", at::OFFSET[0], ReadWrite, "Position 2 minus position 1 as it should be, bits 31..0.", VALUE),
+        word("offset_high", at::OFFSET[1], ReadWrite, "The same, bits 47..32.", HIGH),
+        word("tolerance", at::TOLERANCE, ReadWrite, "Largest distance from that; 0 = no comparison.", VALUE),
+        word("difference_low", at::DIFFERENCE[0], ReadOnly, "Position 2 minus position 1 minus offset, modulo the position's width, bits 31..0.", VALUE),
+        word("difference_high", at::DIFFERENCE[1], ReadOnly, "The same, bits 47..32.", HIGH),
+        word("comparisons", at::COMPARISONS, ReadOnly, "Comparisons of positions 1 and 2.", &[
+            field("all", 0, 16, "", "All, wrapping"),
+            field("failed", 16, 16, "", "Those that failed, wrapping"),
+        ]),
+        word("position_2_low", at::POSITION_2[0], ReadOnly, "Position 2, bits 31..0.", VALUE),
+        word("position_2_high", at::POSITION_2[1], ReadOnly, "Position 2, bits 47..32.", HIGH),
+        word("list_length", at::LIST_LENGTH, ReadWrite, "Codes of the list that are selected in turn.", &[
+            field("length", 0, 4, "", "0..8"),
+        ]),
+        word("info_status", at::INFO_STATUS, ReadOnly, "WRN, RM, Busy, I4..I0 as they came last.", &[
+            field("info_1", 0, 8, "", "Of additional information 1"),
+            field("info_2", 16, 8, "", "Of additional information 2"),
+        ]),
+        list("list_0", 0),
+        list("list_1", 1),
+        list("list_2", 2),
+        list("list_3", 3),
+        list("list_4", 4),
+        list("list_5", 5),
+        list("list_6", 6),
+        list("list_7", 7),
+        slot("slot_0", 0),
+        slot("slot_1", 1),
+        slot("slot_2", 2),
+        slot("slot_3", 3),
+        slot("slot_4", 4),
+        slot("slot_5", 5),
+        slot("slot_6", 6),
+        slot("slot_7", 7),
+        frames("frames_good", 0),
+        frames("frames_data_not_low", 1),
+        frames("frames_no_start_bit", 2),
+        frames("frames_start_window", 3),
+        frames("frames_crc", 4),
+        frames("frames_f1", 5),
+        frames("frames_f2", 6),
+        frames("frames_data_not_falling", 7),
+        frames("frames_trigger_overrun", 8),
+        frames("frames_unknown_command", 9),
+        frames("frames_info_missing", 10),
+        frames("frames_position_2", 15),
+        plate(0),
+        plate(1),
+        plate(2),
+        plate(3),
+        plate(4),
+        plate(5),
+        plate(6),
+        plate(7),
+        plate(8),
+        plate(9),
+        plate(10),
+        plate(11),
+        plate(12),
+        plate(13),
+        plate(14),
+        plate(15),
+        plate(16),
+        plate(17),
+        plate(18),
+        plate(19),
+        plate(20),
+        word("delay", crate::service::map::PLATE_DELAY, ReadOnly, "Line delay measured at initialisation, in system clock cycles.", PLATE),
+    ],
+};
