@@ -513,8 +513,8 @@ impl Logic for RegisterBank {
         self.word_skip.next = self.skipped_words.q.val();
         self.channel_skip.next = self.skipped_channels.q.val();
 
-        // Services: 128 words each, from 0x400 on. A word is read whole with its first byte, and written in two halves, with
-        // the turn of the ring between them.
+        // Services: 128 words each, from 0x400 on. A word is read whole with its first byte, and written in two halves, one
+        // block of the ring after the other.
         self.service_page.next =
             self.has_service.val() & self.in_range.val() & self.word_address.val().get_bit(10);
         self.service_selected.d.next = 0.into();
@@ -554,12 +554,15 @@ impl Logic for RegisterBank {
             self.service_read.next = self.service_selected.q.val();
         }
         self.service_write.next = 0.into();
-        if self.write_now.q.val() & (self.service_first.q.val() | self.done_now.q.val()) {
+        self.service_half.next = !self.block_at.q.val().any();
+        if self.write_now.q.val()
+            & (self.service_first.q.val()
+                | ((self.block_at.q.val() == 1) & !self.byte_at.q.val().any()))
+        {
             self.service_write.next = self.service_selected.q.val();
         }
-        self.service_half.next = self.turn.q.val() | self.turning.q.val();
         self.service_data.next = self.write_data.val().get_bits::<16>(0);
-        if self.turn.q.val() | self.turning.q.val() {
+        if self.service_half.val() {
             self.service_data.next = self.write_data.val().get_bits::<16>(16);
         }
         self.service_skip.d.next = !self.service_page.val();

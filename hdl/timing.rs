@@ -8,8 +8,10 @@ pub const ENDAT_HZ_MIN: u64 = 100_000;
 pub const ENDAT_HZ_MAX: u64 = 16_000_000;
 /// Clock of the frame that measures the propagation delay, in hertz: its period is longer than any cable's delay (TI, C2000).
 pub const CALIBRATION_HZ: u64 = 200_000;
-/// Shortest start time tST where the clock is fast enough to need one, in ns (PWM 20, TI).
-pub const TST_MIN_NS: u64 = 2_000;
+/// Shortest start time tST that receivers offer, in ns (Renesas; PWM 20: 2 us).
+pub const TST_MIN_NS: u64 = 500;
+/// Start time tST that receivers use (TI: 2 us from 1 MHz up), in ns.
+pub const TST_USUAL_NS: u64 = 2_000;
 /// Longest start time tST, in ns (PWM 20).
 pub const TST_MAX_NS: u64 = 10_000;
 /// The clock from which TI's receiver uses tST, in hertz.

@@ -10,7 +10,9 @@ use endat_hdl::protocol::{
     ModeCommand::{self, SendPosition, SendPositionAddInfo},
     LEAD_PULSES,
 };
-use endat_hdl::timing::{cycles_at_least, READY_LOW_NS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_MIN_NS};
+use endat_hdl::timing::{
+    cycles_at_least, READY_LOW_NS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
+};
 use endat_sim::campaign::{Case, Traces};
 use endat_sim::encoder::FrameLog;
 use endat_sim::engine::Compiled;
@@ -226,7 +228,7 @@ impl Subject {
         // tST goes with delay compensation (PWM 20): EnDat 2.2, and lines longer than half a period.
         let is_long = case.line.round_trip() * 2 * clock_hz > 1_000_000 * US;
         let has_tst = clock_hz >= TST_FROM_HZ && (self.command.has_f2() || is_long);
-        let tst_ns = if has_tst { TST_MIN_NS } else { 0 };
+        let tst_ns = if has_tst { TST_USUAL_NS } else { 0 };
         case.settings = case.settings.start_time_ns(tst_ns, system_hz);
         case.settings.start_timeout_us += options.tcal_ns / 1_000;
         case.encoder.tcal = options.tcal_ns * NS;

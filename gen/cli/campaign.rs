@@ -169,6 +169,7 @@ fn alone(arguments: &CampaignArgs, case: &Case, index: usize) -> Result<Outcome,
     let files = Pictures {
         vcd: arguments.vcd.as_deref(),
         svg: arguments.svg.as_deref(),
+        frame: None,
     };
     let messages = draw(&files, &bench, &case.title)?;
     let stdout = if arguments.json {

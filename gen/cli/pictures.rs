@@ -18,6 +18,8 @@ pub struct Pictures<'a> {
     pub vcd: Option<&'a Path>,
     /// A frame as a timing diagram.
     pub svg: Option<&'a Path>,
+    /// Which frame, 0 = the one that measures the delay; otherwise the first at the full clock.
+    pub frame: Option<usize>,
 }
 
 /// A file to be written: the option that asked for it, its place, its text.
@@ -43,13 +45,23 @@ pub fn draw(
     }
     if let Some(path) = wanted.svg {
         let link = bench.link(0);
-        let drawing = frame_svg(link, DRAWN_FRAME, title).or_else(|| frame_svg(link, 0, title));
-        let drawing = drawing.ok_or_else(|| {
-            GenError::input(format!(
-                "--svg = {}: there is no frame to draw; leave it out",
-                path.display()
-            ))
-        })?;
+        let drawing = match wanted.frame {
+            Some(frame) => frame_svg(link, frame, title).ok_or_else(|| {
+                let count = link.encoder().frames().len();
+                GenError::input(format!(
+                    "--frame = {frame}: the encoder saw {count} frames; choose one of 0..{}",
+                    count.saturating_sub(1)
+                ))
+            })?,
+            None => frame_svg(link, DRAWN_FRAME, title)
+                .or_else(|| frame_svg(link, 0, title))
+                .ok_or_else(|| {
+                    GenError::input(format!(
+                        "--svg = {}: there is no frame to draw; leave it out",
+                        path.display()
+                    ))
+                })?,
+        };
         files.push(("--svg", path.to_owned(), drawing));
     }
     check_places(&files)?;

@@ -36,6 +36,9 @@ pub struct SimArgs {
     /// Draw a frame as a timing diagram
     #[arg(long, value_name = "FILE", conflicts_with = "list")]
     svg: Option<PathBuf>,
+    /// Draw this frame of the encoder, 0 = the one that measures the delay [default: 1]
+    #[arg(long, value_name = "N", requires = "svg")]
+    frame: Option<usize>,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -72,6 +75,7 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
             let files = Pictures {
                 vcd: arguments.vcd.as_deref(),
                 svg: arguments.svg.as_deref(),
+                frame: arguments.frame,
             };
             let title = format!("{}: {}", scenario.name, scenario.summary);
             outcome.messages.extend(draw(&files, &bench, &title)?);
@@ -136,11 +140,12 @@ fn run_channel(scenario: &Scenario, index: usize) -> Result<(Bench<Compiled>, Re
         ))
     };
     let settings = &scenario.channels[index].settings;
-    let mut block = Channel::new(FixedTimes {
+    let times = FixedTimes {
         abort_us: settings.abort_us,
         ready_low_cycles: settings.ready_low_cycles,
         ..FixedTimes::at(scenario.system_hz)
-    });
+    };
+    let mut block = Channel::with(times, scenario.features());
     block.connect_all();
     let design = elaborate(&block, "channel").map_err(|e| fault(&e))?;
     let engine = Compiled::new(&design).map_err(|e| fault(&e))?;

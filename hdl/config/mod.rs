@@ -15,7 +15,7 @@ pub use card::{needed_baud, read_bytes, BAUD_NOTE};
 pub use limits::{limits, Limits};
 
 use crate::protocol::ModeCommand;
-use crate::timing::{TST_FROM_HZ, TST_MIN_NS};
+use crate::timing::{TST_FROM_HZ, TST_USUAL_NS};
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -268,7 +268,7 @@ impl ChannelRequest {
     /// The start time tST that receivers use at a clock rate: none below 1 MHz.
     pub const fn usual_tst_ns(clock_hz: u64) -> u64 {
         if clock_hz >= TST_FROM_HZ {
-            TST_MIN_NS
+            TST_USUAL_NS
         } else {
             0
         }

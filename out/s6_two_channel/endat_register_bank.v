@@ -411,15 +411,15 @@ module endat_register_bank (
 
     always @* begin
         service_write = 8'd0;
-        if (write_now & (service_first | done_now)) begin
+        if (write_now & (service_first | ((block_at == 4'd1) & !(|byte_at)))) begin
             service_write = service_selected;
         end
     end
-    assign service_half = turn | turning;
+    assign service_half = !(|block_at);
 
     always @* begin
         service_data = write_data[15:0];
-        if (turn | turning) begin
+        if (service_half) begin
             service_data = write_data[31:16];
         end
     end

@@ -36,7 +36,7 @@ impl ChannelSettings {
         let period_cycles = timing::period_cycles(endat_hz, system_hz);
         let half = period_cycles / 2;
         let start_time_ns = if endat_hz >= timing::TST_FROM_HZ {
-            timing::TST_MIN_NS
+            timing::TST_USUAL_NS
         } else {
             0
         };

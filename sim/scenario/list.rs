@@ -1,6 +1,6 @@
 //! The scenarios.
 
-use super::{ChannelScenario, Scenario};
+use super::{ChannelScenario, Ride, Scenario};
 use crate::{
     bench::ChannelSettings,
     encoder::{Defect, EncoderConfig, PositionSource},
@@ -36,6 +36,7 @@ pub fn all() -> Vec<Scenario> {
         alarm(),
         glitches(),
         overrun(),
+        additional_information(),
     ]
 }
 
@@ -77,6 +78,7 @@ fn paper() -> Scenario {
         ],
         trigger_period: 100 * US,
         triggers: 4,
+        requests: &[],
         causes: &[OK; 5],
         may_stop: false,
     }
@@ -98,6 +100,7 @@ fn real_1() -> Scenario {
         channels: vec![channel],
         trigger_period: 50 * US,
         triggers: 2,
+        requests: &[],
         causes: &[OK; 3],
         may_stop: false,
     }
@@ -118,6 +121,7 @@ fn lc416() -> Scenario {
         channels: vec![channel],
         trigger_period: 62_500 * NS,
         triggers: 4,
+        requests: &[],
         causes: &[OK; 5],
         may_stop: false,
     }
@@ -134,6 +138,7 @@ fn long_cable() -> Scenario {
         channels: vec![channel(rates, SendPositionAddInfo, encoder, 100.0)],
         trigger_period: 60 * US,
         triggers: 4,
+        requests: &[],
         causes: &[OK; 5],
         may_stop: false,
     }
@@ -151,6 +156,7 @@ fn sixteen_megahertz() -> Scenario {
         channels: vec![channel(rates, SendPositionAddInfo, encoder, 20.0)],
         trigger_period: 15 * US,
         triggers: 8,
+        requests: &[],
         causes: &[OK; 9],
         may_stop: false,
     }
@@ -169,6 +175,7 @@ fn one_rcn8510(encoder: EncoderConfig) -> Scenario {
         channels: vec![channel],
         trigger_period: 100 * US,
         triggers: 5,
+        requests: &[],
         causes: &[],
         may_stop: false,
     }
@@ -251,5 +258,36 @@ fn overrun() -> Scenario {
             cause::TRIGGER_OVERRUN,
         ],
         ..one_rcn8510(encoder)
+    }
+}
+
+fn additional_information() -> Scenario {
+    const SELECT: Ride = Ride {
+        trigger: 1,
+        command: ModeCommand::PositionSelectMemory,
+        address: 0x4C,
+        data: 0,
+    };
+    Scenario {
+        name: "additional-information",
+        summary: "temperature and time stamp are selected in supplements, and follow each position from then on",
+        trigger_period: 100 * US,
+        triggers: 4,
+        requests: &[
+            SELECT,
+            Ride {
+                trigger: 2,
+                address: 0x5B,
+                ..SELECT
+            },
+            Ride {
+                trigger: 4,
+                command: ModeCommand::PositionSendParameter,
+                address: 0x0D,
+                data: 0,
+            },
+        ],
+        causes: &[OK; 5],
+        ..one_rcn8510(rcn8510())
     }
 }

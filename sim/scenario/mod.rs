@@ -15,6 +15,7 @@ use crate::{
     line::LineConfig,
     Time, MS, US,
 };
+use endat_hdl::{channel::Features, protocol::ModeCommand};
 
 /// One EnDat port of a scenario.
 #[derive(Clone, Debug)]
@@ -44,10 +45,25 @@ pub struct Scenario {
     pub trigger_period: Time,
     /// Number of triggers after the first one, which starts the frame that measures the delay.
     pub triggers: u64,
+    /// Requests that ride on triggered frames, in order of the triggers.
+    pub requests: &'static [Ride],
     /// Cause code of every result that a sound core delivers, in order.
     pub causes: &'static [u64],
     /// The receiver is not to blame if an encoder sees a frame that stops: the story makes it stop.
     pub may_stop: bool,
+}
+
+/// A request that rides on a triggered frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ride {
+    /// Number of the trigger, 0 = first.
+    pub trigger: usize,
+    /// Mode command with a supplement.
+    pub command: ModeCommand,
+    /// MRS code, address or port.
+    pub address: u8,
+    /// Data.
+    pub data: u16,
 }
 
 /// When the first trigger comes.
@@ -107,6 +123,13 @@ impl Scenario {
         (bench, report)
     }
 
+    /// What the channel must be able to do.
+    pub fn features(&self) -> Features {
+        Features {
+            requests: !self.requests.is_empty(),
+        }
+    }
+
     /// The line and encoder of a port.
     pub fn link(&self, index: usize) -> Link {
         let channel = &self.channels[index];
@@ -130,7 +153,16 @@ impl Scenario {
             }
         }
         bench.reset();
-        for time in self.trigger_times() {
+        for (number, time) in self.trigger_times().enumerate() {
+            for ride in self.requests.iter().filter(|r| r.trigger == number) {
+                bench.run_until(time - US);
+                bench.set("request_command", ride.command.code().into());
+                let word = u128::from(ride.address) << 16 | u128::from(ride.data);
+                bench.set("request_parameter", word);
+                bench.set("request_ride", 1);
+                bench.run_cycles(1);
+                bench.set("request_ride", 0);
+            }
             bench.run_until(time);
             bench.trigger();
         }

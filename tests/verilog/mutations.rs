@@ -91,8 +91,8 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "wrong cause for a missing start bit",
         "endat_transaction.v",
-        "found = 10'd2;",
-        "found = 10'd4;",
+        "found = 12'd2;",
+        "found = 12'd4;",
     ),
     mutation(
         "a bad frame replaces the last good position",
