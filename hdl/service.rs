@@ -112,7 +112,7 @@ pub struct Service {
     missed: Reg<Bit>,
     event_request: Reg<Bit>,
     event_cause: Reg<Bits<16>>,
-    mailbox: Reg<Bit>,
+    request_written: Reg<Bit>,
     control_written: Reg<Bit>,
     time_us: Reg<Bits<16>>,
     us_in_ms: Reg<Bits<10>>,
@@ -182,7 +182,7 @@ impl Service {
             missed: Default::default(),
             event_request: Default::default(),
             event_cause: Default::default(),
-            mailbox: Default::default(),
+            request_written: Default::default(),
             control_written: Default::default(),
             time_us: Default::default(),
             us_in_ms: Default::default(),
@@ -214,7 +214,7 @@ impl Logic for Service {
             missed,
             event_request,
             event_cause,
-            mailbox,
+            request_written,
             control_written,
             time_us,
             us_in_ms,
@@ -238,7 +238,7 @@ impl Logic for Service {
         self.missed.reset.next = self.reset.val();
         self.event_request.reset.next = self.reset.val();
         self.event_cause.reset.next = self.reset.val();
-        self.mailbox.reset.next = self.reset.val();
+        self.request_written.reset.next = self.reset.val();
         self.control_written.reset.next = self.reset.val();
         self.time_us.reset.next = self.reset.val();
         self.us_in_ms.reset.next = self.reset.val();
@@ -270,7 +270,7 @@ impl Logic for Service {
         // What the program reads.
         self.status.next = bit_cast::<16, 1>(self.has_event.q.val().into())
             | (bit_cast::<16, 1>(self.event_request.q.val().into()) << 1)
-            | (bit_cast::<16, 1>(self.mailbox.q.val().into()) << 2)
+            | (bit_cast::<16, 1>(self.request_written.q.val().into()) << 2)
             | (bit_cast::<16, 1>(self.control_written.q.val().into()) << 3)
             | (bit_cast::<16, 1>(self.line_high.val().into()) << 4)
             | (bit_cast::<16, 1>(self.reply_good.val().into()) << 5)
@@ -357,7 +357,7 @@ impl Logic for Service {
                         self.missed.d.next = false;
                     }
                     if self.written.val().get_bit(1) {
-                        self.mailbox.d.next = false;
+                        self.request_written.d.next = false;
                     }
                     if self.written.val().get_bit(2) {
                         self.control_written.d.next = false;
@@ -405,7 +405,7 @@ impl Logic for Service {
         self.host_word.next = self.sequencer.host_word.val();
         if self.host_write.val() & !self.host_half.val() {
             if self.host_address.val() == 0 {
-                self.mailbox.d.next = true;
+                self.request_written.d.next = true;
             }
             if self.host_address.val() == 5 {
                 self.control_written.d.next = true;

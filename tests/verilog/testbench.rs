@@ -4,7 +4,7 @@ use super::mutations::{Mutation, MUTATIONS};
 use super::{compile, preset_files, quick_files, write};
 use crate::tools;
 use endat_gen::artifact::Artifact;
-use endat_gen::config::parse;
+use endat_gen::config::{parse, preset};
 
 /// Runs a card's own test bench; what it prints.
 fn run_bench(test: &str, files: &[Artifact], plusargs: &[&str]) -> String {
@@ -49,6 +49,18 @@ fn bench_passes_on_other_cards() {
         "mixed",
         format!("name = \"mixed\"\n{frame}[endat]\nclock_hz = 2_000_000\n[[channel]]\nposition_bits = 48\ncommand = \"111000\"\n[[channel]]\nposition_bits = 13\ncommand = \"000111\"\nclock_hz = 8_000_000\n"),
     );
+}
+
+/// Positions of a card that also takes requests are those of one that does not.
+#[test]
+fn bench_passes_on_a_card_with_requests() {
+    if tools::require("iverilog", "emitted test bench") {
+        let text = preset("s6_two_channel").unwrap();
+        let text = text.replace("parts = []", "parts = [\"requests\"]");
+        let files = endat_gen::emit(&parse("requests.toml", &text).unwrap()).unwrap();
+        assert!(files.iter().any(|f| f.path == "endat_service.v"));
+        assert_eq!(run_bench("requests", &files, &[]), "PASS\n");
+    }
 }
 
 fn mutant(mutation: &Mutation) -> Vec<Artifact> {
