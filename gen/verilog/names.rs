@@ -27,6 +27,7 @@ const LATER_KEYWORDS: &[&str] = &[
     "interface",
     "logic",
     "longint",
+    "mailbox",
     "new",
     "null",
     "package",
