@@ -173,8 +173,6 @@ pub const PARAMETER_BITS: u32 = 8 + 16;
 pub const TEST_VALUE_BITS: u32 = 40;
 /// Bits of an additional information: a LOW bit, 24 bits, CRC.
 pub const INFO_BITS: u32 = 1 + PARAMETER_BITS + CRC_BITS;
-/// Additional informations in one answer, at most.
-pub const INFOS_MAX: u32 = 2;
 /// LOW bits before the start bit of a supplement (TI; fewer may do).
 pub const SUPPLEMENT_ZEROS: u32 = 7;
 /// Rising clock edges of a supplement: zeros, start bit, 24 bits, and three around them (TI capture).

@@ -17,7 +17,13 @@ fn row<'p>(page: &'p str, head: &str) -> Vec<&'p str> {
 fn the_sizes_in_the_readme_are_those_of_the_area_table() {
     let table: toml::Table = include_str!("data/area.toml").parse().unwrap();
     let figure = |subject: &str, kind: &str| table[subject][XC6S.name][kind].as_integer().unwrap();
-    for (head, subject) in [("| one port", "channel"), ("| two-channel card", "card")] {
+    for (head, subject) in [
+        ("| one port", "channel"),
+        ("| the same with", "channel_requests"),
+        ("| a port with", "port_initialise"),
+        ("| two-channel card", "card"),
+        ("| card with everything", "card_service"),
+    ] {
         let cells = row(README, head);
         let wanted = ["lut", "ff"].map(|kind| figure(subject, kind).to_string());
         assert_eq!(cells[1..3], wanted, "{head}");

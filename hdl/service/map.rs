@@ -254,8 +254,6 @@ const fn entry(name: &'static str, mrs: u8, address: u8, meaning: &'static str) 
     }
 }
 
-/// Operating status.
-pub const AREA_STATUS: u8 = 0xB9;
 /// Words for EnDat 2.2.
 pub const AREA_ENDAT22: u8 = 0xBD;
 /// Address of the recovery time in the operating status.
@@ -377,6 +375,6 @@ mod tests {
         let mut areas: Vec<u8> = NAME_PLATE.iter().map(|e| e.mrs).collect();
         areas.dedup();
         assert_eq!(areas, [0xB9, 0xA1, 0xA3, 0xA5, 0xBD, 0xB9]);
-        assert!(PLATE_DELAY < word::PRIVATE);
+        const { assert!(PLATE_DELAY < word::PRIVATE) };
     }
 }

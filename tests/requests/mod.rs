@@ -1,4 +1,5 @@
 //! All mode commands and additional information, as the channel speaks them, against the encoder and line model.
 
 mod every_command;
+mod infos;
 mod rig;

@@ -107,7 +107,7 @@ fn recovery_is_set_as_wanted() {
 #[test]
 fn an_encoder_that_is_plugged_in_later_is_found() {
     let mut encoder = quick(EncoderConfig::endat22(25));
-    encoder.unplugged = vec![0..200 * MS];
+    encoder.unplugged.push(0..200 * MS);
     let mut rig = Rig::new(true, encoder, 25);
     let failed = rig.wait_for(word::PROGRESS, |p| p >> 16 != 0) >> 16;
     assert_eq!(step(failed), "reset");
@@ -123,7 +123,7 @@ fn another_encoder_is_initialised_afresh_at_every_phase_of_a_frame() {
         let mut encoder = quick(EncoderConfig::endat22(25));
         // In the middle of a frame; the plug stays out for longer than a glitch.
         let out = 120 * MS + phase * 4 * US;
-        encoder.unplugged = vec![out..out + 8 * MS];
+        encoder.unplugged.push(out..out + 8 * MS);
         let mut rig = Rig::new(true, encoder, 25);
         assert_eq!(rig.initialised(), 0);
         while rig.bench.now() < 119 * MS + 500 * US {

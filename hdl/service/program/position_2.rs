@@ -41,8 +41,8 @@ pub(super) fn position_2(a: &mut Assembler) {
 fn difference(a: &mut Assembler) {
     let parts = |words: [u8; 2]| [low(words[0]), high(words[0]), low(words[1])];
     let (read, offset) = (parts(word::POSITION_2), parts(word::OFFSET));
-    for i in 0..3 {
-        a.ld(read[i]);
+    for (i, part) in read.into_iter().enumerate() {
+        a.ld(part);
         match i {
             0 => a.sub(own::POSITION),
             _ => a.sbc(own::POSITION + i as u8),
