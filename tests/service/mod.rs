@@ -5,3 +5,4 @@ mod health;
 mod initialise;
 mod mailbox;
 mod rig;
+mod three_ways;
