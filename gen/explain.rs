@@ -1,7 +1,7 @@
 //! `explain`: what a configuration really becomes, as text and as data.
 
 use crate::config::Project;
-use endat_hdl::config::{read_bytes, ChannelConfig};
+use endat_hdl::config::{read_bytes, CardConfig, ChannelConfig};
 use endat_hdl::timing::deviation_ppm;
 use serde::Serialize;
 use std::fmt;
@@ -54,6 +54,8 @@ pub struct ChannelReport {
     pub pulses: u64,
     /// First falling to last rising edge, in microseconds.
     pub frame_us: f64,
+    /// Longest frame with additional information and supplement, in microseconds; none without requests.
+    pub longest_frame_us: Option<f64>,
     /// Frame and shortest recovery time, in microseconds.
     pub cycle_min_us: f64,
     /// Frame and longest recovery time, in microseconds.
@@ -116,12 +118,16 @@ pub struct Report {
     pub sampling: Rate,
     /// Triggers enabled after reset.
     pub sources: Vec<&'static str>,
+    /// What each channel does besides positions.
+    pub service: Vec<&'static str>,
     /// Host link.
     pub link: LinkReport,
 }
 
-fn channel(config: &ChannelConfig, encoder: &str, system_hz: u64) -> ChannelReport {
-    let us = |cycles: u64| cycles as f64 * 1e6 / system_hz as f64;
+fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelReport {
+    let system_hz = card.system_hz;
+    let longest = || us_of(config.longest_frame_cycles(system_hz), system_hz);
+    let us = |cycles: u64| us_of(cycles, system_hz);
     let time = config.frame_time(system_hz);
     let request = &config.request;
     let frame_us = us(time.frame_cycles);
@@ -139,6 +145,7 @@ fn channel(config: &ChannelConfig, encoder: &str, system_hz: u64) -> ChannelRepo
         answer_bits: time.answer_bits,
         pulses: time.pulses,
         frame_us,
+        longest_frame_us: card.service.requests.then(longest),
         cycle_min_us,
         cycle_max_us,
         highest_sampling_hz: 1e6 / cycle_min_us,
@@ -153,6 +160,10 @@ fn channel(config: &ChannelConfig, encoder: &str, system_hz: u64) -> ChannelRepo
     }
 }
 
+fn us_of(cycles: u64, system_hz: u64) -> f64 {
+    cycles as f64 * 1e6 / system_hz as f64
+}
+
 /// The report of a project.
 pub fn report(project: &Project) -> Report {
     let card = &project.card;
@@ -161,7 +172,7 @@ pub fn report(project: &Project) -> Report {
         .channels
         .iter()
         .zip(&project.encoders)
-        .map(|(c, encoder)| channel(c, encoder, system_hz))
+        .map(|(c, encoder)| channel(card, c, encoder))
         .collect();
     let sources = [
         (card.sources.pin, "pin"),
@@ -187,6 +198,14 @@ pub fn report(project: &Project) -> Report {
             .filter(|(on, _)| *on)
             .map(|(_, name)| name)
             .collect(),
+        service: [
+            (card.service.requests, "requests"),
+            (card.service.initialise, "initialise"),
+        ]
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name)
+        .collect(),
         link: LinkReport {
             baud: Rate::new(card.baud, card.actual_baud()),
             read_hz: card.read_hz,
@@ -221,7 +240,7 @@ fn rate(rate: &Rate, unit: &str) -> String {
 /// One row of the channel table: heading, and the cell of a channel.
 type Row = (&'static str, fn(&ChannelReport) -> String);
 
-const ROWS: [Row; 17] = [
+const ROWS: [Row; 18] = [
     ("encoder", |c| {
         if c.encoder.is_empty() {
             "-".into()
@@ -249,6 +268,10 @@ const ROWS: [Row; 17] = [
         format!("{} = {}+{}+1", c.pulses, c.lead_pulses, c.answer_bits)
     }),
     ("frame time", |c| format!("{} us", number(c.frame_us, 3))),
+    ("with infos", |c| match c.longest_frame_us {
+        None => String::new(),
+        Some(us) => format!("{} us, supplement too", number(us, 1)),
+    }),
     ("frame + tm", |c| {
         format!(
             "{}..{} us",
@@ -325,9 +348,21 @@ impl fmt::Display for Report {
         let width = widest.max().unwrap_or(0).max(COLUMN_MIN);
         line(f, "", &heads, width)?;
         for ((head, _), cells) in ROWS.iter().zip(&cells) {
-            line(f, head, cells, width)?;
+            if cells.iter().any(|cell| !cell.is_empty()) {
+                line(f, head, cells, width)?;
+            }
         }
         writeln!(f)?;
+        if !self.service.is_empty() {
+            writeln!(
+                f,
+                "service: {}; `with infos` is the longest frame, with both additional informations and a supplement.",
+                list(&self.service)
+            )?;
+            if self.service.contains(&"initialise") {
+                writeln!(f, "initialisation: triggers are lost until about 2 s after reset, and after a plug; it measures the delay, too.")?;
+            }
+        }
         writeln!(f, "tm is the recovery time; the calibration frame, the first after reset, measures the delay of the cable.")
     }
 }

@@ -80,3 +80,59 @@ fn every_key_of_the_preset_is_on_the_page() {
         assert!(page.contains(words), "{words}");
     }
 }
+
+#[test]
+fn the_drawing_in_the_programming_guide_is_the_program_s() {
+    let folder = crate::tools::folder("pages-supplement");
+    let file = folder.join("supplement.svg");
+    let svg = file.to_str().unwrap();
+    let frame = [
+        "sim",
+        "additional-information",
+        "--frame",
+        "4",
+        "--svg",
+        svg,
+    ];
+    assert_eq!(crate::program::run(&frame).exit_code, 0);
+    let drawn = std::fs::read_to_string(file).unwrap();
+    assert!(
+        drawn == include_str!("../docs/supplement.svg"),
+        "draw it again"
+    );
+}
+
+#[test]
+fn names_in_the_programming_guide_are_those_of_the_registers() {
+    let page = include_str!("../docs/programming.md");
+    let map = endat_hdl::regs::SERVICE;
+    for name in [
+        "request",
+        "request_state",
+        "answer",
+        "control",
+        "force",
+        "progress",
+        "state",
+        "threshold",
+        "tolerance",
+        "list_length",
+        "frames_position_2",
+    ] {
+        assert!(
+            map.register(name).is_some() && page.contains(&format!("`{name}")),
+            "{name}"
+        );
+    }
+    for (address, name) in [
+        (0x408, "state"),
+        (0x442, "position_bits"),
+        (0x400, "request"),
+        (0x402, "answer"),
+    ] {
+        let register = map.register(name).unwrap();
+        assert_eq!(map.address(register, 0), address, "{name}");
+        let bytes = format!("00 00 {:02X} {:02X}", address >> 8, address & 0xFF);
+        assert!(page.contains(&bytes), "{name}: {bytes}");
+    }
+}

@@ -37,8 +37,14 @@ pub struct SimArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "list")]
     svg: Option<PathBuf>,
     /// Draw this frame of the encoder, 0 = the one that measures the delay [default: 1]
-    #[arg(long, value_name = "N", requires = "svg")]
-    frame: Option<usize>,
+    #[arg(
+        long,
+        value_name = "N",
+        requires = "svg",
+        conflicts_with = "list",
+        allow_negative_numbers = true
+    )]
+    frame: Option<String>,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -67,6 +73,15 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
         )));
     };
     let channels = chosen(arguments, &scenario)?;
+    let frame = arguments.frame.as_ref().map(|text| {
+        text.parse().map_err(|_| {
+            GenError::input(format!(
+                "--frame = {}: is not the number of a frame; give 0, 1, 2, ...",
+                shown(text)
+            ))
+        })
+    });
+    let frame = frame.transpose()?;
     let mut outcome = Outcome::default();
     let mut reports = Vec::new();
     for (order, index) in channels.into_iter().enumerate() {
@@ -75,7 +90,7 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
             let files = Pictures {
                 vcd: arguments.vcd.as_deref(),
                 svg: arguments.svg.as_deref(),
-                frame: arguments.frame,
+                frame,
             };
             let title = format!("{}: {}", scenario.name, scenario.summary);
             outcome.messages.extend(draw(&files, &bench, &title)?);

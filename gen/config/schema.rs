@@ -200,6 +200,12 @@ fn canonical(card: &CardConfig, board: &Board, pins: &[Assignment]) -> String {
     ];
     if card.service.requests {
         lines.push(format!("service initialise {}", card.service.initialise));
+        for (n, c) in card.channels.iter().enumerate() {
+            lines.push(format!(
+                "channel {n} wants_short {}",
+                c.wants_short_recovery()
+            ));
+        }
     }
     for (n, c) in card.channels.iter().enumerate() {
         let numbers = [

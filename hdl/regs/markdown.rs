@@ -1,7 +1,9 @@
 //! The register map as a Markdown page.
 
-use super::{blocks, Block};
+use super::{blocks, Block, Register, SERVICE_BASE};
 use crate::config::CardConfig;
+use crate::service::map::word;
+use crate::service::program::{step_name, steps};
 use std::fmt::Write;
 
 /// The register map of a card.
@@ -13,6 +15,12 @@ pub fn markdown(config: &CardConfig) -> String {
     );
     for block in blocks(config) {
         write_block(&mut text, &block, config);
+    }
+    if config.service.initialise {
+        text.push_str("\n## Steps of the initialisation\n\n| step | |\n|---|---|\n");
+        for (index, step) in steps().into_iter().enumerate() {
+            let _ = writeln!(text, "| {} | {} |", index + 1, step_name(step));
+        }
     }
     text
 }
@@ -38,7 +46,8 @@ fn write_block(text: &mut String, block: &Block, config: &CardConfig) {
         "| word | register | access | bits | field | unit | reset | meaning |"
     );
     let _ = writeln!(text, "|---|---|---|---|---|---|---|---|");
-    for register in block.registers {
+    let registers = block.registers.iter();
+    for register in registers.filter(|r| has_register(block, r, config)) {
         let place = if block.per_channel {
             format!("+{}", register.offset)
         } else {
@@ -71,6 +80,13 @@ fn write_block(text: &mut String, block: &Block, config: &CardConfig) {
             );
         }
     }
+}
+
+/// What only initialisation fills is left out without it.
+fn has_register(block: &Block, register: &Register, config: &CardConfig) -> bool {
+    let filled = register.offset >= u16::from(word::NAME_PLATE);
+    let found = filled || register.offset == u16::from(word::PROGRESS);
+    block.base != SERVICE_BASE || config.service.initialise || !found
 }
 
 /// Small numbers in decimal, large ones that are no round decimal number in hexadecimal.

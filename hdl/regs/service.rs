@@ -80,7 +80,7 @@ const fn frames(name: &'static str, cause: u8) -> Register {
         name,
         at::COUNTERS + cause,
         ReadOnly,
-        "Frames that ended with this cause.",
+        "Frames that ended with this cause (good: with none).",
         COUNT,
     )
 }
@@ -110,7 +110,7 @@ pub const SERVICE: Block = Block {
         ]),
         word("request_state", at::REQUEST_STATE, ReadOnly, "What became of the request.", &[
             field("busy", 0, 1, "", "It is under way"),
-            field("error", 4, 4, "", "0 fulfilled, 1 no answer, 2 echo of MRS code or address wrong, 3 echo of data wrong, 4 CRC, 5 unknown mode command, 6 frame went wrong, 7 encoder stayed busy"),
+            field("error", 4, 4, "", "0 fulfilled, 1 no answer, 2 echo of MRS code, address or port wrong, 3 echo of data wrong, 4 CRC, 5 unknown mode command, 6 frame went wrong, 7 encoder stayed busy"),
             field("finished", 16, 16, "", "Requests finished, wrapping"),
         ]),
         word("answer", at::ANSWER, ReadOnly, "Answer to the last request; bits 31..0 of a longer one.", &[
@@ -168,7 +168,7 @@ pub const SERVICE: Block = Block {
         word("position_2_low", at::POSITION_2[0], ReadOnly, "Position 2, bits 31..0.", VALUE),
         word("position_2_high", at::POSITION_2[1], ReadOnly, "Position 2, bits 47..32.", HIGH),
         word("list_length", at::LIST_LENGTH, ReadWrite, "Codes of the list that are selected in turn.", &[
-            field("length", 0, 4, "", "0..8"),
+            field("length", 0, 4, "", "0..8; more is 8"),
         ]),
         word("info_status", at::INFO_STATUS, ReadOnly, "WRN, RM, Busy, I4..I0 as they came last.", &[
             field("info_1", 0, 8, "", "Of additional information 1"),
@@ -201,7 +201,7 @@ pub const SERVICE: Block = Block {
         frames("frames_trigger_overrun", 8),
         frames("frames_unknown_command", 9),
         frames("frames_info_missing", 10),
-        frames("frames_position_2", 15),
+        word("frames_position_2", at::COUNTERS + 15, ReadOnly, "Comparisons of positions 1 and 2 that failed.", COUNT),
         plate(0),
         plate(1),
         plate(2),
@@ -223,6 +223,9 @@ pub const SERVICE: Block = Block {
         plate(18),
         plate(19),
         plate(20),
-        word("delay", crate::service::map::PLATE_DELAY, ReadOnly, "Line delay measured at initialisation, in system clock cycles.", PLATE),
+        word("delay", crate::service::map::PLATE_DELAY, ReadOnly, "Line delay measured at initialisation.", &[
+            field("value", 0, 16, "cycles", "tD, synchroniser and filter included"),
+            field("is_read", 16, 1, "", "It has been measured"),
+        ]),
     ],
 };

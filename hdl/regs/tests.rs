@@ -471,7 +471,10 @@ fn map_lists_every_word_and_field() {
         "what a card does not have is not in its map"
     );
     config.service.requests = true;
+    assert!(!markdown(&config).contains("serial_0"), "nobody reads it");
+    config.service.initialise = true;
     let text = markdown(&config);
+    assert!(text.contains("| 1 | reset |"));
     for register in BLOCKS.iter().flat_map(|b| b.registers) {
         assert!(text.contains(&format!("`{}`", register.name)));
         for field in register.fields {
