@@ -200,6 +200,8 @@ pub fn report(project: &Project) -> Report {
             .collect(),
         service: [
             (card.service.requests, "requests"),
+            (card.service.diagnosis, "diagnosis"),
+            (card.service.continuous, "continuous"),
             (card.service.initialise, "initialise"),
         ]
         .into_iter()

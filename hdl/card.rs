@@ -92,6 +92,8 @@ impl Card {
     pub fn with_timeout(config: &CardConfig, timeout_us: u64) -> Self {
         let service = ServiceTimes {
             initialise: config.service.initialise,
+            diagnosis: config.service.diagnosis,
+            continuous: config.service.continuous,
             ..ServiceTimes::at(config.system_hz)
         };
         Self::with_times(config, timeout_us, &service)

@@ -87,6 +87,14 @@ pub struct Channel {
     pub start_timeout_us: Signal<In, Bits<12>>,
     /// Data must fall within this many system clock cycles after the frame.
     pub recovery_limit_cycles: Signal<In, Bits<13>>,
+    /// Data must not fall before this after the frame; 0 = not checked.
+    pub recovery_min_cycles: Signal<In, Bits<13>>,
+    /// Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
+    pub watchdog_us: Signal<In, Bits<12>>,
+    /// With 000111: the clock goes on after each position, and the next one follows without a command.
+    pub continuous: Signal<In, Bit>,
+    /// It stops after an error, until the next trigger.
+    pub stop_at_error: Signal<In, Bit>,
     /// EnDat clock to the transceiver, from a register.
     pub endat_clk: Signal<Out, Bit>,
     /// Data line to the transceiver, from a register.
@@ -108,9 +116,9 @@ pub struct Channel {
     /// Age of the position in microseconds; stops at 65535.
     pub age_us: Signal<Out, Bits<16>>,
     /// Primary cause of the last result, see [`crate::transaction::cause`].
-    pub cause: Signal<Out, Bits<4>>,
+    pub cause: Signal<Out, Bits<5>>,
     /// Raw flags of the last result.
-    pub flags: Signal<Out, Bits<12>>,
+    pub flags: Signal<Out, Bits<19>>,
     /// CRC received in the last whole frame.
     pub crc_received: Signal<Out, Bits<5>>,
     /// CRC computed for the last whole frame.
@@ -132,9 +140,9 @@ pub struct Channel {
     /// The frame had the request.
     pub over_request: Signal<Out, Bit>,
     /// Primary cause of the frame, as `cause`.
-    pub over_cause: Signal<Out, Bits<4>>,
+    pub over_cause: Signal<Out, Bits<5>>,
     /// Raw flags of the frame, as `flags`.
-    pub over_flags: Signal<Out, Bits<12>>,
+    pub over_flags: Signal<Out, Bits<19>>,
     /// Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
     pub reply: Signal<Out, Bits<48>>,
     /// Its CRC is right.
@@ -198,6 +206,10 @@ pub struct FixedTimes {
     pub park_cycles: u64,
     /// Longest wait for the answer to a command with a parameter, in microseconds (1..=65535).
     pub parameter_timeout_us: u64,
+    /// Longest recovery time after a frame of a request's own, in system clock cycles (1..=65535).
+    pub own_recovery_limit_cycles: u64,
+    /// Shortest recovery time after such a frame, in system clock cycles (0..=8191).
+    pub own_recovery_min_cycles: u64,
 }
 
 impl FixedTimes {
@@ -209,6 +221,14 @@ impl FixedTimes {
             abort_us: timing::ABORT_US,
             park_cycles: timing::cycles_at_least(timing::PARK_NS, system_hz),
             parameter_timeout_us: timing::PARAMETER_TIMEOUT_US,
+            own_recovery_limit_cycles: timing::cycles_at_least(
+                timing::RECOVERY_MAX_NS + 1_000_000_000 / timing::CALIBRATION_HZ,
+                system_hz,
+            ),
+            own_recovery_min_cycles: timing::recovery_min_cycles(
+                timing::SHORT_RECOVERY_MIN_NS,
+                system_hz,
+            ),
         }
     }
 }
@@ -218,11 +238,19 @@ impl FixedTimes {
 pub struct Features {
     /// All mode commands and additional information.
     pub requests: bool,
+    /// Stuck lines, absent and late encoders told apart, watchdog, shortest recovery time.
+    pub diagnosis: bool,
+    /// Continuous clock (000111).
+    pub continuous: bool,
 }
 
 impl Features {
     /// Everything.
-    pub const ALL: Self = Self { requests: true };
+    pub const ALL: Self = Self {
+        requests: true,
+        diagnosis: true,
+        continuous: true,
+    };
 }
 
 impl Channel {
@@ -257,6 +285,10 @@ impl Channel {
             start_window_cycles: Default::default(),
             start_timeout_us: Default::default(),
             recovery_limit_cycles: Default::default(),
+            recovery_min_cycles: Default::default(),
+            watchdog_us: Default::default(),
+            continuous: Default::default(),
+            stop_at_error: Default::default(),
             endat_clk: Default::default(),
             data_o: Default::default(),
             data_oe: Default::default(),
@@ -294,8 +326,8 @@ impl Channel {
             clock_gen: Default::default(),
             sender: CommandSender::new(features.requests),
             delay: Default::default(),
-            receiver: Receiver::new(features.requests),
-            transaction: Transaction::new(times, features.requests),
+            receiver: Receiver::new(features),
+            transaction: Transaction::new(times, features),
             snapshot: Default::default(),
             shape: CommandShape::new(features.requests),
             add_info: Default::default(),
@@ -448,6 +480,7 @@ impl Logic for Channel {
         self.delay.rise.next = self.clock_gen.rise.val();
         self.delay.data_rise.next = self.filter.rise.val();
         self.delay.follow.next = self.receiver.start_found.val();
+        self.delay.going_on.next = self.transaction.going_on.val();
         self.delay.period_cycles.next = self.period.val();
         self.delay.start_window_cycles.next = self.start_window_cycles.val();
 
@@ -464,6 +497,8 @@ impl Logic for Channel {
         self.receiver.has_supplement.next = self.shape.has_supplement.val();
         self.receiver.infos.next = self.add_info.infos.val();
         self.receiver.start_supplement.next = self.transaction.start_supplement.val();
+        self.receiver.going_on.next = self.transaction.going_on.val();
+        self.receiver.command.next = self.command_now.val();
 
         self.transaction.tick_us.next = self.tick_us.val();
         self.transaction.trigger.next = self.trigger.val();
@@ -483,6 +518,15 @@ impl Logic for Channel {
         self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.q.val();
         self.transaction.is_own.next = self.frame_own.q.val();
         self.transaction.hold_off.next = self.hold_off.val();
+        self.transaction.continuous.next = self.continuous.val()
+            & self.shape.has_f1.val()
+            & !self.shape.has_f2.val()
+            & !self.shape.has_test_values.val();
+        self.transaction.stop_at_error.next = self.stop_at_error.val();
+        self.transaction.line_wanted.next = self.own_wanted.q.val() | self.hold_off.val();
+        self.transaction.gap_low.next = self.receiver.gap_low.val();
+        self.transaction.gap_high.next = self.receiver.gap_high.val();
+        self.transaction.is_echo.next = self.receiver.is_echo.val();
         self.transaction.serial_ok.next = self.receiver.serial_ok.val();
         self.transaction.parallel_ok.next = self.receiver.parallel_ok.val();
         self.transaction.f1.next = self.receiver.f1.val();
@@ -498,10 +542,14 @@ impl Logic for Channel {
         self.transaction.first_low_extra_cycles.next = self.first_low_extra_cycles.val();
         self.transaction.start_timeout_us.next = self.start_timeout_us.val();
         self.transaction.recovery_limit_cycles.next = self.recovery_limit_cycles.val();
+        self.transaction.recovery_min_cycles.next = self.recovery_min_cycles.val();
+        self.transaction.watchdog_us.next = self.watchdog_us.val();
 
         self.snapshot.tick_us.next = self.tick_us.val();
         self.snapshot.timestamp.next = self.timestamp.val();
         self.snapshot.first_fall.next = self.transaction.start.val();
+        self.snapshot.latched.next = self.receiver.latched.val();
+        self.snapshot.delay_cycles.next = self.delay.delay_cycles.val();
         self.snapshot.publish.next = self.transaction.publish.val();
         self.snapshot.good.next = self.transaction.good.val();
         self.snapshot.late_fault.next = self.transaction.late_fault.val();
@@ -542,11 +590,15 @@ impl Logic for Channel {
         self.add_info.crc_ok.next = self.crc_ok.val();
         self.add_info.word.next = self.word.val();
         self.add_info.over.next = self.transaction.over.val() & self.has_requests.val();
-        self.add_info.flags.next = self.transaction.flags.val();
+        self.add_info.flags.next = self.transaction.flags.val().get_bits::<12>(0);
 
         self.clk_pin.d.next = self.clock_gen.endat_clk.val();
         self.data_pin.d.next = self.sender.data.val();
         self.oe_pin.d.next = self.sender.oe.val();
+        if self.transaction.probe.val() {
+            self.data_pin.d.next = false;
+            self.oe_pin.d.next = true;
+        }
         if self.clock_low.val() & self.has_requests.val() {
             self.clk_pin.d.next = false;
         }
@@ -570,7 +622,8 @@ impl Logic for Channel {
         self.busy.next = self.transaction.busy.val();
         self.request_runs.next =
             (self.frame_own.q.val() | self.frame_ride.q.val()) & !self.transaction.is_at_rest.val();
-        self.line_high.next = self.filter.level.val() & !self.transaction.run.val();
+        self.line_high.next = (self.filter.level.val() | self.transaction.is_probed.val())
+            & !self.transaction.run.val();
         self.displaced.next = self.transaction.displaced.val();
         self.over.next = self.transaction.over.val();
         self.over_request.next = self.frame_own.q.val() | self.frame_ride.q.val();

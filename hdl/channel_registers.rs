@@ -43,9 +43,9 @@ pub struct ChannelRegisters {
     /// Age of the position, in microseconds.
     pub age_us: Signal<In, Bits<16>>,
     /// Primary cause.
-    pub cause: Signal<In, Bits<4>>,
+    pub cause: Signal<In, Bits<5>>,
     /// Raw flags.
-    pub flags: Signal<In, Bits<12>>,
+    pub flags: Signal<In, Bits<19>>,
     /// CRC as received.
     pub crc_received: Signal<In, Bits<5>>,
     /// CRC as computed.
@@ -181,16 +181,17 @@ impl Logic for ChannelRegisters {
         self.pending.next = self.waiting.q.val();
 
         self.word[0].next = bit_cast::<32, 16>(self.sequence.val())
-            | (bit_cast::<32, 4>(self.cause.val()) << 16)
-            | (bit_cast::<32, 1>(self.position_valid.val().into()) << 20)
-            | (bit_cast::<32, 1>(self.fresh.val().into()) << 21);
+            | (bit_cast::<32, 5>(self.cause.val()) << 16)
+            | (bit_cast::<32, 1>(self.position_valid.val().into()) << 22)
+            | (bit_cast::<32, 1>(self.fresh.val().into()) << 23)
+            | (bit_cast::<32, 7>(self.flags.val().get_bits::<7>(12)) << 24);
         self.word[1].next = self.position.val().get_bits::<32>(0);
         self.word[2].next = bit_cast::<32, 16>(self.position.val().get_bits::<16>(32));
         self.word[3].next = self.first_fall_timestamp.val();
         self.word[4].next = bit_cast::<32, 5>(self.crc_received.val())
             | (bit_cast::<32, 5>(self.crc_computed.val()) << 5)
             | (bit_cast::<32, 10>(self.delay_cycles.val()) << 10)
-            | (bit_cast::<32, 12>(self.flags.val()) << 20);
+            | (bit_cast::<32, 12>(self.flags.val().get_bits::<12>(0)) << 20);
         self.word[5].next = bit_cast::<32, 16>(self.age_us.val())
             | (bit_cast::<32, 13>(self.recovery_cycles.val()) << 16);
         for i in 0..self._words {

@@ -79,6 +79,8 @@ impl Logic for ClockGen {
         self.half.reset.next = self.reset.val();
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.level.q.val();
+        self.half.shorten.next = false;
+        self.half.lengthen.next = false;
         self.held.next = self.hold_low.val() & !self.level.q.val();
         self.half.restart.next = self.start.val() | self.held.val();
         self.rise_now.next = self.half.tick.val() & !self.level.q.val() & !self.held.val();

@@ -67,9 +67,9 @@ pub struct EncoderPort {
     /// Age of the position in microseconds; stops at 65535.
     pub age_us: Signal<Out, Bits<16>>,
     /// Primary cause of the last result, see [`crate::transaction::cause`].
-    pub cause: Signal<Out, Bits<4>>,
+    pub cause: Signal<Out, Bits<5>>,
     /// Raw flags of the last result.
-    pub flags: Signal<Out, Bits<12>>,
+    pub flags: Signal<Out, Bits<19>>,
     /// CRC received in the last whole frame.
     pub crc_received: Signal<Out, Bits<5>>,
     /// CRC computed for the last whole frame.
@@ -91,9 +91,9 @@ pub struct EncoderPort {
     /// The frame had the request.
     pub over_request: Signal<Out, Bit>,
     /// Primary cause of the frame, as `cause`.
-    pub over_cause: Signal<Out, Bits<4>>,
+    pub over_cause: Signal<Out, Bits<5>>,
     /// Raw flags of the frame, as `flags`.
-    pub over_flags: Signal<Out, Bits<12>>,
+    pub over_flags: Signal<Out, Bits<19>>,
     /// Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
     pub reply: Signal<Out, Bits<48>>,
     /// Its CRC is right.
@@ -137,6 +137,8 @@ impl EncoderPort {
     pub fn new(times: FixedTimes, service: Option<&ServiceTimes>, wants_short: bool) -> Self {
         let features = Features {
             requests: service.is_some(),
+            diagnosis: service.is_some_and(|s| s.diagnosis),
+            continuous: service.is_some_and(|s| s.continuous),
         };
         Self {
             clock: Default::default(),
@@ -230,6 +232,10 @@ impl Logic for EncoderPort {
         self.channel.hold_off.next = false;
         self.channel.clock_low.next = false;
         self.channel.forced.next = 0.into();
+        self.channel.watchdog_us.next = 0.into();
+        self.channel.recovery_min_cycles.next = 0.into();
+        self.channel.continuous.next = false;
+        self.channel.stop_at_error.next = false;
         self.endat_clk.next = self.channel.endat_clk.val();
         self.data_o.next = self.channel.data_o.val();
         self.data_oe.next = self.channel.data_oe.val();
@@ -272,7 +278,6 @@ impl Logic for EncoderPort {
             self.service[i].over.next = self.channel.over.val();
             self.service[i].over_request.next = self.channel.over_request.val();
             self.service[i].over_cause.next = self.channel.over_cause.val();
-            self.service[i].over_flags.next = self.channel.over_flags.val();
             self.service[i].reply.next = self.channel.reply.val();
             self.service[i].reply_good.next = self.channel.reply_good.val();
             self.service[i].info_active.next = self.channel.info_active.val();
@@ -306,6 +311,10 @@ impl Logic for EncoderPort {
             self.channel.hold_off.next = self.service[i].hold_off.val();
             self.channel.clock_low.next = self.service[i].clock_low.val();
             self.channel.forced.next = self.service[i].forced.val();
+            self.channel.watchdog_us.next = self.service[i].watchdog_us.val();
+            self.channel.recovery_min_cycles.next = self.service[i].recovery_min_cycles.val();
+            self.channel.continuous.next = self.service[i].continuous.val();
+            self.channel.stop_at_error.next = self.service[i].stop_at_error.val();
             self.alarm.next = self.service[i].alarm.val();
             self.host_word.next = self.service[i].host_word.val();
         }

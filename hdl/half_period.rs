@@ -23,6 +23,10 @@ pub struct HalfPeriod {
     pub restart: Signal<In, Bit>,
     /// Whether this is the second half of the period.
     pub second: Signal<In, Bit>,
+    /// The next half is one cycle shorter; for those of at least 4.
+    pub shorten: Signal<In, Bit>,
+    /// The next half is one cycle longer.
+    pub lengthen: Signal<In, Bit>,
     /// Period, in system clock cycles.
     pub period_cycles: Signal<In, Bits<11>>,
     /// High in the last cycle of a half.
@@ -43,6 +47,8 @@ impl HalfPeriod {
             reset: Default::default(),
             restart: Default::default(),
             second: Default::default(),
+            shorten: Default::default(),
+            lengthen: Default::default(),
             period_cycles: Default::default(),
             tick: Default::default(),
             count: Reg::new(2.into()),
@@ -80,6 +86,12 @@ impl Logic for HalfPeriod {
             self.count.d.next = 2.into();
             self.hit.d.next = false;
             self.hit_late.d.next = false;
+        }
+        if self.tick_now.val() & self.shorten.val() {
+            self.count.d.next = 3.into();
+        }
+        if self.tick_now.val() & self.lengthen.val() {
+            self.count.d.next = 1.into();
         }
         if self.restart.val() {
             self.count.d.next = self.restart_count.val();

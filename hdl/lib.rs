@@ -27,6 +27,7 @@ pub mod encoder_port;
 pub mod half_period;
 pub mod input_filter;
 pub mod line_delay;
+pub mod line_health;
 pub mod memory;
 pub mod protocol;
 pub mod receiver;

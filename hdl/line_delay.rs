@@ -41,6 +41,8 @@ pub struct LineDelay {
     pub data_rise: Signal<In, Bit>,
     /// Strobe, together with `sample`: this sample is a good start bit, follow its edge.
     pub follow: Signal<In, Bit>,
+    /// The clock goes on after the frame: the phase of the running cells follows, too.
+    pub going_on: Signal<In, Bit>,
     /// EnDat clock period, in system clock cycles.
     pub period_cycles: Signal<In, Bits<11>>,
     /// Largest distance of the start edge from its expected place, in system clock cycles.
@@ -73,6 +75,8 @@ pub struct LineDelay {
     edge_late: Reg<Bit>,
     edge_error: Reg<Bits<6>>,
     edge_outside: Reg<Bit>,
+    shorten: Reg<Bit>,
+    lengthen: Reg<Bit>,
     first_rise: Signal<Local, Bit>,
     acquired: Signal<Local, Bit>,
     first_center: Signal<Local, Bit>,
@@ -93,6 +97,7 @@ impl Default for LineDelay {
             rise: Default::default(),
             data_rise: Default::default(),
             follow: Default::default(),
+            going_on: Default::default(),
             period_cycles: Default::default(),
             start_window_cycles: Default::default(),
             sample: Default::default(),
@@ -118,6 +123,8 @@ impl Default for LineDelay {
             edge_late: Default::default(),
             edge_error: Default::default(),
             edge_outside: Default::default(),
+            shorten: Default::default(),
+            lengthen: Default::default(),
             first_rise: Default::default(),
             acquired: Default::default(),
             first_center: Default::default(),
@@ -151,7 +158,9 @@ impl Logic for LineDelay {
             edge_seen,
             edge_late,
             edge_error,
-            edge_outside
+            edge_outside,
+            shorten,
+            lengthen
         );
         clock!(self, clock, half);
         self.delay.reset.next = self.reset.val();
@@ -173,6 +182,8 @@ impl Logic for LineDelay {
         self.edge_error.reset.next = self.reset.val();
         self.edge_outside.reset.next = self.reset.val();
         self.half.reset.next = self.reset.val();
+        self.shorten.reset.next = self.reset.val();
+        self.lengthen.reset.next = self.reset.val();
 
         // tD from the first rising edge of a burst to the first cell; in an acquiring frame from every rising edge.
         self.first_rise.next = self.rise.val() & (self.acquire.val() | !self.timing_armed.q.val());
@@ -243,8 +254,16 @@ impl Logic for LineDelay {
             }
         }
         self.follow_now.d.next = self.follow.val() & self.edge_error.q.val().any();
+        self.half.shorten.next = self.shorten.q.val();
+        self.half.lengthen.next = self.lengthen.q.val();
+        if self.half.tick.val() {
+            self.shorten.d.next = false;
+            self.lengthen.d.next = false;
+        }
         if self.follow_now.q.val() {
             self.delay.d.next = self.delay.q.val() + self.step.val();
+            self.shorten.d.next = self.going_on.val() & !self.edge_late.q.val();
+            self.lengthen.d.next = self.going_on.val() & self.edge_late.q.val();
         }
         self.step.next = 0x3FF.into();
         if self.edge_late.q.val() {

@@ -18,6 +18,7 @@
 //! the encoder sees exactly the rising edges it needs, and never more than the shortest answer while its start bit
 //! may still be on the cable.
 
+use crate::channel::Features;
 use crate::crc5::{Crc5Parallel, Crc5Serial, ORDER_OF_X};
 use crate::protocol;
 use crate::reg::Reg;
@@ -40,6 +41,10 @@ pub enum Field {
     Crc,
     /// LOW before an additional information.
     Separator,
+    /// The clock goes on: HIGH after the last CRC bit.
+    GapHigh,
+    /// LOW before the next start bit may come.
+    GapLow,
     /// The answer is complete.
     Done,
     /// Cells of the supplement: the line is ours or undefined.
@@ -79,6 +84,10 @@ pub struct Receiver {
     pub infos: Signal<In, Bits<2>>,
     /// One-cycle strobe: the supplement begins.
     pub start_supplement: Signal<In, Bit>,
+    /// The clock goes on after this answer, and another one follows.
+    pub going_on: Signal<In, Bit>,
+    /// Mode command that was sent.
+    pub command: Signal<In, Bits<6>>,
     /// The line is undefined: samples are not looked at.
     pub skipping: Signal<Out, Bit>,
     /// The start bit may come now.
@@ -99,6 +108,14 @@ pub struct Receiver {
     pub info_missing: Signal<Out, Bit>,
     /// Strobe: the answer with all its additional informations, or the supplement, is complete.
     pub finished: Signal<Out, Bit>,
+    /// Strobe: while the clock goes on, the cell after the last CRC bit is LOW.
+    pub gap_low: Signal<Out, Bit>,
+    /// Strobe: while the clock goes on, the second cell after the last CRC bit is HIGH.
+    pub gap_high: Signal<Out, Bit>,
+    /// Strobe: the encoder has taken the next position, one propagation delay ago.
+    pub latched: Signal<Out, Bit>,
+    /// What came begins with the mode command, leading zeros aside.
+    pub is_echo: Signal<Out, Bit>,
     /// Payload, bit 0 = the bit received first, zeros above its width.
     pub payload: Signal<Out, Bits<48>>,
     /// Error bit 1, high = alarm.
@@ -141,12 +158,20 @@ pub struct Receiver {
     in_info: Reg<Bit>,
     missing: Reg<Bit>,
     supplement_over: Reg<Bit>,
+    low_gap: Reg<Bit>,
+    high_gap: Reg<Bit>,
+    heard: Reg<Bits<6>>,
+    echo: Reg<Bit>,
     has_all: Constant<Bit>,
+    has_diagnosis: Constant<Bit>,
+    has_continuous: Constant<Bit>,
     skip_from: Constant<Bits<4>>,
     long_skip_from: Constant<Bits<4>>,
     fixed_cells: Constant<Bits<7>>,
     supplement_cells: Constant<Bits<7>>,
     info_bits: Constant<Bits<6>>,
+    cells_from_start: Constant<Bits<7>>,
+    again: Signal<Local, Bit>,
     skip_step: Signal<Local, Bit>,
     covered_bit: Signal<Local, Bit>,
     shift: Signal<Local, Bit>,
@@ -167,8 +192,8 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// A receiver of every answer, or of positions without additional information only.
-    pub fn new(has_all: bool) -> Self {
+    /// A receiver with these features.
+    pub fn new(features: Features) -> Self {
         let lead = u64::from(protocol::LEAD_PULSES);
         let order = ORDER_OF_X as u64;
         Self {
@@ -187,6 +212,8 @@ impl Receiver {
             has_supplement: Default::default(),
             infos: Default::default(),
             start_supplement: Default::default(),
+            going_on: Default::default(),
+            command: Default::default(),
             skipping: Default::default(),
             hunting: Default::default(),
             start_found: Default::default(),
@@ -197,6 +224,10 @@ impl Receiver {
             info_done: Default::default(),
             info_missing: Default::default(),
             finished: Default::default(),
+            gap_low: Default::default(),
+            gap_high: Default::default(),
+            latched: Default::default(),
+            is_echo: Default::default(),
             payload: Default::default(),
             f1: Default::default(),
             f2: Default::default(),
@@ -232,7 +263,13 @@ impl Receiver {
             in_info: Default::default(),
             missing: Default::default(),
             supplement_over: Default::default(),
-            has_all: Constant::new(has_all),
+            low_gap: Default::default(),
+            high_gap: Default::default(),
+            heard: Default::default(),
+            echo: Default::default(),
+            has_all: Constant::new(features.requests),
+            has_diagnosis: Constant::new(features.diagnosis),
+            has_continuous: Constant::new(features.continuous),
             skip_from: Constant::new((order - lead).into()),
             // 34 cells are 4 and two more rounds of the counter.
             long_skip_from: Constant::new(
@@ -243,6 +280,10 @@ impl Receiver {
             ),
             supplement_cells: Constant::new(u64::from(protocol::SUPPLEMENT_PULSES).into()),
             info_bits: Constant::new(u64::from(protocol::PARAMETER_BITS).into()),
+            cells_from_start: Constant::new(
+                u64::from(protocol::START_BITS + 1 + protocol::CRC_BITS).into(),
+            ),
+            again: Default::default(),
             skip_step: Default::default(),
             covered_bit: Default::default(),
             shift: Default::default(),
@@ -318,13 +359,21 @@ impl Logic for Receiver {
             infos_left,
             in_info,
             missing,
-            supplement_over
+            supplement_over,
+            low_gap,
+            high_gap,
+            heard,
+            echo
         );
         self.skip_rounds.reset.next = self.reset.val();
         self.infos_left.reset.next = self.reset.val();
         self.in_info.reset.next = self.reset.val();
         self.missing.reset.next = self.reset.val();
         self.supplement_over.reset.next = self.reset.val();
+        self.low_gap.reset.next = self.reset.val();
+        self.high_gap.reset.next = self.reset.val();
+        self.heard.reset.next = self.reset.val();
+        self.echo.reset.next = self.reset.val();
         self.serial.reset.next = self.reset.val();
 
         // Cells behind this CRC: the edge that ends the frame, 30 for each additional information.
@@ -366,6 +415,9 @@ impl Logic for Receiver {
         self.separator.next = false;
         self.missing.d.next = false;
         self.supplement_over.d.next = false;
+        self.low_gap.d.next = false;
+        self.high_gap.d.next = false;
+        self.again.next = false;
 
         if self.sample.val()
             & (self.field.q.val() != Field::Skip)
@@ -429,6 +481,9 @@ impl Logic for Receiver {
                         if self.infos_left.q.val().any() & self.has_all.val() {
                             self.field.d.next = Field::Separator;
                         }
+                        if self.going_on.val() & self.has_continuous.val() {
+                            self.field.d.next = Field::GapHigh;
+                        }
                     }
                 }
             }
@@ -442,6 +497,25 @@ impl Logic for Receiver {
                         self.missing.d.next = true;
                         self.field.d.next = Field::Done;
                     }
+                }
+            }
+            Field::GapHigh => {
+                if self.sample.val() {
+                    self.low_gap.d.next = !self.level.val();
+                    self.field.d.next = Field::GapLow;
+                }
+                if !self.has_continuous.val() {
+                    self.field.d.next = Field::Done;
+                }
+            }
+            Field::GapLow => {
+                if self.sample.val() {
+                    self.high_gap.d.next = self.level.val();
+                    self.again.next = true;
+                    self.field.d.next = Field::Start;
+                }
+                if !self.has_continuous.val() {
+                    self.field.d.next = Field::Done;
                 }
             }
             Field::Done => {}
@@ -517,7 +591,9 @@ impl Logic for Receiver {
         }
         self.parallel.word.next = self.word.q.val();
         self.parallel.covered_mod_15.next = self.covered.q.val();
-        self.serial.clear.next = self.start.val() | (self.separator.val() & self.has_all.val());
+        self.serial.clear.next = self.start.val()
+            | (self.separator.val() & self.has_all.val())
+            | (self.again.val() & self.has_continuous.val());
         self.serial.enable.next = self.covered_bit.val() | self.crc_bit.val();
         self.serial.bit.next = self.level.val();
         self.done_now.d.next = self.last_taken.q.val();
@@ -574,6 +650,27 @@ impl Logic for Receiver {
                 }
             }
         }
+        // The next answer, without a command before it.
+        if self.again.val() & self.has_continuous.val() {
+            self.left.d.next =
+                bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_from_start.val();
+            self.word.d.next = 0.into();
+            self.covered.d.next = 0.into();
+        }
+        // The first bits from the first HIGH on, until it has gone through all six places.
+        if self.sample.val()
+            & (self.field.q.val() != Field::Skip)
+            & !self.heard.q.val().get_bit(5)
+        {
+            self.heard.d.next = (self.heard.q.val() << 1).replace_bit(0, self.level.val());
+        }
+        if self.heard.q.val() == self.command.val() {
+            self.echo.d.next = true;
+        }
+        if self.start.val() | self.again.val() {
+            self.heard.d.next = 0.into();
+            self.echo.d.next = false;
+        }
         if self.start_supplement.val() & self.has_all.val() {
             self.field.d.next = Field::Supplement;
             self.left.d.next = self.supplement_cells.val();
@@ -601,6 +698,10 @@ impl Logic for Receiver {
             self.finished.next = (self.done_now.q.val() & !self.infos_left.q.val().any())
                 | self.supplement_over.q.val();
         }
+        self.gap_low.next = self.low_gap.q.val() & self.has_continuous.val();
+        self.gap_high.next = self.high_gap.q.val() & self.has_continuous.val();
+        self.latched.next = self.again.val() & self.has_continuous.val();
+        self.is_echo.next = self.echo.q.val() & self.has_diagnosis.val();
         self.payload.next = self.word.q.val().get_bits::<48>(0);
         self.f1.next = self.f1_bit.q.val();
         self.f2.next = self.f2_bit.q.val();

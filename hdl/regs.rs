@@ -21,7 +21,7 @@ use crate::config::CardConfig;
 use crate::config_ring::RING_WORDS;
 
 /// Major, minor and patch version of the register map.
-pub const VERSION: [u8; 3] = [0, 2, 0];
+pub const VERSION: [u8; 3] = [0, 3, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the configuration blocks; block 0 is the card's, block n + 1 that of channel n.

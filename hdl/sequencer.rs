@@ -53,7 +53,7 @@ use crate::reg::Reg;
 use rust_hdl::prelude::*;
 
 /// Words of a program.
-pub const PROGRAM_WORDS: usize = 1024;
+pub const PROGRAM_WORDS: usize = 2048;
 /// Words of RAM, as the machine counts them: 16 bits each.
 pub const RAM_WORDS: usize = 256;
 /// Ports in each direction.
@@ -104,14 +104,14 @@ pub struct Sequencer {
     /// What to write. Stays put like `host_address`.
     pub host_data: Signal<In, Bits<16>>,
     /// The program.
-    program: Rom<20, 10>,
+    program: Rom<20, 11>,
     /// Even words of RAM.
     low: Memory<16, 7>,
     /// Odd words of RAM.
     high: Memory<16, 7>,
     cycle: Reg<Cycle>,
-    counter: Reg<Bits<10>>,
-    link: Reg<Bits<10>>,
+    counter: Reg<Bits<11>>,
+    link: Reg<Bits<11>>,
     accumulator: Reg<Bits<16>>,
     is_zero: Reg<Bit>,
     carry: Reg<Bit>,
@@ -155,7 +155,7 @@ pub struct Sequencer {
     adds: Signal<Local, Bit>,
     operand: Signal<Local, Bits<16>>,
     sum: Signal<Local, Bits<18>>,
-    following: Signal<Local, Bits<10>>,
+    following: Signal<Local, Bits<11>>,
     is_taken: Signal<Local, Bit>,
 }
 
@@ -245,7 +245,7 @@ impl Logic for Sequencer {
         match self.choice.val().index() {
             1 => self.logic.next = self.accumulator.q.val() & self.immediate.val(),
             2 => self.logic.next = self.accumulator.q.val() ^ self.immediate.val(),
-            3 => self.logic.next = bit_cast::<16, 10>(self.link.q.val()),
+            3 => self.logic.next = bit_cast::<16, 11>(self.link.q.val()),
             _ => self.logic.next = self.immediate.val(),
         }
         self.value.d.next = self.logic.val();
@@ -375,9 +375,9 @@ impl Logic for Sequencer {
                     (self.sum.val().get_bit(17) ^ self.inverts.q.val()) | self.shifted_out.q.val();
             }
             match self.way.q.val().index() {
-                1 => self.counter.d.next = self.program.read_data.val().get_bits::<10>(0),
+                1 => self.counter.d.next = self.program.read_data.val().get_bits::<11>(0),
                 2 => self.counter.d.next = self.link.q.val(),
-                3 => self.counter.d.next = self.accumulator.q.val().get_bits::<10>(0),
+                3 => self.counter.d.next = self.accumulator.q.val().get_bits::<11>(0),
                 _ => self.counter.d.next = self.following.val(),
             }
             if self.op.val() == 14 {

@@ -34,9 +34,7 @@ pub struct Service {
     /// It had the request.
     pub over_request: Signal<In, Bit>,
     /// Its primary cause.
-    pub over_cause: Signal<In, Bits<4>>,
-    /// Its raw flags.
-    pub over_flags: Signal<In, Bits<12>>,
+    pub over_cause: Signal<In, Bits<5>>,
     /// Answer of a request with a frame of its own.
     pub reply: Signal<In, Bits<48>>,
     /// Its CRC is right.
@@ -95,6 +93,14 @@ pub struct Service {
     pub alarm: Signal<Out, Bit>,
     /// Forced errors: bit 0 F1, bit 1 F2, bit 2 CRC.
     pub forced: Signal<Out, Bits<3>>,
+    /// Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
+    pub watchdog_us: Signal<Out, Bits<12>>,
+    /// Shortest recovery time, in system clock cycles; 0 = not checked.
+    pub recovery_min_cycles: Signal<Out, Bits<13>>,
+    /// The clock goes on after each position.
+    pub continuous: Signal<Out, Bit>,
+    /// It stops after an error.
+    pub stop_at_error: Signal<Out, Bit>,
     /// Word of RAM that the host accesses; stays put from one strobe to the next, 8 cycles at least.
     pub host_address: Signal<In, Bits<7>>,
     /// Strobe: read it.
@@ -111,7 +117,7 @@ pub struct Service {
     has_event: Reg<Bit>,
     missed: Reg<Bit>,
     event_request: Reg<Bit>,
-    event_cause: Reg<Bits<16>>,
+    event_cause: Reg<Bits<5>>,
     request_written: Reg<Bit>,
     control_written: Reg<Bit>,
     time_us: Reg<Bits<16>>,
@@ -126,6 +132,9 @@ pub struct Service {
     out_force: Reg<Bits<3>>,
     out_found: Reg<Bits<7>>,
     out_period: Reg<Bits<11>>,
+    out_watchdog: Reg<Bits<12>>,
+    out_recovery: Reg<Bits<13>>,
+    out_continuous: Reg<Bits<2>>,
     status: Signal<Local, Bits<16>>,
     written: Signal<Local, Bits<16>>,
     wants_short: Constant<Bit>,
@@ -141,7 +150,6 @@ impl Service {
             over: Default::default(),
             over_request: Default::default(),
             over_cause: Default::default(),
-            over_flags: Default::default(),
             reply: Default::default(),
             reply_good: Default::default(),
             info_active: Default::default(),
@@ -171,6 +179,10 @@ impl Service {
             clock_low: Default::default(),
             alarm: Default::default(),
             forced: Default::default(),
+            watchdog_us: Default::default(),
+            recovery_min_cycles: Default::default(),
+            continuous: Default::default(),
+            stop_at_error: Default::default(),
             host_address: Default::default(),
             host_read: Default::default(),
             host_word: Default::default(),
@@ -197,6 +209,9 @@ impl Service {
             out_force: Default::default(),
             out_found: Default::default(),
             out_period: Default::default(),
+            out_watchdog: Default::default(),
+            out_recovery: Default::default(),
+            out_continuous: Default::default(),
             status: Default::default(),
             written: Default::default(),
             wants_short: Constant::new(wants_short),
@@ -231,7 +246,10 @@ impl Logic for Service {
             out_control,
             out_force,
             out_found,
-            out_period
+            out_period,
+            out_watchdog,
+            out_recovery,
+            out_continuous
         );
         clock!(self, clock, sequencer);
         self.has_event.reset.next = self.reset.val();
@@ -252,6 +270,9 @@ impl Logic for Service {
         self.out_force.reset.next = self.reset.val();
         self.out_found.reset.next = self.reset.val();
         self.out_period.reset.next = self.reset.val();
+        self.out_watchdog.reset.next = self.reset.val();
+        self.out_recovery.reset.next = self.reset.val();
+        self.out_continuous.reset.next = self.reset.val();
         self.sequencer.reset.next = self.reset.val();
         self.sequencer.restart.next = false;
 
@@ -284,7 +305,7 @@ impl Logic for Service {
                 self.sequencer.port_in.next = self.status.val();
             }
             1 => {
-                self.sequencer.port_in.next = self.event_cause.q.val();
+                self.sequencer.port_in.next = bit_cast::<16, 5>(self.event_cause.q.val());
             }
             2 => {
                 self.sequencer.port_in.next = self.info_1.val().get_bits::<16>(0);
@@ -387,6 +408,15 @@ impl Logic for Service {
                 8 => {
                     self.out_period.d.next = self.written.val().get_bits::<11>(0);
                 }
+                9 => {
+                    self.out_watchdog.d.next = self.written.val().get_bits::<12>(0);
+                }
+                10 => {
+                    self.out_recovery.d.next = self.written.val().get_bits::<13>(0);
+                }
+                11 => {
+                    self.out_continuous.d.next = self.written.val().get_bits::<2>(0);
+                }
                 _ => {}
             }
         }
@@ -394,8 +424,7 @@ impl Logic for Service {
             self.has_event.d.next = true;
             self.missed.d.next = self.has_event.q.val();
             self.event_request.d.next = self.over_request.val();
-            self.event_cause.d.next = bit_cast::<16, 4>(self.over_cause.val())
-                | (bit_cast::<16, 12>(self.over_flags.val()) << 4);
+            self.event_cause.d.next = self.over_cause.val();
         }
         self.sequencer.host_address.next = self.host_address.val();
         self.sequencer.host_read.next = self.host_read.val();
@@ -423,6 +452,10 @@ impl Logic for Service {
         self.clock_low.next = self.out_control.q.val().get_bit(1);
         self.alarm.next = self.out_control.q.val().get_bit(2);
         self.forced.next = self.out_force.q.val();
+        self.watchdog_us.next = self.out_watchdog.q.val();
+        self.recovery_min_cycles.next = self.out_recovery.q.val();
+        self.continuous.next = self.out_continuous.q.val().get_bit(0);
+        self.stop_at_error.next = self.out_continuous.q.val().get_bit(1);
         self.period_now_cycles.next = self.period_cycles.val();
         if self.out_period.q.val().any() {
             self.period_now_cycles.next = self.out_period.q.val();

@@ -18,6 +18,10 @@ pub struct Snapshot {
     pub timestamp: Signal<In, Bits<32>>,
     /// Strobe: the first falling edge of a frame, which latches the position in the encoder.
     pub first_fall: Signal<In, Bit>,
+    /// Strobe: the encoder has taken a position by itself, `delay_cycles` ago.
+    pub latched: Signal<In, Bit>,
+    /// Propagation delay, in system clock cycles.
+    pub delay_cycles: Signal<In, Bits<10>>,
     /// Strobe: take the result of a trigger.
     pub publish: Signal<In, Bit>,
     /// With `publish`: the position is good.
@@ -31,9 +35,9 @@ pub struct Snapshot {
     /// CRC as computed.
     pub crc_computed_in: Signal<In, Bits<5>>,
     /// Primary cause.
-    pub cause_in: Signal<In, Bits<4>>,
+    pub cause_in: Signal<In, Bits<5>>,
     /// Raw flags.
-    pub flags_in: Signal<In, Bits<12>>,
+    pub flags_in: Signal<In, Bits<19>>,
     /// Strobe: a new result can be read from this cycle on.
     pub result_strobe: Signal<Out, Bit>,
     /// Last good position, zeros above its width.
@@ -49,9 +53,9 @@ pub struct Snapshot {
     /// Age of the position in microseconds since its publication; stops at 65535.
     pub age_us: Signal<Out, Bits<16>>,
     /// Primary cause of the last result.
-    pub cause: Signal<Out, Bits<4>>,
+    pub cause: Signal<Out, Bits<5>>,
     /// Raw flags of the last result.
-    pub flags: Signal<Out, Bits<12>>,
+    pub flags: Signal<Out, Bits<19>>,
     /// CRC received in the last whole frame.
     pub crc_received: Signal<Out, Bits<5>>,
     /// CRC computed for the last whole frame.
@@ -61,12 +65,12 @@ pub struct Snapshot {
     valid: Reg<Bit>,
     is_fresh: Reg<Bit>,
     count: Reg<Bits<16>>,
-    latched: Reg<Bits<32>>,
+    moment: Reg<Bits<32>>,
     stamp: Reg<Bits<32>>,
     age: Reg<Bits<16>>,
     age_full: Reg<Bit>,
-    cause_held: Reg<Bits<4>>,
-    flags_held: Reg<Bits<12>>,
+    cause_held: Reg<Bits<5>>,
+    flags_held: Reg<Bits<19>>,
     received: Reg<Bits<5>>,
     computed: Reg<Bits<5>>,
     take_good: Signal<Local, Bit>,
@@ -75,14 +79,14 @@ pub struct Snapshot {
 impl Logic for Snapshot {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, strobe, held, valid, is_fresh, count, latched, stamp, age);
+        dff_setup!(self, clock, strobe, held, valid, is_fresh, count, moment, stamp, age);
         dff_setup!(self, clock, age_full, cause_held, flags_held, received, computed);
         self.strobe.reset.next = self.reset.val();
         self.held.reset.next = self.reset.val();
         self.valid.reset.next = self.reset.val();
         self.is_fresh.reset.next = self.reset.val();
         self.count.reset.next = self.reset.val();
-        self.latched.reset.next = self.reset.val();
+        self.moment.reset.next = self.reset.val();
         self.stamp.reset.next = self.reset.val();
         self.age_full.reset.next = self.reset.val();
         self.age.reset.next = self.reset.val();
@@ -93,7 +97,11 @@ impl Logic for Snapshot {
 
         self.take_good.next = self.publish.val() & self.good.val();
         if self.first_fall.val() {
-            self.latched.d.next = self.timestamp.val();
+            self.moment.d.next = self.timestamp.val();
+        }
+        if self.latched.val() {
+            self.moment.d.next =
+                self.timestamp.val() - bit_cast::<32, 10>(self.delay_cycles.val());
         }
         self.age_full.d.next = self.age.q.val().all();
         if self.tick_us.val() & !self.age_full.q.val() {
@@ -108,7 +116,7 @@ impl Logic for Snapshot {
         }
         if self.take_good.val() {
             self.held.d.next = self.position_in.val();
-            self.stamp.d.next = self.latched.q.val();
+            self.stamp.d.next = self.moment.q.val();
             self.valid.d.next = true;
             self.age.d.next = 0.into();
         }

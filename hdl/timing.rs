@@ -20,10 +20,18 @@ pub const TST_FROM_HZ: u64 = 1_000_000;
 pub const RECOVERY_MIN_NS: u64 = 10_000;
 /// Longest recovery time tm, in ns (PWM 20; default range).
 pub const RECOVERY_MAX_NS: u64 = 30_000;
+/// Shortest programmed recovery time, in ns (PWM 20; EnDat 2.2 commands above 1 MHz only).
+pub const SHORT_RECOVERY_MIN_NS: u64 = 1_250;
 /// Data must have been low for longer than tR before the next frame, in ns (PWM 20).
 pub const READY_LOW_NS: u64 = 500;
 /// Quiet time after an aborted transfer, in microseconds (S2 block, ADDI driver).
 pub const ABORT_US: u64 = 30_000;
+/// How long DATA is driven LOW at rest to see whether it follows, in microseconds (chosen: transceivers take well below one).
+pub const PROBE_US: u64 = 2;
+/// Time for an open line to rise again after that, in microseconds (chosen: cable of 100 m with ordinary bias resistors).
+pub const SETTLE_US: u64 = 20;
+/// Clock HIGH at the end of continuous clock, in microseconds: longer than the longest recovery time and the longest cable's delay.
+pub const LEAVE_US: u64 = 40;
 /// Clock LOW between an answer and its supplement, in ns: as tST; up to 30 us are allowed (no source names a shortest time).
 pub const PARK_NS: u64 = 2_000;
 /// Longest wait for the answer to a command with a parameter, in microseconds: access takes up to 12 ms (PWM 20), TI waits 50 ms.
@@ -60,6 +68,11 @@ pub const fn cycles_at_most(ns: u64, system_hz: u64) -> u64 {
 /// Cycles of a `system_hz` clock in one period of `hz`, to the nearest cycle.
 pub const fn period_cycles(hz: u64, system_hz: u64) -> u64 {
     (system_hz + hz / 2) / hz
+}
+
+/// The measured recovery time that is still taken for one of at least `ns`: a sixteenth less, for jitter and measuring.
+pub const fn recovery_min_cycles(ns: u64, system_hz: u64) -> u64 {
+    cycles_at_most(ns - ns / 16, system_hz)
 }
 
 /// Nanoseconds that `cycles` of a `system_hz` clock last, rounded to the nearest.

@@ -19,8 +19,11 @@
 
 pub mod cause;
 mod new;
+pub mod primary;
 
+use crate::line_health::LineHealth;
 use crate::reg::Reg;
+use primary::PrimaryCause;
 use rust_hdl::prelude::*;
 
 /// What the wire is doing.
@@ -87,6 +90,18 @@ pub struct Transaction {
     pub is_own: Signal<In, Bit>,
     /// No frame may begin.
     pub hold_off: Signal<In, Bit>,
+    /// The clock goes on after each position, and the next one follows without a command.
+    pub continuous: Signal<In, Bit>,
+    /// It stops after an error.
+    pub stop_at_error: Signal<In, Bit>,
+    /// The line is wanted for something else.
+    pub line_wanted: Signal<In, Bit>,
+    /// Strobe: the cell after the last CRC bit is LOW, while the clock goes on.
+    pub gap_low: Signal<In, Bit>,
+    /// Strobe: the cell before the next start bit is HIGH, while the clock goes on.
+    pub gap_high: Signal<In, Bit>,
+    /// The answer begins with the own mode command.
+    pub is_echo: Signal<In, Bit>,
     /// Serial CRC verdict.
     pub serial_ok: Signal<In, Bit>,
     /// Parallel CRC verdict.
@@ -105,6 +120,10 @@ pub struct Transaction {
     pub start_timeout_us: Signal<In, Bits<12>>,
     /// Data must fall within this after the frame.
     pub recovery_limit_cycles: Signal<In, Bits<13>>,
+    /// Data must not fall before this after the frame.
+    pub recovery_min_cycles: Signal<In, Bits<13>>,
+    /// Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
+    pub watchdog_us: Signal<In, Bits<12>>,
     /// One-cycle strobe: the first falling clock edge comes at the end of this cycle.
     pub start: Signal<Out, Bit>,
     /// A frame is under way on the wire.
@@ -117,6 +136,12 @@ pub struct Transaction {
     pub drain: Signal<Out, Bit>,
     /// Keeps the clock high: no frame, or all its edges have been sent.
     pub stop: Signal<Out, Bit>,
+    /// Drives the line LOW, to see whether it follows.
+    pub probe: Signal<Out, Bit>,
+    /// It has just done so, or does.
+    pub is_probed: Signal<Out, Bit>,
+    /// The clock goes on after this frame.
+    pub going_on: Signal<Out, Bit>,
     /// One-cycle strobe: the supplement begins.
     pub start_supplement: Signal<Out, Bit>,
     /// This frame measures the propagation delay.
@@ -140,17 +165,25 @@ pub struct Transaction {
     /// The propagation delay is known.
     pub calibrated: Signal<Out, Bit>,
     /// Primary cause, with `publish`, `late_fault` or `over`.
-    pub cause: Signal<Out, Bits<4>>,
-    /// Raw flags in the order of the cause codes: bit k stands for cause k + 1; then bit 8 parallel CRC, bit 9 tail not high,
-    /// bit 10 unknown command, bit 11 additional information missing.
-    pub flags: Signal<Out, Bits<12>>,
+    pub cause: Signal<Out, Bits<5>>,
+    /// Raw flags, see [`cause::flag`].
+    pub flags: Signal<Out, Bits<19>>,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
+    health: LineHealth,
+    chooser: PrimaryCause,
     has_all: Constant<Bit>,
+    has_diagnosis: Constant<Bit>,
+    has_continuous: Constant<Bit>,
     ready_low_cycles: Constant<Bits<16>>,
     abort_us: Constant<Bits<16>>,
     park_cycles: Constant<Bits<16>>,
     parameter_timeout_us: Constant<Bits<16>>,
+    own_recovery_limit_cycles: Constant<Bits<16>>,
+    own_recovery_min_cycles: Constant<Bits<13>>,
+    probe_us: Constant<Bits<16>>,
+    settle_us: Constant<Bits<16>>,
+    leave_us: Constant<Bits<16>>,
     phase: Reg<Phase>,
     timer: Reg<Bits<16>>,
     timer_limit: Reg<Bits<16>>,
@@ -175,15 +208,21 @@ pub struct Transaction {
     ended: Reg<Bit>,
     over_now: Reg<Bit>,
     lost_now: Reg<Bit>,
-    seen: Reg<Bits<12>>,
+    seen: Reg<Bits<19>>,
+    late: Reg<Bit>,
+    announced: Reg<Bit>,
+    probing: Reg<Bit>,
+    settling: Reg<Bit>,
+    going: Reg<Bit>,
+    leaving: Reg<Bit>,
     taken: Reg<Bit>,
     gave_up: Reg<Bit>,
     gave_up_late: Reg<Bit>,
     publish_now: Reg<Bit>,
     good_now: Reg<Bit>,
     late_now: Reg<Bit>,
-    cause_now: Reg<Bits<4>>,
-    flags_now: Reg<Bits<12>>,
+    cause_now: Reg<Bits<5>>,
+    flags_now: Reg<Bits<19>>,
     limit: Signal<Local, Bits<16>>,
     in_us: Signal<Local, Bit>,
     timer_clear: Signal<Local, Bit>,
@@ -197,11 +236,20 @@ pub struct Transaction {
     parking: Signal<Local, Bit>,
     sent: Signal<Local, Bit>,
     own: Signal<Local, Bit>,
-    found: Signal<Local, Bits<12>>,
-    told: Signal<Local, Bits<12>>,
+    found: Signal<Local, Bits<19>>,
+    not_low: Signal<Local, Bits<19>>,
+    no_start: Signal<Local, Bits<19>>,
+    told: Signal<Local, Bits<19>>,
+    announce: Signal<Local, Bit>,
+    probed: Signal<Local, Bit>,
+    watched: Signal<Local, Bit>,
+    found_late: Signal<Local, Bit>,
+    recovery_min: Signal<Local, Bits<13>>,
+    early: Signal<Local, Bit>,
+    bad: Signal<Local, Bit>,
+    leave: Signal<Local, Bit>,
     crc_bad: Signal<Local, Bit>,
     verdict: Signal<Local, Bit>,
-    primary: Signal<Local, Bits<4>>,
     lost: Signal<Local, Bit>,
 }
 
@@ -251,8 +299,15 @@ impl Logic for Transaction {
             refused,
             ended,
             over_now,
-            lost_now
+            lost_now,
+            late,
+            announced,
+            probing,
+            settling,
+            going,
+            leaving
         );
+        clock!(self, clock, health);
         self.phase.reset.next = self.reset.val();
         self.timer.reset.next = self.reset.val();
         self.timer_step.reset.next = self.reset.val();
@@ -287,6 +342,13 @@ impl Logic for Transaction {
         self.ended.reset.next = self.reset.val();
         self.over_now.reset.next = self.reset.val();
         self.lost_now.reset.next = self.reset.val();
+        self.late.reset.next = self.reset.val();
+        self.announced.reset.next = self.reset.val();
+        self.probing.reset.next = self.reset.val();
+        self.settling.reset.next = self.reset.val();
+        self.going.reset.next = self.reset.val();
+        self.leaving.reset.next = self.reset.val();
+        self.health.reset.next = self.reset.val();
 
         self.own.next = self.is_own.val() & self.has_all.val();
         self.triggered.next = self.trigger.val() & !(self.hold_off.val() & self.has_all.val());
@@ -304,7 +366,25 @@ impl Logic for Transaction {
         self.give_up.next = false;
         self.idle.next = false;
         self.verdict.next = false;
+        self.announce.next = false;
+        self.probed.next = false;
+        self.watched.next = false;
+        self.found_late.next = false;
         self.found.next = 0.into();
+        // What is known of a line that is HIGH at rest, and of one without a start bit.
+        self.not_low.next = 1.into();
+        self.no_start.next = 2.into();
+        if self.has_diagnosis.val() {
+            if self.health.is_open.val() {
+                self.not_low.next = 0x1001.into();
+            }
+            if self.health.is_stuck.val() {
+                self.not_low.next = 0x2001.into();
+            }
+            if self.health.never_high.val() {
+                self.no_start.next = 0x4002.into();
+            }
+        }
         self.run_now.d.next = false;
         self.crc_bad.next = !(self.serial_ok.val() & self.parallel_ok.val());
 
@@ -319,7 +399,7 @@ impl Logic for Transaction {
                 if self.level.val() {
                     self.phase.d.next = Phase::NotReady;
                     if self.triggered.val() {
-                        self.found.next = 1.into();
+                        self.found.next = self.not_low.val();
                         self.give_up.next = true;
                     }
                 }
@@ -330,7 +410,7 @@ impl Logic for Transaction {
                 if self.level.val() {
                     self.phase.d.next = Phase::NotReady;
                     if self.triggered.val() {
-                        self.found.next = 1.into();
+                        self.found.next = self.not_low.val();
                         self.give_up.next = true;
                     }
                 } else {
@@ -350,6 +430,7 @@ impl Logic for Transaction {
             }
             Phase::FirstLow => {
                 self.run_now.d.next = true;
+                self.watched.next = true;
                 self.limit.next = bit_cast::<16, 11>(self.first_low_extra_cycles.val());
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::Frame;
@@ -358,13 +439,24 @@ impl Logic for Transaction {
             }
             Phase::Frame => {
                 self.run_now.d.next = true;
+                self.watched.next = true;
                 self.in_us.next = true;
                 self.timer_clear.next = !self.hunting.val();
                 if self.timer_hit.q.val() & self.hunting.val() {
-                    self.found.next = 2.into();
+                    self.found.next = self.no_start.val();
+                    self.give_up.next = true;
+                    // The result is told; the clock goes on as long again, to know a late encoder from a silent one.
+                    if self.has_diagnosis.val() & !self.has_parameter.val() & !self.late.q.val() {
+                        self.give_up.next = false;
+                        self.announce.next = true;
+                        self.timer_clear.next = true;
+                    }
+                }
+                if self.late.q.val() & (self.started.val() | self.start_refused.val()) {
+                    self.found.next = 0x8002.into();
                     self.give_up.next = true;
                 }
-                if self.start_refused.val() {
+                if self.start_refused.val() & !self.late.q.val() {
                     self.found.next = 4.into();
                     self.give_up.next = true;
                 }
@@ -375,7 +467,20 @@ impl Logic for Transaction {
                     self.found.next = 2048.into();
                     self.give_up.next = true;
                 }
-                if self.finished.val() {
+                if self.has_continuous.val() & self.gap_low.val() {
+                    self.found.next = 512.into();
+                    self.give_up.next = true;
+                    self.found_late.next = true;
+                }
+                if self.has_continuous.val() & self.gap_high.val() {
+                    self.found.next = 64.into();
+                    self.give_up.next = true;
+                    self.found_late.next = true;
+                }
+                if self.finished.val() & self.going.q.val() {
+                    self.normal_end.next = true;
+                }
+                if self.finished.val() & !self.going.q.val() {
                     self.phase.d.next = Phase::Tail;
                     if self.has_all.val() & self.has_supplement.val() & !self.in_supplement.q.val()
                     {
@@ -385,6 +490,7 @@ impl Logic for Transaction {
             }
             Phase::Park => {
                 self.run_now.d.next = true;
+                self.watched.next = true;
                 self.limit.next = self.park_cycles.val();
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::Frame;
@@ -397,6 +503,7 @@ impl Logic for Transaction {
             }
             Phase::Tail => {
                 self.run_now.d.next = true;
+                self.watched.next = true;
                 self.timer_clear.next = true;
                 if self.center.val() {
                     self.phase.d.next = Phase::Recovery;
@@ -406,7 +513,12 @@ impl Logic for Transaction {
             }
             Phase::Recovery => {
                 self.run_now.d.next = !self.tail_sampled.q.val();
+                self.watched.next = true;
                 self.limit.next = bit_cast::<16, 13>(self.recovery_limit_cycles.val());
+                // A request's command may have another range than the triggers' one.
+                if self.own.val() {
+                    self.limit.next = self.own_recovery_limit_cycles.val();
+                }
                 if self.sample.val() {
                     self.tail_sampled.d.next = true;
                 }
@@ -430,17 +542,45 @@ impl Logic for Transaction {
             Phase::Abort => {
                 self.in_us.next = true;
                 self.limit.next = self.abort_us.val();
+                if self.has_continuous.val() & self.leaving.q.val() {
+                    self.limit.next = self.leave_us.val();
+                }
+                if self.has_diagnosis.val() & self.probing.q.val() {
+                    self.limit.next = self.probe_us.val();
+                }
+                if self.has_diagnosis.val() & self.settling.q.val() {
+                    self.limit.next = self.settle_us.val();
+                }
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::NotReady;
                     self.timer_clear.next = true;
+                    self.leaving.d.next = false;
+                    self.settling.d.next = false;
+                    if self.has_diagnosis.val() & self.level.val() & !self.settling.q.val() {
+                        self.phase.d.next = Phase::Abort;
+                        self.probing.d.next = true;
+                    }
+                    if self.probing.q.val() {
+                        self.phase.d.next = Phase::Abort;
+                        self.probed.next = true;
+                        self.probing.d.next = false;
+                        self.settling.d.next = true;
+                    }
                 }
             }
             _ => {
                 self.give_up.next = true;
             }
         }
-        if self.verdict.val() {
+        if self.has_diagnosis.val() & self.health.expired.val() & self.watched.val() {
+            self.found.next = self.found.val() | 0x10000;
+            self.give_up.next = true;
+        }
+        if (self.verdict.val() & !self.going.q.val()) | self.announce.val() {
             self.answered.d.next = true;
+        }
+        if self.announce.val() {
+            self.late.d.next = true;
         }
         if self.normal_end.val() {
             self.answered.d.next = false;
@@ -453,6 +593,7 @@ impl Logic for Transaction {
             self.refuse.next = false;
             self.answered.d.next = false;
             self.is_calibrated.d.next = false;
+            self.late.d.next = false;
         }
 
         self.timer_step.d.next = !self.in_us.val() | self.tick_us.val();
@@ -475,7 +616,7 @@ impl Logic for Transaction {
 
         // Pulses: never more on the cable than the answer needs.
         self.all_sent.d.next = bit_cast::<7, 6>(self.outstanding.val()) == self.cells_left.val();
-        if self.all_sent.q.val() & !self.started.val() {
+        if self.all_sent.q.val() & !self.started.val() & !self.going.q.val() {
             self.stalled.d.next = true;
         }
         if !self.outstanding.val().any() {
@@ -486,14 +627,20 @@ impl Logic for Transaction {
         self.seen.d.next = self.found.val();
         self.taken.d.next = self.verdict.val();
         self.gave_up.d.next = self.give_up.val() & !self.gave_up.q.val();
-        self.gave_up_late.d.next =
-            self.give_up.val() & !self.gave_up.q.val() & self.answered.q.val();
+        self.gave_up_late.d.next = self.give_up.val()
+            & !self.gave_up.q.val()
+            & (self.answered.q.val() | self.found_late.val());
         self.refused.d.next = self.refuse.val();
+        self.announced.d.next = self.announce.val() & self.has_diagnosis.val();
         self.told.next = self.seen.q.val();
         self.good_now.d.next = false;
+        self.bad.next = self.crc_bad.val() | self.f1.val() | !self.f2.val();
         if self.taken.q.val() {
             if self.crc_bad.val() {
                 self.told.next = self.told.val() | 8;
+                if self.has_diagnosis.val() & self.is_echo.val() {
+                    self.told.next = self.told.val() | 0x20008;
+                }
             } else {
                 self.is_calibrated.d.next = true;
                 self.good_now.d.next = !self.f1.val() & self.f2.val();
@@ -511,54 +658,42 @@ impl Logic for Transaction {
         if self.overrun.q.val() {
             self.told.next = self.told.val() | 128;
         }
+        self.recovery_min.next = self.recovery_min_cycles.val();
+        if self.own.val() {
+            self.recovery_min.next = self.own_recovery_min_cycles.val();
+        }
+        self.early.next = self.has_diagnosis.val()
+            & self.ended.q.val()
+            & !self.going.q.val()
+            & !self.cause_now.q.val().any()
+            & (self.recovery.q.val() < self.recovery_min.val());
+        if self.early.val() {
+            self.told.next = self.told.val() | 0x40000;
+        }
         self.publish_now.d.next = (self.taken.q.val()
             | self.refused.q.val()
+            | self.announced.q.val()
             | (self.gave_up.q.val() & !self.gave_up_late.q.val()))
             & !self.own.val();
-        self.late_now.d.next = self.gave_up_late.q.val() & !self.own.val();
+        self.late_now.d.next = (self.gave_up_late.q.val() | self.early.val()) & !self.own.val();
         // `over` comes with cause and flags of whatever ended the frame.
         self.ended.d.next = self.normal_end.val();
         self.over_now.d.next = self.ended.q.val() | self.gave_up.q.val() | self.refused.q.val();
-        // One primary cause: CRC before F1 before F2, since error bits of a spoilt frame mean nothing.
-        self.primary.next = 0.into();
-        if self.told.val().get_bit(7) {
-            self.primary.next = 8.into();
-        }
-        if self.told.val().get_bit(5) {
-            self.primary.next = 6.into();
-        }
-        if self.told.val().get_bit(4) {
-            self.primary.next = 5.into();
-        }
-        if self.told.val().get_bit(3) {
-            self.primary.next = 4.into();
-        }
-        if self.told.val().get_bit(11) & self.has_all.val() {
-            self.primary.next = 10.into();
-        }
-        if self.told.val().get_bit(6) | self.told.val().get_bit(9) {
-            self.primary.next = 7.into();
-        }
-        if self.told.val().get_bit(2) {
-            self.primary.next = 3.into();
-        }
-        if self.told.val().get_bit(1) {
-            self.primary.next = 2.into();
-        }
-        if self.told.val().get_bit(0) {
-            self.primary.next = 1.into();
-        }
-        if self.told.val().get_bit(10) {
-            self.primary.next = 9.into();
-        }
-        if self.taken.q.val() | self.gave_up.q.val() | self.refused.q.val() {
+        self.chooser.flags.next = self.told.val();
+        if self.taken.q.val()
+            | self.gave_up.q.val()
+            | self.refused.q.val()
+            | self.announced.q.val()
+            | self.early.val()
+        {
             self.flags_now.d.next = self.told.val();
-            self.cause_now.d.next = self.primary.val();
+            self.cause_now.d.next = self.chooser.cause.val();
             if !self.own.val() {
                 self.overrun.d.next = false;
             }
         }
         self.lost.next = self.trigger.val()
+            & !self.going.q.val()
             & ((!self.accept.val() & !self.idle.val()) | (self.accept.val() & self.own.val()));
         if self.lost.val() {
             self.overrun.d.next = true;
@@ -569,6 +704,31 @@ impl Logic for Transaction {
             self.in_supplement.d.next = false;
             self.acquiring.d.next = !self.is_calibrated.q.val();
             self.tail_sampled.d.next = false;
+            self.late.d.next = false;
+            self.going.d.next = self.has_continuous.val()
+                & self.continuous.val()
+                & self.is_calibrated.q.val()
+                & !self.own.val();
+        }
+        // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
+        self.leave.next = self.going.q.val()
+            & self.taken.q.val()
+            & (!self.continuous.val()
+                | self.line_wanted.val()
+                | !self.is_calibrated.q.val()
+                | (self.stop_at_error.val() & self.bad.val()));
+        if self.leave.val() {
+            self.phase.d.next = Phase::Abort;
+            self.timer_clear.next = true;
+            self.leaving.d.next = true;
+        }
+        if self.leave.val() | self.gave_up.q.val() {
+            self.going.d.next = false;
+        }
+        if self.gave_up.q.val() {
+            self.leaving.d.next = false;
+            self.probing.d.next = false;
+            self.settling.d.next = false;
         }
         if self.calibrate.val() {
             self.is_calibrated.d.next = false;
@@ -578,7 +738,7 @@ impl Logic for Transaction {
         self.start.next = self.start_now.q.val();
         self.abort.next = self.gave_up.q.val();
         // Taking the start bit ends its cell; `started` comes when the comparison knows that.
-        self.sent.next = self.all_sent.q.val() & self.started.val();
+        self.sent.next = self.all_sent.q.val() & self.started.val() & !self.going.q.val();
         self.parking.next = false;
         if self.has_all.val() & self.has_supplement.val() & !self.in_supplement.q.val() {
             self.parking.next = (self.sent.val() & (self.phase.q.val() == Phase::Frame))
@@ -613,5 +773,18 @@ impl Logic for Transaction {
         self.displaced.next = self.lost_now.q.val();
         self.calibrated.next = self.is_calibrated.q.val();
         self.recovery_cycles.next = self.recovery.q.val();
+        self.probe.next = self.probing.q.val() & self.has_diagnosis.val();
+        self.is_probed.next =
+            (self.probing.q.val() | self.settling.q.val()) & self.has_diagnosis.val();
+        self.going_on.next = self.going.q.val();
+
+        self.health.tick_us.next = self.tick_us.val();
+        self.health.level.next = self.level.val();
+        self.health.start.next = self.start_now.q.val();
+        self.health.under_way.next =
+            self.watched.val() & !self.has_parameter.val() & !self.going.q.val();
+        self.health.watchdog_us.next = self.watchdog_us.val();
+        self.health.probed.next = self.probed.val();
+        self.health.is_ready.next = self.phase.q.val() == Phase::Ready;
     }
 }

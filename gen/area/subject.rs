@@ -56,13 +56,22 @@ impl Subject {
     }
 }
 
+/// A channel's features, but for what is changed.
+fn part(change: impl FnOnce(&mut Features)) -> Features {
+    let mut features = Features::default();
+    change(&mut features);
+    features
+}
+
 /// Everything that is measured, the largest first.
 pub fn subjects() -> Result<Vec<Subject>, GenError> {
     let card = load_preset(DEFAULT_PRESET)?.card;
     let times = FixedTimes::at(card.system_hz);
-    let service = |initialise| {
+    let service = |initialise, is_all| {
         let times = ServiceTimes {
             initialise,
+            diagnosis: is_all,
+            continuous: is_all,
             ..ServiceTimes::at(card.system_hz)
         };
         EncoderPort::new(FixedTimes::at(card.system_hz), Some(&times), false)
@@ -71,29 +80,49 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
     Ok(vec![
         Subject::new(
             "card_service",
-            "the card with requests and initialisation",
+            "the card with everything",
             Card::new(&full),
         )?,
         Subject::new("card", "two-channel card s6_two_channel", Card::new(&card))?,
         Subject::new("channel", "one position channel", Channel::new(times))?,
         Subject::new(
+            "port_all",
+            "one port with everything",
+            service(true, true),
+        )?,
+        Subject::new(
             "port_initialise",
             "one port with requests and initialisation",
-            service(true),
+            service(true, false),
         )?,
-        Subject::new("port_requests", "one port with requests", service(false))?,
+        Subject::new("port_requests", "one port with requests", service(false, false))?,
+        Subject::new(
+            "channel_all",
+            "position channel with all of what follows, without service",
+            Channel::with(times, Features::ALL),
+        )?,
         Subject::new(
             "channel_requests",
             "position channel with all mode commands and additional information, without service",
-            Channel::with(times, Features { requests: true }),
+            Channel::with(times, part(|f| f.requests = true)),
+        )?,
+        Subject::new(
+            "channel_diagnosis",
+            "position channel with line diagnosis and watchdog",
+            Channel::with(times, part(|f| f.diagnosis = true)),
+        )?,
+        Subject::new(
+            "channel_continuous",
+            "position channel with continuous clock",
+            Channel::with(times, part(|f| f.continuous = true)),
         )?,
         Subject::new(
             "transaction",
             "order and time-outs",
-            Transaction::new(times, false),
+            Transaction::new(times, Features::default()),
         )?,
         Subject::new("line_delay", "propagation delay", LineDelay::default())?,
-        Subject::new("receiver", "receiver with both CRCs", Receiver::new(false))?,
+        Subject::new("receiver", "receiver with both CRCs", Receiver::new(Features::default()))?,
         Subject::new("snapshot", "snapshot with time stamp", Snapshot::default())?,
         Subject::new(
             "crc5_parallel",

@@ -199,7 +199,10 @@ fn canonical(card: &CardConfig, board: &Board, pins: &[Assignment]) -> String {
         format!("oscillator_hz {}", board.oscillator_hz),
     ];
     if card.service.requests {
-        lines.push(format!("service initialise {}", card.service.initialise));
+        let parts = card.service;
+        lines.push(format!("service initialise {}", parts.initialise));
+        lines.push(format!("service diagnosis {}", parts.diagnosis));
+        lines.push(format!("service continuous {}", parts.continuous));
         for (n, c) in card.channels.iter().enumerate() {
             lines.push(format!(
                 "channel {n} wants_short {}",
@@ -424,9 +427,11 @@ fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
         let shown = format!("{:?}", word.value);
         let part = match word.value.as_str() {
             "requests" => &mut parts.requests,
+            "diagnosis" => &mut parts.diagnosis,
+            "continuous" => &mut parts.continuous,
             "initialise" => &mut parts.initialise,
             _ => {
-                let text = "unknown part; use requests, initialise";
+                let text = "unknown part; use requests, diagnosis, continuous, initialise";
                 table.complain(word.line, "parts", &shown, text);
                 return None;
             }
@@ -438,8 +443,8 @@ fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
         last = Some((word.line, shown));
     }
     match last {
-        Some((line, shown)) if parts.initialise && !parts.requests => {
-            let text = "initialisation is made of requests; add \"requests\"";
+        Some((line, shown)) if !parts.requests => {
+            let text = "every other part takes requests; add \"requests\"";
             table.complain(line, "parts", &shown, text);
             None
         }

@@ -36,6 +36,7 @@ fn set(uut: &mut ChannelRegisters, register: &str, field: &str, value: u64) {
         ("status", "cause") => uut.cause.next = value.into(),
         ("status", "valid") => uut.position_valid.next = value == 1,
         ("status", "fresh") => uut.fresh.next = value == 1,
+        ("status", "line") => uut.flags.next = (value << 12).into(),
         ("position_low", _) => uut.position.next = value.into(),
         ("position_high", _) => uut.position.next = (value << 32).into(),
         ("timestamp", _) => uut.first_fall_timestamp.next = value.into(),

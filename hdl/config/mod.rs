@@ -57,8 +57,6 @@ pub const DELAY_BASE_NS: u64 = 200;
 pub const DELAY_NS_PER_M: u64 = 10;
 /// Cycles between a pin and the logic that judges it: synchroniser, longest filter, edge detection.
 pub const INPUT_LATENCY_CYCLES: u64 = 32;
-/// Shortest programmed recovery time, in ns (PWM 20; EnDat 2.2 commands above 1 MHz only).
-pub const SHORT_RECOVERY_MIN_NS: u64 = 1_250;
 
 /// What is asked of one channel.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -109,6 +107,10 @@ pub struct CardRequest {
 pub struct ServiceParts {
     /// All mode commands, additional information, counters, alarm.
     pub requests: bool,
+    /// Stuck lines, absent and late encoders told apart, watchdog, shortest recovery time; takes requests.
+    pub diagnosis: bool,
+    /// Continuous clock; takes requests.
+    pub continuous: bool,
     /// Initialisation of the encoder after reset and after it has been plugged in; takes requests.
     pub initialise: bool,
 }

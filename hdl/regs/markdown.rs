@@ -2,8 +2,9 @@
 
 use super::{blocks, Block, Register, SERVICE_BASE};
 use crate::config::CardConfig;
-use crate::service::map::word;
+use crate::service::map::{word, COUNTER_POSITION_2};
 use crate::service::program::{step_name, steps};
+use crate::transaction::cause;
 use std::fmt::Write;
 
 /// The register map of a card.
@@ -82,11 +83,20 @@ fn write_block(text: &mut String, block: &Block, config: &CardConfig) {
     }
 }
 
-/// What only initialisation fills is left out without it.
+/// What only parts fill that the card does not have is left out.
 fn has_register(block: &Block, register: &Register, config: &CardConfig) -> bool {
-    let filled = register.offset >= u16::from(word::NAME_PLATE);
-    let found = filled || register.offset == u16::from(word::PROGRESS);
-    block.base != SERVICE_BASE || config.service.initialise || !found
+    let parts = config.service;
+    let first_line = u16::from(word::COUNTERS) + cause::NO_ENCODER as u16;
+    let past_line = u16::from(word::COUNTERS + COUNTER_POSITION_2);
+    let at = |word: u8| register.offset == u16::from(word);
+    block.base != SERVICE_BASE
+        || if at(word::PROGRESS) || register.offset >= u16::from(word::NAME_PLATE) {
+            parts.initialise
+        } else if at(word::LIMITS) || (first_line..past_line).contains(&register.offset) {
+            parts.diagnosis
+        } else {
+            !at(word::CONTINUOUS) || parts.continuous
+        }
 }
 
 /// Small numbers in decimal, large ones that are no round decimal number in hexadecimal.

@@ -2,7 +2,7 @@
 
 use super::{Access, Block, Field, Register, SERVICE_BASE};
 use crate::config::CardConfig;
-use crate::service::map::{word as at, NAME_PLATE};
+use crate::service::map::{word as at, COUNTER_POSITION_2, NAME_PLATE};
 use Access::{ReadOnly, ReadWrite};
 
 fn zero(_: &CardConfig, _: usize) -> u64 {
@@ -174,6 +174,14 @@ pub const SERVICE: Block = Block {
             field("info_1", 0, 8, "", "Of additional information 1"),
             field("info_2", 16, 8, "", "Of additional information 2"),
         ]),
+        word("limits", at::LIMITS, ReadWrite, "What a frame must keep to.", &[
+            field("watchdog_us", 0, 12, "us", "Longest time from the first falling edge to the end of the recovery time; 0 = not watched. Commands with a parameter and continuous clock are not watched"),
+            field("recovery_min_cycles", 16, 13, "cycles", "Shortest recovery time; 0 = not checked. The program writes the shortest of the configured range at start"),
+        ]),
+        word("continuous", at::CONTINUOUS, ReadWrite, "Continuous clock, for the command 000111.", &[
+            field("go_on", 0, 1, "", "1: the clock goes on after each position, from the next trigger on"),
+            field("stop_at_error", 1, 1, "", "1: it stops after an error until the next trigger; 0: it goes on after CRC, F1 and F2"),
+        ]),
         list("list_0", 0),
         list("list_1", 1),
         list("list_2", 2),
@@ -201,7 +209,14 @@ pub const SERVICE: Block = Block {
         frames("frames_trigger_overrun", 8),
         frames("frames_unknown_command", 9),
         frames("frames_info_missing", 10),
-        word("frames_position_2", at::COUNTERS + 15, ReadOnly, "Comparisons of positions 1 and 2 that failed.", COUNT),
+        frames("frames_no_encoder", 11),
+        frames("frames_stuck_high", 12),
+        frames("frames_stuck_low", 13),
+        frames("frames_late_start", 14),
+        frames("frames_watchdog", 15),
+        frames("frames_own_echo", 16),
+        frames("frames_recovery_too_short", 17),
+        word("frames_position_2", at::COUNTERS + COUNTER_POSITION_2, ReadOnly, "Comparisons of positions 1 and 2 that failed.", COUNT),
         plate(0),
         plate(1),
         plate(2),

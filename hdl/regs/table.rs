@@ -66,7 +66,7 @@ pub const CARD: Block = Block {
         word("capabilities", 2, ReadOnly, "What this card has.", &[
             field("channels", 0, 8, "", "Encoder ports", |s, _| s.channels.len() as u64),
             field("max_position_bits", 8, 8, "bits", "Widest position", |_, _| MAX_POSITION_BITS as u64),
-            field("features", 16, 16, "", "bit 0: EnDat 2.2 position frames (111000); bit 1: line delay is measured; bit 2: trigger pin; bit 3: trigger timer; bit 4: requests; bit 5: initialisation", |s, _| 0b1111 | (s.service.requests as u64) << 4 | (s.service.initialise as u64) << 5),
+            field("features", 16, 16, "", "bit 0: EnDat 2.2 position frames (111000); bit 1: line delay is measured; bit 2: trigger pin; bit 3: trigger timer; bit 4: requests; bit 5: initialisation; bit 6: diagnosis of the line; bit 7: continuous clock", |s, _| 0b1111 | (s.service.requests as u64) << 4 | (s.service.initialise as u64) << 5 | (s.service.diagnosis as u64) << 6 | (s.service.continuous as u64) << 7),
         ]),
         word("system_hz", 3, ReadOnly, "System clock: the unit of every number of cycles.", &[
             field("value", 0, 32, "Hz", "Frequency", |s, _| s.system_hz),
@@ -253,9 +253,10 @@ pub const RESULT: Block = Block {
     registers: &[
         word("status", 0, ReadOnly, "What became of the last trigger.", &[
             field("sequence", 0, 16, "", "Number of results, wrapping", zero),
-            field("cause", 16, 4, "", "Primary cause: 0 none, 1 data not low before start, 2 no start bit, 3 start bit outside its window, 4 CRC, 5 F1, 6 F2, 7 data not falling after the frame, 8 trigger overrun, 9 unknown mode command, 10 additional information missing", zero),
-            field("valid", 20, 1, "", "There is a good position", zero),
-            field("fresh", 21, 1, "", "The last result brought the position; 0 = held from an earlier one", zero),
+            field("cause", 16, 5, "", "Primary cause: 0 none, 1 data not low before start, 2 no start bit, 3 start bit outside its window, 4 CRC, 5 F1, 6 F2, 7 data not falling after the frame, 8 trigger overrun, 9 unknown mode command, 10 additional information missing, 11 no encoder, 12 data stuck high, 13 data stuck low, 14 late start bit, 15 watchdog, 16 echo of the own command, 17 recovery time too short", zero),
+            field("valid", 22, 1, "", "There is a good position", zero),
+            field("fresh", 23, 1, "", "The last result brought the position; 0 = held from an earlier one", zero),
+            field("line", 24, 7, "", "Raw flags: bit k stands for cause k + 11", zero),
         ]),
         word("position_low", 1, ReadOnly, "Last good position, bits 31..0.", &[
             field("value", 0, 32, "", "Bit 0 is the LSB", zero),

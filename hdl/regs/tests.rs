@@ -112,6 +112,8 @@ service0_position_2_low 412 ro
 service0_position_2_high 413 ro
 service0_list_length 414 rw
 service0_info_status 415 ro
+service0_limits 416 rw
+service0_continuous 417 rw
 service0_list_0 418 rw
 service0_list_1 419 rw
 service0_list_2 41A rw
@@ -139,29 +141,36 @@ service0_frames_data_not_falling 437 ro
 service0_frames_trigger_overrun 438 ro
 service0_frames_unknown_command 439 ro
 service0_frames_info_missing 43A ro
-service0_frames_position_2 43F ro
-service0_alarms 440 ro
-service0_warnings 441 ro
-service0_position_bits 442 ro
-service0_encoder_type 443 ro
-service0_signal_periods_low 444 ro
-service0_signal_periods_high 445 ro
-service0_revolutions 446 ro
-service0_steps_low 447 ro
-service0_steps_high 448 ro
-service0_id_0 449 ro
-service0_id_1 44A ro
-service0_id_2 44B ro
-service0_serial_0 44C ro
-service0_serial_1 44D ro
-service0_serial_2 44E ro
-service0_commands 44F ro
-service0_tcal 450 ro
-service0_infos_1 451 ro
-service0_infos_2 452 ro
-service0_clock_max_khz 453 ro
-service0_recovery 454 ro
-service0_delay 455 ro
+service0_frames_no_encoder 43B ro
+service0_frames_stuck_high 43C ro
+service0_frames_stuck_low 43D ro
+service0_frames_late_start 43E ro
+service0_frames_watchdog 43F ro
+service0_frames_own_echo 440 ro
+service0_frames_recovery_too_short 441 ro
+service0_frames_position_2 442 ro
+service0_alarms 444 ro
+service0_warnings 445 ro
+service0_position_bits 446 ro
+service0_encoder_type 447 ro
+service0_signal_periods_low 448 ro
+service0_signal_periods_high 449 ro
+service0_revolutions 44A ro
+service0_steps_low 44B ro
+service0_steps_high 44C ro
+service0_id_0 44D ro
+service0_id_1 44E ro
+service0_id_2 44F ro
+service0_serial_0 450 ro
+service0_serial_1 451 ro
+service0_serial_2 452 ro
+service0_commands 453 ro
+service0_tcal 454 ro
+service0_infos_1 455 ro
+service0_infos_2 456 ro
+service0_clock_max_khz 457 ro
+service0_recovery 458 ro
+service0_delay 459 ro
 service1_request 480 rw
 service1_request_state 481 ro
 service1_answer 482 ro
@@ -184,6 +193,8 @@ service1_position_2_low 492 ro
 service1_position_2_high 493 ro
 service1_list_length 494 rw
 service1_info_status 495 ro
+service1_limits 496 rw
+service1_continuous 497 rw
 service1_list_0 498 rw
 service1_list_1 499 rw
 service1_list_2 49A rw
@@ -211,29 +222,36 @@ service1_frames_data_not_falling 4B7 ro
 service1_frames_trigger_overrun 4B8 ro
 service1_frames_unknown_command 4B9 ro
 service1_frames_info_missing 4BA ro
-service1_frames_position_2 4BF ro
-service1_alarms 4C0 ro
-service1_warnings 4C1 ro
-service1_position_bits 4C2 ro
-service1_encoder_type 4C3 ro
-service1_signal_periods_low 4C4 ro
-service1_signal_periods_high 4C5 ro
-service1_revolutions 4C6 ro
-service1_steps_low 4C7 ro
-service1_steps_high 4C8 ro
-service1_id_0 4C9 ro
-service1_id_1 4CA ro
-service1_id_2 4CB ro
-service1_serial_0 4CC ro
-service1_serial_1 4CD ro
-service1_serial_2 4CE ro
-service1_commands 4CF ro
-service1_tcal 4D0 ro
-service1_infos_1 4D1 ro
-service1_infos_2 4D2 ro
-service1_clock_max_khz 4D3 ro
-service1_recovery 4D4 ro
-service1_delay 4D5 ro
+service1_frames_no_encoder 4BB ro
+service1_frames_stuck_high 4BC ro
+service1_frames_stuck_low 4BD ro
+service1_frames_late_start 4BE ro
+service1_frames_watchdog 4BF ro
+service1_frames_own_echo 4C0 ro
+service1_frames_recovery_too_short 4C1 ro
+service1_frames_position_2 4C2 ro
+service1_alarms 4C4 ro
+service1_warnings 4C5 ro
+service1_position_bits 4C6 ro
+service1_encoder_type 4C7 ro
+service1_signal_periods_low 4C8 ro
+service1_signal_periods_high 4C9 ro
+service1_revolutions 4CA ro
+service1_steps_low 4CB ro
+service1_steps_high 4CC ro
+service1_id_0 4CD ro
+service1_id_1 4CE ro
+service1_id_2 4CF ro
+service1_serial_0 4D0 ro
+service1_serial_1 4D1 ro
+service1_serial_2 4D2 ro
+service1_commands 4D3 ro
+service1_tcal 4D4 ro
+service1_infos_1 4D5 ro
+service1_infos_2 4D6 ro
+service1_clock_max_khz 4D7 ro
+service1_recovery 4D8 ro
+service1_delay 4D9 ro
 ";
 
 /// Fields of the words: within a major version this list only grows, too.
@@ -265,9 +283,10 @@ timing filter_cycles 27:24
 limits start_timeout_us 11:0
 limits recovery_limit_cycles 28:16
 status sequence 15:0
-status cause 19:16
-status valid 20:20
-status fresh 21:21
+status cause 20:16
+status valid 22:22
+status fresh 23:23
+status line 30:24
 position_low value 31:0
 position_high value 15:0
 timestamp value 31:0
@@ -320,6 +339,10 @@ position_2_high value 15:0
 list_length length 3:0
 info_status info_1 7:0
 info_status info_2 23:16
+limits watchdog_us 11:0
+limits recovery_min_cycles 28:16
+continuous go_on 0:0
+continuous stop_at_error 1:1
 list_0 mrs 7:0
 list_1 mrs 7:0
 list_2 mrs 7:0
@@ -355,6 +378,13 @@ frames_data_not_falling frames 31:0
 frames_trigger_overrun frames 31:0
 frames_unknown_command frames 31:0
 frames_info_missing frames 31:0
+frames_no_encoder frames 31:0
+frames_stuck_high frames 31:0
+frames_stuck_low frames 31:0
+frames_late_start frames 31:0
+frames_watchdog frames 31:0
+frames_own_echo frames 31:0
+frames_recovery_too_short frames 31:0
 frames_position_2 frames 31:0
 alarms value 15:0
 alarms is_read 16:16
@@ -471,7 +501,23 @@ fn map_lists_every_word_and_field() {
         "what a card does not have is not in its map"
     );
     config.service.requests = true;
-    assert!(!markdown(&config).contains("serial_0"), "nobody reads it");
+    for (part, name) in [
+        (0, "serial_0"),
+        (1, "watchdog_us"),
+        (1, "frames_stuck_high"),
+        (2, "stop_at_error"),
+    ] {
+        let mut with = config.clone();
+        *[
+            &mut with.service.initialise,
+            &mut with.service.diagnosis,
+            &mut with.service.continuous,
+        ][part] = true;
+        assert!(!markdown(&config).contains(name), "nobody fills {name}");
+        assert!(markdown(&with).contains(name), "{name}");
+    }
+    config.service.diagnosis = true;
+    config.service.continuous = true;
     config.service.initialise = true;
     let text = markdown(&config);
     assert!(text.contains("| 1 | reset |"));

@@ -191,7 +191,7 @@ impl Assembler {
                     word: *word,
                 });
             };
-            // A label behind the last of 1024 words is the first one, as it is for the machine.
+            // A label behind the last word is the first one, as it is for the machine.
             words[*word] |= (place % PROGRAM_WORDS) as u32;
         }
         Ok(words)
@@ -316,12 +316,12 @@ mod tests {
             "port = 32: is used at word 1, ports go from 0 to 31; use one of these"
         );
         let mut long = Assembler::new();
-        for _ in 0..1025 {
+        for _ in 0..=PROGRAM_WORDS {
             long.ret();
         }
         assert_eq!(
             long.finish().unwrap_err().to_string(),
-            "program = 1025 words: the limit is 1024; shorten it"
+            "program = 2049 words: the limit is 2048; shorten it"
         );
         let mut a = Assembler::new();
         let handle = a.label();

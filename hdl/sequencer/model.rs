@@ -60,8 +60,8 @@ impl Model {
 
     /// Does one instruction, with the word `m` from RAM and `input` at the port; the port that is written, and what.
     pub fn step(&mut self, m: u16, input: u16) -> Option<(u8, u16)> {
-        let next = (self.counter + 1) % 1024;
-        let target = self.imm() % 1024;
+        let next = (self.counter + 1) % PROGRAM_WORDS as u16;
+        let target = self.imm() % PROGRAM_WORDS as u16;
         let (imm, port, address) = (self.imm(), self.port(), self.address());
         let carry = u16::from(self.flag(9) && self.carry);
         let mut to = next;
@@ -104,7 +104,7 @@ impl Model {
                 0 => to = self.link,
                 1 => self.x = self.a as u8,
                 2 => self.a = self.link,
-                3 => to = self.a % 1024,
+                3 => to = self.a % PROGRAM_WORDS as u16,
                 4 => (self.a, self.carry) = (self.a / 2, self.a % 2 == 1),
                 5 => self.a = self.a.swap_bytes(),
                 _ => to = 0,

@@ -319,12 +319,12 @@ fn what_is_no_instruction_starts_again() {
     let mut rig = Rig::new(&[0x80001, 0xc0000]);
     rig.run(18);
     assert_eq!(rig.outputs, [(0, 1), (0, 2)]);
-    let full: Vec<u32> = (0..1024)
-        .map(|n| if n == 1023 { 0xc0000 } else { 0x80001 })
+    let full: Vec<u32> = (0..PROGRAM_WORDS)
+        .map(|n| if n == PROGRAM_WORDS - 1 { 0xc0000 } else { 0x80001 })
         .collect();
     let mut rig = Rig::new(&full);
-    rig.run(2 * 1024 * 3);
-    assert_eq!(rig.outputs, [(0, 1023), (0, 2046)]);
+    rig.run(2 * PROGRAM_WORDS as u64 * 3);
+    assert_eq!(rig.outputs, [(0, 2047), (0, 4094)]);
 }
 
 #[test]
@@ -414,7 +414,7 @@ impl Random {
 /// A random program with a host that reads and writes, and restarts, at random moments.
 fn check(seed: u64, cycles: u64) -> Result<(), String> {
     let mut random = Random(seed);
-    let program: Vec<u32> = (0..1024).map(|_| random.instruction()).collect();
+    let program: Vec<u32> = (0..PROGRAM_WORDS).map(|_| random.instruction()).collect();
     let mut rig = Rig::new(&program);
     let mut quiet = 0;
     for _ in 0..cycles {

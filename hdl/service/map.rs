@@ -1,5 +1,7 @@
 //! Where things stand in the service's RAM and at its ports. One home for program, block, register table and host.
 
+use crate::transaction::cause;
+
 /// Ports that the program reads.
 pub mod input {
     /// Bits of [`STATUS`].
@@ -31,7 +33,7 @@ pub mod input {
     }
     /// What there is to do.
     pub const STATUS: u8 = 0;
-    /// Primary cause (bits 3..0) and raw flags (bits 15..4) of the frame that ended.
+    /// Primary cause of the frame that ended.
     pub const CAUSE: u8 = 1;
     /// Additional information 1: its 16 bits.
     pub const INFO_1: u8 = 2;
@@ -110,6 +112,12 @@ pub mod output {
     pub const FOUND: u8 = 7;
     /// EnDat clock period that the encoder takes, in system clock cycles; 0 = as configured.
     pub const PERIOD: u8 = 8;
+    /// Watchdog, in microseconds.
+    pub const WATCHDOG: u8 = 9;
+    /// Shortest recovery time, in system clock cycles.
+    pub const RECOVERY_MIN: u8 = 10;
+    /// Continuous clock: as [`super::word::CONTINUOUS`].
+    pub const CONTINUOUS: u8 = 11;
 }
 
 /// Words of 32 bits in RAM, as the host counts them; the program's word is twice that, plus one for the high half.
@@ -153,19 +161,26 @@ pub mod word {
     pub const LIST_LENGTH: u8 = 20;
     /// Last status byte of additional information 1 (15..0) and 2 (31..16): WRN, RM, Busy, I4..I0.
     pub const INFO_STATUS: u8 = 21;
+    /// Watchdog in microseconds (15..0, 0 = off), shortest recovery time in system clock cycles (31..16, 0 = not checked).
+    pub const LIMITS: u8 = 22;
+    /// Continuous clock: bit 0 wanted, bit 1 stop after an error.
+    pub const CONTINUOUS: u8 = 23;
     /// MRS codes that are selected in turn.
     pub const LIST: u8 = 24;
     /// Codes in the list at most, and slots.
     pub const LIST_MAX: u8 = 8;
     /// For each code of the list: 16 bits of content (15..0), number of the result that brought it (31..16).
     pub const SLOTS: u8 = 32;
-    /// Frames of each cause, 32 bits; the first one counts good frames.
+    /// Frames of each cause, 32 bits; the first one counts good frames, the last one comparisons of positions that failed.
     pub const COUNTERS: u8 = 48;
     /// Name plate: value (15..0), 1 = it has been read (31..16).
-    pub const NAME_PLATE: u8 = 64;
+    pub const NAME_PLATE: u8 = 68;
     /// Where the program's own words begin.
     pub const PRIVATE: u8 = 96;
 }
+
+/// Counter of comparisons that failed, among those of the causes.
+pub const COUNTER_POSITION_2: u8 = cause::COUNT as u8;
 
 /// Bits of [`word::REQUEST_STATE`].
 pub mod request_state {
@@ -376,5 +391,6 @@ mod tests {
         areas.dedup();
         assert_eq!(areas, [0xB9, 0xA1, 0xA3, 0xA5, 0xBD, 0xB9]);
         const { assert!(PLATE_DELAY < word::PRIVATE) };
+        const { assert!(word::COUNTERS + COUNTER_POSITION_2 < word::NAME_PLATE) };
     }
 }

@@ -19,7 +19,7 @@ pub use initialise::{step_name, steps, Step};
 
 use super::map::{
     control, input, input::status, output, output::acknowledge, output::control as level, state,
-    word,
+    word, COUNTER_POSITION_2,
 };
 use crate::sequencer::assembler::Assembler;
 use crate::timing;
@@ -29,6 +29,10 @@ use crate::timing;
 pub struct ServiceTimes {
     /// Initialises the encoder after reset and after it has been plugged in.
     pub initialise: bool,
+    /// The channel has the watchdog and the shortest recovery time.
+    pub diagnosis: bool,
+    /// The channel has the continuous clock.
+    pub continuous: bool,
     /// Clock HIGH after power-up, before the pulse.
     pub power_up_ms: u16,
     /// Clock HIGH after the pulse.
@@ -54,6 +58,8 @@ impl ServiceTimes {
     pub const fn at(system_hz: u64) -> Self {
         Self {
             initialise: true,
+            diagnosis: true,
+            continuous: true,
             power_up_ms: timing::POWER_UP_MS,
             after_pulse_ms: timing::AFTER_PULSE_MS,
             reset_ms: timing::RESET_MS,
@@ -171,7 +177,7 @@ pub fn program(times: &ServiceTimes) -> Vec<u32> {
     let mut a = Assembler::new();
     start(&mut a, times);
     main_loop(&mut a, times);
-    subroutines(&mut a);
+    subroutines(&mut a, times);
     events::event(&mut a, times);
     events::store(&mut a);
     position_2::position_2(&mut a);
@@ -202,6 +208,8 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
         low(word::REQUEST_STATE),
         low(word::PROGRESS),
         high(word::PROGRESS),
+        low(word::LIMITS),
+        low(word::CONTINUOUS),
     ] {
         a.st(word);
     }
@@ -209,6 +217,9 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(acknowledge::EVENT | acknowledge::MAILBOX | acknowledge::CONTROL);
     a.out(output::ACKNOWLEDGE);
     a.call("modulus");
+    if times.diagnosis {
+        a.call("recovery_min");
+    }
     if times.initialise {
         set(a, own::LEVELS, level::HOLD_OFF);
         a.out(output::CONTROL);
@@ -250,6 +261,13 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     a.place(no_control);
     a.inp(input::DISPLACED).st(low(word::LOST));
     a.ld(low(word::FORCE)).out(output::FORCE);
+    if times.diagnosis {
+        a.ld(low(word::LIMITS)).out(output::WATCHDOG);
+        a.ld(high(word::LIMITS)).out(output::RECOVERY_MIN);
+    }
+    if times.continuous {
+        a.ld(low(word::CONTINUOUS)).out(output::CONTINUOUS);
+    }
     window(a);
     plug(a, times);
     a.jmp("main");
@@ -297,12 +315,24 @@ fn plug(a: &mut Assembler, times: &ServiceTimes) {
     a.place(done);
 }
 
-fn subroutines(a: &mut Assembler) {
+fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
     // Handles the end of a frame, if there is one; to be called where nothing but `event` may need the return address.
-    let nothing = a.label();
     a.place("look");
     a.inp(input::STATUS).andi(status::EVENT).jnz("event");
-    a.place(nothing).ret();
+    a.ret();
+
+    if times.diagnosis {
+        // The shortest recovery time of the range that is wanted.
+        let long = a.label();
+        let cycles = |ns| timing::recovery_min_cycles(ns, u64::from(times.system_khz) * 1_000) as u16;
+        a.place("recovery_min");
+        a.inp(input::CONFIGURED).andi(1 << 7).jz(long);
+        set(a, high(word::LIMITS), cycles(timing::SHORT_RECOVERY_MIN_NS));
+        a.ret();
+        a.place(long).place("recovery_long");
+        set(a, high(word::LIMITS), cycles(timing::RECOVERY_MIN_NS));
+        a.ret();
+    }
 
     // Waits for A milliseconds at least.
     a.place("wait").addi(1).st(own::WAIT_MS);
@@ -316,7 +346,7 @@ fn subroutines(a: &mut Assembler) {
 
     // All counters and what is latched.
     a.place("clear");
-    set(a, own::INDEX, 32);
+    set(a, own::INDEX, 2 * (u16::from(COUNTER_POSITION_2) + 1));
     let next = a.here();
     a.ld(own::INDEX).addi(minus(1)).st(own::INDEX).tax();
     a.ldi(0).st_x(low(word::COUNTERS));

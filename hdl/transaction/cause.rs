@@ -1,10 +1,10 @@
-//! Why a frame gave no position: the codes of the status register.
+//! Why a frame gave no position: the codes of the status register, and the raw flags.
 
 /// The frame is good.
 pub const NONE: u64 = 0;
 /// Data was high when the frame was to start.
 pub const DATA_NOT_LOW: u64 = 1;
-/// No start bit within its time.
+/// No start bit within its time, on a line that works: the encoder is silent.
 pub const NO_START_BIT: u64 = 2;
 /// A start bit at a time that does not fit the propagation delay.
 pub const START_WINDOW: u64 = 3;
@@ -22,6 +22,39 @@ pub const TRIGGER_OVERRUN: u64 = 8;
 pub const UNKNOWN_COMMAND: u64 = 9;
 /// An additional information that should follow the position did not come; the position is good.
 pub const INFO_MISSING: u64 = 10;
+/// Data was high when the frame was to start, and nobody drives the line.
+pub const NO_ENCODER: u64 = 11;
+/// Data was high when the frame was to start, whatever the receiver does.
+pub const STUCK_HIGH: u64 = 12;
+/// Data stayed low through the frame, the own mode command included.
+pub const STUCK_LOW: u64 = 13;
+/// The start bit came after its time.
+pub const LATE_START: u64 = 14;
+/// The frame took longer than the watchdog allows.
+pub const WATCHDOG: u64 = 15;
+/// What came instead of an answer is the own mode command.
+pub const OWN_ECHO: u64 = 16;
+/// Data fell too early after the frame; the position is good.
+pub const RECOVERY_TOO_SHORT: u64 = 17;
+/// Codes there are.
+pub const COUNT: u64 = 18;
+
+/// Raw flag of a cause.
+pub const fn flag(cause: u64) -> u64 {
+    match cause {
+        NONE => 0,
+        1..=8 => 1 << (cause - 1),
+        _ => 1 << (cause + 1),
+    }
+}
+
+/// Raw flags that are no cause of their own.
+pub mod flag {
+    /// The parallel CRC is wrong.
+    pub const PARALLEL_CRC: u64 = 1 << 8;
+    /// Data was not high after the last bit: the frame has another length.
+    pub const TAIL_LOW: u64 = 1 << 9;
+}
 
 /// Name of a code.
 pub fn name(code: u64) -> &'static str {
@@ -37,6 +70,13 @@ pub fn name(code: u64) -> &'static str {
         TRIGGER_OVERRUN => "trigger overrun",
         UNKNOWN_COMMAND => "unknown mode command",
         INFO_MISSING => "additional information missing",
+        NO_ENCODER => "no encoder",
+        STUCK_HIGH => "data stuck high",
+        STUCK_LOW => "data stuck low",
+        LATE_START => "late start bit",
+        WATCHDOG => "watchdog",
+        OWN_ECHO => "echo of the own command",
+        RECOVERY_TOO_SHORT => "recovery time too short",
         _ => "unknown",
     }
 }

@@ -1,13 +1,14 @@
 //! The block before it is connected.
 
 use super::Transaction;
-use crate::channel::FixedTimes;
+use crate::channel::{Features, FixedTimes};
 use crate::reg::Reg;
+use crate::timing;
 use rust_hdl::prelude::*;
 
 impl Transaction {
-    /// A transaction for every frame, or for triggered positions without additional information only.
-    pub fn new(times: FixedTimes, has_all: bool) -> Self {
+    /// A transaction with these fixed times and features.
+    pub fn new(times: FixedTimes, features: Features) -> Self {
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -29,6 +30,12 @@ impl Transaction {
             begin_own: Default::default(),
             is_own: Default::default(),
             hold_off: Default::default(),
+            continuous: Default::default(),
+            stop_at_error: Default::default(),
+            line_wanted: Default::default(),
+            gap_low: Default::default(),
+            gap_high: Default::default(),
+            is_echo: Default::default(),
             serial_ok: Default::default(),
             parallel_ok: Default::default(),
             f1: Default::default(),
@@ -38,12 +45,17 @@ impl Transaction {
             first_low_extra_cycles: Default::default(),
             start_timeout_us: Default::default(),
             recovery_limit_cycles: Default::default(),
+            recovery_min_cycles: Default::default(),
+            watchdog_us: Default::default(),
             start: Default::default(),
             run: Default::default(),
             abort: Default::default(),
             hold_low: Default::default(),
             drain: Default::default(),
             stop: Default::default(),
+            probe: Default::default(),
+            is_probed: Default::default(),
+            going_on: Default::default(),
             start_supplement: Default::default(),
             acquire: Default::default(),
             busy: Default::default(),
@@ -58,11 +70,20 @@ impl Transaction {
             cause: Default::default(),
             flags: Default::default(),
             recovery_cycles: Default::default(),
-            has_all: Constant::new(has_all),
+            health: Default::default(),
+            chooser: Default::default(),
+            has_all: Constant::new(features.requests),
+            has_diagnosis: Constant::new(features.diagnosis),
+            has_continuous: Constant::new(features.continuous),
             ready_low_cycles: Constant::new(times.ready_low_cycles.into()),
             abort_us: Constant::new(times.abort_us.into()),
             park_cycles: Constant::new(times.park_cycles.into()),
             parameter_timeout_us: Constant::new(times.parameter_timeout_us.into()),
+            own_recovery_limit_cycles: Constant::new(times.own_recovery_limit_cycles.into()),
+            own_recovery_min_cycles: Constant::new(times.own_recovery_min_cycles.into()),
+            probe_us: Constant::new(timing::PROBE_US.into()),
+            settle_us: Constant::new(timing::SETTLE_US.into()),
+            leave_us: Constant::new(timing::LEAVE_US.into()),
             phase: Default::default(),
             timer: Default::default(),
             timer_limit: Default::default(),
@@ -88,6 +109,12 @@ impl Transaction {
             over_now: Default::default(),
             lost_now: Default::default(),
             seen: Default::default(),
+            late: Default::default(),
+            announced: Default::default(),
+            probing: Default::default(),
+            settling: Default::default(),
+            going: Default::default(),
+            leaving: Default::default(),
             taken: Default::default(),
             gave_up: Default::default(),
             gave_up_late: Default::default(),
@@ -110,10 +137,19 @@ impl Transaction {
             sent: Default::default(),
             own: Default::default(),
             found: Default::default(),
+            not_low: Default::default(),
+            no_start: Default::default(),
             told: Default::default(),
+            announce: Default::default(),
+            probed: Default::default(),
+            watched: Default::default(),
+            found_late: Default::default(),
+            recovery_min: Default::default(),
+            early: Default::default(),
+            bad: Default::default(),
+            leave: Default::default(),
             crc_bad: Default::default(),
             verdict: Default::default(),
-            primary: Default::default(),
             lost: Default::default(),
         }
     }

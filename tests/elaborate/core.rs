@@ -59,6 +59,7 @@ fn channel_agrees(name: &str, features: Features) {
         abort_us: 5,
         park_cycles: 20,
         parameter_timeout_us: 30,
+        ..FixedTimes::at(100_000_000)
     };
     let mut block = Channel::with(times, features);
     block.connect_all();

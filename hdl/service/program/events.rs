@@ -1,22 +1,19 @@
 //! The end of a frame: counters, threshold, additional informations, what they say about the request, the next selection.
 
-use super::requests::mailbox;
+use super::requests::{mailbox, ANSWERED};
 use super::{high, low, minus, own, set, set_bits, ServiceTimes};
 use crate::protocol::ModeCommand;
 use crate::sequencer::assembler::Assembler;
+use crate::transaction::cause;
 use crate::service::map::{
     input, input::status, output, output::acknowledge, output::control as level, output::go,
     request_state, state, word,
 };
 
-/// Flags at the cause port of a frame that ended before its supplement was out: data not low, no start bit, start window, tail, unknown
-/// command, information missing.
-const UNSENT: u16 = 0b1110_0000_0111 << 4;
-
 pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.place("event").link().st(own::FROM_EVENT);
     a.inp(input::STATUS).st(own::STATUS);
-    a.inp(input::CAUSE).st(own::NUMBER).andi(15).st(own::INDEX);
+    a.inp(input::CAUSE).st(own::INDEX).st(own::NUMBER);
     a.ldi(acknowledge::EVENT).out(output::ACKNOWLEDGE);
     let not_missed = a.label();
     a.ld(own::STATUS).andi(status::MISSED).jz(not_missed);
@@ -45,7 +42,10 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::MAILBOX).xori(mailbox::RIDING).jnz("event_done");
     a.ld(own::STATUS).andi(status::IS_REQUEST).jz("event_done");
     let is_out = a.label();
-    a.ld(own::NUMBER).andi(UNSENT).jz(is_out);
+    // A spoilt CRC does not hinder the supplement; what else goes wrong may.
+    for sent in ANSWERED.into_iter().chain([cause::CRC]) {
+        a.ld(own::NUMBER).xori(sent as u16).jz(is_out);
+    }
     a.ldi(request_state::FRAME).call("finish");
     a.jmp("event_done");
     a.place(is_out);

@@ -216,6 +216,9 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     counted(a);
     a.ld(low(plate("commands"))).andi(3).xori(1).jz(is_endat22);
     a.ld(own::FOUND).addi(1 << 6).st(own::FOUND);
+    if times.diagnosis {
+        a.call("recovery_long");
+    }
     a.ldi(timing::ENDAT21_MAX_KHZ).st(own::DIVISOR);
     a.call("slowest");
     a.jmp("initialised");
@@ -246,10 +249,16 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     a.place(unknown).ret();
 
     // Short only where it is wanted, and the clock is as fast as configured.
-    let (long, decided) = (a.label(), a.label());
+    let (long, decided, range) = (a.label(), a.label(), a.label());
     a.place("step_recovery");
     counted(a);
     a.ldi(map::RECOVERY_LONG).st(own::DATA);
+    if times.diagnosis {
+        a.call("recovery_min");
+        a.ld(low(word::STATE)).andi(state::SLOWER).jz(range);
+        a.call("recovery_long");
+        a.place(range);
+    }
     a.ld(low(word::STATE)).andi(state::SLOWER).jnz(long);
     a.inp(input::CONFIGURED).andi(1 << 7).jz(long);
     a.ldi(map::RECOVERY_SHORT).st(own::DATA);

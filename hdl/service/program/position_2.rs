@@ -2,10 +2,8 @@
 
 use super::{high, low, own, set, set_bits};
 use crate::sequencer::assembler::Assembler;
-use crate::service::map::{input, input::status, state, word};
+use crate::service::map::{input, input::status, state, word, COUNTER_POSITION_2};
 
-/// Counter of comparisons that failed, among those of the causes.
-pub(super) const COUNTER: u16 = 15;
 /// I4..I0 of the first part; the others follow.
 const FIRST_PART: u16 = 2;
 
@@ -117,7 +115,7 @@ fn compare(a: &mut Assembler) {
     a.place(failed);
     a.ld(high(word::COMPARISONS)).addi(1);
     a.st(high(word::COMPARISONS));
-    set(a, own::INDEX, COUNTER);
+    set(a, own::INDEX, COUNTER_POSITION_2.into());
     set_bits(a, low(word::STATE), state::POSITION_2);
     a.link().st(own::FROM_FAILED);
     a.call("count");

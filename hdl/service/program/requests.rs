@@ -22,7 +22,16 @@ pub(super) mod mailbox {
 }
 
 /// Result of a request that never began: no cause of a frame.
-pub(super) const NEVER_BEGAN: u16 = 15;
+pub(super) const NEVER_BEGAN: u16 = cause::COUNT as u16;
+
+/// Causes that do not spoil an answer: alarms, lost triggers, a hasty end.
+pub(super) const ANSWERED: [u64; 5] = [
+    cause::NONE,
+    cause::F1,
+    cause::F2,
+    cause::TRIGGER_OVERRUN,
+    cause::RECOVERY_TOO_SHORT,
+];
 
 /// Code of a command, as a number of the program.
 pub(super) fn code(command: ModeCommand) -> u16 {
@@ -135,10 +144,9 @@ pub(super) fn judge(a: &mut Assembler) {
     let (ok, address, data) = (a.label(), a.label(), a.label());
     a.place("judge");
     let is = |a: &mut Assembler, what: u64, target| {
-        a.ld(own::RESULT).andi(15).xori(what as u16).jz(target);
+        a.ld(own::RESULT).xori(what as u16).jz(target);
     };
-    // An alarm or a lost trigger does not spoil an answer.
-    for good in [cause::NONE, cause::F1, cause::F2, cause::TRIGGER_OVERRUN] {
+    for good in ANSWERED {
         is(a, good, answered);
     }
     is(a, cause::NO_START_BIT, silent);

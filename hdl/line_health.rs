@@ -1,0 +1,92 @@
+//! Line health: what only a closer look at the data line tells, and the watchdog over a frame.
+//!
+//! ```text
+//! start       /\_____________________________
+//! level       ________/~~\___________________    HIGH once: the line is not stuck LOW
+//! under_way   _/~~~~~~~~~~~~~~~~~~~~\________
+//! expired     ___________________/~~\________    watchdog_us after the start
+//!
+//! probe       ___/~~~~~~~~\__________________    DATA is HIGH at rest: driven LOW for a moment
+//! level       ~~~~~\______/~~~~~~~~~~~~~~~~~~    it follows: nobody else drives it
+//! ```
+//!
+//! A receiver hears its own mode command, so a frame without any HIGH means that the line, or what listens to it, is stuck.
+//! This asks for a transceiver that keeps listening while it sends.
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Stuck lines, absent encoders and the watchdog of one channel.
+#[derive(LogicBlock, Default)]
+pub struct LineHealth {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// The data line.
+    pub level: Signal<In, Bit>,
+    /// Strobe: a frame begins.
+    pub start: Signal<In, Bit>,
+    /// A frame that is watched goes on, or its recovery time.
+    pub under_way: Signal<In, Bit>,
+    /// Longest time from the start to the end of the recovery time; 0 = not watched.
+    pub watchdog_us: Signal<In, Bits<12>>,
+    /// Strobe: the line has been driven LOW for long enough; `level` says whether it follows.
+    pub probed: Signal<In, Bit>,
+    /// DATA has been LOW for tR.
+    pub is_ready: Signal<In, Bit>,
+    /// `watchdog_us` have passed.
+    pub expired: Signal<Out, Bit>,
+    /// DATA has not been HIGH since the start.
+    pub never_high: Signal<Out, Bit>,
+    /// DATA is HIGH because nobody drives it.
+    pub is_open: Signal<Out, Bit>,
+    /// DATA is HIGH whatever the receiver does.
+    pub is_stuck: Signal<Out, Bit>,
+    passed_us: Reg<Bits<12>>,
+    over: Reg<Bit>,
+    was_high: Reg<Bit>,
+    open: Reg<Bit>,
+    stuck: Reg<Bit>,
+}
+
+impl Logic for LineHealth {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, passed_us, over, was_high, open, stuck);
+        self.passed_us.reset.next = self.reset.val();
+        self.over.reset.next = self.reset.val();
+        self.was_high.reset.next = self.reset.val();
+        self.open.reset.next = self.reset.val();
+        self.stuck.reset.next = self.reset.val();
+
+        if self.tick_us.val() {
+            self.passed_us.d.next = self.passed_us.q.val() + 1;
+        }
+        self.over.d.next = self.under_way.val()
+            & self.watchdog_us.val().any()
+            & (self.over.q.val() | (self.passed_us.q.val() == self.watchdog_us.val()));
+        if self.level.val() {
+            self.was_high.d.next = true;
+        }
+        if self.start.val() {
+            self.passed_us.d.next = 0.into();
+            self.over.d.next = false;
+            self.was_high.d.next = false;
+        }
+        if self.probed.val() {
+            self.open.d.next = !self.level.val();
+            self.stuck.d.next = self.level.val();
+        }
+        if self.is_ready.val() {
+            self.open.d.next = false;
+            self.stuck.d.next = false;
+        }
+        self.expired.next = self.over.q.val();
+        self.never_high.next = !self.was_high.q.val();
+        self.is_open.next = self.open.q.val();
+        self.is_stuck.next = self.stuck.q.val();
+    }
+}
