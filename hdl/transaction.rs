@@ -374,16 +374,14 @@ impl Logic for Transaction {
         // What is known of a line that is HIGH at rest, and of one without a start bit.
         self.not_low.next = 1.into();
         self.no_start.next = 2.into();
-        if self.has_diagnosis.val() {
-            if self.health.is_open.val() {
-                self.not_low.next = 0x1001.into();
-            }
-            if self.health.is_stuck.val() {
-                self.not_low.next = 0x2001.into();
-            }
-            if self.health.never_high.val() {
-                self.no_start.next = 0x4002.into();
-            }
+        if self.has_diagnosis.val() & self.health.is_open.val() {
+            self.not_low.next = 0x1001.into();
+        }
+        if self.has_diagnosis.val() & self.health.is_stuck.val() {
+            self.not_low.next = 0x2001.into();
+        }
+        if self.has_diagnosis.val() & self.health.never_high.val() {
+            self.no_start.next = 0x4002.into();
         }
         self.run_now.d.next = false;
         self.crc_bad.next = !(self.serial_ok.val() & self.parallel_ok.val());

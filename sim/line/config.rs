@@ -36,6 +36,8 @@ pub struct PathConfig {
     pub transceivers: Time,
     /// How much later falling edges arrive than rising ones (duty distortion); negative = earlier.
     pub fall_later: i64,
+    /// How much the delay grows with time (temperature), in picoseconds per microsecond; negative = shrinks.
+    pub drift: i64,
     /// Variation from edge to edge.
     pub jitter: Jitter,
     /// Pulses shorter than this do not get through.
@@ -47,6 +49,7 @@ impl Default for PathConfig {
         Self {
             transceivers: 25 * NS,
             fall_later: 0,
+            drift: 0,
             jitter: Jitter::None,
             shortest_pulse: 2 * NS,
         }
@@ -86,6 +89,17 @@ pub struct GlitchRate {
     pub longest: Time,
 }
 
+/// DATA at the receiver's pin keeps a level, whatever is on the cable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stuck {
+    /// From when.
+    pub from: Time,
+    /// Until when.
+    pub until: Time,
+    /// The level.
+    pub level: bool,
+}
+
 /// Cable and transceivers between a receiver and an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineConfig {
@@ -103,6 +117,10 @@ pub struct LineConfig {
     pub glitches: Vec<Glitch>,
     /// Glitches at random moments.
     pub random_glitches: Option<GlitchRate>,
+    /// The line is stuck for a while.
+    pub stuck: Option<Stuck>,
+    /// What the receiver sends comes back to it after this, over whatever the encoder does.
+    pub echo_after: Option<Time>,
     /// Seed of everything random in it.
     pub seed: u64,
 }
@@ -118,6 +136,8 @@ impl LineConfig {
             data_in: PathConfig::default(),
             glitches: Vec::new(),
             random_glitches: None,
+            stuck: None,
+            echo_after: None,
             seed: 1,
         }
     }

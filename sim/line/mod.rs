@@ -13,7 +13,7 @@ mod path;
 #[cfg(test)]
 mod tests;
 
-pub use config::{Glitch, GlitchRate, Jitter, LineConfig, PathConfig, Wire};
+pub use config::{Glitch, GlitchRate, Jitter, LineConfig, PathConfig, Stuck, Wire};
 
 use crate::{
     encoder::{Drive, Output, Symbol},
@@ -152,6 +152,10 @@ pub struct Line {
     clock: Path<bool>,
     data_out: Path<Drive>,
     data_in: Path<Output>,
+    echo: Option<Path<Drive>>,
+    /// Yet to come, or under way.
+    stuck: Option<Stuck>,
+    is_stuck: bool,
     receiver: Drive,
     encoder: Output,
     glitches: VecDeque<Glitch>,
@@ -172,6 +176,15 @@ impl Line {
             clock: Path::new(config.clock, flight, rng.next_u64(), true),
             data_out: Path::new(config.data_out, flight, rng.next_u64(), Drive::Released),
             data_in: Path::new(config.data_in, flight, rng.next_u64(), encoder),
+            echo: config.echo_after.map(|delay| {
+                let path = PathConfig {
+                    transceivers: delay,
+                    ..PathConfig::default()
+                };
+                Path::new(path, 0, 0, Drive::Released)
+            }),
+            stuck: config.stuck,
+            is_stuck: false,
             receiver: Drive::Released,
             encoder,
             glitches: config.glitches.iter().copied().collect(),
@@ -202,6 +215,9 @@ impl Line {
         if drive != self.receiver {
             self.receiver = drive;
             self.data_out.send(time, drive);
+            if let Some(echo) = &mut self.echo {
+                echo.send(time, drive);
+            }
             self.changed(time);
         }
     }
@@ -222,7 +238,13 @@ impl Line {
             None => self.glitches.front().map_or(Time::MAX, |g| g.at),
         };
         let data = self.data_out.next().min(self.data_in.next());
-        glitch.min(self.clock.next()).min(data)
+        let echo = self.echo.as_ref().map_or(Time::MAX, Path::next);
+        let stuck = self.stuck.map_or(Time::MAX, |s| match self.is_stuck {
+            true => s.until,
+            false => s.from,
+        });
+        let edges = glitch.min(self.clock.next()).min(data);
+        edges.min(echo).min(stuck)
     }
 
     /// Lets one thing arrive that is due at `time`.
@@ -235,6 +257,11 @@ impl Line {
             return Some(Arrival::Clock(self.clock_at_encoder()));
         }
         if self.data_in.arrive(time).is_some() {
+            self.changed(time);
+            return Some(Arrival::Data(End::Receiver));
+        }
+        let echo_arrived = self.echo.as_mut().and_then(|echo| echo.arrive(time));
+        if echo_arrived.is_some() || self.switch_stuck(time) {
             self.changed(time);
             return Some(Arrival::Data(End::Receiver));
         }
@@ -336,6 +363,30 @@ impl Line {
         self.glitch.is_some_and(|g| g.0 == wire)
     }
 
+    fn switch_stuck(&mut self, time: Time) -> bool {
+        match self.stuck {
+            Some(s) if self.is_stuck && s.until <= time => {
+                self.is_stuck = false;
+                self.stuck = None;
+                true
+            }
+            Some(s) if !self.is_stuck && s.from <= time => {
+                self.is_stuck = true;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// The level that overrides what is driven on the pair.
+    fn overriding(&self) -> Option<bool> {
+        if self.is_stuck {
+            return self.stuck.map(|s| s.level);
+        }
+        let echo = self.echo.as_ref()?.arrived();
+        (self.receiver == Drive::Released && echo != Drive::Released).then_some(echo == Drive::High)
+    }
+
     fn switch_glitch(&mut self, time: Time) -> Option<Wire> {
         if let Some((wire, end)) = self.glitch {
             if end > time {
@@ -390,7 +441,7 @@ impl Line {
         let glitch = self.in_glitch(Wire::Data);
         let change = DataChange {
             time,
-            level: level ^ glitch,
+            level: self.overriding().unwrap_or(level) ^ glitch,
             who,
             glitch,
         };

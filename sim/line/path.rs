@@ -1,7 +1,7 @@
 //! Edges on their way from one end of a path to the other.
 
 use super::PathConfig;
-use crate::{encoder::Drive, rng::Rng, Time};
+use crate::{encoder::Drive, rng::Rng, Time, US};
 use std::collections::VecDeque;
 
 /// Something whose change to LOW can be told from its change to HIGH.
@@ -56,6 +56,7 @@ impl<T: Edge> Path<T> {
         if value.falls() {
             delay += self.config.fall_later;
         }
+        delay += self.config.drift * (time / US) as i64;
         delay += self.config.jitter.draw(&mut self.rng);
         let arrival = time.saturating_add_signed(delay.max(0));
         let earliest = |p: &(Time, T)| p.0 + self.config.shortest_pulse;

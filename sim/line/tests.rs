@@ -1,5 +1,5 @@
 use super::*;
-use crate::NS;
+use crate::{NS, US};
 
 const IDLE: Output = Output {
     drive: Drive::Low,
@@ -172,4 +172,47 @@ fn random_glitches_come_at_their_mean_rate() {
     let mut line = Line::new(config, IDLE);
     let edges = run(&mut line, 1_000_000 * NS).len();
     assert!((1800..2200).contains(&edges), "{edges}");
+}
+
+#[test]
+fn a_stuck_line_keeps_its_level_at_the_receiver_for_its_time() {
+    for level in [false, true] {
+        let mut config = LineConfig::cable(10.0);
+        config.stuck = Some(Stuck {
+            from: 1_000 * NS,
+            until: 2_000 * NS,
+            level,
+        });
+        let mut line = Line::new(config, IDLE);
+        line.set_receiver(1_200 * NS, Drive::High);
+        run(&mut line, 1_500 * NS);
+        assert_eq!(line.data_at_receiver(), level);
+        line.set_receiver(1_500 * NS, Drive::Low);
+        run(&mut line, 3_000 * NS);
+        let at = |t: Time| line.sample(t * NS).level;
+        assert!([1_000, 1_300, 1_999].into_iter().all(|t| at(t) == level));
+        assert!(!at(999) && !at(2_000));
+    }
+}
+
+#[test]
+fn an_echo_comes_back_late_over_the_encoder() {
+    let mut config = LineConfig::cable(10.0);
+    config.echo_after = Some(5_000 * NS);
+    let mut line = Line::new(config, IDLE);
+    line.set_receiver(1_000 * NS, Drive::High);
+    line.set_receiver(2_000 * NS, Drive::Released);
+    run(&mut line, 9_000 * NS);
+    let at = |t: Time| line.sample(t * NS).level;
+    assert!(at(1_500) && !at(2_500) && !at(5_999) && at(6_000) && at(6_999) && !at(7_000));
+}
+
+#[test]
+fn a_drifting_path_grows_with_time() {
+    let mut config = LineConfig::cable(0.0);
+    config.clock.drift = 100;
+    let mut line = Line::new(config, IDLE);
+    line.set_clock(1_000 * US, false);
+    let late = 1_000 * US + 25 * NS + 100 * NS;
+    assert_eq!(run(&mut line, 1_001 * US), [(late, false)]);
 }

@@ -7,7 +7,7 @@ use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, Features, FixedTimes};
 use endat_hdl::elaborate::elaborate;
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::sequencer::Sequencer;
+use endat_hdl::sequencer::{Sequencer, PROGRAM_WORDS};
 use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
 use rust_hdl::prelude::Block;
@@ -67,7 +67,7 @@ fn channel_agrees(name: &str, features: Features) {
     let mut kernel = kernel_engine!(block; clock;
         in reset, tick_us, timestamp, trigger, calibrate, data_i, period_cycles, first_low_extra_cycles, command,
         position_bits, filter_cycles, start_window_cycles, start_timeout_us, recovery_limit_cycles,
-        request_command, request_parameter, request_ride, request_own, request_cancel, hold_off, clock_low, forced;
+        recovery_min_cycles, watchdog_us, continuous, stop_at_error, request_command, request_parameter, request_ride, request_own, request_cancel, hold_off, clock_low, forced;
         out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
         first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles, busy,
         sample_strobe, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply, reply_good, info_active, info_1, info_2,
@@ -94,6 +94,10 @@ fn channel_agrees(name: &str, features: Features) {
         ("start_window_cycles", 6),
         ("start_timeout_us", 20),
         ("recovery_limit_cycles", 300),
+        ("recovery_min_cycles", 40),
+        ("watchdog_us", 100),
+        ("continuous", 1),
+        ("stop_at_error", 0),
         ("timestamp", 0),
         ("request_command", 0),
         ("request_parameter", 0x5C_A3C5),
@@ -108,6 +112,9 @@ fn channel_agrees(name: &str, features: Features) {
                     let commands = ModeCommand::ALL;
                     commands[cycle / 50 % commands.len()].code().into()
                 }
+                // Stretches with the one command, and with the other.
+                "command" if cycle % 6_000 > 3_000 => 0b000111,
+                "stop_at_error" => u128::from(cycle % 4_000 > 2_000),
                 _ => value,
             });
         }
@@ -161,7 +168,7 @@ fn a_sequencer_agrees() {
     let design = elaborate(&block, "sequencer").unwrap();
     let memories = &design.top().memories;
     let given: Vec<usize> = memories.iter().map(|m| m.start.len()).collect();
-    assert_eq!(given, [1024, 0, 0]);
+    assert_eq!(given, [PROGRAM_WORDS, 0, 0]);
     let mut kernel = kernel_engine!(block; clock;
         in reset, restart, port_in, host_address, host_read, host_write, host_half, host_data;
         out port_address, port_out, port_write, host_word);

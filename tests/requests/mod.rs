@@ -1,5 +1,7 @@
 //! All mode commands and additional information, as the channel speaks them, against the encoder and line model.
 
+mod continuous;
+mod diagnosis;
 mod every_command;
 mod infos;
 mod rig;
