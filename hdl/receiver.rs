@@ -160,7 +160,7 @@ pub struct Receiver {
     supplement_over: Reg<Bit>,
     low_gap: Reg<Bit>,
     high_gap: Reg<Bit>,
-    heard: Reg<Bits<6>>,
+    heard: Reg<Bits<7>>,
     echo: Reg<Bit>,
     has_all: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
@@ -657,14 +657,15 @@ impl Logic for Receiver {
             self.word.d.next = 0.into();
             self.covered.d.next = 0.into();
         }
-        // The first bits from the first HIGH on, until it has gone through all six places.
+        // The first bits from the first HIGH on, until it has gone through all places.
         if self.sample.val()
             & (self.field.q.val() != Field::Skip)
-            & !self.heard.q.val().get_bit(5)
+            & !self.heard.q.val().get_bit(6)
         {
             self.heard.d.next = (self.heard.q.val() << 1).replace_bit(0, self.level.val());
         }
-        if self.heard.q.val() == self.command.val() {
+        // The line is LOW again behind an echo; an open line stays HIGH.
+        if self.heard.q.val() == (bit_cast::<7, 6>(self.command.val()) << 1) {
             self.echo.d.next = true;
         }
         if self.start.val() | self.again.val() {

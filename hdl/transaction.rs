@@ -128,6 +128,8 @@ pub struct Transaction {
     pub start: Signal<Out, Bit>,
     /// A frame is under way on the wire.
     pub run: Signal<Out, Bit>,
+    /// The clock may run: it is stopped in its HIGH phase where a frame has not gone wrong.
+    pub clock_run: Signal<Out, Bit>,
     /// Driver off, at once.
     pub abort: Signal<Out, Bit>,
     /// Keeps the clock low.
@@ -732,6 +734,7 @@ impl Logic for Transaction {
             self.is_calibrated.d.next = false;
         }
         self.run.next = self.run_now.q.val();
+        self.clock_run.next = self.run_now.q.val() | self.leaving.q.val();
         self.start_now.d.next = self.accept.val();
         self.start.next = self.start_now.q.val();
         self.abort.next = self.gave_up.q.val();
@@ -750,7 +753,7 @@ impl Logic for Transaction {
         if self.has_all.val() {
             self.drain.next = self.stalled.q.val() | (self.phase.q.val() == Phase::Park);
         }
-        self.stop_now.d.next = self.sent.val() | !self.run_now.q.val();
+        self.stop_now.d.next = self.sent.val() | self.leaving.q.val() | !self.run_now.q.val();
         self.stop.next = self.stop_now.q.val();
         self.acquire.next = self.acquiring.q.val();
         self.busy.next = !self.idle.val() | (self.begin_own.val() & self.has_all.val());

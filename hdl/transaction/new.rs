@@ -49,6 +49,7 @@ impl Transaction {
             watchdog_us: Default::default(),
             start: Default::default(),
             run: Default::default(),
+            clock_run: Default::default(),
             abort: Default::default(),
             hold_low: Default::default(),
             drain: Default::default(),

@@ -184,6 +184,7 @@ fn a_stuck_line_keeps_its_level_at_the_receiver_for_its_time() {
             level,
         });
         let mut line = Line::new(config, IDLE);
+        run(&mut line, 1_100 * NS);
         line.set_receiver(1_200 * NS, Drive::High);
         run(&mut line, 1_500 * NS);
         assert_eq!(line.data_at_receiver(), level);

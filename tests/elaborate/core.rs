@@ -163,7 +163,7 @@ fn the_card_agrees() {
 /// A random program, one word in eight of which goes to another place, with a host that reads and writes.
 #[test]
 fn a_sequencer_agrees() {
-    let mut block = Sequencer::new(&random_program(4));
+    let mut block = Sequencer::new(&random_program(5));
     block.connect_all();
     let design = elaborate(&block, "sequencer").unwrap();
     let memories = &design.top().memories;
@@ -172,7 +172,7 @@ fn a_sequencer_agrees() {
     let mut kernel = kernel_engine!(block; clock;
         in reset, restart, port_in, host_address, host_read, host_write, host_half, host_data;
         out port_address, port_out, port_write, host_word);
-    let mut stimulus = random_stimulus(&kernel, 4000, 12);
+    let mut stimulus = random_stimulus(&kernel, 12_000, 12);
     for (name, period_cycles) in [
         ("reset", 1500),
         ("restart", 97),
