@@ -69,7 +69,7 @@ fn position_2_is_compared_over_the_wrap() {
     assert_eq!(difference, (1 << 25) - 3, "modulo the width");
     assert!(rig.state() & state::POSITION_2 != 0);
     assert_eq!(rig.bench.get("alarm"), 1);
-    assert_eq!(rig.read(word::COUNTERS + 15), counts >> 16);
+    assert_eq!(rig.read(word::COUNTERS + COUNTER_POSITION_2), counts >> 16);
 
     rig.write(word::TOLERANCE, 3);
     rig.write(word::CONTROL, control::CLEAR.into());
