@@ -1,5 +1,8 @@
 //! All mode commands and additional information, as the channel speaks them, against the encoder and line model.
 
 mod every_command;
+mod faults;
 mod infos;
+pub mod lanes;
 mod rig;
+mod upsets;
