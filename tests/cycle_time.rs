@@ -26,7 +26,7 @@ fn cycle_time_measures_the_shortest_frames_that_there_are() {
     let text = good(&["bench", "cycle-time", "--json", "--tm-ns", "1250"]);
     let report: serde_json::Value = serde_json::from_str(&text).unwrap();
     let rows = report["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 2 * (4 + 10) + 4);
+    assert_eq!(rows.len(), 2 * (4 + 10) + 4 + 4 * 3);
     for (command, bits, clock_hz, pulses, frame_us, tm_us) in [
         ("000111", 25, 100_000, 43, 425.0, 10.0),
         ("000111", 37, 2_000_000, 55, 27.25, 10.0),
@@ -42,7 +42,8 @@ fn cycle_time_measures_the_shortest_frames_that_there_are() {
         ("111000", 25, 16_000_000, 82, 7.0625, 1.25),
     ] {
         let is_it = |row: &&serde_json::Value| {
-            row["command"] == command && row["position_bits"] == bits && row["clock_hz"] == clock_hz
+            let keys = ["command", "infos", "position_bits", "clock_hz"].map(|key| &row[key]);
+            keys[0] == command && keys[1] == 0 && keys[2] == bits && keys[3] == clock_hz
         };
         let row = rows.iter().find(is_it).unwrap();
         assert_eq!(row["pulses"], pulses, "{row}");
@@ -54,7 +55,11 @@ fn cycle_time_measures_the_shortest_frames_that_there_are() {
     for row in rows {
         let figure = |key: &str| row[key].as_f64().unwrap();
         let over = figure("cycle_us") - figure("cycle_limit_us");
-        assert!((0.0..0.2).contains(&over), "{row}");
+        let has_supplement = row["command"] == "101101";
+        assert!(
+            (0.0..0.2).contains(&over) || (has_supplement && over < 0.3),
+            "{row}"
+        );
         assert!((figure("cycles_per_s") * figure("cycle_us") - 1e6).abs() < 1e-3);
         assert!(row["failure"].is_null());
     }
@@ -69,6 +74,52 @@ fn cycle_time_measures_the_shortest_frames_that_there_are() {
         assert!(ours < theirs, "{row}");
     }
     assert_eq!(count, 4);
+}
+
+/// 25 bits; pulses and microseconds as they follow from the interface description. How long the clock is parked before a supplement is
+/// the receiver's own choice: the answer has come in, and then 2 us.
+#[test]
+fn cycle_time_measures_frames_with_informations_and_a_supplement() {
+    let text = good(&["bench", "cycle-time", "--json", "--tm-ns", "1250"]);
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let came_in_us = report["round_trip_us"].as_f64().unwrap() + 0.05;
+    for (command, infos, clock_hz, pulses, frame_us) in [
+        ("111000", 1, 2_000_000, 74, 38.5),
+        ("111000", 1, 8_000_000, 88, 12.875),
+        ("111000", 1, 16_000_000, 112, 8.9375),
+        ("111000", 2, 2_000_000, 104, 53.5),
+        ("111000", 2, 8_000_000, 118, 16.625),
+        ("111000", 2, 16_000_000, 142, 10.8125),
+        ("101101", 0, 2_000_000, 78, 42.5),
+        ("101101", 0, 8_000_000, 92, 15.375),
+        ("101101", 0, 16_000_000, 116, 11.1875),
+        ("101101", 2, 2_000_000, 138, 72.5),
+        ("101101", 2, 8_000_000, 152, 22.875),
+        ("101101", 2, 16_000_000, 176, 14.9375),
+    ] {
+        let mut rows = report["rows"].as_array().unwrap().iter();
+        let row = rows.find(|row| {
+            row["command"] == command
+                && row["infos"] == infos
+                && row["clock_hz"] == clock_hz
+                && row["position_bits"] == 25
+        });
+        let row = row.expect("a row");
+        assert_eq!(row["pulses"], pulses, "{row}");
+        let figure = |key: &str| row[key].as_f64().unwrap();
+        let parked_us = if command == "101101" { came_in_us } else { 0.0 };
+        let frame_limit_us = frame_us + parked_us;
+        assert!(
+            (figure("frame_limit_us") - frame_limit_us).abs() < 1e-5,
+            "{row}"
+        );
+        let limit_us = frame_limit_us + 1.25 + 0.5;
+        assert!((figure("cycle_limit_us") - limit_us).abs() < 1e-5, "{row}");
+        assert!(
+            (0.0..1.0).contains(&(figure("cycle_us") - limit_us)),
+            "{row}"
+        );
+    }
 }
 
 #[test]
@@ -87,8 +138,12 @@ fn the_cycle_times_in_the_documentation_are_those_of_the_program() {
     for row in report["rows"].as_array().unwrap() {
         let figure = |key: &str| row[key].as_f64().unwrap();
         let wanted = format!(
-            "| {} | {} | {} | {} | {:.2} | {} | {:.2} | {:.2} | {:.0} |",
+            "| {}{} | {} | {} | {} | {:.2} | {} | {:.2} | {:.2} | {:.0} |",
             row["command"].as_str().unwrap(),
+            match row["infos"].as_u64().unwrap() {
+                0 => String::new(),
+                infos => format!(" + {infos}"),
+            },
             row["position_bits"],
             figure("clock_hz") / 1e6,
             row["pulses"],

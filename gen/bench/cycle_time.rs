@@ -4,8 +4,11 @@
 //! Logic Block in MCU", Electronics 2024, 13, 1101; Liu et al., "Angle encoder data acquisition system based on FPGA", 2024;
 //! TI motor-control SDK, `endat_diagnostic.c`; an FPGA receiver for EnDat 2.2, scholarmate.com/S/Nlp49a.
 
+mod behind;
+
 use super::fault;
 use crate::error::GenError;
+use behind::Behind;
 use endat_hdl::protocol::{
     ModeCommand::{self, SendPosition, SendPositionAddInfo},
     LEAD_PULSES,
@@ -82,6 +85,7 @@ impl Published {
 #[derive(Clone, Copy, Debug)]
 struct Subject {
     command: ModeCommand,
+    behind: Behind,
     position_bits: u32,
     rate: Rate,
     published: Option<Published>,
@@ -91,6 +95,7 @@ struct Subject {
 const PUBLISHED: [Subject; 4] = [
     Subject {
         command: SendPosition,
+        behind: Behind::NOTHING,
         position_bits: 36,
         rate: (2 * MHZ, 100 * MHZ),
         published: Some(Published {
@@ -101,6 +106,7 @@ const PUBLISHED: [Subject; 4] = [
     },
     Subject {
         command: SendPositionAddInfo,
+        behind: Behind::NOTHING,
         position_bits: 29,
         rate: (3_125_000, 100 * MHZ),
         published: Some(Published {
@@ -111,6 +117,7 @@ const PUBLISHED: [Subject; 4] = [
     },
     Subject {
         command: SendPositionAddInfo,
+        behind: Behind::NOTHING,
         position_bits: 37,
         rate: (8 * MHZ, 128 * MHZ),
         published: Some(Published {
@@ -122,6 +129,7 @@ const PUBLISHED: [Subject; 4] = [
     // Neither width nor clock is told.
     Subject {
         command: SendPositionAddInfo,
+        behind: Behind::NOTHING,
         position_bits: 25,
         rate: (2 * MHZ, 128 * MHZ),
         published: Some(Published {
@@ -147,6 +155,8 @@ struct Figures {
 pub struct CycleTime {
     /// Mode command, six binary digits.
     pub command: String,
+    /// Additional informations behind the position.
+    pub infos: u32,
     /// Width of the position.
     pub position_bits: u32,
     /// EnDat clock.
@@ -157,11 +167,11 @@ pub struct CycleTime {
     pub tm_us: f64,
     /// Rising clock edges at the encoder in each frame.
     pub pulses: u64,
-    /// `max(10, (tcal - t_low1) / T) + L + 1`, rounded up.
+    /// `max(10, (tcal - t_low1) / T) + L + 1`, rounded up; with a supplement 35 instead of 1.
     pub pulses_limit: u64,
     /// First falling to last rising clock edge, at the encoder.
     pub frame_us: f64,
-    /// `t_low1 + (P - 1) T`.
+    /// `t_low1 + (P - 1) T`; with a supplement also the time for which the clock is parked.
     pub frame_limit_us: f64,
     /// The longest of the measured cycles.
     pub cycle_us: f64,
@@ -202,6 +212,7 @@ impl Subject {
             for position_bits in &widths {
                 all.extend(rates(command).into_iter().map(|rate| Self {
                     command,
+                    behind: Behind::NOTHING,
                     position_bits: *position_bits,
                     rate,
                     published: None,
@@ -209,6 +220,7 @@ impl Subject {
             }
         }
         all.extend(PUBLISHED);
+        all.extend(Behind::subjects(widths[0]));
         all
     }
 
@@ -249,8 +261,9 @@ impl Subject {
         // The start bit comes with the first rising edge that is not before tcal.
         let wait = cycles_at_least(options.tcal_ns, hz).saturating_sub(first_low);
         let lead = wait.div_ceil(period).max(LEAD_PULSES.into());
-        let pulses = lead + u64::from(self.command.answer_bits(self.position_bits)) + 1;
-        let frame = time(first_low + (pulses - 1) * period);
+        let answer = lead + self.behind.answer_bits(self.command, self.position_bits);
+        let pulses = answer + self.behind.pulses();
+        let frame = time(first_low + (pulses - 1) * period) + self.behind.pause(case);
         // DATA must have been LOW for tR at the encoder, and its fall must have come back before the next frame can begin.
         let low = (READY_LOW_NS * NS).max(case.line.round_trip());
         Figures {
@@ -293,24 +306,26 @@ fn verdict(measured: Figures, limit: Figures) -> Option<String> {
 fn measure(
     subject: &Subject,
     options: &CycleTimeOptions,
-    engines: &mut BTreeMap<u64, Compiled>,
+    engines: &mut BTreeMap<(u64, bool), Compiled>,
 ) -> Result<CycleTime, GenError> {
     let case = subject.case(options);
-    let engine = match engines.get(&case.system_hz) {
+    let key = (case.system_hz, subject.behind != Behind::NOTHING);
+    let engine = match engines.get(&key) {
         Some(engine) => engine.clone(),
         None => {
-            let design = case.design().map_err(|e| fault(&e))?;
+            let design = subject.behind.design(&case).map_err(|e| fault(&e))?;
             let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
-            engines.insert(case.system_hz, engine.clone());
+            engines.insert(key, engine.clone());
             engine
         }
     };
-    let bench = case.run_alone(engine, false);
+    let bench = subject.behind.run(&case, engine);
     let traces = Traces::of(&bench);
-    let frames = traces.frames.get(1..).unwrap_or_default();
+    let first = subject.behind.first_frame();
+    let frames = traces.frames.get(first..).unwrap_or_default();
     let limit = subject.limit(&case, options);
     let measured = figures(frames);
-    let failure = match (case.check(&traces), measured) {
+    let failure = match (subject.behind.check(&case, &traces), measured) {
         (Err(what), _) => Some(what),
         (Ok(()), Some(measured)) => verdict(measured, limit),
         (Ok(()), None) => Some("no frames".into()),
@@ -322,6 +337,7 @@ fn measure(
     });
     Ok(CycleTime {
         command: format!("{:06b}", subject.command.code()),
+        infos: subject.behind.infos,
         position_bits: subject.position_bits,
         clock_hz: subject.rate.0,
         system_hz: case.system_hz,
@@ -358,6 +374,16 @@ pub fn cycle_times(options: CycleTimeOptions) -> Result<CycleTimes, GenError> {
     })
 }
 
+impl CycleTime {
+    /// Command and additional informations.
+    pub fn kind(&self) -> String {
+        match self.infos {
+            0 => self.command.clone(),
+            infos => format!("{}+{infos}", self.command),
+        }
+    }
+}
+
 impl CycleTimes {
     /// Whether no row is marked.
     pub fn is_good(&self) -> bool {
@@ -376,13 +402,13 @@ impl fmt::Display for CycleTimes {
         )?;
         writeln!(
             f,
-            "command bits    MHz       pulses              frame us    tm us            cycle us   over us  cycles/s  published"
+            "command  bits    MHz       pulses              frame us    tm us            cycle us   over us  cycles/s  published"
         )?;
         for row in &self.rows {
             let published = row.published.map_or(String::new(), |p| p.text());
             let text = format!(
-                "{} {:>4} {:>6.3} {:>4} {:>7} {:>9.3} {:>11} {:>7.3} {:>9.3} {:>11} {:>8.3} {:>9.0}  {published}",
-                row.command,
+                "{:<8} {:>4} {:>6.3} {:>4} {:>7} {:>9.3} {:>11} {:>7.3} {:>9.3} {:>11} {:>8.3} {:>9.0}  {published}",
+                row.kind(),
                 row.position_bits,
                 row.clock_hz as f64 / 1e6,
                 row.pulses,
@@ -405,80 +431,4 @@ impl fmt::Display for CycleTimes {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const LIMIT: Figures = Figures {
-        pulses: 44,
-        frame: 20 * US,
-        cycle: 30 * US,
-    };
-
-    #[test]
-    fn a_row_is_marked_if_it_is_not_at_the_limit() {
-        let row = |pulses, frame, cycle| {
-            let measured = Figures {
-                pulses,
-                frame,
-                cycle,
-            };
-            verdict(measured, LIMIT)
-        };
-        assert_eq!(row(44, 20 * US, 31 * US), None);
-        assert_eq!(row(44, 20 * US - 1, 30 * US - 1), None);
-        let slow = "1.001 us over the limit, at most 1.000 us";
-        assert_eq!(row(44, 20 * US, 31_001 * NS).as_deref(), Some(slow));
-        for pulses in [43, 45] {
-            let what = format!("{pulses} pulses instead of 44");
-            assert_eq!(row(pulses, 20 * US, 30 * US), Some(what));
-        }
-        let early = Some("shorter than the protocol allows".into());
-        assert_eq!(row(44, 20 * US, 30 * US - 2 * NS), early);
-        assert_eq!(row(44, 20 * US - 2 * NS, 30 * US), early);
-    }
-
-    #[test]
-    fn the_longest_of_the_frames_counts() {
-        let frame = |first_fall, last_rise, rising_edges| FrameLog {
-            first_fall,
-            last_rise,
-            rising_edges,
-            ..FrameLog::default()
-        };
-        let frames = [frame(0, 10, 44), frame(100, 112, 45), frame(190, 200, 44)];
-        let longest = Figures {
-            pulses: 45,
-            frame: 12,
-            cycle: 100,
-        };
-        assert_eq!(figures(&frames), Some(longest));
-        assert_eq!(figures(&frames[..1]), None);
-    }
-
-    #[test]
-    fn a_marked_row_says_what_is_wrong() {
-        let options = CycleTimeOptions {
-            position_bits: Some(1),
-            cable_m: 100,
-            tcal_ns: 5_000,
-            tm_ns: 1_250,
-        };
-        // More pulses fit on the line than the answer has bits: the clock must wait.
-        let short = Subject {
-            command: SendPositionAddInfo,
-            position_bits: 1,
-            rate: RATES_2_2[5],
-            published: None,
-        };
-        let row = measure(&short, &options, &mut BTreeMap::new()).unwrap();
-        let table = CycleTimes {
-            options,
-            round_trip_us: 1.25,
-            rows: vec![row],
-        };
-        assert!(!table.is_good());
-        assert!(table
-            .to_string()
-            .contains("^ WRONG: 1.977 us over the limit"));
-    }
-}
+mod tests;

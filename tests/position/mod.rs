@@ -9,5 +9,5 @@ mod frame_timing;
 mod interrupted;
 mod random;
 mod result_fields;
-mod rig;
+pub mod rig;
 mod sweep;

@@ -102,17 +102,8 @@ impl Setup {
 
     /// Whether sampled levels, from the first HIGH on, are an answer without alarm and with a right CRC.
     pub fn believes(&self, levels: &[bool]) -> bool {
-        let start = levels.iter().position(|level| *level);
-        let answer = &levels[start.unwrap_or(levels.len())..];
-        let (end, f2) = (self.answer_bits() as usize, self.settings.command >> 5 != 0);
-        let covered_end = end - CRC_BITS as usize;
-        if answer.len() < end {
-            return false;
-        }
-        let sent = answer[covered_end..end].iter();
-        let crc = sent.fold(0, |crc, bit| crc << 1 | u8::from(*bit));
-        let no_alarm = !answer[1] && (!f2 || answer[2]);
-        no_alarm && crc5(answer[1..covered_end].iter().copied()) == crc
+        let f2 = self.settings.command >> 5 != 0;
+        believes(levels, self.answer_bits(), f2)
     }
 
     fn link(&self) -> Link {
@@ -162,6 +153,21 @@ impl Setup {
     pub fn ready(&self) -> Rig {
         self.on(self.measured())
     }
+}
+
+/// Whether sampled levels, from the first HIGH on, are an answer of so many bits without alarm and with a right CRC.
+pub fn believes(levels: &[bool], answer_bits: u32, f2: bool) -> bool {
+    let start = levels.iter().position(|level| *level);
+    let answer = &levels[start.unwrap_or(levels.len())..];
+    let end = answer_bits as usize;
+    let covered_end = end - CRC_BITS as usize;
+    if answer.len() < end {
+        return false;
+    }
+    let sent = answer[covered_end..end].iter();
+    let crc = sent.fold(0, |crc, bit| crc << 1 | u8::from(*bit));
+    let no_alarm = !answer[1] && (!f2 || answer[2]);
+    no_alarm && crc5(answer[1..covered_end].iter().copied()) == crc
 }
 
 /// Runs until the channel is idle and the latest samples have been looked up.

@@ -3,5 +3,8 @@
 mod continuous;
 mod diagnosis;
 mod every_command;
+mod faults;
 mod infos;
+pub mod lanes;
 mod rig;
+mod upsets;

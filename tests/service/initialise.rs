@@ -1,13 +1,13 @@
 //! Initialisation: every device from nothing, what fails, and what happens after a plug.
 
-use super::rig::{quick, Rig, ENDAT_HZ};
+use super::rig::{quick, Make, Rig, ENDAT_HZ};
 use endat_hdl::service::{
     map::{plate, state, word, NAME_PLATE, PLATE_DELAY},
     program::{step_name, steps},
 };
 use endat_sim::{
     encoder::{area, Defect, EncoderConfig, Violation, DEVICES, LONG_RECOVERY, SHORT_RECOVERY},
-    MS, US,
+    MS,
 };
 
 /// What the step of this number does.
@@ -93,7 +93,11 @@ fn the_slower_of_both_clocks_is_chosen() {
 fn recovery_is_set_as_wanted() {
     for (short, want) in [(true, SHORT_RECOVERY), (false, LONG_RECOVERY)] {
         let encoder = quick(EncoderConfig::endat22(25));
-        let mut rig = Rig::with(true, short, ENDAT_HZ, encoder, 25);
+        let make = Make {
+            wants_short: short,
+            ..Make::usual(true)
+        };
+        let mut rig = Rig::with(make, ENDAT_HZ, encoder, 25);
         assert_eq!(rig.initialised(), 0);
         rig.good_position();
         rig.good_position();
@@ -115,37 +119,4 @@ fn an_encoder_that_is_plugged_in_later_is_found() {
     rig.wait_for(word::STATE, |s| s as u16 & state::INITIALISED != 0);
     assert!(rig.state() & state::UNPLUGGED == 0);
     rig.good_position();
-}
-
-#[test]
-fn another_encoder_is_initialised_afresh_at_every_phase_of_a_frame() {
-    for phase in 0..12 {
-        let mut encoder = quick(EncoderConfig::endat22(25));
-        // In the middle of a frame; the plug stays out for longer than a glitch.
-        let out = 120 * MS + phase * 4 * US;
-        encoder.unplugged.push(out..out + 8 * MS);
-        let mut rig = Rig::new(true, encoder, 25);
-        assert_eq!(rig.initialised(), 0);
-        while rig.bench.now() < 119 * MS + 500 * US {
-            rig.bench.run_cycles(100);
-        }
-        rig.good_position();
-        rig.bench.run_until(120 * MS);
-        rig.bench.trigger();
-        rig.bench.run_for(20 * MS);
-        assert!(
-            rig.read(word::PROGRESS) != 0 || !rig.is_initialised(),
-            "phase {phase}"
-        );
-        rig.wait_for(word::STATE, |s| s as u16 & state::INITIALISED != 0);
-        let before = rig.bench.results().len();
-        for _ in 0..2 {
-            rig.good_position();
-        }
-        let frames = rig.bench.frames(0);
-        for result in &rig.bench.results()[..before] {
-            let is_true = frames.iter().any(|f| f.position == result.position);
-            assert!(!result.fresh || is_true, "silently wrong: {result:?}");
-        }
-    }
 }

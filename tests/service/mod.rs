@@ -3,6 +3,8 @@
 mod card;
 mod health;
 mod initialise;
+mod long_run;
 mod mailbox;
+mod plug;
 mod rig;
 mod three_ways;

@@ -46,26 +46,47 @@ pub fn times(initialise: bool) -> ServiceTimes {
     }
 }
 
-/// A port after power-up; made once for each of the two.
-fn engine(initialise: bool, wants_short: bool) -> Compiled {
-    static MADE: OnceLock<Mutex<BTreeMap<(bool, bool), Compiled>>> = OnceLock::new();
+/// What a port is made for.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Make {
+    pub system_hz: u64,
+    pub initialise: bool,
+    pub wants_short: bool,
+}
+
+impl Make {
+    pub fn usual(initialise: bool) -> Self {
+        Self {
+            system_hz: SYSTEM_HZ,
+            initialise,
+            wants_short: false,
+        }
+    }
+
+    fn engine(self) -> Compiled {
+        let fixed = FixedTimes {
+            abort_us: ABORT_US,
+            ..FixedTimes::at(self.system_hz)
+        };
+        let times = ServiceTimes {
+            system_khz: (self.system_hz / 1_000) as u32,
+            ..times(self.initialise)
+        };
+        let mut block = EncoderPort::new(fixed, Some(&times), self.wants_short);
+        block.connect_all();
+        let design = elaborate(&block, "encoder_port").expect("the port elaborates");
+        Compiled::new(&design).expect("the port has no loop")
+    }
+}
+
+/// A port after power-up; made once for each kind.
+fn engine(make: Make) -> Compiled {
+    static MADE: OnceLock<Mutex<BTreeMap<Make, Compiled>>> = OnceLock::new();
     let mut made = MADE
         .get_or_init(Mutex::default)
         .lock()
         .unwrap_or_else(PoisonError::into_inner);
-    let make = || {
-        let fixed = FixedTimes {
-            abort_us: ABORT_US,
-            ..FixedTimes::at(SYSTEM_HZ)
-        };
-        let mut block = EncoderPort::new(fixed, Some(&times(initialise)), wants_short);
-        block.connect_all();
-        let design = elaborate(&block, "encoder_port").expect("the port elaborates");
-        Compiled::new(&design).expect("the port has no loop")
-    };
-    made.entry((initialise, wants_short))
-        .or_insert_with(make)
-        .clone()
+    made.entry(make).or_insert_with(|| make.engine()).clone()
 }
 
 /// An encoder for whose waits these tests have the time.
@@ -85,25 +106,18 @@ pub struct Rig {
 impl Rig {
     /// After reset, not yet initialised if that is wanted.
     pub fn new(initialise: bool, encoder: EncoderConfig, position_bits: u32) -> Self {
-        Self::with(initialise, false, ENDAT_HZ, encoder, position_bits)
+        Self::with(Make::usual(initialise), ENDAT_HZ, encoder, position_bits)
     }
 
-    pub fn with(
-        initialise: bool,
-        wants_short: bool,
-        endat_hz: u64,
-        encoder: EncoderConfig,
-        position_bits: u32,
-    ) -> Self {
+    pub fn with(make: Make, endat_hz: u64, encoder: EncoderConfig, position_bits: u32) -> Self {
         let settings = ChannelSettings::new(
-            SYSTEM_HZ,
+            make.system_hz,
             endat_hz,
             ModeCommand::SendPositionAddInfo,
             position_bits,
         );
         let link = Link::new(LineConfig::cable(20.0), encoder);
-        let engine = engine(initialise, wants_short);
-        let mut bench = Bench::channel(engine, SYSTEM_HZ, &settings, link);
+        let mut bench = Bench::channel(engine(make), make.system_hz, &settings, link);
         bench.run_for(MS / 10);
         Self { bench }
     }
@@ -183,7 +197,7 @@ impl Rig {
             if rides {
                 self.bench.trigger();
             }
-            self.bench.run_cycles(SYSTEM_HZ / 5_000);
+            self.bench.run_cycles(self.bench.system_hz() / 5_000);
         }
     }
 
@@ -207,7 +221,7 @@ impl Rig {
     pub fn frames(&mut self, frames: usize) {
         for _ in 0..frames {
             self.bench.trigger();
-            self.bench.run_cycles(SYSTEM_HZ / 5_000);
+            self.bench.run_cycles(self.bench.system_hz() / 5_000);
         }
     }
 

@@ -116,13 +116,24 @@ impl Layout {
         }
     }
 
-    /// Takes the marks of all memories: index of the memory, word and bit of its mark.
-    pub fn take_memories(&self, state: &mut [u64]) -> Vec<(usize, usize, u32)> {
-        let words = self.memory_words();
-        let take = || Self::take_lowest(state, words.clone());
-        std::iter::from_fn(take)
-            .map(|index| (index, words.start + index / 64, (index % 64) as u32))
-            .collect()
+    /// Takes the mark of the first memory from number `from` on that has one.
+    pub fn take_memory(&self, state: &mut [u64], from: usize) -> Option<usize> {
+        (from..self.memories).find(|memory| {
+            let (word, mark) = self.memory_mark(*memory);
+            let is_marked = state[word] & mark != 0;
+            state[word] &= !mark;
+            is_marked
+        })
+    }
+
+    /// Notes in a state that a memory is to be served.
+    pub fn mark_memory(&self, state: &mut [u64], memory: usize) {
+        let (word, mark) = self.memory_mark(memory);
+        state[word] |= mark;
+    }
+
+    fn memory_mark(&self, memory: usize) -> (usize, u64) {
+        (self.memory_words().start + memory / 64, 1 << (memory % 64))
     }
 
     /// Takes the lowest mark in some of the words: its number, counted from the first of them.

@@ -259,7 +259,9 @@ impl Compiled {
 
     /// Reads and writes the memories whose inputs have changed. Their inputs stay as they are until everything is loaded.
     fn serve_memories(&mut self) {
-        for (index, word, bit) in self.layout.take_memories(&mut self.state) {
+        let mut next = 0;
+        while let Some(index) = self.layout.take_memory(&mut self.state, next) {
+            next = index + 1;
             let nets = &self.form.memories[index];
             let (layout, form) = (&self.layout, &self.form);
             let value = |net, state: &[u64]| portable::value(layout, form, state, net);
@@ -270,7 +272,7 @@ impl Compiled {
                 let address = value(write.address, &self.state) as usize;
                 words[address] = value(write.data, &self.state);
                 // The next cycle may read what was written.
-                self.state[word] |= 1 << bit;
+                layout.mark_memory(&mut self.state, index);
             }
             portable::store(layout, form, &mut self.state, nets.read_data, read);
         }

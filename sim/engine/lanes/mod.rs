@@ -10,7 +10,7 @@ use super::form::{Form, Keep, Place};
 use super::{EngineError, Instruments, Port, PortId};
 use bits::BitSegment;
 use cranelift_codegen::ir::types::{I64, I64X2};
-use endat_hdl::elaborate::{Design, WritePort};
+use endat_hdl::elaborate::Design;
 use std::sync::Arc;
 
 /// Words that hold one bit of all lanes.
@@ -285,32 +285,74 @@ impl Lanes {
         self.is_settled = true;
     }
 
-    /// Reads and writes the memories whose inputs have changed. Their inputs stay as they are until everything is loaded.
-    fn serve_memories(&mut self) {
-        let mut again = vec![];
-        for (index, word, bit) in self.layout.take_memories(&mut self.state) {
-            let form = self.form.clone();
-            let nets = &form.memories[index];
-            for lane in 0..self.lanes() {
-                let first = if nets.write.is_some() {
-                    lane * nets.start.len()
-                } else {
-                    0
-                };
-                let read =
-                    self.memories[index][first + self.load(nets.read_address, lane) as usize];
-                let is_written = |write: &WritePort| self.load(write.enable, lane) != 0;
-                if let Some(write) = nets.write.filter(is_written) {
-                    let address = first + self.load(write.address, lane) as usize;
-                    self.memories[index][address] = self.load(write.data, lane);
-                    // The next cycle may read what was written.
-                    again.push((word, bit));
-                }
-                self.store(nets.read_data, lane, read);
+    /// 64 bits of a net, from `first_bit` on, in the lanes `64 * part` to `64 * part + 63`.
+    fn gather(&self, net: usize, part: usize, first_bit: usize) -> [u64; 64] {
+        let place = self.layout.place(net) + part;
+        let mut values = [0; 64];
+        for bit in first_bit..self.form.nets[net].width_bits.min(first_bit + 64) {
+            let word = self.state[place + bit * self.words];
+            for (lane, value) in values.iter_mut().enumerate() {
+                *value |= (word >> lane & 1) << (bit - first_bit);
             }
         }
-        for (word, bit) in again {
-            self.state[word] |= 1 << bit;
+        values
+    }
+
+    /// Stores them.
+    fn scatter(&mut self, net: usize, part: usize, first_bit: usize, values: &[u64; 64]) {
+        let place = self.layout.place(net) + part;
+        let mut is_changed = false;
+        for bit in first_bit..self.form.nets[net].width_bits.min(first_bit + 64) {
+            let bits = values.iter().enumerate();
+            let new = bits.fold(0, |word, (lane, value)| {
+                word | (value >> (bit - first_bit) & 1) << lane
+            });
+            is_changed |= std::mem::replace(&mut self.state[place + bit * self.words], new) != new;
+        }
+        if is_changed {
+            self.layout.mark(&mut self.state, net);
+        }
+    }
+
+    /// Reads and writes the memories whose inputs have changed. Their inputs stay as they are until everything is loaded.
+    fn serve_memories(&mut self) {
+        let mut next = 0;
+        while let Some(index) = self.layout.take_memory(&mut self.state, next) {
+            next = index + 1;
+            for part in 0..self.words {
+                self.serve_memory(index, part);
+            }
+        }
+    }
+
+    fn serve_memory(&mut self, index: usize, part: usize) {
+        let form = self.form.clone();
+        let nets = &form.memories[index];
+        let size = nets.start.len();
+        // Where the words of a lane begin.
+        let first = |lane: usize| match nets.write {
+            Some(_) => (64 * part + lane) * size,
+            None => 0,
+        };
+        let read_at = self.gather(nets.read_address, part, 0);
+        let words: [u128; 64] =
+            std::array::from_fn(|lane| self.memories[index][first(lane) + read_at[lane] as usize]);
+        if let Some(write) = nets.write {
+            let enable = self.gather(write.enable, part, 0);
+            if enable.contains(&1) {
+                let write_at = self.gather(write.address, part, 0);
+                let data = [0, 64].map(|first_bit| self.gather(write.data, part, first_bit));
+                for lane in (0..64).filter(|lane| enable[*lane] != 0) {
+                    let word = u128::from(data[0][lane]) | u128::from(data[1][lane]) << 64;
+                    self.memories[index][first(lane) + write_at[lane] as usize] = word;
+                }
+                // The next cycle may read what was written.
+                self.layout.mark_memory(&mut self.state, index);
+            }
+        }
+        for first_bit in [0, 64] {
+            let values = words.map(|word| (word >> first_bit) as u64);
+            self.scatter(nets.read_data, part, first_bit, &values);
         }
     }
 

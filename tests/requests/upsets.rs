@@ -1,0 +1,132 @@
+//! Every state that a channel with requests can be brought into, reached or not: a new trigger works, nothing hangs.
+
+use super::lanes::*;
+use endat_sim::{
+    engine::{Compiled, Keep},
+    rng::Rng,
+    US,
+};
+
+/// Registers up to this width get every value, wider ones have each of their bits inverted.
+const ALL_VALUES_BITS: usize = 6;
+/// Moments of the frame at which each of them is upset.
+const MOMENTS: u64 = 16;
+/// The longest wait of a frame that is upset: half a period that is counted round, twice.
+const LIMIT_US: u64 = 1_000;
+/// Triggers until two in a row are good.
+const TRIGGERS: usize = 2;
+
+struct Upset {
+    register: usize,
+    mask: u128,
+    cycle: u64,
+    what: String,
+}
+
+/// The tracked delay has a test of its own.
+const DELAY: &str = "delay.delay";
+/// A frame whose receiver has been told that it is done, or whose timer has been taken past its limit, goes on without one: there is no
+/// watchdog.
+const WITHOUT_WATCHDOG: [&str; 5] = [
+    "receiver.field ",
+    "transaction.acquiring ",
+    "transaction.phase ",
+    "transaction.timer ",
+    "transaction.timer_limit ",
+];
+
+/// Upsets of the registers whose name is wanted.
+fn upsets(is_wanted: impl Fn(&str) -> bool) -> Vec<Upset> {
+    let engine = Compiled::keeping(&design(), Keep::Registers).unwrap();
+    let names: Vec<&str> = engine.nets().collect();
+    let mut rng = Rng::new(4);
+    let mut upsets = vec![];
+    for register in engine.registers().filter(|r| is_wanted(names[*r])) {
+        let width = engine.width_bits(register);
+        let masks: Vec<u128> = match width {
+            0..=ALL_VALUES_BITS => (1..1 << width).collect(),
+            _ => (0..width).map(|bit| 1 << bit).collect(),
+        };
+        for mask in masks {
+            for moment in 0..MOMENTS {
+                let span = (FRAME_TIME + RECOVERY + US) * SYSTEM_HZ / (1_000_000 * US) / MOMENTS;
+                let cycle = moment * span + rng.in_range(0, span - 1);
+                let what = format!("{} ^ {mask:#b} in cycle {cycle}", names[register]);
+                upsets.push(Upset {
+                    register,
+                    mask,
+                    cycle,
+                    what,
+                });
+            }
+        }
+    }
+    upsets
+}
+
+/// Runs the frame with these upsets. Gives the rig, idle again, and what became of the lanes that are not.
+fn upset(upsets: &[Upset]) -> (Rig, Vec<String>) {
+    let mut rig = Rig::new(&vec![(encoder(), line()); upsets.len()]);
+    rig.trigger();
+    let last = upsets.iter().map(|u| u.cycle).max().unwrap_or(0);
+    for cycle in 0..=last {
+        for (lane, upset) in upsets.iter().enumerate().filter(|(_, u)| u.cycle == cycle) {
+            for bit in (0..128).filter(|bit| upset.mask >> bit & 1 == 1) {
+                rig.bench.engine().flip(upset.register, bit, lane);
+            }
+        }
+        rig.bench.tick();
+    }
+    let hung = rig.idle(LIMIT_US);
+    hung.iter().for_each(|lane| rig.give_up(*lane));
+    // The encoder may have to see that the clock has stopped.
+    rig.run_for(40 * US);
+    rig.settle(LIMIT_US);
+    (
+        rig,
+        hung.iter().map(|lane| upsets[*lane].what.clone()).collect(),
+    )
+}
+
+#[test]
+fn whatever_state_a_channel_with_requests_is_brought_into_the_next_triggers_work() {
+    let upsets = upsets(|name| name != DELAY);
+    assert!(upsets.len() > 15_000);
+    let (mut hung, mut lost, mut worst) = (vec![], vec![], 0);
+    for upsets in upsets.chunks(LANES) {
+        let (mut rig, others) = upset(upsets);
+        hung.extend(others);
+        let (others, most) = rig.recovered(TRIGGERS, &|lane| upsets[lane].what.clone());
+        lost.extend(others);
+        worst = worst.max(most);
+    }
+    let (count, without_end) = (upsets.len(), hung.len());
+    println!(
+        "{count} upsets, {without_end} without end, at most {worst} triggers until all is well"
+    );
+    assert!(lost.is_empty(), "{lost:#?}");
+    let known = |what: &String| WITHOUT_WATCHDOG.iter().any(|name| what.starts_with(name));
+    hung.retain(|what| !known(what));
+    assert!(hung.is_empty(), "{hung:#?}");
+}
+
+/// A delay that is wrong by whole periods is not seen at the start edge; every frame is a CRC error until it is measured again.
+#[test]
+fn a_wrong_line_delay_gives_no_wrong_position_and_is_cured_by_calibrate() {
+    let all = upsets(|name| name == DELAY);
+    let mut cured = 0;
+    for upsets in all.chunks(LANES) {
+        let (mut rig, hung) = upset(upsets);
+        assert!(hung.is_empty(), "{hung:?}");
+        let what = |lane: usize| upsets[lane].what.clone();
+        let (lost, _) = rig.recovered(TRIGGERS, &what);
+        cured += lost.len();
+        for level in [1, 0] {
+            rig.bench.set_all("calibrate", level);
+            rig.bench.tick();
+        }
+        let (lost, most) = rig.recovered(1, &what);
+        assert_eq!((lost, most), (vec![], 0));
+    }
+    assert!(cured > 0, "none was wrong by whole periods");
+}
