@@ -297,6 +297,10 @@ fn a_wrong_word_stands_beside_its_option_with_one_limit() {
             vec!["explain", "--preset", ""],
             "--preset = \"\": unknown preset",
         ),
+        (
+            vec!["presets", "--show", "nope"],
+            "--show = nope: unknown preset; known presets: s6_two_channel, ",
+        ),
     ] {
         let message = bad(&arguments, 2);
         assert!(message.starts_with(wanted), "{message}");

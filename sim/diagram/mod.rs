@@ -17,6 +17,8 @@ use crate::{
     segments::{data_segments, first_falls, By, Level, Meaning, Segment},
     Time, US,
 };
+pub use svg::is_drawing;
+
 use groups::{bit_name, fill, groups, segment_fill, stroke};
 use scale::Scale;
 use svg::{text_width, Anchor, Svg};

@@ -23,6 +23,16 @@ impl Anchor {
     }
 }
 
+/// How each file begins, and its third line.
+const HEAD: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="#;
+const STYLE_HEAD: &str = "<style>text{";
+
+/// Whether a file that begins like this can be a drawing of ours.
+pub fn is_drawing(head: &str) -> bool {
+    let style = head.lines().nth(2);
+    head.starts_with(HEAD) && style.is_some_and(|l| l.starts_with(STYLE_HEAD))
+}
+
 /// Mean width of a character, as a part of the font size.
 const CHARACTER_WIDTH: f64 = 0.57;
 
@@ -82,7 +92,7 @@ impl Svg {
     /// The file: title and description for those who do not see it, style, drawing.
     pub(super) fn finish(self, width: f64, height: f64, title: &str, style: &str) -> String {
         format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0}" height="{height:.0}" viewBox="0 0 {width:.0} {height:.0}" role="img">
+            r#"{HEAD}"{width:.0}" height="{height:.0}" viewBox="0 0 {width:.0} {height:.0}" role="img">
 <title>{}</title>
 <style>{style}</style>
 <rect width="100%" height="100%" fill="white"/>
