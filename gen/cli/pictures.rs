@@ -3,7 +3,7 @@
 use crate::artifact::{self, Artifact};
 use crate::error::{shown, GenError};
 use endat_sim::bench::Bench;
-use endat_sim::diagram::{frame_svg, is_drawing};
+use endat_sim::diagram::{frame_svg, is_drawing, overview_svg};
 use endat_sim::engine::Compiled;
 use endat_sim::wave::{is_layout, is_vcd, Wave};
 use std::io::Read;
@@ -19,8 +19,20 @@ pub struct Pictures<'a> {
     pub vcd: Option<&'a Path>,
     /// A frame as a timing diagram.
     pub svg: Option<&'a Path>,
-    /// Which frame, 0 = the one that measures the delay; otherwise the first at the full clock.
-    pub frame: Option<usize>,
+    /// What of it.
+    pub frame: Drawn,
+}
+
+/// What is drawn.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum Drawn {
+    /// The first frame at the full clock.
+    #[default]
+    First,
+    /// This frame, 0 = the one that measures the delay.
+    Frame(usize),
+    /// All frames, in an overview.
+    All,
 }
 
 /// A file to be written.
@@ -65,22 +77,24 @@ pub fn draw(
     }
     if let Some(path) = wanted.svg {
         let link = bench.link(0);
+        let nothing = || {
+            GenError::input(format!(
+                "--svg = {}: there is no frame to draw; leave it out",
+                path.display()
+            ))
+        };
         let drawing = match wanted.frame {
-            Some(frame) => frame_svg(link, frame, title).ok_or_else(|| {
+            Drawn::All => overview_svg(link, title).ok_or_else(nothing)?,
+            Drawn::Frame(frame) => frame_svg(link, frame, title).ok_or_else(|| {
                 let count = link.encoder().frames().len();
                 GenError::input(format!(
                     "--frame = {frame}: the encoder saw {count} frames; choose one of 0..{}",
                     count.saturating_sub(1)
                 ))
             })?,
-            None => frame_svg(link, DRAWN_FRAME, title)
+            Drawn::First => frame_svg(link, DRAWN_FRAME, title)
                 .or_else(|| frame_svg(link, 0, title))
-                .ok_or_else(|| {
-                    GenError::input(format!(
-                        "--svg = {}: there is no frame to draw; leave it out",
-                        path.display()
-                    ))
-                })?,
+                .ok_or_else(nothing)?,
         };
         files.push(File {
             option: "--svg",

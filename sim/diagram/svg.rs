@@ -36,6 +36,9 @@ pub fn is_drawing(head: &str) -> bool {
 /// Mean width of a character, as a part of the font size.
 const CHARACTER_WIDTH: f64 = 0.57;
 
+/// How much wider bold characters are.
+const BOLD_WIDTH: f64 = 1.2;
+
 /// Estimated width of a text.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     text.chars().count() as f64 * size * CHARACTER_WIDTH
@@ -87,6 +90,15 @@ impl Svg {
             anchor.name(),
             escape(text)
         ));
+    }
+
+    /// Title and subtitle of a drawing; where they end.
+    pub(super) fn head(&mut self, title: &str, subtitle: &str) -> f64 {
+        let x = 24.0;
+        self.text(x, 34.0, Anchor::Start, "title", title);
+        self.text(x, 55.0, Anchor::Start, "sub", subtitle);
+        let bold = text_width(title, 19.0) * BOLD_WIDTH;
+        x + bold.max(text_width(subtitle, 12.5))
     }
 
     /// The file: title and description for those who do not see it, style, drawing.
