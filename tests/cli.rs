@@ -294,8 +294,20 @@ fn a_wrong_word_stands_beside_its_option_with_one_limit() {
             "--channel = -1: outside 0..1",
         ),
         (
+            vec!["sim", "lc416", "--svg", "x.svg", "--frame", "-1"],
+            "--frame = -1: is not the number of a frame; give 0, 1, 2, ... or all",
+        ),
+        (
+            vec!["sim", "lc416", "--svg", "x.svg", "--frame", "99"],
+            "--frame = 99: the encoder saw 5 frames; choose one of 0..4",
+        ),
+        (
             vec!["explain", "--preset", ""],
             "--preset = \"\": unknown preset",
+        ),
+        (
+            vec!["presets", "--show", "nope"],
+            "--show = nope: unknown preset; known presets: s6_two_channel, ",
         ),
     ] {
         let message = bad(&arguments, 2);

@@ -199,7 +199,7 @@ fn what_is_no_regular_file_is_neither_read_nor_replaced() {
 #[test]
 fn a_link_to_a_file_stays_a_link() {
     let dir = Dir::new("link");
-    let target = dir.write("target.svg", b"old");
+    let target = dir.write("target.svg", b"");
     let link = dir.0.join("link.svg");
     std::os::unix::fs::symlink(&target, &link).unwrap();
     let outcome = run(&["sim", "paper", "--svg", &link.display().to_string()]);
@@ -217,4 +217,39 @@ fn sim_names_a_remedy_that_it_has() {
         message.ends_with("cannot write: is a folder, not a file; give another file"),
         "{message}"
     );
+}
+
+#[test]
+fn pictures_replace_only_pictures() {
+    let dir = Dir::new("foreign");
+    let (svg, vcd) = (dir.path("a.svg"), dir.path("a.vcd"));
+    let draw = ["sim", "lc416", "--svg", &svg, "--vcd", &vcd];
+    assert_eq!(run(&draw).exit_code, 0);
+    let drawn = dir.files();
+    assert_eq!(drawn.len(), 3);
+    // Files of its own, also those of another scenario, are replaced.
+    let other = ["sim", "real-1", "--svg", &svg, "--vcd", &vcd];
+    assert_eq!(run(&other).messages.len(), 3);
+    assert_eq!(run(&draw).messages.len(), 3);
+    assert!(dir.files() == drawn);
+    let foreign = b"<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"9\"/>\n";
+    let rows: [(&str, &str, &[u8]); 4] = [
+        ("--svg", "a.svg", b"[clock]\n"),
+        ("--svg", "a.svg", foreign),
+        ("--vcd", "a.vcd", b"$date today $end\n"),
+        (
+            "--vcd",
+            "a.gtkw",
+            b"[*]\n[*] GTKWave Analyzer, saved by its user\n",
+        ),
+    ];
+    for (option, name, bytes) in rows {
+        let path = dir.write(name, bytes);
+        let before = dir.files();
+        let wanted = format!("{option} = {path}: holds something else; only files of this program are replaced; give another file, or delete this one");
+        assert_eq!(bad(&other, 2), wanted);
+        assert!(dir.files() == before, "{name}");
+        std::fs::remove_file(path).unwrap();
+        assert!(run(&draw).exit_code == 0 && dir.files() == drawn);
+    }
 }

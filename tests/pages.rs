@@ -2,7 +2,8 @@
 
 use endat_gen::area::XC6S;
 use endat_hdl::config::{needed_baud, read_bytes, CHANNELS};
-use endat_hdl::regs::result_words;
+use endat_hdl::regs::{result_words, CARD, CARD_CONFIG, RESULT};
+use endat_hdl::transaction::cause;
 
 const README: &str = include_str!("../README.md");
 
@@ -81,25 +82,88 @@ fn every_key_of_the_preset_is_on_the_page() {
     }
 }
 
+/// Drawings, each with the command that draws it.
+const DRAWINGS: [(&str, &str, &[&str]); 6] = [
+    ("frame.svg", include_str!("../docs/frame.svg"), &["paper"]),
+    (
+        "supplement.svg",
+        include_str!("../docs/supplement.svg"),
+        &["additional-information", "--frame", "4"],
+    ),
+    (
+        "parameter.svg",
+        include_str!("../docs/parameter.svg"),
+        &["parameter", "--frame", "3"],
+    ),
+    (
+        "initialise.svg",
+        include_str!("../docs/initialise.svg"),
+        &["initialise", "--frame", "all"],
+    ),
+    (
+        "no-answer.svg",
+        include_str!("../docs/no-answer.svg"),
+        &["no-answer", "--frame", "2"],
+    ),
+    (
+        "no-answer-pause.svg",
+        include_str!("../docs/no-answer-pause.svg"),
+        &["no-answer", "--frame", "all"],
+    ),
+];
+
 #[test]
-fn the_drawing_in_the_programming_guide_is_the_program_s() {
-    let folder = crate::tools::folder("pages-supplement");
-    let file = folder.join("supplement.svg");
-    let svg = file.to_str().unwrap();
-    let frame = [
-        "sim",
-        "additional-information",
-        "--frame",
-        "4",
-        "--svg",
-        svg,
-    ];
-    assert_eq!(crate::program::run(&frame).exit_code, 0);
-    let drawn = std::fs::read_to_string(file).unwrap();
-    assert!(
-        drawn == include_str!("../docs/supplement.svg"),
-        "draw it again"
-    );
+fn the_drawings_in_the_programming_guide_are_the_program_s() {
+    let page = include_str!("../docs/programming.md");
+    let folder = crate::tools::folder("pages-drawings");
+    for (name, committed, scenario) in DRAWINGS {
+        let command = format!("cargo run -- sim {} --svg {name}", scenario.join(" "));
+        assert!(page.contains(&format!("`{command}`")), "{command}");
+        assert!(page.contains(&format!("]({name})](")), "{name}");
+        let file = folder.join(name);
+        let svg = ["--svg", file.to_str().unwrap()];
+        let outcome = crate::program::run(&[&["sim"], scenario, &svg[..]].concat());
+        assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+        let drawn = std::fs::read_to_string(file).unwrap();
+        assert!(drawn == committed, "draw it again in docs: {command}");
+    }
+}
+
+/// The status word of a result, as four bytes.
+fn status(cause: u64, is_fresh: bool, sequence: u64) -> String {
+    let register = RESULT.register("status").unwrap();
+    let put = |name: &str, value: u64| {
+        let field = register.fields.iter().find(|f| f.name == name).unwrap();
+        value << field.lsb
+    };
+    let word = put("cause", cause)
+        | put("valid", 1)
+        | put("fresh", is_fresh.into())
+        | put("sequence", sequence);
+    let bytes = (word as u32).to_be_bytes().map(|b| format!("{b:02X}"));
+    bytes.join(" ")
+}
+
+#[test]
+fn results_in_the_programming_guide_are_as_the_register_map_has_them() {
+    let page = include_str!("../docs/programming.md");
+    let good = status(cause::NONE, true, 2);
+    assert!(page.contains(&format!("-> {good}   valid, fresh, cause 0, number 2")));
+    let held = status(cause::NO_START_BIT, false, 3);
+    assert!(page.contains(&format!("-> {held}   cause 2, valid, not fresh, number 3")));
+    let sources = CARD_CONFIG.register("trigger_sources").unwrap();
+    let bit = |name: &str| 1 << sources.fields.iter().find(|f| f.name == name).unwrap().lsb;
+    let wanted = format!("00 00 00 {:02X}", bit("pin") | bit("register"));
+    assert!(page.contains(&format!("01 01 00 00 01 00  {wanted}    trigger_sources")));
+    for (block, name, bytes) in [
+        (&CARD_CONFIG, "trigger_sources", "01 01 00 00 01 00"),
+        (&CARD, "trigger_now", "01 01 00 00 00 09"),
+        (&RESULT, "status", "02 03 00 00 01 80"),
+    ] {
+        let address = block.address(block.register(name).unwrap(), 0);
+        let tail = format!("{:02X} {:02X}", address >> 8, address & 0xFF);
+        assert!(bytes.ends_with(&tail) && page.contains(bytes), "{name}");
+    }
 }
 
 #[test]
@@ -125,7 +189,10 @@ fn names_in_the_programming_guide_are_those_of_the_registers() {
         );
     }
     for (address, name) in [
+        (0x407, "progress"),
         (0x408, "state"),
+        (0x405, "control"),
+        (0x432, "frames_no_start_bit"),
         (0x442, "position_bits"),
         (0x400, "request"),
         (0x402, "answer"),

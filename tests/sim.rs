@@ -1,6 +1,13 @@
 //! The bench from the command line: the elaborated channel in every scenario.
 
 use crate::program::{bad, good, run, Dir};
+use endat_hdl::channel::{Channel, FixedTimes};
+use endat_hdl::elaborate::elaborate;
+use endat_hdl::service::program::{steps, Step};
+use endat_sim::encoder::Defect;
+use endat_sim::engine::Compiled;
+use endat_sim::scenario::{self, RunOptions};
+use rust_hdl::prelude::Block;
 use std::fs;
 
 /// The scenarios on the channel as it is elaborated for emission.
@@ -58,4 +65,68 @@ fn the_real_frame_has_its_66_rising_edges_and_can_be_looked_at() {
             .contains("is a folder, not a file")
     );
     assert!(bad(&["sim", "real-1", "--vcd", "/"], 2).contains("is not the name of a file"));
+}
+
+/// Answers to requests with frames of their own, and what the initialisation has sent before the first trigger.
+#[test]
+fn requests_and_steps_are_in_the_report() {
+    let rows = |name: &str| -> Vec<serde_json::Value> {
+        let report: serde_json::Value =
+            serde_json::from_str(&good(&["sim", name, "--json"])).unwrap();
+        let rows = report[0]["channels"][0]["frames"].as_array();
+        rows.unwrap().clone()
+    };
+    let parameter = rows("parameter");
+    let answers: Vec<_> = parameter
+        .iter()
+        .filter(|r| !r["answer"].is_null())
+        .collect();
+    assert_eq!(answers.len(), 2);
+    assert_eq!(answers[0]["encoder"]["command"], 0b001_110);
+    assert_eq!(answers[0]["answer"]["word"], 0xA1_0000);
+    assert_eq!(answers[0]["trigger_us"], 2_620.0);
+    assert_eq!(answers[1]["encoder"]["command"], 0b100_011);
+    assert_eq!(answers[1]["answer"]["word"], 0x0D_801D);
+    assert_eq!(answers[1]["answer"]["crc_good"], true);
+
+    let initialise = rows("initialise");
+    let commands: Vec<_> = initialise
+        .iter()
+        .map(|r| r["encoder"]["command"].as_u64())
+        .collect();
+    let before = initialise.iter().take_while(|r| r["trigger_us"].is_null());
+    let frames = |s: &Step| {
+        let without = matches!(s, Step::TakeWidth | Step::OnlyEndat22 | Step::ChooseClock);
+        usize::from(!without && *s != Step::SetRecovery)
+    };
+    let steps: usize = steps().iter().map(frames).sum();
+    assert_eq!(before.count(), 1 + steps);
+    assert_eq!(commands[..3], [None, Some(0b101_010), Some(0b001_110)]);
+}
+
+/// The report would say so if a request went wrong.
+#[test]
+fn a_request_that_fails_is_complained_about() {
+    let complaints = |defect: Option<Defect>| {
+        let mut s = scenario::named("parameter").unwrap();
+        let encoder = s.channels[0].encoder.clone();
+        if let Some(defect) = defect {
+            s.channels[0].encoder = encoder.defect(3, defect);
+        }
+        let times = FixedTimes::at(s.system_hz);
+        let mut block = Channel::with(times, s.features());
+        block.connect_all();
+        let design = elaborate(&block, "channel").unwrap();
+        let engine = Compiled::new(&design).unwrap();
+        let report = s.run_channel(0, engine, RunOptions::default()).1;
+        report.complaints()
+    };
+    assert_eq!(complaints(None), [""; 0]);
+    let spoilt = complaints(Some(Defect::CrcXor(1)));
+    assert!(spoilt[0].contains("frame 3: CRC"), "{spoilt:?}");
+    let silent = complaints(Some(Defect::NoStartBit));
+    assert!(
+        silent.iter().any(|c| c.contains("frame 3: no start bit")),
+        "{silent:?}"
+    );
 }

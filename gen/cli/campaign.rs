@@ -1,7 +1,7 @@
 //! `campaign`: thousands of cases in lanes; one of them again, alone, with waveforms and a drawing.
 
 use super::number::number;
-use super::pictures::{draw, Pictures};
+use super::pictures::{draw, Drawn, Pictures};
 use super::{to_json, Outcome};
 use crate::error::GenError;
 use clap::{Args, ValueEnum};
@@ -169,7 +169,7 @@ fn alone(arguments: &CampaignArgs, case: &Case, index: usize) -> Result<Outcome,
     let files = Pictures {
         vcd: arguments.vcd.as_deref(),
         svg: arguments.svg.as_deref(),
-        frame: None,
+        frame: Drawn::First,
     };
     let messages = draw(&files, &bench, &case.title)?;
     let stdout = if arguments.json {

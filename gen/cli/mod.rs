@@ -143,7 +143,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Emit(arguments)) => emit::run(&arguments),
         Some(Command::Presets {
             show: Some(name), ..
-        }) => config::preset(&name).map(Outcome::good),
+        }) => config::preset_of("--show", &name).map(Outcome::good),
         Some(Command::Presets { json, .. }) => presets(json),
         Some(Command::Explain { source, json }) => {
             let report = explain::report(&source.load()?);

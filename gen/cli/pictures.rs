@@ -3,9 +3,10 @@
 use crate::artifact::{self, Artifact};
 use crate::error::{shown, GenError};
 use endat_sim::bench::Bench;
-use endat_sim::diagram::frame_svg;
+use endat_sim::diagram::{frame_svg, is_drawing, overview_svg};
 use endat_sim::engine::Compiled;
-use endat_sim::wave::Wave;
+use endat_sim::wave::{is_layout, is_vcd, Wave};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The frame that is drawn: the first at the full clock.
@@ -18,12 +19,34 @@ pub struct Pictures<'a> {
     pub vcd: Option<&'a Path>,
     /// A frame as a timing diagram.
     pub svg: Option<&'a Path>,
-    /// Which frame, 0 = the one that measures the delay; otherwise the first at the full clock.
-    pub frame: Option<usize>,
+    /// What of it.
+    pub frame: Drawn,
 }
 
-/// A file to be written: the option that asked for it, its place, its text.
-type File = (&'static str, PathBuf, String);
+/// What is drawn.
+#[derive(Clone, Copy, Debug, Default)]
+pub enum Drawn {
+    /// The first frame at the full clock.
+    #[default]
+    First,
+    /// This frame, 0 = the one that measures the delay.
+    Frame(usize),
+    /// All frames, in an overview.
+    All,
+}
+
+/// A file to be written.
+struct File {
+    /// The option that asked for it.
+    option: &'static str,
+    path: PathBuf,
+    text: String,
+    /// Whether a file that begins like this may be replaced.
+    is_ours: fn(&str) -> bool,
+}
+
+/// So much of a file that is there already is looked at.
+const HEAD_BYTES: u64 = 4096;
 
 /// Writes waveforms and drawing; returns one message for each file.
 pub fn draw(
@@ -39,57 +62,97 @@ pub fn draw(
         wave.write_vcd(&mut bytes)
             .map_err(|e| GenError::io("write", path, &e, "give another file"))?;
         let text = String::from_utf8_lossy(&bytes).into_owned();
-        files.push(("--vcd", path.to_owned(), text));
-        let layout = path.with_extension("gtkw");
-        files.push(("--vcd", layout, wave.gtkw(&name)));
+        files.push(File {
+            option: "--vcd",
+            path: path.to_owned(),
+            text,
+            is_ours: is_vcd,
+        });
+        files.push(File {
+            option: "--vcd",
+            path: path.with_extension("gtkw"),
+            text: wave.gtkw(&name),
+            is_ours: is_layout,
+        });
     }
     if let Some(path) = wanted.svg {
         let link = bench.link(0);
+        let nothing = || {
+            GenError::input(format!(
+                "--svg = {}: there is no frame to draw; leave it out",
+                path.display()
+            ))
+        };
         let drawing = match wanted.frame {
-            Some(frame) => frame_svg(link, frame, title).ok_or_else(|| {
+            Drawn::All => overview_svg(link, title).ok_or_else(nothing)?,
+            Drawn::Frame(frame) => frame_svg(link, frame, title).ok_or_else(|| {
                 let count = link.encoder().frames().len();
                 GenError::input(format!(
                     "--frame = {frame}: the encoder saw {count} frames; choose one of 0..{}",
                     count.saturating_sub(1)
                 ))
             })?,
-            None => frame_svg(link, DRAWN_FRAME, title)
+            Drawn::First => frame_svg(link, DRAWN_FRAME, title)
                 .or_else(|| frame_svg(link, 0, title))
-                .ok_or_else(|| {
-                    GenError::input(format!(
-                        "--svg = {}: there is no frame to draw; leave it out",
-                        path.display()
-                    ))
-                })?,
+                .ok_or_else(nothing)?,
         };
-        files.push(("--svg", path.to_owned(), drawing));
+        files.push(File {
+            option: "--svg",
+            path: path.to_owned(),
+            text: drawing,
+            is_ours: is_drawing,
+        });
     }
     check_places(&files)?;
+    files.iter().try_for_each(check_owner)?;
     let mut written = Vec::new();
-    for (option, path, text) in &files {
-        written.extend(write(option, path, text)?);
+    for file in &files {
+        written.extend(write(file)?);
     }
     Ok(written)
 }
 
 /// Refuses two files in one place: the layout of the waveforms, too, has one.
 fn check_places(files: &[File]) -> Result<(), GenError> {
-    for (index, (option, path, _)) in files.iter().enumerate() {
-        for (other, taken, _) in &files[..index] {
-            if place(path) == place(taken) {
-                let text = if option == other {
+    for (index, file) in files.iter().enumerate() {
+        for other in &files[..index] {
+            if place(&file.path) == place(&other.path) {
+                return Err(file.refused(&if file.option == other.option {
                     "is the name of the layout beside it; give a name that ends in .vcd".into()
                 } else {
-                    format!("is the place of a file of {other}; give another file")
-                };
-                return Err(GenError::input(format!(
-                    "{option} = {}: {text}",
-                    path.display()
-                )));
+                    format!(
+                        "is the place of a file of {}; give another file",
+                        other.option
+                    )
+                }));
             }
         }
     }
     Ok(())
+}
+
+/// Refuses to replace a file that the program cannot have written. What is no file is left to the writing.
+fn check_owner(file: &File) -> Result<(), GenError> {
+    if !std::fs::metadata(&file.path).is_ok_and(|m| m.is_file()) {
+        return Ok(());
+    }
+    let mut head = Vec::new();
+    std::fs::File::open(&file.path)
+        .and_then(|f| f.take(HEAD_BYTES).read_to_end(&mut head))
+        .map_err(|e| GenError::io("read", &file.path, &e, "give another file"))?;
+    // Nothing is lost with an empty file.
+    if head.is_empty() || (file.is_ours)(&String::from_utf8_lossy(&head)) {
+        return Ok(());
+    }
+    Err(file.refused(
+        "holds something else; only files of this program are replaced; give another file, or delete this one",
+    ))
+}
+
+impl File {
+    fn refused(&self, text: &str) -> GenError {
+        GenError::input(format!("{} = {}: {text}", self.option, self.path.display()))
+    }
 }
 
 fn folder(path: &Path) -> &Path {
@@ -117,8 +180,9 @@ fn file_name(option: &str, path: &Path) -> Result<String, GenError> {
     })
 }
 
-fn write(option: &str, path: &Path, text: &str) -> Result<Vec<String>, GenError> {
-    let artifact = Artifact::new(file_name(option, path)?, text);
+fn write(file: &File) -> Result<Vec<String>, GenError> {
+    let path = &file.path;
+    let artifact = Artifact::new(file_name(file.option, path)?, &file.text);
     let files = artifact::write(folder(path), &[artifact], "give another file")?;
     Ok(files
         .iter()

@@ -1,11 +1,13 @@
 //! `sim`: runs a named scenario of the bench on the channel, as elaborated for emission.
 
-use super::pictures::{draw, Pictures};
+use super::pictures::{draw, Drawn, Pictures};
 use super::{to_json, Outcome};
 use crate::error::{shown, GenError};
 use clap::Args;
 use endat_hdl::channel::{Channel, FixedTimes};
 use endat_hdl::elaborate::elaborate;
+use endat_hdl::encoder_port::EncoderPort;
+use endat_hdl::service::program::ServiceTimes;
 use endat_sim::bench::Bench;
 use endat_sim::engine::Compiled;
 use endat_sim::scenario::{self, ChannelReport, FrameReport, Report, RunOptions, Scenario};
@@ -36,7 +38,7 @@ pub struct SimArgs {
     /// Draw a frame as a timing diagram
     #[arg(long, value_name = "FILE", conflicts_with = "list")]
     svg: Option<PathBuf>,
-    /// Draw this frame of the encoder, 0 = the one that measures the delay [default: 1]
+    /// Draw this frame of the encoder, 0 = the one that measures the delay; all = all frames, in an overview [default: 1]
     #[arg(
         long,
         value_name = "N",
@@ -74,14 +76,17 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
     };
     let channels = chosen(arguments, &scenario)?;
     let frame = arguments.frame.as_ref().map(|text| {
-        text.parse().map_err(|_| {
+        if text == "all" {
+            return Ok(Drawn::All);
+        }
+        text.parse().map(Drawn::Frame).map_err(|_| {
             GenError::input(format!(
-                "--frame = {}: is not the number of a frame; give 0, 1, 2, ...",
+                "--frame = {}: is not the number of a frame; give 0, 1, 2, ... or all",
                 shown(text)
             ))
         })
     });
-    let frame = frame.transpose()?;
+    let frame = frame.transpose()?.unwrap_or_default();
     let mut outcome = Outcome::default();
     let mut reports = Vec::new();
     for (order, index) in channels.into_iter().enumerate() {
@@ -160,9 +165,17 @@ fn run_channel(scenario: &Scenario, index: usize) -> Result<(Bench<Compiled>, Re
         ready_low_cycles: settings.ready_low_cycles,
         ..FixedTimes::at(scenario.system_hz)
     };
-    let mut block = Channel::with(times, scenario.features());
-    block.connect_all();
-    let design = elaborate(&block, "channel").map_err(|e| fault(&e))?;
+    let design = if scenario.initialisation > 0 {
+        let service = ServiceTimes::at(scenario.system_hz);
+        let mut block = EncoderPort::new(times, Some(&service), false);
+        block.connect_all();
+        elaborate(&block, "encoder_port")
+    } else {
+        let mut block = Channel::with(times, scenario.features());
+        block.connect_all();
+        elaborate(&block, "channel")
+    };
+    let design = design.map_err(|e| fault(&e))?;
     let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
     let options = RunOptions {
         record: true,
@@ -207,7 +220,13 @@ fn frame_json(frame: &FrameReport) -> Value {
             "crc_received": r.crc_received,
             "crc_computed": r.crc_computed,
         })),
+        "answer": frame.answer.as_ref().map(|a| json!({
+            "cause": endat_hdl::transaction::cause::name(a.cause),
+            "word": a.word,
+            "crc_good": a.crc_good,
+        })),
         "encoder": frame.frame.as_ref().map(|f| json!({
+            "command": f.command,
             "position": f.position,
             "rising_edges": f.rising_edges,
             "expected_rising_edges": f.expected_rising_edges(),

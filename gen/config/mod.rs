@@ -91,11 +91,16 @@ pub struct Project {
 
 /// Text of the preset with this name.
 pub fn preset(name: &str) -> Result<&'static str, GenError> {
+    preset_of("--preset", name)
+}
+
+/// The text of the preset that an option asked for.
+pub fn preset_of(option: &str, name: &str) -> Result<&'static str, GenError> {
     let found = PRESETS.iter().find(|(n, _)| *n == name);
     found.map(|(_, text)| *text).ok_or_else(|| {
         let known: Vec<&str> = PRESETS.iter().map(|(n, _)| *n).collect();
         GenError::input(format!(
-            "--preset = {}: unknown preset; known presets: {}",
+            "{option} = {}: unknown preset; known presets: {}",
             shown(name),
             known.join(", ")
         ))

@@ -118,6 +118,21 @@ fn kind_of(s: &Segment, frame: &FrameLog) -> Kind {
     }
 }
 
+/// What a command does.
+pub(super) fn command_name(command: u8) -> &'static str {
+    match command {
+        0b000_111 | 0b111_000 => "send position",
+        0b001_110 => "select memory area",
+        0b011_100 => "receive parameter",
+        0b100_011 => "send parameter",
+        0b101_010 => "reset",
+        0b010_101 => "send test values",
+        0b110_001 => "test command",
+        0b010_010 => "communication command",
+        _ => "position + supplement",
+    }
+}
+
 /// What the 8 bits are that go with a command.
 fn address_name(command: Option<u8>) -> &'static str {
     match command {
@@ -150,6 +165,9 @@ impl Group {
                 ]
             }
             Kind::Turnaround => texts(&["nobody drives", "released", "off"]),
+            Kind::Wait if f.start_edge.is_none() => {
+                texts(&["LOW: no start bit comes", "no start bit", "wait"])
+            }
             // Memory commands wait for their access.
             Kind::Wait if f.parameter.is_some() => {
                 texts(&["LOW until tac has passed", "LOW until tac", "wait"])

@@ -4,6 +4,7 @@
 //! microseconds. Long quiet spans are shortened and marked. If the cable is long, both ends are shown.
 
 mod groups;
+mod overview;
 mod scale;
 mod svg;
 #[cfg(test)]
@@ -17,6 +18,9 @@ use crate::{
     segments::{data_segments, first_falls, By, Level, Meaning, Segment},
     Time, US,
 };
+pub use overview::overview_svg;
+pub use svg::is_drawing;
+
 use groups::{bit_name, fill, groups, segment_fill, stroke};
 use scale::Scale;
 use svg::{text_width, Anchor, Svg};
@@ -43,6 +47,9 @@ const CLOCK_HEIGHT: f64 = 24.0;
 const DATA_HEIGHT: f64 = 34.0;
 /// A quiet span is shortened to this many clock periods.
 const QUIET_PERIODS: Time = 4;
+/// So much of both ends of a long wait is shown as it is, and the rest shortened if it is longer than that.
+const WAIT_PERIODS: Time = 6;
+const LONG_PERIODS: Time = 32;
 /// Both ends are shown if the cable and the transceivers are longer than this part of a period.
 const BOTH_ENDS_PART: Time = 3;
 
@@ -50,6 +57,13 @@ const BOTH_ENDS_PART: Time = 3;
 pub fn frame_svg(link: &Link, index: usize, title: &str) -> Option<String> {
     let frame = link.encoder().frames().get(index)?;
     Some(Diagram::new(link, frame)?.draw(title))
+}
+
+/// The part of a wait that is shortened though the clock goes on, which it does to the end of the wait or to `last_edge`.
+fn long_wait(s: &Segment, last_edge: Time, period: Time) -> Option<(Time, Time)> {
+    let until = s.until.min(last_edge).saturating_sub(WAIT_PERIODS * period);
+    let from = s.from + WAIT_PERIODS * period;
+    (s.meaning == Meaning::Wait && until > from + LONG_PERIODS * period).then_some((from, until))
 }
 
 /// One row of the drawing.
@@ -90,10 +104,17 @@ impl<'a> Diagram<'a> {
         };
         let (segments, far_segments) = (cut(End::Receiver), cut(End::Encoder));
         let both_ends = trip * BOTH_ENDS_PART > period;
+        let waits: Vec<(Time, Time)> = segments
+            .iter()
+            .filter_map(|s| long_wait(s, frame.last_rise, period))
+            .collect();
+        let is_shown = |t: &Time| waits.iter().all(|w| *t <= w.0 || w.1 <= *t);
         let clocks = [&trace.clock_at_receiver, &trace.clock_at_encoder];
         let edges = clocks.iter().flat_map(|c| c.iter().map(|e| e.0));
         let cuts = segments.iter().chain(&far_segments).map(|s| s.from);
-        let events = edges.chain(cuts).filter(|t| (begin..=end).contains(t));
+        let ends = waits.iter().flat_map(|w| [w.0, w.1]);
+        let events = edges.filter(is_shown).chain(cuts).chain(ends);
+        let events = events.filter(|t| (begin..=end).contains(t));
         let events = events.chain([begin, end]).collect();
         Some(Self {
             scale: Scale::new(events, LEFT, period, PERIOD_PIXELS, QUIET_PERIODS * period),
@@ -114,10 +135,8 @@ impl<'a> Diagram<'a> {
     }
 
     fn draw(mut self, title: &str) -> String {
-        let width = self.scale.end() + RIGHT;
-        self.svg.text(24.0, 34.0, Anchor::Start, "title", title);
         let subtitle = self.subtitle();
-        self.svg.text(24.0, 55.0, Anchor::Start, "sub", &subtitle);
+        let width = self.scale.end().max(self.svg.head(title, &subtitle)) + RIGHT;
         self.legend(24.0, 78.0);
         let rows = match self.both_ends {
             false => vec![Row::Clock(End::Receiver), Row::Data(End::Receiver)],
@@ -221,13 +240,24 @@ impl<'a> Diagram<'a> {
         let level_y = |level: bool| if level { top } else { bottom };
         let mut points = vec![(self.x(self.begin), top)];
         let mut count = 0;
+        let mut hidden = None;
         let mut labels = Vec::new();
         for (time, level) in track.iter().filter(|e| e.0 > self.begin && e.0 < self.end) {
+            let counts = *level && *time > first;
+            count += u32::from(counts);
+            if let Some(middle) = self.scale.middle_of_break(*time) {
+                hidden = Some(middle);
+                continue;
+            }
             let x = self.x(*time);
+            if let Some(middle) = hidden.take() {
+                // The clock goes on there; the marks cover the step.
+                let before = points.last().map_or(top, |p| p.1);
+                points.extend([(middle, before), (middle, level_y(!level))]);
+            }
             points.push((x, level_y(!level)));
             points.push((x, level_y(*level)));
-            if *level && *time > first {
-                count += 1;
+            if counts {
                 labels.push((x, count));
             }
         }

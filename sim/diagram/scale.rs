@@ -69,7 +69,14 @@ impl Scale {
 
     /// Whether a moment is inside a shortened span, where a place means nothing.
     pub(super) fn in_break(&self, time: Time) -> bool {
-        self.breaks.iter().any(|b| b.from < time && time < b.until)
+        self.middle_of_break(time).is_some()
+    }
+
+    /// The middle of the shortened span that a moment is inside of.
+    pub(super) fn middle_of_break(&self, time: Time) -> Option<f64> {
+        let inside = |b: &&Break| b.from < time && time < b.until;
+        let found = self.breaks.iter().find(inside)?;
+        Some((self.x(found.from) + self.x(found.until)) / 2.0)
     }
 
     /// The right end.

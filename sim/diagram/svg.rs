@@ -23,8 +23,21 @@ impl Anchor {
     }
 }
 
+/// How each file begins, and its third line.
+const HEAD: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" width="#;
+const STYLE_HEAD: &str = "<style>text{";
+
+/// Whether a file that begins like this can be a drawing of ours.
+pub fn is_drawing(head: &str) -> bool {
+    let style = head.lines().nth(2);
+    head.starts_with(HEAD) && style.is_some_and(|l| l.starts_with(STYLE_HEAD))
+}
+
 /// Mean width of a character, as a part of the font size.
 const CHARACTER_WIDTH: f64 = 0.57;
+
+/// How much wider bold characters are.
+const BOLD_WIDTH: f64 = 1.2;
 
 /// Estimated width of a text.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
@@ -79,10 +92,19 @@ impl Svg {
         ));
     }
 
+    /// Title and subtitle of a drawing; where they end.
+    pub(super) fn head(&mut self, title: &str, subtitle: &str) -> f64 {
+        let x = 24.0;
+        self.text(x, 34.0, Anchor::Start, "title", title);
+        self.text(x, 55.0, Anchor::Start, "sub", subtitle);
+        let bold = text_width(title, 19.0) * BOLD_WIDTH;
+        x + bold.max(text_width(subtitle, 12.5))
+    }
+
     /// The file: title and description for those who do not see it, style, drawing.
     pub(super) fn finish(self, width: f64, height: f64, title: &str, style: &str) -> String {
         format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width:.0}" height="{height:.0}" viewBox="0 0 {width:.0} {height:.0}" role="img">
+            r#"{HEAD}"{width:.0}" height="{height:.0}" viewBox="0 0 {width:.0} {height:.0}" role="img">
 <title>{}</title>
 <style>{style}</style>
 <rect width="100%" height="100%" fill="white"/>

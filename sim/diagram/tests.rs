@@ -103,6 +103,91 @@ fn frames_that_end_early_can_be_drawn() {
     }
 }
 
+/// The clock goes on behind the mark, and the count with it.
+#[test]
+fn a_long_wait_is_shortened_though_the_clock_goes_on() {
+    let svg = drawing("no-answer", 2);
+    let counts = texts(&svg, "mark").into_iter().chain(texts(&svg, "count"));
+    let counts: Vec<u32> = counts.map(|n| n.parse().unwrap()).collect();
+    let jump = counts.windows(2).position(|n| n[1] > n[0] + 1).unwrap();
+    assert!((1..=jump as u32 + 1).eq(counts[..=jump].iter().copied()));
+    let rest = counts.len() - jump - 1;
+    assert!(jump < 20 && (4..10).contains(&rest), "{counts:?}");
+    let last = counts.last().unwrap();
+    assert!(svg.contains(&format!("no answer, {last} rising edges")));
+    let fields = texts(&svg, "field");
+    assert_eq!(fields.last().unwrap(), "LOW: no start bit comes");
+}
+
+/// No line of the clock goes down a slope, wherever in a period the mark stands.
+#[test]
+fn edges_beside_a_mark_are_upright() {
+    let mut s = scenario::named("no-answer").unwrap();
+    s.triggers = 2;
+    for cable_m in [1.0, 10.0, 20.0, 30.0, 40.0] {
+        s.channels[0].line = LineConfig::cable(cable_m);
+        let options = RunOptions {
+            record: true,
+            ..RunOptions::default()
+        };
+        let (bench, _) = s.run_channel(0, TestReceiver::new(s.system_hz), options);
+        let svg = frame_svg(bench.link(0), 2, "").unwrap();
+        let clocks = svg.lines().filter(|l| l.contains("class=\"clock\""));
+        for clock in clocks {
+            let path = clock.split('"').nth(3).unwrap().trim_start_matches('M');
+            let points: Vec<_> = path.split(" L").map(|p| p.split_once(' ')).collect();
+            assert!(points.len() > 40);
+            for pair in points.windows(2) {
+                let [Some(a), Some(b)] = pair else {
+                    panic!("{path}")
+                };
+                assert!(a.0 == b.0 || a.1 == b.1, "{cable_m} m: {a:?} {b:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_overview_has_every_frame_with_what_was_sent_and_what_came() {
+    let s = scenario::named("no-answer").unwrap();
+    let options = RunOptions {
+        record: true,
+        ..RunOptions::default()
+    };
+    let (bench, _) = s.run_channel(0, TestReceiver::new(s.system_hz), options);
+    let svg = overview_svg(bench.link(0), s.summary).unwrap();
+    let frames = texts(&svg, "name");
+    assert_eq!(frames.iter().filter(|n| *n == "send position").count(), 5);
+    let mut wanted = Vec::new();
+    for came in [
+        "0x1234567",
+        "0x1235678",
+        "no start bit",
+        "0x123789A",
+        "0x12389AB",
+    ] {
+        wanted.extend(["111000", came]);
+    }
+    assert_eq!(texts(&svg, "field"), wanted);
+    assert_eq!(texts(&svg, "dim").len(), 5);
+    assert_eq!(texts(&svg, "tick")[2], "at 12.620 ms, 3.125 MHz");
+
+    let last = (0b100_011, 0x0D, 0, 0);
+    let select = (0b001_110, area::MANUFACTURER_1, 0, 0);
+    let bench = exchanged(1.0, &[select, last]);
+    let svg = overview_svg(bench.link(0), "").unwrap();
+    let wanted = ["001110 A1 0000", "A1 0000", "100011 0D 0000", "0D 800D"];
+    assert_eq!(texts(&svg, "field")[2..], wanted);
+
+    let nothing = Bench::channel(
+        TestReceiver::new(s.system_hz),
+        s.system_hz,
+        &s.channels[0].settings,
+        s.link(0),
+    );
+    assert!(overview_svg(nothing.link(0), "").is_none());
+}
+
 #[test]
 fn the_drawing_is_the_same_every_time_and_renders() {
     let svg = drawing("paper", 1);
@@ -127,6 +212,12 @@ fn the_drawing_is_the_same_every_time_and_renders() {
 
 /// The last of these exchanges (command, 8 bits, 16 bits, expected additional informations), after one that measures the delay.
 fn exchange(cable_m: f64, exchanges: &[(u8, u8, u16, u8)]) -> String {
+    let bench = exchanged(cable_m, exchanges);
+    frame_svg(bench.link(0), exchanges.len(), "an exchange").unwrap()
+}
+
+/// The bench after them.
+fn exchanged(cable_m: f64, exchanges: &[(u8, u8, u16, u8)]) -> Bench<TestReceiver> {
     const SYSTEM_HZ: u64 = 128_000_000;
     let mut encoder = EncoderConfig::endat22(13).position(PositionSource::Fixed(0x0BAD));
     encoder.tac = 0..=0;
@@ -146,7 +237,7 @@ fn exchange(cable_m: f64, exchanges: &[(u8, u8, u16, u8)]) -> String {
         assert!(bench.run_until_done(MS, |b| b.get("busy") == 0));
     }
     assert_eq!(bench.violations(0), []);
-    frame_svg(bench.link(0), exchanges.len(), "an exchange").unwrap()
+    bench
 }
 
 fn names(letter: char, most: u32) -> impl Iterator<Item = String> {

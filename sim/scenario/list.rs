@@ -1,9 +1,9 @@
 //! The scenarios.
 
-use super::{ChannelScenario, Ride, Scenario};
+use super::{ChannelScenario, Request, Scenario};
 use crate::{
     bench::ChannelSettings,
-    encoder::{Defect, EncoderConfig, PositionSource},
+    encoder::{area, Defect, EncoderConfig, PositionSource},
     line::{GlitchRate, LineConfig, Wire},
     Time, MS, NS, US,
 };
@@ -37,6 +37,9 @@ pub fn all() -> Vec<Scenario> {
         glitches(),
         overrun(),
         additional_information(),
+        parameter(),
+        no_answer(),
+        initialise(),
     ]
 }
 
@@ -79,6 +82,7 @@ fn paper() -> Scenario {
         trigger_period: 100 * US,
         triggers: 4,
         requests: &[],
+        initialisation: 0,
         causes: &[OK; 5],
         may_stop: false,
     }
@@ -101,6 +105,7 @@ fn real_1() -> Scenario {
         trigger_period: 50 * US,
         triggers: 2,
         requests: &[],
+        initialisation: 0,
         causes: &[OK; 3],
         may_stop: false,
     }
@@ -122,6 +127,7 @@ fn lc416() -> Scenario {
         trigger_period: 62_500 * NS,
         triggers: 4,
         requests: &[],
+        initialisation: 0,
         causes: &[OK; 5],
         may_stop: false,
     }
@@ -139,6 +145,7 @@ fn long_cable() -> Scenario {
         trigger_period: 60 * US,
         triggers: 4,
         requests: &[],
+        initialisation: 0,
         causes: &[OK; 5],
         may_stop: false,
     }
@@ -157,6 +164,7 @@ fn sixteen_megahertz() -> Scenario {
         trigger_period: 15 * US,
         triggers: 8,
         requests: &[],
+        initialisation: 0,
         causes: &[OK; 9],
         may_stop: false,
     }
@@ -176,6 +184,7 @@ fn one_rcn8510(encoder: EncoderConfig) -> Scenario {
         trigger_period: 100 * US,
         triggers: 5,
         requests: &[],
+        initialisation: 0,
         causes: &[],
         may_stop: false,
     }
@@ -262,7 +271,7 @@ fn overrun() -> Scenario {
 }
 
 fn additional_information() -> Scenario {
-    const SELECT: Ride = Ride {
+    const SELECT: Request = Request {
         trigger: 1,
         command: ModeCommand::PositionSelectMemory,
         address: 0x4C,
@@ -275,12 +284,12 @@ fn additional_information() -> Scenario {
         triggers: 4,
         requests: &[
             SELECT,
-            Ride {
+            Request {
                 trigger: 2,
                 address: 0x5B,
                 ..SELECT
             },
-            Ride {
+            Request {
                 trigger: 4,
                 command: ModeCommand::PositionSendParameter,
                 address: 0x0D,
@@ -288,6 +297,70 @@ fn additional_information() -> Scenario {
             },
         ],
         causes: &[OK; 5],
+        ..one_rcn8510(rcn8510())
+    }
+}
+
+fn parameter() -> Scenario {
+    const SELECT: Request = Request {
+        trigger: 2,
+        command: ModeCommand::SelectMemory,
+        address: area::MANUFACTURER_1,
+        data: 0,
+    };
+    let rates = (100_000_000, 2_000_000);
+    let mut encoder = rcn8510();
+    encoder.tac = 200 * US..=200 * US;
+    Scenario {
+        name: "parameter",
+        summary: "a memory area is selected and a word of it read, with EnDat 2.1 commands in frames of their own",
+        endat_hz: rates.1,
+        channels: vec![channel(rates, SendPositionAddInfo, encoder, 3.0)],
+        trigger_period: 2 * MS,
+        requests: &[
+            SELECT,
+            Request {
+                trigger: 3,
+                command: ModeCommand::SendParameter,
+                address: 0x0D,
+                ..SELECT
+            },
+        ],
+        causes: &[OK; 4],
+        ..one_rcn8510(rcn8510())
+    }
+}
+
+fn no_answer() -> Scenario {
+    let rates = (100_000_000, 3_125_000);
+    let encoder = rcn8510().defect(2, Defect::NoStartBit);
+    let channel = channel(rates, SendPositionAddInfo, encoder, 10.0);
+    Scenario {
+        name: "no-answer",
+        summary: "the encoder does not answer: a pause of 30 ms, then the delay is measured again",
+        channels: vec![channel],
+        trigger_period: 12 * MS,
+        triggers: 6,
+        causes: &[OK, OK, cause::NO_START_BIT, cause::TRIGGER_OVERRUN, OK],
+        may_stop: true,
+        ..one_rcn8510(rcn8510())
+    }
+}
+
+fn initialise() -> Scenario {
+    // Two seconds are long: as few cycles as can be.
+    let rates = (4_000_000, 500_000);
+    Scenario {
+        name: "initialise",
+        summary: "from power-up to the first positions: the card resets the encoder and reads its name plate",
+        system_hz: rates.0,
+        endat_hz: rates.1,
+        channels: vec![channel(rates, SendPositionAddInfo, rcn8510(), 10.0)],
+        initialisation: 1_650 * MS,
+        trigger_period: 200 * US,
+        triggers: 2,
+        causes: &[OK; 3],
+        may_stop: true,
         ..one_rcn8510(rcn8510())
     }
 }

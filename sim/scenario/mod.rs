@@ -6,7 +6,7 @@ mod report;
 mod tests;
 
 pub use list::{all, named};
-pub use report::{ChannelReport, FrameReport, Report, SampleSummary};
+pub use report::{Answer, ChannelReport, FrameReport, Report, SampleSummary};
 
 use crate::{
     bench::{Bench, ChannelSettings, Link, PinNames},
@@ -45,20 +45,23 @@ pub struct Scenario {
     pub trigger_period: Time,
     /// Number of triggers after the first one, which starts the frame that measures the delay.
     pub triggers: u64,
-    /// Requests that ride on triggered frames, in order of the triggers.
-    pub requests: &'static [Ride],
+    /// Requests, in order of the triggers.
+    pub requests: &'static [Request],
+    /// The port initialises its encoder, which takes this long; 0 = it does not.
+    pub initialisation: Time,
     /// Cause code of every result that a sound core delivers, in order.
     pub causes: &'static [u64],
     /// The receiver is not to blame if an encoder sees a frame that stops: the story makes it stop.
     pub may_stop: bool,
 }
 
-/// A request that rides on a triggered frame.
+/// A request: with an EnDat 2.2 command it rides on the frame of its trigger, with any other it has a frame of its own in that
+/// trigger's place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Ride {
+pub struct Request {
     /// Number of the trigger, 0 = first.
     pub trigger: usize,
-    /// Mode command with a supplement.
+    /// Mode command.
     pub command: ModeCommand,
     /// MRS code, address or port.
     pub address: u8,
@@ -68,6 +71,8 @@ pub struct Ride {
 
 /// When the first trigger comes.
 const FIRST_TRIGGER: Time = 20 * US;
+/// Longest frame of a request: time-out and pause included.
+const REQUEST_LIMIT: Time = 100 * MS;
 /// From the first trigger to the others: the frame that measures the delay takes less.
 const WARM_UP: Time = 600 * US;
 
@@ -107,8 +112,8 @@ impl Scenario {
             vec![(PinNames::channel(), self.link(index))],
         );
         bench.configure(&self.channels[index].settings);
-        self.run(&mut bench, options);
-        let report = Report::new(self, &bench, &[index]);
+        let answers = self.run(&mut bench, options);
+        let report = Report::new(self, &bench, &[index], &answers);
         (bench, report)
     }
 
@@ -118,8 +123,8 @@ impl Scenario {
         let links = all.iter().map(|i| (PinNames::card(*i), self.link(*i)));
         let links = links.collect();
         let mut bench = Bench::new(engine, self.system_hz, links);
-        self.run(&mut bench, options);
-        let report = Report::new(self, &bench, &all);
+        let answers = self.run(&mut bench, options);
+        let report = Report::new(self, &bench, &all, &answers);
         (bench, report)
     }
 
@@ -139,11 +144,13 @@ impl Scenario {
 
     /// When the triggers come.
     pub fn trigger_times(&self) -> impl Iterator<Item = Time> + '_ {
-        let later = (0..self.triggers).map(|i| FIRST_TRIGGER + WARM_UP + i * self.trigger_period);
-        std::iter::once(FIRST_TRIGGER).chain(later)
+        let first = self.initialisation + FIRST_TRIGGER;
+        let later = (0..self.triggers).map(move |i| first + WARM_UP + i * self.trigger_period);
+        std::iter::once(first).chain(later)
     }
 
-    fn run<E: Engine>(&self, bench: &mut Bench<E>, options: RunOptions) {
+    /// What came back to the requests that had a frame of their own.
+    fn run<E: Engine>(&self, bench: &mut Bench<E>, options: RunOptions) -> Vec<Answer> {
         bench.set_sample_latency(options.sample_latency_cycles);
         if options.record {
             bench.record_links();
@@ -154,15 +161,23 @@ impl Scenario {
             }
         }
         bench.reset();
+        let mut answers = Vec::new();
         for (number, time) in self.trigger_times().enumerate() {
-            for ride in self.requests.iter().filter(|r| r.trigger == number) {
-                bench.run_until(time - US);
-                bench.set("request_command", ride.command.code().into());
-                let word = u128::from(ride.address) << 16 | u128::from(ride.data);
-                bench.set("request_parameter", word);
-                bench.set("request_ride", 1);
-                bench.run_cycles(1);
-                bench.set("request_ride", 0);
+            match self.requests.iter().find(|r| r.trigger == number) {
+                Some(request) if !request.command.has_f2() => {
+                    bench.run_until(time);
+                    request.put(bench, "request_own");
+                    let is_over = |b: &mut Bench<E>| b.get("over") & b.get("over_request") == 1;
+                    if bench.run_until_done(REQUEST_LIMIT, is_over) {
+                        answers.push(Answer::of(request, bench));
+                    }
+                    continue;
+                }
+                Some(request) => {
+                    bench.run_until(time - US);
+                    request.put(bench, "request_ride");
+                }
+                None => {}
             }
             bench.run_until(time);
             bench.trigger();
@@ -171,6 +186,18 @@ impl Scenario {
         if bench.has_port("busy") {
             bench.run_until_done(MS, |b| b.get("busy") == 0);
         }
+        answers
+    }
+}
+
+impl Request {
+    fn put<E: Engine>(&self, bench: &mut Bench<E>, strobe: &str) {
+        let word = u128::from(self.address) << 16 | u128::from(self.data);
+        bench.set("request_command", self.command.code().into());
+        bench.set("request_parameter", word);
+        bench.set(strobe, 1);
+        bench.run_cycles(1);
+        bench.set(strobe, 0);
     }
 }
 

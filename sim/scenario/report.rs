@@ -1,15 +1,42 @@
 //! What happened in a scenario, frame by frame, and what was wrong with it.
 
-use super::Scenario;
+use super::{Request, Scenario};
 use crate::{
     bench::{Bench, ChannelResult},
-    encoder::{FrameEnd, FrameLog, Violation},
+    encoder::{AnswerKind, FrameEnd, FrameLog, Violation},
     engine::Engine,
     line::Conflict,
     Time,
 };
 use endat_hdl::{timing, transaction::cause};
 use std::fmt;
+
+/// What came back to a request with a frame of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// When.
+    pub time: Time,
+    /// The six bits of the request.
+    pub command: u8,
+    /// Cause code of its frame, 0 = none.
+    pub cause: u64,
+    /// The answer: 8 and 16 bits, or a position or test values.
+    pub word: u64,
+    /// Its CRC is right.
+    pub crc_good: bool,
+}
+
+impl Answer {
+    pub(super) fn of<E: Engine>(request: &Request, bench: &mut Bench<E>) -> Self {
+        Self {
+            time: bench.now(),
+            command: request.command.code(),
+            cause: bench.get("over_cause") as u64,
+            word: bench.get("reply") as u64,
+            crc_good: bench.get("reply_good") == 1,
+        }
+    }
+}
 
 /// One frame, or a trigger that led to none.
 #[derive(Clone, Debug)]
@@ -18,6 +45,8 @@ pub struct FrameReport {
     pub trigger: Option<Time>,
     /// What the core delivered (block `Channel` only).
     pub result: Option<ChannelResult>,
+    /// What the core delivered for a request with a frame of its own.
+    pub answer: Option<Answer>,
     /// What the encoder saw.
     pub frame: Option<FrameLog>,
 }
@@ -58,13 +87,22 @@ pub struct Report {
 }
 
 impl Report {
-    pub(super) fn new<E: Engine>(scenario: &Scenario, bench: &Bench<E>, ports: &[usize]) -> Self {
+    pub(super) fn new<E: Engine>(
+        scenario: &Scenario,
+        bench: &Bench<E>,
+        ports: &[usize],
+        answers: &[Answer],
+    ) -> Self {
         let has_results = !bench.results().is_empty();
         let channels = ports.iter().enumerate().map(|(link, index)| {
             let frames = if has_results {
-                by_result(scenario, bench.results(), bench.frames(link))
+                by_result(scenario, bench.results(), answers, bench.frames(link))
             } else {
-                by_frame(scenario, bench.frames(link))
+                bench
+                    .frames(link)
+                    .iter()
+                    .map(|f| by_frame(scenario, &[], f))
+                    .collect()
             };
             ChannelReport {
                 index: *index,
@@ -88,12 +126,13 @@ impl Report {
             let mut say = |text: String| out.push(format!("channel {}: {text}", c.index));
             if self.has_results {
                 self.compare_causes(c, &mut say);
+                self.count_answers(c, &mut say);
             }
             for (n, f) in c.frames.iter().enumerate() {
                 complain_about_frame(n, f, &mut say);
             }
             for (time, v) in &c.violations {
-                if !(self.scenario.may_stop && is_stop(v)) {
+                if !(self.scenario.may_stop && is_stop(v, c)) {
                     say(format!("at {:.3} us: {v}", us(*time)));
                 }
             }
@@ -125,13 +164,39 @@ impl Report {
             ));
         }
     }
+
+    fn count_answers(&self, c: &ChannelReport, say: &mut impl FnMut(String)) {
+        let requests = self.scenario.requests.iter();
+        let wanted = requests.filter(|r| !r.command.has_f2()).count();
+        let got = c.frames.iter().filter(|f| f.answer.is_some()).count();
+        if got != wanted {
+            say(format!("{got} requests have ended, expected {wanted}"));
+        }
+    }
 }
 
-fn is_stop(v: &Violation) -> bool {
-    matches!(
-        v,
-        Violation::StoppedBeforeAnswer { .. } | Violation::TooFewPulses { .. }
-    )
+/// What the encoder answered to a request with a frame of its own.
+fn answered(frame: &FrameLog) -> Option<u64> {
+    match frame.kind {
+        AnswerKind::Parameter => frame.reply.map(|r| r.word().into()),
+        AnswerKind::TestValues => None,
+        _ => Some(frame.position),
+    }
+}
+
+/// A frame stops; its last LOW may be cut short by that.
+fn is_stop(v: &Violation, c: &ChannelReport) -> bool {
+    let is_last = |edge: u32| {
+        let mut frames = c.frames.iter().filter_map(|f| f.frame.as_ref());
+        frames.any(|f| f.end == FrameEnd::Stopped && f.rising_edges == edge)
+    };
+    match v {
+        Violation::StoppedBeforeAnswer { .. } | Violation::TooFewPulses { .. } => true,
+        Violation::PulseWidth {
+            high: false, edge, ..
+        } => is_last(*edge),
+        _ => false,
+    }
 }
 
 fn complain_about_frame(number: usize, f: &FrameReport, say: &mut impl FnMut(String)) {
@@ -146,6 +211,16 @@ fn complain_about_frame(number: usize, f: &FrameReport, say: &mut impl FnMut(Str
             ));
         }
     }
+    if let Some(a) = &f.answer {
+        if a.cause != cause::NONE || !a.crc_good || Some(a.word) != answered(frame) {
+            say(format!(
+                "frame {number}: {}, {:#X}, the encoder sent {:#X?}",
+                answer_words(a),
+                a.word,
+                answered(frame)
+            ));
+        }
+    }
     if let Some(r) = result.as_ref().filter(|r| r.fresh) {
         if r.position != frame.position {
             say(format!(
@@ -156,40 +231,49 @@ fn complain_about_frame(number: usize, f: &FrameReport, say: &mut impl FnMut(Str
     }
 }
 
-/// Each result with the last frame that began since the result before.
+/// Each result with the last frame that began since the result before; frames without a result, for requests and of the
+/// initialisation, in their places.
 fn by_result(
     scenario: &Scenario,
     results: &[ChannelResult],
+    answers: &[Answer],
     frames: &[FrameLog],
 ) -> Vec<FrameReport> {
-    let mut since = 0;
-    results
-        .iter()
-        .map(|r| {
-            let mine = frames
-                .iter()
-                .rfind(|f| f.first_fall <= r.time && f.first_fall > since);
-            since = r.time;
-            let begin = mine.map_or(r.time, |f| f.first_fall);
-            FrameReport {
-                trigger: scenario.trigger_times().filter(|t| *t <= begin).last(),
+    let mut rest = frames.iter().peekable();
+    let mut rows: Vec<FrameReport> = Vec::new();
+    for r in results {
+        let before = rows.len();
+        while let Some(frame) = rest.next_if(|f| f.first_fall <= r.time) {
+            rows.push(by_frame(scenario, answers, frame));
+        }
+        // A trigger may have led to no frame.
+        let is_triggered = |f: &FrameReport| f.answer.is_none() && f.trigger.is_some();
+        match rows[before..].last_mut().filter(|f| is_triggered(f)) {
+            Some(mine) => mine.result = Some(r.clone()),
+            None => rows.push(FrameReport {
+                trigger: last_trigger(scenario, r.time),
                 result: Some(r.clone()),
-                frame: mine.cloned(),
-            }
-        })
-        .collect()
+                answer: None,
+                frame: None,
+            }),
+        }
+    }
+    rows.extend(rest.map(|f| by_frame(scenario, answers, f)));
+    rows
 }
 
-fn by_frame(scenario: &Scenario, frames: &[FrameLog]) -> Vec<FrameReport> {
-    let report = |f: &FrameLog| FrameReport {
-        trigger: scenario
-            .trigger_times()
-            .filter(|t| *t <= f.first_fall)
-            .last(),
+fn by_frame(scenario: &Scenario, answers: &[Answer], f: &FrameLog) -> FrameReport {
+    let is_mine = |a: &&Answer| a.time > f.first_fall && Some(a.command) == f.command;
+    FrameReport {
+        trigger: last_trigger(scenario, f.first_fall),
         result: None,
+        answer: answers.iter().find(is_mine).cloned(),
         frame: Some(f.clone()),
-    };
-    frames.iter().map(report).collect()
+    }
+}
+
+fn last_trigger(scenario: &Scenario, time: Time) -> Option<Time> {
+    scenario.trigger_times().filter(|t| *t <= time).last()
 }
 
 fn summarise(samples: &[crate::line::Sample]) -> SampleSummary {
@@ -230,8 +314,9 @@ impl fmt::Display for Report {
             let width = widest.unwrap_or(0).max(RESULT_MIN);
             writeln!(
                 f,
-                "  {:>11}  {:<width$} {:>14} {:>14}  {:>7}  {:>5} {:>8} {:>8} {:>8}",
+                "  {:>11}  {:<7}  {:<width$} {:>14} {:>14}  {:>7}  {:>5} {:>8} {:>8} {:>8}",
                 "trigger us",
+                "command",
                 "result",
                 "position",
                 "encoder's",
@@ -270,36 +355,44 @@ fn result(r: &FrameReport) -> String {
         (_, false, true) => format!("held: {}", r.cause_name()),
         (_, false, false) => format!("none: {}", r.cause_name()),
     };
-    r.result.as_ref().map_or_else(|| "-".into(), words)
+    match (&r.result, &r.answer) {
+        (Some(result), _) => words(result),
+        (None, Some(answer)) => answer_words(answer).into(),
+        (None, None) => "-".into(),
+    }
+}
+
+fn answer_words(a: &Answer) -> &'static str {
+    match (a.cause, a.crc_good) {
+        (cause::NONE, true) => "answered",
+        (cause::NONE, false) => "answered, wrong CRC",
+        (code, _) => cause::name(code),
+    }
 }
 
 fn row(f: &mut fmt::Formatter<'_>, r: &FrameReport, width: usize) -> fmt::Result {
     let dash = || "-".to_owned();
-    let position = r
-        .result
-        .as_ref()
-        .filter(|r| r.position_valid)
-        .map_or_else(dash, |r| format!("{:#X}", r.position));
+    let position = r.result.as_ref().filter(|r| r.position_valid);
+    let position = position.map(|r| r.position);
+    let word = position.or(r.answer.as_ref().map(|a| a.word));
     let frame = r.frame.as_ref();
     let text = |value: Option<String>| value.unwrap_or_else(dash);
-    let answered = frame.filter(|l| l.start_edge.is_some());
+    let number = |value: Option<u64>| text(value.map(|n| format!("{n:#X}")));
+    let replied = frame.filter(|l| l.start_edge.is_some());
     writeln!(
         f,
-        "  {:>11}  {:<width$} {:>14} {:>14}  {:>7}  {:>5} {:>8} {:>8} {:>8}",
+        "  {:>11}  {:<7}  {:<width$} {:>14} {:>14}  {:>7}  {:>5} {:>8} {:>8} {:>8}",
         text(r.trigger.map(|t| format!("{:.3}", us(t)))),
+        text(frame.and_then(|l| l.command).map(|c| format!("{c:06b}"))),
         result(r),
-        position,
-        text(frame.map(|l| format!("{:#X}", l.position))),
+        number(word),
+        number(frame.and_then(answered)),
         text(frame.map(|l| match l.expected_rising_edges() {
             Some(n) => format!("{}/{n}", l.rising_edges),
             None => format!("{}/-", l.rising_edges),
         })),
-        text(
-            answered
-                .and_then(|l| l.start_edge)
-                .map(|s| format!("R#{s}"))
-        ),
-        text(answered.map(|l| format!("{:.3}", us(l.start_time - l.first_fall)))),
+        text(replied.and_then(|l| l.start_edge).map(|s| format!("R#{s}"))),
+        text(replied.map(|l| format!("{:.3}", us(l.start_time - l.first_fall)))),
         text(frame.map(|l| format!("{:.3}", us(l.last_rise - l.first_fall)))),
         text(frame.and_then(|l| l.data_fall.map(|t| format!("{:.3}", us(t - l.last_rise))))),
     )

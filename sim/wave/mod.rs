@@ -47,6 +47,21 @@ pub struct Wave {
     focus: Option<(Time, Time)>,
 }
 
+/// Who writes the waveforms.
+const PROGRAM: &str = "endat-sim";
+/// How a layout begins.
+const LAYOUT_HEAD: &str = "[*] GTKWave layout, written with the waveform";
+
+/// Whether a file that begins like this can be a waveform of ours.
+pub fn is_vcd(head: &str) -> bool {
+    head.split_whitespace().take(2).eq(["$version", PROGRAM])
+}
+
+/// Whether a file that begins like this can be a layout of ours; one that GTKWave has saved is not.
+pub fn is_layout(head: &str) -> bool {
+    head.starts_with(LAYOUT_HEAD)
+}
+
 /// Name of the outermost scope.
 const TOP: &str = "bench";
 
@@ -95,7 +110,7 @@ impl Wave {
     /// Writes the VCD, with a time unit of one picosecond.
     pub fn write_vcd(&self, out: impl Write) -> io::Result<()> {
         let mut w = vcd::Writer::new(out);
-        w.version(concat!("endat-sim ", env!("CARGO_PKG_VERSION")))?;
+        w.version(&format!("{PROGRAM} {}", env!("CARGO_PKG_VERSION")))?;
         w.timescale(1, TimescaleUnit::PS)?;
         w.add_module(TOP)?;
         let mut changes: Vec<(Time, IdCode, &Held, Kind)> = Vec::new();
@@ -146,9 +161,7 @@ impl Wave {
         let mut line = |text: std::fmt::Arguments<'_>| {
             let _ = writeln!(s, "{text}");
         };
-        line(format_args!(
-            "[*] GTKWave layout, written with the waveform"
-        ));
+        line(format_args!("{LAYOUT_HEAD}"));
         line(format_args!("[dumpfile] \"{vcd_name}\""));
         line(format_args!("[size] 1500 700"));
         line(format_args!("[pos] -1 -1"));

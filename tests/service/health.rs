@@ -3,7 +3,7 @@
 use super::rig::{quick, Rig};
 use endat_hdl::{
     protocol::ModeCommand::*,
-    service::map::{control, state, word},
+    service::map::{control, state, word, COUNTER_POSITION_2},
     transaction::cause,
 };
 use endat_sim::encoder::{Defect, EncoderConfig, PositionSource};

@@ -1,0 +1,169 @@
+//! Draws all frames of a link, one behind the other: what was sent, what came back, and when. Only the order is to scale.
+
+use super::{
+    groups::command_name,
+    svg::{Anchor, Svg},
+    LEFT, RIGHT, STYLE,
+};
+use crate::{
+    bench::Link,
+    encoder::{AnswerKind, FrameLog},
+    frame::Parameter,
+    Time, MS, US,
+};
+
+/// A frame, and the pause before it.
+const FRAME_WIDTH: f64 = 172.0;
+const PAUSE_WIDTH: f64 = 72.0;
+/// Frames in a line.
+const FRAMES: usize = 6;
+const LINE_HEIGHT: f64 = 132.0;
+const CLOCK_HEIGHT: f64 = 18.0;
+const DATA_HEIGHT: f64 = 24.0;
+/// Part of a frame's width in which the receiver sends.
+const SENT_PART: f64 = 0.57;
+/// Between the strokes that stand for clock pulses.
+const STROKES: f64 = 4.0;
+
+/// Every frame of a link as SVG; none if there are none.
+pub fn overview_svg(link: &Link, title: &str) -> Option<String> {
+    let frames = link.encoder().frames();
+    let mut before = 0;
+    let mut svg = Svg::new();
+    let subtitle = "each frame: clock, DATA (blue: the receiver sends, yellow: the encoder answers), what it is, when it begins; between frames the pause";
+    let head = svg.head(title, subtitle);
+    for (line, frames) in frames.chunks(FRAMES).enumerate() {
+        let y = 84.0 + LINE_HEIGHT * line as f64;
+        for (text, y) in [
+            ("CLOCK", y + CLOCK_HEIGHT / 2.0 + 4.0),
+            ("DATA", y + 34.0 + DATA_HEIGHT / 2.0 + 4.0),
+        ] {
+            svg.text(24.0, y, Anchor::Start, "name", text);
+        }
+        for (place, frame) in frames.iter().enumerate() {
+            let x = LEFT + (FRAME_WIDTH + PAUSE_WIDTH) * place as f64;
+            pause(&mut svg, x, y, frame.first_fall.saturating_sub(before));
+            draw(&mut svg, x + PAUSE_WIDTH, y, frame);
+            before = frame.data_fall.unwrap_or(frame.last_rise);
+        }
+    }
+    let lines = frames.len().div_ceil(FRAMES);
+    let longest = frames.len().min(FRAMES) as f64;
+    let width = head.max(LEFT + (FRAME_WIDTH + PAUSE_WIDTH) * longest) + RIGHT;
+    let height = 84.0 + LINE_HEIGHT * lines as f64;
+    (lines > 0).then(|| svg.finish(width, height, title, STYLE))
+}
+
+/// A time for people, with three digits or more.
+fn span(time: Time) -> String {
+    match time {
+        0..MS => format!("{:.0} us", time as f64 / US as f64),
+        _ if time < 100 * MS => format!("{:.1} ms", time as f64 / MS as f64),
+        _ => format!("{:.0} ms", time as f64 / MS as f64),
+    }
+}
+
+/// CLOCK HIGH, DATA LOW.
+fn pause(svg: &mut Svg, x: f64, y: f64, time: Time) {
+    let (data, end) = (y + 34.0, x + PAUSE_WIDTH);
+    svg.line(&[(x, y), (end, y)], "clock");
+    idle(svg, x, data, PAUSE_WIDTH);
+    let (row, a, b) = (data + DATA_HEIGHT + 12.0, x + 3.0, end - 3.0);
+    svg.line(&[(a, row), (b, row)], "dimline");
+    for (x, side) in [(a, 4.0), (b, -4.0)] {
+        svg.line(
+            &[(x + side, row - 2.5), (x, row), (x + side, row + 2.5)],
+            "dimline",
+        );
+    }
+    svg.text(
+        (a + b) / 2.0,
+        row + 15.0,
+        Anchor::Middle,
+        "dim",
+        &span(time),
+    );
+}
+
+/// DATA is LOW.
+fn idle(svg: &mut Svg, x: f64, y: f64, width: f64) {
+    svg.rect(x, y, width, DATA_HEIGHT, "f-idle");
+    let low = y + DATA_HEIGHT - 3.0;
+    svg.line(&[(x, low), (x + width, low)], "encoder");
+}
+
+fn draw(svg: &mut Svg, x: f64, y: f64, frame: &FrameLog) {
+    let (data, bottom, end) = (y + 34.0, y + CLOCK_HEIGHT, x + FRAME_WIDTH);
+    let (name, sent, came) = texts(frame);
+    // A pulse alone, or many.
+    let strokes = match frame.command {
+        None => 2,
+        Some(_) => ((FRAME_WIDTH - 12.0) / STROKES) as usize,
+    };
+    let mut points = vec![(x, y)];
+    for i in 0..2 * (strokes / 2) {
+        let x = x + 6.0 + STROKES * i as f64;
+        let (from, to) = if i % 2 == 0 { (y, bottom) } else { (bottom, y) };
+        points.extend([(x, from), (x, to)]);
+    }
+    points.push((end, y));
+    svg.line(&points, "clock");
+    let middle = x + FRAME_WIDTH * SENT_PART;
+    let row = data + DATA_HEIGHT / 2.0 + 4.0;
+    match frame.command {
+        None => idle(svg, x, data, FRAME_WIDTH),
+        Some(_) => {
+            let answer = match frame.start_edge {
+                Some(_) => "f-encoder",
+                None => "f-nobody",
+            };
+            svg.rect(x, data, middle - x, DATA_HEIGHT, "f-receiver");
+            svg.rect(middle, data, end - middle, DATA_HEIGHT, answer);
+        }
+    }
+    svg.text((x + middle) / 2.0, row, Anchor::Middle, "field", &sent);
+    svg.text((middle + end) / 2.0, row, Anchor::Middle, "field", &came);
+    let centre = (x + end) / 2.0;
+    svg.text(
+        centre,
+        data + DATA_HEIGHT + 17.0,
+        Anchor::Middle,
+        "name",
+        &name,
+    );
+    let begin = frame.first_fall as f64 / MS as f64;
+    let mhz = 1e6 / frame.period.max(1) as f64;
+    let clock = match frame.command {
+        None => String::new(),
+        Some(_) => format!(", {mhz:.3} MHz"),
+    };
+    let when = format!("at {begin:.3} ms{clock}");
+    svg.text(
+        centre,
+        data + DATA_HEIGHT + 34.0,
+        Anchor::Middle,
+        "tick",
+        &when,
+    );
+}
+
+/// What a frame is, what the receiver sent, what came back.
+fn texts(f: &FrameLog) -> (String, String, String) {
+    let word = |p: Parameter| format!("{:02X} {:04X}", p.address, p.data);
+    let Some(code) = f.command else {
+        return ("pulse".into(), String::new(), String::new());
+    };
+    let sent = match f.parameter {
+        Some(p) => format!("{code:06b} {}", word(p)),
+        None => format!("{code:06b}"),
+    };
+    let came = match (f.start_edge, f.kind, f.reply) {
+        (None, ..) => "no start bit".into(),
+        (_, AnswerKind::Parameter, Some(reply)) => word(reply),
+        // Wider ones have no room.
+        (_, AnswerKind::Position, _) if f.position < 1 << 36 => format!("{:#X}", f.position),
+        (_, AnswerKind::Position, _) => "position".into(),
+        _ => String::new(),
+    };
+    (command_name(code).into(), sent, came)
+}
