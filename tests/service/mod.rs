@@ -3,6 +3,7 @@
 mod card;
 mod health;
 mod initialise;
+mod limits;
 mod long_run;
 mod mailbox;
 mod plug;
