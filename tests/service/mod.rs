@@ -8,3 +8,4 @@ mod mailbox;
 mod plug;
 mod rig;
 mod three_ways;
+mod upsets;
