@@ -1,9 +1,12 @@
 //! Every command with every combination of additional information, at every width, rate and cable.
 
 use super::rig::Rig;
-use endat_hdl::protocol::ModeCommand::{self, *};
+use endat_hdl::{
+    protocol::ModeCommand::{self, *},
+    transaction::cause,
+};
 use endat_sim::{
-    encoder::{area, EncoderConfig},
+    encoder::{area, EncoderConfig, FrameEnd},
     US,
 };
 
@@ -82,4 +85,30 @@ fn at_8_mhz() {
 #[test]
 fn at_16_mhz() {
     all(128_000_000, 16_000_000);
+}
+
+/// Behind 0xBF the encoder waits for a block address, which only the command with a frame of its own has room for.
+#[test]
+fn section_2_is_selected_with_a_frame_of_its_own() {
+    let mut rig = Rig::new(16_000_000, 2_000_000, quick(25, 2_000_000), 10.0);
+    rig.good_position();
+    for block in 0..4 {
+        rig.good(SelectMemory, area::SECTION_2, block);
+        rig.good(ReceiveParameter, 0x80, 0xA550 + block);
+    }
+    for block in 0..4 {
+        rig.good(SelectMemory, area::SECTION_2, block);
+        let reply = rig.good(SendParameter, 0x80, 0).reply.expect("a reply");
+        assert_eq!(reply.data, 0xA550 + block);
+    }
+    let over = rig.own(SelectMemory, area::SECTION_2, 4);
+    assert_eq!(over.cause, cause::NO_START_BIT, "there are four");
+    rig.good_position();
+    rig.good_position();
+    // As a supplement it is too short: the encoder takes nothing, and only it knows. The position is good.
+    let over = rig.ride(PositionSelectMemory, area::SECTION_2, 0);
+    assert_eq!(over.cause, cause::NONE);
+    assert_eq!(rig.last_frame().end, FrameEnd::Stopped);
+    assert!(rig.bench.results().last().expect("a result").fresh);
+    rig.good_position();
 }

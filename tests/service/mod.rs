@@ -9,3 +9,4 @@ mod mailbox;
 mod plug;
 mod rig;
 mod three_ways;
+mod upsets;

@@ -25,13 +25,13 @@ use rust_hdl::prelude::Block;
 use std::sync::OnceLock;
 
 /// Triggers come so far apart.
-const PERIOD: Time = 150 * US;
+pub(super) const PERIOD: Time = 150 * US;
 /// When the frame begins in which the plug is pulled.
 const PULLED_FROM: Time = 3 * MS;
 /// DATA must be HIGH for so long, and a tick of a millisecond, to be taken for an open line.
 const UNPLUGGED: Time = MS;
 
-fn encoder() -> EncoderConfig {
+pub(super) fn encoder() -> EncoderConfig {
     let mut encoder = quick(EncoderConfig::endat22(POSITION_BITS));
     encoder.tm = 10 * US..=RECOVERY;
     encoder.tac = 0..=20 * US;
@@ -65,13 +65,13 @@ fn engine(initialise: bool) -> Lanes {
 }
 
 /// Ports with a host that does the same to all of them, and a trigger every 150 us.
-struct Hosts {
-    rig: Rig,
-    next_trigger: Time,
+pub(super) struct Hosts {
+    pub rig: Rig,
+    pub next_trigger: Time,
 }
 
 impl Hosts {
-    fn tick(&mut self) {
+    pub fn tick(&mut self) {
         if self.rig.bench.now() >= self.next_trigger {
             self.next_trigger += PERIOD;
             (0..2).for_each(|part| self.rig.bench.set_trigger(part, u64::MAX));
@@ -82,13 +82,13 @@ impl Hosts {
         }
     }
 
-    fn run_until(&mut self, time: Time) {
+    pub fn run_until(&mut self, time: Time) {
         while self.rig.bench.now() < time {
             self.tick();
         }
     }
 
-    fn run_for(&mut self, span: Time) {
+    pub fn run_for(&mut self, span: Time) {
         self.run_until(self.rig.bench.now() + span);
     }
 
@@ -100,7 +100,7 @@ impl Hosts {
     }
 
     /// What all lanes have in a word.
-    fn read(&mut self, word: u8) -> Vec<u32> {
+    pub fn read(&mut self, word: u8) -> Vec<u32> {
         self.rig.bench.set_all("host_address", word.into());
         self.strobe("host_read");
         let port = self.rig.bench.engine().port("host_word");
@@ -140,20 +140,20 @@ impl Hosts {
         self.wait_for(word::STATE, 200 * MS, done);
     }
 
-    fn request(&mut self, command: ModeCommand, address: u8) {
+    pub fn request(&mut self, command: ModeCommand, address: u8) {
         let fields = u32::from(address) << 16;
         self.write(word::REQUEST, u32::from(command.code()) << 24 | fields);
     }
 
     /// Waits until the request under way is finished in all lanes.
-    fn finished(&mut self) {
+    pub fn finished(&mut self) {
         self.wait_for(word::REQUEST_STATE, 20 * MS, |s| {
             s as u16 & request_state::BUSY == 0
         });
     }
 
     /// A request that must be fulfilled in all lanes.
-    fn good(&mut self, command: ModeCommand, address: u8) {
+    pub fn good(&mut self, command: ModeCommand, address: u8) {
         let before = self.read(word::REQUEST_STATE);
         self.request(command, address);
         self.run_for(2 * PERIOD);
@@ -167,7 +167,7 @@ impl Hosts {
     }
 
     /// Every fresh position of a lane is one that its encoder has sent.
-    fn assert_never_wrong(&self, what: &[String]) {
+    pub fn assert_never_wrong(&self, what: &[String]) {
         for (lane, what) in what.iter().enumerate() {
             let frames = self.rig.bench.link(0, lane).encoder().frames();
             let mut sent = frames.iter().map(|f| f.position);
@@ -179,7 +179,7 @@ impl Hosts {
     }
 
     /// The last results are good ones. No frame is under way.
-    fn assert_good_positions(&self, what: &[String]) {
+    pub fn assert_good_positions(&self, what: &[String]) {
         for (lane, what) in what.iter().enumerate() {
             let frames = self.rig.bench.link(0, lane).encoder().frames();
             let results = self.rig.bench.results(lane);
@@ -191,7 +191,7 @@ impl Hosts {
     }
 
     /// Runs until the frame under way is over, without another one.
-    fn rest(&mut self) {
+    pub fn rest(&mut self) {
         let next = std::mem::replace(&mut self.next_trigger, Time::MAX);
         self.run_until(next);
         self.next_trigger = next + PERIOD;
@@ -252,7 +252,7 @@ fn pull(ready: &Lanes, absences: &[(Time, Time)], initialises: bool) {
 }
 
 /// A port at work, with its encoder initialised if it does that.
-fn ready(initialise: bool) -> Lanes {
+pub(super) fn ready(initialise: bool) -> Lanes {
     static MADE: [OnceLock<Lanes>; 2] = [const { OnceLock::new() }; 2];
     let make = || {
         let mut rig = Rig::on(engine(initialise), &[(encoder(), lanes::line())]);

@@ -1,0 +1,104 @@
+//! Upsets of the registers by which service and channel, and host and service, tell each other what there is to do.
+
+use super::plug::{encoder, ready, Hosts, PERIOD};
+use crate::requests::lanes::{self, Rig, LANES};
+use endat_hdl::{
+    protocol::ModeCommand::*,
+    service::map::{output::go, request_state, word},
+};
+use endat_sim::{rng::Rng, Time, MS, US};
+
+/// The registers, with what is inverted in them.
+fn masks() -> Vec<(String, u128)> {
+    let flags = [
+        "has_event",
+        "missed",
+        "event_request",
+        "request_written",
+        "control_written",
+    ];
+    let mut masks: Vec<_> = flags.iter().map(|name| (*name, 1)).collect();
+    // A supplement in a frame that measures the delay has no end without a watchdog; no program asks for it.
+    let both = go::OWN | go::CALIBRATE;
+    let is_sound = |mask: &u16| mask & both != both;
+    masks.extend((1..16).filter(is_sound).map(|mask| ("out_go", mask.into())));
+    masks.extend((0..16).map(|bit| ("event_cause", 1 << bit)));
+    let full = |(name, mask): (&str, u128)| (format!("service_0.{name}"), mask);
+    masks.into_iter().map(full).collect()
+}
+
+/// A request that rides has no limit of its own: if the channel is told to forget it, or is not told of it, the service waits for ever.
+fn may_wait(name: &str, mask: u128) -> bool {
+    name == "service_0.out_go" && mask & u128::from(go::RIDE | go::CANCEL) != 0
+}
+
+/// Moments from the host's write to behind the end of the frame that takes the request along.
+const MOMENTS: u64 = 24;
+const SPAN: Time = 240 * US;
+
+#[test]
+fn an_upset_of_a_handshake_loses_a_request_at_most_and_the_next_one_is_fulfilled() {
+    let ready = ready(false);
+    let names: Vec<String> = ready.nets().map(Into::into).collect();
+    let mut rng = Rng::new(7);
+    let mut upsets = vec![];
+    for (name, mask) in masks() {
+        let net = names.iter().position(|n| *n == name).expect("a register");
+        let may_wait = may_wait(&name, mask);
+        for moment in 0..MOMENTS {
+            let cycles = SPAN * lanes::SYSTEM_HZ / (1_000_000 * US);
+            let cycle = (moment * cycles + rng.in_range(0, cycles)) / MOMENTS;
+            upsets.push((
+                net,
+                mask,
+                cycle,
+                format!("{name} ^ {mask:#b} in cycle {cycle}"),
+                may_wait,
+            ));
+        }
+    }
+    let mut waiting = vec![];
+    for upsets in upsets.chunks(LANES) {
+        let what: Vec<String> = upsets.iter().map(|u| u.3.clone()).collect();
+        let rig = Rig::on(
+            ready.clone(),
+            &vec![(encoder(), lanes::line()); upsets.len()],
+        );
+        let mut hosts = Hosts {
+            rig,
+            next_trigger: 50 * US,
+        };
+        hosts.run_for(PERIOD);
+        hosts.good(PositionSelectMemory, 0x4C);
+        hosts.request(PositionSelectMemory, 0x4D);
+        let last = upsets.iter().map(|u| u.2).max().unwrap_or(0);
+        for cycle in 0..=last {
+            for (lane, upset) in upsets.iter().enumerate().filter(|(_, u)| u.2 == cycle) {
+                for bit in (0..16).filter(|bit| upset.1 >> bit & 1 == 1) {
+                    hosts.rig.bench.engine().flip(upset.0, bit, lane);
+                }
+            }
+            hosts.tick();
+        }
+        hosts.run_for(8 * MS);
+        hosts.rest();
+        hosts.assert_never_wrong(&what);
+        hosts.assert_good_positions(&what);
+        let states = hosts.read(word::REQUEST_STATE);
+        let busy = |lane: &usize| states[*lane] as u16 & request_state::BUSY != 0;
+        let open = (0..upsets.len()).filter(busy);
+        waiting.extend(open.map(|lane| (what[lane].clone(), upsets[lane].4)));
+        let before = hosts.read(word::REQUEST_STATE);
+        hosts.request(PositionSelectMemory, 0x4C);
+        hosts.run_for(MS);
+        let after = hosts.read(word::REQUEST_STATE);
+        for lane in (0..upsets.len()).filter(|lane| !busy(lane)) {
+            let error = after[lane] as u16;
+            let finished = (error, after[lane] >> 16);
+            assert_eq!(finished, (0, (before[lane] >> 16) + 1), "{}", what[lane]);
+        }
+    }
+    println!("{} of {} wait for ever", waiting.len(), upsets.len());
+    waiting.retain(|(_, may_wait)| !may_wait);
+    assert!(waiting.is_empty(), "{waiting:#?}");
+}
