@@ -206,6 +206,8 @@ pub struct FixedTimes {
     pub park_cycles: u64,
     /// Longest wait for the answer to a command with a parameter, in microseconds (1..=65535).
     pub parameter_timeout_us: u64,
+    /// Longest wait within a frame for anything but a start bit, in microseconds (1..=65535).
+    pub frame_us: u64,
     /// Longest recovery time after a frame of a request's own, in system clock cycles (1..=65535).
     pub own_recovery_limit_cycles: u64,
     /// Shortest recovery time after such a frame, in system clock cycles (0..=8191).
@@ -221,6 +223,7 @@ impl FixedTimes {
             abort_us: timing::ABORT_US,
             park_cycles: timing::cycles_at_least(timing::PARK_NS, system_hz),
             parameter_timeout_us: timing::PARAMETER_TIMEOUT_US,
+            frame_us: timing::FRAME_US,
             own_recovery_limit_cycles: timing::cycles_at_least(
                 timing::RECOVERY_MAX_NS + 1_000_000_000 / timing::CALIBRATION_HZ,
                 system_hz,

@@ -183,6 +183,7 @@ pub struct Transaction {
     parameter_timeout_us: Constant<Bits<16>>,
     own_recovery_limit_cycles: Constant<Bits<16>>,
     own_recovery_min_cycles: Constant<Bits<13>>,
+    frame_us: Constant<Bits<16>>,
     probe_us: Constant<Bits<16>>,
     settle_us: Constant<Bits<16>>,
     leave_us: Constant<Bits<16>>,
@@ -210,6 +211,7 @@ pub struct Transaction {
     ended: Reg<Bit>,
     over_now: Reg<Bit>,
     lost_now: Reg<Bit>,
+    was_hunting: Reg<Bit>,
     seen: Reg<Bits<19>>,
     late: Reg<Bit>,
     announced: Reg<Bit>,
@@ -302,6 +304,7 @@ impl Logic for Transaction {
             ended,
             over_now,
             lost_now,
+            was_hunting,
             late,
             announced,
             probing,
@@ -344,6 +347,7 @@ impl Logic for Transaction {
         self.ended.reset.next = self.reset.val();
         self.over_now.reset.next = self.reset.val();
         self.lost_now.reset.next = self.reset.val();
+        self.was_hunting.reset.next = self.reset.val();
         self.late.reset.next = self.reset.val();
         self.announced.reset.next = self.reset.val();
         self.probing.reset.next = self.reset.val();
@@ -441,7 +445,16 @@ impl Logic for Transaction {
                 self.run_now.d.next = true;
                 self.watched.next = true;
                 self.in_us.next = true;
-                self.timer_clear.next = !self.hunting.val();
+                self.timer_clear.next =
+                    (self.hunting.val() ^ self.was_hunting.q.val()) | self.finished.val();
+                if !self.hunting.val() {
+                    self.limit.next = self.frame_us.val();
+                }
+                // A receiver that has lost its place.
+                if self.timer_hit.q.val() & !self.hunting.val() {
+                    self.found.next = 0x10000.into();
+                    self.give_up.next = true;
+                }
                 if self.timer_hit.q.val() & self.hunting.val() {
                     self.found.next = self.no_start.val();
                     self.give_up.next = true;
@@ -494,6 +507,7 @@ impl Logic for Transaction {
                 self.limit.next = self.park_cycles.val();
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::Frame;
+                    self.timer_clear.next = true;
                     self.in_supplement.d.next = true;
                     self.supplement_now.d.next = true;
                 }
@@ -504,7 +518,12 @@ impl Logic for Transaction {
             Phase::Tail => {
                 self.run_now.d.next = true;
                 self.watched.next = true;
-                self.timer_clear.next = true;
+                self.in_us.next = true;
+                self.limit.next = self.frame_us.val();
+                if self.timer_hit.q.val() {
+                    self.found.next = 0x10000.into();
+                    self.give_up.next = true;
+                }
                 if self.center.val() {
                     self.phase.d.next = Phase::Recovery;
                     // From here on the full clock's times again: a short tm ends before half a slow period does.
@@ -596,6 +615,7 @@ impl Logic for Transaction {
             self.late.d.next = false;
         }
 
+        self.was_hunting.d.next = self.hunting.val();
         self.timer_step.d.next = !self.in_us.val() | self.tick_us.val();
         if self.timer_step.q.val() {
             self.timer.d.next = self.timer.q.val() + 1;

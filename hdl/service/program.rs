@@ -142,6 +142,8 @@ mod own {
     pub const MARGIN: u8 = FIRST + 50;
     pub const FROM_FAILED: u8 = FIRST + 54;
     pub const STEP_RETURN: u8 = FIRST + 55;
+    /// Frames until a request that does not ride is asked for again.
+    pub const PATIENCE: u8 = FIRST + 56;
 }
 
 /// Low half of a host word.
@@ -260,7 +262,10 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     }
     a.place(no_control);
     a.inp(input::DISPLACED).st(low(word::LOST));
+    // Levels are written again and again: an upset of one does not last.
     a.ld(low(word::FORCE)).out(output::FORCE);
+    a.ld(own::LEVELS).out(output::CONTROL);
+    a.ld(own::FOUND).out(output::FOUND);
     if times.diagnosis {
         a.ld(low(word::LIMITS)).out(output::WATCHDOG);
         a.ld(high(word::LIMITS)).out(output::RECOVERY_MIN);

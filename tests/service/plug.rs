@@ -45,6 +45,7 @@ fn engine(initialise: bool) -> Lanes {
     let fixed = FixedTimes {
         abort_us: ABORT_US,
         parameter_timeout_us: 200,
+        frame_us: lanes::FRAME_US,
         ..FixedTimes::at(SYSTEM_HZ)
     };
     let times = ServiceTimes {

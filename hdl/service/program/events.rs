@@ -1,6 +1,6 @@
 //! The end of a frame: counters, threshold, additional informations, what they say about the request, the next selection.
 
-use super::requests::{mailbox, ANSWERED};
+use super::requests::{self, mailbox, ANSWERED};
 use super::{high, low, minus, own, set, set_bits, ServiceTimes};
 use crate::protocol::ModeCommand;
 use crate::sequencer::assembler::Assembler;
@@ -40,8 +40,16 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::MAILBOX).jz("turn");
     a.xori(mailbox::SENT).jz(sent);
     a.ld(own::MAILBOX).xori(mailbox::RIDING).jnz("event_done");
-    a.ld(own::STATUS).andi(status::IS_REQUEST).jz("event_done");
-    let is_out = a.label();
+    let (is_out, mine) = (a.label(), a.label());
+    a.ld(own::STATUS).andi(status::IS_REQUEST).jnz(mine);
+    // A frame that was under way, or measured the delay, has none. After more of them the channel has forgotten the request.
+    a.ld(own::PATIENCE).addi(minus(1)).st(own::PATIENCE);
+    a.jnz("event_done");
+    set(a, own::PATIENCE, requests::PATIENCE);
+    a.inp(input::STATUS).andi(status::REQUEST_RUNS).jnz("event_done");
+    a.ldi(go::RIDE).out(output::GO);
+    a.jmp("event_done");
+    a.place(mine);
     // A spoilt CRC does not hinder the supplement; what else goes wrong may.
     for sent in ANSWERED.into_iter().chain([cause::CRC]) {
         a.ld(own::NUMBER).xori(sent as u16).jz(is_out);

@@ -1,6 +1,6 @@
 //! Requests of the host, and frames of their own.
 
-use super::{high, low, minus, own, ServiceTimes};
+use super::{high, low, minus, own, set, ServiceTimes};
 use crate::protocol::ModeCommand;
 use crate::sequencer::assembler::Assembler;
 use crate::service::map::{
@@ -23,6 +23,9 @@ pub(super) mod mailbox {
 
 /// Result of a request that never began: no cause of a frame.
 pub(super) const NEVER_BEGAN: u16 = cause::COUNT as u16;
+
+/// Frames without the request before it is asked for again.
+pub(super) const PATIENCE: u16 = 4;
 
 /// Causes that do not spoil an answer: alarms, lost triggers, a hasty end.
 pub(super) const ANSWERED: [u64; 5] = [
@@ -67,6 +70,7 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::COUNT).xori(2).jz(is_own);
     a.place(ride);
     a.ldi(mailbox::RIDING).st(own::MAILBOX);
+    set(a, own::PATIENCE, PATIENCE);
     a.ldi(go::RIDE).out(output::GO);
     a.jmp("main");
 
