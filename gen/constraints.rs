@@ -106,7 +106,6 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         name => project.name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
-        has_testbench => !project.card.service.initialise,
         board => context! { title => project.board.title.as_str(), name => project.board.name.as_str(), part => project.board.part.as_str() },
         iostandard => project.board.iostandard.as_str(),
         ports => ports,

@@ -35,10 +35,7 @@ use verilog::Header;
 pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let mut artifacts = design_artifacts(project)?;
     artifacts.extend(constraints::artifacts(project)?);
-    // A card that initialises its encoders takes its first trigger after a second and a half: longer than anybody simulates.
-    if !project.card.service.initialise {
-        artifacts.push(testbench::artifact(project)?);
-    }
+    artifacts.push(testbench::artifact(project)?);
     artifacts.push(artifact::manifest(&artifacts));
     Ok(artifacts)
 }

@@ -1,4 +1,5 @@
 //! The Verilog test bench that is emitted with a card: everything in it follows from the configuration and the register table.
+//! Of an initialisation it looks at the beginning only: the whole of it is longer than anybody simulates in Verilog.
 
 use crate::artifact::Artifact;
 use crate::config::Project;
@@ -6,6 +7,7 @@ use crate::error::GenError;
 use crate::template;
 use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, RESULT};
+use endat_hdl::service::program::{program, ServiceTimes};
 use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
 use endat_hdl::transaction::cause;
 use minijinja::context;
@@ -114,6 +116,33 @@ fn longest_ns(card: &CardConfig, cycles: impl Fn(&ChannelConfig) -> u64) -> u64 
     cycles_to_ns(most, card.system_hz)
 }
 
+/// What the bench of a card that initialises its encoders does first.
+fn power_up(card: &CardConfig, ports: &[Port]) -> Result<String, GenError> {
+    let times = ServiceTimes::at(card.system_hz);
+    let without = ServiceTimes {
+        initialise: false,
+        ..times
+    };
+    let words = program(&without)
+        .into_iter()
+        .map(|w| format!("20'h{w:05x}"));
+    let period = card
+        .channels
+        .iter()
+        .map(|c| c.calibration_period_cycles(card.system_hz));
+    template::render(
+        "power_up",
+        include_str!("templates/power_up.v.jinja"),
+        &context! {
+            channels => Serde(ports),
+            power_up_ms => times.power_up_ms,
+            after_pulse_ms => times.after_pulse_ms,
+            period_ns => real(period.max().unwrap_or(0) as f64 * 1e9 / card.system_hz as f64),
+            program => words.collect::<Vec<_>>(),
+        },
+    )
+}
+
 /// The test bench of a card.
 pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
     let card = &project.card;
@@ -157,7 +186,12 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         include_str!("templates/encoder.v.jinja"),
         &context! { name => project.name.as_str() },
     )?;
+    let power_up = match card.service.initialise {
+        true => power_up(card, &ports)?,
+        false => String::new(),
+    };
     let context = context! {
+        power_up,
         name => project.name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),

@@ -1,10 +1,12 @@
 //! The emitted test bench on the emitted card: passes as it stands, and fails on every broken card.
 
 use super::mutations::{Mutation, MUTATIONS};
-use super::{compile, preset_files, quick_files, write};
+use super::{compile, preset_files, quick_files, quick_project, write};
 use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{parse, preset};
+use endat_hdl::config::ServiceParts;
+use endat_hdl::service::program::{program, ServiceTimes};
 
 /// Runs a card's own test bench; what it prints.
 fn run_bench(test: &str, files: &[Artifact], plusargs: &[&str]) -> String {
@@ -60,6 +62,59 @@ fn bench_passes_on_a_card_with_requests() {
         let files = endat_gen::emit(&parse("requests.toml", &text).unwrap()).unwrap();
         assert!(files.iter().any(|f| f.path == "endat_service.v"));
         assert_eq!(run_bench("requests", &files, &[]), "PASS\n");
+    }
+}
+
+/// A card that initialises its encoders: power-up, then everything else. It notices what is wrong with either.
+#[test]
+fn bench_passes_on_a_card_with_initialisation_only_as_it_stands() {
+    if !tools::require("iverilog", "emitted test bench") {
+        return;
+    }
+    let mut project = quick_project();
+    project.card.service = ServiceParts {
+        requests: true,
+        initialise: true,
+    };
+    let files = endat_gen::emit(&project).unwrap();
+    assert_eq!(run_bench("initialise", &files, &[]), "PASS\n");
+    type Change = fn(&mut ServiceTimes);
+    let times = |change: Change| {
+        let mut times = ServiceTimes::at(project.card.system_hz);
+        change(&mut times);
+        program(&times)
+    };
+    let right = times(|_| ());
+    let rows: [(&str, Change, &str); 3] = [
+        (
+            "power-up",
+            |t| t.power_up_ms -= 3,
+            "channels that did not wait",
+        ),
+        (
+            "pulse",
+            |t| t.after_pulse_ms -= 3,
+            "channels that did not wait",
+        ),
+        ("late", |t| t.power_up_ms += 3, "pulses after power-up"),
+    ];
+    for (name, change, complaint) in rows {
+        let wrong = times(change);
+        let mut broken = files.clone();
+        let file = broken.iter_mut().find(|f| f.path == "endat_sequencer.v");
+        let text = &mut file.unwrap().text;
+        let mut count = 0;
+        for (k, (from, to)) in right.iter().zip(&wrong).enumerate() {
+            if from != to {
+                let line = |word: &u32| format!("program_value[{k}] = 20'd{word};");
+                assert_eq!(text.matches(&line(from)).count(), 1, "{}", line(from));
+                *text = text.replace(&line(from), &line(to));
+                count += 1;
+            }
+        }
+        assert_eq!(count, 1, "{name}");
+        let said = run_bench(&format!("initialise-{name}"), &broken, &["+first"]);
+        assert!(said.contains(complaint), "{name}: {said}");
     }
 }
 
