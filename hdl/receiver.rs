@@ -658,9 +658,7 @@ impl Logic for Receiver {
             self.covered.d.next = 0.into();
         }
         // The first bits from the first HIGH on, until it has gone through all places.
-        if self.sample.val()
-            & (self.field.q.val() != Field::Skip)
-            & !self.heard.q.val().get_bit(6)
+        if self.sample.val() & (self.field.q.val() != Field::Skip) & !self.heard.q.val().get_bit(6)
         {
             self.heard.d.next = (self.heard.q.val() << 1).replace_bit(0, self.level.val());
         }

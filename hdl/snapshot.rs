@@ -100,8 +100,7 @@ impl Logic for Snapshot {
             self.moment.d.next = self.timestamp.val();
         }
         if self.latched.val() {
-            self.moment.d.next =
-                self.timestamp.val() - bit_cast::<32, 10>(self.delay_cycles.val());
+            self.moment.d.next = self.timestamp.val() - bit_cast::<32, 10>(self.delay_cycles.val());
         }
         self.age_full.d.next = self.age.q.val().all();
         if self.tick_us.val() & !self.age_full.q.val() {

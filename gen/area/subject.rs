@@ -78,24 +78,20 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
     };
     let full = load_preset("s6_two_channel_service")?.card;
     Ok(vec![
-        Subject::new(
-            "card_service",
-            "the card with everything",
-            Card::new(&full),
-        )?,
+        Subject::new("card_service", "the card with everything", Card::new(&full))?,
         Subject::new("card", "two-channel card s6_two_channel", Card::new(&card))?,
         Subject::new("channel", "one position channel", Channel::new(times))?,
-        Subject::new(
-            "port_all",
-            "one port with everything",
-            service(true, true),
-        )?,
+        Subject::new("port_all", "one port with everything", service(true, true))?,
         Subject::new(
             "port_initialise",
             "one port with requests and initialisation",
             service(true, false),
         )?,
-        Subject::new("port_requests", "one port with requests", service(false, false))?,
+        Subject::new(
+            "port_requests",
+            "one port with requests",
+            service(false, false),
+        )?,
         Subject::new(
             "channel_all",
             "position channel with all of what follows, without service",
@@ -122,7 +118,11 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             Transaction::new(times, Features::default()),
         )?,
         Subject::new("line_delay", "propagation delay", LineDelay::default())?,
-        Subject::new("receiver", "receiver with both CRCs", Receiver::new(Features::default()))?,
+        Subject::new(
+            "receiver",
+            "receiver with both CRCs",
+            Receiver::new(Features::default()),
+        )?,
         Subject::new("snapshot", "snapshot with time stamp", Snapshot::default())?,
         Subject::new(
             "crc5_parallel",

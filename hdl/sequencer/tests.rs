@@ -320,7 +320,13 @@ fn what_is_no_instruction_starts_again() {
     rig.run(18);
     assert_eq!(rig.outputs, [(0, 1), (0, 2)]);
     let full: Vec<u32> = (0..PROGRAM_WORDS)
-        .map(|n| if n == PROGRAM_WORDS - 1 { 0xc0000 } else { 0x80001 })
+        .map(|n| {
+            if n == PROGRAM_WORDS - 1 {
+                0xc0000
+            } else {
+                0x80001
+            }
+        })
         .collect();
     let mut rig = Rig::new(&full);
     rig.run(2 * PROGRAM_WORDS as u64 * 3);

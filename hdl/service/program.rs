@@ -329,7 +329,8 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
     if times.diagnosis {
         // The shortest recovery time of the range that is wanted.
         let long = a.label();
-        let cycles = |ns| timing::recovery_min_cycles(ns, u64::from(times.system_khz) * 1_000) as u16;
+        let cycles =
+            |ns| timing::recovery_min_cycles(ns, u64::from(times.system_khz) * 1_000) as u16;
         a.place("recovery_min");
         a.inp(input::CONFIGURED).andi(1 << 7).jz(long);
         set(a, high(word::LIMITS), cycles(timing::SHORT_RECOVERY_MIN_NS));

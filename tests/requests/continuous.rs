@@ -1,7 +1,9 @@
 //! Continuous clock: one position after the other without a command, and the ways out.
 
 use super::rig::Rig;
-use endat_hdl::{channel::TIMESTAMP_TO_FIRST_FALL_CYCLES, protocol::ModeCommand::*, transaction::cause};
+use endat_hdl::{
+    channel::TIMESTAMP_TO_FIRST_FALL_CYCLES, protocol::ModeCommand::*, transaction::cause,
+};
 use endat_sim::{
     bench::ChannelSettings,
     encoder::{Defect, EncoderConfig, FrameEnd, LatchEdge, PositionSource},
@@ -38,7 +40,9 @@ fn run(rig: &mut Rig, frames: usize) {
 }
 
 fn more(rig: &mut Rig, results: usize) {
-    assert!(rig.bench.run_until_done(50 * MS, |b| b.results().len() >= results));
+    assert!(rig
+        .bench
+        .run_until_done(50 * MS, |b| b.results().len() >= results));
 }
 
 fn leave(rig: &mut Rig) {
@@ -52,7 +56,10 @@ fn assert_right(rig: &Rig, endat_hz: u64) {
     let flight = flight.flight() + flight.clock.transceivers;
     for (result, frame) in rig.bench.results().iter().zip(rig.bench.frames(0)) {
         assert_eq!(result.last_cause(), cause::NONE, "{result:?}");
-        assert!(result.fresh && result.position == frame.position, "{result:?} {frame:?}");
+        assert!(
+            result.fresh && result.position == frame.position,
+            "{result:?} {frame:?}"
+        );
         assert_eq!(frame.end, FrameEnd::Complete);
         let stamp = result.first_fall_timestamp + TIMESTAMP_TO_FIRST_FALL_CYCLES;
         // The sources differ in the edge; the time stamp is that of the later one.
@@ -62,13 +69,21 @@ fn assert_right(rig: &Rig, endat_hz: u64) {
         };
         let taken = frame.first_fall + early - flight;
         let stamped = stamp * 10 * NS;
-        assert!(taken.abs_diff(stamped) <= 60 * NS, "{taken} {stamped} {frame:?}");
+        assert!(
+            taken.abs_diff(stamped) <= 60 * NS,
+            "{taken} {stamped} {frame:?}"
+        );
     }
 }
 
 #[test]
 fn positions_flow_at_every_width_rate_and_length() {
-    for (endat_hz, cable_m) in [(200_000, 0.0), (1_000_000, 100.0), (2_000_000, 100.0), (12_500_000, 100.0)] {
+    for (endat_hz, cable_m) in [
+        (200_000, 0.0),
+        (1_000_000, 100.0),
+        (2_000_000, 100.0),
+        (12_500_000, 100.0),
+    ] {
         for bits in [1, 3, 13, 18, 29, 33, 48] {
             for edge in EDGES {
                 let mut rig = rig(endat_hz, encoder(bits, edge), LineConfig::cable(cable_m));
@@ -87,7 +102,11 @@ fn positions_flow_at_every_width_rate_and_length() {
 
 #[test]
 fn triggers_neither_disturb_a_run_nor_count_as_lost() {
-    let mut rig = rig(2_000_000, encoder(29, LatchEdge::AfterLow), LineConfig::cable(10.0));
+    let mut rig = rig(
+        2_000_000,
+        encoder(29, LatchEdge::AfterLow),
+        LineConfig::cable(10.0),
+    );
     rig.bench.trigger();
     for _ in 0..200 {
         rig.bench.run_for(3_700 * NS);
@@ -118,12 +137,17 @@ fn a_run_is_left_at_every_moment() {
 
 #[test]
 fn a_request_takes_the_line_and_the_next_trigger_goes_on() {
-    let mut rig = rig(2_000_000, encoder(29, LatchEdge::AfterLow), LineConfig::cable(10.0));
+    let mut rig = rig(
+        2_000_000,
+        encoder(29, LatchEdge::AfterLow),
+        LineConfig::cable(10.0),
+    );
     run(&mut rig, 5);
     rig.bench.set("request_command", SelectMemory.code().into());
     rig.bench.set("request_parameter", 0xA1_0000);
     rig.strobe("request_own");
-    let done = |b: &mut endat_sim::bench::Bench<_>| b.get("over") == 1 && b.get("over_request") == 1;
+    let done =
+        |b: &mut endat_sim::bench::Bench<_>| b.get("over") == 1 && b.get("over_request") == 1;
     assert!(rig.bench.run_until_done(20 * MS, done));
     assert_eq!(rig.bench.get("over_cause"), 0);
     assert_eq!(rig.last_frame().command, Some(SelectMemory.code()));
@@ -173,7 +197,8 @@ fn what_cannot_go_on_is_flagged_and_the_next_trigger_works() {
             .defect(3, defect.clone());
         let mut rig = rig(2_000_000, encoder, LineConfig::cable(10.0));
         rig.bench.trigger();
-        let bad = |b: &mut endat_sim::bench::Bench<_>| b.results().iter().any(|r| r.last_cause() != 0);
+        let bad =
+            |b: &mut endat_sim::bench::Bench<_>| b.results().iter().any(|r| r.last_cause() != 0);
         assert!(rig.bench.run_until_done(5 * MS, bad), "{defect:?}");
         assert!(rig.bench.run_until_done(5 * MS, |b| b.get("busy") == 0));
         let last = rig.bench.results().last().unwrap().clone();
@@ -188,7 +213,11 @@ fn what_cannot_go_on_is_flagged_and_the_next_trigger_works() {
 /// An encoder that does not know the mode stays HIGH for tm: it is noticed at the second cell, and its position is good.
 #[test]
 fn an_encoder_without_the_mode_is_noticed() {
-    let mut rig = rig(2_000_000, EncoderConfig::endat22(29), LineConfig::cable(10.0));
+    let mut rig = rig(
+        2_000_000,
+        EncoderConfig::endat22(29),
+        LineConfig::cable(10.0),
+    );
     rig.position();
     let result = rig.bench.results().last().unwrap().clone();
     assert_eq!(result.late_cause, Some(cause::DATA_NOT_FALLING));

@@ -66,7 +66,10 @@ fn recovers(rig: &mut Rig) {
 fn a_late_start_bit_is_told_from_a_silent_encoder() {
     let limit = settings().start_timeout_us;
     for late in limit + 4..3 * limit {
-        let mut rig = rig(encoder().defect(1, Defect::LateStart(late * US)), LineConfig::cable(10.0));
+        let mut rig = rig(
+            encoder().defect(1, Defect::LateStart(late * US)),
+            LineConfig::cable(10.0),
+        );
         let begin = rig.bench.now();
         let result = bad(&mut rig);
         // The result comes at the limit, whatever the encoder does later.
@@ -75,7 +78,9 @@ fn a_late_start_bit_is_told_from_a_silent_encoder() {
         assert_eq!(result.cause, cause::NO_START_BIT);
         // tcal, 5 us, counts from the first falling edge; the limit from the end of the turnaround.
         match late {
-            l if l < 2 * limit - 2 => assert_eq!(result.late_cause, Some(cause::LATE_START), "{late}"),
+            l if l < 2 * limit - 2 => {
+                assert_eq!(result.late_cause, Some(cause::LATE_START), "{late}")
+            }
             l if l > 2 * limit + 2 => assert_ne!(result.last_cause(), cause::LATE_START, "{late}"),
             _ => {}
         }
@@ -91,13 +96,20 @@ fn a_line_stuck_at_any_phase_has_its_cause_and_comes_back() {
         for from in (0..FRAME_LENGTH).step_by(HALF as usize) {
             let until = FRAME + WRONG;
             let mut line = LineConfig::cable(10.0);
-            line.stuck = Some(Stuck { from: FRAME + from, until, level });
+            line.stuck = Some(Stuck {
+                from: FRAME + from,
+                until,
+                level,
+            });
             let mut rig = rig(encoder(), line);
             rig.bench.run_until(FRAME);
             let over = rig.position();
             let result = rig.bench.results().last().unwrap().clone();
             let right = result.position == rig.last_frame().position;
-            assert!(!result.fresh || right || over.cause != cause::NONE, "{from}: {over:?}");
+            assert!(
+                !result.fresh || right || over.cause != cause::NONE,
+                "{from}: {over:?}"
+            );
             // From the next frame on it is known.
             let expected = match level {
                 false => cause::STUCK_LOW,
@@ -133,12 +145,18 @@ fn an_encoder_unplugged_at_any_phase_is_no_encoder_and_comes_back() {
         let begin = rig.bench.now();
         let result = bad(&mut rig);
         assert_eq!(result.cause, cause::NO_ENCODER, "{from}");
-        assert_eq!(result.flags, flag(cause::NO_ENCODER) | flag(cause::DATA_NOT_LOW));
+        assert_eq!(
+            result.flags,
+            flag(cause::NO_ENCODER) | flag(cause::DATA_NOT_LOW)
+        );
         assert!(result.time - begin < US, "at once");
         // The pause of an aborted frame, and the look at the line.
         let pause = rig.bench.now() - begin;
         let least = (ABORT_US + SETTLE_US) * US;
-        assert!((least..least + (PROBE_US + 3) * US).contains(&pause), "{pause}");
+        assert!(
+            (least..least + (PROBE_US + 3) * US).contains(&pause),
+            "{pause}"
+        );
         rig.bench.run_until(until + 200 * US);
         recovers(&mut rig);
         assert_eq!(rig.bench.conflicts(0), []);
@@ -164,7 +182,10 @@ fn the_watchdog_ends_a_frame_wherever_it_is() {
         }
         assert_eq!(over_cause, cause::WATCHDOG);
         let limit_time = limit as Time * US;
-        assert!((limit_time - US..=limit_time + US).contains(&took), "{limit}: {took}");
+        assert!(
+            (limit_time - US..=limit_time + US).contains(&took),
+            "{limit}: {took}"
+        );
         rig.bench.run_cycles(4);
         for (pin, level) in [("endat_clk", 1), ("data_oe", 0)] {
             assert_eq!(rig.bench.get(pin), level, "{pin}");

@@ -99,13 +99,17 @@ fn positions_flow_from_the_host_s_word_on() {
     let results = rig.bench.results().len() as u32;
     assert!(results > 40, "{results}");
     // Each position is counted once, the spoilt one with its cause.
-    let counted: u32 = (0..COUNTER_POSITION_2).map(|c| count(&mut rig, c.into())).sum();
+    let counted: u32 = (0..COUNTER_POSITION_2)
+        .map(|c| count(&mut rig, c.into()))
+        .sum();
     let now = rig.bench.results().len() as u32;
-    assert!((results..=now).contains(&counted), "{results} {counted} {now}");
+    assert!(
+        (results..=now).contains(&counted),
+        "{results} {counted} {now}"
+    );
     assert_eq!(count(&mut rig, cause::CRC), 1);
     rig.write(word::CONTINUOUS, 0);
     rig.bench.run_for(MS);
     assert_eq!(rig.bench.get("busy"), 0);
     rig.assert_clean();
 }
-

@@ -74,6 +74,8 @@ fn bench_passes_on_a_card_with_initialisation_only_as_it_stands() {
     let mut project = quick_project();
     project.card.service = ServiceParts {
         requests: true,
+        diagnosis: true,
+        continuous: true,
         initialise: true,
     };
     let files = endat_gen::emit(&project).unwrap();

@@ -4,11 +4,11 @@ use super::requests::{self, mailbox, ANSWERED};
 use super::{high, low, minus, own, set, set_bits, ServiceTimes};
 use crate::protocol::ModeCommand;
 use crate::sequencer::assembler::Assembler;
-use crate::transaction::cause;
 use crate::service::map::{
     input, input::status, output, output::acknowledge, output::control as level, output::go,
     request_state, state, word,
 };
+use crate::transaction::cause;
 
 pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.place("event").link().st(own::FROM_EVENT);
@@ -46,7 +46,9 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::PATIENCE).addi(minus(1)).st(own::PATIENCE);
     a.jnz("event_done");
     set(a, own::PATIENCE, requests::PATIENCE);
-    a.inp(input::STATUS).andi(status::REQUEST_RUNS).jnz("event_done");
+    a.inp(input::STATUS)
+        .andi(status::REQUEST_RUNS)
+        .jnz("event_done");
     a.ldi(go::RIDE).out(output::GO);
     a.jmp("event_done");
     a.place(mine);
