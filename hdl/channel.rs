@@ -463,7 +463,6 @@ impl Logic for Channel {
         self.filter.filter_cycles.next = self.filter_cycles.val();
 
         self.clock_gen.start.next = self.transaction.start.val();
-        self.clock_gen.run.next = self.transaction.clock_run.val();
         self.clock_gen.hold_low.next = self.transaction.hold_low.val();
         self.clock_gen.stop.next = self.transaction.stop.val();
         self.clock_gen.period_cycles.next = self.period.val();

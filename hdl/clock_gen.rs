@@ -8,8 +8,8 @@
 //! rise        _________________/\________/\_______
 //! ```
 //!
-//! The line idles HIGH and a frame ends with it HIGH. A low phase that was held is followed by a whole half
-//! period, so no pulse is ever shortened.
+//! The line idles HIGH and a frame ends with it HIGH, an aborted one as well. A low phase that was held is followed
+//! by a whole half period, and a low phase that has begun is finished: no pulse is ever shortened.
 
 use crate::half_period::HalfPeriod;
 use crate::reg::Reg;
@@ -24,8 +24,6 @@ pub struct ClockGen {
     pub reset: Signal<In, Bit>,
     /// One-cycle strobe: the first falling edge comes at the end of this cycle.
     pub start: Signal<In, Bit>,
-    /// High while a frame is under way; low puts the clock HIGH at once.
-    pub run: Signal<In, Bit>,
     /// Keeps a low phase low.
     pub hold_low: Signal<In, Bit>,
     /// Keeps a high phase high: no frame, or its last rising edge has been sent.
@@ -52,7 +50,6 @@ impl Default for ClockGen {
             clock: Default::default(),
             reset: Default::default(),
             start: Default::default(),
-            run: Default::default(),
             hold_low: Default::default(),
             stop: Default::default(),
             period_cycles: Default::default(),
@@ -90,9 +87,6 @@ impl Logic for ClockGen {
         }
         if self.start.val() | self.fall_now.val() {
             self.level.d.next = false;
-        }
-        if !self.run.val() & !self.start.val() {
-            self.level.d.next = true;
         }
         self.endat_clk.next = self.level.q.val();
         self.rise.next = self.risen.q.val();

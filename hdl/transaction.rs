@@ -20,11 +20,12 @@
 pub mod cause;
 mod new;
 pub mod primary;
+pub mod verdict;
 
 use crate::line_health::LineHealth;
 use crate::reg::Reg;
-use primary::PrimaryCause;
 use rust_hdl::prelude::*;
+use verdict::Verdict;
 
 /// What the wire is doing.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState)]
@@ -128,8 +129,6 @@ pub struct Transaction {
     pub start: Signal<Out, Bit>,
     /// A frame is under way on the wire.
     pub run: Signal<Out, Bit>,
-    /// The clock may run: it is stopped in its HIGH phase where a frame has not gone wrong.
-    pub clock_run: Signal<Out, Bit>,
     /// Driver off, at once.
     pub abort: Signal<Out, Bit>,
     /// Keeps the clock low.
@@ -173,7 +172,7 @@ pub struct Transaction {
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
     health: LineHealth,
-    chooser: PrimaryCause,
+    verdict: Verdict,
     has_all: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
     has_continuous: Constant<Bit>,
@@ -182,11 +181,22 @@ pub struct Transaction {
     park_cycles: Constant<Bits<16>>,
     parameter_timeout_us: Constant<Bits<16>>,
     own_recovery_limit_cycles: Constant<Bits<16>>,
-    own_recovery_min_cycles: Constant<Bits<13>>,
     frame_us: Constant<Bits<16>>,
     probe_us: Constant<Bits<16>>,
     settle_us: Constant<Bits<16>>,
     leave_us: Constant<Bits<16>>,
+    data_not_low: Constant<Bits<19>>,
+    no_encoder: Constant<Bits<19>>,
+    stuck_high: Constant<Bits<19>>,
+    no_start_bit: Constant<Bits<19>>,
+    stuck_low: Constant<Bits<19>>,
+    late_start: Constant<Bits<19>>,
+    start_window: Constant<Bits<19>>,
+    unknown_command: Constant<Bits<19>>,
+    info_not_there: Constant<Bits<19>>,
+    not_falling: Constant<Bits<19>>,
+    too_long: Constant<Bits<19>>,
+    tail_low: Constant<Bits<19>>,
     phase: Reg<Phase>,
     timer: Reg<Bits<16>>,
     timer_limit: Reg<Bits<16>>,
@@ -199,7 +209,6 @@ pub struct Transaction {
     stop_now: Reg<Bit>,
     is_calibrated: Reg<Bit>,
     acquiring: Reg<Bit>,
-    overrun: Reg<Bit>,
     stalled: Reg<Bit>,
     all_sent: Reg<Bit>,
     tail_sampled: Reg<Bit>,
@@ -207,27 +216,14 @@ pub struct Transaction {
     in_supplement: Reg<Bit>,
     supplement_now: Reg<Bit>,
     answered: Reg<Bit>,
-    refused: Reg<Bit>,
-    ended: Reg<Bit>,
-    over_now: Reg<Bit>,
-    lost_now: Reg<Bit>,
     was_hunting: Reg<Bit>,
-    seen: Reg<Bits<19>>,
     late: Reg<Bit>,
-    announced: Reg<Bit>,
     probing: Reg<Bit>,
     settling: Reg<Bit>,
     going: Reg<Bit>,
     leaving: Reg<Bit>,
-    taken: Reg<Bit>,
-    gave_up: Reg<Bit>,
-    gave_up_late: Reg<Bit>,
-    publish_now: Reg<Bit>,
-    good_now: Reg<Bit>,
-    late_now: Reg<Bit>,
-    cause_now: Reg<Bits<5>>,
-    flags_now: Reg<Bits<19>>,
     limit: Signal<Local, Bits<16>>,
+    running: Signal<Local, Bit>,
     in_us: Signal<Local, Bit>,
     timer_clear: Signal<Local, Bit>,
     accept: Signal<Local, Bit>,
@@ -243,17 +239,12 @@ pub struct Transaction {
     found: Signal<Local, Bits<19>>,
     not_low: Signal<Local, Bits<19>>,
     no_start: Signal<Local, Bits<19>>,
-    told: Signal<Local, Bits<19>>,
     announce: Signal<Local, Bit>,
+    answer_taken: Signal<Local, Bit>,
     probed: Signal<Local, Bit>,
     watched: Signal<Local, Bit>,
     found_late: Signal<Local, Bit>,
-    recovery_min: Signal<Local, Bits<13>>,
-    early: Signal<Local, Bit>,
-    bad: Signal<Local, Bit>,
     leave: Signal<Local, Bit>,
-    crc_bad: Signal<Local, Bit>,
-    verdict: Signal<Local, Bit>,
     lost: Signal<Local, Bit>,
 }
 
@@ -275,7 +266,6 @@ impl Logic for Transaction {
             stop_now,
             is_calibrated,
             acquiring,
-            overrun,
             stalled,
             all_sent
         );
@@ -284,35 +274,17 @@ impl Logic for Transaction {
             clock,
             tail_sampled,
             recovery,
-            seen,
-            taken,
-            gave_up,
-            gave_up_late,
-            publish_now,
-            good_now,
-            late_now,
-            cause_now,
-            flags_now
-        );
-        dff_setup!(
-            self,
-            clock,
             in_supplement,
             supplement_now,
             answered,
-            refused,
-            ended,
-            over_now,
-            lost_now,
             was_hunting,
             late,
-            announced,
             probing,
             settling,
             going,
             leaving
         );
-        clock!(self, clock, health);
+        clock!(self, clock, health, verdict);
         self.phase.reset.next = self.reset.val();
         self.timer.reset.next = self.reset.val();
         self.timer_step.reset.next = self.reset.val();
@@ -326,35 +298,21 @@ impl Logic for Transaction {
         self.hold.reset.next = self.reset.val();
         self.is_calibrated.reset.next = self.reset.val();
         self.acquiring.reset.next = self.reset.val();
-        self.overrun.reset.next = self.reset.val();
         self.stalled.reset.next = self.reset.val();
         self.all_sent.reset.next = self.reset.val();
         self.tail_sampled.reset.next = self.reset.val();
         self.recovery.reset.next = self.reset.val();
-        self.seen.reset.next = self.reset.val();
-        self.taken.reset.next = self.reset.val();
-        self.gave_up.reset.next = self.reset.val();
-        self.gave_up_late.reset.next = self.reset.val();
-        self.publish_now.reset.next = self.reset.val();
-        self.good_now.reset.next = self.reset.val();
-        self.late_now.reset.next = self.reset.val();
-        self.cause_now.reset.next = self.reset.val();
-        self.flags_now.reset.next = self.reset.val();
         self.in_supplement.reset.next = self.reset.val();
         self.supplement_now.reset.next = self.reset.val();
         self.answered.reset.next = self.reset.val();
-        self.refused.reset.next = self.reset.val();
-        self.ended.reset.next = self.reset.val();
-        self.over_now.reset.next = self.reset.val();
-        self.lost_now.reset.next = self.reset.val();
         self.was_hunting.reset.next = self.reset.val();
         self.late.reset.next = self.reset.val();
-        self.announced.reset.next = self.reset.val();
         self.probing.reset.next = self.reset.val();
         self.settling.reset.next = self.reset.val();
         self.going.reset.next = self.reset.val();
         self.leaving.reset.next = self.reset.val();
         self.health.reset.next = self.reset.val();
+        self.verdict.reset.next = self.reset.val();
 
         self.own.next = self.is_own.val() & self.has_all.val();
         self.triggered.next = self.trigger.val() & !(self.hold_off.val() & self.has_all.val());
@@ -371,26 +329,25 @@ impl Logic for Transaction {
         self.accept.next = false;
         self.give_up.next = false;
         self.idle.next = false;
-        self.verdict.next = false;
+        self.answer_taken.next = false;
         self.announce.next = false;
         self.probed.next = false;
         self.watched.next = false;
         self.found_late.next = false;
         self.found.next = 0.into();
         // What is known of a line that is HIGH at rest, and of one without a start bit.
-        self.not_low.next = 1.into();
-        self.no_start.next = 2.into();
+        self.not_low.next = self.data_not_low.val();
+        self.no_start.next = self.no_start_bit.val();
         if self.has_diagnosis.val() & self.health.is_open.val() {
-            self.not_low.next = 0x1001.into();
+            self.not_low.next = self.data_not_low.val() | self.no_encoder.val();
         }
         if self.has_diagnosis.val() & self.health.is_stuck.val() {
-            self.not_low.next = 0x2001.into();
+            self.not_low.next = self.data_not_low.val() | self.stuck_high.val();
         }
         if self.has_diagnosis.val() & self.health.never_high.val() {
-            self.no_start.next = 0x4002.into();
+            self.no_start.next = self.no_start_bit.val() | self.stuck_low.val();
         }
-        self.run_now.d.next = false;
-        self.crc_bad.next = !(self.serial_ok.val() & self.parallel_ok.val());
+        self.running.next = false;
 
         match self.phase.q.val() {
             Phase::NotReady => {
@@ -426,14 +383,14 @@ impl Logic for Transaction {
                                 self.phase.d.next = Phase::FirstLow;
                             }
                         } else {
-                            self.found.next = 1024.into();
+                            self.found.next = self.unknown_command.val();
                             self.refuse.next = true;
                         }
                     }
                 }
             }
             Phase::FirstLow => {
-                self.run_now.d.next = true;
+                self.running.next = true;
                 self.watched.next = true;
                 self.limit.next = bit_cast::<16, 11>(self.first_low_extra_cycles.val());
                 if self.timer_hit.q.val() {
@@ -442,7 +399,7 @@ impl Logic for Transaction {
                 }
             }
             Phase::Frame => {
-                self.run_now.d.next = true;
+                self.running.next = true;
                 self.watched.next = true;
                 self.in_us.next = true;
                 self.timer_clear.next =
@@ -452,7 +409,7 @@ impl Logic for Transaction {
                 }
                 // A receiver that has lost its place.
                 if self.timer_hit.q.val() & !self.hunting.val() {
-                    self.found.next = 0x10000.into();
+                    self.found.next = self.too_long.val();
                     self.give_up.next = true;
                 }
                 if self.timer_hit.q.val() & self.hunting.val() {
@@ -466,27 +423,27 @@ impl Logic for Transaction {
                     }
                 }
                 if self.late.q.val() & (self.started.val() | self.start_refused.val()) {
-                    self.found.next = 0x8002.into();
+                    self.found.next = self.no_start_bit.val() | self.late_start.val();
                     self.give_up.next = true;
                 }
                 if self.start_refused.val() & !self.late.q.val() {
-                    self.found.next = 4.into();
+                    self.found.next = self.start_window.val();
                     self.give_up.next = true;
                 }
                 if self.answer_done.val() {
-                    self.verdict.next = true;
+                    self.answer_taken.next = true;
                 }
                 if self.info_missing.val() & self.has_all.val() {
-                    self.found.next = 2048.into();
+                    self.found.next = self.info_not_there.val();
                     self.give_up.next = true;
                 }
                 if self.has_continuous.val() & self.gap_low.val() {
-                    self.found.next = 512.into();
+                    self.found.next = self.tail_low.val();
                     self.give_up.next = true;
                     self.found_late.next = true;
                 }
                 if self.has_continuous.val() & self.gap_high.val() {
-                    self.found.next = 64.into();
+                    self.found.next = self.not_falling.val();
                     self.give_up.next = true;
                     self.found_late.next = true;
                 }
@@ -502,7 +459,7 @@ impl Logic for Transaction {
                 }
             }
             Phase::Park => {
-                self.run_now.d.next = true;
+                self.running.next = true;
                 self.watched.next = true;
                 self.limit.next = self.park_cycles.val();
                 if self.timer_hit.q.val() {
@@ -516,12 +473,12 @@ impl Logic for Transaction {
                 }
             }
             Phase::Tail => {
-                self.run_now.d.next = true;
+                self.running.next = true;
                 self.watched.next = true;
                 self.in_us.next = true;
                 self.limit.next = self.frame_us.val();
                 if self.timer_hit.q.val() {
-                    self.found.next = 0x10000.into();
+                    self.found.next = self.too_long.val();
                     self.give_up.next = true;
                 }
                 if self.center.val() {
@@ -531,7 +488,7 @@ impl Logic for Transaction {
                 }
             }
             Phase::Recovery => {
-                self.run_now.d.next = !self.tail_sampled.q.val();
+                self.running.next = !self.tail_sampled.q.val();
                 self.watched.next = true;
                 self.limit.next = bit_cast::<16, 13>(self.recovery_limit_cycles.val());
                 // A request's command may have another range than the triggers' one.
@@ -548,13 +505,13 @@ impl Logic for Transaction {
                     self.normal_end.next = true;
                 } else {
                     if self.timer_hit.q.val() {
-                        self.found.next = 64.into();
+                        self.found.next = self.not_falling.val();
                         self.give_up.next = true;
                     }
                 }
                 // The encoder still sends, or has stopped early: its frame has another length than ours.
                 if self.sample.val() & !self.tail_sampled.q.val() & !self.level.val() {
-                    self.found.next = 512.into();
+                    self.found.next = self.tail_low.val();
                     self.give_up.next = true;
                 }
             }
@@ -592,10 +549,10 @@ impl Logic for Transaction {
             }
         }
         if self.has_diagnosis.val() & self.health.expired.val() & self.watched.val() {
-            self.found.next = self.found.val() | 0x10000;
+            self.found.next = self.found.val() | self.too_long.val();
             self.give_up.next = true;
         }
-        if (self.verdict.val() & !self.going.q.val()) | self.announce.val() {
+        if (self.answer_taken.val() & !self.going.q.val()) | self.announce.val() {
             self.answered.d.next = true;
         }
         if self.announce.val() {
@@ -605,7 +562,7 @@ impl Logic for Transaction {
             self.answered.d.next = false;
         }
         // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
-        if self.gave_up.q.val() {
+        if self.verdict.gave_up.val() {
             self.phase.d.next = Phase::Abort;
             self.timer_clear.next = true;
             self.accept.next = false;
@@ -643,82 +600,33 @@ impl Logic for Transaction {
             self.stalled.d.next = false;
         }
 
-        // What happened is registered, then told: the frame's bits stay where they are.
-        self.seen.d.next = self.found.val();
-        self.taken.d.next = self.verdict.val();
-        self.gave_up.d.next = self.give_up.val() & !self.gave_up.q.val();
-        self.gave_up_late.d.next = self.give_up.val()
-            & !self.gave_up.q.val()
-            & (self.answered.q.val() | self.found_late.val());
-        self.refused.d.next = self.refuse.val();
-        self.announced.d.next = self.announce.val() & self.has_diagnosis.val();
-        self.told.next = self.seen.q.val();
-        self.good_now.d.next = false;
-        self.bad.next = self.crc_bad.val() | self.f1.val() | !self.f2.val();
-        if self.taken.q.val() {
-            if self.crc_bad.val() {
-                self.told.next = self.told.val() | 8;
-                if self.has_diagnosis.val() & self.is_echo.val() {
-                    self.told.next = self.told.val() | 0x20008;
-                }
-            } else {
-                self.is_calibrated.d.next = true;
-                self.good_now.d.next = !self.f1.val() & self.f2.val();
-            }
-            if self.f1.val() {
-                self.told.next = self.told.val() | 16;
-            }
-            if !self.f2.val() {
-                self.told.next = self.told.val() | 32;
-            }
-            if !self.parallel_ok.val() {
-                self.told.next = self.told.val() | 256;
-            }
+        self.verdict.found.next = self.found.val();
+        self.verdict.answer_taken.next = self.answer_taken.val();
+        self.verdict.give_up.next = self.give_up.val();
+        self.verdict.is_late.next = self.answered.q.val() | self.found_late.val();
+        self.verdict.refuse.next = self.refuse.val();
+        self.verdict.announce.next = self.announce.val();
+        self.verdict.normal_end.next = self.normal_end.val();
+        self.verdict.is_going.next = self.going.q.val();
+        self.verdict.is_own.next = self.own.val();
+        self.verdict.serial_ok.next = self.serial_ok.val();
+        self.verdict.parallel_ok.next = self.parallel_ok.val();
+        self.verdict.f1.next = self.f1.val();
+        self.verdict.f2.next = self.f2.val();
+        self.verdict.is_echo.next = self.is_echo.val();
+        self.verdict.recovery_cycles.next = self.recovery.q.val();
+        self.verdict.recovery_min_cycles.next = self.recovery_min_cycles.val();
+        if self.verdict.is_received.val() {
+            self.is_calibrated.d.next = true;
         }
-        if self.overrun.q.val() {
-            self.told.next = self.told.val() | 128;
-        }
-        self.recovery_min.next = self.recovery_min_cycles.val();
-        if self.own.val() {
-            self.recovery_min.next = self.own_recovery_min_cycles.val();
-        }
-        self.early.next = self.has_diagnosis.val()
-            & self.ended.q.val()
-            & !self.going.q.val()
-            & !self.cause_now.q.val().any()
-            & (self.recovery.q.val() < self.recovery_min.val());
-        if self.early.val() {
-            self.told.next = self.told.val() | 0x40000;
-        }
-        self.publish_now.d.next = (self.taken.q.val()
-            | self.refused.q.val()
-            | self.announced.q.val()
-            | (self.gave_up.q.val() & !self.gave_up_late.q.val()))
-            & !self.own.val();
-        self.late_now.d.next = (self.gave_up_late.q.val() | self.early.val()) & !self.own.val();
-        // `over` comes with cause and flags of whatever ended the frame.
-        self.ended.d.next = self.normal_end.val();
-        self.over_now.d.next = self.ended.q.val() | self.gave_up.q.val() | self.refused.q.val();
-        self.chooser.flags.next = self.told.val();
-        if self.taken.q.val()
-            | self.gave_up.q.val()
-            | self.refused.q.val()
-            | self.announced.q.val()
-            | self.early.val()
-        {
-            self.flags_now.d.next = self.told.val();
-            self.cause_now.d.next = self.chooser.cause.val();
-            if !self.own.val() {
-                self.overrun.d.next = false;
-            }
+        // A delay that is wrong by whole periods is not seen at the start edge.
+        if self.verdict.is_doubtful.val() {
+            self.is_calibrated.d.next = false;
         }
         self.lost.next = self.trigger.val()
             & !self.going.q.val()
             & ((!self.accept.val() & !self.idle.val()) | (self.accept.val() & self.own.val()));
-        if self.lost.val() {
-            self.overrun.d.next = true;
-        }
-        self.lost_now.d.next = self.lost.val();
+        self.verdict.lost.next = self.lost.val();
         if self.accept.val() {
             self.answered.d.next = false;
             self.in_supplement.d.next = false;
@@ -732,20 +640,20 @@ impl Logic for Transaction {
         }
         // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
         self.leave.next = self.going.q.val()
-            & self.taken.q.val()
+            & self.verdict.taken.val()
             & (!self.continuous.val()
                 | self.line_wanted.val()
                 | !self.is_calibrated.q.val()
-                | (self.stop_at_error.val() & self.bad.val()));
+                | (self.stop_at_error.val() & self.verdict.is_bad.val()));
         if self.leave.val() {
             self.phase.d.next = Phase::Abort;
             self.timer_clear.next = true;
             self.leaving.d.next = true;
         }
-        if self.leave.val() | self.gave_up.q.val() {
+        if self.leave.val() | self.verdict.gave_up.val() {
             self.going.d.next = false;
         }
-        if self.gave_up.q.val() {
+        if self.verdict.gave_up.val() {
             self.leaving.d.next = false;
             self.probing.d.next = false;
             self.settling.d.next = false;
@@ -753,11 +661,11 @@ impl Logic for Transaction {
         if self.calibrate.val() {
             self.is_calibrated.d.next = false;
         }
+        self.run_now.d.next = self.running.val();
         self.run.next = self.run_now.q.val();
-        self.clock_run.next = self.run_now.q.val() | self.leaving.q.val();
         self.start_now.d.next = self.accept.val();
         self.start.next = self.start_now.q.val();
-        self.abort.next = self.gave_up.q.val();
+        self.abort.next = self.verdict.gave_up.val();
         // Taking the start bit ends its cell; `started` comes when the comparison knows that.
         self.sent.next = self.all_sent.q.val() & self.started.val() & !self.going.q.val();
         self.parking.next = false;
@@ -773,25 +681,23 @@ impl Logic for Transaction {
         if self.has_all.val() {
             self.drain.next = self.stalled.q.val() | (self.phase.q.val() == Phase::Park);
         }
-        self.stop_now.d.next = self.sent.val() | self.leaving.q.val() | !self.run_now.q.val();
+        self.stop_now.d.next =
+            self.sent.val() | !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
         self.stop.next = self.stop_now.q.val();
         self.acquire.next = self.acquiring.q.val();
         self.busy.next = !self.idle.val() | (self.begin_own.val() & self.has_all.val());
-        self.publish.next = self.publish_now.q.val();
-        self.good.next = self.good_now.q.val();
-        self.late_fault.next = self.late_now.q.val();
-        self.cause.next = self.cause_now.q.val();
-        self.flags.next = self.flags_now.q.val();
+        self.publish.next = self.verdict.publish.val();
+        self.good.next = self.verdict.good.val();
+        self.late_fault.next = self.verdict.late_fault.val();
+        self.cause.next = self.verdict.cause.val();
+        self.flags.next = self.verdict.flags.val();
         self.start_supplement.next = self.supplement_now.q.val();
-        self.over.next = self.over_now.q.val();
+        self.over.next = self.verdict.over.val();
         self.begun.next = self.accept.val() | self.refuse.val();
         self.is_at_rest.next = ((self.phase.q.val() == Phase::NotReady)
             | (self.phase.q.val() == Phase::Ready))
-            & !self.ended.q.val()
-            & !self.gave_up.q.val()
-            & !self.refused.q.val()
-            & !self.over_now.q.val();
-        self.displaced.next = self.lost_now.q.val();
+            & !self.verdict.is_telling.val();
+        self.displaced.next = self.verdict.displaced.val();
         self.calibrated.next = self.is_calibrated.q.val();
         self.recovery_cycles.next = self.recovery.q.val();
         self.probe.next = self.probing.q.val() & self.has_diagnosis.val();

@@ -193,7 +193,7 @@ fn names_in_the_programming_guide_are_those_of_the_registers() {
         (0x408, "state"),
         (0x405, "control"),
         (0x432, "frames_no_start_bit"),
-        (0x442, "position_bits"),
+        (0x446, "position_bits"),
         (0x400, "request"),
         (0x402, "answer"),
     ] {

@@ -33,6 +33,7 @@ pub const SOURCES: &[&str] = &[
     include_str!("../timebase.rs"),
     include_str!("../transaction.rs"),
     include_str!("../transaction/primary.rs"),
+    include_str!("../transaction/verdict.rs"),
     include_str!("../trigger.rs"),
     include_str!("../uart.rs"),
     include_str!("../uart_bridge.rs"),

@@ -143,6 +143,7 @@ pub const SERVICE: Block = Block {
             field("other_width", 4, 1, "", "The encoder has another width than configured; its own is used"),
             field("slower", 5, 1, "", "The encoder takes only a slower clock than configured; that is used"),
             field("unplugged", 6, 1, "", "DATA has been HIGH for long: no encoder, or an open line"),
+            field("initialising", 7, 1, "", "power-up sequence or initialisation is under way; triggers are lost"),
         ]),
         word("lost", at::LOST, ReadOnly, "What did not get its turn.", &[
             field("triggers", 0, 16, "", "Triggers that came while the line was not free, wrapping"),

@@ -245,6 +245,8 @@ pub mod state {
     pub const SLOWER: u16 = 1 << 5;
     /// DATA has been HIGH for long: no encoder, or a broken line.
     pub const UNPLUGGED: u16 = 1 << 6;
+    /// The encoder is being initialised, or the power-up sequence is under way; no position is taken.
+    pub const INITIALISING: u16 = 1 << 7;
 }
 
 /// A word of the encoder that the name plate has.

@@ -4,7 +4,7 @@
 //! start -> [power-up, initialisation] -> loop: end of a frame?   count it, keep its informations, prepare the next selection
 //!                                              request written?  send it, check its echo, wait as the command demands
 //!                                              control written?  initialise, clear
-//!                                              line HIGH for long, then LOW?  initialise
+//!                                              line HIGH for long, then LOW?  power-up, initialise
 //! ```
 //!
 //! Subroutines that call others keep their return address in a word of RAM. Conditions: after `sub` C means less, after `addi(minus(k))`
@@ -144,6 +144,8 @@ mod own {
     pub const STEP_RETURN: u8 = FIRST + 55;
     /// Frames until a request that does not ride is asked for again.
     pub const PATIENCE: u8 = FIRST + 56;
+    /// How often the initialisation is still begun again.
+    pub const ROUNDS: u8 = FIRST + 57;
 }
 
 /// Low half of a host word.
@@ -223,19 +225,7 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
         a.call("recovery_min");
     }
     if times.initialise {
-        set(a, own::LEVELS, level::HOLD_OFF);
-        a.out(output::CONTROL);
-        a.ldi(times.power_up_ms).call("wait");
-        a.ldi(level::HOLD_OFF | level::CLOCK_LOW)
-            .out(output::CONTROL);
-        // A microsecond or two: more than the 125 ns that are asked for.
-        a.inp(input::TIME_US).st(own::WAIT_FROM);
-        let pulse = a.here();
-        a.inp(input::TIME_US).sub(own::WAIT_FROM).addi(minus(2));
-        a.jnc(pulse);
-        a.ldi(level::HOLD_OFF).out(output::CONTROL);
-        a.ldi(times.after_pulse_ms).call("wait");
-        a.call("initialise");
+        a.call("power_up");
     } else {
         a.ldi(0).out(output::CONTROL);
     }
@@ -296,35 +286,38 @@ fn window(a: &mut Assembler) {
 
 /// An open line shows HIGH; when it is LOW again, there is an encoder to initialise.
 fn plug(a: &mut Assembler, times: &ServiceTimes) {
-    let (is_high, again, done) = (a.label(), a.label(), a.label());
-    a.inp(input::STATUS).andi(status::LINE_HIGH).jnz(is_high);
-    a.st(own::IS_HIGH);
+    let done = a.label();
+    a.inp(input::STATUS).andi(status::LINE_HIGH).jnz(done);
     a.ld(own::MAILBOX).jnz(done);
     a.ld(low(word::STATE)).andi(state::UNPLUGGED).jz(done);
     a.ld(low(word::STATE)).andi(!state::UNPLUGGED);
     a.st(low(word::STATE));
     if times.initialise {
-        a.call("initialise");
+        a.call("power_up");
     }
-    a.jmp(done);
+    a.place(done);
+}
+
+fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
+    // Handles the end of a frame, or notices an open line; for every loop. To be called where nothing but `event` may need
+    // the return address.
+    let (is_high, again, seen) = (a.label(), a.label(), a.label());
+    a.place("look");
+    a.inp(input::STATUS).andi(status::EVENT).jnz("event");
+    a.place("line");
+    a.inp(input::STATUS).andi(status::LINE_HIGH).jnz(is_high);
+    a.st(own::IS_HIGH).ret();
     a.place(is_high);
     a.ld(own::IS_HIGH).jnz(again);
     set(a, own::IS_HIGH, 1);
     a.inp(input::TIME_MS).st(own::HIGH_FROM);
     a.place(again);
     a.inp(input::TIME_MS).sub(own::HIGH_FROM);
-    a.addi(minus(times.unplugged_ms)).jnc(done);
+    a.addi(minus(times.unplugged_ms)).jnc(seen);
     a.ld(low(word::STATE))
         .andi(!(state::UNPLUGGED | state::INITIALISED));
     a.addi(state::UNPLUGGED).st(low(word::STATE));
-    a.place(done);
-}
-
-fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
-    // Handles the end of a frame, if there is one; to be called where nothing but `event` may need the return address.
-    a.place("look");
-    a.inp(input::STATUS).andi(status::EVENT).jnz("event");
-    a.ret();
+    a.place(seen).ret();
 
     if times.diagnosis {
         // The shortest recovery time of the range that is wanted.

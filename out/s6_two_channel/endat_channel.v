@@ -52,6 +52,14 @@ module endat_channel (
     input  wire  [11:0] start_timeout_us,
     // Data must fall within this many system clock cycles after the frame.
     input  wire  [12:0] recovery_limit_cycles,
+    // Data must not fall before this after the frame; 0 = not checked.
+    input  wire  [12:0] recovery_min_cycles,
+    // Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
+    input  wire  [11:0] watchdog_us,
+    // With 000111: the clock goes on after each position, and the next one follows without a command.
+    input  wire         continuous,
+    // It stops after an error, until the next trigger.
+    input  wire         stop_at_error,
     // EnDat clock to the transceiver, from a register.
     output wire         endat_clk,
     // Data line to the transceiver, from a register.
@@ -73,9 +81,9 @@ module endat_channel (
     // Age of the position in microseconds; stops at 65535.
     output wire  [15:0] age_us,
     // Primary cause of the last result, see cause.
-    output wire   [3:0] cause,
+    output wire   [4:0] cause,
     // Raw flags of the last result.
-    output wire  [11:0] flags,
+    output wire  [18:0] flags,
     // CRC received in the last whole frame.
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
@@ -97,9 +105,9 @@ module endat_channel (
     // The frame had the request.
     output wire         over_request,
     // Primary cause of the frame, as cause.
-    output wire   [3:0] over_cause,
+    output wire   [4:0] over_cause,
     // Raw flags of the frame, as flags.
-    output wire  [11:0] over_flags,
+    output wire  [18:0] over_flags,
     // Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
     output wire  [47:0] reply,
     // Its CRC is right.
@@ -150,6 +158,10 @@ module endat_channel (
     wire         receiver_info_done;
     wire         receiver_info_missing;
     wire         receiver_finished;
+    wire         receiver_gap_low;
+    wire         receiver_gap_high;
+    wire         receiver_latched;
+    wire         receiver_is_echo;
     wire  [47:0] receiver_payload;
     wire         receiver_f1;
     wire         receiver_f2;
@@ -158,6 +170,8 @@ module endat_channel (
     wire         receiver_serial_ok;
     wire         receiver_parallel_ok;
     wire         transaction_begin_own;
+    wire         transaction_continuous;
+    wire         transaction_line_wanted;
     reg          transaction_serial_ok;
     reg          transaction_f1;
     reg          transaction_f2;
@@ -167,6 +181,9 @@ module endat_channel (
     wire         transaction_hold_low;
     wire         transaction_drain;
     wire         transaction_stop;
+    wire         transaction_probe;
+    wire         transaction_is_probed;
+    wire         transaction_going_on;
     wire         transaction_start_supplement;
     wire         transaction_acquire;
     wire         transaction_publish;
@@ -186,7 +203,9 @@ module endat_channel (
     reg          clk_pin = 1'b1;
     reg          clk_pin_next;
     reg          data_pin = 1'b0;
+    reg          data_pin_next;
     reg          oe_pin = 1'b0;
+    reg          oe_pin_next;
     reg          own_wanted = 1'b0;
     reg          own_wanted_next;
     reg          ride_wanted = 1'b0;
@@ -216,7 +235,6 @@ module endat_channel (
         .clock(clock),
         .reset(reset),
         .start(transaction_start),
-        .run(transaction_run),
         .hold_low(transaction_hold_low),
         .stop(transaction_stop),
         .period_cycles(period),
@@ -247,6 +265,7 @@ module endat_channel (
         .rise(clock_gen_rise),
         .data_rise(filter_rise),
         .follow(receiver_start_found),
+        .going_on(transaction_going_on),
         .period_cycles(period),
         .start_window_cycles(start_window_cycles),
         .sample(delay_sample),
@@ -271,6 +290,8 @@ module endat_channel (
         .has_supplement(shape_has_supplement),
         .infos(add_info_infos),
         .start_supplement(transaction_start_supplement),
+        .going_on(transaction_going_on),
+        .command(command_now),
         .skipping(receiver_skipping),
         .hunting(receiver_hunting),
         .start_found(receiver_start_found),
@@ -281,6 +302,10 @@ module endat_channel (
         .info_done(receiver_info_done),
         .info_missing(receiver_info_missing),
         .finished(receiver_finished),
+        .gap_low(receiver_gap_low),
+        .gap_high(receiver_gap_high),
+        .latched(receiver_latched),
+        .is_echo(receiver_is_echo),
         .payload(receiver_payload),
         .f1(receiver_f1),
         .f2(receiver_f2),
@@ -310,6 +335,12 @@ module endat_channel (
         .begin_own(transaction_begin_own),
         .is_own(frame_own),
         .hold_off(hold_off),
+        .continuous(transaction_continuous),
+        .stop_at_error(stop_at_error),
+        .line_wanted(transaction_line_wanted),
+        .gap_low(receiver_gap_low),
+        .gap_high(receiver_gap_high),
+        .is_echo(receiver_is_echo),
         .serial_ok(transaction_serial_ok),
         .parallel_ok(receiver_parallel_ok),
         .f1(transaction_f1),
@@ -319,12 +350,17 @@ module endat_channel (
         .first_low_extra_cycles(first_low_extra_cycles),
         .start_timeout_us(start_timeout_us),
         .recovery_limit_cycles(recovery_limit_cycles),
+        .recovery_min_cycles(recovery_min_cycles),
+        .watchdog_us(watchdog_us),
         .start(transaction_start),
         .run(transaction_run),
         .abort(transaction_abort),
         .hold_low(transaction_hold_low),
         .drain(transaction_drain),
         .stop(transaction_stop),
+        .probe(transaction_probe),
+        .is_probed(transaction_is_probed),
+        .going_on(transaction_going_on),
         .start_supplement(transaction_start_supplement),
         .acquire(transaction_acquire),
         .busy(busy),
@@ -346,6 +382,8 @@ module endat_channel (
         .tick_us(tick_us),
         .timestamp(timestamp),
         .first_fall(transaction_start),
+        .latched(receiver_latched),
+        .delay_cycles(delay_cycles),
         .publish(transaction_publish),
         .good(transaction_good),
         .late_fault(transaction_late_fault),
@@ -387,7 +425,7 @@ module endat_channel (
         .crc_ok(crc_ok),
         .word(word),
         .over(add_info_over),
-        .flags(over_flags),
+        .flags(over_flags[11:0]),
         .active(info_active),
         .infos(add_info_infos),
         .info_1(info_1),
@@ -455,6 +493,8 @@ module endat_channel (
             ride_wanted_next = 1'b0;
         end
     end
+    assign transaction_continuous = continuous & shape_has_f1 & !shape_has_f2 & !shape_has_test_values;
+    assign transaction_line_wanted = own_wanted | hold_off;
 
     always @* begin
         transaction_serial_ok = receiver_serial_ok;
@@ -519,11 +559,20 @@ module endat_channel (
             clk_pin_next = 1'b0;
         end
     end
+
+    always @* begin
+        data_pin_next = sender_data;
+        oe_pin_next = sender_oe;
+        if (transaction_probe) begin
+            data_pin_next = 1'b0;
+            oe_pin_next = 1'b1;
+        end
+    end
     assign endat_clk = clk_pin;
     assign data_o = data_pin;
     assign data_oe = oe_pin;
     assign request_runs = (frame_own | frame_ride) & !transaction_is_at_rest;
-    assign line_high = filter_level & !transaction_run;
+    assign line_high = (filter_level | transaction_is_probed) & !transaction_run;
     assign over_request = frame_own | frame_ride;
     assign reply = reply_word;
     assign reply_good = reply_right;
@@ -545,8 +594,8 @@ module endat_channel (
             reply_right <= 1'b0;
         end else begin
             clk_pin <= clk_pin_next;
-            data_pin <= sender_data;
-            oe_pin <= sender_oe;
+            data_pin <= data_pin_next;
+            oe_pin <= oe_pin_next;
             own_wanted <= own_wanted_next;
             ride_wanted <= ride_wanted_next;
             frame_command <= frame_command_next;

@@ -29,9 +29,9 @@ module endat_channel_registers (
     // Age of the position, in microseconds.
     input  wire  [15:0] age_us,
     // Primary cause.
-    input  wire   [3:0] cause,
+    input  wire   [4:0] cause,
     // Raw flags.
-    input  wire  [11:0] flags,
+    input  wire  [18:0] flags,
     // CRC as received.
     input  wire   [4:0] crc_received,
     // CRC as computed.
@@ -160,11 +160,11 @@ module endat_channel_registers (
         end
     end
     assign pending = waiting;
-    assign word_0 = {16'd0, sequence_value} | ({28'd0, cause} << 5'd16) | ({31'd0, position_valid} << 5'd20) | ({31'd0, fresh} << 5'd21);
+    assign word_0 = {16'd0, sequence_value} | ({27'd0, cause} << 5'd16) | ({31'd0, position_valid} << 5'd22) | ({31'd0, fresh} << 5'd23) | ({25'd0, flags[18:12]} << 5'd24);
     assign word_1 = position[31:0];
     assign word_2 = {16'd0, position[47:32]};
     assign word_3 = first_fall_timestamp;
-    assign word_4 = {27'd0, crc_received} | ({27'd0, crc_computed} << 3'd5) | ({22'd0, delay_cycles} << 4'd10) | ({20'd0, flags} << 5'd20);
+    assign word_4 = {27'd0, crc_received} | ({27'd0, crc_computed} << 3'd5) | ({22'd0, delay_cycles} << 4'd10) | ({20'd0, flags[11:0]} << 5'd20);
     assign word_5 = {16'd0, age_us} | ({19'd0, recovery_cycles} << 5'd16);
 
     always @* begin

@@ -12,8 +12,6 @@ module endat_clock_gen (
     input  wire         reset,
     // One-cycle strobe: the first falling edge comes at the end of this cycle.
     input  wire         start,
-    // High while a frame is under way; low puts the clock HIGH at once.
-    input  wire         run,
     // Keeps a low phase low.
     input  wire         hold_low,
     // Keeps a high phase high: no frame, or its last rising edge has been sent.
@@ -41,6 +39,8 @@ module endat_clock_gen (
         .reset(reset),
         .restart(half_restart),
         .second(level),
+        .shorten(1'b0),
+        .lengthen(1'b0),
         .period_cycles(period_cycles),
         .tick(half_tick)
     );
@@ -57,9 +57,6 @@ module endat_clock_gen (
         end
         if (start | fall_now) begin
             level_next = 1'b0;
-        end
-        if (!run & !start) begin
-            level_next = 1'b1;
         end
     end
     assign endat_clk = level;

@@ -57,9 +57,9 @@ module endat_encoder_port (
     // Age of the position in microseconds; stops at 65535.
     output wire  [15:0] age_us,
     // Primary cause of the last result, see cause.
-    output wire   [3:0] cause,
+    output wire   [4:0] cause,
     // Raw flags of the last result.
-    output wire  [11:0] flags,
+    output wire  [18:0] flags,
     // CRC received in the last whole frame.
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
@@ -81,9 +81,9 @@ module endat_encoder_port (
     // The frame had the request.
     output wire         over_request,
     // Primary cause of the frame, as cause.
-    output wire   [3:0] over_cause,
+    output wire   [4:0] over_cause,
     // Raw flags of the frame, as flags.
-    output wire  [11:0] over_flags,
+    output wire  [18:0] over_flags,
     // Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
     output wire  [47:0] reply,
     // Its CRC is right.
@@ -143,6 +143,10 @@ module endat_encoder_port (
         .start_window_cycles(start_window_cycles),
         .start_timeout_us(start_timeout_us),
         .recovery_limit_cycles(recovery_limit_cycles),
+        .recovery_min_cycles(13'd0),
+        .watchdog_us(12'd0),
+        .continuous(1'b0),
+        .stop_at_error(1'b0),
         .endat_clk(endat_clk),
         .data_o(data_o),
         .data_oe(data_oe),

@@ -14,6 +14,10 @@ module endat_half_period_restart_count3 (
     input  wire         restart,
     // Whether this is the second half of the period.
     input  wire         second,
+    // The next half is one cycle shorter; for those of at least 4.
+    input  wire         shorten,
+    // The next half is one cycle longer.
+    input  wire         lengthen,
     // Period, in system clock cycles.
     input  wire  [10:0] period_cycles,
     // High in the last cycle of a half.
@@ -47,6 +51,12 @@ module endat_half_period_restart_count3 (
             count_next = 10'd2;
             hit_next = 1'b0;
             hit_late_next = 1'b0;
+        end
+        if (tick_now & shorten) begin
+            count_next = 10'd3;
+        end
+        if (tick_now & lengthen) begin
+            count_next = 10'd1;
         end
         if (restart) begin
             count_next = RESTART_COUNT;

@@ -24,6 +24,8 @@ module endat_line_delay (
     input  wire         data_rise,
     // Strobe, together with sample: this sample is a good start bit, follow its edge.
     input  wire         follow,
+    // The clock goes on after the frame: the phase of the running cells follows, too.
+    input  wire         going_on,
     // EnDat clock period, in system clock cycles.
     input  wire  [10:0] period_cycles,
     // Largest distance of the start edge from its expected place, in system clock cycles.
@@ -78,12 +80,18 @@ module endat_line_delay (
     reg    [5:0] edge_error_next;
     reg          edge_outside = 1'b0;
     reg          edge_outside_next;
+    reg          shorten = 1'b0;
+    reg          shorten_next;
+    reg          lengthen = 1'b0;
+    reg          lengthen_next;
 
     endat_half_period_restart_count3 u_half (
         .clock(clock),
         .reset(reset),
         .restart(half_restart),
         .second(second_half),
+        .shorten(shorten),
+        .lengthen(lengthen),
         .period_cycles(period_cycles),
         .tick(half_tick)
     );
@@ -179,8 +187,16 @@ module endat_line_delay (
 
     always @* begin
         delay_next = delay;
+        shorten_next = shorten;
+        lengthen_next = lengthen;
+        if (half_tick) begin
+            shorten_next = 1'b0;
+            lengthen_next = 1'b0;
+        end
         if (follow_now) begin
             delay_next = delay + step;
+            shorten_next = going_on & !edge_late;
+            lengthen_next = going_on & edge_late;
         end
         if (acquired) begin
             delay_next = since_rise;
@@ -211,6 +227,8 @@ module endat_line_delay (
             edge_late <= 1'b0;
             edge_error <= 6'd0;
             edge_outside <= 1'b0;
+            shorten <= 1'b0;
+            lengthen <= 1'b0;
         end else begin
             delay <= delay_next;
             since_rise <= since_rise_next;
@@ -229,6 +247,8 @@ module endat_line_delay (
             edge_late <= edge_late_next;
             edge_error <= edge_error_next;
             edge_outside <= edge_outside_next;
+            shorten <= shorten_next;
+            lengthen <= lengthen_next;
         end
     end
 endmodule

@@ -36,6 +36,10 @@ module endat_receiver (
     input  wire   [1:0] infos,
     // One-cycle strobe: the supplement begins.
     input  wire         start_supplement,
+    // The clock goes on after this answer, and another one follows.
+    input  wire         going_on,
+    // Mode command that was sent.
+    input  wire   [5:0] command,
     // The line is undefined: samples are not looked at.
     output wire         skipping,
     // The start bit may come now.
@@ -56,6 +60,14 @@ module endat_receiver (
     output reg          info_missing,
     // Strobe: the answer with all its additional informations, or the supplement, is complete.
     output reg          finished,
+    // Strobe: while the clock goes on, the cell after the last CRC bit is LOW.
+    output wire         gap_low,
+    // Strobe: while the clock goes on, the second cell after the last CRC bit is HIGH.
+    output wire         gap_high,
+    // Strobe: the encoder has taken the next position, one propagation delay ago.
+    output wire         latched,
+    // What came begins with the mode command, leading zeros aside.
+    output wire         is_echo,
     // Payload, bit 0 = the bit received first, zeros above its width.
     output wire  [47:0] payload,
     // Error bit 1, high = alarm.
@@ -72,11 +84,14 @@ module endat_receiver (
     output wire         parallel_ok
 );
     localparam         HAS_ALL = 1'b0;
+    localparam         HAS_DIAGNOSIS = 1'b0;
+    localparam         HAS_CONTINUOUS = 1'b0;
     localparam   [3:0] SKIP_FROM = 4'd5;
     localparam   [3:0] LONG_SKIP_FROM = 4'd11;
     localparam   [6:0] FIXED_CELLS = 7'd17;
     localparam   [6:0] SUPPLEMENT_CELLS = 7'd35;
     localparam   [5:0] INFO_BITS = 6'd24;
+    localparam   [6:0] CELLS_FROM_START = 7'd7;
     // What the next sample is.
     localparam   [3:0] FIELD_SKIP = 4'd0; // Cells before the earliest start bit: the line is undefined.
     localparam   [3:0] FIELD_START = 4'd1; // Low, until the start bit.
@@ -85,9 +100,12 @@ module endat_receiver (
     localparam   [3:0] FIELD_PAYLOAD = 4'd4; // Position, LSB first, or what an answer has in its place.
     localparam   [3:0] FIELD_CRC = 4'd5; // CRC, MSB first.
     localparam   [3:0] FIELD_SEPARATOR = 4'd6; // LOW before an additional information.
-    localparam   [3:0] FIELD_DONE = 4'd7; // The answer is complete.
-    localparam   [3:0] FIELD_SUPPLEMENT = 4'd8; // Cells of the supplement: the line is ours or undefined.
+    localparam   [3:0] FIELD_GAP_HIGH = 4'd7; // The clock goes on: HIGH after the last CRC bit.
+    localparam   [3:0] FIELD_GAP_LOW = 4'd8; // LOW before the next start bit may come.
+    localparam   [3:0] FIELD_DONE = 4'd9; // The answer is complete.
+    localparam   [3:0] FIELD_SUPPLEMENT = 4'd10; // Cells of the supplement: the line is ours or undefined.
 
+    reg          again;
     reg          skip_step;
     reg          covered_bit;
     wire         shift;
@@ -151,6 +169,14 @@ module endat_receiver (
     reg          missing_next;
     reg          supplement_over = 1'b0;
     reg          supplement_over_next;
+    reg          low_gap = 1'b0;
+    reg          low_gap_next;
+    reg          high_gap = 1'b0;
+    reg          high_gap_next;
+    reg    [6:0] heard = 7'd0;
+    reg    [6:0] heard_next;
+    reg          echo = 1'b0;
+    reg          echo_next;
 
     endat_crc5_parallel u_parallel (
         .word(word),
@@ -284,6 +310,9 @@ module endat_receiver (
         separator = 1'b0;
         missing_next = 1'b0;
         supplement_over_next = 1'b0;
+        low_gap_next = 1'b0;
+        high_gap_next = 1'b0;
+        again = 1'b0;
         if (sample & (field != FIELD_SKIP) & (field != FIELD_START)) begin
             left_next = left - 7'd1;
         end
@@ -342,6 +371,9 @@ module endat_receiver (
                         if ((|infos_left) & HAS_ALL) begin
                             field_next = FIELD_SEPARATOR;
                         end
+                        if (going_on & HAS_CONTINUOUS) begin
+                            field_next = FIELD_GAP_HIGH;
+                        end
                     end
                 end
             end
@@ -355,6 +387,25 @@ module endat_receiver (
                         missing_next = 1'b1;
                         field_next = FIELD_DONE;
                     end
+                end
+            end
+            FIELD_GAP_HIGH: begin
+                if (sample) begin
+                    low_gap_next = !level;
+                    field_next = FIELD_GAP_LOW;
+                end
+                if (!HAS_CONTINUOUS) begin
+                    field_next = FIELD_DONE;
+                end
+            end
+            FIELD_GAP_LOW: begin
+                if (sample) begin
+                    high_gap_next = level;
+                    again = 1'b1;
+                    field_next = FIELD_START;
+                end
+                if (!HAS_CONTINUOUS) begin
+                    field_next = FIELD_DONE;
                 end
             end
             FIELD_DONE: begin
@@ -408,6 +459,11 @@ module endat_receiver (
                 end
             end
         end
+        if (again & HAS_CONTINUOUS) begin
+            left_next = {1'b0, payload_bits} + CELLS_FROM_START;
+            word_next = 50'd0;
+            covered_next_2 = 4'd0;
+        end
         if (start_supplement & HAS_ALL) begin
             field_next = FIELD_SUPPLEMENT;
             left_next = SUPPLEMENT_CELLS;
@@ -420,7 +476,22 @@ module endat_receiver (
             crc_bits_next = ((crc_bits << 1'b1) & 5'd30) | {4'd0, level};
         end
     end
-    assign serial_clear = start | (separator & HAS_ALL);
+
+    always @* begin
+        heard_next = heard;
+        echo_next = echo;
+        if (sample & (field != FIELD_SKIP) & !heard[6]) begin
+            heard_next = ((heard << 1'b1) & 7'd126) | {6'd0, level};
+        end
+        if (heard == ({1'b0, command} << 1'b1)) begin
+            echo_next = 1'b1;
+        end
+        if (start | again) begin
+            heard_next = 7'd0;
+            echo_next = 1'b0;
+        end
+    end
+    assign serial_clear = start | (separator & HAS_ALL) | (again & HAS_CONTINUOUS);
     assign serial_enable = covered_bit | crc_bit;
     assign skipping = (field == FIELD_SKIP) | (field == FIELD_SUPPLEMENT);
     assign hunting = hunting_now;
@@ -441,6 +512,10 @@ module endat_receiver (
             finished = (done_now & !(|infos_left)) | supplement_over;
         end
     end
+    assign gap_low = low_gap & HAS_CONTINUOUS;
+    assign gap_high = high_gap & HAS_CONTINUOUS;
+    assign latched = again & HAS_CONTINUOUS;
+    assign is_echo = echo & HAS_DIAGNOSIS;
     assign payload = word[47:0];
     assign f1 = f1_bit;
     assign f2 = f2_bit;
@@ -477,6 +552,10 @@ module endat_receiver (
             in_info <= 1'b0;
             missing <= 1'b0;
             supplement_over <= 1'b0;
+            low_gap <= 1'b0;
+            high_gap <= 1'b0;
+            heard <= 7'd0;
+            echo <= 1'b0;
         end else begin
             field <= field_next;
             left <= left_next;
@@ -504,6 +583,10 @@ module endat_receiver (
             in_info <= in_info_next;
             missing <= missing_next;
             supplement_over <= supplement_over_next;
+            low_gap <= low_gap_next;
+            high_gap <= high_gap_next;
+            heard <= heard_next;
+            echo <= echo_next;
         end
     end
 endmodule

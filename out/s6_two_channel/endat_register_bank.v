@@ -75,7 +75,7 @@ module endat_register_bank (
 );
     localparam         HAS_SERVICE = 1'b0;
     localparam  [31:0] ID = 32'h456e4474;
-    localparam  [31:0] VERSION = 32'h20000;
+    localparam  [31:0] VERSION = 32'h30000;
     localparam  [31:0] CAPABILITIES = 32'hf3002;
     localparam  [31:0] SYSTEM_HZ = 32'h5f5e100;
     localparam  [31:0] CONFIGURATION_HASH = 32'hcff72a77;

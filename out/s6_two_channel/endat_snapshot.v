@@ -16,6 +16,10 @@ module endat_snapshot (
     input  wire  [31:0] timestamp,
     // Strobe: the first falling edge of a frame, which latches the position in the encoder.
     input  wire         first_fall,
+    // Strobe: the encoder has taken a position by itself, delay_cycles ago.
+    input  wire         latched,
+    // Propagation delay, in system clock cycles.
+    input  wire   [9:0] delay_cycles,
     // Strobe: take the result of a trigger.
     input  wire         publish,
     // With publish: the position is good.
@@ -29,9 +33,9 @@ module endat_snapshot (
     // CRC as computed.
     input  wire   [4:0] crc_computed_in,
     // Primary cause.
-    input  wire   [3:0] cause_in,
+    input  wire   [4:0] cause_in,
     // Raw flags.
-    input  wire  [11:0] flags_in,
+    input  wire  [18:0] flags_in,
     // Strobe: a new result can be read from this cycle on.
     output wire         result_strobe,
     // Last good position, zeros above its width.
@@ -47,9 +51,9 @@ module endat_snapshot (
     // Age of the position in microseconds since its publication; stops at 65535.
     output wire  [15:0] age_us,
     // Primary cause of the last result.
-    output wire   [3:0] cause,
+    output wire   [4:0] cause,
     // Raw flags of the last result.
-    output wire  [11:0] flags,
+    output wire  [18:0] flags,
     // CRC received in the last whole frame.
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
@@ -65,26 +69,29 @@ module endat_snapshot (
     reg          is_fresh_next;
     reg   [15:0] count = 16'd0;
     reg   [15:0] count_next;
-    reg   [31:0] latched = 32'd0;
-    reg   [31:0] latched_next;
+    reg   [31:0] moment = 32'd0;
+    reg   [31:0] moment_next;
     reg   [31:0] stamp = 32'd0;
     reg   [31:0] stamp_next;
     reg   [15:0] age = 16'd0;
     reg   [15:0] age_next;
     reg          age_full = 1'b0;
-    reg    [3:0] cause_held = 4'd0;
-    reg    [3:0] cause_held_next;
-    reg   [11:0] flags_held = 12'd0;
-    reg   [11:0] flags_held_next;
+    reg    [4:0] cause_held = 5'd0;
+    reg    [4:0] cause_held_next;
+    reg   [18:0] flags_held = 19'd0;
+    reg   [18:0] flags_held_next;
     reg    [4:0] received = 5'd0;
     reg    [4:0] received_next;
     reg    [4:0] computed = 5'd0;
     reg    [4:0] computed_next;
 
     always @* begin
-        latched_next = latched;
+        moment_next = moment;
         if (first_fall) begin
-            latched_next = timestamp;
+            moment_next = timestamp;
+        end
+        if (latched) begin
+            moment_next = timestamp - {22'd0, delay_cycles};
         end
     end
 
@@ -118,7 +125,7 @@ module endat_snapshot (
         end
         if (take_good) begin
             held_next = position_in;
-            stamp_next = latched;
+            stamp_next = moment;
             valid_next = 1'b1;
             age_next = 16'd0;
         end
@@ -146,12 +153,12 @@ module endat_snapshot (
             valid <= 1'b0;
             is_fresh <= 1'b0;
             count <= 16'd0;
-            latched <= 32'd0;
+            moment <= 32'd0;
             stamp <= 32'd0;
             age <= 16'd0;
             age_full <= 1'b0;
-            cause_held <= 4'd0;
-            flags_held <= 12'd0;
+            cause_held <= 5'd0;
+            flags_held <= 19'd0;
             received <= 5'd0;
             computed <= 5'd0;
         end else begin
@@ -160,7 +167,7 @@ module endat_snapshot (
             valid <= valid_next;
             is_fresh <= is_fresh_next;
             count <= count_next;
-            latched <= latched_next;
+            moment <= moment_next;
             stamp <= stamp_next;
             age <= age_next;
             age_full <= &age;

@@ -46,6 +46,18 @@ module endat_transaction (
     input  wire         is_own,
     // No frame may begin.
     input  wire         hold_off,
+    // The clock goes on after each position, and the next one follows without a command.
+    input  wire         continuous,
+    // It stops after an error.
+    input  wire         stop_at_error,
+    // The line is wanted for something else.
+    input  wire         line_wanted,
+    // Strobe: the cell after the last CRC bit is LOW, while the clock goes on.
+    input  wire         gap_low,
+    // Strobe: the cell before the next start bit is HIGH, while the clock goes on.
+    input  wire         gap_high,
+    // The answer begins with the own mode command.
+    input  wire         is_echo,
     // Serial CRC verdict.
     input  wire         serial_ok,
     // Parallel CRC verdict.
@@ -64,6 +76,10 @@ module endat_transaction (
     input  wire  [11:0] start_timeout_us,
     // Data must fall within this after the frame.
     input  wire  [12:0] recovery_limit_cycles,
+    // Data must not fall before this after the frame.
+    input  wire  [12:0] recovery_min_cycles,
+    // Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
+    input  wire  [11:0] watchdog_us,
     // One-cycle strobe: the first falling clock edge comes at the end of this cycle.
     output wire         start,
     // A frame is under way on the wire.
@@ -76,6 +92,12 @@ module endat_transaction (
     output reg          drain,
     // Keeps the clock high: no frame, or all its edges have been sent.
     output wire         stop,
+    // Drives the line LOW, to see whether it follows.
+    output wire         probe,
+    // It has just done so, or does.
+    output wire         is_probed,
+    // The clock goes on after this frame.
+    output wire         going_on,
     // One-cycle strobe: the supplement begins.
     output wire         start_supplement,
     // This frame measures the propagation delay.
@@ -99,18 +121,36 @@ module endat_transaction (
     // The propagation delay is known.
     output wire         calibrated,
     // Primary cause, with publish, late_fault or over.
-    output wire   [3:0] cause,
-    // Raw flags in the order of the cause codes: bit k stands for cause k + 1; then bit 8 parallel CRC, bit 9 tail not high,
-    // bit 10 unknown command, bit 11 additional information missing.
-    output wire  [11:0] flags,
+    output wire   [4:0] cause,
+    // Raw flags, see flag.
+    output wire  [18:0] flags,
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles
 );
     localparam         HAS_ALL = 1'b0;
+    localparam         HAS_DIAGNOSIS = 1'b0;
+    localparam         HAS_CONTINUOUS = 1'b0;
     localparam  [15:0] READY_LOW_CYCLES = 16'd51;
     localparam  [15:0] ABORT_US = 16'h7530;
     localparam  [15:0] PARK_CYCLES = 16'd200;
     localparam  [15:0] PARAMETER_TIMEOUT_US = 16'hc350;
+    localparam  [15:0] OWN_RECOVERY_LIMIT_CYCLES = 16'd3500;
+    localparam  [15:0] FRAME_US = 16'd4000;
+    localparam  [15:0] PROBE_US = 16'd2;
+    localparam  [15:0] SETTLE_US = 16'd20;
+    localparam  [15:0] LEAVE_US = 16'd40;
+    localparam  [18:0] DATA_NOT_LOW = 19'd1;
+    localparam  [18:0] NO_ENCODER = 19'd4096;
+    localparam  [18:0] STUCK_HIGH = 19'd8192;
+    localparam  [18:0] NO_START_BIT = 19'd2;
+    localparam  [18:0] STUCK_LOW = 19'h4000;
+    localparam  [18:0] LATE_START = 19'h8000;
+    localparam  [18:0] START_WINDOW = 19'd4;
+    localparam  [18:0] UNKNOWN_COMMAND = 19'd1024;
+    localparam  [18:0] INFO_NOT_THERE = 19'd2048;
+    localparam  [18:0] NOT_FALLING = 19'd64;
+    localparam  [18:0] TOO_LONG = 19'h10000;
+    localparam  [18:0] TAIL_LOW = 19'd512;
     // What the wire is doing.
     localparam   [2:0] PHASE_NOT_READY = 3'd0; // Idle, but data has not yet been low for tR.
     localparam   [2:0] PHASE_READY = 3'd1; // Idle and ready for a trigger.
@@ -122,6 +162,7 @@ module endat_transaction (
     localparam   [2:0] PHASE_PARK = 3'd7; // Clock LOW between answer and supplement.
 
     reg   [15:0] limit;
+    reg          running;
     reg          in_us;
     reg          timer_clear;
     reg          accept;
@@ -134,12 +175,28 @@ module endat_transaction (
     reg          parking;
     reg          sent;
     wire         own;
-    reg   [11:0] found;
-    reg   [11:0] told;
-    wire         crc_bad;
-    reg          verdict;
-    reg    [3:0] primary;
+    reg   [18:0] found;
+    reg   [18:0] not_low;
+    reg   [18:0] no_start;
+    reg          announce;
+    reg          answer_taken;
+    reg          probed;
+    reg          watched;
+    reg          found_late;
+    wire         leave;
     wire         lost;
+    wire         health_under_way;
+    wire         health_is_ready;
+    wire         health_expired;
+    wire         health_never_high;
+    wire         health_is_open;
+    wire         health_is_stuck;
+    wire         verdict_is_late;
+    wire         verdict_taken;
+    wire         verdict_is_received;
+    wire         verdict_is_doubtful;
+    wire         verdict_is_bad;
+    wire         verdict_is_telling;
     reg    [2:0] phase = PHASE_NOT_READY;
     reg    [2:0] phase_next;
     reg   [15:0] timer = 16'd0;
@@ -151,15 +208,12 @@ module endat_transaction (
     reg          hold = 1'b0;
     reg          start_now = 1'b0;
     reg          run_now = 1'b0;
-    reg          run_now_next;
     reg          extra = 1'b0;
     reg          stop_now = 1'b1;
     reg          is_calibrated = 1'b0;
     reg          is_calibrated_next;
     reg          acquiring = 1'b0;
     reg          acquiring_next;
-    reg          overrun = 1'b0;
-    reg          overrun_next;
     reg          stalled = 1'b0;
     reg          stalled_next;
     reg          all_sent = 1'b0;
@@ -173,26 +227,71 @@ module endat_transaction (
     reg          supplement_now_next;
     reg          answered = 1'b0;
     reg          answered_next;
-    reg          refused = 1'b0;
-    reg          ended = 1'b0;
-    reg          over_now = 1'b0;
-    reg          lost_now = 1'b0;
-    reg   [11:0] seen = 12'd0;
-    reg          taken = 1'b0;
-    reg          gave_up = 1'b0;
-    reg          gave_up_late = 1'b0;
-    reg          publish_now = 1'b0;
-    reg          good_now = 1'b0;
-    reg          good_now_next;
-    reg          late_now = 1'b0;
-    reg    [3:0] cause_now = 4'd0;
-    reg    [3:0] cause_now_next;
-    reg   [11:0] flags_now = 12'd0;
-    reg   [11:0] flags_now_next;
+    reg          was_hunting = 1'b0;
+    reg          late = 1'b0;
+    reg          late_next;
+    reg          probing = 1'b0;
+    reg          probing_next;
+    reg          settling = 1'b0;
+    reg          settling_next;
+    reg          going = 1'b0;
+    reg          going_next;
+    reg          leaving = 1'b0;
+    reg          leaving_next;
+
+    endat_line_health u_health (
+        .clock(clock),
+        .reset(reset),
+        .tick_us(tick_us),
+        .level(level),
+        .start(start_now),
+        .under_way(health_under_way),
+        .watchdog_us(watchdog_us),
+        .probed(probed),
+        .is_ready(health_is_ready),
+        .expired(health_expired),
+        .never_high(health_never_high),
+        .is_open(health_is_open),
+        .is_stuck(health_is_stuck)
+    );
+    endat_verdict u_verdict (
+        .clock(clock),
+        .reset(reset),
+        .found(found),
+        .answer_taken(answer_taken),
+        .give_up(give_up),
+        .is_late(verdict_is_late),
+        .refuse(refuse),
+        .announce(announce),
+        .normal_end(normal_end),
+        .is_going(going),
+        .is_own(own),
+        .lost(lost),
+        .serial_ok(serial_ok),
+        .parallel_ok(parallel_ok),
+        .f1(f1),
+        .f2(f2),
+        .is_echo(is_echo),
+        .recovery_cycles(recovery),
+        .recovery_min_cycles(recovery_min_cycles),
+        .taken(verdict_taken),
+        .is_received(verdict_is_received),
+        .is_doubtful(verdict_is_doubtful),
+        .is_bad(verdict_is_bad),
+        .gave_up(abort),
+        .is_telling(verdict_is_telling),
+        .publish(publish),
+        .good(good),
+        .late_fault(late_fault),
+        .over(over),
+        .displaced(displaced),
+        .cause(cause),
+        .flags(flags)
+    );
 
     always @* begin
         stalled_next = stalled;
-        if (all_sent & !started) begin
+        if (all_sent & !started & !going) begin
             stalled_next = 1'b1;
         end
         if (!(|outstanding)) begin
@@ -202,16 +301,39 @@ module endat_transaction (
     assign own = is_own & HAS_ALL;
     assign triggered = trigger & !(hold_off & HAS_ALL);
     assign wanted = triggered | (begin_own & HAS_ALL);
-    assign crc_bad = !(serial_ok & parallel_ok);
+
+    always @* begin
+        not_low = DATA_NOT_LOW;
+        if (HAS_DIAGNOSIS & health_is_open) begin
+            not_low = DATA_NOT_LOW | NO_ENCODER;
+        end
+        if (HAS_DIAGNOSIS & health_is_stuck) begin
+            not_low = DATA_NOT_LOW | STUCK_HIGH;
+        end
+    end
+
+    always @* begin
+        no_start = NO_START_BIT;
+        if (HAS_DIAGNOSIS & health_never_high) begin
+            no_start = NO_START_BIT | STUCK_LOW;
+        end
+    end
+    assign leave = going & verdict_taken & (!continuous | line_wanted | !is_calibrated | (stop_at_error & verdict_is_bad));
 
     always @* begin
         phase_next = phase;
+        timer_next = timer;
         is_calibrated_next = is_calibrated;
         acquiring_next = acquiring;
         tail_sampled_next = tail_sampled;
         recovery_next = recovery;
         in_supplement_next = in_supplement;
         answered_next = answered;
+        late_next = late;
+        probing_next = probing;
+        settling_next = settling;
+        going_next = going;
+        leaving_next = leaving;
         refuse = 1'b0;
         normal_end = 1'b0;
         supplement_now_next = 1'b0;
@@ -224,9 +346,13 @@ module endat_transaction (
         accept = 1'b0;
         give_up = 1'b0;
         idle = 1'b0;
-        verdict = 1'b0;
-        found = 12'd0;
-        run_now_next = 1'b0;
+        answer_taken = 1'b0;
+        announce = 1'b0;
+        probed = 1'b0;
+        watched = 1'b0;
+        found_late = 1'b0;
+        found = 19'd0;
+        running = 1'b0;
         case (phase)
             PHASE_NOT_READY: begin
                 limit = READY_LOW_CYCLES;
@@ -238,7 +364,7 @@ module endat_transaction (
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
                     if (triggered) begin
-                        found = 12'd1;
+                        found = not_low;
                         give_up = 1'b1;
                     end
                 end
@@ -249,7 +375,7 @@ module endat_transaction (
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
                     if (triggered) begin
-                        found = 12'd1;
+                        found = not_low;
                         give_up = 1'b1;
                     end
                 end else if (wanted) begin
@@ -260,13 +386,14 @@ module endat_transaction (
                             phase_next = PHASE_FIRST_LOW;
                         end
                     end else begin
-                        found = 12'd1024;
+                        found = UNKNOWN_COMMAND;
                         refuse = 1'b1;
                     end
                 end
             end
             PHASE_FIRST_LOW: begin
-                run_now_next = 1'b1;
+                running = 1'b1;
+                watched = 1'b1;
                 limit = {5'd0, first_low_extra_cycles};
                 if (timer_hit) begin
                     phase_next = PHASE_FRAME;
@@ -274,25 +401,55 @@ module endat_transaction (
                 end
             end
             PHASE_FRAME: begin
-                run_now_next = 1'b1;
+                running = 1'b1;
+                watched = 1'b1;
                 in_us = 1'b1;
-                timer_clear = !hunting;
-                if (timer_hit & hunting) begin
-                    found = 12'd2;
+                timer_clear = (hunting ^ was_hunting) | finished;
+                if (!hunting) begin
+                    limit = FRAME_US;
+                end
+                if (timer_hit & !hunting) begin
+                    found = TOO_LONG;
                     give_up = 1'b1;
                 end
-                if (start_refused) begin
-                    found = 12'd4;
+                if (timer_hit & hunting) begin
+                    found = no_start;
+                    give_up = 1'b1;
+                    if (HAS_DIAGNOSIS & !has_parameter & !late) begin
+                        give_up = 1'b0;
+                        announce = 1'b1;
+                        timer_clear = 1'b1;
+                    end
+                end
+                if (late & (started | start_refused)) begin
+                    found = NO_START_BIT | LATE_START;
+                    give_up = 1'b1;
+                end
+                if (start_refused & !late) begin
+                    found = START_WINDOW;
                     give_up = 1'b1;
                 end
                 if (answer_done) begin
-                    verdict = 1'b1;
+                    answer_taken = 1'b1;
                 end
                 if (info_missing & HAS_ALL) begin
-                    found = 12'd2048;
+                    found = INFO_NOT_THERE;
                     give_up = 1'b1;
                 end
-                if (finished) begin
+                if (HAS_CONTINUOUS & gap_low) begin
+                    found = TAIL_LOW;
+                    give_up = 1'b1;
+                    found_late = 1'b1;
+                end
+                if (HAS_CONTINUOUS & gap_high) begin
+                    found = NOT_FALLING;
+                    give_up = 1'b1;
+                    found_late = 1'b1;
+                end
+                if (finished & going) begin
+                    normal_end = 1'b1;
+                end
+                if (finished & !going) begin
                     phase_next = PHASE_TAIL;
                     if (HAS_ALL & has_supplement & !in_supplement) begin
                         phase_next = PHASE_PARK;
@@ -300,10 +457,12 @@ module endat_transaction (
                 end
             end
             PHASE_PARK: begin
-                run_now_next = 1'b1;
+                running = 1'b1;
+                watched = 1'b1;
                 limit = PARK_CYCLES;
                 if (timer_hit) begin
                     phase_next = PHASE_FRAME;
+                    timer_clear = 1'b1;
                     in_supplement_next = 1'b1;
                     supplement_now_next = 1'b1;
                 end
@@ -312,16 +471,26 @@ module endat_transaction (
                 end
             end
             PHASE_TAIL: begin
-                run_now_next = 1'b1;
-                timer_clear = 1'b1;
+                running = 1'b1;
+                watched = 1'b1;
+                in_us = 1'b1;
+                limit = FRAME_US;
+                if (timer_hit) begin
+                    found = TOO_LONG;
+                    give_up = 1'b1;
+                end
                 if (center) begin
                     phase_next = PHASE_RECOVERY;
                     acquiring_next = 1'b0;
                 end
             end
             PHASE_RECOVERY: begin
-                run_now_next = !tail_sampled;
+                running = !tail_sampled;
+                watched = 1'b1;
                 limit = {3'd0, recovery_limit_cycles};
+                if (own) begin
+                    limit = OWN_RECOVERY_LIMIT_CYCLES;
+                end
                 if (sample) begin
                     tail_sampled_next = 1'b1;
                 end
@@ -331,75 +500,69 @@ module endat_transaction (
                     phase_next = PHASE_NOT_READY;
                     normal_end = 1'b1;
                 end else if (timer_hit) begin
-                    found = 12'd64;
+                    found = NOT_FALLING;
                     give_up = 1'b1;
                 end
                 if (sample & !tail_sampled & !level) begin
-                    found = 12'd512;
+                    found = TAIL_LOW;
                     give_up = 1'b1;
                 end
             end
             PHASE_ABORT: begin
                 in_us = 1'b1;
                 limit = ABORT_US;
+                if (HAS_CONTINUOUS & leaving) begin
+                    limit = LEAVE_US;
+                end
+                if (HAS_DIAGNOSIS & probing) begin
+                    limit = PROBE_US;
+                end
+                if (HAS_DIAGNOSIS & settling) begin
+                    limit = SETTLE_US;
+                end
                 if (timer_hit) begin
                     phase_next = PHASE_NOT_READY;
                     timer_clear = 1'b1;
+                    leaving_next = 1'b0;
+                    settling_next = 1'b0;
+                    if (HAS_DIAGNOSIS & level & !settling) begin
+                        phase_next = PHASE_ABORT;
+                        probing_next = 1'b1;
+                    end
+                    if (probing) begin
+                        phase_next = PHASE_ABORT;
+                        probed = 1'b1;
+                        probing_next = 1'b0;
+                        settling_next = 1'b1;
+                    end
                 end
             end
             default: begin
                 give_up = 1'b1;
             end
         endcase
-        if (verdict) begin
+        if (HAS_DIAGNOSIS & health_expired & watched) begin
+            found = found | TOO_LONG;
+            give_up = 1'b1;
+        end
+        if ((answer_taken & !going) | announce) begin
             answered_next = 1'b1;
+        end
+        if (announce) begin
+            late_next = 1'b1;
         end
         if (normal_end) begin
             answered_next = 1'b0;
         end
-        if (gave_up) begin
+        if (abort) begin
             phase_next = PHASE_ABORT;
             timer_clear = 1'b1;
             accept = 1'b0;
             refuse = 1'b0;
             answered_next = 1'b0;
             is_calibrated_next = 1'b0;
+            late_next = 1'b0;
         end
-        told = seen;
-        good_now_next = 1'b0;
-        if (taken) begin
-            if (crc_bad) begin
-                told = told | 12'd8;
-            end else begin
-                is_calibrated_next = 1'b1;
-                good_now_next = !f1 & f2;
-            end
-            if (f1) begin
-                told = told | 12'd16;
-            end
-            if (!f2) begin
-                told = told | 12'd32;
-            end
-            if (!parallel_ok) begin
-                told = told | 12'd256;
-            end
-        end
-        if (overrun) begin
-            told = told | 12'd128;
-        end
-        if (accept) begin
-            answered_next = 1'b0;
-            in_supplement_next = 1'b0;
-            acquiring_next = !is_calibrated;
-            tail_sampled_next = 1'b0;
-        end
-        if (calibrate) begin
-            is_calibrated_next = 1'b0;
-        end
-    end
-
-    always @* begin
-        timer_next = timer;
         if (timer_step) begin
             timer_next = timer + 16'd1;
         end
@@ -414,64 +577,44 @@ module endat_transaction (
         if ((phase == PHASE_TAIL) & center) begin
             timer_next = 16'd1;
         end
-    end
-
-    always @* begin
-        primary = 4'd0;
-        if (told[7]) begin
-            primary = 4'd8;
+        if (verdict_is_received) begin
+            is_calibrated_next = 1'b1;
         end
-        if (told[5]) begin
-            primary = 4'd6;
+        if (verdict_is_doubtful) begin
+            is_calibrated_next = 1'b0;
         end
-        if (told[4]) begin
-            primary = 4'd5;
+        if (accept) begin
+            answered_next = 1'b0;
+            in_supplement_next = 1'b0;
+            acquiring_next = !is_calibrated;
+            tail_sampled_next = 1'b0;
+            late_next = 1'b0;
+            going_next = HAS_CONTINUOUS & continuous & is_calibrated & !own;
         end
-        if (told[3]) begin
-            primary = 4'd4;
+        if (leave) begin
+            phase_next = PHASE_ABORT;
+            timer_clear = 1'b1;
+            leaving_next = 1'b1;
         end
-        if (told[11] & HAS_ALL) begin
-            primary = 4'd10;
+        if (leave | abort) begin
+            going_next = 1'b0;
         end
-        if (told[6] | told[9]) begin
-            primary = 4'd7;
+        if (abort) begin
+            leaving_next = 1'b0;
+            probing_next = 1'b0;
+            settling_next = 1'b0;
         end
-        if (told[2]) begin
-            primary = 4'd3;
-        end
-        if (told[1]) begin
-            primary = 4'd2;
-        end
-        if (told[0]) begin
-            primary = 4'd1;
-        end
-        if (told[10]) begin
-            primary = 4'd9;
+        if (calibrate) begin
+            is_calibrated_next = 1'b0;
         end
     end
-    assign lost = trigger & ((!accept & !idle) | (accept & own));
-
-    always @* begin
-        overrun_next = overrun;
-        cause_now_next = cause_now;
-        flags_now_next = flags_now;
-        if (taken | gave_up | refused) begin
-            flags_now_next = told;
-            cause_now_next = primary;
-            if (!own) begin
-                overrun_next = 1'b0;
-            end
-        end
-        if (lost) begin
-            overrun_next = 1'b1;
-        end
-    end
+    assign verdict_is_late = answered | found_late;
+    assign lost = trigger & !going & ((!accept & !idle) | (accept & own));
     assign run = run_now;
     assign start = start_now;
-    assign abort = gave_up;
 
     always @* begin
-        sent = all_sent & started;
+        sent = all_sent & started & !going;
         parking = 1'b0;
         if (HAS_ALL & has_supplement & !in_supplement) begin
             parking = (sent & (phase == PHASE_FRAME)) | (phase == PHASE_PARK);
@@ -489,18 +632,16 @@ module endat_transaction (
     assign stop = stop_now;
     assign acquire = acquiring;
     assign busy = !idle | (begin_own & HAS_ALL);
-    assign publish = publish_now;
-    assign good = good_now;
-    assign late_fault = late_now;
-    assign cause = cause_now;
-    assign flags = flags_now;
     assign start_supplement = supplement_now;
-    assign over = over_now;
     assign begun = accept | refuse;
-    assign is_at_rest = ((phase == PHASE_NOT_READY) | (phase == PHASE_READY)) & !ended & !gave_up & !refused & !over_now;
-    assign displaced = lost_now;
+    assign is_at_rest = ((phase == PHASE_NOT_READY) | (phase == PHASE_READY)) & !verdict_is_telling;
     assign calibrated = is_calibrated;
     assign recovery_cycles = recovery;
+    assign probe = probing & HAS_DIAGNOSIS;
+    assign is_probed = (probing | settling) & HAS_DIAGNOSIS;
+    assign going_on = going;
+    assign health_under_way = watched & !has_parameter & !going;
+    assign health_is_ready = phase == PHASE_READY;
 
     always @(posedge clock) begin
         if (reset) begin
@@ -516,7 +657,6 @@ module endat_transaction (
             stop_now <= 1'b1;
             is_calibrated <= 1'b0;
             acquiring <= 1'b0;
-            overrun <= 1'b0;
             stalled <= 1'b0;
             all_sent <= 1'b0;
             tail_sampled <= 1'b0;
@@ -524,19 +664,12 @@ module endat_transaction (
             in_supplement <= 1'b0;
             supplement_now <= 1'b0;
             answered <= 1'b0;
-            refused <= 1'b0;
-            ended <= 1'b0;
-            over_now <= 1'b0;
-            lost_now <= 1'b0;
-            seen <= 12'd0;
-            taken <= 1'b0;
-            gave_up <= 1'b0;
-            gave_up_late <= 1'b0;
-            publish_now <= 1'b0;
-            good_now <= 1'b0;
-            late_now <= 1'b0;
-            cause_now <= 4'd0;
-            flags_now <= 12'd0;
+            was_hunting <= 1'b0;
+            late <= 1'b0;
+            probing <= 1'b0;
+            settling <= 1'b0;
+            going <= 1'b0;
+            leaving <= 1'b0;
         end else begin
             phase <= phase_next;
             timer <= timer_next;
@@ -545,12 +678,11 @@ module endat_transaction (
             timer_step <= !in_us | tick_us;
             hold <= (phase == PHASE_FIRST_LOW) | stalled | parking;
             start_now <= accept;
-            run_now <= run_now_next;
+            run_now <= running;
             extra <= |first_low_extra_cycles;
-            stop_now <= sent | !run_now;
+            stop_now <= sent | !running | abort | leave;
             is_calibrated <= is_calibrated_next;
             acquiring <= acquiring_next;
-            overrun <= overrun_next;
             stalled <= stalled_next;
             all_sent <= {1'b0, outstanding} == cells_left;
             tail_sampled <= tail_sampled_next;
@@ -558,19 +690,12 @@ module endat_transaction (
             in_supplement <= in_supplement_next;
             supplement_now <= supplement_now_next;
             answered <= answered_next;
-            refused <= refuse;
-            ended <= normal_end;
-            over_now <= ended | gave_up | refused;
-            lost_now <= lost;
-            seen <= found;
-            taken <= verdict;
-            gave_up <= give_up & !gave_up;
-            gave_up_late <= give_up & !gave_up & answered;
-            publish_now <= (taken | refused | (gave_up & !gave_up_late)) & !own;
-            good_now <= good_now_next;
-            late_now <= gave_up_late & !own;
-            cause_now <= cause_now_next;
-            flags_now <= flags_now_next;
+            was_hunting <= hunting;
+            late <= late_next;
+            probing <= probing_next;
+            settling <= settling_next;
+            going <= going_next;
+            leaving <= leaving_next;
         end
     end
 endmodule

@@ -163,8 +163,8 @@ module s6_two_channel (
     wire  [15:0] port_0_sequence;
     wire  [31:0] port_0_first_fall_timestamp;
     wire  [15:0] port_0_age_us;
-    wire   [3:0] port_0_cause;
-    wire  [11:0] port_0_flags;
+    wire   [4:0] port_0_cause;
+    wire  [18:0] port_0_flags;
     wire   [4:0] port_0_crc_received;
     wire   [4:0] port_0_crc_computed;
     wire  [12:0] port_0_recovery_cycles;
@@ -175,8 +175,8 @@ module s6_two_channel (
     wire         port_0_displaced;
     wire         port_0_over;
     wire         port_0_over_request;
-    wire   [3:0] port_0_over_cause;
-    wire  [11:0] port_0_over_flags;
+    wire   [4:0] port_0_over_cause;
+    wire  [18:0] port_0_over_flags;
     wire  [47:0] port_0_reply;
     wire         port_0_reply_good;
     wire   [1:0] port_0_info_active;
@@ -194,8 +194,8 @@ module s6_two_channel (
     wire  [15:0] port_1_sequence;
     wire  [31:0] port_1_first_fall_timestamp;
     wire  [15:0] port_1_age_us;
-    wire   [3:0] port_1_cause;
-    wire  [11:0] port_1_flags;
+    wire   [4:0] port_1_cause;
+    wire  [18:0] port_1_flags;
     wire   [4:0] port_1_crc_received;
     wire   [4:0] port_1_crc_computed;
     wire  [12:0] port_1_recovery_cycles;
@@ -206,8 +206,8 @@ module s6_two_channel (
     wire         port_1_displaced;
     wire         port_1_over;
     wire         port_1_over_request;
-    wire   [3:0] port_1_over_cause;
-    wire  [11:0] port_1_over_flags;
+    wire   [4:0] port_1_over_cause;
+    wire  [18:0] port_1_over_flags;
     wire  [47:0] port_1_reply;
     wire         port_1_reply_good;
     wire   [1:0] port_1_info_active;

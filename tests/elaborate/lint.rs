@@ -102,9 +102,9 @@ fn a_sequencer_is_small_and_has_its_memories_in_block_ram() {
         .map(|name| Artifact::new(name.clone(), fs::read_to_string(folder.join(name)).unwrap()))
         .collect();
     for (family, most_luts, ram, count) in [
-        (area::XC6S, 200, "RAMB", 5),
-        (area::ICE40, 400, "SB_RAM40_4K", 7),
-        (area::ECP5, 400, "DP16KD", 4),
+        (area::XC6S, 200, "RAMB", 7),
+        (area::ICE40, 400, "SB_RAM40_4K", 12),
+        (area::ECP5, 400, "DP16KD", 5),
     ] {
         let found = area::synthesise(&folder, &files, "sequencer", &family).unwrap();
         let rams: u64 = (found.cells.iter())

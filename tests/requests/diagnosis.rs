@@ -187,9 +187,11 @@ fn the_watchdog_ends_a_frame_wherever_it_is() {
             "{limit}: {took}"
         );
         rig.bench.run_cycles(4);
-        for (pin, level) in [("endat_clk", 1), ("data_oe", 0)] {
-            assert_eq!(rig.bench.get(pin), level, "{pin}");
-        }
+        assert_eq!(rig.bench.get("data_oe"), 0);
+        // A low phase that has begun is finished.
+        rig.bench.run_until(rig.bench.now() + HALF);
+        assert_eq!(rig.bench.get("endat_clk"), 1);
+        assert_eq!(rig.bench.violations(0), []);
         assert!(rig.bench.run_until_done(MS, |b| b.get("busy") == 0));
         rig.bench.set("watchdog_us", 0);
         recovers(&mut rig);
@@ -221,7 +223,8 @@ fn a_recovery_time_outside_its_range_is_flagged_and_the_position_stays() {
         let result = rig.bench.results().last().unwrap();
         assert!(result.fresh && result.position == rig.last_frame().position);
         let measured = rig.bench.get("recovery_cycles") as u64 * 10;
-        assert!(measured.abs_diff(tm_ns) < 60, "{measured} ns for {tm_ns}");
+        // Seven cycles: edges are seen a filter later, and the tail is where the delay was rounded to.
+        assert!(measured.abs_diff(tm_ns) <= 70, "{measured} ns for {tm_ns}");
         match tm_ns {
             ..9_340 => assert_eq!(over.cause, cause::RECOVERY_TOO_SHORT, "{tm_ns}"),
             _ => assert_eq!(over.cause, cause::NONE, "{tm_ns}"),

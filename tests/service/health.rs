@@ -88,7 +88,8 @@ fn position_2_is_compared_over_the_wrap() {
 #[test]
 fn causes_are_counted_and_n_of_m_raises_the_alarm() {
     let bad = [3, 5, 6, 12, 13, 14].into_iter();
-    let encoder = bad.fold(encoder(), |e, n| e.defect(n, Defect::CrcXor(1)));
+    let alarm = Defect::ErrorBits { f1: true, f2: true };
+    let encoder = bad.fold(encoder(), |e, n| e.defect(n, alarm.clone()));
     let mut rig = Rig::new(false, encoder, 25);
     rig.good_position();
     rig.write(word::THRESHOLD, 4 << 16 | 3);
@@ -101,10 +102,10 @@ fn causes_are_counted_and_n_of_m_raises_the_alarm() {
     rig.write(word::CONTROL, control::CLEAR.into());
     rig.frames(7);
     assert_eq!(rig.state() & state::ALARM, 0, "two of four are too few");
-    assert_eq!(rig.read(word::COUNTERS + cause::CRC as u8), 2);
+    assert_eq!(rig.read(word::COUNTERS + cause::F1 as u8), 2);
     rig.frames(1);
     assert!(rig.state() & state::ALARM != 0);
-    assert_eq!(rig.read(word::COUNTERS + cause::CRC as u8), 3);
+    assert_eq!(rig.read(word::COUNTERS + cause::F1 as u8), 3);
     assert_eq!(rig.read(word::COUNTERS), 5);
     assert_eq!(rig.read(word::LOST), 0);
 }

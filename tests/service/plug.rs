@@ -22,14 +22,14 @@ use endat_sim::{
     Time, MS, US,
 };
 use rust_hdl::prelude::Block;
-use std::sync::OnceLock;
+use std::{ops::Range, sync::OnceLock};
 
 /// Triggers come so far apart.
 pub(super) const PERIOD: Time = 150 * US;
 /// When the frame begins in which the plug is pulled.
 const PULLED_FROM: Time = 3 * MS;
-/// DATA must be HIGH for so long, and a tick of a millisecond, to be taken for an open line.
-const UNPLUGGED: Time = MS;
+/// Ticks of a millisecond for which DATA must be HIGH to be taken for an open line.
+const UNPLUGGED_MS: u16 = 2;
 
 pub(super) fn encoder() -> EncoderConfig {
     let mut encoder = quick(EncoderConfig::endat22(POSITION_BITS));
@@ -49,13 +49,13 @@ fn engine(initialise: bool) -> Lanes {
         ..FixedTimes::at(SYSTEM_HZ)
     };
     let times = ServiceTimes {
-        power_up_ms: 0,
-        after_pulse_ms: 0,
+        power_up_ms: 1,
+        after_pulse_ms: 1,
         reset_ms: 1,
         write_ms: 0,
         gap_ms: 0,
         busy_ms: 2,
-        unplugged_ms: (UNPLUGGED / MS) as u16,
+        unplugged_ms: UNPLUGGED_MS,
         system_khz: (SYSTEM_HZ / 1_000) as u32,
         ..times(initialise)
     };
@@ -206,15 +206,30 @@ fn places() -> impl Iterator<Item = Time> {
         .take_while(|t| *t < PULLED_FROM + US + FRAME_TIME + RECOVERY)
 }
 
-/// Pulls the plug of each lane for its time, in a frame with both informations and a request. Everything is well again after `settles`.
+/// Pulls the plug of each lane for its time, in a frame with both informations and a request. Everything is well again afterwards.
 fn pull(ready: &Lanes, absences: &[(Time, Time)], initialises: bool) {
+    pull_and_bounce(ready, absences, initialises, &|_| vec![]);
+}
+
+/// The same, and what follows within these spans after the encoder has come back.
+fn pull_and_bounce(
+    ready: &Lanes,
+    absences: &[(Time, Time)],
+    initialises: bool,
+    bounces: &dyn Fn(usize) -> Vec<Range<Time>>,
+) {
+    let mut first = 0;
     for absences in absences.chunks(LANES) {
-        let case = |(from, length): &(Time, Time)| {
+        let case = |(i, (from, length)): (usize, &(Time, Time))| {
             let mut encoder = encoder();
-            encoder.unplugged.push(*from..from + length);
+            let back = from + length;
+            encoder.unplugged.push(*from..back);
+            let bounces = bounces(first + i).into_iter();
+            (encoder.unplugged).extend(bounces.map(|b| back + b.start..back + b.end));
             (encoder, lanes::line())
         };
-        let cases: Vec<_> = absences.iter().map(case).collect();
+        let cases: Vec<_> = absences.iter().enumerate().map(case).collect();
+        first += absences.len();
         let what: Vec<String> = absences
             .iter()
             .map(|a| format!("away from {} ps for {} ps", a.0, a.1))
@@ -291,6 +306,22 @@ fn an_encoder_that_was_away_for_long_is_initialised_afresh_whenever_it_comes_bac
     let spread = |(i, from): (usize, Time)| (from, 4 * MS + i as Time * 17 * HALF_PERIOD % PERIOD);
     let absences: Vec<_> = places().enumerate().map(spread).collect();
     pull(&ready(true), &absences, true);
+}
+
+/// Contacts that open again during the power-up sequence or in any step of the initialisation, for a moment or for long.
+#[test]
+fn an_encoder_whose_plug_bounces_is_initialised_when_it_stays() {
+    const AWAY: [Time; 4] = [30 * US, 300 * US, 2_500 * US, 12 * MS];
+    let bounces = |i: usize| {
+        let from = (i as Time + 1) * 400 * US;
+        let length = AWAY[i % AWAY.len()];
+        vec![
+            from..from + length,
+            from + length + 50 * US..from + length + 80 * US,
+        ]
+    };
+    let absences = vec![(PULLED_FROM + 40 * US, 4 * MS); LANES];
+    pull_and_bounce(&ready(true), &absences, true, &bounces);
 }
 
 #[test]

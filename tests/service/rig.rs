@@ -161,8 +161,12 @@ impl Rig {
 
     /// Runs to the end of the initialisation; the step that failed, 0 = none.
     pub fn initialised(&mut self) -> u32 {
-        self.wait_for(word::PROGRESS, |p| p & 0xFFFF != 0);
-        self.wait_for(word::PROGRESS, |p| p & 0xFFFF == 0) >> 16
+        let under_way = u32::from(state::INITIALISING);
+        self.wait_for(word::STATE, |s| s & under_way != 0);
+        self.wait_for(word::STATE, |s| s & under_way == 0);
+        let progress = self.read(word::PROGRESS);
+        assert_eq!(progress & 0xFFFF, 0);
+        progress >> 16
     }
 
     /// State bits.

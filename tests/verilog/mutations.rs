@@ -84,15 +84,15 @@ pub const MUTATIONS: &[Mutation] = &[
     ),
     mutation(
         "F2 ignored",
-        "endat_transaction.v",
-        "good_now_next = !f1 & f2;",
-        "good_now_next = !f1;",
+        "endat_verdict.v",
+        "is_bad = crc_bad | f1 | (!f2);",
+        "is_bad = crc_bad | f1;",
     ),
     mutation(
         "wrong cause for a missing start bit",
         "endat_transaction.v",
-        "found = 12'd2;",
-        "found = 12'd4;",
+        "no_start = NO_START_BIT;",
+        "no_start = START_WINDOW;",
     ),
     mutation(
         "a bad frame replaces the last good position",
@@ -126,7 +126,7 @@ pub const MUTATIONS: &[Mutation] = &[
     ),
     mutation(
         "trigger overrun not told",
-        "endat_transaction.v",
+        "endat_verdict.v",
         "overrun_next = 1'b1;",
         "overrun_next = 1'b0;",
     ),

@@ -1,7 +1,7 @@
 //! Initialisation: a table of steps, each a request with a frame of its own at the calibration clock.
 
 use super::requests::{code, NEVER_BEGAN};
-use super::{high, low, minus, own, set_bits, ServiceTimes};
+use super::{high, low, minus, own, set, set_bits, ServiceTimes};
 use crate::config::PERIOD_BITS;
 use crate::protocol::{ModeCommand, MAX_POSITION_BITS};
 use crate::sequencer::assembler::Assembler;
@@ -13,6 +13,8 @@ use crate::timing;
 
 /// How often a step is tried.
 const TRIES: u16 = 3;
+/// How often all of them are: an encoder whose plug was loose for a moment has forgotten what was selected.
+const ROUNDS: u16 = 2;
 
 /// A step of the initialisation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,11 +91,30 @@ pub fn step_name(step: Step) -> String {
     }
 }
 
-/// Subroutine `initialise`.
+/// Subroutines `power_up`, for an encoder that has just got its supply, and `initialise`.
 pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
+    a.place("power_up").link().st(own::FROM_INITIALISE);
+    set_bits(a, low(word::STATE), state::INITIALISING);
+    set_bits(a, own::LEVELS, level::HOLD_OFF);
+    a.out(output::CONTROL);
+    a.ldi(times.power_up_ms).call("wait");
+    a.ld(own::LEVELS).addi(level::CLOCK_LOW);
+    a.out(output::CONTROL);
+    // A microsecond or two: more than the 125 ns that are asked for.
+    a.inp(input::TIME_US).st(own::WAIT_FROM);
+    let pulse = a.here();
+    a.inp(input::TIME_US).sub(own::WAIT_FROM).addi(minus(2));
+    a.jnc(pulse);
+    a.ld(own::LEVELS).out(output::CONTROL);
+    a.ldi(times.after_pulse_ms).call("wait");
+    a.jmp("begin");
+
     a.place("initialise").link().st(own::FROM_INITIALISE);
     set_bits(a, own::LEVELS, level::HOLD_OFF);
     a.out(output::CONTROL);
+    a.place("begin");
+    set(a, own::ROUNDS, ROUNDS);
+    a.place("round");
     a.ldi(go::CANCEL).out(output::GO);
     let running = a.here();
     a.call("look");
@@ -101,7 +122,8 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     a.out(output::FOUND).out(output::PERIOD).st(own::FOUND);
     a.st(low(word::PROGRESS)).st(high(word::PROGRESS));
     a.ld(low(word::STATE))
-        .andi(state::ALARM | state::POSITION_2);
+        .andi(state::ALARM | state::POSITION_2)
+        .addi(state::INITIALISING);
     a.st(low(word::STATE));
     // Nothing of another encoder may be left.
     let (next, end) = (2 * word::NAME_PLATE, 2 * (map::PLATE_DELAY + 1));
@@ -137,18 +159,25 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     set_bits(a, low(word::STATE), state::INITIALISED);
     a.place("initialise_end");
     a.ldi(0).st(low(word::PROGRESS));
+    a.ld(low(word::STATE)).andi(!state::INITIALISING);
+    a.st(low(word::STATE));
     a.ld(own::LEVELS).andi(!level::HOLD_OFF).st(own::LEVELS);
     a.out(output::CONTROL);
     a.call("modulus");
     a.ld(own::FROM_INITIALISE).jmpa();
 
+    let answered = a.label();
     a.place("step_failed");
     a.ldi(0).st(own::FOUND);
     a.out(output::FOUND).out(output::PERIOD);
     a.ld(low(word::PROGRESS)).st(high(word::PROGRESS));
     // The line was never LOW: the next time it is, there is an encoder.
-    a.ld(own::RESULT).xori(NEVER_BEGAN).jnz("initialise_end");
+    a.ld(own::RESULT).xori(NEVER_BEGAN).jnz(answered);
     set_bits(a, low(word::STATE), state::UNPLUGGED);
+    a.jmp("initialise_end");
+    a.place(answered);
+    a.ld(own::ROUNDS).addi(minus(1)).st(own::ROUNDS);
+    a.jnz("round");
     a.jmp("initialise_end");
 
     exchange(a);

@@ -131,6 +131,7 @@ pub(super) fn own_frame(a: &mut Assembler, times: &ServiceTimes) {
     a.inp(input::STATUS).andi(status::IS_REQUEST).jnz(mine);
     a.call("event");
     a.place(none);
+    a.call("line");
     a.inp(input::TIME_MS).sub(own::OWN_FROM);
     a.addi(minus(times.request_ms)).jnc(again);
     a.ldi(go::CANCEL).out(output::GO);

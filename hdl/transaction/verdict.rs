@@ -1,0 +1,313 @@
+//! Verdict: what has happened to a frame is registered, then told with its primary cause.
+//!
+//! ```text
+//! answer_taken, give_up ...  ____/~~\____________
+//! taken, gave_up             _______/~~\_________    the flags are put together
+//! publish, late_fault, over  __________/~~\______    cause and flags stay until the next one
+//! ```
+
+use super::cause::{self, flag};
+use super::primary::PrimaryCause;
+use crate::channel::{Features, FixedTimes};
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Result, cause and flags of one channel's frames.
+#[derive(LogicBlock)]
+pub struct Verdict {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Flags that go with `give_up`, `refuse` or `announce`, see [`cause::flag`].
+    pub found: Signal<In, Bits<19>>,
+    /// Strobe: the answer has been taken; CRC and error bits decide.
+    pub answer_taken: Signal<In, Bit>,
+    /// Strobe: the frame is aborted.
+    pub give_up: Signal<In, Bit>,
+    /// With `give_up`: its result has been published.
+    pub is_late: Signal<In, Bit>,
+    /// Strobe: no frame is begun for this trigger.
+    pub refuse: Signal<In, Bit>,
+    /// Strobe: the result is told, and the frame goes on.
+    pub announce: Signal<In, Bit>,
+    /// Strobe: the frame has ended as it should.
+    pub normal_end: Signal<In, Bit>,
+    /// The clock goes on after this frame.
+    pub is_going: Signal<In, Bit>,
+    /// The frame is not a trigger's.
+    pub is_own: Signal<In, Bit>,
+    /// Strobe: a trigger has been lost.
+    pub lost: Signal<In, Bit>,
+    /// Serial CRC verdict.
+    pub serial_ok: Signal<In, Bit>,
+    /// Parallel CRC verdict.
+    pub parallel_ok: Signal<In, Bit>,
+    /// Error bit 1, high = alarm.
+    pub f1: Signal<In, Bit>,
+    /// Error bit 2, low = alarm.
+    pub f2: Signal<In, Bit>,
+    /// The answer begins with the own mode command.
+    pub is_echo: Signal<In, Bit>,
+    /// Recovery time tm of the frame that has ended.
+    pub recovery_cycles: Signal<In, Bits<13>>,
+    /// Data must not fall before this.
+    pub recovery_min_cycles: Signal<In, Bits<13>>,
+    /// Strobe: `answer_taken`, a cycle later.
+    pub taken: Signal<Out, Bit>,
+    /// With `taken`: the CRC is right.
+    pub is_received: Signal<Out, Bit>,
+    /// With `taken`: the CRC is wrong, and was so in the frame before.
+    pub is_doubtful: Signal<Out, Bit>,
+    /// With `taken`: wrong CRC, or an alarm.
+    pub is_bad: Signal<Out, Bit>,
+    /// Strobe: `give_up`, a cycle later.
+    pub gave_up: Signal<Out, Bit>,
+    /// There is still something to tell.
+    pub is_telling: Signal<Out, Bit>,
+    /// Strobe: result of a trigger, `cause` and `flags` are valid.
+    pub publish: Signal<Out, Bit>,
+    /// With `publish`: the position is good.
+    pub good: Signal<Out, Bit>,
+    /// Strobe: something was wrong after the result was published.
+    pub late_fault: Signal<Out, Bit>,
+    /// Strobe: a frame has ended in whatever way.
+    pub over: Signal<Out, Bit>,
+    /// Strobe: a trigger has been lost.
+    pub displaced: Signal<Out, Bit>,
+    /// Primary cause, with `publish`, `late_fault` or `over`.
+    pub cause: Signal<Out, Bits<5>>,
+    /// Raw flags, see [`cause::flag`].
+    pub flags: Signal<Out, Bits<19>>,
+    chooser: PrimaryCause,
+    has_diagnosis: Constant<Bit>,
+    own_recovery_min_cycles: Constant<Bits<13>>,
+    crc_wrong: Constant<Bits<19>>,
+    parallel_wrong: Constant<Bits<19>>,
+    own_echo: Constant<Bits<19>>,
+    f1_set: Constant<Bits<19>>,
+    f2_clear: Constant<Bits<19>>,
+    trigger_overrun: Constant<Bits<19>>,
+    too_short: Constant<Bits<19>>,
+    seen: Reg<Bits<19>>,
+    taken_now: Reg<Bit>,
+    gave_up_now: Reg<Bit>,
+    gave_up_late: Reg<Bit>,
+    refused: Reg<Bit>,
+    announced: Reg<Bit>,
+    ended: Reg<Bit>,
+    overrun: Reg<Bit>,
+    was_bad: Reg<Bit>,
+    publish_now: Reg<Bit>,
+    good_now: Reg<Bit>,
+    late_now: Reg<Bit>,
+    over_now: Reg<Bit>,
+    lost_now: Reg<Bit>,
+    cause_now: Reg<Bits<5>>,
+    flags_now: Reg<Bits<19>>,
+    told: Signal<Local, Bits<19>>,
+    crc_bad: Signal<Local, Bit>,
+    recovery_min: Signal<Local, Bits<13>>,
+    early: Signal<Local, Bit>,
+}
+
+impl Verdict {
+    /// A verdict with these fixed times and features.
+    pub fn new(times: FixedTimes, features: Features) -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            found: Default::default(),
+            answer_taken: Default::default(),
+            give_up: Default::default(),
+            is_late: Default::default(),
+            refuse: Default::default(),
+            announce: Default::default(),
+            normal_end: Default::default(),
+            is_going: Default::default(),
+            is_own: Default::default(),
+            lost: Default::default(),
+            serial_ok: Default::default(),
+            parallel_ok: Default::default(),
+            f1: Default::default(),
+            f2: Default::default(),
+            is_echo: Default::default(),
+            recovery_cycles: Default::default(),
+            recovery_min_cycles: Default::default(),
+            taken: Default::default(),
+            is_received: Default::default(),
+            is_doubtful: Default::default(),
+            is_bad: Default::default(),
+            gave_up: Default::default(),
+            is_telling: Default::default(),
+            publish: Default::default(),
+            good: Default::default(),
+            late_fault: Default::default(),
+            over: Default::default(),
+            displaced: Default::default(),
+            cause: Default::default(),
+            flags: Default::default(),
+            chooser: Default::default(),
+            has_diagnosis: Constant::new(features.diagnosis),
+            own_recovery_min_cycles: Constant::new(times.own_recovery_min_cycles.into()),
+            crc_wrong: Constant::new(flag(cause::CRC).into()),
+            parallel_wrong: Constant::new(flag::PARALLEL_CRC.into()),
+            own_echo: Constant::new(flag(cause::OWN_ECHO).into()),
+            f1_set: Constant::new(flag(cause::F1).into()),
+            f2_clear: Constant::new(flag(cause::F2).into()),
+            trigger_overrun: Constant::new(flag(cause::TRIGGER_OVERRUN).into()),
+            too_short: Constant::new(flag(cause::RECOVERY_TOO_SHORT).into()),
+            seen: Default::default(),
+            taken_now: Default::default(),
+            gave_up_now: Default::default(),
+            gave_up_late: Default::default(),
+            refused: Default::default(),
+            announced: Default::default(),
+            ended: Default::default(),
+            overrun: Default::default(),
+            was_bad: Default::default(),
+            publish_now: Default::default(),
+            good_now: Default::default(),
+            late_now: Default::default(),
+            over_now: Default::default(),
+            lost_now: Default::default(),
+            cause_now: Default::default(),
+            flags_now: Default::default(),
+            told: Default::default(),
+            crc_bad: Default::default(),
+            recovery_min: Default::default(),
+            early: Default::default(),
+        }
+    }
+}
+
+impl Logic for Verdict {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self,
+            clock,
+            seen,
+            taken_now,
+            gave_up_now,
+            gave_up_late,
+            refused,
+            announced,
+            ended,
+            overrun,
+            was_bad,
+            publish_now,
+            good_now,
+            late_now,
+            over_now,
+            lost_now,
+            cause_now,
+            flags_now
+        );
+        self.seen.reset.next = self.reset.val();
+        self.taken_now.reset.next = self.reset.val();
+        self.gave_up_now.reset.next = self.reset.val();
+        self.gave_up_late.reset.next = self.reset.val();
+        self.refused.reset.next = self.reset.val();
+        self.announced.reset.next = self.reset.val();
+        self.ended.reset.next = self.reset.val();
+        self.overrun.reset.next = self.reset.val();
+        self.was_bad.reset.next = self.reset.val();
+        self.publish_now.reset.next = self.reset.val();
+        self.good_now.reset.next = self.reset.val();
+        self.late_now.reset.next = self.reset.val();
+        self.over_now.reset.next = self.reset.val();
+        self.lost_now.reset.next = self.reset.val();
+        self.cause_now.reset.next = self.reset.val();
+        self.flags_now.reset.next = self.reset.val();
+
+        // The frame's bits stay where they are while this takes its two cycles.
+        self.seen.d.next = self.found.val();
+        self.taken_now.d.next = self.answer_taken.val();
+        self.gave_up_now.d.next = self.give_up.val() & !self.gave_up_now.q.val();
+        self.gave_up_late.d.next =
+            self.give_up.val() & !self.gave_up_now.q.val() & self.is_late.val();
+        self.refused.d.next = self.refuse.val();
+        self.announced.d.next = self.announce.val() & self.has_diagnosis.val();
+        self.ended.d.next = self.normal_end.val();
+
+        self.crc_bad.next = !(self.serial_ok.val() & self.parallel_ok.val());
+        self.told.next = self.seen.q.val();
+        if self.taken_now.q.val() {
+            self.was_bad.d.next = self.crc_bad.val();
+            if self.crc_bad.val() {
+                self.told.next = self.told.val() | self.crc_wrong.val();
+                if self.has_diagnosis.val() & self.is_echo.val() {
+                    self.told.next = self.told.val() | self.crc_wrong.val() | self.own_echo.val();
+                }
+            }
+            if self.f1.val() {
+                self.told.next = self.told.val() | self.f1_set.val();
+            }
+            if !self.f2.val() {
+                self.told.next = self.told.val() | self.f2_clear.val();
+            }
+            if !self.parallel_ok.val() {
+                self.told.next = self.told.val() | self.parallel_wrong.val();
+            }
+        }
+        if self.overrun.q.val() {
+            self.told.next = self.told.val() | self.trigger_overrun.val();
+        }
+        self.recovery_min.next = self.recovery_min_cycles.val();
+        if self.is_own.val() {
+            self.recovery_min.next = self.own_recovery_min_cycles.val();
+        }
+        self.early.next = self.has_diagnosis.val()
+            & self.ended.q.val()
+            & !self.is_going.val()
+            & !self.cause_now.q.val().any()
+            & (self.recovery_cycles.val() < self.recovery_min.val());
+        if self.early.val() {
+            self.told.next = self.told.val() | self.too_short.val();
+        }
+        self.chooser.flags.next = self.told.val();
+        if self.taken_now.q.val()
+            | self.gave_up_now.q.val()
+            | self.refused.q.val()
+            | self.announced.q.val()
+            | self.early.val()
+        {
+            self.flags_now.d.next = self.told.val();
+            self.cause_now.d.next = self.chooser.cause.val();
+            if !self.is_own.val() {
+                self.overrun.d.next = false;
+            }
+        }
+        if self.lost.val() {
+            self.overrun.d.next = true;
+        }
+        self.lost_now.d.next = self.lost.val();
+        self.publish_now.d.next = (self.taken_now.q.val()
+            | self.refused.q.val()
+            | self.announced.q.val()
+            | (self.gave_up_now.q.val() & !self.gave_up_late.q.val()))
+            & !self.is_own.val();
+        self.late_now.d.next = (self.gave_up_late.q.val() | self.early.val()) & !self.is_own.val();
+        self.is_received.next = self.taken_now.q.val() & !self.crc_bad.val();
+        self.is_doubtful.next = self.taken_now.q.val() & self.crc_bad.val() & self.was_bad.q.val();
+        self.is_bad.next = self.crc_bad.val() | self.f1.val() | !self.f2.val();
+        self.good_now.d.next = self.taken_now.q.val() & !self.is_bad.val();
+        // `over` comes with cause and flags of whatever ended the frame.
+        self.over_now.d.next = self.ended.q.val() | self.gave_up_now.q.val() | self.refused.q.val();
+
+        self.taken.next = self.taken_now.q.val();
+        self.gave_up.next = self.gave_up_now.q.val();
+        self.is_telling.next = self.ended.q.val()
+            | self.gave_up_now.q.val()
+            | self.refused.q.val()
+            | self.over_now.q.val();
+        self.publish.next = self.publish_now.q.val();
+        self.good.next = self.good_now.q.val();
+        self.late_fault.next = self.late_now.q.val();
+        self.over.next = self.over_now.q.val();
+        self.displaced.next = self.lost_now.q.val();
+        self.cause.next = self.cause_now.q.val();
+        self.flags.next = self.flags_now.q.val();
+    }
+}
