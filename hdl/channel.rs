@@ -206,7 +206,7 @@ pub struct FixedTimes {
     pub park_cycles: u64,
     /// Longest wait for the answer to a command with a parameter, in microseconds (1..=65535).
     pub parameter_timeout_us: u64,
-    /// Longest wait within a frame for anything but a start bit, in microseconds (1..=65535).
+    /// Longest wait within a frame for anything but a start bit, in microseconds (a power of two, 1..=32768).
     pub frame_us: u64,
     /// Longest recovery time after a frame of a request's own, in system clock cycles (1..=65535).
     pub own_recovery_limit_cycles: u64,

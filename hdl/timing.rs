@@ -27,8 +27,8 @@ pub const READY_LOW_NS: u64 = 500;
 /// Quiet time after an aborted transfer, in microseconds (S2 block, ADDI driver).
 pub const ABORT_US: u64 = 30_000;
 /// Longest wait within a frame for anything but a start bit, in microseconds: more than the longest answer at the slowest clock takes.
-/// Only a receiver that has lost its place waits for so long.
-pub const FRAME_US: u64 = 4_000;
+/// Only a receiver that has lost its place waits for so long. A power of two: one bit of the timer tells.
+pub const FRAME_US: u64 = 1 << 12;
 /// How long DATA is driven LOW at rest to see whether it follows, in microseconds (chosen: transceivers take well below one).
 pub const PROBE_US: u64 = 2;
 /// Time for an open line to rise again after that, in microseconds (chosen: cable of 100 m with ordinary bias resistors).

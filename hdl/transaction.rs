@@ -242,6 +242,7 @@ pub struct Transaction {
     announce: Signal<Local, Bit>,
     answer_taken: Signal<Local, Bit>,
     probed: Signal<Local, Bit>,
+    endless: Signal<Local, Bit>,
     watched: Signal<Local, Bit>,
     found_late: Signal<Local, Bit>,
     leave: Signal<Local, Bit>,
@@ -332,6 +333,7 @@ impl Logic for Transaction {
         self.answer_taken.next = false;
         self.announce.next = false;
         self.probed.next = false;
+        self.endless.next = (self.timer.q.val() & self.frame_us.val()).any();
         self.watched.next = false;
         self.found_late.next = false;
         self.found.next = 0.into();
@@ -404,12 +406,9 @@ impl Logic for Transaction {
                 self.in_us.next = true;
                 self.timer_clear.next =
                     (self.hunting.val() ^ self.was_hunting.q.val()) | self.finished.val();
-                if !self.hunting.val() {
-                    self.limit.next = self.frame_us.val();
-                }
                 // A receiver that has lost its place.
-                if self.timer_hit.q.val() & !self.hunting.val() {
-                    self.found.next = self.too_long.val();
+                if self.endless.val() & !self.hunting.val() {
+                    self.found.next = self.tail_low.val();
                     self.give_up.next = true;
                 }
                 if self.timer_hit.q.val() & self.hunting.val() {
@@ -476,9 +475,8 @@ impl Logic for Transaction {
                 self.running.next = true;
                 self.watched.next = true;
                 self.in_us.next = true;
-                self.limit.next = self.frame_us.val();
-                if self.timer_hit.q.val() {
-                    self.found.next = self.too_long.val();
+                if self.endless.val() {
+                    self.found.next = self.tail_low.val();
                     self.give_up.next = true;
                 }
                 if self.center.val() {

@@ -20,8 +20,12 @@ fn the_sizes_in_the_readme_are_those_of_the_area_table() {
     let figure = |subject: &str, kind: &str| table[subject][XC6S.name][kind].as_integer().unwrap();
     for (head, subject) in [
         ("| one port", "channel"),
-        ("| the same with", "channel_requests"),
-        ("| a port with", "port_initialise"),
+        ("| the same with all mode commands", "channel_requests"),
+        ("| the same with line diagnosis", "channel_diagnosis"),
+        ("| the same with continuous", "channel_continuous"),
+        ("| the same with the three", "channel_all"),
+        ("| a port with requests", "port_service"),
+        ("| a port with everything", "port_all"),
         ("| two-channel card", "card"),
         ("| card with everything", "card_service"),
     ] {

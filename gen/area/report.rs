@@ -69,16 +69,27 @@ pub struct Report {
 }
 
 /// Measures everything; with `with_speed`, card and channel are also placed and routed.
-pub fn report(with_speed: bool) -> Result<Report, GenError> {
+pub fn report(only: &[String], with_speed: bool) -> Result<Report, GenError> {
     let version = version()?;
     if !version.starts_with(YOSYS_VERSION) {
         return Err(GenError::input(format!(
             "{YOSYS} = {version:?}: figures are made with {YOSYS_VERSION} and differ between versions; `pip install {YOSYS}==0.70.0.0.post1259`"
         )));
     }
+    let mut subjects = subjects()?;
+    for name in only {
+        if !subjects.iter().any(|subject| subject.name == name) {
+            let names: Vec<_> = subjects.iter().map(|subject| subject.name).collect();
+            return Err(GenError::input(format!(
+                "--only = {name:?}: nothing of that name is measured; one or more of: {}",
+                names.join(", ")
+            )));
+        }
+    }
+    subjects.retain(|subject| only.is_empty() || only.iter().any(|name| name == subject.name));
     let scratch = Scratch::new("area");
     let mut lines = vec![];
-    for subject in subjects()? {
+    for subject in subjects {
         let files = subject.files();
         let folder = scratch.0.join(subject.name);
         let usage = |family| synthesise(&folder, &files, subject.name, family).map(|s| s.usage);

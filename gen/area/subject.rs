@@ -67,9 +67,8 @@ fn part(change: impl FnOnce(&mut Features)) -> Features {
 pub fn subjects() -> Result<Vec<Subject>, GenError> {
     let card = load_preset(DEFAULT_PRESET)?.card;
     let times = FixedTimes::at(card.system_hz);
-    let service = |initialise, is_all| {
+    let service = |is_all| {
         let times = ServiceTimes {
-            initialise,
             diagnosis: is_all,
             continuous: is_all,
             ..ServiceTimes::at(card.system_hz)
@@ -81,16 +80,11 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
         Subject::new("card_service", "the card with everything", Card::new(&full))?,
         Subject::new("card", "two-channel card s6_two_channel", Card::new(&card))?,
         Subject::new("channel", "one position channel", Channel::new(times))?,
-        Subject::new("port_all", "one port with everything", service(true, true))?,
+        Subject::new("port_all", "one port with everything", service(true))?,
         Subject::new(
-            "port_initialise",
-            "one port with requests and initialisation",
-            service(true, false),
-        )?,
-        Subject::new(
-            "port_requests",
-            "one port with requests",
-            service(false, false),
+            "port_service",
+            "one port with requests; initialisation is only another program",
+            service(false),
         )?,
         Subject::new(
             "channel_all",

@@ -11,6 +11,9 @@ pub struct AreaArgs {
     /// Also place and route card and channel: takes minutes
     #[arg(long)]
     fmax: bool,
+    /// Measure only these, by name
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    only: Vec<String>,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -18,7 +21,7 @@ pub struct AreaArgs {
 
 /// Runs the command.
 pub fn run(arguments: &AreaArgs) -> Result<Outcome, GenError> {
-    let report = area::report(arguments.fmax)?;
+    let report = area::report(&arguments.only, arguments.fmax)?;
     Ok(Outcome::good(if arguments.json {
         to_json(&report)?
     } else {

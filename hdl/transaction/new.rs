@@ -145,6 +145,7 @@ impl Transaction {
             announce: Default::default(),
             answer_taken: Default::default(),
             probed: Default::default(),
+            endless: Default::default(),
             watched: Default::default(),
             found_late: Default::default(),
             leave: Default::default(),

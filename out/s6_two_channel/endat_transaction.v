@@ -135,7 +135,7 @@ module endat_transaction (
     localparam  [15:0] PARK_CYCLES = 16'd200;
     localparam  [15:0] PARAMETER_TIMEOUT_US = 16'hc350;
     localparam  [15:0] OWN_RECOVERY_LIMIT_CYCLES = 16'd3500;
-    localparam  [15:0] FRAME_US = 16'd4000;
+    localparam  [15:0] FRAME_US = 16'd4096;
     localparam  [15:0] PROBE_US = 16'd2;
     localparam  [15:0] SETTLE_US = 16'd20;
     localparam  [15:0] LEAVE_US = 16'd40;
@@ -181,6 +181,7 @@ module endat_transaction (
     reg          announce;
     reg          answer_taken;
     reg          probed;
+    wire         endless;
     reg          watched;
     reg          found_late;
     wire         leave;
@@ -301,6 +302,7 @@ module endat_transaction (
     assign own = is_own & HAS_ALL;
     assign triggered = trigger & !(hold_off & HAS_ALL);
     assign wanted = triggered | (begin_own & HAS_ALL);
+    assign endless = |(timer & FRAME_US);
 
     always @* begin
         not_low = DATA_NOT_LOW;
@@ -405,11 +407,8 @@ module endat_transaction (
                 watched = 1'b1;
                 in_us = 1'b1;
                 timer_clear = (hunting ^ was_hunting) | finished;
-                if (!hunting) begin
-                    limit = FRAME_US;
-                end
-                if (timer_hit & !hunting) begin
-                    found = TOO_LONG;
+                if (endless & !hunting) begin
+                    found = TAIL_LOW;
                     give_up = 1'b1;
                 end
                 if (timer_hit & hunting) begin
@@ -474,9 +473,8 @@ module endat_transaction (
                 running = 1'b1;
                 watched = 1'b1;
                 in_us = 1'b1;
-                limit = FRAME_US;
-                if (timer_hit) begin
-                    found = TOO_LONG;
+                if (endless) begin
+                    found = TAIL_LOW;
                     give_up = 1'b1;
                 end
                 if (center) begin

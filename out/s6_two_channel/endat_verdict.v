@@ -73,6 +73,7 @@ module endat_verdict (
 );
     localparam         HAS_DIAGNOSIS = 1'b0;
     localparam  [12:0] OWN_RECOVERY_MIN_CYCLES = 13'd117;
+    localparam  [18:0] POSSIBLE = 19'd1607;
     localparam  [18:0] CRC_WRONG = 19'd8;
     localparam  [18:0] PARALLEL_WRONG = 19'd256;
     localparam  [18:0] OWN_ECHO = 19'h20000;
@@ -199,7 +200,7 @@ module endat_verdict (
             cause_now <= 5'd0;
             flags_now <= 19'd0;
         end else begin
-            seen <= found;
+            seen <= found & POSSIBLE;
             taken_now <= answer_taken;
             gave_up_now <= give_up & !gave_up_now;
             gave_up_late <= give_up & !gave_up_now & is_late;

@@ -34,7 +34,7 @@ const TRIGGER_CYCLE: u64 = 16_000;
 /// Longest answer to a command with a parameter.
 const PARAMETER_TIMEOUT_US: u64 = 200;
 /// Longer than any part of a frame, at the calibration clock too.
-pub const FRAME_US: u64 = 600;
+pub const FRAME_US: u64 = 512;
 
 pub fn design() -> Design {
     let fixed = FixedTimes {
