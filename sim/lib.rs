@@ -13,6 +13,7 @@ pub mod line;
 pub mod rng;
 pub mod scenario;
 pub mod segments;
+pub mod shmoo;
 #[cfg(test)]
 mod test_receiver;
 pub mod wave;

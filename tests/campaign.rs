@@ -61,8 +61,8 @@ fn what_is_wrong_with_a_case_is_said_alike_alone_and_in_lanes() {
     let case = &cases[1];
     let bench = case.run_alone(Compiled::new(&case.design().unwrap()).unwrap(), false);
     let traces = campaign::Traces::of(&bench);
-    assert!(outcomes[1].failure.is_some());
-    assert_eq!(outcomes[1].failure, case.check(&traces).err());
+    assert!(outcomes[1].verdict.is_err());
+    assert_eq!(outcomes[1].verdict, case.check(&traces));
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod position;
 mod program;
 mod requests;
 mod service;
+mod shmoo;
 mod sim;
 mod three_way;
 mod tools;

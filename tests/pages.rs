@@ -133,6 +133,32 @@ fn the_drawings_in_the_programming_guide_are_the_program_s() {
     }
 }
 
+#[test]
+fn the_maps_in_the_page_on_margin_are_the_program_s() {
+    let page = include_str!("../docs/margin.md");
+    let folder = crate::tools::folder("pages-maps");
+    let maps = [
+        ("shmoo.svg", include_str!("../docs/shmoo.svg")),
+        ("jitter.svg", include_str!("../docs/jitter.svg")),
+    ];
+    for (name, committed) in maps {
+        assert!(page.contains(&format!("]({name})](")), "{name}");
+        let line = page.lines().find(|l| l.contains(&format!("--svg {name}")));
+        let command = line.unwrap().split('`').nth(1).unwrap();
+        let words = command.strip_prefix("cargo run --release -- ").unwrap();
+        let file = |word: &str| match word.contains('.') && !word.contains('=') {
+            true => folder.join(word).to_str().unwrap().to_owned(),
+            false => word.to_owned(),
+        };
+        let words: Vec<String> = words.split(' ').map(file).collect();
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let outcome = crate::program::run(&words);
+        assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+        let drawn = std::fs::read_to_string(folder.join(name)).unwrap();
+        assert!(drawn == committed, "draw it again in docs: {command}");
+    }
+}
+
 /// The status word of a result, as four bytes.
 fn status(cause: u64, is_fresh: bool, sequence: u64) -> String {
     let register = RESULT.register("status").unwrap();

@@ -46,7 +46,7 @@ pub fn measure(frames: usize) -> Result<Frames, GenError> {
     let start = Instant::now();
     let outcomes = campaign::run(&cases, options, Case::check, |_| {}).map_err(|e| fault(&e))?;
     let seconds = start.elapsed().as_secs_f64();
-    if let Some(failure) = outcomes.iter().find_map(|o| o.failure.as_ref()) {
+    if let Some(failure) = outcomes.iter().find_map(|o| o.verdict.as_ref().err()) {
         return Err(fault(failure));
     }
     Ok(Frames {

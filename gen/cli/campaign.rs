@@ -125,7 +125,7 @@ fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, GenError> {
     let failed: Vec<(usize, &str)> = outcomes
         .iter()
         .enumerate()
-        .filter_map(|(index, o)| Some((index, o.failure.as_deref()?)))
+        .filter_map(|(index, o)| Some((index, o.verdict.as_ref().err()?.as_str())))
         .collect();
     let stdout = if arguments.json {
         let failures = failed.iter().map(|(index, what)| {

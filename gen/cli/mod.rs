@@ -7,6 +7,7 @@ mod crc_command;
 mod emit;
 mod number;
 mod pictures;
+mod shmoo;
 mod sim;
 
 use crate::config::{self, Project};
@@ -78,6 +79,8 @@ enum Command {
     Bench(bench::BenchArgs),
     /// Run thousands of cases side by side and check every frame
     Campaign(campaign::CampaignArgs),
+    /// Map where frames are good, and by what margin: cable, clock, jitter, noise ...
+    Shmoo(shmoo::ShmooArgs),
 }
 
 /// Which configuration.
@@ -158,6 +161,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Area(arguments)) => area::run(&arguments),
         Some(Command::Bench(arguments)) => bench::run(&arguments).map(with_engine),
         Some(Command::Campaign(arguments)) => campaign::run(&arguments).map(with_engine),
+        Some(Command::Shmoo(arguments)) => shmoo::run(&arguments).map(with_engine),
     }
 }
 

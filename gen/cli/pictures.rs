@@ -36,13 +36,15 @@ pub enum Drawn {
 }
 
 /// A file to be written.
-struct File {
+pub struct File {
     /// The option that asked for it.
-    option: &'static str,
-    path: PathBuf,
-    text: String,
+    pub option: &'static str,
+    /// Where.
+    pub path: PathBuf,
+    /// What.
+    pub text: String,
     /// Whether a file that begins like this may be replaced.
-    is_ours: fn(&str) -> bool,
+    pub is_ours: fn(&str) -> bool,
 }
 
 /// So much of a file that is there already is looked at.
@@ -103,10 +105,15 @@ pub fn draw(
             is_ours: is_drawing,
         });
     }
-    check_places(&files)?;
+    write_all(&files)
+}
+
+/// Writes files, unless one of them would replace something else; returns one message for each.
+pub fn write_all(files: &[File]) -> Result<Vec<String>, GenError> {
+    check_places(files)?;
     files.iter().try_for_each(check_owner)?;
     let mut written = Vec::new();
-    for file in &files {
+    for file in files {
         written.extend(write(file)?);
     }
     Ok(written)

@@ -34,13 +34,13 @@ impl Default for RunOptions {
 
 /// How one case went.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Outcome {
-    /// Results that were checked.
+pub struct Outcome<V> {
+    /// Results that were looked at.
     pub frames: usize,
     /// System clock cycles that it took.
     pub cycles: u64,
-    /// What was wrong, if anything.
-    pub failure: Option<String>,
+    /// What the judge says.
+    pub verdict: V,
 }
 
 /// Why a campaign cannot run: faults of this program.
@@ -83,16 +83,17 @@ fn batches(cases: &[Case], lanes: usize) -> Vec<Batch> {
     batches
 }
 
-/// Runs all cases and checks each with `check`; `progress` is told how many are done. Outcomes are in the order of the cases.
+/// Runs all cases and has each judged (by [`Case::check`], for example); `progress` is told how many are done. Outcomes are in the order
+/// of the cases.
 ///
 /// # Errors
 /// If the design of a case cannot be made.
-pub fn run(
+pub fn run<V: Clone + Send>(
     cases: &[Case],
     options: RunOptions,
-    check: impl Fn(&Case, &Traces<'_>) -> Result<(), String> + Sync,
+    judge: impl Fn(&Case, &Traces<'_>) -> V + Sync,
     progress: impl Fn(usize) + Sync,
-) -> Result<Vec<Outcome>, CampaignError> {
+) -> Result<Vec<Outcome<V>>, CampaignError> {
     let batches = batches(cases, options.lanes.count() * 64);
     let mut engines: BTreeMap<DesignKey, Lanes> = BTreeMap::new();
     for batch in &batches {
@@ -104,12 +105,12 @@ pub fn run(
             )?);
         }
     }
-    let outcomes: Mutex<Vec<Option<Outcome>>> = Mutex::new(vec![None; cases.len()]);
+    let outcomes: Mutex<Vec<Option<Outcome<V>>>> = Mutex::new(vec![None; cases.len()]);
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let work = || {
         while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
             let engine = engines[&batch.key].clone();
-            let found = run_batch(batch, cases, engine, options, &check);
+            let found = run_batch(batch, cases, engine, options, &judge);
             let mut outcomes = outcomes.lock().unwrap_or_else(|e| e.into_inner());
             for (case, outcome) in batch.cases.iter().zip(found) {
                 outcomes[*case] = Some(outcome);
@@ -137,13 +138,13 @@ pub fn run(
     Ok(outcomes.into_iter().flatten().collect())
 }
 
-fn run_batch(
+fn run_batch<V>(
     batch: &Batch,
     cases: &[Case],
     engine: Lanes,
     options: RunOptions,
-    check: &(impl Fn(&Case, &Traces<'_>) -> Result<(), String> + Sync),
-) -> Vec<Outcome> {
+    judge: &(impl Fn(&Case, &Traces<'_>) -> V + Sync),
+) -> Vec<Outcome<V>> {
     let members: Vec<&Case> = batch.cases.iter().map(|i| &cases[*i]).collect();
     // Lanes without a case of their own repeat the first one, untriggered.
     let case_of = |lane: usize| members.get(lane).copied().unwrap_or(members[0]);
@@ -206,7 +207,7 @@ fn run_batch(
         Outcome {
             frames: traces.results.len(),
             cycles: ends[lane].unwrap_or(bench.cycle()),
-            failure: check(case, &traces).err(),
+            verdict: judge(case, &traces),
         }
     };
     members.iter().enumerate().map(outcome).collect()

@@ -15,7 +15,7 @@ fn a_lane_leaves_what_the_case_leaves_alone() {
         let engine = Compiled::new(&case.design().unwrap()).unwrap();
         let bench = case.run_alone(engine, false);
         let alone = Traces::of(&bench);
-        assert_eq!(traced[index].failure, digest(&alone).err(), "case {index}");
+        assert_eq!(traced[index].verdict, digest(&alone), "case {index}");
         assert_eq!(traced[index].cycles, bench.cycle(), "case {index}");
     }
 }
@@ -45,11 +45,9 @@ fn a_broken_case_is_found_and_the_others_are_not() {
         .clone()
         .defect(3, crate::encoder::Defect::CrcXor(1));
     let outcomes = run(&cases, RunOptions::default(), Case::check, |_| {}).unwrap();
-    let failed: Vec<usize> = (0..100)
-        .filter(|i| outcomes[*i].failure.is_some())
-        .collect();
+    let failed: Vec<usize> = (0..100).filter(|i| outcomes[*i].verdict.is_err()).collect();
     assert_eq!(failed, [42]);
-    let what = outcomes[42].failure.as_ref().unwrap();
+    let what = outcomes[42].verdict.as_ref().unwrap_err();
     assert!(
         what.starts_with("frame 3: is not what the encoder should send"),
         "{what}"

@@ -4,6 +4,7 @@
 //! microseconds. Long quiet spans are shortened and marked. If the cable is long, both ends are shown.
 
 mod groups;
+mod map;
 mod overview;
 mod scale;
 mod svg;
@@ -18,6 +19,7 @@ use crate::{
     segments::{data_segments, first_falls, By, Level, Meaning, Segment},
     Time, US,
 };
+pub use map::map_svg;
 pub use overview::overview_svg;
 pub use svg::is_drawing;
 

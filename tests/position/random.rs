@@ -37,7 +37,7 @@ proptest! {
         let cases: Vec<Case> = stories.iter().map(Story::case).collect();
         let outcomes = campaign::run(&cases, RunOptions::default(), Case::check, |_| {}).unwrap();
         for (case, outcome) in cases.iter().zip(outcomes) {
-            prop_assert_eq!(outcome.failure, None, "{:?}", case);
+            prop_assert_eq!(outcome.verdict, Ok(()), "{:?}", case);
         }
     }
 }

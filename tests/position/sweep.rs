@@ -7,7 +7,7 @@ fn all_sound(cases: &[Case]) {
     let outcomes = campaign::run(cases, RunOptions::default(), Case::check, |_| {}).unwrap();
     assert_eq!(outcomes.len(), cases.len());
     let failed = cases.iter().zip(&outcomes);
-    let failed = failed.filter_map(|(case, o)| o.failure.as_ref().map(|f| (&case.title, f)));
+    let failed = failed.filter_map(|(case, o)| o.verdict.as_ref().err().map(|f| (&case.title, f)));
     let failed: Vec<_> = failed.collect();
     assert!(
         failed.is_empty(),

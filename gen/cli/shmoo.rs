@@ -1,0 +1,370 @@
+//! `shmoo`: maps of where frames are good.
+
+use super::number::number;
+use super::pictures::{write_all, File};
+use super::{to_json, Outcome};
+use crate::error::{shown, GenError};
+use clap::{Args, ValueEnum};
+use endat_hdl::config::{SYSTEM_HZ_MAX, SYSTEM_HZ_MIN};
+use endat_hdl::protocol::ModeCommand;
+use endat_sim::diagram::{is_drawing, map_svg};
+use endat_sim::shmoo::{decimal, is_table, Axis, Conditions, Fate, Map, Plan, Quantity};
+use serde_json::json;
+use std::fmt::Write as _;
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Arguments of `shmoo`.
+#[derive(Args)]
+pub struct ShmooArgs {
+    /// What goes across: NAME=FROM:TO:STEP or NAME=A,B,... [default: cable_m=0:150:5]
+    #[arg(long, value_name = "AXIS")]
+    x: Option<String>,
+    /// What goes upwards [default: clock_mhz=0.3,0.5,1,2,3.2,4,5.12,6.4,8,9.143,10.667,12.8,16, up to an eighth of the system clock]
+    #[arg(long, value_name = "AXIS")]
+    y: Option<String>,
+    /// What is the same everywhere: NAME=VALUE; may be given more than once
+    #[arg(long, value_name = "NAME=VALUE")]
+    at: Vec<String>,
+    /// System clock in hertz
+    #[arg(
+        long,
+        value_name = "HZ",
+        default_value = "128_000_000",
+        allow_negative_numbers = true
+    )]
+    system_hz: String,
+    /// Width of the position
+    #[arg(
+        long,
+        value_name = "BITS",
+        default_value = "25",
+        allow_negative_numbers = true
+    )]
+    bits: String,
+    /// Mode command
+    #[arg(long, value_enum, default_value = "111000")]
+    command: Command,
+    /// Frames of each channel at the full clock
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "6",
+        allow_negative_numbers = true
+    )]
+    frames: String,
+    /// Channels in each cell, each with random numbers of its own
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "2",
+        allow_negative_numbers = true
+    )]
+    runs: String,
+    /// Seed of the random numbers
+    #[arg(
+        long,
+        value_name = "S",
+        default_value = "1",
+        allow_negative_numbers = true
+    )]
+    seed: String,
+    /// Threads [default: one for each processor]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    threads: Option<String>,
+    /// Draw the map
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Write the map as a table
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Command {
+    /// EnDat 2.1
+    #[value(name = "000111")]
+    SendPosition,
+    /// EnDat 2.2
+    #[value(name = "111000")]
+    SendPositionAddInfo,
+}
+
+/// The clock rates of a map for which none are given, in MHz.
+const CLOCKS_MHZ: [f64; 13] = [
+    0.3, 0.5, 1.0, 2.0, 3.2, 4.0, 5.12, 6.4, 8.0, 9.143, 10.667, 12.8, 16.0,
+];
+/// Most values of an axis.
+const VALUES_MAX: usize = 200;
+/// Most channels of a map.
+const CHANNELS_MAX: usize = 100_000;
+/// Most frames of a channel.
+const FRAMES_MAX: u64 = 10_000;
+
+/// Runs the command.
+pub fn run(arguments: &ShmooArgs) -> Result<Outcome, GenError> {
+    let plan = plan(arguments)?;
+    let threads = match &arguments.threads {
+        Some(text) => number("--threads", text, 1..=1024)? as usize,
+        None => 0,
+    };
+    let shown_percent = AtomicUsize::new(0);
+    let progress = |done: usize, of: usize| {
+        let percent = 100 * done / of;
+        if shown_percent.fetch_max(percent, Ordering::Relaxed) / 10 < percent / 10 {
+            // A progress line that cannot be written is no reason to stop.
+            let _ = writeln!(std::io::stderr(), "{done} of {of} channels");
+        }
+    };
+    let map = plan.run(threads, progress).map_err(|e| {
+        GenError::input(format!(
+            "shmoo: {e}; this is a fault of endat-gen, please report it"
+        ))
+    })?;
+    let mut files = vec![];
+    if let Some(path) = &arguments.svg {
+        files.push(File {
+            option: "--svg",
+            path: path.clone(),
+            text: map_svg(&map, &title(&plan)),
+            is_ours: is_drawing,
+        });
+    }
+    if let Some(path) = &arguments.csv {
+        files.push(File {
+            option: "--csv",
+            path: path.clone(),
+            text: map.csv(),
+            is_ours: is_table,
+        });
+    }
+    Ok(Outcome {
+        messages: write_all(&files)?,
+        stdout: match arguments.json {
+            true => to_json(&as_json(&map))?,
+            false => as_text(&map),
+        },
+        ..Outcome::default()
+    })
+}
+
+fn title(plan: &Plan) -> String {
+    let what = |axis: &Axis| axis.quantity.title();
+    match (plan.x.quantity, plan.y.quantity) {
+        (Quantity::Cable, Quantity::Clock) | (Quantity::Clock, Quantity::Cable) => {
+            "Cable and clock: where every frame is good, and by what margin".into()
+        }
+        _ => format!(
+            "Where every frame is good: {} over {}",
+            what(&plan.y),
+            what(&plan.x)
+        ),
+    }
+}
+
+fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
+    let clocks = SYSTEM_HZ_MIN..=SYSTEM_HZ_MAX;
+    let system_hz = number("--system-hz", &arguments.system_hz, clocks)?;
+    let bits = number("--bits", &arguments.bits, 1..=48)? as u32;
+    let command = match arguments.command {
+        Command::SendPosition => ModeCommand::SendPosition,
+        Command::SendPositionAddInfo => ModeCommand::SendPositionAddInfo,
+    };
+    let mut conditions = Conditions::new(system_hz, command, bits);
+    for text in &arguments.at {
+        let (quantity, value) = named("--at", text)?;
+        conditions.set(quantity, one("--at", text, quantity, value, system_hz)?);
+    }
+    let (_, fastest) = Quantity::Clock.range(system_hz);
+    let usual = |axis: &str| match axis {
+        "--x" => Axis {
+            quantity: Quantity::Cable,
+            values: (0..=30).map(|i| 5.0 * f64::from(i)).collect(),
+        },
+        _ => Axis {
+            quantity: Quantity::Clock,
+            values: CLOCKS_MHZ
+                .into_iter()
+                .filter(|mhz| *mhz <= fastest)
+                .collect(),
+        },
+    };
+    let axis = |flag: &str, text: &Option<String>| match text {
+        Some(text) => axis(flag, text, system_hz),
+        None => Ok(usual(flag)),
+    };
+    let (x, y) = (axis("--x", &arguments.x)?, axis("--y", &arguments.y)?);
+    if x.quantity == y.quantity {
+        return Err(GenError::input(format!(
+            "--y = {}: is what --x has as well; give another quantity",
+            x.quantity.name()
+        )));
+    }
+    let runs = number("--runs", &arguments.runs, 1..=1000)? as usize;
+    let channels = x.values.len() * y.values.len() * runs;
+    if channels > CHANNELS_MAX {
+        return Err(GenError::input(format!(
+            "--runs = {runs}: {channels} channels in all cells together, at most {CHANNELS_MAX}; make fewer, or fewer values of --x and --y"
+        )));
+    }
+    Ok(Plan {
+        x,
+        y,
+        conditions,
+        runs,
+        frames: number("--frames", &arguments.frames, 1..=FRAMES_MAX)? as usize,
+        seed: number("--seed", &arguments.seed, 0..=u64::MAX)?,
+    })
+}
+
+/// A quantity and what stands behind its name.
+fn named<'t>(flag: &str, text: &'t str) -> Result<(Quantity, &'t str), GenError> {
+    let (name, rest) = text.split_once('=').unwrap_or((text, ""));
+    match Quantity::ALL.into_iter().find(|q| q.name() == name) {
+        Some(quantity) if !rest.is_empty() => Ok((quantity, rest)),
+        Some(_) => Err(GenError::input(format!(
+            "{flag} = {}: has no value; write {name}=...",
+            shown(text)
+        ))),
+        None => Err(GenError::input(format!(
+            "{flag} = {}: begins with no quantity; one of {}",
+            shown(text),
+            Quantity::ALL.map(Quantity::name).join(", ")
+        ))),
+    }
+}
+
+/// One value of a quantity.
+fn one(
+    flag: &str,
+    text: &str,
+    quantity: Quantity,
+    value: &str,
+    system_hz: u64,
+) -> Result<f64, GenError> {
+    let (low, high) = quantity.range(system_hz);
+    let fail = |what: String| Err(GenError::input(format!("{flag} = {}: {what}", shown(text))));
+    match value.trim().parse::<f64>() {
+        // The limits of a clock are rounded where they are shown.
+        Ok(value) if value >= low - 1e-4 && value <= high + 1e-4 => Ok(value.clamp(low, high)),
+        Ok(_) => fail(format!(
+            "{} = {} is outside {}..{}; give a value in that range",
+            quantity.name(),
+            value.trim(),
+            decimal(low),
+            decimal(high)
+        )),
+        Err(_) => fail(format!(
+            "{} is not a number; write 12.5, for example",
+            shown(value)
+        )),
+    }
+}
+
+fn axis(flag: &str, text: &str, system_hz: u64) -> Result<Axis, GenError> {
+    let (quantity, values) = named(flag, text)?;
+    let one = |value: &str| one(flag, text, quantity, value, system_hz);
+    let fail = |what: &str| GenError::input(format!("{flag} = {}: {what}", shown(text)));
+    let many = format!("has more than {VALUES_MAX} values; make fewer");
+    let parts: Vec<&str> = values.split(':').collect();
+    let values: Vec<f64> = match parts[..] {
+        [list] => list.split(',').map(one).collect::<Result<_, _>>()?,
+        [from, to, step] => {
+            let (from, to) = (one(from)?, one(to)?);
+            let step: f64 = step.trim().parse().unwrap_or(0.0);
+            if !(step.is_finite() && step > 0.0 && to > from) {
+                return Err(fail(
+                    "FROM:TO:STEP goes up in steps above 0; write 0:150:5, for example",
+                ));
+            }
+            // What adding up leaves out of the last step does not lose it.
+            let steps = ((to - from) / step + 1e-6).floor();
+            if steps >= VALUES_MAX as f64 {
+                return Err(fail(&many));
+            }
+            (0..=steps as u32)
+                .map(|i| from + step * f64::from(i))
+                .collect()
+        }
+        _ => {
+            return Err(fail(
+                "is neither FROM:TO:STEP nor a list A,B,...; write one of them",
+            ))
+        }
+    };
+    if values.len() < 2 {
+        return Err(fail("has one value; give at least two, or use --at"));
+    }
+    if values.len() > VALUES_MAX {
+        return Err(fail(&many));
+    }
+    if !values.windows(2).all(|pair| pair[0] < pair[1]) {
+        return Err(fail(
+            "does not go up from value to value; put them in order",
+        ));
+    }
+    Ok(Axis { quantity, values })
+}
+
+/// The map in letters, and what they mean.
+fn as_text(map: &Map) -> String {
+    let (x, y) = (&map.plan.x, &map.plan.y);
+    let labels: Vec<String> = y.values.iter().map(|v| decimal(*v)).collect();
+    let room = labels.iter().map(String::len).max().unwrap_or(0);
+    let mut text = format!("{}\n", y.quantity.name());
+    for (row, label) in labels.iter().enumerate().rev() {
+        let letter = |column: usize| match map.cell(column, row).margin() {
+            // Tenths of a bit, 0 to 5.
+            Some(margin) => ((10.0 * margin) as usize).min(5).to_string(),
+            None => map.cell(column, row).fate().letter().to_string(),
+        };
+        let cells: String = (0..x.values.len()).map(letter).collect();
+        let _ = writeln!(text, "{label:>room$} |{cells}");
+    }
+    let (first, last) = (x.values[0], x.values[x.values.len() - 1]);
+    let _ = writeln!(
+        text,
+        "{:>room$} +{}\n{:>room$}  {} = {} to {}",
+        "",
+        "-".repeat(x.values.len()),
+        "",
+        x.quantity.name(),
+        decimal(first),
+        decimal(last)
+    );
+    let _ = writeln!(
+        text,
+        "{} of {} cells with every frame good; a digit is the margin of its worst sample in tenths of a bit (5 = in the middle)",
+        map.passed(),
+        map.cells.len()
+    );
+    for fate in Fate::ALL.into_iter().filter(|f| *f != Fate::Good) {
+        let count = map.count(fate);
+        if count > 0 {
+            let _ = writeln!(text, "{} = {} ({count} cells)", fate.letter(), fate.title());
+        }
+    }
+    text
+}
+
+fn as_json(map: &Map) -> serde_json::Value {
+    let (x, y) = (&map.plan.x, &map.plan.y);
+    let cells = map.cells.iter().map(|cell| {
+        let counts = Fate::ALL.map(|fate| (fate.column().to_owned(), json!(cell.count(fate))));
+        json!({
+            "fate": cell.fate().column(),
+            "margin": cell.margin(),
+            "frames": serde_json::Map::from_iter(counts),
+        })
+    });
+    json!({
+        "x": {"name": x.quantity.name(), "values": x.values},
+        "y": {"name": y.quantity.name(), "values": y.values},
+        "passed": map.passed(),
+        "cells": cells.collect::<Vec<_>>(),
+    })
+}

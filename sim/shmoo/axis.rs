@@ -1,0 +1,183 @@
+//! What a map can be drawn over, and the conditions of a cell.
+
+use crate::{
+    bench::ChannelSettings,
+    campaign::Case,
+    line::{GlitchRate, Jitter, Wire},
+    Time, MS, NS,
+};
+use endat_hdl::{config::PERIOD_BITS, protocol::ModeCommand, timing};
+
+/// A property of line, encoder or channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Length of the cable.
+    Cable,
+    /// EnDat clock.
+    Clock,
+    /// Delay of the encoder from clock edge to DATA edge.
+    Delay,
+    /// Peak jitter of every DATA edge at the receiver.
+    Jitter,
+    /// How much later DATA falls than it rises.
+    Distortion,
+    /// Glitches on DATA at the receiver, of up to [`GLITCH_MAX`].
+    Noise,
+    /// Input filter.
+    Filter,
+}
+
+/// Longest glitch of the noise.
+const GLITCH_MAX: Time = 40 * NS;
+/// Longest input filter.
+const FILTER_MAX: f64 = 15.0;
+
+impl Quantity {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Cable,
+        Self::Clock,
+        Self::Delay,
+        Self::Jitter,
+        Self::Distortion,
+        Self::Noise,
+        Self::Filter,
+    ];
+
+    /// What it is called on the command line and in tables, unit included.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Cable => "cable_m",
+            Self::Clock => "clock_mhz",
+            Self::Delay => "delay_ns",
+            Self::Jitter => "jitter_ns",
+            Self::Distortion => "distortion_ns",
+            Self::Noise => "noise_khz",
+            Self::Filter => "filter_cycles",
+        }
+    }
+
+    /// What it is called beside an axis.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Cable => "cable in m",
+            Self::Clock => "EnDat clock in MHz",
+            Self::Delay => "clock edge to DATA edge in the encoder, in ns",
+            Self::Jitter => "peak jitter of DATA edges, in ns",
+            Self::Distortion => "falling edges later than rising ones, in ns",
+            Self::Noise => "glitches of 2 to 40 ns on DATA, in thousands per second",
+            Self::Filter => "input filter in system clock cycles",
+        }
+    }
+
+    /// The smallest and the largest value.
+    pub fn range(self, system_hz: u64) -> (f64, f64) {
+        let clock_mhz = |cycles: u64| system_hz as f64 / cycles as f64 / 1e6;
+        let fastest = clock_mhz(timing::PERIOD_CYCLES_MIN).min(timing::ENDAT_HZ_MAX as f64 / 1e6);
+        match self {
+            Self::Cable => (0.0, 1_000.0),
+            Self::Clock => (clock_mhz((1 << PERIOD_BITS) - 1), fastest),
+            Self::Delay => (0.0, 10_000.0),
+            Self::Jitter => (0.0, 1_000.0),
+            Self::Distortion => (-1_000.0, 1_000.0),
+            Self::Noise => (0.0, 10_000.0),
+            Self::Filter => (0.0, FILTER_MAX),
+        }
+    }
+}
+
+/// Where a cell is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conditions {
+    /// System clock in hertz.
+    pub system_hz: u64,
+    /// Mode command.
+    pub command: ModeCommand,
+    /// Width of the position.
+    pub position_bits: u32,
+    values: [f64; Quantity::ALL.len()],
+}
+
+impl Conditions {
+    /// A sound line: 8 MHz, or the fastest clock there is, over 10 m.
+    pub fn new(system_hz: u64, command: ModeCommand, position_bits: u32) -> Self {
+        let (_, fastest) = Quantity::Clock.range(system_hz);
+        let mut conditions = Self {
+            system_hz,
+            command,
+            position_bits,
+            values: [0.0; Quantity::ALL.len()],
+        };
+        conditions.set(Quantity::Cable, 10.0);
+        conditions.set(Quantity::Clock, fastest.min(8.0));
+        conditions.set(Quantity::Delay, 50.0);
+        conditions
+    }
+
+    /// Sets one quantity.
+    pub fn set(&mut self, quantity: Quantity, value: f64) {
+        self.values[quantity as usize] = value;
+    }
+
+    /// What it is set to.
+    pub fn get(&self, quantity: Quantity) -> f64 {
+        self.values[quantity as usize]
+    }
+
+    /// A channel, an encoder and a line under these conditions.
+    pub fn case(&self, frames: usize, seed: u64) -> Case {
+        let time = |quantity| (self.get(quantity) * NS as f64).round();
+        let clock_hz = (self.get(Quantity::Clock) * 1e6).round() as u64;
+        let rates = (self.system_hz, clock_hz);
+        let cable_m = self.get(Quantity::Cable);
+        let mut case = Case::new(rates, self.command, self.position_bits, cable_m);
+        case.frames = frames;
+        case.settings = ChannelSettings {
+            filter_cycles: self.get(Quantity::Filter).round() as u64,
+            ..case.settings
+        };
+        case.encoder.clock_to_data = time(Quantity::Delay) as Time;
+        case.encoder.seed = seed;
+        case.line.seed = seed;
+        case.line.data_in.jitter = Jitter::Uniform(time(Quantity::Jitter) as Time);
+        case.line.data_in.fall_later = time(Quantity::Distortion) as i64;
+        let noise = self.get(Quantity::Noise);
+        if noise > 0.0 {
+            case.line.random_glitches = Some(GlitchRate {
+                wire: Wire::Data,
+                mean_gap: (MS as f64 / noise).round() as Time,
+                shortest: 2 * NS,
+                longest: GLITCH_MAX,
+            });
+        }
+        case
+    }
+}
+
+/// One side of a map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// What goes along it.
+    pub quantity: Quantity,
+    /// Its values, in order.
+    pub values: Vec<f64>,
+}
+
+impl Axis {
+    /// Where a value would stand, in steps from the first one: between two values by its distance from them, and half a step outside if it
+    /// is beyond all of them.
+    pub fn place(&self, value: f64) -> f64 {
+        let steps = self.values.windows(2).enumerate();
+        for (index, pair) in steps {
+            let part = (value - pair[0]) / (pair[1] - pair[0]);
+            if (0.0..=1.0).contains(&part) {
+                return index as f64 + part;
+            }
+        }
+        let (first, last) = (self.values[0], self.values[self.values.len() - 1]);
+        match (value - first).abs() < (value - last).abs() {
+            true => -0.5,
+            false => self.values.len() as f64 - 0.5,
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! What became of the frames of a channel.
+
+use crate::{
+    bench::ChannelResult,
+    campaign::{Case, Traces},
+    encoder::{FrameEnd, FrameLog},
+    line::Sample,
+    Time, US,
+};
+use endat_hdl::transaction::cause;
+
+/// What becomes of a frame; what stands later is worse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Fate {
+    /// The position is the encoder's, and the encoder saw the pulses that it needs.
+    Good,
+    /// Refused for another reason than the following ones, or without a result.
+    Refused,
+    /// No start bit, or one outside its window.
+    Start,
+    /// The CRC is wrong.
+    Crc,
+    /// A result, but not the pulses that the encoder needs.
+    Pulses,
+    /// Told as good, but another position than the encoder's.
+    Wrong,
+}
+
+impl Fate {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Good,
+        Self::Refused,
+        Self::Start,
+        Self::Crc,
+        Self::Pulses,
+        Self::Wrong,
+    ];
+
+    /// Its name in tables.
+    pub const fn column(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Refused => "refused",
+            Self::Start => "start_bit",
+            Self::Crc => "crc",
+            Self::Pulses => "pulse_count",
+            Self::Wrong => "silently_wrong",
+        }
+    }
+
+    /// Its name for people.
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Refused => "refused for another reason",
+            Self::Start => "start bit: none, or outside its window",
+            Self::Crc => "CRC error",
+            Self::Pulses => "wrong number of clock pulses",
+            Self::Wrong => "silently wrong position",
+        }
+    }
+
+    /// Its letter in maps.
+    pub const fn letter(self) -> char {
+        match self {
+            Self::Good => '.',
+            Self::Refused => 'R',
+            Self::Start => 'S',
+            Self::Crc => 'C',
+            Self::Pulses => 'P',
+            Self::Wrong => 'W',
+        }
+    }
+}
+
+/// Fates of frames, counted, and the smallest margin.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tally {
+    counts: [usize; Fate::ALL.len()],
+    margin: Option<f64>,
+}
+
+impl Tally {
+    /// How many frames had this fate.
+    pub fn count(&self, fate: Fate) -> usize {
+        self.counts[fate as usize]
+    }
+
+    /// How many frames there were.
+    pub fn frames(&self) -> usize {
+        self.counts.iter().sum()
+    }
+
+    /// The worst fate of a frame.
+    pub fn fate(&self) -> Fate {
+        let worst = Fate::ALL.iter().rev().find(|fate| self.count(**fate) > 0);
+        worst.copied().unwrap_or(Fate::Refused)
+    }
+
+    /// The smallest distance of a sample from a DATA edge, as a part of the bit: 0.5 at most. Of good frames only.
+    pub fn margin(&self) -> Option<f64> {
+        self.margin.filter(|_| self.fate() == Fate::Good)
+    }
+
+    /// Adds another one.
+    pub fn add(&mut self, other: &Self) {
+        for (sum, count) in self.counts.iter_mut().zip(other.counts) {
+            *sum += count;
+        }
+        self.margin = match (self.margin, other.margin) {
+            (Some(a), Some(b)) => Some(a.min(b)),
+            (a, b) => a.or(b),
+        };
+    }
+}
+
+/// Counts the frames of a case, but for the one that measures the delay: that one has a clock of its own.
+pub(super) fn judge(case: &Case, traces: &Traces<'_>) -> Tally {
+    let mut tally = Tally::default();
+    for result in traces.results.iter().skip(1) {
+        let begun = |f: &&FrameLog| f.first_fall < result.time;
+        let frame = traces.frames.iter().rev().find(begun);
+        tally.counts[fate(result, frame) as usize] += 1;
+    }
+    // Results that never came.
+    let missing = case.frames.saturating_sub(traces.results.len().max(1));
+    tally.counts[Fate::Refused as usize] += missing;
+    let period = (case.settings.period_cycles * 1_000_000 * US) as f64 / case.system_hz as f64;
+    let from = traces.results.first().map_or(Time::MAX, |r| r.time);
+    let distance = |s: &Sample| Some(s.since.min(s.until?));
+    let bits = (traces.samples.iter()).filter(|s| s.time > from && s.answer_bit().is_some());
+    let narrowest = bits.filter_map(distance).min();
+    tally.margin = narrowest.map(|d| d as f64 / period);
+    tally
+}
+
+fn fate(result: &ChannelResult, frame: Option<&FrameLog>) -> Fate {
+    let Some(frame) = frame else {
+        return Fate::Refused;
+    };
+    match result.last_cause() {
+        cause::NONE if result.position != frame.position => Fate::Wrong,
+        cause::NONE => {
+            let is_exact = frame.expected_rising_edges() == Some(frame.rising_edges);
+            match is_exact && frame.end == FrameEnd::Complete {
+                true => Fate::Good,
+                false => Fate::Pulses,
+            }
+        }
+        cause::CRC => Fate::Crc,
+        cause::NO_START_BIT | cause::START_WINDOW => Fate::Start,
+        // The encoder still sends, or has ended: not the pulses that it needs.
+        cause::DATA_NOT_FALLING => Fate::Pulses,
+        _ => Fate::Refused,
+    }
+}
