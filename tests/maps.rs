@@ -18,8 +18,8 @@ fn projects() -> Vec<Project> {
         .map(|name| load_preset(name).unwrap())
         .to_vec();
     let text = preset("s6_two_channel").unwrap();
-    // `signal` is a keyword of SystemRDL.
-    let text = text.replace("name = \"s6_two_channel\"", "name = \"my_signal\"");
+    // A good name, and a keyword of SystemRDL.
+    let text = text.replace("name = \"s6_two_channel\"", "name = \"field\"");
     let (head, tail) = text.rsplit_once("position_bits = 29").unwrap();
     projects.push(parse("unlike.toml", &format!("{head}position_bits = 25{tail}")).unwrap());
     let bits = |p: &Project| p.card.channels[1].position_bits;
@@ -237,7 +237,7 @@ fn cmsis_svd_reads_the_same() {
     }
 }
 
-/// Catches a keyword as a name (`all`, `signal`), an array without its stride, and an access that stands at the wrong place.
+/// Catches a keyword as a name (`all`, `field`), an array without its stride, and an access that stands at the wrong place.
 #[test]
 fn systemrdl_compiler_reads_what_the_table_says() {
     if require_python("systemrdl", "RDL in systemrdl-compiler") {
@@ -268,7 +268,9 @@ fn program(project: &Project) -> (String, String) {
     for word in Word::all(&project.card) {
         let block = format!("{prefix}_{}", word.block_name().to_uppercase());
         let name = format!("{block}_{}", word.register.name.to_uppercase());
-        let argument = word.channel.map_or(String::new(), |n| format!("({n})"));
+        let argument = word
+            .channel
+            .map_or(String::new(), |n| format!("(1 ? {n} : 9)"));
         show(format!("{name}_WORD{argument}"), word.address());
         show(format!("{name}_BYTE{argument}"), word.address() * 4);
         if let Some(n) = word.channel {
@@ -295,10 +297,10 @@ fn program(project: &Project) -> (String, String) {
             let name = format!("{name}_{}", field.name.to_uppercase());
             show(format!("{name}_MASK"), field.mask());
             show(format!("{name}_SHIFT"), field.lsb);
-            let get = format!("{prefix}_GET({name}, 0xA5C3F096u)");
+            let get = format!("{prefix}_GET({name}, 0xA5C30096u | 0xF000u)");
             show(get, (0xA5C3_F096 & field.mask()) >> field.lsb);
             let all = u32::MAX >> (32 - field.width);
-            show(format!("{prefix}_PUT({name}, {all}u)"), field.mask());
+            show(format!("{prefix}_PUT({name}, 0u | {all}u)"), field.mask());
             let (listed, is_bits) = match field.values {
                 Values::Plain => continue,
                 Values::Codes(listed) => (listed, false),
@@ -358,6 +360,40 @@ fn the_header_says_what_the_table_says_in_c_and_in_cpp() {
             }
             assert_eq!(text.lines().count(), output.lines().count());
         }
+    }
+}
+
+/// Catches a macro of the page's example that the header does not have.
+#[test]
+fn the_example_in_the_host_link_page_compiles() {
+    let page = include_str!("../docs/host-link.md");
+    let example = page.split_once("```c\n").unwrap().1;
+    let (include, body) = example
+        .split_once("```")
+        .unwrap()
+        .0
+        .split_once("\n\n")
+        .unwrap();
+    let code = format!(
+        "#include <stdint.h>\n{include}\nuint32_t card_read(uint32_t word);\nvoid example(void);\n\
+         void example(void) {{\n{body}}}\n"
+    );
+    if require("gcc", "example of the host link page") {
+        let folder = tools::folder("maps-example");
+        let header = text_of(&projects()[0], "_registers.h");
+        fs::write(folder.join("s6_two_channel_registers.h"), header).unwrap();
+        fs::write(folder.join("example.c"), code).unwrap();
+        let flags = [
+            "-std=c99",
+            "-Wall",
+            "-Wextra",
+            "-pedantic",
+            "-Werror",
+            "-c",
+            "example.c",
+        ];
+        let (is_good, text) = tools::run("gcc", &folder, &flags);
+        assert!(is_good, "{text}");
     }
 }
 
