@@ -411,7 +411,8 @@ impl Logic for Transaction {
                     self.found.next = self.tail_low.val();
                     self.give_up.next = true;
                 }
-                if self.timer_hit.q.val() & self.hunting.val() {
+                // In the first cycle of the hunt the timer is still that of what was before.
+                if self.timer_hit.q.val() & self.hunting.val() & self.was_hunting.q.val() {
                     self.found.next = self.no_start.val();
                     self.give_up.next = true;
                     // The result is told; the clock goes on as long again, to know a late encoder from a silent one.
