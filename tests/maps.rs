@@ -12,7 +12,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// Both presets, and a card whose channels are not alike: its start values differ.
+/// Both presets, a card whose channels are not alike (its start values differ), and one of a single channel.
 fn projects() -> Vec<Project> {
     let mut projects = ["s6_two_channel", "s6_two_channel_service"]
         .map(|name| load_preset(name).unwrap())
@@ -24,6 +24,10 @@ fn projects() -> Vec<Project> {
     projects.push(parse("unlike.toml", &format!("{head}position_bits = 25{tail}")).unwrap());
     let bits = |p: &Project| p.card.channels[1].position_bits;
     assert_ne!(bits(&projects[0]), bits(&projects[2]));
+    let mut single = projects[1].clone();
+    single.name = "single".into();
+    single.card.channels.truncate(1);
+    projects.push(single);
     projects
 }
 
@@ -122,16 +126,12 @@ fn expected(config: &CardConfig) -> BTreeSet<String> {
 
 fn same(found: &BTreeSet<String>, project: &Project, file: &str) {
     let wanted = expected(&project.card);
-    let lines = |a: &BTreeSet<String>, b: &BTreeSet<String>| {
-        let lines: Vec<String> = a.difference(b).take(10).cloned().collect();
-        lines.join("\n")
-    };
+    let missing: Vec<&String> = wanted.difference(found).take(10).collect();
+    let too_much: Vec<&String> = found.difference(&wanted).take(10).collect();
+    let name = &project.name;
     assert!(
         *found == wanted,
-        "{file} of {}\nmissing:\n{}\ntoo much:\n{}",
-        project.name,
-        lines(&wanted, found),
-        lines(found, &wanted)
+        "{file} of {name}: missing {missing:#?}, too much {too_much:#?}"
     );
 }
 
