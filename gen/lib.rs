@@ -17,6 +17,7 @@ pub mod constraints;
 pub mod crc;
 pub mod error;
 pub mod explain;
+pub mod maps;
 mod scratch;
 pub mod template;
 pub mod testbench;
@@ -26,7 +27,6 @@ use artifact::Artifact;
 use config::Project;
 use endat_hdl::card::Card;
 use endat_hdl::elaborate::elaborate;
-use endat_hdl::regs::markdown;
 use error::GenError;
 use rust_hdl::prelude::Block;
 use verilog::Header;
@@ -40,7 +40,7 @@ pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
     Ok(artifacts)
 }
 
-/// The card as Verilog, and its register map.
+/// The card as Verilog, and its register map in every format.
 pub fn design_artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let fault = |e: &dyn std::fmt::Display| {
         GenError::input(format!(
@@ -67,9 +67,6 @@ pub fn design_artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         .into_iter()
         .map(|(path, text)| Artifact::new(path, text))
         .collect();
-    artifacts.push(Artifact::new(
-        format!("{}_registers.md", project.name),
-        markdown(&project.card),
-    ));
+    artifacts.extend(maps::artifacts(project)?);
     Ok(artifacts)
 }

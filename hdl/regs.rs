@@ -6,19 +6,21 @@
 //! 0x180  results: 6 words of channel n at 0x180 + 8 n
 //! ```
 //!
-//! Offsets count 32-bit words. The decoder ([`crate::register_bank`]), the start values, the Markdown map and the host's
-//! constants come from this table; within a major version an offset never moves.
+//! Offsets count 32-bit words. The decoder ([`crate::register_bank`]), the start values, the maps that come with a card and the
+//! host's constants come from this table; within a major version an offset never moves.
 
-mod markdown;
 mod service;
 mod table;
+pub mod values;
 
-pub use markdown::markdown;
 pub use service::SERVICE;
 pub use table::{CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT};
 
 use crate::config::CardConfig;
 use crate::config_ring::RING_WORDS;
+use crate::service::map::{word, COUNTER_POSITION_2};
+use crate::transaction::cause;
+use values::Values;
 
 /// Major, minor and patch version of the register map.
 pub const VERSION: [u8; 3] = [0, 3, 0];
@@ -79,12 +81,26 @@ pub struct Field {
     pub meaning: &'static str,
     /// Value after reset for a channel (0 for words of the card).
     pub start: fn(&CardConfig, usize) -> u64,
+    /// What single numbers or bits stand for.
+    pub values: Values,
 }
 
 impl Field {
     /// The field's bits within its word.
     pub const fn mask(&self) -> u32 {
         (((1u64 << self.width) - 1) << self.lsb) as u32
+    }
+
+    /// The same field, with a list of what its numbers stand for.
+    pub const fn codes(mut self, codes: &'static [values::Named]) -> Self {
+        self.values = Values::Codes(codes);
+        self
+    }
+
+    /// The same field, with a list of what its bits stand for.
+    pub const fn bits(mut self, bits: &'static [values::Named]) -> Self {
+        self.values = Values::Bits(bits);
+        self
     }
 }
 
@@ -130,6 +146,10 @@ pub struct Block {
     pub stride: u16,
     /// Whether every channel has one.
     pub per_channel: bool,
+    /// One sentence.
+    pub meaning: &'static str,
+    /// Whether it is RAM: 0 after power-up, and no reset clears it.
+    pub is_ram: bool,
     /// Its words, lowest offset first.
     pub registers: &'static [Register],
 }
@@ -144,6 +164,24 @@ impl Block {
     /// The register called `name`.
     pub fn register(&self, name: &str) -> Option<&'static Register> {
         self.registers.iter().find(|r| r.name == name)
+    }
+
+    /// Its words on this card: what only parts fill that the card does not have is left out.
+    pub fn present(&self, config: &CardConfig) -> impl Iterator<Item = &'static Register> {
+        let (base, parts) = (self.base, config.service);
+        let first_line = u16::from(word::COUNTERS) + cause::NO_ENCODER as u16;
+        let past_line = u16::from(word::COUNTERS + COUNTER_POSITION_2);
+        self.registers.iter().filter(move |register| {
+            let at = |word: u8| register.offset == u16::from(word);
+            base != SERVICE_BASE
+                || if at(word::PROGRESS) || register.offset >= u16::from(word::NAME_PLATE) {
+                    parts.initialise
+                } else if at(word::LIMITS) || (first_line..past_line).contains(&register.offset) {
+                    parts.diagnosis
+                } else {
+                    !at(word::CONTINUOUS) || parts.continuous
+                }
+        })
     }
 }
 

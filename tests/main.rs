@@ -8,6 +8,7 @@ mod cycle_time;
 mod elaborate;
 mod engines;
 mod files;
+mod maps;
 mod pages;
 mod position;
 mod program;

@@ -22,17 +22,27 @@ pub fn has(tool: &str) -> bool {
 
 /// Whether a check that needs `tool` can run. If not, says which check is skipped, or fails in CI.
 pub fn require(tool: &str, check: &str) -> bool {
-    if has(tool) {
-        return true;
-    }
+    has(tool) || skip(tool, check)
+}
+
+/// The same for a module of Python.
+pub fn require_python(module: &str, check: &str) -> bool {
+    let import = Command::new("python3")
+        .args(["-c", &format!("import {module}")])
+        .stderr(Stdio::null())
+        .status();
+    import.is_ok_and(|s| s.success()) || skip(&format!("Python module {module}"), check)
+}
+
+fn skip(what: &str, check: &str) -> bool {
     assert!(
         std::env::var_os("CI").is_none(),
-        "{check}: {tool} is not installed, and CI requires it"
+        "{check}: {what} is not installed, and CI requires it"
     );
     // not eprintln!, which the test harness would swallow
     let _ = writeln!(
         std::io::stderr(),
-        "SKIPPED {check}: {tool} is not installed"
+        "SKIPPED {check}: {what} is not installed"
     );
     false
 }

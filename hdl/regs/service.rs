@@ -1,5 +1,6 @@
 //! The words of a service; their places come from [`crate::service::map`].
 
+use super::values::{Values, MODE_COMMANDS, REQUEST_ERRORS};
 use super::{Access, Block, Field, Register, SERVICE_BASE};
 use crate::config::CardConfig;
 use crate::service::map::{word as at, COUNTER_POSITION_2, NAME_PLATE};
@@ -23,6 +24,7 @@ const fn field(
         unit,
         meaning,
         start: zero,
+        values: Values::Plain,
     }
 }
 
@@ -102,15 +104,17 @@ pub const SERVICE: Block = Block {
     base: SERVICE_BASE,
     stride: 128,
     per_channel: true,
+    meaning: "Requests, health, slots and name plate of a channel. RAM: 0 after power-up, a reset does not clear it.",
+    is_ram: true,
     registers: &[
         word("request", at::REQUEST, ReadWrite, "Sends a request when written.", &[
             field("data", 0, 16, "", "Data"),
             field("address", 16, 8, "", "MRS code, address or port"),
-            field("command", 24, 6, "", "Mode command, any of the fourteen"),
+            field("command", 24, 6, "", "Mode command, any of the fourteen").codes(&MODE_COMMANDS),
         ]),
         word("request_state", at::REQUEST_STATE, ReadOnly, "What became of the request.", &[
             field("busy", 0, 1, "", "It is under way"),
-            field("error", 4, 4, "", "0 fulfilled, 1 no answer, 2 echo of MRS code, address or port wrong, 3 echo of data wrong, 4 CRC, 5 unknown mode command, 6 frame went wrong, 7 encoder stayed busy"),
+            field("error", 4, 4, "", "What went wrong").codes(&REQUEST_ERRORS),
             field("finished", 16, 16, "", "Requests finished, wrapping"),
         ]),
         word("answer", at::ANSWER, ReadOnly, "Answer to the last request; bits 31..0 of a longer one.", &[

@@ -1,5 +1,6 @@
 //! The words themselves.
 
+use super::values::{Values, CAUSES, EVIDENCE_FLAGS, FEATURES, LINE_FLAGS, POSITION_COMMANDS};
 use super::{Access, Block, Field, Register, BLOCK_STRIDE, CONFIG_BASE, ID, RESULT_BASE, VERSION};
 use crate::config::{CardConfig, ChannelConfig};
 use crate::protocol::MAX_POSITION_BITS;
@@ -36,6 +37,7 @@ const fn field(
         unit,
         meaning,
         start,
+        values: Values::Plain,
     }
 }
 
@@ -54,35 +56,96 @@ pub const CARD: Block = Block {
     base: 0,
     stride: BLOCK_STRIDE,
     per_channel: false,
+    meaning: "Identification, capabilities, counters and strobes.",
+    is_ram: false,
     registers: &[
-        word("id", 0, ReadOnly, "Identification: the ASCII letters EnDt.", &[
-            field("value", 0, 32, "", "0x456E4474", |_, _| ID as u64),
-        ]),
-        word("version", 1, ReadOnly, "Version of the register map; offsets never move within a major version.", &[
-            field("patch", 0, 16, "", "Patch", |_, _| VERSION[2] as u64),
-            field("minor", 16, 8, "", "Minor", |_, _| VERSION[1] as u64),
-            field("major", 24, 8, "", "Major", |_, _| VERSION[0] as u64),
-        ]),
-        word("capabilities", 2, ReadOnly, "What this card has.", &[
-            field("channels", 0, 8, "", "Encoder ports", |s, _| s.channels.len() as u64),
-            field("max_position_bits", 8, 8, "bits", "Widest position", |_, _| MAX_POSITION_BITS as u64),
-            field("features", 16, 16, "", "bit 0: EnDat 2.2 position frames (111000); bit 1: line delay is measured; bit 2: trigger pin; bit 3: trigger timer; bit 4: requests; bit 5: initialisation; bit 6: diagnosis of the line; bit 7: continuous clock", |s, _| 0b1111 | (s.service.requests as u64) << 4 | (s.service.initialise as u64) << 5 | (s.service.diagnosis as u64) << 6 | (s.service.continuous as u64) << 7),
-        ]),
-        word("system_hz", 3, ReadOnly, "System clock: the unit of every number of cycles.", &[
-            field("value", 0, 32, "Hz", "Frequency", |s, _| s.system_hz),
-        ]),
-        word("configuration_hash", 4, ReadOnly, "Tells which configuration the card was generated from.", &[
-            field("value", 0, 32, "", "First 8 digits of the hash that stands in the generated files", |s, _| s.hash >> 16),
-        ]),
-        word("trigger_count", 8, ReadOnly, "Triggers since reset; stands still with the results (see hold).", &[
-            field("value", 0, 32, "", "Wraps", zero),
-        ]),
-        word("trigger_now", 9, Strobe, "Triggers all channels, if sources allows it.", &[
-            field("trigger", 0, 1, "", "Write 1", zero),
-        ]),
-        word("calibrate", 10, Strobe, "Makes channels measure their line delay again, with their next frame.", &[
-            field("channels", 0, 8, "", "Bit n for channel n", zero),
-        ]),
+        word(
+            "id",
+            0,
+            ReadOnly,
+            "Identification: the ASCII letters EnDt.",
+            &[field("value", 0, 32, "", "0x456E4474", |_, _| ID as u64)],
+        ),
+        word(
+            "version",
+            1,
+            ReadOnly,
+            "Version of the register map; offsets never move within a major version.",
+            &[
+                field("patch", 0, 16, "", "Patch", |_, _| VERSION[2] as u64),
+                field("minor", 16, 8, "", "Minor", |_, _| VERSION[1] as u64),
+                field("major", 24, 8, "", "Major", |_, _| VERSION[0] as u64),
+            ],
+        ),
+        word(
+            "capabilities",
+            2,
+            ReadOnly,
+            "What this card has.",
+            &[
+                field("channels", 0, 8, "", "Encoder ports", |s, _| {
+                    s.channels.len() as u64
+                }),
+                field(
+                    "max_position_bits",
+                    8,
+                    8,
+                    "bits",
+                    "Widest position",
+                    |_, _| MAX_POSITION_BITS as u64,
+                ),
+                field("features", 16, 16, "", "Parts", |s, _| {
+                    0b1111
+                        | (s.service.requests as u64) << 4
+                        | (s.service.initialise as u64) << 5
+                        | (s.service.diagnosis as u64) << 6
+                        | (s.service.continuous as u64) << 7
+                })
+                .bits(&FEATURES),
+            ],
+        ),
+        word(
+            "system_hz",
+            3,
+            ReadOnly,
+            "System clock: the unit of every number of cycles.",
+            &[field("value", 0, 32, "Hz", "Frequency", |s, _| s.system_hz)],
+        ),
+        word(
+            "configuration_hash",
+            4,
+            ReadOnly,
+            "Tells which configuration the card was generated from.",
+            &[field(
+                "value",
+                0,
+                32,
+                "",
+                "First 8 digits of the hash that stands in the generated files",
+                |s, _| s.hash >> 16,
+            )],
+        ),
+        word(
+            "trigger_count",
+            8,
+            ReadOnly,
+            "Triggers since reset; stands still with the results (see hold).",
+            &[field("value", 0, 32, "", "Wraps", zero)],
+        ),
+        word(
+            "trigger_now",
+            9,
+            Strobe,
+            "Triggers all channels, if sources allows it.",
+            &[field("trigger", 0, 1, "", "Write 1", zero)],
+        ),
+        word(
+            "calibrate",
+            10,
+            Strobe,
+            "Makes channels measure their line delay again, with their next frame.",
+            &[field("channels", 0, 8, "", "Bit n for channel n", zero)],
+        ),
     ],
 };
 
@@ -92,6 +155,8 @@ pub const CARD_CONFIG: Block = Block {
     base: CONFIG_BASE,
     stride: BLOCK_STRIDE,
     per_channel: false,
+    meaning: "Configuration of the card.",
+    is_ram: false,
     registers: &[
         word(
             "trigger_sources",
@@ -152,6 +217,8 @@ pub const CHANNEL_CONFIG: Block = Block {
     base: CONFIG_BASE + BLOCK_STRIDE,
     stride: BLOCK_STRIDE,
     per_channel: true,
+    meaning: "Configuration of a channel; taken over between two frames.",
+    is_ram: false,
     registers: &[
         word(
             "frame",
@@ -182,7 +249,8 @@ pub const CHANNEL_CONFIG: Block = Block {
                     "",
                     "Mode command, sent most significant bit first",
                     |s, c| of(s, c, |v| v.command.code() as u64),
-                ),
+                )
+                .codes(&POSITION_COMMANDS),
             ],
         ),
         word(
@@ -244,19 +312,21 @@ pub const CHANNEL_CONFIG: Block = Block {
     ],
 };
 
-/// Result of a channel; all words of all channels, change together and never within a read command.
+/// Result of a channel; all words of all channels change together and never within a read command.
 pub const RESULT: Block = Block {
     name: "result",
     base: RESULT_BASE,
     stride: BLOCK_STRIDE,
     per_channel: true,
+    meaning: "Result of a channel; all words of all channels change together and never within a read command.",
+    is_ram: false,
     registers: &[
         word("status", 0, ReadOnly, "What became of the last trigger.", &[
             field("sequence", 0, 16, "", "Number of results, wrapping", zero),
-            field("cause", 16, 5, "", "Primary cause: 0 none, 1 data not low before start, 2 no start bit, 3 start bit outside its window, 4 CRC, 5 F1, 6 F2, 7 data not falling after the frame, 8 trigger overrun, 9 unknown mode command, 10 additional information missing, 11 no encoder, 12 data stuck high, 13 data stuck low, 14 late start bit, 15 watchdog, 16 echo of the own command, 17 recovery time too short", zero),
+            field("cause", 16, 5, "", "Primary cause", zero).codes(&CAUSES),
             field("valid", 22, 1, "", "There is a good position", zero),
             field("fresh", 23, 1, "", "The last result brought the position; 0 = held from an earlier one", zero),
-            field("line", 24, 7, "", "Raw flags: bit k stands for cause k + 11", zero),
+            field("line", 24, 7, "", "Raw flags: bit k stands for cause k + 11", zero).bits(&LINE_FLAGS),
         ]),
         word("position_low", 1, ReadOnly, "Last good position, bits 31..0.", &[
             field("value", 0, 32, "", "Bit 0 is the LSB", zero),
@@ -271,7 +341,7 @@ pub const RESULT: Block = Block {
             field("crc_received", 0, 5, "", "CRC as received", zero),
             field("crc_computed", 5, 5, "", "CRC as computed", zero),
             field("delay_cycles", 10, 10, "cycles", "Tracked line delay tD, synchroniser and filter included", zero),
-            field("flags", 20, 12, "", "Raw flags: bit k stands for cause k + 1 up to 8; bit 8: parallel CRC; bit 9: data not high after the frame; bit 10: unknown mode command; bit 11: additional information missing", zero),
+            field("flags", 20, 12, "", "Raw flags", zero).bits(&EVIDENCE_FLAGS),
         ]),
         word("age_recovery", 5, ReadOnly, "Age and recovery time.", &[
             field("age_us", 0, 16, "us", "Age of the position; stops at 65535", zero),

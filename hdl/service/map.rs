@@ -206,11 +206,11 @@ pub mod request_state {
     pub const BUSY_TIMEOUT: u16 = 7;
 
     /// What an error code means.
-    pub fn name(error: u16) -> &'static str {
+    pub const fn name(error: u16) -> &'static str {
         match error {
             OK => "fulfilled",
             SILENT => "no answer: command not understood or refused",
-            ADDRESS_ECHO => "echo of MRS code or address wrong",
+            ADDRESS_ECHO => "echo of MRS code, address or port wrong",
             DATA_ECHO => "echo of data wrong",
             CRC => "CRC of the answer wrong",
             UNKNOWN => "unknown mode command, nothing was sent",

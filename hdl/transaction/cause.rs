@@ -57,7 +57,7 @@ pub mod flag {
 }
 
 /// Name of a code.
-pub fn name(code: u64) -> &'static str {
+pub const fn name(code: u64) -> &'static str {
     match code {
         NONE => "none",
         DATA_NOT_LOW => "data not low before start",

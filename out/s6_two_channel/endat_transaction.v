@@ -411,7 +411,7 @@ module endat_transaction (
                     found = TAIL_LOW;
                     give_up = 1'b1;
                 end
-                if (timer_hit & hunting) begin
+                if (timer_hit & hunting & was_hunting) begin
                     found = no_start;
                     give_up = 1'b1;
                     if (HAS_DIAGNOSIS & !has_parameter & !late) begin

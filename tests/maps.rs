@@ -1,0 +1,495 @@
+//! The register map in every format: each file, read by a reader that is not ours, tells what the table tells.
+//!
+//! What is expected is taken from the table here once more, not from the walk that the writers share.
+
+use crate::tools::{self, require, require_python};
+use endat_gen::config::{load_preset, parse, preset, Project};
+use endat_hdl::config::CardConfig;
+use endat_hdl::regs::values::{Named, Values};
+use endat_hdl::regs::{blocks, Access, Block, Field, Register, BLOCKS, VERSION};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+/// Both presets, a card whose channels are not alike (its start values differ), and one of a single channel.
+fn projects() -> Vec<Project> {
+    let mut projects = ["s6_two_channel", "s6_two_channel_service"]
+        .map(|name| load_preset(name).unwrap())
+        .to_vec();
+    let text = preset("s6_two_channel").unwrap();
+    // A good name, and a keyword of SystemRDL.
+    let text = text.replace("name = \"s6_two_channel\"", "name = \"field\"");
+    let (head, tail) = text.rsplit_once("position_bits = 29").unwrap();
+    projects.push(parse("unlike.toml", &format!("{head}position_bits = 25{tail}")).unwrap());
+    let bits = |p: &Project| p.card.channels[1].position_bits;
+    assert_ne!(bits(&projects[0]), bits(&projects[2]));
+    let mut single = projects[1].clone();
+    single.name = "single".into();
+    single.card.channels.truncate(1);
+    projects.push(single);
+    projects
+}
+
+fn text_of(project: &Project, end: &str) -> String {
+    let name = format!("{}{end}", project.name);
+    let files = endat_gen::maps::artifacts(project).unwrap();
+    let file = files.into_iter().find(|a| a.path == name);
+    file.unwrap_or_else(|| panic!("no {name}")).text
+}
+
+/// One word of a card.
+struct Word {
+    block: Block,
+    register: &'static Register,
+    /// `None` for a word of the card.
+    channel: Option<usize>,
+}
+
+impl Word {
+    fn all(config: &CardConfig) -> Vec<Self> {
+        let mut words = Vec::new();
+        for block in blocks(config) {
+            let channels = match block.per_channel {
+                true => (0..config.channels.len()).map(Some).collect(),
+                false => vec![None],
+            };
+            for channel in channels {
+                words.extend(block.registers.iter().map(|register| Self {
+                    block,
+                    register,
+                    channel,
+                }));
+            }
+        }
+        words
+    }
+
+    fn address(&self) -> u32 {
+        let address = self.block.address(self.register, self.channel.unwrap_or(0));
+        address.into()
+    }
+
+    fn block_name(&self) -> &'static str {
+        match (self.block.name, self.channel) {
+            ("config", None) => "card_config",
+            (name, _) => name,
+        }
+    }
+
+    fn name(&self) -> String {
+        let block = self.block_name();
+        match self.channel {
+            Some(n) => format!("{block}[{n}].{}", self.register.name),
+            None => format!("{block}.{}", self.register.name),
+        }
+    }
+
+    /// The one value that a field has after reset, in all channels.
+    fn reset(&self, field: &Field, config: &CardConfig) -> Option<u64> {
+        let channels = match self.channel {
+            Some(_) => 0..config.channels.len(),
+            None => 0..1,
+        };
+        let values: BTreeSet<u64> = channels.map(|n| (field.start)(config, n)).collect();
+        let is_known = self.block.name != "service" && values.len() == 1;
+        values.into_iter().next().filter(|_| is_known)
+    }
+}
+
+fn codes(field: &Field) -> &'static [Named] {
+    match field.values {
+        Values::Codes(codes) => codes,
+        _ => &[],
+    }
+}
+
+/// What the table says, one fact a line.
+fn expected(config: &CardConfig) -> BTreeSet<String> {
+    let mut facts = BTreeSet::new();
+    for word in Word::all(config) {
+        let (name, access) = (word.name(), word.register.access.short());
+        facts.insert(format!("{name} 0x{:04X} {access}", word.address() * 4));
+        for f in word.register.fields {
+            let reset = word.reset(f, config);
+            let reset = reset.map_or("-".into(), |r| r.to_string());
+            let msb = f.lsb + f.width - 1;
+            let field = format!("{name}.{}", f.name);
+            facts.insert(format!("{field} {msb}:{} {access} reset {reset}", f.lsb));
+            for c in codes(f) {
+                facts.insert(format!("{field} = {} {}: {}", c.number, c.name, c.meaning));
+            }
+        }
+    }
+    facts
+}
+
+fn same(found: &BTreeSet<String>, project: &Project, file: &str) {
+    let wanted = expected(&project.card);
+    let missing: Vec<&String> = wanted.difference(found).take(10).collect();
+    let too_much: Vec<&String> = found.difference(&wanted).take(10).collect();
+    let name = &project.name;
+    assert!(
+        *found == wanted,
+        "{file} of {name}: missing {missing:#?}, too much {too_much:#?}"
+    );
+}
+
+/// What the SVD says, read by svd-parser.
+fn read_svd(text: &str) -> BTreeSet<String> {
+    use svd_parser::svd::{Access as SvdAccess, Cluster, RegisterCluster};
+    let config = svd_parser::Config::default().validate_level(svd_parser::ValidateLevel::Strict);
+    let device = svd_parser::parse_with_config(text, &config).unwrap();
+    let short = |access: SvdAccess| match access {
+        SvdAccess::ReadOnly => "ro",
+        SvdAccess::ReadWrite => "rw",
+        SvdAccess::WriteOnly => "strobe",
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((device.address_unit_bits, device.width), (8, 32));
+    let [peripheral] = &device.peripherals[..] else {
+        panic!("one peripheral");
+    };
+    let size = peripheral.address_block.as_ref().unwrap()[0].size;
+    let mut facts = BTreeSet::new();
+    for child in peripheral.registers.as_ref().unwrap() {
+        let RegisterCluster::Cluster(cluster) = child else {
+            panic!("a register outside of a cluster");
+        };
+        let places: Vec<(String, u32)> = match cluster {
+            Cluster::Single(c) => vec![(c.name.clone(), 0)],
+            Cluster::Array(c, dim) => (0..dim.dim)
+                .map(|n| (c.name.replace("%s", &n.to_string()), n * dim.dim_increment))
+                .collect(),
+        };
+        for (block, distance) in places {
+            for register in cluster.registers() {
+                let name = format!("{block}.{}", register.name);
+                let address = peripheral.base_address as u32
+                    + cluster.address_offset
+                    + distance
+                    + register.address_offset;
+                assert!(address + 4 <= size, "{name}: outside of the address block");
+                let properties = &register.properties;
+                let access = properties.access.unwrap();
+                facts.insert(format!("{name} 0x{address:04X} {}", short(access)));
+                let (value, mask) = (
+                    properties.reset_value.unwrap(),
+                    properties.reset_mask.unwrap(),
+                );
+                for field in register.fields() {
+                    let part = |word: u64| (word & field.bitmask()) >> field.lsb();
+                    let reset = match mask & field.bitmask() == field.bitmask() {
+                        true => part(value).to_string(),
+                        false => "-".into(),
+                    };
+                    facts.insert(format!(
+                        "{name}.{} {}:{} {} reset {reset}",
+                        field.name,
+                        field.msb(),
+                        field.lsb(),
+                        short(field.access.unwrap_or(access))
+                    ));
+                    for v in field.enumerated_values.iter().flat_map(|list| &list.values) {
+                        facts.insert(format!(
+                            "{name}.{} = {} {}: {}",
+                            field.name,
+                            v.value.unwrap(),
+                            v.name,
+                            v.description.as_deref().unwrap_or("")
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    facts
+}
+
+/// Catches word numbers written as byte addresses, a stride in words, a field with its end for its width, and a start value
+/// of channel 0 that is told of all channels.
+#[test]
+fn the_svd_says_what_the_table_says() {
+    for project in projects() {
+        same(&read_svd(&text_of(&project, ".svd")), &project, "SVD");
+    }
+}
+
+/// Facts that a Python reader prints.
+fn read_in_python(project: &Project, end: &str) -> BTreeSet<String> {
+    let folder = tools::folder(&format!("maps-{}{end}", project.name));
+    let file = format!("{}{end}", project.name);
+    fs::write(folder.join(&file), text_of(project, end)).unwrap();
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/read_registers.py");
+    let script = script.display().to_string();
+    let (is_good, text) = tools::run("python3", &folder, &[&script, &file]);
+    assert!(is_good, "{file}: {text}");
+    text.lines().map(str::to_owned).collect()
+}
+
+/// Catches an SVD that only Rust's reader understands: its encoder and its parser share their types.
+#[test]
+fn cmsis_svd_reads_the_same() {
+    if require_python("cmsis_svd", "SVD in cmsis-svd") {
+        for project in projects() {
+            same(&read_in_python(&project, ".svd"), &project, "SVD in Python");
+        }
+    }
+}
+
+/// Catches a keyword as a name (`all`, `field`), an array without its stride, and an access that stands at the wrong place.
+#[test]
+fn systemrdl_compiler_reads_what_the_table_says() {
+    if require_python("systemrdl", "RDL in systemrdl-compiler") {
+        for project in projects() {
+            same(&read_in_python(&project, ".rdl"), &project, "RDL");
+        }
+    }
+}
+
+/// A C program that prints every constant of the header, and what it has to print.
+fn program(project: &Project) -> (String, String) {
+    let prefix = project.name.to_uppercase();
+    let mut code = format!(
+        "#include <stdio.h>\n#include \"{}_registers.h\"\n\
+         static void show(unsigned long value) {{ printf(\"%lX\\n\", value); }}\nint main(void) {{\n",
+        project.name
+    );
+    let mut output = String::new();
+    let mut show = |expression: String, value: u32| {
+        writeln!(code, "    show({expression});").unwrap();
+        writeln!(output, "{value:X}").unwrap();
+    };
+    for (part, number) in ["MAJOR", "MINOR", "PATCH"].iter().zip(VERSION) {
+        show(format!("{prefix}_MAP_{part}"), number.into());
+    }
+    let channels = project.card.channels.len() as u32;
+    show(format!("{prefix}_CHANNELS"), channels);
+    for word in Word::all(&project.card) {
+        let block = format!("{prefix}_{}", word.block_name().to_uppercase());
+        let name = format!("{block}_{}", word.register.name.to_uppercase());
+        let argument = word
+            .channel
+            .map_or(String::new(), |n| format!("(1 ? {n} : 9)"));
+        show(format!("{name}_WORD{argument}"), word.address());
+        show(format!("{name}_BYTE{argument}"), word.address() * 4);
+        if let Some(n) = word.channel {
+            let offset = u32::from(word.register.offset);
+            let sum = |unit: &str, rest: u32| {
+                format!("{block}_BASE_{unit} + {n} * {block}_STRIDE_{unit}S + {rest}")
+            };
+            show(sum("WORD", offset), word.address());
+            show(sum("BYTE", 4 * offset), word.address() * 4);
+        }
+        let start = word
+            .register
+            .start(&project.card, word.channel.unwrap_or(0));
+        let resets: Vec<u32> = (0..channels as usize)
+            .map(|n| word.register.start(&project.card, n))
+            .collect();
+        let is_one = word.channel.is_none() || resets.windows(2).all(|w| w[0] == w[1]);
+        match word.channel {
+            _ if word.block.name == "service" => {}
+            Some(n) if !is_one => show(format!("{name}_RESET_{n}"), start),
+            _ => show(format!("{name}_RESET"), start),
+        }
+        for field in word.register.fields {
+            let name = format!("{name}_{}", field.name.to_uppercase());
+            show(format!("{name}_MASK"), field.mask());
+            show(format!("{name}_SHIFT"), field.lsb);
+            let get = format!("{prefix}_GET({name}, 0xA5C30096u | 0xF000u)");
+            show(get, (0xA5C3_F096 & field.mask()) >> field.lsb);
+            let all = u32::MAX >> (32 - field.width);
+            show(format!("{prefix}_PUT({name}, 0u | {all}u)"), field.mask());
+            let (listed, is_bits) = match field.values {
+                Values::Plain => continue,
+                Values::Codes(listed) => (listed, false),
+                Values::Bits(listed) => (listed, true),
+            };
+            for value in listed {
+                let constant = if is_bits {
+                    1 << value.number
+                } else {
+                    value.number
+                };
+                show(format!("{name}_{}", value.name.to_uppercase()), constant);
+            }
+        }
+    }
+    code.push_str("    return 0;\n}\n");
+    (code, output)
+}
+
+/// Catches a macro without parentheses or suffix, byte addresses for words, a mask at bit 0, and C that C++ refuses.
+#[test]
+fn the_header_says_what_the_table_says_in_c_and_in_cpp() {
+    for (compiler, standard, file) in [
+        ("gcc", "-std=c99", "show.c"),
+        ("g++", "-std=c++11", "show.cpp"),
+    ] {
+        if !require(compiler, "register header") {
+            continue;
+        }
+        for project in projects() {
+            let folder = tools::folder(&format!("maps-{compiler}-{}", project.name));
+            let (code, output) = program(&project);
+            let header = format!("{}_registers.h", project.name);
+            fs::write(folder.join(&header), text_of(&project, "_registers.h")).unwrap();
+            fs::write(folder.join(file), code).unwrap();
+            let flags = [
+                standard,
+                "-Wall",
+                "-Wextra",
+                "-pedantic",
+                "-Werror",
+                "-o",
+                "show",
+                file,
+            ];
+            let (is_good, text) = tools::run(compiler, &folder, &flags);
+            assert!(is_good && text.is_empty(), "{header}: {text}");
+            let show = folder.join("show").display().to_string();
+            let (is_good, text) = tools::run(&show, &folder, &[]);
+            assert!(is_good);
+            let pairs = text.lines().zip(output.lines()).enumerate();
+            for (line, (found, wanted)) in pairs {
+                assert_eq!(
+                    found, wanted,
+                    "{header}: line {line} of the program's output"
+                );
+            }
+            assert_eq!(text.lines().count(), output.lines().count());
+        }
+    }
+}
+
+/// Catches a macro of the page's example that the header does not have.
+#[test]
+fn the_example_in_the_host_link_page_compiles() {
+    let page = include_str!("../docs/host-link.md");
+    let example = page.split_once("```c\n").unwrap().1;
+    let (include, body) = example
+        .split_once("```")
+        .unwrap()
+        .0
+        .split_once("\n\n")
+        .unwrap();
+    let code = format!(
+        "#include <stdint.h>\n{include}\nuint32_t card_read(uint32_t word);\nvoid example(void);\n\
+         void example(void) {{\n{body}}}\n"
+    );
+    if require("gcc", "example of the host link page") {
+        let folder = tools::folder("maps-example");
+        let header = text_of(&projects()[0], "_registers.h");
+        fs::write(folder.join("s6_two_channel_registers.h"), header).unwrap();
+        fs::write(folder.join("example.c"), code).unwrap();
+        let flags = [
+            "-std=c99",
+            "-Wall",
+            "-Wextra",
+            "-pedantic",
+            "-Werror",
+            "-c",
+            "example.c",
+        ];
+        let (is_good, text) = tools::run("gcc", &folder, &flags);
+        assert!(is_good, "{text}");
+    }
+}
+
+/// Catches two registers or values that come to one macro, and an access in words that is another register's.
+#[test]
+fn macros_of_the_header_are_single_and_their_access_is_told() {
+    for project in projects() {
+        let text = text_of(&project, "_registers.h");
+        let mut names = BTreeSet::new();
+        for line in text.lines().filter_map(|l| l.strip_prefix("#define ")) {
+            let name = line.split([' ', '(']).next().unwrap();
+            assert!(names.insert(name), "{name} twice");
+        }
+        let prefix = project.name.to_uppercase();
+        for word in Word::all(&project.card) {
+            let access = word.register.access;
+            let told = format!(
+                "/* {}: {} */\n#define {prefix}_{}_{}_WORD",
+                access.short(),
+                word.register.meaning,
+                word.block_name().to_uppercase(),
+                word.register.name.to_uppercase()
+            );
+            assert!(text.contains(&told), "{told}");
+        }
+        assert!(BLOCKS[0]
+            .registers
+            .iter()
+            .any(|r| r.access == Access::Strobe));
+    }
+}
+
+/// Catches a file that does not say which unit its addresses have, and one that is other the next time.
+#[test]
+fn each_file_tells_its_unit_and_is_the_same_again() {
+    let project = &projects()[1];
+    for (end, unit) in [
+        ("_registers.md", "Word addresses; words are 32 bits wide."),
+        (
+            "_registers.h",
+            "it counts words of 32 bits.\n * ..._BYTE is the same place on a bus that counts bytes",
+        ),
+        (
+            ".svd",
+            "Addresses here count bytes. The host link (UART) counts words",
+        ),
+        (
+            ".rdl",
+            "// Addresses here count bytes. The host link (UART) counts words",
+        ),
+    ] {
+        let text = text_of(project, end);
+        assert!(text.contains(unit), "{end}");
+        assert!(text == text_of(project, end), "{end}");
+    }
+}
+
+/// Catches words of parts that the card does not have, and a field that the page forgets.
+#[test]
+fn maps_list_every_word_and_field_that_the_card_has() {
+    let mut project = projects().remove(0);
+    let maps = |project: &Project| endat_gen::maps::artifacts(project).unwrap();
+    let has = |project: &Project, name: &str| -> Vec<bool> {
+        let maps = maps(project);
+        maps.iter()
+            .map(|a| a.text.to_lowercase().contains(name))
+            .collect()
+    };
+    assert_eq!(has(&project, "frames_good"), [false; 4]);
+    project.card.service.requests = true;
+    for (part, name) in [
+        (0, "serial_0"),
+        (1, "watchdog_us"),
+        (1, "frames_stuck_high"),
+        (2, "stop_at_error"),
+    ] {
+        let mut with = project.clone();
+        let parts = &mut with.card.service;
+        *[
+            &mut parts.initialise,
+            &mut parts.diagnosis,
+            &mut parts.continuous,
+        ][part] = true;
+        assert_eq!(has(&project, name), [false; 4], "nobody fills {name}");
+        assert_eq!(has(&with, name), [true; 4], "{name}");
+    }
+    let unlike = &projects()[2];
+    let page = text_of(unlike, "_registers.md");
+    assert!(page.contains("| 21:16 | `position_bits` | bits | 29, 25 |"));
+    let page = text_of(&projects()[1], "_registers.md");
+    assert!(page.contains("| 1 | reset |") && page.contains("0x456E4474"));
+    assert!(page.contains("0 = none, 1 = data not low before start, 2 = no start bit"));
+    for register in BLOCKS.iter().flat_map(|b| b.registers) {
+        assert!(page.contains(&format!("`{}`", register.name)));
+        for field in register.fields {
+            assert!(page.contains(&format!("`{}`", field.name)));
+        }
+    }
+}
