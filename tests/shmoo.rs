@@ -11,7 +11,7 @@ fn a_map_is_drawn_written_and_told() {
     let outcome = run(&[
         "shmoo",
         "--x",
-        "jitter_ns=0,12,60",
+        "jitter_ns=0,20,60",
         "--y",
         "clock_mhz=4,8",
         "--at",
