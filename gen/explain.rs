@@ -145,7 +145,7 @@ fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelR
         answer_bits: time.answer_bits,
         pulses: time.pulses,
         frame_us,
-        longest_frame_us: card.service.requests.then(longest),
+        longest_frame_us: (card.service.requests && config.command.has_f2()).then(longest),
         cycle_min_us,
         cycle_max_us,
         highest_sampling_hz: 1e6 / cycle_min_us,
@@ -272,7 +272,16 @@ const ROWS: [Row; 18] = [
     ("frame time", |c| format!("{} us", number(c.frame_us, 3))),
     ("with infos", |c| match c.longest_frame_us {
         None => String::new(),
-        Some(us) => format!("{} us, supplement too", number(us, 1)),
+        Some(us) => {
+            let recovery = |cycle_us: f64| cycle_us - c.frame_us;
+            let hz = |cycle_us| number(1e6 / (us + recovery(cycle_us)), 0);
+            format!(
+                "{} us, supplement too: {}..{} Hz",
+                number(us, 1),
+                hz(c.cycle_max_us),
+                hz(c.cycle_min_us)
+            )
+        }
     }),
     ("frame + tm", |c| {
         format!(

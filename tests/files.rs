@@ -214,7 +214,7 @@ fn sim_names_a_remedy_that_it_has() {
     let folder = dir.0.display().to_string();
     let message = bad(&["sim", "paper", "--svg", &folder], 2);
     assert!(
-        message.ends_with("cannot write: is a folder, not a file; give another file"),
+        message.ends_with(": is a folder, not a file; give another file"),
         "{message}"
     );
 }

@@ -226,6 +226,10 @@ fn names_in_the_programming_guide_are_those_of_the_registers() {
         (0x446, "position_bits"),
         (0x400, "request"),
         (0x402, "answer"),
+        (0x417, "continuous"),
+        (0x418, "list_0"),
+        (0x414, "list_length"),
+        (0x420, "slot_0"),
     ] {
         let register = map.register(name).unwrap();
         assert_eq!(map.address(register, 0), address, "{name}");

@@ -66,6 +66,11 @@ fn a_map_is_drawn_written_and_told() {
         "{refused:?}"
     );
     assert_eq!(std::fs::read_to_string(&notes).unwrap(), "a,b,c\n1,2,3\n");
+    let refused = with("--svg", &folder);
+    assert!(
+        refused.messages[0].contains("is a folder, not a file"),
+        "{refused:?}"
+    );
 }
 
 #[test]
@@ -109,12 +114,12 @@ fn wrong_axes_are_told_with_their_limits() {
             "--x = cable_m=0:10: is neither FROM:TO:STEP nor a list",
         ),
         (
-            vec!["--x", "cable_m=0:1000:0.001"],
-            "--x = cable_m=0:1000:0.001: has more than 200 values",
+            vec!["--x", "cable_m=0:400:0.001"],
+            "--x = cable_m=0:400:0.001: has more than 200 values",
         ),
         (
             vec!["--x", "cable_m=0,nan"],
-            "--x = cable_m=0,nan: cable_m = nan is outside 0..1000",
+            "--x = cable_m=0,nan: cable_m = nan is outside 0..400",
         ),
         (
             vec!["--x", "cable_m=0,abc"],

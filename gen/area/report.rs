@@ -81,7 +81,8 @@ pub fn report(only: &[String], with_speed: bool) -> Result<Report, GenError> {
         if !subjects.iter().any(|subject| subject.name == name) {
             let names: Vec<_> = subjects.iter().map(|subject| subject.name).collect();
             return Err(GenError::input(format!(
-                "--only = {name:?}: nothing of that name is measured; one or more of: {}",
+                "--only = {}: nothing of that name is measured; one or more of: {}",
+                crate::error::shown(name),
                 names.join(", ")
             )));
         }

@@ -2,15 +2,14 @@
 
 use super::number::number;
 use super::pictures::{draw, Drawn, Pictures};
+use super::work::{progress, ThreadsArgs};
 use super::{to_json, Outcome};
 use crate::error::GenError;
 use clap::{Args, ValueEnum};
 use endat_sim::campaign::{self, Case, RunOptions, Traces};
 use endat_sim::engine::{Compiled, LaneWords};
 use serde_json::json;
-use std::io::Write;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// Arguments of `campaign`.
@@ -34,9 +33,8 @@ pub struct CampaignArgs {
         allow_negative_numbers = true
     )]
     seed: String,
-    /// Threads [default: one for each processor]
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    threads: Option<String>,
+    #[command(flatten)]
+    threads: ThreadsArgs,
     /// Run only this case, alone
     #[arg(long, value_name = "INDEX", allow_negative_numbers = true)]
     case: Option<String>,
@@ -61,8 +59,6 @@ enum Name {
 
 /// Most random cases: all are made before the first one runs.
 const CASES_MAX: u64 = 1_000_000;
-/// Most threads.
-const THREADS_MAX: u64 = 1024;
 /// Failures that are shown.
 const SHOWN: usize = 10;
 
@@ -100,24 +96,13 @@ fn replay(arguments: &CampaignArgs, index: usize) -> String {
 }
 
 fn all(arguments: &CampaignArgs, cases: &[Case]) -> Result<Outcome, GenError> {
-    let threads = match &arguments.threads {
-        Some(text) => number("--threads", text, 1..=THREADS_MAX)? as usize,
-        None => 0,
-    };
     let options = RunOptions {
-        threads,
+        threads: arguments.threads.count()?,
         lanes: LaneWords::Two,
         samples: true,
     };
     let start = Instant::now();
-    let shown_percent = AtomicUsize::new(0);
-    let progress = |done: usize| {
-        let percent = 100 * done / cases.len();
-        if shown_percent.fetch_max(percent, Ordering::Relaxed) / 10 < percent / 10 {
-            // A progress line that cannot be written is no reason to stop.
-            let _ = writeln!(std::io::stderr(), "{done} of {} cases", cases.len());
-        }
-    };
+    let progress = progress(cases.len(), "cases");
     let outcomes = campaign::run(cases, options, Case::check, progress).map_err(|e| fault(&e))?;
     let seconds = start.elapsed().as_secs_f64();
     let frames: usize = outcomes.iter().map(|o| o.frames).sum();

@@ -9,6 +9,7 @@ mod number;
 mod pictures;
 mod shmoo;
 mod sim;
+mod work;
 
 use crate::config::{self, Project};
 use crate::error::GenError;

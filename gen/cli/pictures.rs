@@ -108,10 +108,15 @@ pub fn draw(
     write_all(&files)
 }
 
+/// Refuses files that cannot be written, or would replace something else.
+pub fn check_all(files: &[&File]) -> Result<(), GenError> {
+    check_places(files)?;
+    files.iter().try_for_each(|file| check_owner(file))
+}
+
 /// Writes files, unless one of them would replace something else; returns one message for each.
 pub fn write_all(files: &[File]) -> Result<Vec<String>, GenError> {
-    check_places(files)?;
-    files.iter().try_for_each(check_owner)?;
+    check_all(&files.iter().collect::<Vec<_>>())?;
     let mut written = Vec::new();
     for file in files {
         written.extend(write(file)?);
@@ -120,7 +125,7 @@ pub fn write_all(files: &[File]) -> Result<Vec<String>, GenError> {
 }
 
 /// Refuses two files in one place: the layout of the waveforms, too, has one.
-fn check_places(files: &[File]) -> Result<(), GenError> {
+fn check_places(files: &[&File]) -> Result<(), GenError> {
     for (index, file) in files.iter().enumerate() {
         for other in &files[..index] {
             if place(&file.path) == place(&other.path) {
@@ -138,10 +143,14 @@ fn check_places(files: &[File]) -> Result<(), GenError> {
     Ok(())
 }
 
-/// Refuses to replace a file that the program cannot have written. What is no file is left to the writing.
+/// Refuses to replace a file that the program cannot have written. What is neither file nor folder is left to the writing.
 fn check_owner(file: &File) -> Result<(), GenError> {
-    if !std::fs::metadata(&file.path).is_ok_and(|m| m.is_file()) {
-        return Ok(());
+    match std::fs::metadata(&file.path) {
+        Ok(there) if there.is_file() => {}
+        Ok(there) if there.is_dir() => {
+            return Err(file.refused("is a folder, not a file; give another file"));
+        }
+        _ => return Ok(()),
     }
     let mut head = Vec::new();
     std::fs::File::open(&file.path)

@@ -1,19 +1,19 @@
 //! `shmoo`: maps of where frames are good.
 
 use super::number::number;
-use super::pictures::{write_all, File};
+use super::pictures::{check_all, write_all, File};
+use super::work::{progress, ThreadsArgs};
 use super::{to_json, Outcome};
 use crate::error::{shown, GenError};
 use clap::{Args, ValueEnum};
 use endat_hdl::config::{SYSTEM_HZ_MAX, SYSTEM_HZ_MIN};
 use endat_hdl::protocol::ModeCommand;
+use endat_hdl::timing;
 use endat_sim::diagram::{is_drawing, map_svg};
 use endat_sim::shmoo::{decimal, is_table, Axis, Conditions, Fate, Map, Plan, Quantity};
 use serde_json::json;
 use std::fmt::Write as _;
-use std::io::Write;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Arguments of `shmoo`.
 #[derive(Args)]
@@ -70,9 +70,8 @@ pub struct ShmooArgs {
         allow_negative_numbers = true
     )]
     seed: String,
-    /// Threads [default: one for each processor]
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    threads: Option<String>,
+    #[command(flatten)]
+    threads: ThreadsArgs,
     /// Draw the map
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
@@ -108,40 +107,31 @@ const FRAMES_MAX: u64 = 10_000;
 /// Runs the command.
 pub fn run(arguments: &ShmooArgs) -> Result<Outcome, GenError> {
     let plan = plan(arguments)?;
-    let threads = match &arguments.threads {
-        Some(text) => number("--threads", text, 1..=1024)? as usize,
-        None => 0,
+    let file = |option, path: &Option<PathBuf>, is_ours| {
+        path.clone().map(|path| File {
+            option,
+            path,
+            text: String::new(),
+            is_ours,
+        })
     };
-    let shown_percent = AtomicUsize::new(0);
-    let progress = |done: usize, of: usize| {
-        let percent = 100 * done / of;
-        if shown_percent.fetch_max(percent, Ordering::Relaxed) / 10 < percent / 10 {
-            // A progress line that cannot be written is no reason to stop.
-            let _ = writeln!(std::io::stderr(), "{done} of {of} channels");
-        }
-    };
-    let map = plan.run(threads, progress).map_err(|e| {
+    let mut svg = file("--svg", &arguments.svg, is_drawing);
+    let mut csv = file("--csv", &arguments.csv, is_table);
+    // Before the long work, not after it.
+    check_all(&[&svg, &csv].into_iter().flatten().collect::<Vec<_>>())?;
+    let told = progress(plan.channels(), "channels");
+    let map = plan.run(arguments.threads.count()?, told).map_err(|e| {
         GenError::input(format!(
             "shmoo: {e}; this is a fault of endat-gen, please report it"
         ))
     })?;
-    let mut files = vec![];
-    if let Some(path) = &arguments.svg {
-        files.push(File {
-            option: "--svg",
-            path: path.clone(),
-            text: map_svg(&map, &title(&plan)),
-            is_ours: is_drawing,
-        });
+    if let Some(svg) = &mut svg {
+        svg.text = map_svg(&map, &title(&plan));
     }
-    if let Some(path) = &arguments.csv {
-        files.push(File {
-            option: "--csv",
-            path: path.clone(),
-            text: map.csv(),
-            is_ours: is_table,
-        });
+    if let Some(csv) = &mut csv {
+        csv.text = map.csv();
     }
+    let files: Vec<File> = svg.into_iter().chain(csv).collect();
     Ok(Outcome {
         messages: write_all(&files)?,
         stdout: match arguments.json {
@@ -175,8 +165,17 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
         Command::SendPositionAddInfo => ModeCommand::SendPositionAddInfo,
     };
     let mut conditions = Conditions::new(system_hz, command, bits);
+    let mut set = vec![];
     for text in &arguments.at {
         let (quantity, value) = named("--at", text)?;
+        if set.contains(&quantity) {
+            return Err(GenError::input(format!(
+                "--at = {}: {} is set twice; leave one out",
+                shown(text),
+                quantity.name()
+            )));
+        }
+        set.push(quantity);
         conditions.set(quantity, one("--at", text, quantity, value, system_hz)?);
     }
     let (_, fastest) = Quantity::Clock.range(system_hz);
@@ -204,21 +203,29 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
             x.quantity.name()
         )));
     }
+    if let Some(quantity) = set.iter().find(|q| [x.quantity, y.quantity].contains(q)) {
+        return Err(GenError::input(format!(
+            "--at = {}: is an axis; leave it out, or give another --x or --y",
+            quantity.name()
+        )));
+    }
     let runs = number("--runs", &arguments.runs, 1..=1000)? as usize;
-    let channels = x.values.len() * y.values.len() * runs;
+    let frames = number("--frames", &arguments.frames, 1..=FRAMES_MAX)? as usize;
+    let plan = Plan {
+        x,
+        y,
+        conditions,
+        runs,
+        frames,
+        seed: number("--seed", &arguments.seed, 0..=u64::MAX)?,
+    };
+    let channels = plan.channels();
     if channels > CHANNELS_MAX {
         return Err(GenError::input(format!(
             "--runs = {runs}: {channels} channels in all cells together, at most {CHANNELS_MAX}; make fewer, or fewer values of --x and --y"
         )));
     }
-    Ok(Plan {
-        x,
-        y,
-        conditions,
-        runs,
-        frames: number("--frames", &arguments.frames, 1..=FRAMES_MAX)? as usize,
-        seed: number("--seed", &arguments.seed, 0..=u64::MAX)?,
-    })
+    Ok(plan)
 }
 
 /// A quantity and what stands behind its name.
@@ -250,6 +257,11 @@ fn one(
     let fail = |what: String| Err(GenError::input(format!("{flag} = {}: {what}", shown(text))));
     match value.trim().parse::<f64>() {
         // The limits of a clock are rounded where they are shown.
+        Ok(value) if quantity == Quantity::Filter && value.fract() != 0.0 => fail(format!(
+            "{value} is no whole number of cycles; give one from {} to {}",
+            decimal(low),
+            decimal(high)
+        )),
         Ok(value) if value >= low - 1e-4 && value <= high + 1e-4 => Ok(value.clamp(low, high)),
         Ok(_) => fail(format!(
             "{} = {} is outside {}..{}; give a value in that range",
@@ -306,6 +318,20 @@ fn axis(flag: &str, text: &str, system_hz: u64) -> Result<Axis, GenError> {
         return Err(fail(
             "does not go up from value to value; put them in order",
         ));
+    }
+    if quantity == Quantity::Clock {
+        let cycles = |mhz: &f64| timing::period_cycles((mhz * 1e6).round() as u64, system_hz);
+        let same = values
+            .windows(2)
+            .find(|pair| cycles(&pair[0]) == cycles(&pair[1]));
+        if let Some(pair) = same {
+            return Err(fail(&format!(
+                "{} and {} MHz are both {} cycles of the system clock; leave one out, or make --system-hz higher",
+                decimal(pair[0]),
+                decimal(pair[1]),
+                cycles(&pair[0])
+            )));
+        }
     }
     Ok(Axis { quantity, values })
 }

@@ -323,7 +323,7 @@ pub const RESULT: Block = Block {
     registers: &[
         word("status", 0, ReadOnly, "What became of the last trigger.", &[
             field("sequence", 0, 16, "", "Number of results, wrapping", zero),
-            field("cause", 16, 5, "", "Primary cause", zero).codes(&CAUSES),
+            field("cause", 16, 5, "", "Primary cause; 8, 10 and 17 come with a good position: fresh tells", zero).codes(&CAUSES),
             field("valid", 22, 1, "", "There is a good position", zero),
             field("fresh", 23, 1, "", "The last result brought the position; 0 = held from an earlier one", zero),
             field("line", 24, 7, "", "Raw flags: bit k stands for cause k + 11", zero).bits(&LINE_FLAGS),

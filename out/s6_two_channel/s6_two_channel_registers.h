@@ -215,7 +215,7 @@
 /* sequence: Number of results, wrapping */
 #define S6_TWO_CHANNEL_RESULT_STATUS_SEQUENCE_SHIFT 0u
 #define S6_TWO_CHANNEL_RESULT_STATUS_SEQUENCE_MASK 0x0000FFFFu
-/* cause: Primary cause */
+/* cause: Primary cause; 8, 10 and 17 come with a good position: fresh tells */
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_SHIFT 16u
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_MASK 0x001F0000u
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_NONE 0u /* none */

@@ -29,6 +29,8 @@ pub enum Quantity {
 
 /// Longest glitch of the noise.
 const GLITCH_MAX: Time = 40 * NS;
+/// Longest cable: the delay must stay below the period of the clock that measures it, 5 us.
+const CABLE_MAX_M: f64 = 400.0;
 /// Longest input filter.
 const FILTER_MAX: f64 = 15.0;
 
@@ -75,9 +77,9 @@ impl Quantity {
         let clock_mhz = |cycles: u64| system_hz as f64 / cycles as f64 / 1e6;
         let fastest = clock_mhz(timing::PERIOD_CYCLES_MIN).min(timing::ENDAT_HZ_MAX as f64 / 1e6);
         match self {
-            Self::Cable => (0.0, 1_000.0),
+            Self::Cable => (0.0, CABLE_MAX_M),
             Self::Clock => (clock_mhz((1 << PERIOD_BITS) - 1), fastest),
-            Self::Delay => (0.0, 10_000.0),
+            Self::Delay => (0.0, 2_000.0),
             Self::Jitter => (0.0, 1_000.0),
             Self::Distortion => (-1_000.0, 1_000.0),
             Self::Noise => (0.0, 10_000.0),

@@ -118,10 +118,10 @@ impl Tally {
 /// Counts the frames of a case, but for the one that measures the delay: that one has a clock of its own.
 pub(super) fn judge(case: &Case, traces: &Traces<'_>) -> Tally {
     let mut tally = Tally::default();
-    for result in traces.results.iter().skip(1) {
-        let begun = |f: &&FrameLog| f.first_fall < result.time;
-        let frame = traces.frames.iter().rev().find(begun);
-        tally.counts[fate(result, frame) as usize] += 1;
+    for (before, result) in traces.results.iter().zip(traces.results.iter().skip(1)) {
+        let frames = traces.frames.iter();
+        let frames = frames.filter(|f| (before.time..result.time).contains(&f.first_fall));
+        tally.counts[fate(result, frames) as usize] += 1;
     }
     // Results that never came.
     let missing = case.frames.saturating_sub(traces.results.len().max(1));
@@ -135,17 +135,18 @@ pub(super) fn judge(case: &Case, traces: &Traces<'_>) -> Tally {
     tally
 }
 
-fn fate(result: &ChannelResult, frame: Option<&FrameLog>) -> Fate {
-    let Some(frame) = frame else {
-        return Fate::Refused;
+/// `frames` are those that the encoder has seen for this result: pulses that it does not need can be a second one.
+fn fate<'f>(result: &ChannelResult, frames: impl Iterator<Item = &'f FrameLog>) -> Fate {
+    let is_exact = |f: &FrameLog| {
+        f.expected_rising_edges() == Some(f.rising_edges) && f.end == FrameEnd::Complete
     };
     match result.last_cause() {
-        cause::NONE if result.position != frame.position => Fate::Wrong,
         cause::NONE => {
-            let is_exact = frame.expected_rising_edges() == Some(frame.rising_edges);
-            match is_exact && frame.end == FrameEnd::Complete {
-                true => Fate::Good,
-                false => Fate::Pulses,
+            let frames: Vec<&FrameLog> = frames.collect();
+            match frames.iter().find(|f| f.position == result.position) {
+                None => Fate::Wrong,
+                Some(frame) if frames.len() == 1 && is_exact(frame) => Fate::Good,
+                Some(_) => Fate::Pulses,
             }
         }
         cause::CRC => Fate::Crc,

@@ -43,6 +43,11 @@ pub struct Map {
 const COLUMNS: &str = "fate,frames,good,margin_percent";
 
 impl Plan {
+    /// Channels in all cells together.
+    pub fn channels(&self) -> usize {
+        self.x.values.len() * self.y.values.len() * self.runs
+    }
+
     /// Conditions of the cells, in their order.
     fn conditions(&self) -> impl Iterator<Item = Conditions> + '_ {
         self.y.values.iter().flat_map(move |y| {
@@ -67,22 +72,21 @@ impl Plan {
         cases
     }
 
-    /// Runs the map on all processors; `progress` is told how many of how many channels are done.
+    /// Runs the map on all processors; `progress` is told how many channels are done.
     ///
     /// # Errors
     /// If the channel cannot be made: a fault of this program.
     pub fn run(
         &self,
         threads: usize,
-        progress: impl Fn(usize, usize) + Sync,
+        progress: impl Fn(usize) + Sync,
     ) -> Result<Map, CampaignError> {
         let cases = self.cases();
         let options = RunOptions {
             threads,
             ..RunOptions::default()
         };
-        let told = |done| progress(done, cases.len());
-        let outcomes = campaign::run(&cases, options, judge::judge, told)?;
+        let outcomes = campaign::run(&cases, options, judge::judge, progress)?;
         let cells = outcomes.chunks(self.runs).map(|runs| {
             let mut sum = Tally::default();
             runs.iter().for_each(|run| sum.add(&run.verdict));

@@ -17,7 +17,7 @@ fn plan(x: (Quantity, &[f64]), y: (Quantity, &[f64])) -> Plan {
 }
 
 fn map(plan: &Plan) -> Map {
-    plan.run(0, |_, _| {}).unwrap()
+    plan.run(0, |_| {}).unwrap()
 }
 
 #[test]
@@ -65,8 +65,8 @@ fn the_same_plan_gives_the_same_map_whatever_the_threads() {
         (Quantity::Noise, &[0.0, 20.0, 100.0]),
         (Quantity::Distortion, &[-10.0, 10.0]),
     );
-    let one = plan.run(1, |_, _| {}).unwrap();
-    assert_eq!(one, plan.run(2, |_, _| {}).unwrap());
+    let one = plan.run(1, |_| {}).unwrap();
+    assert_eq!(one, plan.run(2, |_| {}).unwrap());
     let table = one.csv();
     assert!(is_table(&table) && !is_table("a,b,c\n1,2,3\n"));
     assert_eq!(table.lines().count(), 1 + one.cells.len());
