@@ -94,6 +94,7 @@ impl Card {
             initialise: config.service.initialise,
             diagnosis: config.service.diagnosis,
             continuous: config.service.continuous,
+            infos: config.service.infos,
             ..ServiceTimes::at(config.system_hz)
         };
         Self::with_times(config, timeout_us, &service)

@@ -108,6 +108,14 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("baud = 2_000_000", "baud = 115_200", "the link is too slow: reading 62 bytes 1000 times a second takes 620000 bit/s"),
         ("baud = 2_000_000", "baud = 4_000_000", "link.baud = 4000000: outside 9600..3000000"),
         ("read_hz = 1_000", "read_hz = 0", "link.read_hz = 0: outside 1..1000000"),
+        // service
+        ("parts = []", "parts = [\"all\"]", "service.parts = \"all\": unknown part; use requests"),
+        ("parts = []", "parts = [\"continuous\"]", "every other part takes requests; add \"requests\""),
+        ("parts = []", "infos = [0x4C]", "service.infos = 0x4C: a card without requests has no list"),
+        ("parts = []", "parts = [\"requests\"]\ninfos = [0x4F]", "service.infos = 0x4F: no additional information; use MRS codes 0x40..0x4E"),
+        ("parts = []", "parts = [\"requests\"]\ninfos = [\"0x4C\"]", "service.infos = \"0x4C\": is a string, must be a whole number"),
+        ("parts = []", "parts = [\"requests\"]\ninfos = 0x4C", "service.infos = 0x4C: is an integer, must be a list of whole numbers"),
+        ("parts = []", "parts = [\"requests\"]\ninfos = [64, 65, 66, 67, 68, 69, 70, 71, 72]", "service.infos = 0x48: more than 8"),
         // names
         ("name = \"s6_two_channel\"", "name = \"module\"", "name = \"module\": is a reserved word"),
         ("name = \"s6_two_channel\"", "name = \"Signal\"", "is a reserved word"),

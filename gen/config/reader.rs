@@ -210,6 +210,26 @@ impl<'s, 't> Table<'s, 't> {
         Some(all)
     }
 
+    /// A list of integers, if the key is there.
+    pub fn integers(&self, key: &'static str) -> Option<Vec<At<u64>>> {
+        let spanned = self.get(key)?;
+        let wanted = "a list of whole numbers, as [0x4C, 0x5B]";
+        let Some(array) = spanned.get_ref().as_array() else {
+            self.wrong_type(key, spanned, wanted);
+            return None;
+        };
+        let mut all = Vec::new();
+        for item in array.iter() {
+            let integer = item.get_ref().as_integer();
+            let value = integer.and_then(|i| u64::from_str_radix(i.as_str(), i.radix()).ok());
+            match value {
+                Some(value) => all.extend(self.at(value, item)),
+                None => self.wrong_type(key, item, "a whole number"),
+            }
+        }
+        Some(all)
+    }
+
     /// A table; an empty one stands in when it is missing.
     pub fn table(&self, key: &'static str, empty: &'s DeTable<'t>) -> Table<'s, 't> {
         let path = self.name(key);

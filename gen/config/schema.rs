@@ -203,6 +203,9 @@ fn canonical(card: &CardConfig, board: &Board, pins: &[Assignment]) -> String {
         lines.push(format!("service initialise {}", parts.initialise));
         lines.push(format!("service diagnosis {}", parts.diagnosis));
         lines.push(format!("service continuous {}", parts.continuous));
+        if parts.infos != [0; LIST] {
+            lines.push(format!("service infos {:?}", parts.infos));
+        }
         for (n, c) in card.channels.iter().enumerate() {
             lines.push(format!(
                 "channel {n} wants_short {}",
@@ -418,9 +421,8 @@ fn read_sources(table: &Table<'_, '_>) -> Option<TriggerSources> {
 
 /// What each channel does besides positions; `None` for what could not be read.
 fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
-    let Some(words) = table.strings("parts") else {
-        return Some(ServiceParts::default());
-    };
+    let infos = read_infos(table);
+    let words = table.strings("parts").unwrap_or_default();
     let mut parts = ServiceParts::default();
     let mut last = None;
     for word in words {
@@ -442,14 +444,45 @@ fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
         }
         last = Some((word.line, shown));
     }
-    match last {
-        Some((line, shown)) if !parts.requests => {
-            let text = "every other part takes requests; add \"requests\"";
-            table.complain(line, "parts", &shown, text);
-            None
-        }
-        _ => Some(parts),
+    if let (Some((line, shown)), false) = (last, parts.requests) {
+        let text = "every other part takes requests; add \"requests\"";
+        table.complain(line, "parts", &shown, text);
+        return None;
     }
+    let infos = infos?;
+    if let (Some(first), false) = (infos.first(), parts.requests) {
+        let text = "a card without requests has no list of additional informations; add \"requests\" to service.parts";
+        table.complain(first.line, "infos", &format!("0x{:02X}", first.value), text);
+        return None;
+    }
+    for (place, info) in parts.infos.iter_mut().zip(&infos) {
+        *place = info.value as u8;
+    }
+    Some(parts)
+}
+
+/// Additional informations that are selected from the start on; `None` for what cannot be.
+fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
+    let Some(infos) = table.integers("infos") else {
+        return if table.has("infos") {
+            None
+        } else {
+            Some(vec![])
+        };
+    };
+    for (index, info) in infos.iter().enumerate() {
+        let shown = format!("0x{:02X}", info.value);
+        let text = match info.value {
+            _ if index >= LIST => {
+                format!("more than {LIST} additional informations; leave some out")
+            }
+            0x40..=0x4E | 0x50..=0x5E => continue,
+            _ => "no additional information; use MRS codes 0x40..0x4E and 0x50..0x5E".into(),
+        };
+        table.complain(info.line, "infos", &shown, &text);
+        return None;
+    }
+    Some(infos)
 }
 
 fn read_board(table: &Table<'_, '_>) -> Option<Board> {

@@ -21,6 +21,8 @@ use std::ops::RangeInclusive;
 
 /// Channels a card may have.
 pub const CHANNELS: RangeInclusive<usize> = 1..=4;
+/// Additional informations that a service selects in turn.
+pub const LIST: usize = 8;
 /// Bits of the EnDat period and of the first low phase, in the blocks.
 pub const PERIOD_BITS: u32 = 11;
 /// Bits of the input filter length, in the blocks.
@@ -113,6 +115,8 @@ pub struct ServiceParts {
     pub continuous: bool,
     /// Initialisation of the encoder after reset and after it has been plugged in; takes requests.
     pub initialise: bool,
+    /// MRS codes of the additional informations that are selected in turn from the start on, 0 = none; takes requests.
+    pub infos: [u8; LIST],
 }
 
 /// A request in which what could not be read is missing; what depends on it is not judged.

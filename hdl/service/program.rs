@@ -21,6 +21,7 @@ use super::map::{
     control, input, input::status, output, output::acknowledge, output::control as level, state,
     word, COUNTER_POSITION_2,
 };
+use crate::config::LIST;
 use crate::sequencer::assembler::Assembler;
 use crate::timing;
 
@@ -33,6 +34,8 @@ pub struct ServiceTimes {
     pub diagnosis: bool,
     /// The channel has the continuous clock.
     pub continuous: bool,
+    /// MRS codes that the list of additional informations has after reset; 0 = none.
+    pub infos: [u8; LIST],
     /// Clock HIGH after power-up, before the pulse.
     pub power_up_ms: u16,
     /// Clock HIGH after the pulse.
@@ -60,6 +63,7 @@ impl ServiceTimes {
             initialise: true,
             diagnosis: true,
             continuous: true,
+            infos: [0; LIST],
             power_up_ms: timing::POWER_UP_MS,
             after_pulse_ms: timing::AFTER_PULSE_MS,
             reset_ms: timing::RESET_MS,
@@ -218,6 +222,15 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
         a.st(word);
     }
     a.out(output::FOUND).out(output::PERIOD);
+    let infos = times.infos.into_iter().filter(|code| *code != 0);
+    let mut length = 0;
+    for code in infos {
+        set(a, low(word::LIST + length), code.into());
+        length += 1;
+    }
+    if length > 0 {
+        set(a, low(word::LIST_LENGTH), length.into());
+    }
     a.ldi(acknowledge::EVENT | acknowledge::MAILBOX | acknowledge::CONTROL);
     a.out(output::ACKNOWLEDGE);
     a.call("modulus");

@@ -1,12 +1,15 @@
 //! Slots, position 2, counters, threshold, forced errors.
 
-use super::rig::{quick, Rig};
+use super::rig::{quick, Make, Rig, ENDAT_HZ};
 use endat_hdl::{
     protocol::ModeCommand::*,
     service::map::{control, state, word, COUNTER_POSITION_2},
     transaction::cause,
 };
-use endat_sim::encoder::{Defect, EncoderConfig, PositionSource};
+use endat_sim::{
+    encoder::{Defect, EncoderConfig, PositionSource},
+    MS,
+};
 
 fn encoder() -> EncoderConfig {
     let mut encoder = quick(EncoderConfig::endat22(25));
@@ -52,6 +55,28 @@ fn every_code_of_the_list_has_its_slot_and_age() {
     assert_eq!(last.command, Some(SendPositionAddInfo.code()));
     assert_eq!(slot(&mut rig, 0) & 0xFFFF, 2982);
     rig.assert_clean();
+}
+
+#[test]
+fn the_configured_informations_are_selected_from_the_start_on_and_after_a_plug() {
+    let mut encoder = encoder();
+    encoder.unplugged.push(1_000 * MS..1_010 * MS);
+    let make = Make {
+        infos: [0x4C, 0x5B, 0, 0, 0, 0, 0, 0],
+        ..Make::usual(true)
+    };
+    let mut rig = Rig::with(make, ENDAT_HZ, encoder, 25);
+    assert_eq!(rig.initialised(), 0);
+    assert_eq!(rig.read(word::LIST_LENGTH), 2);
+    let selected = |rig: &mut Rig| {
+        rig.frames(6);
+        assert_eq!(rig.read(word::SLOTS) & 0xFFFF, 2954);
+        rig.bench.frames(0).last().unwrap().infos.len()
+    };
+    assert_eq!(selected(&mut rig), 2);
+    rig.bench.run_until(1_000 * MS);
+    assert_eq!(rig.initialised(), 0);
+    assert_eq!(selected(&mut rig), 2);
 }
 
 #[test]

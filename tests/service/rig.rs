@@ -2,6 +2,7 @@
 
 use endat_hdl::{
     channel::FixedTimes,
+    config::LIST,
     elaborate::elaborate,
     encoder_port::EncoderPort,
     protocol::ModeCommand,
@@ -52,6 +53,7 @@ pub struct Make {
     pub system_hz: u64,
     pub initialise: bool,
     pub wants_short: bool,
+    pub infos: [u8; LIST],
 }
 
 impl Make {
@@ -60,6 +62,7 @@ impl Make {
             system_hz: SYSTEM_HZ,
             initialise,
             wants_short: false,
+            infos: [0; LIST],
         }
     }
 
@@ -70,6 +73,7 @@ impl Make {
         };
         let times = ServiceTimes {
             system_khz: (self.system_hz / 1_000) as u32,
+            infos: self.infos,
             ..times(self.initialise)
         };
         let mut block = EncoderPort::new(fixed, Some(&times), self.wants_short);

@@ -5,7 +5,7 @@ use super::{compile, preset_files, quick_files, quick_project, write};
 use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{parse, preset};
-use endat_hdl::config::ServiceParts;
+use endat_hdl::config::{ServiceParts, LIST};
 use endat_hdl::service::program::{program, ServiceTimes};
 
 /// Runs a card's own test bench; what it prints.
@@ -73,6 +73,7 @@ fn bench_passes_on_a_card_with_initialisation_only_as_it_stands() {
     }
     let mut project = quick_project();
     project.card.service = ServiceParts {
+        infos: [0; LIST],
         requests: true,
         diagnosis: true,
         continuous: true,
