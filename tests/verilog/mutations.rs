@@ -85,7 +85,7 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "F2 ignored",
         "endat_verdict.v",
-        "is_bad = crc_bad | f1 | (!f2);",
+        "is_bad = crc_bad | f1 | !f2;",
         "is_bad = crc_bad | f1;",
     ),
     mutation(
