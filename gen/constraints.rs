@@ -6,6 +6,7 @@ use crate::config::{Kind, Project};
 use crate::error::GenError;
 use crate::explain;
 use crate::template;
+use endat_sim::decimal;
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 use serde::Serialize;
@@ -90,8 +91,7 @@ impl Port {
 
 /// A number of ns as the vendor's tools read it, without needless digits.
 fn ns(hz: u64) -> String {
-    let text = format!("{:.4}", 1e9 / hz as f64);
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    decimal(1e9 / hz as f64, 4)
 }
 
 /// Board top, UCF and README of a project.

@@ -3,6 +3,7 @@
 use crate::config::Project;
 use endat_hdl::config::{read_bytes, CardConfig, ChannelConfig};
 use endat_hdl::timing::deviation_ppm;
+use endat_sim::decimal;
 use serde::Serialize;
 use std::fmt;
 
@@ -219,17 +220,8 @@ pub fn report(project: &Project) -> Report {
     }
 }
 
-/// `1234.5` with at most `digits` after the point and no needless zeros.
-fn number(value: f64, digits: usize) -> String {
-    let text = format!("{value:.digits$}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
-}
-
 fn rate(rate: &Rate, unit: &str) -> String {
-    let actual = number(rate.actual_hz, 1);
+    let actual = decimal(rate.actual_hz, 1);
     match rate.deviation_ppm == 0.0 {
         true => format!("{actual} {unit}, as asked"),
         false => format!(
@@ -257,27 +249,27 @@ const ROWS: [Row; 18] = [
     }),
     ("clock asked", |c| format!("{} Hz", c.clock.requested_hz)),
     ("clock made", |c| {
-        format!("{} Hz", number(c.clock.actual_hz, 1))
+        format!("{} Hz", decimal(c.clock.actual_hz, 1))
     }),
     ("deviation", |c| {
         format!("{:+.0} ppm", c.clock.deviation_ppm)
     }),
     ("period", |c| format!("{} cycles", c.period_cycles)),
     ("first low phase", |c| {
-        format!("{} ns (tST {})", number(c.first_low_ns, 1), c.tst_ns)
+        format!("{} ns (tST {})", decimal(c.first_low_ns, 1), c.tst_ns)
     }),
     ("pulses per frame", |c| {
         format!("{} = {}+{}+1", c.pulses, c.lead_pulses, c.answer_bits)
     }),
-    ("frame time", |c| format!("{} us", number(c.frame_us, 3))),
+    ("frame time", |c| format!("{} us", decimal(c.frame_us, 3))),
     ("with infos", |c| match c.longest_frame_us {
         None => String::new(),
         Some(us) => {
             let recovery = |cycle_us: f64| cycle_us - c.frame_us;
-            let hz = |cycle_us| number(1e6 / (us + recovery(cycle_us)), 0);
+            let hz = |cycle_us| decimal(1e6 / (us + recovery(cycle_us)), 0);
             format!(
                 "{} us, supplement too: {}..{} Hz",
-                number(us, 1),
+                decimal(us, 1),
                 hz(c.cycle_max_us),
                 hz(c.cycle_min_us)
             )
@@ -286,34 +278,36 @@ const ROWS: [Row; 18] = [
     ("frame + tm", |c| {
         format!(
             "{}..{} us",
-            number(c.cycle_min_us, 2),
-            number(c.cycle_max_us, 2)
+            decimal(c.cycle_min_us, 2),
+            decimal(c.cycle_max_us, 2)
         )
     }),
     ("highest sampling", |c| {
         format!(
             "{}..{} Hz",
-            number(c.sure_sampling_hz, 0),
-            number(c.highest_sampling_hz, 0)
+            decimal(c.sure_sampling_hz, 0),
+            decimal(c.highest_sampling_hz, 0)
         )
     }),
     ("worst case", |c| {
         format!(
             "{} Hz (tD {} ns)",
-            number(c.worst_case_sampling_hz.floor(), 0),
+            decimal(c.worst_case_sampling_hz.floor(), 0),
             c.delay_max_ns
         )
     }),
-    ("input filter", |c| format!("{} ns", number(c.filter_ns, 1))),
+    ("input filter", |c| {
+        format!("{} ns", decimal(c.filter_ns, 1))
+    }),
     ("start window", |c| {
-        format!("+-{} ns", number(c.start_window_ns, 1))
+        format!("+-{} ns", decimal(c.start_window_ns, 1))
     }),
     ("start time-out", |c| format!("{} us", c.start_timeout_us)),
     ("calibration frame", |c| {
         format!(
             "{} us at {} Hz",
-            number(c.calibration_us, 1),
-            number(c.calibration_hz, 0)
+            decimal(c.calibration_us, 1),
+            decimal(c.calibration_hz, 0)
         )
     }),
 ];
@@ -344,8 +338,8 @@ impl fmt::Display for Report {
             self.link.bytes_per_read,
             self.link.read_hz,
             self.link.needed_baud,
-            number(self.link.used_percent, 1),
-            number(self.link.highest_read_hz.floor(), 0)
+            decimal(self.link.used_percent, 1),
+            decimal(self.link.highest_read_hz.floor(), 0)
         )?;
         writeln!(f)?;
         let heads: Vec<String> = (0..self.channels.len())
@@ -420,12 +414,5 @@ mod tests {
         }
         assert_eq!(report.link.bytes_per_read, 62);
         assert_eq!(report.link.used_percent, 31.0);
-    }
-
-    #[test]
-    fn numbers_lose_needless_zeros_only() {
-        assert_eq!(number(100.0, 0), "100");
-        assert_eq!(number(1.50, 2), "1.5");
-        assert_eq!(number(-0.04, 2), "-0.04");
     }
 }

@@ -5,6 +5,7 @@
 
 pub mod bench;
 pub mod campaign;
+mod decimal;
 pub mod diagram;
 pub mod encoder;
 pub mod engine;
@@ -17,6 +18,8 @@ pub mod shmoo;
 #[cfg(test)]
 mod test_receiver;
 pub mod wave;
+
+pub use decimal::decimal;
 
 /// A moment or a span, in picoseconds.
 pub type Time = u64;

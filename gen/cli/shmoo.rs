@@ -7,10 +7,11 @@ use super::{to_json, Outcome};
 use crate::error::{shown, GenError};
 use clap::{Args, ValueEnum};
 use endat_hdl::config::{SYSTEM_HZ_MAX, SYSTEM_HZ_MIN};
-use endat_hdl::protocol::ModeCommand;
+use endat_hdl::protocol::{ModeCommand, POSITION_BITS};
 use endat_hdl::timing;
+use endat_sim::decimal;
 use endat_sim::diagram::{is_drawing, map_svg};
-use endat_sim::shmoo::{decimal, is_table, Axis, Conditions, Fate, Map, Plan, Quantity};
+use endat_sim::shmoo::{is_table, Axis, Conditions, Fate, Map, Plan, Quantity, DECIMALS};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -157,9 +158,10 @@ fn title(plan: &Plan) -> String {
 }
 
 fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
+    let widths = (*POSITION_BITS.start()).into()..=(*POSITION_BITS.end()).into();
     let clocks = SYSTEM_HZ_MIN..=SYSTEM_HZ_MAX;
     let system_hz = number("--system-hz", &arguments.system_hz, clocks)?;
-    let bits = number("--bits", &arguments.bits, 1..=48)? as u32;
+    let bits = number("--bits", &arguments.bits, widths)? as u32;
     let command = match arguments.command {
         Command::SendPosition => ModeCommand::SendPosition,
         Command::SendPositionAddInfo => ModeCommand::SendPositionAddInfo,
@@ -259,16 +261,16 @@ fn one(
         // The limits of a clock are rounded where they are shown.
         Ok(value) if quantity == Quantity::Filter && value.fract() != 0.0 => fail(format!(
             "{value} is no whole number of cycles; give one from {} to {}",
-            decimal(low),
-            decimal(high)
+            decimal(low, DECIMALS),
+            decimal(high, DECIMALS)
         )),
         Ok(value) if value >= low - 1e-4 && value <= high + 1e-4 => Ok(value.clamp(low, high)),
         Ok(_) => fail(format!(
             "{} = {} is outside {}..{}; give a value in that range",
             quantity.name(),
             value.trim(),
-            decimal(low),
-            decimal(high)
+            decimal(low, DECIMALS),
+            decimal(high, DECIMALS)
         )),
         Err(_) => fail(format!(
             "{} is not a number; write 12.5, for example",
@@ -327,8 +329,8 @@ fn axis(flag: &str, text: &str, system_hz: u64) -> Result<Axis, GenError> {
         if let Some(pair) = same {
             return Err(fail(&format!(
                 "{} and {} MHz are both {} cycles of the system clock; leave one out, or make --system-hz higher",
-                decimal(pair[0]),
-                decimal(pair[1]),
+                decimal(pair[0], DECIMALS),
+                decimal(pair[1], DECIMALS),
                 cycles(&pair[0])
             )));
         }
@@ -339,7 +341,7 @@ fn axis(flag: &str, text: &str, system_hz: u64) -> Result<Axis, GenError> {
 /// The map in letters, and what they mean.
 fn as_text(map: &Map) -> String {
     let (x, y) = (&map.plan.x, &map.plan.y);
-    let labels: Vec<String> = y.values.iter().map(|v| decimal(*v)).collect();
+    let labels: Vec<String> = y.values.iter().map(|v| decimal(*v, DECIMALS)).collect();
     let room = labels.iter().map(String::len).max().unwrap_or(0);
     let mut text = format!("{}\n", y.quantity.name());
     for (row, label) in labels.iter().enumerate().rev() {
@@ -359,8 +361,8 @@ fn as_text(map: &Map) -> String {
         "-".repeat(x.values.len()),
         "",
         x.quantity.name(),
-        decimal(first),
-        decimal(last)
+        decimal(first, DECIMALS),
+        decimal(last, DECIMALS)
     );
     let _ = writeln!(
         text,

@@ -22,7 +22,7 @@ use std::ops::RangeInclusive;
 /// Channels a card may have.
 pub const CHANNELS: RangeInclusive<usize> = 1..=4;
 /// Additional informations that a service selects in turn.
-pub const LIST: usize = 8;
+pub const LIST: usize = crate::service::map::word::LIST_MAX as usize;
 /// Bits of the EnDat period and of the first low phase, in the blocks.
 pub const PERIOD_BITS: u32 = 11;
 /// Bits of the input filter length, in the blocks.

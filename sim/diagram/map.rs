@@ -1,7 +1,8 @@
 //! Draws a shmoo map: margin as a shade where all frames were good, a colour and a letter where not.
 
 use super::svg::{text_width, Anchor, Svg};
-use crate::shmoo::{decimal, Axis, Fate, Map, Quantity, PUBLISHED};
+use crate::decimal;
+use crate::shmoo::{Axis, Fate, Map, Quantity, DECIMALS, PUBLISHED};
 
 /// Colours can be told apart by those who see fewer of them (Okabe and Ito), and each has its letter.
 const STYLE: &str = "\
@@ -115,7 +116,7 @@ fn subtitle(map: &Map) -> String {
     let mut parts = vec![
         format!(
             "system clock {} MHz",
-            decimal(conditions.system_hz as f64 / 1e6)
+            decimal(conditions.system_hz as f64 / 1e6, DECIMALS)
         ),
         format!(
             "{:06b}, {} bits",
@@ -127,7 +128,11 @@ fn subtitle(map: &Map) -> String {
         let value = conditions.get(quantity);
         let is_axis = [plan.x.quantity, plan.y.quantity].contains(&quantity);
         if !is_axis && value != 0.0 {
-            parts.push(format!("{} = {}", quantity.name(), decimal(value)));
+            parts.push(format!(
+                "{} = {}",
+                quantity.name(),
+                decimal(value, DECIMALS)
+            ));
         }
     }
     parts.push(format!(
@@ -145,7 +150,7 @@ fn ticks(
     room: impl Fn(&str) -> f64,
     mark: impl Fn(&mut Svg, f64, &str),
 ) {
-    let texts: Vec<String> = axis.values.iter().map(|v| decimal(*v)).collect();
+    let texts: Vec<String> = axis.values.iter().map(|v| decimal(*v, DECIMALS)).collect();
     let widest = texts.iter().map(|text| room(text)).fold(0.0, f64::max);
     let every = (widest / step).ceil().max(1.0) as usize;
     for (index, text) in texts.iter().enumerate().step_by(every) {

@@ -1,7 +1,6 @@
 //! What a map can be drawn over, and the conditions of a cell.
 
 use crate::{
-    bench::ChannelSettings,
     campaign::Case,
     line::{GlitchRate, Jitter, Wire},
     Time, MS, NS,
@@ -134,10 +133,7 @@ impl Conditions {
         let cable_m = self.get(Quantity::Cable);
         let mut case = Case::new(rates, self.command, self.position_bits, cable_m);
         case.frames = frames;
-        case.settings = ChannelSettings {
-            filter_cycles: self.get(Quantity::Filter).round() as u64,
-            ..case.settings
-        };
+        case.settings.filter_cycles = self.get(Quantity::Filter).round() as u64;
         case.encoder.clock_to_data = time(Quantity::Delay) as Time;
         case.encoder.seed = seed;
         case.line.seed = seed;

@@ -11,6 +11,7 @@ pub use judge::{Fate, Tally};
 pub use published::{Published, PUBLISHED};
 
 use crate::campaign::{self, CampaignError, Case, RunOptions};
+use crate::decimal;
 use std::fmt::Write as _;
 
 /// What is to be run.
@@ -39,6 +40,8 @@ pub struct Map {
     pub cells: Vec<Tally>,
 }
 
+/// Decimals of the values of an axis.
+pub const DECIMALS: usize = 4;
 /// How the table of a map begins, behind the names of its axes.
 const COLUMNS: &str = "fate,frames,good,margin_percent";
 
@@ -107,8 +110,7 @@ impl Map {
 
     /// Cells in which every frame was good.
     pub fn passed(&self) -> usize {
-        let passes = |cell: &&Tally| cell.fate() == Fate::Good;
-        self.cells.iter().filter(passes).count()
+        self.count(Fate::Good)
     }
 
     /// Cells with this fate.
@@ -134,8 +136,8 @@ impl Map {
                 let _ = write!(
                     text,
                     "{},{},{},{},{},{}",
-                    decimal(*x),
-                    decimal(*y),
+                    decimal(*x, DECIMALS),
+                    decimal(*y, DECIMALS),
                     cell.fate().column(),
                     cell.frames(),
                     cell.count(Fate::Good),
@@ -156,14 +158,4 @@ pub fn is_table(head: &str) -> bool {
     let first = head.lines().next().unwrap_or_default();
     let rest = first.split_once(',').and_then(|(_, r)| r.split_once(','));
     rest.is_some_and(|(_, columns)| columns.starts_with(COLUMNS))
-}
-
-/// A number with at most four decimals.
-pub fn decimal(value: f64) -> String {
-    let text = format!("{value:.4}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    match text {
-        "-0" => "0".into(),
-        _ => text.into(),
-    }
 }

@@ -92,16 +92,3 @@ fn a_value_stands_between_its_neighbours() {
         assert_eq!(axis.place(value), place);
     }
 }
-
-#[test]
-fn numbers_are_short() {
-    for (value, text) in [
-        (5.0, "5"),
-        (0.25, "0.25"),
-        (-0.0, "0"),
-        (150.0, "150"),
-        (9.143, "9.143"),
-    ] {
-        assert_eq!(decimal(value), text);
-    }
-}
