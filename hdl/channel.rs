@@ -126,7 +126,7 @@ pub struct Channel {
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
-    pub delay_cycles: Signal<Out, Bits<10>>,
+    pub delay_cycles: Signal<Out, Bits<11>>,
     /// A trigger would not be taken.
     pub busy: Signal<Out, Bit>,
     /// The frame under way has the request.
@@ -478,9 +478,11 @@ impl Logic for Channel {
         self.delay.drain.next = self.transaction.drain.val();
         self.delay.run.next = self.transaction.run.val();
         self.delay.acquire.next = self.transaction.acquire.val();
+        self.delay.last_cell.next = self.transaction.last_cell.val();
         self.delay.hunting.next = self.receiver.hunting.val();
+        self.delay.will_rise.next = self.clock_gen.will_rise.val();
         self.delay.rise.next = self.clock_gen.rise.val();
-        self.delay.data_rise.next = self.filter.rise.val();
+        self.delay.data_edge.next = self.filter.rise.val();
         self.delay.follow.next = self.receiver.start_found.val();
         self.delay.going_on.next = self.transaction.going_on.val();
         self.delay.period_cycles.next = self.period.val();

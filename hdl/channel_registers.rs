@@ -53,7 +53,7 @@ pub struct ChannelRegisters {
     /// Recovery time, in system clock cycles.
     pub recovery_cycles: Signal<In, Bits<13>>,
     /// Tracked line delay, in system clock cycles.
-    pub delay_cycles: Signal<In, Bits<10>>,
+    pub delay_cycles: Signal<In, Bits<11>>,
     /// A trigger has been taken and its result is not there yet.
     pub pending: Signal<Out, Bit>,
     /// The held words follow the result.
@@ -190,10 +190,11 @@ impl Logic for ChannelRegisters {
         self.word[3].next = self.first_fall_timestamp.val();
         self.word[4].next = bit_cast::<32, 5>(self.crc_received.val())
             | (bit_cast::<32, 5>(self.crc_computed.val()) << 5)
-            | (bit_cast::<32, 10>(self.delay_cycles.val()) << 10)
+            | (bit_cast::<32, 10>(self.delay_cycles.val().get_bits::<10>(0)) << 10)
             | (bit_cast::<32, 12>(self.flags.val().get_bits::<12>(0)) << 20);
         self.word[5].next = bit_cast::<32, 16>(self.age_us.val())
-            | (bit_cast::<32, 13>(self.recovery_cycles.val()) << 16);
+            | (bit_cast::<32, 13>(self.recovery_cycles.val()) << 16)
+            | (bit_cast::<32, 1>(self.delay_cycles.val().get_bit(10).into()) << 29);
         for i in 0..self._words {
             self.held[i].clock.next = self.clock.val();
             self.held[i].reset.next = self.reset.val();

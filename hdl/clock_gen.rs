@@ -32,6 +32,8 @@ pub struct ClockGen {
     pub period_cycles: Signal<In, Bits<11>>,
     /// The EnDat clock, one cycle before it reaches the pin.
     pub endat_clk: Signal<Out, Bit>,
+    /// High in the last cycle before a rising edge.
+    pub will_rise: Signal<Out, Bit>,
     /// High in the first cycle after a rising edge.
     pub rise: Signal<Out, Bit>,
     /// High in the last cycle before a falling edge.
@@ -54,6 +56,7 @@ impl Default for ClockGen {
             stop: Default::default(),
             period_cycles: Default::default(),
             endat_clk: Default::default(),
+            will_rise: Default::default(),
             rise: Default::default(),
             fall: Default::default(),
             half: Default::default(),
@@ -76,6 +79,7 @@ impl Logic for ClockGen {
         self.half.reset.next = self.reset.val();
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.level.q.val();
+        self.half.began.next = false;
         self.half.shorten.next = false;
         self.half.lengthen.next = false;
         self.held.next = self.hold_low.val() & !self.level.q.val();
@@ -89,6 +93,7 @@ impl Logic for ClockGen {
             self.level.d.next = false;
         }
         self.endat_clk.next = self.level.q.val();
+        self.will_rise.next = self.rise_now.val();
         self.rise.next = self.risen.q.val();
         self.risen.d.next = self.rise_now.val();
         self.fall.next = self.fall_now.val();

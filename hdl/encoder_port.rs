@@ -77,7 +77,7 @@ pub struct EncoderPort {
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
-    pub delay_cycles: Signal<Out, Bits<10>>,
+    pub delay_cycles: Signal<Out, Bits<11>>,
     /// A trigger would not be taken.
     pub busy: Signal<Out, Bit>,
     /// The frame under way has the request.

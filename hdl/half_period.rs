@@ -21,6 +21,8 @@ pub struct HalfPeriod {
     pub reset: Signal<In, Bit>,
     /// Begins a half with the next cycle; held, it keeps the timer at the beginning.
     pub restart: Signal<In, Bit>,
+    /// With `restart`: the half has begun with this cycle already.
+    pub began: Signal<In, Bit>,
     /// Whether this is the second half of the period.
     pub second: Signal<In, Bit>,
     /// The next half is one cycle shorter; for those of at least 4.
@@ -36,16 +38,17 @@ pub struct HalfPeriod {
     hit_late: Reg<Bit>,
     half_cycles: Signal<Local, Bits<10>>,
     tick_now: Signal<Local, Bit>,
-    restart_count: Constant<Bits<10>>,
+    has_snap: Constant<Bit>,
 }
 
 impl HalfPeriod {
-    /// A timer whose half after `restart` is `early_cycles` shorter than the others.
-    pub fn new(early_cycles: u64) -> Self {
+    /// A timer; `began` may come with halves of two cycles if `has_snap`.
+    pub fn new(has_snap: bool) -> Self {
         Self {
             clock: Default::default(),
             reset: Default::default(),
             restart: Default::default(),
+            began: Default::default(),
             second: Default::default(),
             shorten: Default::default(),
             lengthen: Default::default(),
@@ -56,14 +59,14 @@ impl HalfPeriod {
             hit_late: Default::default(),
             half_cycles: Default::default(),
             tick_now: Default::default(),
-            restart_count: Constant::new((2 + early_cycles).into()),
+            has_snap: Constant::new(has_snap),
         }
     }
 }
 
 impl Default for HalfPeriod {
     fn default() -> Self {
-        Self::new(0)
+        Self::new(false)
     }
 }
 
@@ -93,8 +96,10 @@ impl Logic for HalfPeriod {
         if self.tick_now.val() & self.lengthen.val() {
             self.count.d.next = 1.into();
         }
-        if self.restart.val() {
-            self.count.d.next = self.restart_count.val();
+        if self.restart.val() & self.began.val() {
+            self.count.d.next = 3.into();
+            // A half of two cycles is over at once.
+            self.hit.d.next = self.has_snap.val() & (self.half_cycles.val() == 2);
         }
         self.tick.next = self.tick_now.val();
     }

@@ -33,12 +33,16 @@ pub struct LineDelay {
     pub drain: Signal<In, Bit>,
     /// This frame measures the delay instead of using it.
     pub acquire: Signal<In, Bit>,
+    /// Strobe: the next sample comes half a period after this, which may be that of another clock.
+    pub last_cell: Signal<In, Bit>,
     /// The start bit may come now.
     pub hunting: Signal<In, Bit>,
+    /// Strobe one cycle before each rising clock edge.
+    pub will_rise: Signal<In, Bit>,
     /// Strobe of each rising clock edge.
     pub rise: Signal<In, Bit>,
-    /// Strobe: the data line has just gone high.
-    pub data_rise: Signal<In, Bit>,
+    /// Strobe: the data line has just gone high, or has changed within the answer.
+    pub data_edge: Signal<In, Bit>,
     /// Strobe, together with `sample`: this sample is a good start bit, follow its edge.
     pub follow: Signal<In, Bit>,
     /// The clock goes on after the frame: the phase of the running cells follows, too.
@@ -54,19 +58,19 @@ pub struct LineDelay {
     /// A rising data edge lies within the window of this cell.
     pub edge_in_window: Signal<Out, Bit>,
     /// Clock pulses sent whose cell has not ended.
-    pub outstanding: Signal<Out, Bits<6>>,
+    pub outstanding: Signal<Out, Bits<7>>,
     /// Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
-    pub delay_cycles: Signal<Out, Bits<10>>,
+    pub delay_cycles: Signal<Out, Bits<11>>,
     half: HalfPeriod,
-    delay: Reg<Bits<10>>,
-    since_rise: Reg<Bits<10>>,
+    delay: Reg<Bits<11>>,
+    since_rise: Reg<Bits<11>>,
     timing_armed: Reg<Bit>,
     delay_over: Reg<Bit>,
     cells_run: Reg<Bit>,
     second_half: Reg<Bit>,
     sample_strobe: Reg<Bit>,
     center_strobe: Reg<Bit>,
-    pulses: Reg<Bits<6>>,
+    pulses: Reg<Bits<7>>,
     center_seen: Reg<Bit>,
     not_yet: Reg<Bit>,
     afresh: Reg<Bit>,
@@ -82,7 +86,9 @@ pub struct LineDelay {
     first_center: Signal<Local, Bit>,
     center_now: Signal<Local, Bit>,
     sample_now: Signal<Local, Bit>,
-    step: Signal<Local, Bits<10>>,
+    step: Signal<Local, Bits<11>>,
+    edge_now: Signal<Local, Bit>,
+    over: Signal<Local, Bit>,
 }
 
 impl Default for LineDelay {
@@ -93,9 +99,11 @@ impl Default for LineDelay {
             run: Default::default(),
             drain: Default::default(),
             acquire: Default::default(),
+            last_cell: Default::default(),
             hunting: Default::default(),
+            will_rise: Default::default(),
             rise: Default::default(),
-            data_rise: Default::default(),
+            data_edge: Default::default(),
             follow: Default::default(),
             going_on: Default::default(),
             period_cycles: Default::default(),
@@ -105,7 +113,7 @@ impl Default for LineDelay {
             edge_in_window: Default::default(),
             outstanding: Default::default(),
             delay_cycles: Default::default(),
-            half: HalfPeriod::new(1),
+            half: Default::default(),
             delay: Default::default(),
             since_rise: Default::default(),
             timing_armed: Default::default(),
@@ -131,6 +139,8 @@ impl Default for LineDelay {
             center_now: Default::default(),
             sample_now: Default::default(),
             step: Default::default(),
+            edge_now: Default::default(),
+            over: Default::default(),
         }
     }
 }
@@ -190,8 +200,8 @@ impl Logic for LineDelay {
         self.since_rise.d.next = self.since_rise.q.val() + 1;
         if self.first_rise.val() {
             self.timing_armed.d.next = true;
-            // The comparison with the tracked delay is registered: it starts one cycle earlier.
-            self.since_rise.d.next = 2.into();
+            // The comparison with the tracked delay is registered, and what follows from it as well: it starts two cycles earlier.
+            self.since_rise.d.next = 3.into();
             if self.acquire.val() {
                 self.since_rise.d.next = 1.into();
             }
@@ -201,20 +211,22 @@ impl Logic for LineDelay {
 
         self.acquired.next = self.acquire.val()
             & self.hunting.val()
-            & self.data_rise.val()
+            & self.data_edge.val()
             & !self.cells_run.q.val();
         self.first_center.next = self.acquired.val()
             | (self.delay_over.q.val() & !self.cells_run.q.val() & !self.acquire.val());
         // The half period timer runs one cycle ahead: its ticks are registered before they are used.
         self.sample_strobe.d.next =
             self.half.tick.val() & !self.second_half.q.val() & self.cells_run.q.val();
-        self.center_strobe.d.next = self.half.tick.val() & self.second_half.q.val();
+        self.center_strobe.d.next = (self.half.tick.val() & self.second_half.q.val())
+            | (self.first_center.val() & !self.acquired.val());
         self.sample_now.next = self.sample_strobe.q.val();
-        self.center_now.next = self.first_center.val() | self.center_strobe.q.val();
+        self.center_now.next = self.acquired.val() | self.center_strobe.q.val();
 
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.second_half.q.val();
-        self.half.restart.next = !self.cells_run.q.val();
+        self.half.restart.next = !self.cells_run.q.val() | self.last_cell.val();
+        self.half.began.next = self.acquired.val();
         if self.half.tick.val() & self.cells_run.q.val() {
             self.second_half.d.next = !self.second_half.q.val();
         }
@@ -224,10 +236,10 @@ impl Logic for LineDelay {
         }
 
         // Pulses whose cell has not ended. The edge that launched an acquired start bit is the only one.
-        if self.rise.val() & !self.sample_now.val() {
+        if self.will_rise.val() & !self.sample_now.val() {
             self.pulses.d.next = self.pulses.q.val() + 1;
         }
-        if self.sample_now.val() & !self.rise.val() {
+        if self.sample_now.val() & !self.will_rise.val() {
             self.pulses.d.next = self.pulses.q.val() - 1;
         }
         if self.acquire.val() & !self.cells_run.q.val() {
@@ -237,17 +249,21 @@ impl Logic for LineDelay {
             self.pulses.d.next = 1.into();
         }
 
-        // Distance between the data edge and the middle of its place, whichever comes first.
+        // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
+        // is as good as one that is seen with it: the limits of the bit are as far from both.
         if self.center_now.val() {
             self.center_seen.d.next = true;
         }
-        if self.data_rise.val() {
+        self.edge_now.next = self.edge_seen.q.val() | self.data_edge.val();
+        if self.data_edge.val() {
             self.edge_seen.d.next = true;
             if !self.edge_seen.q.val() {
                 self.edge_late.d.next = self.center_seen.q.val();
             }
         }
-        if self.center_seen.q.val() ^ self.edge_seen.q.val() {
+        if (self.center_seen.q.val() & !self.edge_now.val())
+            | (self.edge_seen.q.val() & !self.center_seen.q.val())
+        {
             self.edge_error.d.next = self.edge_error.q.val() + 1;
             if self.edge_error.q.val() == self.start_window_cycles.val() {
                 self.edge_outside.d.next = true;
@@ -265,7 +281,7 @@ impl Logic for LineDelay {
             self.shorten.d.next = self.going_on.val() & !self.edge_late.q.val();
             self.lengthen.d.next = self.going_on.val() & self.edge_late.q.val();
         }
-        self.step.next = 0x3FF.into();
+        self.step.next = 0x7FF.into();
         if self.edge_late.q.val() {
             self.step.next = 1.into();
         }
@@ -274,7 +290,8 @@ impl Logic for LineDelay {
         }
 
         // All cells of a burst have ended: the next rising edge begins a new one.
-        self.afresh.d.next = !self.run.val() | (self.drain.val() & !self.pulses.q.val().any());
+        self.over.next = !self.run.val() | (self.drain.val() & !self.pulses.q.val().any());
+        self.afresh.d.next = self.over.val();
         if self.afresh.q.val() {
             self.cells_run.d.next = false;
             self.second_half.d.next = false;
@@ -284,7 +301,7 @@ impl Logic for LineDelay {
             self.center_strobe.d.next = false;
             self.pulses.d.next = 0.into();
         }
-        self.not_yet.d.next = !self.run.val() | (self.acquire.val() & !self.hunting.val());
+        self.not_yet.d.next = self.over.val() | (self.acquire.val() & !self.hunting.val());
         if self.sample_now.val() | self.not_yet.q.val() {
             self.center_seen.d.next = false;
             self.edge_seen.d.next = false;
@@ -293,7 +310,7 @@ impl Logic for LineDelay {
         }
         self.sample.next = self.sample_now.val();
         self.center.next = self.center_now.val();
-        self.edge_in_window.next = self.edge_seen.q.val() & !self.edge_outside.q.val();
+        self.edge_in_window.next = self.edge_now.val() & !self.edge_outside.q.val();
         self.outstanding.next = self.pulses.q.val();
         self.delay_cycles.next = self.delay.q.val();
     }

@@ -60,7 +60,7 @@ pub struct Service {
     /// The last result brought the position.
     pub fresh: Signal<In, Bit>,
     /// Tracked line delay, in system clock cycles.
-    pub delay_cycles: Signal<In, Bits<10>>,
+    pub delay_cycles: Signal<In, Bits<11>>,
     /// Configured EnDat clock period, in system clock cycles.
     pub period_cycles: Signal<In, Bits<11>>,
     /// Configured mode command.
@@ -360,7 +360,7 @@ impl Logic for Service {
                 self.sequencer.port_in.next = bit_cast::<16, 11>(self.period_cycles.val());
             }
             18 => {
-                self.sequencer.port_in.next = bit_cast::<16, 10>(self.delay_cycles.val());
+                self.sequencer.port_in.next = bit_cast::<16, 11>(self.delay_cycles.val());
             }
             _ => {
                 self.sequencer.port_in.next = 0.into();

@@ -21,7 +21,7 @@ pub struct Snapshot {
     /// Strobe: the encoder has taken a position by itself, `delay_cycles` ago.
     pub latched: Signal<In, Bit>,
     /// Propagation delay, in system clock cycles.
-    pub delay_cycles: Signal<In, Bits<10>>,
+    pub delay_cycles: Signal<In, Bits<11>>,
     /// Strobe: take the result of a trigger.
     pub publish: Signal<In, Bit>,
     /// With `publish`: the position is good.
@@ -100,7 +100,7 @@ impl Logic for Snapshot {
             self.moment.d.next = self.timestamp.val();
         }
         if self.latched.val() {
-            self.moment.d.next = self.timestamp.val() - bit_cast::<32, 10>(self.delay_cycles.val());
+            self.moment.d.next = self.timestamp.val() - bit_cast::<32, 11>(self.delay_cycles.val());
         }
         self.age_full.d.next = self.age.q.val().all();
         if self.tick_us.val() & !self.age_full.q.val() {

@@ -56,7 +56,7 @@ pub const ENDAT21_MAX_KHZ: u16 = 2_000;
 /// Largest deviation of the EnDat clock from the one asked for, in parts per million.
 pub const CLOCK_TOLERANCE_PPM: i64 = 5_000;
 /// Fewest system clock cycles in one EnDat clock period that the core can time.
-pub const PERIOD_CYCLES_MIN: u64 = 8;
+pub const PERIOD_CYCLES_MIN: u64 = 4;
 
 /// Cycles of a `system_hz` clock that last at least `ns` (rounded up: for minimum times).
 pub const fn cycles_at_least(ns: u64, system_hz: u64) -> u64 {

@@ -112,7 +112,7 @@ pub struct Transaction {
     /// Error bit 2, low = alarm.
     pub f2: Signal<In, Bit>,
     /// Clock pulses whose cell has not ended.
-    pub outstanding: Signal<In, Bits<6>>,
+    pub outstanding: Signal<In, Bits<7>>,
     /// Cells still to come.
     pub cells_left: Signal<In, Bits<7>>,
     /// How much longer than half a period the first low phase is; 0, or at least 4 cycles.
@@ -143,6 +143,8 @@ pub struct Transaction {
     pub is_probed: Signal<Out, Bit>,
     /// The clock goes on after this frame.
     pub going_on: Signal<Out, Bit>,
+    /// One-cycle strobe: the last cell has begun; the period may change with it.
+    pub last_cell: Signal<Out, Bit>,
     /// One-cycle strobe: the supplement begins.
     pub start_supplement: Signal<Out, Bit>,
     /// This frame measures the propagation delay.
@@ -217,6 +219,7 @@ pub struct Transaction {
     supplement_now: Reg<Bit>,
     answered: Reg<Bit>,
     was_hunting: Reg<Bit>,
+    was_center: Reg<Bit>,
     late: Reg<Bit>,
     probing: Reg<Bit>,
     settling: Reg<Bit>,
@@ -279,6 +282,7 @@ impl Logic for Transaction {
             supplement_now,
             answered,
             was_hunting,
+            was_center,
             late,
             probing,
             settling,
@@ -307,6 +311,7 @@ impl Logic for Transaction {
         self.supplement_now.reset.next = self.reset.val();
         self.answered.reset.next = self.reset.val();
         self.was_hunting.reset.next = self.reset.val();
+        self.was_center.reset.next = self.reset.val();
         self.late.reset.next = self.reset.val();
         self.probing.reset.next = self.reset.val();
         self.settling.reset.next = self.reset.val();
@@ -480,7 +485,8 @@ impl Logic for Transaction {
                     self.found.next = self.tail_low.val();
                     self.give_up.next = true;
                 }
-                if self.center.val() {
+                // A cycle late, for the middle may come before the last bit has been worked upon.
+                if self.was_center.q.val() {
                     self.phase.d.next = Phase::Recovery;
                     // From here on the full clock's times again: a short tm ends before half a slow period does.
                     self.acquiring.d.next = false;
@@ -572,6 +578,7 @@ impl Logic for Transaction {
         }
 
         self.was_hunting.d.next = self.hunting.val();
+        self.was_center.d.next = self.center.val();
         self.timer_step.d.next = !self.in_us.val() | self.tick_us.val();
         if self.timer_step.q.val() {
             self.timer.d.next = self.timer.q.val() + 1;
@@ -586,12 +593,13 @@ impl Logic for Transaction {
         if self.accept.val() {
             self.timer.d.next = 2.into();
         }
-        if (self.phase.q.val() == Phase::Tail) & self.center.val() {
-            self.timer.d.next = 1.into();
+        self.last_cell.next = (self.phase.q.val() == Phase::Tail) & self.was_center.q.val();
+        if self.last_cell.val() {
+            self.timer.d.next = 2.into();
         }
 
         // Pulses: never more on the cable than the answer needs.
-        self.all_sent.d.next = bit_cast::<7, 6>(self.outstanding.val()) == self.cells_left.val();
+        self.all_sent.d.next = self.outstanding.val() == self.cells_left.val();
         if self.all_sent.q.val() & !self.started.val() & !self.going.q.val() {
             self.stalled.d.next = true;
         }
@@ -681,8 +689,9 @@ impl Logic for Transaction {
             self.drain.next = self.stalled.q.val() | (self.phase.q.val() == Phase::Park);
         }
         self.stop_now.d.next =
-            self.sent.val() | !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
-        self.stop.next = self.stop_now.q.val();
+            !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
+        // The high phase of the last pulse may last two cycles only.
+        self.stop.next = self.stop_now.q.val() | self.sent.val();
         self.acquire.next = self.acquiring.q.val();
         self.busy.next = !self.idle.val() | (self.begin_own.val() & self.has_all.val());
         self.publish.next = self.verdict.publish.val();

@@ -62,7 +62,7 @@ const OUTPUTS: [(&str, usize); 22] = [
     ("crc_received", 5),
     ("crc_computed", 5),
     ("recovery_cycles", 16),
-    ("delay_cycles", 10),
+    ("delay_cycles", 11),
 ];
 const CALIBRATION_HZ: u64 = 200_000;
 /// Cycles from the pin to the sampled register.

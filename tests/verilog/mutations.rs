@@ -43,13 +43,13 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "one clock pulse fewer",
         "endat_transaction.v",
-        "{1'b0, outstanding} == cells_left",
-        "{1'b0, outstanding} == cells_left - 7'd1",
+        "outstanding == cells_left",
+        "outstanding == cells_left - 7'd1",
     ),
     mutation(
         "clock pulses on the cable not counted",
         "endat_transaction.v",
-        "{1'b0, outstanding} == cells_left",
+        "outstanding == cells_left",
         "7'd1 == cells_left",
     ),
     mutation(
