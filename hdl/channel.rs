@@ -20,7 +20,7 @@ use crate::clock_gen::ClockGen;
 use crate::command_sender::CommandSender;
 use crate::command_shape::CommandShape;
 use crate::input_filter::InputFilter;
-use crate::line_delay::LineDelay;
+use crate::line_delay::{self, LineDelay};
 use crate::protocol::{PARAMETER_BITS, TEST_VALUE_BITS};
 use crate::receiver::Receiver;
 use crate::reg::Reg;
@@ -37,6 +37,9 @@ pub const LAST_CRC_SAMPLE_TO_RESULT_CYCLES: u64 = 5;
 pub const TIMESTAMP_TO_FIRST_FALL_CYCLES: u64 = 2;
 /// What registers at both pins and the synchroniser add to `delay_cycles`; the filter adds its length.
 pub const DELAY_OFFSET_CYCLES: u64 = 4;
+
+/// Frames that measure the delay, of a channel with alignment.
+pub const CALIBRATION_FRAMES: usize = 4;
 
 /// One EnDat port.
 #[derive(LogicBlock)]
@@ -81,6 +84,12 @@ pub struct Channel {
     pub position_bits: Signal<In, Bits<6>>,
     /// Pulses on the data line of at most this many system clock cycles are ignored.
     pub filter_cycles: Signal<In, Bits<4>>,
+    /// Where the phase comes from, see [`crate::line_delay::mode`].
+    pub phase_mode: Signal<In, Bits<2>>,
+    /// Delay in mode `fixed`, in sixteenths of a system clock cycle.
+    pub fixed_delay: Signal<In, Bits<15>>,
+    /// Each sample is the majority of itself and its neighbours.
+    pub majority: Signal<In, Bit>,
     /// Largest distance of the start edge from its expected place, in system clock cycles.
     pub start_window_cycles: Signal<In, Bits<6>>,
     /// Longest wait for the start bit after the turnaround, in microseconds.
@@ -127,6 +136,14 @@ pub struct Channel {
     pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
     pub delay_cycles: Signal<Out, Bits<11>>,
+    /// The delay as the mean of many edges, in sixteenths of a system clock cycle.
+    pub phase: Signal<Out, Bits<15>>,
+    /// Strobe: an edge of the answer has been measured.
+    pub edge_measured: Signal<Out, Bit>,
+    /// Places (cycles, or half ones with the double edge) from the tracked one to this edge, less one, in two's complement.
+    pub edge_offset: Signal<Out, Bits<8>>,
+    /// Strobe: the filter has removed a pulse.
+    pub glitch: Signal<Out, Bit>,
     /// A trigger would not be taken.
     pub busy: Signal<Out, Bit>,
     /// The frame under way has the request.
@@ -161,6 +178,8 @@ pub struct Channel {
     pub calibrated: Signal<Out, Bit>,
     /// Strobe: the data line is sampled for a bit of the answer.
     pub sample_strobe: Signal<Out, Bit>,
+    /// With that, and double edge: at the clock edge, not half a cycle before it.
+    pub sample_second: Signal<Out, Bit>,
     filter: InputFilter,
     clock_gen: ClockGen,
     sender: CommandSender,
@@ -183,6 +202,8 @@ pub struct Channel {
     reply_word: Reg<Bits<48>>,
     reply_right: Reg<Bit>,
     has_requests: Constant<Bit>,
+    has_double: Constant<Bit>,
+    fixed_mode: Constant<Bits<2>>,
     parameter_bits: Constant<Bits<6>>,
     test_value_bits: Constant<Bits<6>>,
     command_now: Signal<Local, Bits<6>>,
@@ -245,14 +266,28 @@ pub struct Features {
     pub diagnosis: bool,
     /// Continuous clock (000111).
     pub continuous: bool,
+    /// Phase from the mean over many edges, from each start bit or from a register; majority of three samples.
+    pub alignment: bool,
+    /// Data is looked at on both edges of the system clock.
+    pub double_edge: bool,
 }
 
 impl Features {
-    /// Everything.
-    pub const ALL: Self = Self {
+    /// Triggered positions only.
+    pub const NONE: Self = Self {
+        requests: false,
+        diagnosis: false,
+        continuous: false,
+        alignment: false,
+        double_edge: false,
+    };
+
+    /// Everything of the protocol.
+    pub const PROTOCOL: Self = Self {
         requests: true,
         diagnosis: true,
         continuous: true,
+        ..Self::NONE
     };
 }
 
@@ -285,6 +320,9 @@ impl Channel {
             forced: Default::default(),
             position_bits: Default::default(),
             filter_cycles: Default::default(),
+            phase_mode: Default::default(),
+            fixed_delay: Default::default(),
+            majority: Default::default(),
             start_window_cycles: Default::default(),
             start_timeout_us: Default::default(),
             recovery_limit_cycles: Default::default(),
@@ -308,6 +346,10 @@ impl Channel {
             crc_computed: Default::default(),
             recovery_cycles: Default::default(),
             delay_cycles: Default::default(),
+            phase: Default::default(),
+            edge_measured: Default::default(),
+            edge_offset: Default::default(),
+            glitch: Default::default(),
             busy: Default::default(),
             request_runs: Default::default(),
             line_high: Default::default(),
@@ -325,10 +367,11 @@ impl Channel {
             info_good: Default::default(),
             calibrated: Default::default(),
             sample_strobe: Default::default(),
-            filter: Default::default(),
-            clock_gen: Default::default(),
+            sample_second: Default::default(),
+            filter: InputFilter::new(features),
+            clock_gen: ClockGen::new(features),
             sender: CommandSender::new(features.requests),
-            delay: Default::default(),
+            delay: LineDelay::new(features),
             receiver: Receiver::new(features),
             transaction: Transaction::new(times, features),
             snapshot: Default::default(),
@@ -347,6 +390,8 @@ impl Channel {
             reply_word: Default::default(),
             reply_right: Default::default(),
             has_requests: Constant::new(features.requests),
+            has_double: Constant::new(features.double_edge),
+            fixed_mode: Constant::new(line_delay::mode::FIXED.into()),
             parameter_bits: Constant::new(u64::from(PARAMETER_BITS).into()),
             test_value_bits: Constant::new(u64::from(TEST_VALUE_BITS).into()),
             command_now: Default::default(),
@@ -410,7 +455,7 @@ impl Logic for Channel {
         self.snapshot.reset.next = self.reset.val();
 
         self.period.next = self.period_cycles.val();
-        if self.transaction.acquire.val() {
+        if self.transaction.slow.val() {
             self.period.next = self.calibration_period_cycles.val();
         }
 
@@ -461,6 +506,8 @@ impl Logic for Channel {
 
         self.filter.pin.next = self.data_i.val();
         self.filter.filter_cycles.next = self.filter_cycles.val();
+        self.filter.majority.next = self.majority.val();
+        self.filter.both_edges.next = self.receiver.started.val();
 
         self.clock_gen.start.next = self.transaction.start.val();
         self.clock_gen.hold_low.next = self.transaction.hold_low.val();
@@ -482,7 +529,12 @@ impl Logic for Channel {
         self.delay.hunting.next = self.receiver.hunting.val();
         self.delay.will_rise.next = self.clock_gen.will_rise.val();
         self.delay.rise.next = self.clock_gen.rise.val();
-        self.delay.data_edge.next = self.filter.rise.val();
+        self.delay.data_edge.next = self.filter.edge_strobe.val();
+        self.delay.edge_second.next = self.filter.edge_second.val();
+        self.delay.in_answer.next = self.receiver.started.val() & !self.receiver.skipping.val();
+        self.delay.slow.next = self.transaction.slow.val();
+        self.delay.mode.next = self.phase_mode.val();
+        self.delay.fixed_delay.next = self.fixed_delay.val();
         self.delay.follow.next = self.receiver.start_found.val();
         self.delay.going_on.next = self.transaction.going_on.val();
         self.delay.period_cycles.next = self.period.val();
@@ -493,6 +545,9 @@ impl Logic for Channel {
         self.receiver.rise.next = self.clock_gen.rise.val();
         self.receiver.sample.next = self.delay.sample.val();
         self.receiver.level.next = self.filter.level.val();
+        if self.has_double.val() & !self.delay.sample_second.val() {
+            self.receiver.level.next = self.filter.level_first.val();
+        }
         self.receiver.edge_in_window.next = self.delay.edge_in_window.val();
         self.receiver.payload_bits.next = self.payload_bits.val();
         self.receiver.has_f1.next = self.shape.has_f1.val();
@@ -508,6 +563,7 @@ impl Logic for Channel {
         self.transaction.trigger.next = self.trigger.val();
         self.transaction.calibrate.next = self.calibrate.val();
         self.transaction.level.next = self.filter.level.val();
+        self.transaction.is_fixed.next = self.phase_mode.val() == self.fixed_mode.val();
         self.transaction.sample.next = self.delay.sample.val();
         self.transaction.center.next = self.delay.center.val();
         self.transaction.hunting.next = self.receiver.hunting.val();
@@ -623,6 +679,10 @@ impl Logic for Channel {
         self.crc_computed.next = self.snapshot.crc_computed.val();
         self.recovery_cycles.next = self.transaction.recovery_cycles.val();
         self.delay_cycles.next = self.delay.delay_cycles.val();
+        self.phase.next = self.delay.phase.val();
+        self.edge_measured.next = self.delay.measured.val();
+        self.edge_offset.next = self.delay.offset.val();
+        self.glitch.next = self.filter.glitch.val();
         self.busy.next = self.transaction.busy.val();
         self.request_runs.next =
             (self.frame_own.q.val() | self.frame_ride.q.val()) & !self.transaction.is_at_rest.val();
@@ -641,6 +701,7 @@ impl Logic for Channel {
         self.info_came.next = self.add_info.came.val();
         self.info_good.next = self.add_info.good.val();
         self.calibrated.next = self.transaction.calibrated.val();
+        self.sample_second.next = self.delay.sample_second.val();
         self.sample_strobe.next = self.delay.sample.val() & !self.receiver.skipping.val();
     }
 }

@@ -11,6 +11,7 @@
 //! The line idles HIGH and a frame ends with it HIGH, an aborted one as well. A low phase that was held is followed
 //! by a whole half period, and a low phase that has begun is finished: no pulse is ever shortened.
 
+use crate::channel::Features;
 use crate::half_period::HalfPeriod;
 use crate::reg::Reg;
 use rust_hdl::prelude::*;
@@ -46,8 +47,9 @@ pub struct ClockGen {
     held: Signal<Local, Bit>,
 }
 
-impl Default for ClockGen {
-    fn default() -> Self {
+impl ClockGen {
+    /// A clock generator with these features.
+    pub fn new(features: Features) -> Self {
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -59,7 +61,7 @@ impl Default for ClockGen {
             will_rise: Default::default(),
             rise: Default::default(),
             fall: Default::default(),
-            half: Default::default(),
+            half: HalfPeriod::new(false, features.double_edge),
             level: Reg::new(true),
             risen: Default::default(),
             rise_now: Default::default(),

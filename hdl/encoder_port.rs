@@ -135,10 +135,21 @@ impl EncoderPort {
     /// A port with these fixed times; with a service that initialises and takes requests if `service` is given.
     /// `wants_short`: the encoder is set to the short recovery time.
     pub fn new(times: FixedTimes, service: Option<&ServiceTimes>, wants_short: bool) -> Self {
+        Self::with_line(times, service, wants_short, Features::NONE)
+    }
+
+    /// The same with the features of `line` that have to do with the line delay.
+    pub fn with_line(
+        times: FixedTimes,
+        service: Option<&ServiceTimes>,
+        wants_short: bool,
+        line: Features,
+    ) -> Self {
         let features = Features {
             requests: service.is_some(),
             diagnosis: service.is_some_and(|s| s.diagnosis),
             continuous: service.is_some_and(|s| s.continuous),
+            ..line
         };
         Self {
             clock: Default::default(),
@@ -224,6 +235,9 @@ impl Logic for EncoderPort {
         self.channel.start_window_cycles.next = self.start_window_cycles.val();
         self.channel.start_timeout_us.next = self.start_timeout_us.val();
         self.channel.recovery_limit_cycles.next = self.recovery_limit_cycles.val();
+        self.channel.phase_mode.next = 0.into();
+        self.channel.fixed_delay.next = 0.into();
+        self.channel.majority.next = false;
         self.channel.request_command.next = 0.into();
         self.channel.request_parameter.next = 0.into();
         self.channel.request_ride.next = false;

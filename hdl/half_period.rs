@@ -38,12 +38,14 @@ pub struct HalfPeriod {
     hit_late: Reg<Bit>,
     half_cycles: Signal<Local, Bits<10>>,
     tick_now: Signal<Local, Bit>,
+    is_one: Signal<Local, Bit>,
     has_snap: Constant<Bit>,
+    has_one: Constant<Bit>,
 }
 
 impl HalfPeriod {
-    /// A timer; `began` may come with halves of two cycles if `has_snap`.
-    pub fn new(has_snap: bool) -> Self {
+    /// A timer for halves of at least two cycles, of one if `has_one`; `began` may come with halves of two cycles if `has_snap`.
+    pub fn new(has_snap: bool, has_one: bool) -> Self {
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -59,14 +61,16 @@ impl HalfPeriod {
             hit_late: Default::default(),
             half_cycles: Default::default(),
             tick_now: Default::default(),
+            is_one: Default::default(),
             has_snap: Constant::new(has_snap),
+            has_one: Constant::new(has_one),
         }
     }
 }
 
 impl Default for HalfPeriod {
     fn default() -> Self {
-        Self::new(false)
+        Self::new(false, false)
     }
 }
 
@@ -82,12 +86,13 @@ impl Logic for HalfPeriod {
         if self.second.val() & self.period_cycles.val().get_bit(0) {
             self.tick_now.next = self.hit_late.q.val();
         }
-        self.hit.d.next = self.count.q.val() == self.half_cycles.val();
+        self.is_one.next = self.has_one.val() & (self.half_cycles.val() == 1);
+        self.hit.d.next = (self.count.q.val() == self.half_cycles.val()) | self.is_one.val();
         self.hit_late.d.next = self.hit.q.val();
         self.count.d.next = self.count.q.val() + 1;
         if self.restart.val() | self.tick_now.val() {
             self.count.d.next = 2.into();
-            self.hit.d.next = false;
+            self.hit.d.next = self.is_one.val();
             self.hit_late.d.next = false;
         }
         if self.tick_now.val() & self.shorten.val() {

@@ -1,16 +1,18 @@
 //! Input filter: brings the asynchronous data line into the system clock domain and removes short pulses.
 //!
 //! ```text
-//! pin --[SyncReg x3]--> stable for filter_cycles + 1 samples? --[Reg]--> level, rise
+//! pin --[SyncReg x3]--> majority of 3 --> stable for filter_cycles + 1 samples? --[Reg]--> level, edge_strobe
+//!   \--[FallReg, SyncReg x3]--^   (two samples in each cycle: `level_first` is half a cycle older than `level`)
 //! ```
 //!
 //! The delay it adds is part of the propagation delay that the receiver measures, so it needs no correction.
 
-use crate::reg::{Reg, SyncReg};
+use crate::channel::Features;
+use crate::reg::{FallReg, Reg, SyncReg};
 use rust_hdl::prelude::*;
 
 /// Synchroniser of three stages and a run-time filter for one input pin.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock)]
 pub struct InputFilter {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -18,45 +20,209 @@ pub struct InputFilter {
     pub reset: Signal<In, Bit>,
     /// The pin, asynchronous.
     pub pin: Signal<In, Bit>,
-    /// A pulse of at most this many samples is ignored; 0 switches the filter off.
+    /// A pulse of at most this many system clock cycles is ignored; 0 switches the filter off.
     pub filter_cycles: Signal<In, Bits<4>>,
+    /// Each sample counts as what most of it and its two neighbours are.
+    pub majority: Signal<In, Bit>,
+    /// Falling edges count, too.
+    pub both_edges: Signal<In, Bit>,
     /// The level after synchroniser and filter.
     pub level: Signal<Out, Bit>,
-    /// High in the first cycle in which `level` is high.
-    pub rise: Signal<Out, Bit>,
+    /// The level half a cycle before; `level` unless there are two samples in each cycle.
+    pub level_first: Signal<Out, Bit>,
+    /// High in the first cycle in which `level` is high, or has changed.
+    pub edge_strobe: Signal<Out, Bit>,
+    /// This edge stands between `level_first` and `level`, not before both.
+    pub edge_second: Signal<Out, Bit>,
+    /// Strobe: a pulse has been removed.
+    pub glitch: Signal<Out, Bit>,
     sync1: SyncReg<Bit>,
     sync2: SyncReg<Bit>,
     sync3: SyncReg<Bit>,
-    different: Reg<Bits<4>>,
+    fall1: Vec<FallReg<Bit>>,
+    fall2: Vec<SyncReg<Bit>>,
+    fall3: Vec<SyncReg<Bit>>,
+    fall4: Vec<SyncReg<Bit>>,
+    before: Reg<Bit>,
+    before_first: Reg<Bit>,
+    different: Reg<Bits<5>>,
     level_now: Reg<Bit>,
-    rise_now: Reg<Bit>,
+    first_now: Reg<Bit>,
+    edge_now: Reg<Bit>,
+    second_now: Reg<Bit>,
+    removed: Reg<Bit>,
+    has_alignment: Constant<Bit>,
+    has_double: Constant<Bit>,
+    limit: Signal<Local, Bits<5>>,
+    first: Signal<Local, Bit>,
+    sample_first: Signal<Local, Bit>,
+    sample: Signal<Local, Bit>,
+    middle: Signal<Local, Bit>,
+    middle_different: Signal<Local, Bits<5>>,
+    settled: Signal<Local, Bit>,
+    both: Signal<Local, Bit>,
+    edge_first: Signal<Local, Bit>,
+    _doubles: usize,
+}
+
+impl InputFilter {
+    /// A filter with these features.
+    pub fn new(features: Features) -> Self {
+        let doubles = usize::from(features.double_edge);
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            pin: Default::default(),
+            filter_cycles: Default::default(),
+            majority: Default::default(),
+            both_edges: Default::default(),
+            level: Default::default(),
+            level_first: Default::default(),
+            edge_strobe: Default::default(),
+            edge_second: Default::default(),
+            glitch: Default::default(),
+            sync1: Default::default(),
+            sync2: Default::default(),
+            sync3: Default::default(),
+            fall1: (0..doubles).map(|_| Default::default()).collect(),
+            fall2: (0..doubles).map(|_| Default::default()).collect(),
+            fall3: (0..doubles).map(|_| Default::default()).collect(),
+            fall4: (0..doubles).map(|_| Default::default()).collect(),
+            before: Default::default(),
+            before_first: Default::default(),
+            different: Default::default(),
+            level_now: Default::default(),
+            first_now: Default::default(),
+            edge_now: Default::default(),
+            second_now: Default::default(),
+            removed: Default::default(),
+            has_alignment: Constant::new(features.alignment),
+            has_double: Constant::new(features.double_edge),
+            limit: Default::default(),
+            first: Default::default(),
+            sample_first: Default::default(),
+            sample: Default::default(),
+            middle: Default::default(),
+            middle_different: Default::default(),
+            settled: Default::default(),
+            both: Default::default(),
+            edge_first: Default::default(),
+            _doubles: doubles,
+        }
+    }
 }
 
 impl Logic for InputFilter {
     #[hdl_gen]
     fn update(&mut self) {
         clock!(self, clock, sync1, sync2, sync3);
-        dff_setup!(self, clock, different, level_now, rise_now);
+        dff_setup!(self, clock, before, before_first, different, level_now);
+        dff_setup!(self, clock, first_now, edge_now, second_now, removed);
         self.sync1.reset.next = self.reset.val();
         self.sync2.reset.next = self.reset.val();
         self.sync3.reset.next = self.reset.val();
+        self.before.reset.next = self.reset.val();
+        self.before_first.reset.next = self.reset.val();
         self.different.reset.next = self.reset.val();
         self.level_now.reset.next = self.reset.val();
-        self.rise_now.reset.next = self.reset.val();
+        self.first_now.reset.next = self.reset.val();
+        self.edge_now.reset.next = self.reset.val();
+        self.second_now.reset.next = self.reset.val();
+        self.removed.reset.next = self.reset.val();
         self.sync1.d.next = self.pin.val();
         self.sync2.d.next = self.sync1.q.val();
         self.sync3.d.next = self.sync2.q.val();
-        self.rise_now.d.next = false;
-        self.different.d.next = 0.into();
-        if self.sync3.q.val() != self.level_now.q.val() {
-            if self.different.q.val() == self.filter_cycles.val() {
-                self.level_now.d.next = self.sync3.q.val();
-                self.rise_now.d.next = self.sync3.q.val();
-            } else {
-                self.different.d.next = self.different.q.val() + 1;
+        self.first.next = false;
+        for i in 0..self._doubles {
+            self.fall1[i].clock.next = self.clock.val();
+            self.fall2[i].clock.next = self.clock.val();
+            self.fall3[i].clock.next = self.clock.val();
+            self.fall4[i].clock.next = self.clock.val();
+            self.fall1[i].reset.next = false;
+            self.fall2[i].reset.next = self.reset.val();
+            self.fall3[i].reset.next = self.reset.val();
+            self.fall4[i].reset.next = self.reset.val();
+            self.fall1[i].d.next = self.pin.val();
+            self.fall2[i].d.next = self.fall1[i].q.val();
+            self.fall3[i].d.next = self.fall2[i].q.val();
+            self.fall4[i].d.next = self.fall3[i].q.val();
+            self.first.next = self.fall4[i].q.val();
+        }
+
+        // The majority waits for the next sample.
+        self.before.d.next = self.sync3.q.val() & self.has_alignment.val();
+        self.before_first.d.next = self.before.q.val();
+        self.sample.next = self.sync3.q.val();
+        self.sample_first.next = self.first.val();
+        if self.has_double.val() {
+            self.before_first.d.next = self.first.val();
+        }
+        if self.has_alignment.val() & self.majority.val() {
+            self.sample.next = (self.sync3.q.val() & self.before.q.val())
+                | (self.sync3.q.val() & self.before_first.q.val())
+                | (self.before.q.val() & self.before_first.q.val());
+            if self.has_double.val() {
+                self.sample_first.next = (self.before_first.q.val() & self.before.q.val())
+                    | (self.before_first.q.val() & self.first.val())
+                    | (self.before.q.val() & self.first.val());
+                self.sample.next = (self.before.q.val() & self.first.val())
+                    | (self.before.q.val() & self.sync3.q.val())
+                    | (self.first.val() & self.sync3.q.val());
             }
         }
+
+        // One step of the filter, or two.
+        self.limit.next = bit_cast::<5, 4>(self.filter_cycles.val());
+        self.middle.next = self.level_now.q.val();
+        self.middle_different.next = self.different.q.val();
+        self.removed.d.next = false;
+        if self.has_double.val() {
+            self.limit.next = bit_cast::<5, 4>(self.filter_cycles.val()) << 1;
+            self.middle_different.next = 0.into();
+            if self.sample_first.val() != self.level_now.q.val() {
+                if self.different.q.val() == self.limit.val() {
+                    self.middle.next = self.sample_first.val();
+                } else {
+                    self.middle_different.next = self.different.q.val() + 1;
+                }
+            } else {
+                self.removed.d.next = self.different.q.val().any();
+            }
+        }
+        self.settled.next = self.middle.val();
+        self.different.d.next = 0.into();
+        if self.sample.val() != self.middle.val() {
+            if self.middle_different.val() == self.limit.val() {
+                self.settled.next = self.sample.val();
+            } else {
+                self.different.d.next = self.middle_different.val() + 1;
+                if !self.has_double.val() {
+                    self.different.d.next =
+                        (self.middle_different.val() + 1).replace_bit(4, false);
+                }
+            }
+        } else {
+            if self.middle_different.val().any() {
+                self.removed.d.next = true;
+            }
+        }
+        if !self.has_alignment.val() {
+            self.removed.d.next = false;
+        }
+        self.first_now.d.next = self.middle.val() & self.has_double.val();
+        self.level_now.d.next = self.settled.val();
+
+        self.both.next = self.has_alignment.val() & self.both_edges.val();
+        self.edge_first.next = (self.middle.val() & !self.level_now.q.val())
+            | (self.both.val() & !self.middle.val() & self.level_now.q.val());
+        self.edge_now.d.next = self.edge_first.val()
+            | (self.settled.val() & !self.middle.val())
+            | (self.both.val() & !self.settled.val() & self.middle.val());
+        self.second_now.d.next = !self.edge_first.val() & self.has_double.val();
         self.level.next = self.level_now.q.val();
-        self.rise.next = self.rise_now.q.val();
+        self.level_first.next = self.first_now.q.val();
+        self.edge_strobe.next = self.edge_now.q.val();
+        self.edge_second.next = self.second_now.q.val();
+        self.glitch.next = self.removed.q.val();
     }
 }

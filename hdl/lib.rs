@@ -29,6 +29,7 @@ pub mod input_filter;
 pub mod line_delay;
 pub mod line_health;
 pub mod memory;
+pub mod phase_tracker;
 pub mod protocol;
 pub mod receiver;
 pub mod reg;

@@ -16,7 +16,9 @@
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual, propagation delay compensation; TI motor-control SDK, `endat_main.asm`.
 
+use crate::channel::Features;
 use crate::half_period::HalfPeriod;
+use crate::phase_tracker::PhaseTracker;
 use crate::reg::Reg;
 use rust_hdl::prelude::*;
 
@@ -43,6 +45,16 @@ pub struct LineDelay {
     pub rise: Signal<In, Bit>,
     /// Strobe: the data line has just gone high, or has changed within the answer.
     pub data_edge: Signal<In, Bit>,
+    /// This edge is half a cycle later than others (double edge only).
+    pub edge_second: Signal<In, Bit>,
+    /// The cell is one of the answer behind the start bit: its edge counts (alignment only).
+    pub in_answer: Signal<In, Bit>,
+    /// The frame runs at the calibration clock.
+    pub slow: Signal<In, Bit>,
+    /// Where the phase comes from, see [`mode`] (alignment only).
+    pub mode: Signal<In, Bits<2>>,
+    /// Delay in mode `fixed`, in sixteenths of a system clock cycle.
+    pub fixed_delay: Signal<In, Bits<15>>,
     /// Strobe, together with `sample`: this sample is a good start bit, follow its edge.
     pub follow: Signal<In, Bit>,
     /// The clock goes on after the frame: the phase of the running cells follows, too.
@@ -53,6 +65,8 @@ pub struct LineDelay {
     pub start_window_cycles: Signal<In, Bits<6>>,
     /// Strobe: sample the data line.
     pub sample: Signal<Out, Bit>,
+    /// With `sample`: half a cycle later than others (double edge only).
+    pub sample_second: Signal<Out, Bit>,
     /// Strobe: the middle of the expected place of a data edge.
     pub center: Signal<Out, Bit>,
     /// A rising data edge lies within the window of this cell.
@@ -61,6 +75,12 @@ pub struct LineDelay {
     pub outstanding: Signal<Out, Bits<7>>,
     /// Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
     pub delay_cycles: Signal<Out, Bits<11>>,
+    /// The same, mean of many edges, in sixteenths of a cycle (alignment only).
+    pub phase: Signal<Out, Bits<15>>,
+    /// Strobe one cycle after `sample`: an edge of the answer has been measured (alignment only).
+    pub measured: Signal<Out, Bit>,
+    /// Places from the tracked one to this edge, less one, in two's complement.
+    pub offset: Signal<Out, Bits<8>>,
     half: HalfPeriod,
     delay: Reg<Bits<11>>,
     since_rise: Reg<Bits<11>>,
@@ -89,10 +109,45 @@ pub struct LineDelay {
     step: Signal<Local, Bits<11>>,
     edge_now: Signal<Local, Bit>,
     over: Signal<Local, Bit>,
+    tracker: Vec<PhaseTracker>,
+    offset_now: Reg<Bits<8>>,
+    measured_now: Reg<Bit>,
+    second: Reg<Bit>,
+    edge_place: Reg<Bit>,
+    has_alignment: Constant<Bit>,
+    has_double: Constant<Bit>,
+    frame_mode: Constant<Bits<2>>,
+    fixed_mode: Constant<Bits<2>>,
+    places: Signal<Local, Bits<12>>,
+    delay_now: Signal<Local, Bits<11>>,
+    is_frame: Signal<Local, Bit>,
+    snap: Signal<Local, Bit>,
+    next_cell: Signal<Local, Bit>,
+    late_now: Signal<Local, Bit>,
+    place_now: Signal<Local, Bit>,
+    center_place: Signal<Local, Bit>,
+    distance: Signal<Local, Bits<8>>,
+    good_edge: Signal<Local, Bit>,
+    is_later: Signal<Local, Bit>,
+    due: Signal<Local, Bit>,
+    was_over: Reg<Bit>,
+    _trackers: usize,
 }
 
-impl Default for LineDelay {
-    fn default() -> Self {
+/// Where the phase of the cells comes from.
+pub mod mode {
+    /// The tracked delay.
+    pub const TRACKED: u64 = 0;
+    /// A register.
+    pub const FIXED: u64 = 1;
+    /// The start bit of each frame; the tracked delay tells its pulse.
+    pub const FRAME: u64 = 2;
+}
+
+impl LineDelay {
+    /// A line delay with these features.
+    pub fn new(features: Features) -> Self {
+        let trackers = usize::from(features.alignment);
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -104,16 +159,25 @@ impl Default for LineDelay {
             will_rise: Default::default(),
             rise: Default::default(),
             data_edge: Default::default(),
+            edge_second: Default::default(),
+            in_answer: Default::default(),
+            slow: Default::default(),
+            mode: Default::default(),
+            fixed_delay: Default::default(),
             follow: Default::default(),
             going_on: Default::default(),
             period_cycles: Default::default(),
             start_window_cycles: Default::default(),
             sample: Default::default(),
+            sample_second: Default::default(),
             center: Default::default(),
             edge_in_window: Default::default(),
             outstanding: Default::default(),
             delay_cycles: Default::default(),
-            half: Default::default(),
+            phase: Default::default(),
+            measured: Default::default(),
+            offset: Default::default(),
+            half: HalfPeriod::new(features.alignment, features.double_edge),
             delay: Default::default(),
             since_rise: Default::default(),
             timing_armed: Default::default(),
@@ -141,6 +205,29 @@ impl Default for LineDelay {
             step: Default::default(),
             edge_now: Default::default(),
             over: Default::default(),
+            tracker: (0..trackers).map(|_| PhaseTracker::new(features)).collect(),
+            offset_now: Default::default(),
+            measured_now: Default::default(),
+            second: Default::default(),
+            edge_place: Default::default(),
+            has_alignment: Constant::new(features.alignment),
+            has_double: Constant::new(features.double_edge),
+            frame_mode: Constant::new(mode::FRAME.into()),
+            fixed_mode: Constant::new(mode::FIXED.into()),
+            places: Default::default(),
+            delay_now: Default::default(),
+            is_frame: Default::default(),
+            snap: Default::default(),
+            next_cell: Default::default(),
+            late_now: Default::default(),
+            place_now: Default::default(),
+            center_place: Default::default(),
+            distance: Default::default(),
+            good_edge: Default::default(),
+            is_later: Default::default(),
+            due: Default::default(),
+            was_over: Default::default(),
+            _trackers: trackers,
         }
     }
 }
@@ -172,6 +259,8 @@ impl Logic for LineDelay {
             shorten,
             lengthen
         );
+        dff_setup!(self, clock, offset_now, measured_now, second, edge_place, was_over);
+        self.was_over.reset.next = self.reset.val();
         clock!(self, clock, half);
         self.delay.reset.next = self.reset.val();
         self.since_rise.reset.next = self.reset.val();
@@ -194,6 +283,10 @@ impl Logic for LineDelay {
         self.half.reset.next = self.reset.val();
         self.shorten.reset.next = self.reset.val();
         self.lengthen.reset.next = self.reset.val();
+        self.offset_now.reset.next = self.reset.val();
+        self.measured_now.reset.next = self.reset.val();
+        self.second.reset.next = self.reset.val();
+        self.edge_place.reset.next = self.reset.val();
 
         // tD from the first rising edge of a burst to the first cell; in an acquiring frame from every rising edge.
         self.first_rise.next = self.rise.val() & (self.acquire.val() | !self.timing_armed.q.val());
@@ -206,33 +299,82 @@ impl Logic for LineDelay {
                 self.since_rise.d.next = 1.into();
             }
         }
+        self.places.next = bit_cast::<12, 11>(self.delay.q.val());
+        for i in 0..self._trackers {
+            self.places.next = self.tracker[i].delay_places.val();
+        }
+        self.delay_now.next = self.places.val().get_bits::<11>(0);
+        if self.has_double.val() {
+            self.delay_now.next = self.places.val().get_bits::<11>(1);
+        }
         self.delay_over.d.next =
-            self.timing_armed.q.val() & (self.since_rise.q.val() == self.delay.q.val());
+            self.timing_armed.q.val() & (self.since_rise.q.val() == self.delay_now.val());
+
+        // The middle of a bit of an odd number of places lies on a place, that of others between two.
+        self.is_later.next = false;
+        for i in 0..self._trackers {
+            self.is_later.next = self.tracker[i].past_half.val()
+                & self.period_cycles.val().get_bit(0)
+                & !self.has_double.val();
+        }
+        self.was_over.d.next = self.delay_over.q.val() & self.has_alignment.val();
+        self.due.next = self.delay_over.q.val();
+        if self.is_later.val() {
+            self.due.next = self.was_over.q.val();
+        }
 
         self.acquired.next = self.acquire.val()
             & self.hunting.val()
             & self.data_edge.val()
             & !self.cells_run.q.val();
         self.first_center.next = self.acquired.val()
-            | (self.delay_over.q.val() & !self.cells_run.q.val() & !self.acquire.val());
+            | (self.due.val() & !self.cells_run.q.val() & !self.acquire.val());
         // The half period timer runs one cycle ahead: its ticks are registered before they are used.
         self.sample_strobe.d.next =
             self.half.tick.val() & !self.second_half.q.val() & self.cells_run.q.val();
         self.center_strobe.d.next = (self.half.tick.val() & self.second_half.q.val())
             | (self.first_center.val() & !self.acquired.val());
-        self.sample_now.next = self.sample_strobe.q.val();
-        self.center_now.next = self.acquired.val() | self.center_strobe.q.val();
+        // Phase from the start bit: its edge is the middle, wherever the tracked one is.
+        self.is_frame.next =
+            self.has_alignment.val() & (self.mode.val() == self.frame_mode.val());
+        self.snap.next = self.is_frame.val()
+            & self.hunting.val()
+            & self.data_edge.val()
+            & !self.edge_seen.q.val()
+            & self.cells_run.q.val()
+            & !self.acquire.val();
+        self.sample_now.next = self.sample_strobe.q.val() & !self.snap.val();
+        self.center_now.next =
+            self.acquired.val() | self.center_strobe.q.val() | self.snap.val();
 
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.second_half.q.val();
-        self.half.restart.next = !self.cells_run.q.val() | self.last_cell.val();
-        self.half.began.next = self.acquired.val();
+        self.half.restart.next =
+            !self.cells_run.q.val() | self.last_cell.val() | self.snap.val();
+        self.half.began.next = self.acquired.val() | self.snap.val();
+        // An odd period has halves of a whole number of half cycles: every other one begins in the middle of a cycle.
+        if self.has_double.val() {
+            self.half.second.next = self.second.q.val();
+            if self.half.tick.val() & self.cells_run.q.val() {
+                self.second.d.next = self.second.q.val() ^ self.period_cycles.val().get_bit(0);
+            }
+            if self.first_center.val() {
+                self.second.d.next = self.places.val().get_bit(0);
+            }
+            if self.acquired.val() | self.snap.val() {
+                self.second.d.next = self.edge_second.val();
+            }
+        }
         if self.half.tick.val() & self.cells_run.q.val() {
             self.second_half.d.next = !self.second_half.q.val();
         }
-        if self.first_center.val() {
+        if self.first_center.val() | self.snap.val() {
             self.cells_run.d.next = true;
             self.second_half.d.next = false;
+        }
+        if self.snap.val() {
+            self.sample_strobe.d.next = false;
+            self.center_strobe.d.next = false;
         }
 
         // Pulses whose cell has not ended. The edge that launched an acquired start bit is the only one.
@@ -254,12 +396,23 @@ impl Logic for LineDelay {
         if self.center_now.val() {
             self.center_seen.d.next = true;
         }
-        self.edge_now.next = self.edge_seen.q.val() | self.data_edge.val();
+        // An edge behind the sample of the same cycle belongs to the next cell.
+        self.next_cell.next = self.has_double.val()
+            & self.sample_now.val()
+            & self.edge_second.val()
+            & !self.second.q.val();
+        self.edge_now.next =
+            self.edge_seen.q.val() | (self.data_edge.val() & !self.next_cell.val());
+        self.late_now.next = self.edge_late.q.val();
+        self.place_now.next = self.edge_place.q.val();
+        if !self.edge_seen.q.val() {
+            self.late_now.next = self.center_seen.q.val();
+            self.place_now.next = self.edge_second.val();
+        }
         if self.data_edge.val() {
             self.edge_seen.d.next = true;
-            if !self.edge_seen.q.val() {
-                self.edge_late.d.next = self.center_seen.q.val();
-            }
+            self.edge_late.d.next = self.late_now.val();
+            self.edge_place.d.next = self.place_now.val();
         }
         if (self.center_seen.q.val() & !self.edge_now.val())
             | (self.edge_seen.q.val() & !self.center_seen.q.val())
@@ -268,6 +421,10 @@ impl Logic for LineDelay {
             if self.edge_error.q.val() == self.start_window_cycles.val() {
                 self.edge_outside.d.next = true;
             }
+        }
+        // How early the edge is that the middle is put upon cannot be known any more: two, say.
+        if self.snap.val() & !self.center_seen.q.val() & !self.center_strobe.q.val() {
+            self.edge_error.d.next = 2.into();
         }
         self.follow_now.d.next = self.follow.val() & self.edge_error.q.val().any();
         self.half.shorten.next = self.shorten.q.val();
@@ -288,6 +445,58 @@ impl Logic for LineDelay {
         if self.acquired.val() {
             self.delay.d.next = self.since_rise.q.val();
         }
+        if self.has_alignment.val() {
+            self.delay.d.next = 0.into();
+        }
+
+        // What the cell's edge says of the phase. In mode `frame` only the start bit does.
+        self.center_place.next = false;
+        self.distance.next = bit_cast::<8, 6>(self.edge_error.q.val());
+        if self.has_double.val() {
+            self.center_place.next = self.second.q.val() ^ self.period_cycles.val().get_bit(0);
+            self.distance.next = (bit_cast::<8, 6>(self.edge_error.q.val()) << 1)
+                + bit_cast::<8, 1>(self.center_place.val().into())
+                - bit_cast::<8, 1>(self.place_now.val().into());
+            if self.late_now.val() {
+                self.distance.next = (bit_cast::<8, 6>(self.edge_error.q.val()) << 1)
+                    + bit_cast::<8, 1>(self.place_now.val().into())
+                    + bit_cast::<8, 1>((!self.center_place.val()).into());
+            }
+        }
+        self.good_edge.next = self.has_alignment.val()
+            & self.sample_now.val()
+            & self.edge_now.val()
+            & !self.edge_outside.q.val()
+            & (self.follow.val() | (self.in_answer.val() & !self.is_frame.val()));
+        self.measured_now.d.next = self.good_edge.val();
+        self.offset_now.d.next = self.distance.val();
+        if !self.late_now.val() {
+            self.offset_now.d.next = !self.distance.val();
+        }
+        if !self.has_alignment.val() {
+            self.offset_now.d.next = 0.into();
+            self.edge_place.d.next = false;
+        }
+        for i in 0..self._trackers {
+            self.tracker[i].clock.next = self.clock.val();
+            self.tracker[i].reset.next = self.reset.val();
+            self.tracker[i].acquired.next = self.acquired.val();
+            self.tracker[i].measured_places.next =
+                bit_cast::<12, 11>(self.since_rise.q.val());
+            if self.has_double.val() {
+                self.tracker[i].measured_places.next =
+                    (bit_cast::<12, 11>(self.since_rise.q.val()) << 1)
+                        | bit_cast::<12, 1>(self.edge_second.val().into());
+            }
+            self.tracker[i].starts.next = self.first_center.val();
+            self.tracker[i].is_later.next = self.is_later.val();
+            self.tracker[i].edge_strobe.next = self.measured_now.q.val();
+            self.tracker[i].offset.next = self.offset_now.q.val();
+            self.tracker[i].acquire.next = self.acquire.val();
+            self.tracker[i].quick.next = self.slow.val() | self.is_frame.val();
+            self.tracker[i].is_fixed.next = self.mode.val() == self.fixed_mode.val();
+            self.tracker[i].fixed_delay.next = self.fixed_delay.val();
+        }
 
         // All cells of a burst have ended: the next rising edge begins a new one.
         self.over.next = !self.run.val() | (self.drain.val() & !self.pulses.q.val().any());
@@ -297,6 +506,7 @@ impl Logic for LineDelay {
             self.second_half.d.next = false;
             self.timing_armed.d.next = false;
             self.delay_over.d.next = false;
+            self.was_over.d.next = false;
             self.sample_strobe.d.next = false;
             self.center_strobe.d.next = false;
             self.pulses.d.next = 0.into();
@@ -304,14 +514,23 @@ impl Logic for LineDelay {
         self.not_yet.d.next = self.over.val() | (self.acquire.val() & !self.hunting.val());
         if self.sample_now.val() | self.not_yet.q.val() {
             self.center_seen.d.next = false;
-            self.edge_seen.d.next = false;
+            self.edge_seen.d.next =
+                self.next_cell.val() & self.data_edge.val() & !self.not_yet.q.val();
             self.edge_error.d.next = 0.into();
             self.edge_outside.d.next = false;
         }
         self.sample.next = self.sample_now.val();
         self.center.next = self.center_now.val();
-        self.edge_in_window.next = self.edge_now.val() & !self.edge_outside.q.val();
+        self.edge_in_window.next =
+            self.edge_now.val() & (!self.edge_outside.q.val() | self.is_frame.val());
         self.outstanding.next = self.pulses.q.val();
-        self.delay_cycles.next = self.delay.q.val();
+        self.sample_second.next = self.second.q.val();
+        self.delay_cycles.next = self.delay_now.val();
+        self.measured.next = self.measured_now.q.val();
+        self.offset.next = self.offset_now.q.val();
+        self.phase.next = 0.into();
+        for i in 0..self._trackers {
+            self.phase.next = self.tracker[i].phase.val();
+        }
     }
 }

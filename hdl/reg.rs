@@ -1,6 +1,7 @@
-//! The registers of the core: one flip-flop block with reset and start value, one for synchroniser stages.
+//! The registers of the core: one flip-flop block with reset and start value, one for synchroniser stages, and one for those that
+//! look at a pin in the middle of the clock cycle.
 //!
-//! rust-hdl's own `DFF` has no reset; every state bit of the core is one of these two blocks, so every register
+//! rust-hdl's own `DFF` has no reset; every state bit of the core is one of these blocks, so every register
 //! has a synchronous reset and a defined value at power-up, and elaboration knows a register when it sees one
 //! (by the name in [`Logic::timing`]).
 
@@ -10,6 +11,8 @@ use rust_hdl::prelude::*;
 pub const REG_TIMING: &str = "endat_reg";
 /// [`TimingInfo`] name by which elaboration recognises [`SyncReg`].
 pub const SYNC_REG_TIMING: &str = "endat_sync_reg";
+/// [`TimingInfo`] name by which elaboration recognises [`FallReg`].
+pub const FALL_REG_TIMING: &str = "endat_fall_reg";
 
 fn register_timing(name: &str) -> Vec<TimingInfo> {
     vec![TimingInfo {
@@ -21,7 +24,7 @@ fn register_timing(name: &str) -> Vec<TimingInfo> {
 }
 
 macro_rules! register_block {
-    ($(#[$doc:meta])* $name:ident, $timing:expr) => {
+    ($(#[$doc:meta])* $name:ident, $timing:expr, $edge:ident) => {
         $(#[$doc])*
         #[derive(Clone, Debug, LogicBlock)]
         pub struct $name<T: Synth> {
@@ -57,7 +60,7 @@ macro_rules! register_block {
 
         impl<T: Synth> Logic for $name<T> {
             fn update(&mut self) {
-                if self.clock.pos_edge() {
+                if self.clock.$edge() {
                     self.q.next = if self.reset.val() { self.start.val() } else { self.d.val() };
                 }
             }
@@ -74,10 +77,19 @@ macro_rules! register_block {
 register_block!(
     /// A register with synchronous reset and start value.
     Reg,
-    REG_TIMING
+    REG_TIMING,
+    pos_edge
 );
 register_block!(
     /// One stage of a synchroniser: like [`Reg`], but emitted with attributes that keep it a flip-flop of its own.
     SyncReg,
-    SYNC_REG_TIMING
+    SYNC_REG_TIMING,
+    pos_edge
+);
+register_block!(
+    /// A synchroniser stage that takes its value on the falling edge of the clock. What it reads must be a pin of the design,
+    /// and what reads it a synchroniser: everything else has whole cycles.
+    FallReg,
+    FALL_REG_TIMING,
+    neg_edge
 );

@@ -8,6 +8,10 @@ pub const ENDAT_HZ_MIN: u64 = 100_000;
 pub const ENDAT_HZ_MAX: u64 = 16_000_000;
 /// Clock of the frame that measures the propagation delay, in hertz: its period is longer than any cable's delay (TI, C2000).
 pub const CALIBRATION_HZ: u64 = 200_000;
+/// The same for cables whose delay comes near its period, in hertz: the slowest that there is.
+pub const LONG_CALIBRATION_HZ: u64 = ENDAT_HZ_MIN;
+/// Longest delay that is measured with a period of [`CALIBRATION_HZ`], in ns: what pins and filter add must fit in, too.
+pub const CALIBRATION_DELAY_MAX_NS: u64 = 4_000;
 /// Shortest start time tST that receivers offer, in ns (Renesas; PWM 20: 2 us).
 pub const TST_MIN_NS: u64 = 500;
 /// Start time tST that receivers use (TI: 2 us from 1 MHz up), in ns.
@@ -71,6 +75,14 @@ pub const fn cycles_at_most(ns: u64, system_hz: u64) -> u64 {
 /// Cycles of a `system_hz` clock in one period of `hz`, to the nearest cycle.
 pub const fn period_cycles(hz: u64, system_hz: u64) -> u64 {
     (system_hz + hz / 2) / hz
+}
+
+/// Period of the clock that measures a delay of at most `delay_ns`, in cycles of a `system_hz` clock.
+pub const fn calibration_period_cycles(delay_ns: u64, system_hz: u64) -> u64 {
+    match delay_ns > CALIBRATION_DELAY_MAX_NS {
+        true => period_cycles(LONG_CALIBRATION_HZ, system_hz),
+        false => period_cycles(CALIBRATION_HZ, system_hz),
+    }
 }
 
 /// The measured recovery time that is still taken for one of at least `ns`: a sixteenth less, for jitter and measuring.

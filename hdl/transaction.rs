@@ -61,6 +61,8 @@ pub struct Transaction {
     pub trigger: Signal<In, Bit>,
     /// Strobe: measure the propagation delay again with the next frame.
     pub calibrate: Signal<In, Bit>,
+    /// The delay comes from a register: no frame measures it.
+    pub is_fixed: Signal<In, Bit>,
     /// The data line.
     pub level: Signal<In, Bit>,
     /// Strobe: the data line is sampled.
@@ -149,6 +151,8 @@ pub struct Transaction {
     pub start_supplement: Signal<Out, Bit>,
     /// This frame measures the propagation delay.
     pub acquire: Signal<Out, Bit>,
+    /// This frame runs at the calibration clock.
+    pub slow: Signal<Out, Bit>,
     /// A trigger would not be taken.
     pub busy: Signal<Out, Bit>,
     /// Strobe: result of a trigger, `cause` and `flags` are valid.
@@ -178,6 +182,7 @@ pub struct Transaction {
     has_all: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
     has_continuous: Constant<Bit>,
+    has_alignment: Constant<Bit>,
     ready_low_cycles: Constant<Bits<16>>,
     abort_us: Constant<Bits<16>>,
     park_cycles: Constant<Bits<16>>,
@@ -211,6 +216,8 @@ pub struct Transaction {
     stop_now: Reg<Bit>,
     is_calibrated: Reg<Bit>,
     acquiring: Reg<Bit>,
+    slow_now: Reg<Bit>,
+    passes: Reg<Bits<2>>,
     stalled: Reg<Bit>,
     all_sent: Reg<Bit>,
     tail_sampled: Reg<Bit>,
@@ -247,6 +254,7 @@ pub struct Transaction {
     probed: Signal<Local, Bit>,
     endless: Signal<Local, Bit>,
     watched: Signal<Local, Bit>,
+    known: Signal<Local, Bit>,
     found_late: Signal<Local, Bit>,
     leave: Signal<Local, Bit>,
     lost: Signal<Local, Bit>,
@@ -287,7 +295,9 @@ impl Logic for Transaction {
             probing,
             settling,
             going,
-            leaving
+            leaving,
+            slow_now,
+            passes
         );
         clock!(self, clock, health, verdict);
         self.phase.reset.next = self.reset.val();
@@ -303,6 +313,8 @@ impl Logic for Transaction {
         self.hold.reset.next = self.reset.val();
         self.is_calibrated.reset.next = self.reset.val();
         self.acquiring.reset.next = self.reset.val();
+        self.slow_now.reset.next = self.reset.val();
+        self.passes.reset.next = self.reset.val();
         self.stalled.reset.next = self.reset.val();
         self.all_sent.reset.next = self.reset.val();
         self.tail_sampled.reset.next = self.reset.val();
@@ -490,6 +502,7 @@ impl Logic for Transaction {
                     self.phase.d.next = Phase::Recovery;
                     // From here on the full clock's times again: a short tm ends before half a slow period does.
                     self.acquiring.d.next = false;
+                    self.slow_now.d.next = false;
                 }
             }
             Phase::Recovery => {
@@ -623,8 +636,13 @@ impl Logic for Transaction {
         self.verdict.is_echo.next = self.is_echo.val();
         self.verdict.recovery_cycles.next = self.recovery.q.val();
         self.verdict.recovery_min_cycles.next = self.recovery_min_cycles.val();
+        // The mean over several frames, if it is taken; the last of them makes the delay known.
         if self.verdict.is_received.val() {
             self.is_calibrated.d.next = true;
+            if self.has_alignment.val() & self.slow_now.q.val() {
+                self.passes.d.next = self.passes.q.val() + 1;
+                self.is_calibrated.d.next = self.passes.q.val().all();
+            }
         }
         // A delay that is wrong by whole periods is not seen at the start edge.
         if self.verdict.is_doubtful.val() {
@@ -634,15 +652,19 @@ impl Logic for Transaction {
             & !self.going.q.val()
             & ((!self.accept.val() & !self.idle.val()) | (self.accept.val() & self.own.val()));
         self.verdict.lost.next = self.lost.val();
+        self.known.next = self.is_calibrated.q.val()
+            | (self.has_alignment.val() & self.is_fixed.val());
         if self.accept.val() {
             self.answered.d.next = false;
             self.in_supplement.d.next = false;
-            self.acquiring.d.next = !self.is_calibrated.q.val();
+            self.acquiring.d.next = !self.known.val()
+                & !(self.has_alignment.val() & self.passes.q.val().any());
+            self.slow_now.d.next = !self.known.val();
             self.tail_sampled.d.next = false;
             self.late.d.next = false;
             self.going.d.next = self.has_continuous.val()
                 & self.continuous.val()
-                & self.is_calibrated.q.val()
+                & self.known.val()
                 & !self.own.val();
         }
         // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
@@ -650,7 +672,7 @@ impl Logic for Transaction {
             & self.verdict.taken.val()
             & (!self.continuous.val()
                 | self.line_wanted.val()
-                | !self.is_calibrated.q.val()
+                | !self.known.val()
                 | (self.stop_at_error.val() & self.verdict.is_bad.val()));
         if self.leave.val() {
             self.phase.d.next = Phase::Abort;
@@ -667,6 +689,9 @@ impl Logic for Transaction {
         }
         if self.calibrate.val() {
             self.is_calibrated.d.next = false;
+        }
+        if self.calibrate.val() | self.verdict.gave_up.val() | self.verdict.is_doubtful.val() {
+            self.passes.d.next = 0.into();
         }
         self.run_now.d.next = self.running.val();
         self.run.next = self.run_now.q.val();
@@ -693,6 +718,7 @@ impl Logic for Transaction {
         // The high phase of the last pulse may last two cycles only.
         self.stop.next = self.stop_now.q.val() | self.sent.val();
         self.acquire.next = self.acquiring.q.val();
+        self.slow.next = self.slow_now.q.val();
         self.busy.next = !self.idle.val() | (self.begin_own.val() & self.has_all.val());
         self.publish.next = self.verdict.publish.val();
         self.good.next = self.verdict.good.val();
@@ -706,7 +732,7 @@ impl Logic for Transaction {
             | (self.phase.q.val() == Phase::Ready))
             & !self.verdict.is_telling.val();
         self.displaced.next = self.verdict.displaced.val();
-        self.calibrated.next = self.is_calibrated.q.val();
+        self.calibrated.next = self.known.val();
         self.recovery_cycles.next = self.recovery.q.val();
         self.probe.next = self.probing.q.val() & self.has_diagnosis.val();
         self.is_probed.next =

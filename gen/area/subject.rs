@@ -89,7 +89,7 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "channel_all",
             "position channel with all of what follows, without service",
-            Channel::with(times, Features::ALL),
+            Channel::with(times, Features::PROTOCOL),
         )?,
         Subject::new(
             "channel_requests",
@@ -107,11 +107,24 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             Channel::with(times, part(|f| f.continuous = true)),
         )?,
         Subject::new(
+            "channel_alignment",
+            "position channel with the three sources of its phase, and majority of three",
+            Channel::with(times, part(|f| f.alignment = true)),
+        )?,
+        Subject::new(
+            "channel_double_edge",
+            "the same with double edge",
+            Channel::with(
+                times,
+                part(|f| (f.alignment, f.double_edge) = (true, true)),
+            ),
+        )?,
+        Subject::new(
             "transaction",
             "order and time-outs",
             Transaction::new(times, Features::default()),
         )?,
-        Subject::new("line_delay", "propagation delay", LineDelay::default())?,
+        Subject::new("line_delay", "propagation delay", LineDelay::new(Features::NONE))?,
         Subject::new(
             "receiver",
             "receiver with both CRCs",

@@ -5,8 +5,8 @@ use super::module::ModulePrinter;
 use super::text::{comment, vector, INDENT};
 use endat_hdl::elaborate::{Memory, NetId, Register};
 
-/// Clock and reset, and the registers that have both.
-type Group<'a> = ((NetId, Option<NetId>), Vec<&'a Register>);
+/// Clock, its falling edge, and reset, and the registers that have all of them.
+type Group<'a> = ((NetId, bool, Option<NetId>), Vec<&'a Register>);
 
 impl ModulePrinter<'_> {
     pub fn start(&mut self, register: &Register) -> String {
@@ -23,17 +23,18 @@ impl ModulePrinter<'_> {
     pub fn registers(&mut self) -> String {
         let mut groups: Vec<Group> = vec![];
         for register in &self.module.registers {
-            let key = (register.clock, register.reset);
+            let key = (register.clock, register.on_fall, register.reset);
             match groups.iter_mut().find(|(k, _)| *k == key) {
                 Some((_, group)) => group.push(register),
                 None => groups.push((key, vec![register])),
             }
         }
         let mut out = String::new();
-        for ((clock, reset), group) in groups {
+        for ((clock, on_fall, reset), group) in groups {
             let name = |net: NetId| &self.module.nets[net].name;
             let (pad, deep) = (INDENT.repeat(2), INDENT.repeat(3));
-            let head = format!("\n{INDENT}always @(posedge {}) begin\n", name(clock));
+            let edge = if on_fall { "negedge" } else { "posedge" };
+            let head = format!("\n{INDENT}always @({edge} {}) begin\n", name(clock));
             let reset = reset.map(|net| name(net).clone());
             let body = match reset {
                 None => self.next_values(&group, &pad),

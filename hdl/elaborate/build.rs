@@ -8,7 +8,7 @@ use super::scope::{drop_replaced, Scope, Symbol};
 use super::tree::{AtomNode, BlockNode};
 use super::{docs, ElaborateError};
 use crate::memory::{MEMORY_TIMING, ROM_TIMING};
-use crate::reg::{REG_TIMING, SYNC_REG_TIMING};
+use crate::reg::{FALL_REG_TIMING, REG_TIMING, SYNC_REG_TIMING};
 use rust_hdl::prelude::{clog2, AtomKind, TypeDescriptor, TypeKind, Verilog};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -35,16 +35,18 @@ struct Builder {
 
 /// What a child block is.
 enum Kind {
-    Register { is_synchroniser: bool },
+    Register { is_synchroniser: bool, on_fall: bool },
     Memory { is_read_only: bool },
     Block,
 }
 
 fn kind(child: &BlockNode) -> Kind {
     let is = |name: &str| child.timing.iter().any(|t| t.name == name);
-    if is(REG_TIMING) || is(SYNC_REG_TIMING) {
+    let on_fall = is(FALL_REG_TIMING);
+    if is(REG_TIMING) || is(SYNC_REG_TIMING) || on_fall {
         Kind::Register {
-            is_synchroniser: is(SYNC_REG_TIMING),
+            is_synchroniser: is(SYNC_REG_TIMING) || on_fall,
+            on_fall,
         }
     } else if is(MEMORY_TIMING) || is(ROM_TIMING) {
         Kind::Memory {
@@ -68,8 +70,11 @@ impl Builder {
         let mut children = vec![];
         for child in &block.children {
             match kind(child) {
-                Kind::Register { is_synchroniser } => {
-                    self.register(&mut draft, child, is_synchroniser)?
+                Kind::Register {
+                    is_synchroniser,
+                    on_fall,
+                } => {
+                    self.register(&mut draft, child, is_synchroniser, on_fall)?
                 }
                 Kind::Memory { is_read_only } => draft.memory(child, is_read_only)?,
                 Kind::Block => {
@@ -261,6 +266,7 @@ impl Builder {
         draft: &mut Draft,
         child: &BlockNode,
         is_synchroniser: bool,
+        on_fall: bool,
     ) -> Result<()> {
         let (Some(d), Some(start)) = (child.atom("d"), child.atom("start")) else {
             return Err(child.error(
@@ -293,6 +299,7 @@ impl Builder {
             reset: Some(reset),
             start: start.value,
             is_synchroniser,
+            on_fall,
         });
         Ok(())
     }

@@ -124,7 +124,7 @@ pub struct Parameter {
     pub docs: Vec<String>,
 }
 
-/// A register: on each rising edge of `clock`, `q` takes `start` if `reset` is high, else `next`.
+/// A register: on each rising (or falling) edge of `clock`, `q` takes `start` if `reset` is high, else `next`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Register {
     /// Present value.
@@ -139,6 +139,8 @@ pub struct Register {
     pub start: u128,
     /// Whether it is a synchroniser stage, to be kept a flip-flop of its own.
     pub is_synchroniser: bool,
+    /// Whether it works on the falling edge.
+    pub on_fall: bool,
 }
 
 /// A child module in its place.

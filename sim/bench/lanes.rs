@@ -5,7 +5,7 @@
 use super::pins::{find, Pins, TimeBase};
 use super::record::ResultPorts;
 use super::sampler::Sampler;
-use super::{edge_time, is_tick_us, ChannelResult, ChannelSettings, Link, PinNames};
+use super::{edge_time, half_time, is_tick_us, ChannelResult, ChannelSettings, Link, PinNames};
 use crate::{
     encoder::Drive,
     engine::{Lanes, PortId},
@@ -39,6 +39,7 @@ pub struct LaneBench {
     delivered: Vec<Vec<ChannelResult>>,
     delivered_count: usize,
     keeps_samples: bool,
+    is_double: bool,
 }
 
 /// The numbers of the bits that are set.
@@ -83,6 +84,7 @@ impl LaneBench {
             delivered_count: 0,
             engine,
             keeps_samples: false,
+            is_double: false,
         }
     }
 
@@ -101,13 +103,18 @@ impl LaneBench {
         self.engine.set_all(id, value);
     }
 
-    /// From now on every sample of DATA is looked up. The level is that of so many cycles before the strobe's, lane by lane
+    /// The designs look at DATA on both edges of their clock.
+    pub fn set_double_edge(&mut self) {
+        self.is_double = true;
+    }
+
+    /// From now on every sample of DATA is looked up. The level is that of so many half cycles before the strobe's, lane by lane
     /// (synchroniser and filter).
-    pub fn keep_samples(&mut self, latency_cycles: impl Fn(usize) -> u64) {
+    pub fn keep_samples(&mut self, latency_halves: impl Fn(usize) -> u64) {
         self.keeps_samples = true;
         for port in &mut self.ports {
             for (lane, sampler) in port.samplers.iter_mut().enumerate() {
-                sampler.latency_cycles = latency_cycles(lane);
+                sampler.latency_halves = latency_halves(lane);
             }
         }
     }
@@ -176,6 +183,13 @@ impl LaneBench {
             let tick = is_tick_us(self.cycle, self.system_hz);
             self.engine.set_all(id, u128::from(tick));
         }
+        if self.is_double {
+            let middle = half_time(2 * self.cycle - 1, self.system_hz);
+            for port in &mut self.ports {
+                port.advance(&mut self.engine, middle);
+            }
+            self.engine.fall();
+        }
         for port in &mut self.ports {
             port.advance(&mut self.engine, now);
         }
@@ -183,7 +197,12 @@ impl LaneBench {
         for port in &mut self.ports {
             port.take_pins(&mut self.engine, now);
             if self.keeps_samples {
-                port.take_samples(&mut self.engine, self.cycle, self.system_hz);
+                port.take_samples(
+                    &mut self.engine,
+                    self.cycle,
+                    self.system_hz,
+                    self.is_double,
+                );
             }
         }
         self.note_results(now);
@@ -276,14 +295,16 @@ impl Port {
         }
     }
 
-    fn take_samples(&mut self, engine: &mut Lanes, cycle: u64, system_hz: u64) {
+    fn take_samples(&mut self, engine: &mut Lanes, cycle: u64, system_hz: u64, is_double: bool) {
         let Some(strobe) = self.ids.sample_strobe else {
             return;
         };
         for part in 0..self.data.len() {
+            let second = self.ids.sample_second.filter(|_| is_double);
+            let second = second.map_or(u64::MAX, |id| engine.word(id, 0, part));
             for lane in bits(engine.word(strobe, 0, part)).map(|bit| 64 * part + bit) {
                 let sampler = &mut self.samplers[lane];
-                sampler.strobe(cycle, system_hz);
+                sampler.strobe(cycle, system_hz, second >> (lane % 64) & 1 == 0);
                 sampler.look_up(&mut self.links[lane], edge_time(cycle, system_hz));
             }
         }

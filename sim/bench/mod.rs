@@ -45,6 +45,15 @@ struct Port {
 /// Cycles for which the bench holds reset, and a trigger pin.
 const PULSE_CYCLES: u64 = 8;
 
+/// When a half cycle of a clock ends: the edges are the even ones.
+fn half_time(half: u64, hz: u64) -> Time {
+    let after = edge_time(half.div_ceil(2), hz);
+    match half % 2 {
+        0 => after,
+        _ => (edge_time(half / 2, hz) + after) / 2,
+    }
+}
+
 /// When an edge of a clock is, rounded to the picosecond.
 fn edge_time(cycle: u64, hz: u64) -> Time {
     let hz = u128::from(hz);
@@ -70,6 +79,7 @@ pub struct Bench<E> {
     result_ports: Option<ResultPorts>,
     watched: Vec<Watched>,
     cycles: Option<Cycles>,
+    is_double: bool,
 }
 
 impl<E: Engine> Bench<E> {
@@ -100,7 +110,13 @@ impl<E: Engine> Bench<E> {
             result_ports,
             watched: Vec::new(),
             cycles: None,
+            is_double: false,
         }
+    }
+
+    /// The design looks at DATA on both edges of its clock.
+    pub fn set_double_edge(&mut self) {
+        self.is_double = true;
     }
 
     /// A bench for the block `Channel` with one link, configured and reset.
@@ -133,8 +149,13 @@ impl<E: Engine> Bench<E> {
 
     /// Sets how many cycles before the strobe's the sampled level was at the pin (synchroniser and filter).
     pub fn set_sample_latency(&mut self, cycles: u64) {
+        self.set_sample_latency_halves(2 * cycles);
+    }
+
+    /// The same in half cycles.
+    pub fn set_sample_latency_halves(&mut self, halves: u64) {
         for port in &mut self.ports {
-            port.sampler.latency_cycles = cycles;
+            port.sampler.latency_halves = halves;
         }
     }
 
@@ -267,18 +288,14 @@ impl<E: Engine> Bench<E> {
         self.cycle += 1;
         let now = self.now();
         self.drive_base();
-        for port in &mut self.ports {
-            if port.due <= now {
-                port.link.advance_to(now);
-                port.due = port.link.next_event();
-                port.sampler.look_up(&mut port.link, now);
+        if self.is_double {
+            self.drive_data(half_time(2 * self.cycle - 1, self.system_hz));
+            if let Some(cycles) = &mut self.cycles {
+                cycles.note_middle(&mut self.engine);
             }
-            let data = port.link.data();
-            if port.data != Some(data) {
-                port.data = Some(data);
-                self.engine.set(port.ids.data_i, u128::from(data));
-            }
+            self.engine.fall();
         }
+        self.drive_data(now);
         if let Some(cycles) = &mut self.cycles {
             cycles.note(&mut self.engine);
         }
@@ -297,6 +314,22 @@ impl<E: Engine> Bench<E> {
             }
         }
         self.note_outputs(now);
+    }
+
+    /// Lets everything on the links happen up to now, and drives DATA into the design.
+    fn drive_data(&mut self, now: Time) {
+        for port in &mut self.ports {
+            if port.due <= now {
+                port.link.advance_to(now);
+                port.due = port.link.next_event();
+                port.sampler.look_up(&mut port.link, now);
+            }
+            let data = port.link.data();
+            if port.data != Some(data) {
+                port.data = Some(data);
+                self.engine.set(port.ids.data_i, u128::from(data));
+            }
+        }
     }
 
     /// Runs `cycles` cycles.
@@ -377,7 +410,10 @@ impl<E: Engine> Bench<E> {
         for port in &mut self.ports {
             if let Some(strobe) = port.ids.sample_strobe {
                 if self.engine.get(strobe) != 0 {
-                    port.sampler.strobe(self.cycle, self.system_hz);
+                    let second = port.ids.sample_second;
+                    let is_first = self.is_double
+                        && second.is_some_and(|id| self.engine.get(id) == 0);
+                    port.sampler.strobe(self.cycle, self.system_hz, is_first);
                 }
             }
             if port.sampler.is_open() {

@@ -15,6 +15,8 @@ pub struct PinNames {
     pub data_i: String,
     /// HIGH in the cycle after which the design takes a sample of DATA. Not every design has it.
     pub sample_strobe: String,
+    /// With that: the sample is the one at the clock edge, not half a cycle before. Only designs with double edge need it.
+    pub sample_second: String,
 }
 
 impl PinNames {
@@ -26,6 +28,7 @@ impl PinNames {
             data_oe: "data_oe".into(),
             data_i: "data_i".into(),
             sample_strobe: "sample_strobe".into(),
+            sample_second: "sample_second".into(),
         }
     }
 
@@ -37,6 +40,7 @@ impl PinNames {
             data_oe: format!("endat_data{n}_oe"),
             data_i: format!("endat_data{n}_i"),
             sample_strobe: format!("sample_strobe{n}"),
+            sample_second: format!("sample_second{n}"),
         }
     }
 }
@@ -53,6 +57,7 @@ pub(super) struct Pins {
     pub(super) data_oe: PortId,
     pub(super) data_i: PortId,
     pub(super) sample_strobe: Option<PortId>,
+    pub(super) sample_second: Option<PortId>,
 }
 
 impl Pins {
@@ -68,6 +73,7 @@ impl Pins {
             data_oe: pin(&names.data_oe),
             data_i: pin(&names.data_i),
             sample_strobe: find(ports, &names.sample_strobe),
+            sample_second: find(ports, &names.sample_second),
         }
     }
 }

@@ -191,6 +191,8 @@ pub struct Cycles {
     pub ports: Vec<Port>,
     /// One row for each cycle.
     pub rows: Vec<Vec<u128>>,
+    /// One row for each cycle of the values in its middle, just before the falling edge; empty if that edge means nothing.
+    pub middle: Vec<Vec<u128>>,
 }
 
 impl Cycles {
@@ -198,13 +200,22 @@ impl Cycles {
         Self {
             ports: ports.to_vec(),
             rows: Vec::new(),
+            middle: Vec::new(),
         }
     }
 
     pub(super) fn note(&mut self, engine: &mut impl Engine) {
-        let row = (0..self.ports.len())
-            .map(|i| engine.get(PortId(i)))
-            .collect();
+        let row = self.row(engine);
         self.rows.push(row);
+    }
+
+    pub(super) fn note_middle(&mut self, engine: &mut impl Engine) {
+        let row = self.row(engine);
+        self.middle.push(row);
+    }
+
+    fn row(&self, engine: &mut impl Engine) -> Vec<u128> {
+        let ports = (0..self.ports.len()).map(PortId);
+        ports.map(|port| engine.get(port)).collect()
     }
 }

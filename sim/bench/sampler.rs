@@ -1,6 +1,6 @@
 //! What was on DATA at the moments at which a design sampled it.
 
-use super::{edge_time, Link};
+use super::{half_time, Link};
 use crate::{line::Sample, Time, US};
 
 /// A sample is looked up when the line has gone on for this long, so that the next change is known.
@@ -9,8 +9,8 @@ const SETTLES: Time = 20 * US;
 /// Keeps the samples of one link.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sampler {
-    /// How many cycles before the strobe's the sampled level was at the pin.
-    pub latency_cycles: u64,
+    /// How many half cycles before the strobe's the sampled level was at the pin.
+    pub latency_halves: u64,
     /// Moments at which DATA was sampled, not yet looked up in the line's history.
     open: Vec<Time>,
     /// The samples that have been looked up.
@@ -18,10 +18,10 @@ pub(super) struct Sampler {
 }
 
 impl Sampler {
-    /// Notes that the design takes a sample in this cycle.
-    pub fn strobe(&mut self, cycle: u64, system_hz: u64) {
-        let pin_cycle = cycle.saturating_sub(self.latency_cycles);
-        self.open.push(edge_time(pin_cycle, system_hz));
+    /// Notes that the design takes a sample in this cycle; `is_first`: the one half a cycle before.
+    pub fn strobe(&mut self, cycle: u64, system_hz: u64, is_first: bool) {
+        let pin = (2 * cycle).saturating_sub(self.latency_halves + u64::from(is_first));
+        self.open.push(half_time(pin, system_hz));
     }
 
     /// Whether samples wait to be looked up.

@@ -18,6 +18,12 @@ pub struct ChannelSettings {
     pub position_bits: u32,
     /// DATA must keep its level this long to be believed; 0 = no filter.
     pub filter_cycles: u64,
+    /// Where the phase comes from, see [`endat_hdl::line_delay::mode`].
+    pub phase_mode: u64,
+    /// The delay in mode `fixed`, in sixteenths of a cycle.
+    pub fixed_delay: u64,
+    /// Each sample is the majority of itself and its neighbours.
+    pub majority: bool,
     /// The start edge may be this much before or after its expected phase.
     pub start_window_cycles: u64,
     /// Longest wait for the start bit, from the end of the turnaround.
@@ -47,6 +53,9 @@ impl ChannelSettings {
             command: command.code(),
             position_bits,
             filter_cycles: 0,
+            phase_mode: 0,
+            fixed_delay: 0,
+            majority: false,
             start_window_cycles: (period_cycles / 4).clamp(1, 63),
             start_timeout_us: 50,
             recovery_limit_cycles: timing::cycles_at_least(
@@ -66,13 +75,16 @@ impl ChannelSettings {
     }
 
     /// Every configuration port with its value.
-    pub fn ports(&self) -> [(&'static str, u128); 10] {
+    pub fn ports(&self) -> [(&'static str, u128); 13] {
         [
             ("period_cycles", self.period_cycles),
             ("first_low_extra_cycles", self.first_low_extra_cycles),
             ("command", u64::from(self.command)),
             ("position_bits", u64::from(self.position_bits)),
             ("filter_cycles", self.filter_cycles),
+            ("phase_mode", self.phase_mode),
+            ("fixed_delay", self.fixed_delay),
+            ("majority", u64::from(self.majority)),
             ("start_window_cycles", self.start_window_cycles),
             ("start_timeout_us", self.start_timeout_us),
             ("recovery_limit_cycles", self.recovery_limit_cycles),

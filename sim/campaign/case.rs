@@ -9,9 +9,11 @@ use crate::{
     Time, MS,
 };
 use endat_hdl::{
-    channel::{Channel, FixedTimes},
+    channel::{Channel, Features, FixedTimes, CALIBRATION_FRAMES},
     elaborate::{elaborate, Design, ElaborateError},
+    line_delay::mode,
     protocol::ModeCommand,
+    timing,
     transaction::cause,
 };
 use rust_hdl::prelude::Block;
@@ -31,6 +33,8 @@ pub struct Case {
     pub title: String,
     /// System clock in hertz.
     pub system_hz: u64,
+    /// What the channel has.
+    pub features: Features,
     /// Configuration of the channel.
     pub settings: ChannelSettings,
     /// The encoder.
@@ -45,6 +49,8 @@ pub struct Case {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct DesignKey {
     pub system_hz: u64,
+    pub features: Features,
+    calibration_period_cycles: u64,
     abort_us: u64,
     ready_low_cycles: u64,
 }
@@ -52,11 +58,13 @@ pub(super) struct DesignKey {
 impl DesignKey {
     /// The channel with these times.
     pub fn design(&self) -> Result<Design, ElaborateError> {
-        let mut block = Channel::new(FixedTimes {
+        let times = FixedTimes {
             abort_us: self.abort_us,
             ready_low_cycles: self.ready_low_cycles,
+            calibration_period_cycles: self.calibration_period_cycles,
             ..FixedTimes::at(self.system_hz)
-        });
+        };
+        let mut block = Channel::with(times, self.features);
         block.connect_all();
         elaborate(&block, "channel")
     }
@@ -94,6 +102,11 @@ impl Case {
     pub(super) fn key(&self) -> DesignKey {
         DesignKey {
             system_hz: self.system_hz,
+            features: self.features,
+            calibration_period_cycles: timing::calibration_period_cycles(
+                self.line.delay_most_ns(),
+                self.system_hz,
+            ),
             abort_us: self.settings.abort_us,
             ready_low_cycles: self.settings.ready_low_cycles,
         }
@@ -111,8 +124,23 @@ impl Case {
         Link::new(self.line.clone(), self.encoder.clone())
     }
 
-    pub(super) fn latency_cycles(&self) -> u64 {
-        SAMPLE_LATENCY_CYCLES + self.settings.filter_cycles
+    /// From the pin to the register that takes a sample, in half cycles.
+    pub(super) fn latency_halves(&self) -> u64 {
+        let majority = match (self.settings.majority, self.features.double_edge) {
+            (false, _) => 0,
+            (true, false) => 2,
+            (true, true) => 1,
+        };
+        2 * (SAMPLE_LATENCY_CYCLES + self.settings.filter_cycles) + majority
+    }
+
+    /// Frames at the calibration clock, with which a channel begins.
+    pub fn calibration_frames(&self) -> usize {
+        match self.features.alignment {
+            true if self.settings.phase_mode == mode::FIXED => 0,
+            true => CALIBRATION_FRAMES,
+            false => 1,
+        }
     }
 
     /// The longest that the case may take, in system clock cycles.
@@ -131,7 +159,10 @@ impl Case {
     pub fn run_alone<E: Engine>(&self, engine: E, is_recorded: bool) -> Bench<E> {
         let pins = crate::bench::PinNames::channel();
         let mut bench = Bench::new(engine, self.system_hz, vec![(pins, self.link())]);
-        bench.set_sample_latency(self.latency_cycles());
+        bench.set_sample_latency_halves(self.latency_halves());
+        if self.features.double_edge {
+            bench.set_double_edge();
+        }
         if is_recorded {
             bench.record_links();
             for name in crate::scenario::WATCHED {

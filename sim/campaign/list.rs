@@ -9,6 +9,7 @@ use crate::{
     Time, NS, US,
 };
 use endat_hdl::{
+    channel::Features,
     protocol::{ModeCommand, POSITION_BITS},
     timing,
 };
@@ -57,6 +58,7 @@ impl Case {
                 endat_hz as f64 / 1e6
             ),
             system_hz,
+            features: Features::NONE,
             settings,
             encoder,
             line: LineConfig::cable(cable_m),

@@ -152,7 +152,10 @@ fn run_batch<V>(
     let pins = (PinNames::channel(), links.collect());
     let mut bench = LaneBench::new(engine, batch.key.system_hz, vec![pins]);
     if options.samples {
-        bench.keep_samples(|lane| case_of(lane).latency_cycles());
+        bench.keep_samples(|lane| case_of(lane).latency_halves());
+    }
+    if batch.key.features.double_edge {
+        bench.set_double_edge();
     }
     for lane in 0..bench.lanes() {
         bench.configure(lane, &case_of(lane).settings);

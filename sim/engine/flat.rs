@@ -15,6 +15,13 @@ pub(super) struct FlatRegister {
     pub start: u128,
 }
 
+/// A register on the falling edge, without reset: to all others it is an input that changes in the middle of the cycle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Falling {
+    pub q: usize,
+    pub next: usize,
+}
+
 /// A memory; see [`endat_hdl::elaborate::Memory`].
 #[derive(Clone, Debug)]
 pub(super) struct FlatMemory {
@@ -84,6 +91,8 @@ pub(super) struct Flat {
     /// In an order in which each reads only what earlier ones drive.
     pub processes: Vec<FlatProcess>,
     pub registers: Vec<FlatRegister>,
+    /// Registers on the falling edge.
+    pub falling: Vec<Falling>,
     pub memories: Vec<FlatMemory>,
     /// All ports but the clocks.
     pub ports: Vec<Port>,
@@ -102,6 +111,7 @@ impl Flat {
             nets: vec![],
             processes: vec![],
             registers: vec![],
+            falling: vec![],
             clocks: vec![],
             memories: vec![],
         };
@@ -127,6 +137,7 @@ impl Flat {
             nets: builder.nets,
             processes,
             registers: builder.registers,
+            falling: builder.falling,
             memories: builder.memories,
         })
     }
@@ -138,6 +149,7 @@ struct Builder<'a> {
     nets: Vec<FlatNet>,
     processes: Vec<FlatProcess>,
     registers: Vec<FlatRegister>,
+    falling: Vec<Falling>,
     /// Output and clock of each register and memory.
     clocks: Vec<(usize, usize)>,
     memories: Vec<FlatMemory>,
@@ -168,9 +180,14 @@ impl Builder<'_> {
         }
         for register in &module.registers {
             self.clocks.push((nets[register.q], nets[register.clock]));
+            let (q, next) = (nets[register.q], nets[register.next]);
+            if register.on_fall {
+                self.falling.push(Falling { q, next });
+                continue;
+            }
             self.registers.push(FlatRegister {
-                q: nets[register.q],
-                next: nets[register.next],
+                q,
+                next,
                 reset: register.reset.map(|net| nets[net]),
                 start: register.start,
             });

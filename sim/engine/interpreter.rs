@@ -3,7 +3,7 @@
 //! The hierarchy is flattened once, processes are put into an order in which each reads only what is already
 //! settled, and every statement becomes a few operations on numbered values.
 
-use super::flat::{Flat, FlatMemory, FlatRegister};
+use super::flat::{Falling, Flat, FlatMemory, FlatRegister};
 use super::program::{Compiler, Program};
 use super::{Engine, EngineError, Port, PortId};
 use endat_hdl::elaborate::{mask, Design};
@@ -18,6 +18,8 @@ pub struct Interpreter {
     values: Vec<u128>,
     program: Arc<Program>,
     registers: Arc<[FlatRegister]>,
+    falling: Arc<[Falling]>,
+    has_fallen: bool,
     /// New register contents, while a clock edge is computed.
     next: Vec<u128>,
     memories: Vec<Memory>,
@@ -69,6 +71,8 @@ impl Interpreter {
             stale: program.all_stale(),
             program: program.into(),
             registers: flat.registers.into(),
+            falling: flat.falling.into(),
+            has_fallen: false,
             memories: flat.memories.into_iter().map(memory).collect(),
             names: flat.nets.into_iter().map(|n| n.name).collect(),
             is_settled: false,
@@ -114,7 +118,23 @@ impl Engine for Interpreter {
         self.values[self.port_values[port.0]]
     }
 
+    fn fall(&mut self) {
+        self.has_fallen = true;
+        self.settle();
+        for Falling { q, next } in self.falling.clone().iter() {
+            if self.values[*q] != self.values[*next] {
+                self.values[*q] = self.values[*next];
+                self.program.changed(*q, &mut self.stale);
+                self.is_settled = false;
+            }
+        }
+    }
+
     fn tick(&mut self) {
+        if !std::mem::take(&mut self.has_fallen) {
+            self.fall();
+            self.has_fallen = false;
+        }
         self.settle();
         let values = &mut self.values;
         for (next, register) in self.next.iter_mut().zip(&*self.registers) {

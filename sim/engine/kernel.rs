@@ -182,10 +182,17 @@ impl<B: Block> Engine for KernelEngine<B> {
         (self.access[port.0])(&mut self.block).get()
     }
 
+    fn fall(&mut self) {
+        self.settle();
+        self.set_clock(false);
+    }
+
     fn tick(&mut self) {
         self.settle();
+        if (self.clock)(&mut self.block).val().clk {
+            self.set_clock(false);
+        }
         self.set_clock(true);
-        self.set_clock(false);
     }
 }
 

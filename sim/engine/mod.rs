@@ -52,7 +52,8 @@ pub struct Port {
 
 /// Something that executes a design cycle by cycle: rust-hdl's kernels, or one of the engines for a `Design`.
 ///
-/// A cycle is: set inputs, (optionally) read outputs, [`Engine::tick`]. Registers start at their power-up values.
+/// A cycle is: set inputs, (optionally) read outputs, [`Engine::tick`]; or, for a design that looks at a pin twice in a cycle, set
+/// inputs, [`Engine::fall`], set inputs again, [`Engine::tick`]. Registers start at their power-up values.
 pub trait Engine {
     /// Every port but the clock, in declaration order.
     fn ports(&self) -> &[Port];
@@ -60,6 +61,10 @@ pub trait Engine {
     fn set(&mut self, port: PortId, value: u128);
     /// The settled value of a port, with the present inputs and register contents.
     fn get(&mut self, port: PortId) -> u128;
+    /// One falling edge of the clock, in the middle of a cycle: registers that work on it take what stands at their inputs.
+    ///
+    /// Without a call, [`Engine::tick`] does it first: then inputs change with the rising edge only.
+    fn fall(&mut self);
     /// One rising edge of the clock.
     fn tick(&mut self);
 

@@ -125,6 +125,9 @@ pub struct LineConfig {
     pub seed: u64,
 }
 
+/// Longest delay from clock edge to DATA edge in an encoder that a receiver allows for, and what is on top of it.
+const ENCODER_DELAY_MAX: Time = 200 * NS;
+
 impl LineConfig {
     /// A sound cable of `cable_m` metres with ordinary transceivers.
     pub fn cable(cable_m: f64) -> Self {
@@ -159,6 +162,11 @@ impl LineConfig {
     /// One-way delay of the cable alone.
     pub fn flight(&self) -> Time {
         (self.cable_m * self.ns_per_m * NS as f64).round() as Time
+    }
+
+    /// The longest delay tD that a receiver must take for possible behind this line, in nanoseconds.
+    pub fn delay_most_ns(&self) -> u64 {
+        (self.round_trip() + ENCODER_DELAY_MAX).div_ceil(NS)
     }
 
     /// CLOCK edge at the receiver's pin to the DATA edge it causes, there, without the encoder's own delay (part of tD).

@@ -132,7 +132,9 @@ impl Conditions {
         let rates = (self.system_hz, clock_hz);
         let cable_m = self.get(Quantity::Cable);
         let mut case = Case::new(rates, self.command, self.position_bits, cable_m);
-        case.frames = frames;
+        case.features.alignment = true;
+        case.frames = case.calibration_frames() + frames;
+        case.settings.start_window_cycles = ((case.settings.period_cycles - 1) / 2).clamp(1, 63);
         case.settings.filter_cycles = self.get(Quantity::Filter).round() as u64;
         case.encoder.clock_to_data = time(Quantity::Delay) as Time;
         case.encoder.seed = seed;

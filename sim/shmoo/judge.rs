@@ -115,19 +115,24 @@ impl Tally {
     }
 }
 
-/// Counts the frames of a case, but for the one that measures the delay: that one has a clock of its own.
+/// Counts the frames of a case, but for those that measure the delay: they have a clock of their own.
 pub(super) fn judge(case: &Case, traces: &Traces<'_>) -> Tally {
     let mut tally = Tally::default();
-    for (before, result) in traces.results.iter().zip(traces.results.iter().skip(1)) {
+    let first = case.calibration_frames();
+    for (index, result) in traces.results.iter().enumerate().skip(first) {
+        let before = index.checked_sub(1).map_or(0, |i| traces.results[i].time);
         let frames = traces.frames.iter();
-        let frames = frames.filter(|f| (before.time..result.time).contains(&f.first_fall));
+        let frames = frames.filter(|f| (before..result.time).contains(&f.first_fall));
         tally.counts[fate(result, frames) as usize] += 1;
     }
     // Results that never came.
-    let missing = case.frames.saturating_sub(traces.results.len().max(1));
+    let missing = case.frames.saturating_sub(traces.results.len().max(first));
     tally.counts[Fate::Refused as usize] += missing;
     let period = (case.settings.period_cycles * 1_000_000 * US) as f64 / case.system_hz as f64;
-    let from = traces.results.first().map_or(Time::MAX, |r| r.time);
+    let from = match first.checked_sub(1) {
+        Some(last) => traces.results.get(last).map_or(Time::MAX, |r| r.time),
+        None => 0,
+    };
     let distance = |s: &Sample| Some(s.since.min(s.until?));
     let bits = (traces.samples.iter()).filter(|s| s.time > from && s.answer_bit().is_some());
     let narrowest = bits.filter_map(distance).min();

@@ -69,7 +69,7 @@ impl Plan {
         for conditions in self.conditions() {
             for _ in 0..self.runs {
                 let seed = self.seed.wrapping_mul(0x9E37_79B9) + cases.len() as u64;
-                cases.push(conditions.case(1 + self.frames, seed));
+                cases.push(conditions.case(self.frames, seed));
             }
         }
         cases

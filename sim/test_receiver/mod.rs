@@ -403,6 +403,8 @@ impl Engine for TestReceiver {
         self.values[port.0]
     }
 
+    fn fall(&mut self) {}
+
     fn tick(&mut self) {
         self.cycle += 1;
         self.put("result_strobe", 0);

@@ -49,7 +49,7 @@ fn a_channel_agrees() {
 
 #[test]
 fn a_channel_with_all_features_agrees() {
-    channel_agrees("channel_all", Features::ALL);
+    channel_agrees("channel_all", Features::PROTOCOL);
 }
 
 fn channel_agrees(name: &str, features: Features) {

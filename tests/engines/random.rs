@@ -208,6 +208,7 @@ fn design(seed: u64) -> Design {
             reset: m.pick(&[None, Some(reset)]),
             start: m.number() & endat_hdl::elaborate::mask(width),
             is_synchroniser: false,
+            on_fall: false,
         };
         m.module.registers.push(register);
     }

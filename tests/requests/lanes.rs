@@ -43,7 +43,7 @@ pub fn design() -> Design {
         frame_us: FRAME_US,
         ..FixedTimes::at(SYSTEM_HZ)
     };
-    let mut block = Channel::with(fixed, Features::ALL);
+    let mut block = Channel::with(fixed, Features::PROTOCOL);
     block.connect_all();
     elaborate(&block, "channel").expect("the channel elaborates")
 }

@@ -40,7 +40,7 @@ fn engine(system_hz: u64) -> Compiled {
         .lock()
         .unwrap_or_else(PoisonError::into_inner);
     let make = || {
-        let mut block = Channel::with(fixed_times(system_hz), Features::ALL);
+        let mut block = Channel::with(fixed_times(system_hz), Features::PROTOCOL);
         block.connect_all();
         let design = elaborate(&block, "channel").expect("the channel elaborates");
         Compiled::new(&design).expect("the channel has no loop")

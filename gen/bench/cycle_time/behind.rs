@@ -89,7 +89,7 @@ impl Behind {
         if self == Self::NOTHING {
             return case.design();
         }
-        let mut block = Channel::with(FixedTimes::at(case.system_hz), Features::ALL);
+        let mut block = Channel::with(FixedTimes::at(case.system_hz), Features::PROTOCOL);
         block.connect_all();
         elaborate(&block, "channel")
     }

@@ -5,6 +5,7 @@ pub(in crate::engine) mod native;
 mod portable;
 mod words;
 
+use super::flat::Falling;
 use super::form::{Form, Keep, Place};
 use super::{Engine, EngineError, Instruments, Port, PortId};
 use endat_hdl::elaborate::{mask, Design, WritePort};
@@ -31,6 +32,7 @@ pub struct Compiled {
     state: Vec<u64>,
     memories: Vec<Vec<u128>>,
     is_settled: bool,
+    has_fallen: bool,
 }
 
 /// Everything that a running design remembers.
@@ -115,6 +117,7 @@ impl Compiled {
             fallback,
             state,
             is_settled: false,
+            has_fallen: false,
         }
     }
 
@@ -300,7 +303,20 @@ impl Engine for Compiled {
         self.peek(net).unwrap_or(0)
     }
 
+    fn fall(&mut self) {
+        self.has_fallen = true;
+        for Falling { q, next } in self.form.clone().falling.iter() {
+            let value = self.peek(*next).unwrap_or(0);
+            portable::store(&self.layout, &self.form, &mut self.state, *q, value);
+            self.is_settled = false;
+        }
+    }
+
     fn tick(&mut self) {
+        if !std::mem::take(&mut self.has_fallen) && !self.form.falling.is_empty() {
+            self.fall();
+            self.has_fallen = false;
+        }
         self.settle();
         self.serve_memories();
         match &self.code {

@@ -12,7 +12,7 @@ mod graph;
 
 pub use graph::{evaluate, Node, NodeId, Op};
 
-use super::flat::{Flat, FlatMemory, FlatNet, FlatRegister};
+use super::flat::{Falling, Flat, FlatMemory, FlatNet, FlatRegister};
 use super::instrument::{fit, Fitted, Instruments};
 use super::{EngineError, Port};
 use build::Known;
@@ -69,6 +69,7 @@ pub(super) struct Form {
     pub memories: Vec<FlatMemory>,
     /// All registers that were not dropped.
     pub registers: Vec<FlatRegister>,
+    pub falling: Vec<Falling>,
     /// Which nets have a value of their own.
     pub is_stored: Vec<bool>,
     /// What each net is, if it has none of its own: another net, or a number.
@@ -150,6 +151,7 @@ impl Form {
             commits: vec![],
             memories: flat.memories,
             registers: flat.registers,
+            falling: flat.falling,
             known,
             ports: flat.ports,
             port_nets: flat.port_nets,
@@ -172,6 +174,7 @@ impl Form {
 
     fn roots(&self, keep: Keep) -> Vec<usize> {
         let mut roots = self.port_nets.clone();
+        roots.extend(self.falling.iter().flat_map(|f| [f.q, f.next]));
         roots.extend(self.instruments.inputs());
         roots.extend(self.instruments.observed());
         if keep != Keep::Outputs {
@@ -355,6 +358,7 @@ fn undriven(flat: &Flat, copies: &[(usize, usize)], fitted: &Fitted) -> Vec<usiz
     let mut drive = |net: usize| is_driven[net] = true;
     flat.registers.iter().for_each(|r| drive(r.q));
     flat.memories.iter().for_each(|m| drive(m.read_data));
+    flat.falling.iter().for_each(|f| drive(f.q));
     copies.iter().for_each(|(_, to)| drive(*to));
     fitted.inputs().for_each(&mut drive);
     let inputs = flat.ports.iter().zip(&flat.port_nets);

@@ -6,6 +6,7 @@ mod portable;
 
 use super::compiled::layout::Layout;
 use super::compiled::native::Native;
+use super::flat::Falling;
 use super::form::{Form, Keep, Place};
 use super::{EngineError, Instruments, Port, PortId};
 use bits::BitSegment;
@@ -50,6 +51,7 @@ pub struct Lanes {
     /// For each memory its words, lane by lane; once for all lanes if it is read-only.
     memories: Vec<Vec<u128>>,
     is_settled: bool,
+    has_fallen: bool,
 }
 
 impl Lanes {
@@ -130,6 +132,7 @@ impl Lanes {
             words,
             state,
             is_settled: false,
+            has_fallen: false,
         }
     }
 
@@ -356,8 +359,35 @@ impl Lanes {
         }
     }
 
+    /// One falling edge of the clock, in all lanes; see [`Engine::fall`](super::Engine::fall).
+    pub fn fall(&mut self) {
+        self.has_fallen = true;
+        let form = self.form.clone();
+        for Falling { q, next } in &form.falling {
+            self.settle();
+            for bit in 0..form.nets[*q].width_bits {
+                for part in 0..self.words {
+                    let new = match form.place(*next) {
+                        Place::Constant(value) if value >> bit & 1 == 1 => u64::MAX,
+                        Place::Constant(_) | Place::Dropped => 0,
+                        Place::Net(net) => self.state[self.layout.place(net) + bit * self.words + part],
+                    };
+                    let word = &mut self.state[self.layout.place(*q) + bit * self.words + part];
+                    if std::mem::replace(word, new) != new {
+                        self.layout.mark(&mut self.state, *q);
+                        self.is_settled = false;
+                    }
+                }
+            }
+        }
+    }
+
     /// One rising edge of the clock, in all lanes.
     pub fn tick(&mut self) {
+        if !std::mem::take(&mut self.has_fallen) && !self.form.falling.is_empty() {
+            self.fall();
+            self.has_fallen = false;
+        }
         self.settle();
         self.serve_memories();
         match &self.code {
