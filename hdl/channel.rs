@@ -597,6 +597,7 @@ impl Logic for Channel {
             self.transaction.serial_ok.next =
                 self.receiver.serial_ok.val() & !self.forced.val().get_bit(2);
         }
+        self.transaction.will_rise.next = self.clock_gen.will_rise.val();
         self.transaction.outstanding.next = self.delay.outstanding.val();
         self.transaction.cells_left.next = self.receiver.cells_left.val();
         self.transaction.first_low_extra_cycles.next = self.first_low_extra_cycles.val();

@@ -343,7 +343,10 @@ impl Logic for LineDelay {
             & !self.edge_seen.q.val()
             & self.cells_run.q.val()
             & !self.acquire.val();
-        self.sample_now.next = self.sample_strobe.q.val() & !self.snap.val();
+        // With two system clock cycles in a bit one cell more begins before a burst is over.
+        self.sample_now.next = self.sample_strobe.q.val()
+            & !self.snap.val()
+            & !(self.has_double.val() & self.afresh.q.val());
         self.center_now.next =
             self.acquired.val() | self.center_strobe.q.val() | self.snap.val();
 

@@ -144,6 +144,7 @@ pub struct Receiver {
     align: Reg<Bit>,
     align_first: Reg<Bit>,
     last_taken: Reg<Bit>,
+    waiting: Reg<Bit>,
     done_now: Reg<Bit>,
     parallel_equal: Reg<Bit>,
     serial_good: Reg<Bit>,
@@ -165,6 +166,7 @@ pub struct Receiver {
     has_all: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
     has_continuous: Constant<Bit>,
+    has_double: Constant<Bit>,
     skip_from: Constant<Bits<4>>,
     long_skip_from: Constant<Bits<4>>,
     fixed_cells: Constant<Bits<7>>,
@@ -249,6 +251,7 @@ impl Receiver {
             align: Default::default(),
             align_first: Default::default(),
             last_taken: Default::default(),
+            waiting: Default::default(),
             done_now: Default::default(),
             parallel_equal: Default::default(),
             serial_good: Default::default(),
@@ -270,6 +273,7 @@ impl Receiver {
             has_all: Constant::new(features.requests),
             has_diagnosis: Constant::new(features.diagnosis),
             has_continuous: Constant::new(features.continuous),
+            has_double: Constant::new(features.double_edge),
             skip_from: Constant::new((order - lead).into()),
             // 34 cells are 4 and two more rounds of the counter.
             long_skip_from: Constant::new(
@@ -316,6 +320,7 @@ impl Logic for Receiver {
             align,
             align_first,
             last_taken,
+            waiting,
             done_now,
             parallel_equal,
             serial_good
@@ -334,6 +339,7 @@ impl Logic for Receiver {
         self.align_first.reset.next = self.reset.val();
         self.last_taken.reset.next = self.reset.val();
         self.done_now.reset.next = self.reset.val();
+        self.waiting.reset.next = self.reset.val();
         self.parallel_equal.reset.next = self.reset.val();
         self.serial_good.reset.next = self.reset.val();
         self.refused.reset.next = self.reset.val();
@@ -597,6 +603,13 @@ impl Logic for Receiver {
         self.serial.enable.next = self.covered_bit.val() | self.crc_bit.val();
         self.serial.bit.next = self.level.val();
         self.done_now.d.next = self.last_taken.q.val();
+        // With two or three system clock cycles in a bit the word is not aligned yet.
+        if self.has_double.val() {
+            self.done_now.d.next = (self.last_taken.q.val() | self.waiting.q.val())
+                & !self.align.q.val();
+            self.waiting.d.next = (self.last_taken.q.val() | self.waiting.q.val())
+                & self.align.q.val();
+        }
         self.parallel_equal.d.next = self.crc_bits.q.val() == self.crc_calc.q.val();
         self.serial_good.d.next = self.serial.residue_ok.val();
 

@@ -61,6 +61,8 @@ pub const ENDAT21_MAX_KHZ: u16 = 2_000;
 pub const CLOCK_TOLERANCE_PPM: i64 = 5_000;
 /// Fewest system clock cycles in one EnDat clock period that the core can time.
 pub const PERIOD_CYCLES_MIN: u64 = 4;
+/// The same with data looked at on both edges of the system clock.
+pub const PERIOD_CYCLES_MIN_DOUBLE: u64 = 2;
 
 /// Cycles of a `system_hz` clock that last at least `ns` (rounded up: for minimum times).
 pub const fn cycles_at_least(ns: u64, system_hz: u64) -> u64 {

@@ -113,6 +113,8 @@ pub struct Transaction {
     pub f1: Signal<In, Bit>,
     /// Error bit 2, low = alarm.
     pub f2: Signal<In, Bit>,
+    /// Strobe one cycle before each rising clock edge.
+    pub will_rise: Signal<In, Bit>,
     /// Clock pulses whose cell has not ended.
     pub outstanding: Signal<In, Bits<7>>,
     /// Cells still to come.
@@ -183,6 +185,7 @@ pub struct Transaction {
     has_diagnosis: Constant<Bit>,
     has_continuous: Constant<Bit>,
     has_alignment: Constant<Bit>,
+    has_double: Constant<Bit>,
     ready_low_cycles: Constant<Bits<16>>,
     abort_us: Constant<Bits<16>>,
     park_cycles: Constant<Bits<16>>,
@@ -220,6 +223,7 @@ pub struct Transaction {
     passes: Reg<Bits<2>>,
     stalled: Reg<Bit>,
     all_sent: Reg<Bit>,
+    one_left: Reg<Bit>,
     tail_sampled: Reg<Bit>,
     recovery: Reg<Bits<13>>,
     in_supplement: Reg<Bit>,
@@ -297,8 +301,10 @@ impl Logic for Transaction {
             going,
             leaving,
             slow_now,
-            passes
+            passes,
+            one_left
         );
+        self.one_left.reset.next = self.reset.val();
         clock!(self, clock, health, verdict);
         self.phase.reset.next = self.reset.val();
         self.timer.reset.next = self.reset.val();
@@ -613,6 +619,12 @@ impl Logic for Transaction {
 
         // Pulses: never more on the cable than the answer needs.
         self.all_sent.d.next = self.outstanding.val() == self.cells_left.val();
+        // With two system clock cycles in a bit there is no time to count this pulse.
+        if self.has_double.val() {
+            self.one_left.d.next = (self.outstanding.val() + 1) == self.cells_left.val();
+            self.all_sent.d.next = (self.outstanding.val() == self.cells_left.val())
+                | (self.one_left.q.val() & self.will_rise.val());
+        }
         if self.all_sent.q.val() & !self.started.val() & !self.going.q.val() {
             self.stalled.d.next = true;
         }
@@ -708,6 +720,13 @@ impl Logic for Transaction {
         }
         self.hold.d.next =
             (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val() | self.parking.val();
+        if self.has_double.val()
+            & self.all_sent.q.val()
+            & !self.started.val()
+            & !self.going.q.val()
+        {
+            self.hold.d.next = true;
+        }
         self.hold_low.next = self.hold.q.val();
         self.drain.next = self.stalled.q.val();
         if self.has_all.val() {

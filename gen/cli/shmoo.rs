@@ -11,7 +11,9 @@ use endat_hdl::protocol::{ModeCommand, POSITION_BITS};
 use endat_hdl::timing;
 use endat_sim::decimal;
 use endat_sim::diagram::{is_drawing, map_svg};
-use endat_sim::shmoo::{is_table, Axis, Conditions, Fate, Map, Plan, Quantity, DECIMALS};
+use endat_sim::shmoo::{
+    is_table, Axis, Conditions, Fate, Map, Phase, Plan, Quantity, ReceiverKind, DECIMALS,
+};
 use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -22,7 +24,7 @@ pub struct ShmooArgs {
     /// What goes across: NAME=FROM:TO:STEP or NAME=A,B,... [default: cable_m=0:150:5]
     #[arg(long, value_name = "AXIS")]
     x: Option<String>,
-    /// What goes upwards [default: clock_mhz=0.3,0.5,1,2,3.2,4,5.12,6.4,8,9.143,10.667,12.8,16, up to an eighth of the system clock]
+    /// What goes upwards [default: clock_mhz=0.3,0.5,1,2,3.2,4,5.12,6.4,8,9.143,10.667,12.8,16, up to a quarter of the system clock]
     #[arg(long, value_name = "AXIS")]
     y: Option<String>,
     /// What is the same everywhere: NAME=VALUE; may be given more than once
@@ -47,6 +49,15 @@ pub struct ShmooArgs {
     /// Mode command
     #[arg(long, value_enum, default_value = "111000")]
     command: Command,
+    /// Where the phase of the samples comes from
+    #[arg(long, value_enum, default_value = "tracked")]
+    phase: PhaseArg,
+    /// Look at DATA on both edges of the system clock
+    #[arg(long)]
+    double_edge: bool,
+    /// Each sample is the majority of itself and its neighbours
+    #[arg(long)]
+    majority: bool,
     /// Frames of each channel at the full clock
     #[arg(
         long,
@@ -94,6 +105,18 @@ enum Command {
     SendPositionAddInfo,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+enum PhaseArg {
+    /// The mean over many edges
+    Tracked,
+    /// The start bit of each frame
+    Frame,
+    /// A register, set to the delay of the line
+    Fixed,
+    /// One cycle for each frame after its start bit: a channel without alignment
+    Step,
+}
+
 /// The clock rates of a map for which none are given, in MHz.
 const CLOCKS_MHZ: [f64; 13] = [
     0.3, 0.5, 1.0, 2.0, 3.2, 4.0, 5.12, 6.4, 8.0, 9.143, 10.667, 12.8, 16.0,
@@ -104,6 +127,9 @@ const VALUES_MAX: usize = 200;
 const CHANNELS_MAX: usize = 100_000;
 /// Most frames of a channel.
 const FRAMES_MAX: u64 = 10_000;
+
+/// System clock in hertz, and the receiver that works with it.
+type Clocks = (u64, ReceiverKind);
 
 /// Runs the command.
 pub fn run(arguments: &ShmooArgs) -> Result<Outcome, GenError> {
@@ -159,14 +185,30 @@ fn title(plan: &Plan) -> String {
 
 fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
     let widths = (*POSITION_BITS.start()).into()..=(*POSITION_BITS.end()).into();
-    let clocks = SYSTEM_HZ_MIN..=SYSTEM_HZ_MAX;
-    let system_hz = number("--system-hz", &arguments.system_hz, clocks)?;
+    let system_clocks = SYSTEM_HZ_MIN..=SYSTEM_HZ_MAX;
+    let system_hz = number("--system-hz", &arguments.system_hz, system_clocks)?;
     let bits = number("--bits", &arguments.bits, widths)? as u32;
     let command = match arguments.command {
         Command::SendPosition => ModeCommand::SendPosition,
         Command::SendPositionAddInfo => ModeCommand::SendPositionAddInfo,
     };
     let mut conditions = Conditions::new(system_hz, command, bits);
+    conditions.receiver = ReceiverKind {
+        phase: match arguments.phase {
+            PhaseArg::Tracked => Phase::Tracked,
+            PhaseArg::Frame => Phase::Frame,
+            PhaseArg::Fixed => Phase::Fixed,
+            PhaseArg::Step => Phase::Step,
+        },
+        double_edge: arguments.double_edge,
+        majority: arguments.majority,
+    };
+    if conditions.receiver.majority && conditions.receiver.phase == Phase::Step {
+        return Err(GenError::input(
+            "--majority: goes with alignment; leave it out, or choose another --phase than step",
+        ));
+    }
+    let clocks = (system_hz, conditions.receiver);
     let mut set = vec![];
     for text in &arguments.at {
         let (quantity, value) = named("--at", text)?;
@@ -178,9 +220,9 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
             )));
         }
         set.push(quantity);
-        conditions.set(quantity, one("--at", text, quantity, value, system_hz)?);
+        conditions.set(quantity, one("--at", text, quantity, value, clocks)?);
     }
-    let (_, fastest) = Quantity::Clock.range(system_hz);
+    let (_, fastest) = Quantity::Clock.range(system_hz, conditions.receiver);
     let usual = |axis: &str| match axis {
         "--x" => Axis {
             quantity: Quantity::Cable,
@@ -195,7 +237,7 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
         },
     };
     let axis = |flag: &str, text: &Option<String>| match text {
-        Some(text) => axis(flag, text, system_hz),
+        Some(text) => axis(flag, text, clocks),
         None => Ok(usual(flag)),
     };
     let (x, y) = (axis("--x", &arguments.x)?, axis("--y", &arguments.y)?);
@@ -253,9 +295,9 @@ fn one(
     text: &str,
     quantity: Quantity,
     value: &str,
-    system_hz: u64,
+    clocks: Clocks,
 ) -> Result<f64, GenError> {
-    let (low, high) = quantity.range(system_hz);
+    let (low, high) = quantity.range(clocks.0, clocks.1);
     let fail = |what: String| Err(GenError::input(format!("{flag} = {}: {what}", shown(text))));
     match value.trim().parse::<f64>() {
         // The limits of a clock are rounded where they are shown.
@@ -279,9 +321,9 @@ fn one(
     }
 }
 
-fn axis(flag: &str, text: &str, system_hz: u64) -> Result<Axis, GenError> {
+fn axis(flag: &str, text: &str, clocks: Clocks) -> Result<Axis, GenError> {
     let (quantity, values) = named(flag, text)?;
-    let one = |value: &str| one(flag, text, quantity, value, system_hz);
+    let one = |value: &str| one(flag, text, quantity, value, clocks);
     let fail = |what: &str| GenError::input(format!("{flag} = {}: {what}", shown(text)));
     let many = format!("has more than {VALUES_MAX} values; make fewer");
     let parts: Vec<&str> = values.split(':').collect();
@@ -322,7 +364,7 @@ fn axis(flag: &str, text: &str, system_hz: u64) -> Result<Axis, GenError> {
         ));
     }
     if quantity == Quantity::Clock {
-        let cycles = |mhz: &f64| timing::period_cycles((mhz * 1e6).round() as u64, system_hz);
+        let cycles = |mhz: &f64| timing::period_cycles((mhz * 1e6).round() as u64, clocks.0);
         let same = values
             .windows(2)
             .find(|pair| cycles(&pair[0]) == cycles(&pair[1]));

@@ -5,7 +5,10 @@ use crate::{
     line::{GlitchRate, Jitter, Wire},
     Time, MS, NS,
 };
-use endat_hdl::{config::PERIOD_BITS, protocol::ModeCommand, timing};
+use endat_hdl::{
+    channel::DELAY_OFFSET_CYCLES, config::PERIOD_BITS, line_delay::mode, protocol::ModeCommand,
+    timing,
+};
 
 /// A property of line, encoder or channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,8 +31,8 @@ pub enum Quantity {
 
 /// Longest glitch of the noise.
 const GLITCH_MAX: Time = 40 * NS;
-/// Longest cable: the delay must stay below the period of the clock that measures it, 5 us.
-const CABLE_MAX_M: f64 = 400.0;
+/// Longest cable: the delay must stay below the period of the clock that measures it, 10 us.
+const CABLE_MAX_M: f64 = 800.0;
 /// Longest input filter.
 const FILTER_MAX: f64 = 15.0;
 
@@ -72,9 +75,13 @@ impl Quantity {
     }
 
     /// The smallest and the largest value.
-    pub fn range(self, system_hz: u64) -> (f64, f64) {
+    pub fn range(self, system_hz: u64, receiver: ReceiverKind) -> (f64, f64) {
         let clock_mhz = |cycles: u64| system_hz as f64 / cycles as f64 / 1e6;
-        let fastest = clock_mhz(timing::PERIOD_CYCLES_MIN).min(timing::ENDAT_HZ_MAX as f64 / 1e6);
+        let shortest = match receiver.double_edge {
+            true => timing::PERIOD_CYCLES_MIN_DOUBLE,
+            false => timing::PERIOD_CYCLES_MIN,
+        };
+        let fastest = clock_mhz(shortest).min(timing::ENDAT_HZ_MAX as f64 / 1e6);
         match self {
             Self::Cable => (0.0, CABLE_MAX_M),
             Self::Clock => (clock_mhz((1 << PERIOD_BITS) - 1), fastest),
@@ -87,6 +94,31 @@ impl Quantity {
     }
 }
 
+/// Where a receiver takes the phase of its samples from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Phase {
+    /// One cycle for each frame after its start bit: a channel without alignment.
+    Step,
+    /// The mean over many edges.
+    #[default]
+    Tracked,
+    /// The start bit of each frame.
+    Frame,
+    /// A register, set to the delay of the line as it should be.
+    Fixed,
+}
+
+/// What receiver is run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReceiverKind {
+    /// Where its phase comes from.
+    pub phase: Phase,
+    /// It looks at DATA on both edges of its clock.
+    pub double_edge: bool,
+    /// Majority of three samples.
+    pub majority: bool,
+}
+
 /// Where a cell is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
@@ -96,17 +128,20 @@ pub struct Conditions {
     pub command: ModeCommand,
     /// Width of the position.
     pub position_bits: u32,
+    /// The receiver.
+    pub receiver: ReceiverKind,
     values: [f64; Quantity::ALL.len()],
 }
 
 impl Conditions {
     /// A sound line: 8 MHz, or the fastest clock there is, over 10 m.
     pub fn new(system_hz: u64, command: ModeCommand, position_bits: u32) -> Self {
-        let (_, fastest) = Quantity::Clock.range(system_hz);
+        let (_, fastest) = Quantity::Clock.range(system_hz, ReceiverKind::default());
         let mut conditions = Self {
             system_hz,
             command,
             position_bits,
+            receiver: ReceiverKind::default(),
             values: [0.0; Quantity::ALL.len()],
         };
         conditions.set(Quantity::Cable, 10.0);
@@ -125,6 +160,15 @@ impl Conditions {
         self.values[quantity as usize]
     }
 
+    /// The delay of a line as mode `fixed` has it: where edges are seen on average, in sixteenths of a cycle.
+    fn fixed_delay(&self, delay: Time) -> u64 {
+        let places = if self.receiver.double_edge { 2 } else { 1 };
+        let majority = u64::from(self.receiver.majority) * 16 / places;
+        let filter = 16 * self.get(Quantity::Filter).round() as u64;
+        let seen = (delay as f64 * self.system_hz as f64 * 16.0 / 1e12).round() as u64;
+        16 * DELAY_OFFSET_CYCLES + seen + filter + majority + 8 / places
+    }
+
     /// A channel, an encoder and a line under these conditions.
     pub fn case(&self, frames: usize, seed: u64) -> Case {
         let time = |quantity| (self.get(quantity) * NS as f64).round();
@@ -132,7 +176,14 @@ impl Conditions {
         let rates = (self.system_hz, clock_hz);
         let cable_m = self.get(Quantity::Cable);
         let mut case = Case::new(rates, self.command, self.position_bits, cable_m);
-        case.features.alignment = true;
+        case.features.alignment = self.receiver.phase != Phase::Step;
+        case.features.double_edge = self.receiver.double_edge;
+        case.settings.majority = self.receiver.majority;
+        case.settings.phase_mode = match self.receiver.phase {
+            Phase::Step | Phase::Tracked => mode::TRACKED,
+            Phase::Frame => mode::FRAME,
+            Phase::Fixed => mode::FIXED,
+        };
         case.frames = case.calibration_frames() + frames;
         case.settings.start_window_cycles = ((case.settings.period_cycles - 1) / 2).clamp(1, 63);
         case.settings.filter_cycles = self.get(Quantity::Filter).round() as u64;
@@ -141,6 +192,8 @@ impl Conditions {
         case.line.seed = seed;
         case.line.data_in.jitter = Jitter::Uniform(time(Quantity::Jitter) as Time);
         case.line.data_in.fall_later = time(Quantity::Distortion) as i64;
+        let delay = case.line.round_trip() + case.encoder.clock_to_data;
+        case.settings.fixed_delay = self.fixed_delay(delay);
         let noise = self.get(Quantity::Noise);
         if noise > 0.0 {
             case.line.random_glitches = Some(GlitchRate {

@@ -6,7 +6,7 @@ mod published;
 #[cfg(test)]
 mod tests;
 
-pub use axis::{Axis, Conditions, Quantity};
+pub use axis::{Axis, Conditions, Phase, Quantity, ReceiverKind};
 pub use judge::{Fate, Tally};
 pub use published::{Published, PUBLISHED};
 

@@ -92,19 +92,3 @@ fn a_value_stands_between_its_neighbours() {
         assert_eq!(axis.place(value), place);
     }
 }
-
-#[test]
-fn tmp_n4() {
-    use crate::campaign::{Case, Traces};
-    for n in [4u64] {
-        let mut case = Case::new((16_000_000 * n, 16_000_000), ModeCommand::SendPositionAddInfo, 25, 170.0);
-        case.frames = 2;
-        let engine = crate::engine::Compiled::new(&case.design().unwrap()).unwrap();
-        let bench = case.run_alone(engine, true);
-        println!("{n}: {:?}", case.check(&Traces::of(&bench)));
-        let f=&bench.frames(0)[1];
-        println!("{f:?} {:?}", bench.results()[1]);
-        for s in bench.samples(0).iter().filter(|s| s.time>f.first_fall) { println!("{} {:?}", s.time, s); }
-        for w in bench.watched() { if w.name()=="sample_strobe" { println!("{:?}", w.changes().iter().filter(|c| c.0>f.first_fall).take(200).collect::<Vec<_>>()); } }
-    }
-}
