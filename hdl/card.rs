@@ -13,7 +13,7 @@
 //! `led_status_o` blinks slowly while every channel is well, quickly while the last result of one is an error;
 //! `led_channelN_o` is on while the channel's last result is a good position.
 
-use crate::channel::FixedTimes;
+use crate::channel::{Features, FixedTimes};
 use crate::channel_registers::ChannelRegisters;
 use crate::config::{CardConfig, ChannelConfig};
 use crate::encoder_port::EncoderPort;
@@ -82,6 +82,16 @@ fn times(card: &CardConfig, channel: &ChannelConfig) -> FixedTimes {
     }
 }
 
+/// The features of its channels that have to do with the line delay.
+fn line(card: &CardConfig) -> Features {
+    Features {
+        alignment: card.line.alignment,
+        margin: card.line.margin,
+        double_edge: card.line.double_edge,
+        ..Features::NONE
+    }
+}
+
 impl Card {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
@@ -130,7 +140,12 @@ impl Card {
                 .iter()
                 .map(|c| {
                     let service = config.service.requests.then_some(service);
-                    EncoderPort::new(times(config, c), service, c.wants_short_recovery())
+                    EncoderPort::with_line(
+                        times(config, c),
+                        service,
+                        c.wants_short_recovery(),
+                        line(config),
+                    )
                 })
                 .collect(),
             ring_link: each(channels + 1),
@@ -207,6 +222,7 @@ impl Logic for Card {
             self.port[i].recovery_limit_cycles.next = self.registers[i].recovery_limit_cycles.val();
 
             self.port[i].host_address.next = self.bank.service_address.val();
+            self.port[i].host_line.next = self.bank.service_line.val();
             self.port[i].host_read.next = self.bank.service_read.val().get_bit(i);
             self.port[i].host_write.next = self.bank.service_write.val().get_bit(i);
             self.port[i].host_half.next = self.bank.service_half.val();

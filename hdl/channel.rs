@@ -268,6 +268,8 @@ pub struct Features {
     pub continuous: bool,
     /// Phase from the mean over many edges, from each start bit or from a register; majority of three samples.
     pub alignment: bool,
+    /// Margin of the samples is measured (in [`crate::encoder_port`], with alignment).
+    pub margin: bool,
     /// Data is looked at on both edges of the system clock.
     pub double_edge: bool,
 }
@@ -279,6 +281,7 @@ impl Features {
         diagnosis: false,
         continuous: false,
         alignment: false,
+        margin: false,
         double_edge: false,
     };
 

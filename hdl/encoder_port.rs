@@ -9,6 +9,7 @@
 //! For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
 
 use crate::channel::{Channel, Features, FixedTimes};
+use crate::line_monitor::{LineMonitor, LineStart};
 use crate::service::program::ServiceTimes;
 use crate::service::Service;
 use rust_hdl::prelude::*;
@@ -112,10 +113,12 @@ pub struct EncoderPort {
     pub calibrated: Signal<Out, Bit>,
     /// Strobe: the data line is sampled for a bit of the answer.
     pub sample_strobe: Signal<Out, Bit>,
-    /// The service's alarm: too many bad frames, or positions 1 and 2 apart.
+    /// The service's alarm: too many bad frames, or positions 1 and 2 apart; or that of the line: drift or edges beyond their limits.
     pub alarm: Signal<Out, Bit>,
     /// Word of the service's RAM that the host accesses; stays put from one strobe to the next, 8 cycles at least.
     pub host_address: Signal<In, Bits<7>>,
+    /// The word is one of the line monitor, not of the service.
+    pub host_line: Signal<In, Bit>,
     /// Strobe: read it.
     pub host_read: Signal<In, Bit>,
     /// The word read; 0 without service.
@@ -128,7 +131,9 @@ pub struct EncoderPort {
     pub host_data: Signal<In, Bits<16>>,
     channel: Channel,
     service: Vec<Service>,
+    monitor: Vec<LineMonitor>,
     _services: usize,
+    _monitors: usize,
 }
 
 impl EncoderPort {
@@ -202,6 +207,7 @@ impl EncoderPort {
             sample_strobe: Default::default(),
             alarm: Default::default(),
             host_address: Default::default(),
+            host_line: Default::default(),
             host_read: Default::default(),
             host_word: Default::default(),
             host_write: Default::default(),
@@ -212,7 +218,11 @@ impl EncoderPort {
                 .map(|times| Service::new(times, wants_short))
                 .into_iter()
                 .collect(),
+            monitor: (0..usize::from(line.alignment))
+                .map(|_| LineMonitor::new(line, LineStart::default()))
+                .collect(),
             _services: service.iter().count(),
+            _monitors: usize::from(line.alignment),
         }
     }
 }
@@ -309,8 +319,8 @@ impl Logic for EncoderPort {
             self.service[i].command.next = self.command.val();
             self.service[i].position_bits.next = self.position_bits.val();
             self.service[i].host_address.next = self.host_address.val();
-            self.service[i].host_read.next = self.host_read.val();
-            self.service[i].host_write.next = self.host_write.val();
+            self.service[i].host_read.next = self.host_read.val() & !self.host_line.val();
+            self.service[i].host_write.next = self.host_write.val() & !self.host_line.val();
             self.service[i].host_half.next = self.host_half.val();
             self.service[i].host_data.next = self.host_data.val();
             self.channel.period_cycles.next = self.service[i].period_now_cycles.val();
@@ -331,6 +341,32 @@ impl Logic for EncoderPort {
             self.channel.stop_at_error.next = self.service[i].stop_at_error.val();
             self.alarm.next = self.service[i].alarm.val();
             self.host_word.next = self.service[i].host_word.val();
+        }
+        for i in 0..self._monitors {
+            self.monitor[i].clock.next = self.clock.val();
+            self.monitor[i].reset.next = self.reset.val();
+            self.monitor[i].busy.next = self.channel.busy.val();
+            self.monitor[i].edge_measured.next = self.channel.edge_measured.val();
+            self.monitor[i].edge_offset.next = self.channel.edge_offset.val();
+            self.monitor[i].over.next = self.channel.over.val();
+            self.monitor[i].over_bad.next = self.channel.over_cause.val().any();
+            self.monitor[i].glitch.next = self.channel.glitch.val();
+            self.monitor[i].phase.next = self.channel.phase.val();
+            self.monitor[i].calibrated.next = self.channel.calibrated.val();
+            self.monitor[i].host_address.next = self.host_address.val().get_bits::<6>(0);
+            self.monitor[i].host_read.next = self.host_read.val() & self.host_line.val();
+            self.monitor[i].host_write.next = self.host_write.val() & self.host_line.val();
+            self.monitor[i].host_half.next = self.host_half.val();
+            self.monitor[i].host_data.next = self.host_data.val();
+            self.channel.phase_mode.next = self.monitor[i].phase_mode.val();
+            self.channel.fixed_delay.next = self.monitor[i].fixed_delay.val();
+            self.channel.majority.next = self.monitor[i].majority.val();
+            if self.monitor[i].alarm.val() {
+                self.alarm.next = true;
+            }
+            if self.host_line.val() {
+                self.host_word.next = self.monitor[i].host_word.val();
+            }
         }
     }
 }

@@ -28,6 +28,7 @@ pub mod half_period;
 pub mod input_filter;
 pub mod line_delay;
 pub mod line_health;
+pub mod line_monitor;
 pub mod memory;
 pub mod phase_tracker;
 pub mod protocol;

@@ -63,6 +63,8 @@ pub struct RegisterBank {
     pub ring_in: Signal<In, Bits<8>>,
     /// Byte to the last channel's ring block.
     pub ring_out: Signal<Out, Bits<8>>,
+    /// The word is one of a line monitor, not of a service.
+    pub service_line: Signal<Out, Bit>,
     /// Word of a service's RAM.
     pub service_address: Signal<Out, Bits<7>>,
     /// The channel that it belongs to, one bit per channel.
@@ -129,6 +131,9 @@ pub struct RegisterBank {
     head: Signal<Local, Bits<8>>,
     rom_word: Signal<Local, Bits<32>>,
     has_service: Constant<Bit>,
+    has_line: Constant<Bit>,
+    line_page: Signal<Local, Bit>,
+    service_channel: Signal<Local, Bits<3>>,
     id: Constant<Bits<32>>,
     version: Constant<Bits<32>>,
     capabilities: Constant<Bits<32>>,
@@ -183,6 +188,7 @@ impl RegisterBank {
             ring_home: Default::default(),
             ring_in: Default::default(),
             ring_out: Default::default(),
+            service_line: Default::default(),
             service_address: Default::default(),
             service_channels: Default::default(),
             service_read: Default::default(),
@@ -237,6 +243,9 @@ impl RegisterBank {
             head: Default::default(),
             rom_word: Default::default(),
             has_service: Constant::new(config.service.requests),
+            has_line: Constant::new(config.line.alignment),
+            line_page: Default::default(),
+            service_channel: Default::default(),
             id: card_word(config, "id"),
             version: card_word(config, "version"),
             capabilities: card_word(config, "capabilities"),
@@ -517,9 +526,19 @@ impl Logic for RegisterBank {
         // block of the ring after the other.
         self.service_page.next =
             self.has_service.val() & self.in_range.val() & self.word_address.val().get_bit(10);
+        // Line monitors: 64 words each, from 0x200 on, in the same way.
+        self.line_page.next = self.has_line.val()
+            & self.in_range.val()
+            & !self.word_address.val().get_bit(10)
+            & self.word_address.val().get_bit(9);
+        self.service_line.next = self.line_page.val();
+        self.service_channel.next = self.word_address.val().get_bits::<3>(7);
+        if self.line_page.val() {
+            self.service_channel.next = self.word_address.val().get_bits::<3>(6);
+        }
         self.service_selected.d.next = 0.into();
-        if self.service_page.val() {
-            match self.word_address.val().get_bits::<3>(7).index() {
+        if self.service_page.val() | self.line_page.val() {
+            match self.service_channel.val().index() {
                 0 => {
                     self.service_selected.d.next = 1.into();
                 }
@@ -565,7 +584,7 @@ impl Logic for RegisterBank {
         if self.service_half.val() {
             self.service_data.next = self.write_data.val().get_bits::<16>(16);
         }
-        self.service_skip.d.next = !self.service_page.val();
+        self.service_skip.d.next = !(self.service_page.val() | self.line_page.val());
         match self.lane.val().index() {
             0 => {
                 self.service_byte.d.next = self.service_word.val().get_bits::<8>(24);

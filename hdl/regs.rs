@@ -4,15 +4,19 @@
 //! 0x000  card: identification, capabilities, counters, strobes
 //! 0x100  configuration: 3 words of the card, then 3 words of channel n at 0x108 + 8 n
 //! 0x180  results: 6 words of channel n at 0x180 + 8 n
+//! 0x200  line: 64 words of channel n at 0x200 + 64 n
+//! 0x400  service: 128 words of channel n at 0x400 + 128 n
 //! ```
 //!
 //! Offsets count 32-bit words. The decoder ([`crate::register_bank`]), the start values, the maps that come with a card and the
 //! host's constants come from this table; within a major version an offset never moves.
 
+mod line;
 mod service;
 mod table;
 pub mod values;
 
+pub use line::LINE;
 pub use service::SERVICE;
 pub use table::{CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT};
 
@@ -23,16 +27,20 @@ use crate::transaction::cause;
 use values::Values;
 
 /// Major, minor and patch version of the register map.
-pub const VERSION: [u8; 3] = [0, 3, 0];
+pub const VERSION: [u8; 3] = [0, 4, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the configuration blocks; block 0 is the card's, block n + 1 that of channel n.
 pub const CONFIG_BASE: u16 = 0x100;
 /// First word of the result blocks; block n is that of channel n.
 pub const RESULT_BASE: u16 = 0x180;
+/// First word of the line blocks; block n is that of channel n.
+pub const LINE_BASE: u16 = 0x200;
+/// Words from one line block to the next.
+pub const LINE_STRIDE: u16 = 64;
 /// First word of the service blocks; block n is that of channel n.
 pub const SERVICE_BASE: u16 = 0x400;
-/// Words from one block to the next, but for services.
+/// Words from one block to the next, but for lines and services.
 pub const BLOCK_STRIDE: u16 = 8;
 /// Most channels that the map and the decoder take.
 pub const CHANNELS_MAX: usize = 8;
@@ -171,7 +179,11 @@ impl Block {
         let (base, parts) = (self.base, config.service);
         let first_line = u16::from(word::COUNTERS) + cause::NO_ENCODER as u16;
         let past_line = u16::from(word::COUNTERS + COUNTER_POSITION_2);
+        let margin = config.line.margin;
         self.registers.iter().filter(move |register| {
+            if base == LINE_BASE {
+                return margin || line::is_setting(register.offset);
+            }
             let at = |word: u8| register.offset == u16::from(word);
             base != SERVICE_BASE
                 || if at(word::PROGRESS) || register.offset >= u16::from(word::NAME_PLATE) {
@@ -186,12 +198,16 @@ impl Block {
 }
 
 /// All blocks, lowest base first.
-pub const BLOCKS: [Block; 5] = [CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT, SERVICE];
+pub const BLOCKS: [Block; 6] = [CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT, LINE, SERVICE];
 
 /// The blocks that a card has.
 pub fn blocks(config: &CardConfig) -> impl Iterator<Item = Block> {
-    let count = BLOCKS.len() - usize::from(!config.service.requests);
-    BLOCKS.into_iter().take(count)
+    let (line, service) = (config.line.alignment, config.service.requests);
+    BLOCKS.into_iter().filter(move |block| match block.base {
+        LINE_BASE => line,
+        SERVICE_BASE => service,
+        _ => true,
+    })
 }
 
 /// The words of a configuration block after reset; `channel` is `None` for the card's own.

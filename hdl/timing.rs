@@ -81,9 +81,14 @@ pub const fn period_cycles(hz: u64, system_hz: u64) -> u64 {
 
 /// Period of the clock that measures a delay of at most `delay_ns`, in cycles of a `system_hz` clock.
 pub const fn calibration_period_cycles(delay_ns: u64, system_hz: u64) -> u64 {
+    period_cycles(calibration_hz(delay_ns), system_hz)
+}
+
+/// The clock that measures a delay of at most `delay_ns`, in hertz.
+pub const fn calibration_hz(delay_ns: u64) -> u64 {
     match delay_ns > CALIBRATION_DELAY_MAX_NS {
-        true => period_cycles(LONG_CALIBRATION_HZ, system_hz),
-        false => period_cycles(CALIBRATION_HZ, system_hz),
+        true => LONG_CALIBRATION_HZ,
+        false => CALIBRATION_HZ,
     }
 }
 

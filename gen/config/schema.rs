@@ -80,6 +80,8 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let read_hz = link.integer("read_hz", &limits("read_hz", system_hz));
     let service = root.table("service", &empty);
     let parts = read_service(&service);
+    let line_table = root.table("line", &empty);
+    let line_parts = read_line_parts(&line_table);
     let pins = root.table("pins", &empty);
     for table in tables.iter().flatten().chain([
         &clock,
@@ -87,6 +89,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         &trigger,
         &link,
         &service,
+        &line_table,
         &board_table,
         &root,
     ]) {
@@ -122,6 +125,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         baud_max,
         read_hz: read_hz.as_ref().map(|r| r.value).or(usual_read_hz),
         service: parts.unwrap_or_default(),
+        line: line_parts.unwrap_or_default(),
     };
     let channels = channels.unwrap_or_default();
     let card = match draft.resolve() {
@@ -198,6 +202,12 @@ fn canonical(card: &CardConfig, board: &Board, pins: &[Assignment]) -> String {
         format!("part {}", board.part),
         format!("oscillator_hz {}", board.oscillator_hz),
     ];
+    if card.line.alignment {
+        lines.push(format!(
+            "line margin {} double_edge {}",
+            card.line.margin, card.line.double_edge
+        ));
+    }
     if card.service.requests {
         let parts = card.service;
         lines.push(format!("service initialise {}", parts.initialise));
@@ -420,30 +430,57 @@ fn read_sources(table: &Table<'_, '_>) -> Option<TriggerSources> {
 }
 
 /// What each channel does besides positions; `None` for what could not be read.
-fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
-    let infos = read_infos(table);
-    let words = table.strings("parts").unwrap_or_default();
-    let mut parts = ServiceParts::default();
+fn read_line_parts(table: &Table<'_, '_>) -> Option<LineParts> {
+    let mut parts = LineParts::default();
+    let last = read_parts(
+        table,
+        &["alignment", "margin", "double_edge"],
+        &mut [&mut parts.alignment, &mut parts.margin, &mut parts.double_edge],
+    )?;
+    if let (Some((line, shown)), false) = (last, parts.alignment) {
+        let text = "every other part takes alignment; add \"alignment\"";
+        table.complain(line, "parts", &shown, text);
+        return None;
+    }
+    Some(parts)
+}
+
+/// Marks the parts that a list names; the line and the text of the last one, `None` if something is wrong.
+fn read_parts(
+    table: &Table<'_, '_>,
+    names: &[&str],
+    marks: &mut [&mut bool],
+) -> Option<Option<(usize, String)>> {
     let mut last = None;
-    for word in words {
+    for word in table.strings("parts").unwrap_or_default() {
         let shown = format!("{:?}", word.value);
-        let part = match word.value.as_str() {
-            "requests" => &mut parts.requests,
-            "diagnosis" => &mut parts.diagnosis,
-            "continuous" => &mut parts.continuous,
-            "initialise" => &mut parts.initialise,
-            _ => {
-                let text = "unknown part; use requests, diagnosis, continuous, initialise";
-                table.complain(word.line, "parts", &shown, text);
-                return None;
-            }
+        let Some(index) = names.iter().position(|name| *name == word.value) else {
+            let text = format!("unknown part; use {}", names.join(", "));
+            table.complain(word.line, "parts", &shown, &text);
+            return None;
         };
-        if std::mem::replace(part, true) {
+        if std::mem::replace(marks[index], true) {
             table.complain(word.line, "parts", &shown, "stands twice; remove one");
             return None;
         }
         last = Some((word.line, shown));
     }
+    Some(last)
+}
+
+fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
+    let infos = read_infos(table);
+    let mut parts = ServiceParts::default();
+    let last = read_parts(
+        table,
+        &["requests", "diagnosis", "continuous", "initialise"],
+        &mut [
+            &mut parts.requests,
+            &mut parts.diagnosis,
+            &mut parts.continuous,
+            &mut parts.initialise,
+        ],
+    )?;
     if let (Some((line, shown)), false) = (last, parts.requests) {
         let text = "every other part takes requests; add \"requests\"";
         table.complain(line, "parts", &shown, text);

@@ -43,6 +43,7 @@ fn set(uut: &mut ChannelRegisters, register: &str, field: &str, value: u64) {
         ("evidence", "crc_received") => uut.crc_received.next = value.into(),
         ("evidence", "crc_computed") => uut.crc_computed.next = value.into(),
         ("evidence", "delay_cycles") => uut.delay_cycles.next = value.into(),
+        ("age_recovery", "delay_high") => uut.delay_cycles.next = (value << 10).into(),
         ("evidence", "flags") => uut.flags.next = value.into(),
         ("age_recovery", "age_us") => uut.age_us.next = value.into(),
         ("age_recovery", "recovery_cycles") => uut.recovery_cycles.next = value.into(),

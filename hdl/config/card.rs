@@ -63,6 +63,7 @@ impl CardDraft {
                     baud: Some(baud),
                     read_hz: Some(read_hz),
                     service,
+                    line,
                     ..
                 },
             ) if whole && problems.is_empty() => Ok(CardConfig {
@@ -75,6 +76,7 @@ impl CardDraft {
                 baud,
                 read_hz,
                 service,
+                line,
                 hash: 0,
             }),
             _ => Err(problems),

@@ -53,7 +53,7 @@ impl ChannelConfig {
                     0
                 },
                 filter_cycles: check_filter(&mut check, request, half, system_hz),
-                start_window_cycles: check_window(&mut check, request, half, system_hz),
+                start_window_cycles: check_window(&mut check, request, period_cycles, system_hz),
                 start_timeout_us: request
                     .tcal_max_ns
                     .saturating_add(start_wait_ns(request.clock_hz, cable_m))
@@ -120,7 +120,7 @@ impl ChannelConfig {
 
     /// Clock period of the frame that measures the propagation delay: never shorter than the ordinary one.
     pub fn calibration_period_cycles(&self, system_hz: u64) -> u64 {
-        period_cycles(CALIBRATION_HZ, system_hz).max(self.period_cycles)
+        calibration_period_cycles(self.request.delay_max_ns(), system_hz).max(self.period_cycles)
     }
 
     /// First falling to last rising edge of the frame that measures the propagation delay.
@@ -260,9 +260,14 @@ fn check_filter(check: &mut Check<'_>, request: &ChannelRequest, half: u64, syst
     cycles
 }
 
-fn check_window(check: &mut Check<'_>, request: &ChannelRequest, half: u64, system_hz: u64) -> u64 {
+fn check_window(
+    check: &mut Check<'_>,
+    request: &ChannelRequest,
+    period: u64,
+    system_hz: u64,
+) -> u64 {
     let cycles = cycles_at_most(request.start_window_ns, system_hz);
-    let most = (half - 1).min(max_of(START_WINDOW_BITS));
+    let most = ((period - 1) / 2).min(max_of(START_WINDOW_BITS));
     if !(1..=most).contains(&cycles) {
         check.fail(
             "start_window_ns",

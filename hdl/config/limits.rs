@@ -63,7 +63,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "clock_hz" => ENDAT_HZ_MIN..=ENDAT_HZ_MAX,
         "tst_ns" => TST_MIN_NS..=TST_MAX_NS,
         "position_bits" => u64::from(*POSITION_BITS.start())..=u64::from(*POSITION_BITS.end()),
-        "cable_m" => 0..=CABLE_M_MAX,
+        "cable_m" => 0..=cable_most_m(slow),
         "tcal_max_ns" => 1..=tcal_most_ns(CALIBRATION_HZ, 0),
         "recovery_min_ns" | "recovery_max_ns" => SHORT_RECOVERY_MIN_NS..=recovery_most_ns(slow, 0),
         "filter_ns" => 0..=cycles_at_most_ns(max_of(FILTER_BITS), slow),
@@ -90,8 +90,19 @@ pub(super) fn tcal_most_ns(clock_hz: u64, cable_m: u64) -> u64 {
 /// How much longer than tcal a start bit may keep us waiting: cable, and two periods of the slowest frame, which may
 /// pass before a start edge is seen.
 pub(super) fn start_wait_ns(clock_hz: u64, cable_m: u64) -> u64 {
-    let slowest_hz = clock_hz.min(CALIBRATION_HZ);
+    let slowest_hz = clock_hz.min(calibration_hz(delay_max_ns(cable_m)));
     delay_max_ns(cable_m) + 2 * 1_000_000_000u64.div_ceil(slowest_hz)
+}
+
+/// Longest cable whose delay, and the clock that measures it, can be counted.
+fn cable_most_m(system_hz: u64) -> u64 {
+    let counted_ns = cycles_at_most_ns(max_of(DELAY_BITS) - INPUT_LATENCY_CYCLES, system_hz);
+    let measured_ns = match period_cycles(LONG_CALIBRATION_HZ, system_hz) > max_of(PERIOD_BITS) {
+        true => CALIBRATION_DELAY_MAX_NS,
+        false => u64::MAX,
+    };
+    let longest_ns = counted_ns.min(measured_ns).saturating_sub(DELAY_BASE_NS);
+    CABLE_M_MAX.min(longest_ns / DELAY_NS_PER_M)
 }
 
 /// Longest recovery time that can be timed behind this cable.

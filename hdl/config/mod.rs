@@ -17,10 +17,11 @@ pub use limits::{limits, Limits};
 use crate::protocol::ModeCommand;
 use crate::timing::{TST_FROM_HZ, TST_USUAL_NS};
 use std::fmt;
+use crate::regs::CHANNELS_MAX;
 use std::ops::RangeInclusive;
 
 /// Channels a card may have.
-pub const CHANNELS: RangeInclusive<usize> = 1..=4;
+pub const CHANNELS: RangeInclusive<usize> = 1..=CHANNELS_MAX;
 /// Additional informations that a service selects in turn.
 pub const LIST: usize = crate::service::map::word::LIST_MAX as usize;
 /// Bits of the EnDat period and of the first low phase, in the blocks.
@@ -51,8 +52,10 @@ pub const UART_TOLERANCE_PPM: u64 = 20_000;
 pub const UART_BITS_PER_BYTE: u64 = 10;
 /// Bytes of a UARTBone read request (command, length, address).
 pub const READ_REQUEST_BYTES: u64 = 6;
-/// Longest cable that the delay budget is made for, in metres.
-pub const CABLE_M_MAX: u64 = 150;
+/// Longest cable whose delay can be measured, in metres: 8 us.
+pub const CABLE_M_MAX: u64 = 780;
+/// Bits of the propagation delay in whole cycles, in the blocks.
+pub const DELAY_BITS: u32 = 11;
 /// Constant part of the propagation delay, in ns (PWM 20: tD = 0.2 us + 0.01 us/m).
 pub const DELAY_BASE_NS: u64 = 200;
 /// Propagation delay of a metre of cable, there and back, worst case, in ns (PWM 20).
@@ -102,6 +105,19 @@ pub struct CardRequest {
     pub read_hz: u64,
     /// What each channel does besides positions.
     pub service: ServiceParts,
+    /// What each channel does about its line delay.
+    pub line: LineParts,
+}
+
+/// What a channel does about its line delay besides following it by a cycle for each frame; what is not asked for takes no logic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineParts {
+    /// Phase from the mean over many edges, from each start bit or from a register, at the host's choice; majority of three samples.
+    pub alignment: bool,
+    /// Margin of the samples, drift and glitches are measured; takes alignment.
+    pub margin: bool,
+    /// DATA is looked at on both edges of the system clock; takes alignment.
+    pub double_edge: bool,
 }
 
 /// What a channel does besides triggered positions; what is not asked for takes no logic.
@@ -138,6 +154,8 @@ pub struct CardDraft {
     pub read_hz: Option<u64>,
     /// What each channel does besides positions.
     pub service: ServiceParts,
+    /// What each channel does about its line delay.
+    pub line: LineParts,
 }
 
 impl From<&CardRequest> for CardDraft {
@@ -151,6 +169,7 @@ impl From<&CardRequest> for CardDraft {
             baud_max: None,
             read_hz: Some(request.read_hz),
             service: request.service,
+            line: request.line,
         }
     }
 }
@@ -246,6 +265,8 @@ pub struct CardConfig {
     pub read_hz: u64,
     /// What each channel does besides positions.
     pub service: ServiceParts,
+    /// What each channel does about its line delay.
+    pub line: LineParts,
     /// First 48 bits of the SHA-256 of the canonical configuration (0 until a generator sets it).
     pub hash: u64,
 }

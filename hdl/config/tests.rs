@@ -31,6 +31,7 @@ fn card() -> CardRequest {
         baud: 2_000_000,
         read_hz: 1_000,
         service: Default::default(),
+        line: Default::default(),
     }
 }
 
@@ -227,9 +228,9 @@ fn each_limit_is_refused_with_its_key_and_remedy() {
     let cases: [(Change, &str, &str); 23] = [
         (|c| c.channels[1].tcal_max_ns = 4_083_000, "tcal_max_ns", "outside 1..4082800; choose a value in that range"),
         (|c| c.system_hz = 1_000_000, "system_hz", "outside 8000000..250000000"),
-        (|c| c.channels.clear(), "channel", "1..4 channels"),
+        (|c| c.channels.clear(), "channel", "1..8 channels"),
         (|c| c.channels[1].clock_hz = 99_999, "clock_hz", "outside 100000..16000000"),
-        (|c| c.channels[1].clock_hz = 16_000_000, "clock_hz", "needs a system clock of at least 128000000 Hz"),
+        (|c| { c.system_hz = 50_000_000; c.channels[1].clock_hz = 16_000_000 }, "clock_hz", "needs a system clock of at least 64000000 Hz"),
         (|c| c.channels[1].clock_hz = 9_000_000, "clock_hz", "would become 9090909 Hz (+10101 ppm), more than the allowed 5000 ppm; use 8333333 or 9090909 Hz"),
         (|c| { c.system_hz = 250_000_000; c.channels[1].clock_hz = 100_000; c.sample_hz = 1_000 }, "clock_hz", "at most 2047 can be timed; use at least 122130 Hz"),
         (|c| c.channels[1].tst_ns = 499, "tst_ns", "neither 0 nor in 500..10000"),
@@ -240,7 +241,7 @@ fn each_limit_is_refused_with_its_key_and_remedy() {
         (|c| c.channels[1].start_window_ns = 9, "start_window_ns", "outside 1..15"),
         (|c| c.channels[1].start_window_ns = 160, "start_window_ns", "use 10..150 ns"),
         (|c| c.channels[1].tcal_max_ns = 0, "tcal_max_ns", "outside 1..4082800"),
-        (|c| c.channels[1].cable_m = 151, "cable_m", "outside 0..150"),
+        (|c| c.channels[1].cable_m = 781, "cable_m", "outside 0..780"),
         (|c| c.channels[1].recovery_min_ns = 1_249, "recovery_min_ns", "outside 1250..80390"),
         (|c| c.channels[1].recovery_min_ns = 30_001, "recovery_min_ns", "above recovery_max_ns = 30000; lower it, or raise recovery_max_ns"),
         (|c| { c.channels[1].recovery_max_ns = 80_391; c.sample_hz = 1_000 }, "recovery_max_ns", "outside 1250..80390"),

@@ -22,6 +22,8 @@ pub const SOURCES: &[&str] = &[
     include_str!("../half_period.rs"),
     include_str!("../input_filter.rs"),
     include_str!("../line_delay.rs"),
+    include_str!("../line_monitor.rs"),
+    include_str!("../phase_tracker.rs"),
     include_str!("../line_health.rs"),
     include_str!("../memory.rs"),
     include_str!("../receiver.rs"),

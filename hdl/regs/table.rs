@@ -100,6 +100,9 @@ pub const CARD: Block = Block {
                         | (s.service.initialise as u64) << 5
                         | (s.service.diagnosis as u64) << 6
                         | (s.service.continuous as u64) << 7
+                        | (s.line.alignment as u64) << 8
+                        | (s.line.margin as u64) << 9
+                        | (s.line.double_edge as u64) << 10
                 })
                 .bits(&FEATURES),
             ],
@@ -346,6 +349,7 @@ pub const RESULT: Block = Block {
         word("age_recovery", 5, ReadOnly, "Age and recovery time.", &[
             field("age_us", 0, 16, "us", "Age of the position; stops at 65535", zero),
             field("recovery_cycles", 16, 13, "cycles", "Recovery time tm of the last frame", zero),
+            field("delay_high", 29, 1, "", "Bit 10 of delay_cycles", zero),
         ]),
     ],
 };

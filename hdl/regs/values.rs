@@ -1,5 +1,6 @@
 //! What the numbers and bits of a field stand for, where each has a meaning of its own.
 
+use crate::line_delay::mode;
 use crate::protocol::ModeCommand;
 use crate::service::map::request_state;
 use crate::transaction::cause;
@@ -110,8 +111,15 @@ pub const LINE_FLAGS: [Named; 7] = [
     flag_of(cause::RECOVERY_TOO_SHORT, LINE_FIRST),
 ];
 
+/// Sources of the phase.
+pub const PHASE_MODES: [Named; 3] = [
+    named("tracked", mode::TRACKED as u32, "mean over many edges"),
+    named("fixed", mode::FIXED as u32, "fixed_delay"),
+    named("frame", mode::FRAME as u32, "start bit of each frame"),
+];
+
 /// What a card has.
-pub const FEATURES: [Named; 8] = [
+pub const FEATURES: [Named; 11] = [
     named("endat22", 0, "EnDat 2.2 position frames (111000)"),
     named("line_delay", 1, "line delay is measured"),
     named("trigger_pin", 2, "trigger pin"),
@@ -120,6 +128,9 @@ pub const FEATURES: [Named; 8] = [
     named("initialise", 5, "initialisation"),
     named("diagnosis", 6, "diagnosis of the line"),
     named("continuous", 7, "continuous clock"),
+    named("alignment", 8, "phase at the host's choice, mean over many edges"),
+    named("margin", 9, "margin of the samples"),
+    named("double_edge", 10, "DATA on both edges of the system clock"),
 ];
 
 const fn error(name: &'static str, code: u16) -> Named {
@@ -276,6 +287,6 @@ mod tests {
                 assert!(!listed[..index].iter().any(twin), "{}", value.name);
             }
         }
-        assert_eq!(lists, 7);
+        assert_eq!(lists, 8);
     }
 }

@@ -1,0 +1,509 @@
+//! Line monitor: settings of the phase, and how much margin the samples have, as the host reads it.
+//!
+//! ```text
+//! edge_measured, edge_offset --> earliest and latest of the frame --(over)--> of the last frame
+//!                            \-> earliest and latest since cleared, alarm
+//!                            \-> histogram: read, add one, write (3 cycles)
+//! ```
+//!
+//! Offsets count places (system clock cycles, or half ones with the double edge) from the expected place of an edge: 0 and -1 are
+//! nearest to it, and half a bit is between them and the sample.
+//!
+//! What is measured is worth the same at every clock; the settings take effect between two frames.
+
+use crate::channel::Features;
+use crate::memory::Memory;
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Where the words of a monitor are, see [`crate::regs::LINE`].
+pub mod word {
+    /// Histogram of the offsets, -16 and before to 15 and after.
+    pub const HISTOGRAM: u64 = 0;
+    /// Source of the phase, majority, bin width.
+    pub const ALIGNMENT: u64 = 32;
+    /// Delay in mode `fixed`.
+    pub const FIXED_DELAY: u64 = 33;
+    /// Limits of the alarms.
+    pub const LIMITS: u64 = 34;
+    /// Clears.
+    pub const CLEAR: u64 = 35;
+    /// Offsets of the last frame.
+    pub const FRAME: u64 = 40;
+    /// Offsets since cleared, alarms.
+    pub const WORST: u64 = 41;
+    /// Tracked delay and its reference.
+    pub const PHASE: u64 = 42;
+    /// Glitches and bad frames.
+    pub const COUNTS: u64 = 43;
+    /// Frames.
+    pub const FRAMES: u64 = 44;
+}
+
+/// What the settings are after reset.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineStart {
+    /// Source of the phase, see [`crate::line_delay::mode`].
+    pub phase_mode: u64,
+    /// Delay in mode `fixed`, in sixteenths of a system clock cycle (15 bits).
+    pub fixed_delay: u64,
+    /// Majority of three samples.
+    pub majority: bool,
+    /// Drift that gives alarm, in sixteenths of a system clock cycle (12 bits); 0 = none.
+    pub drift_limit: u64,
+    /// Offset that gives alarm, in places (7 bits); 0 = none.
+    pub offset_limit: u64,
+}
+
+/// Settings and margin of one channel.
+#[derive(LogicBlock)]
+pub struct LineMonitor {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// A frame is under way: settings stay.
+    pub busy: Signal<In, Bit>,
+    /// Strobe: an edge of the answer has been measured.
+    pub edge_measured: Signal<In, Bit>,
+    /// Its offset, in two's complement.
+    pub edge_offset: Signal<In, Bits<8>>,
+    /// Strobe: a frame has ended.
+    pub over: Signal<In, Bit>,
+    /// Its position was not good.
+    pub over_bad: Signal<In, Bit>,
+    /// Strobe: a glitch has been removed.
+    pub glitch: Signal<In, Bit>,
+    /// Tracked delay, in sixteenths of a cycle.
+    pub phase: Signal<In, Bits<15>>,
+    /// The delay is known.
+    pub calibrated: Signal<In, Bit>,
+    /// Source of the phase.
+    pub phase_mode: Signal<Out, Bits<2>>,
+    /// Delay in mode `fixed`.
+    pub fixed_delay: Signal<Out, Bits<15>>,
+    /// Majority of three samples.
+    pub majority: Signal<Out, Bit>,
+    /// Drift or offset beyond its limit since cleared.
+    pub alarm: Signal<Out, Bit>,
+    /// Word that the host accesses; stays put for 8 cycles at least.
+    pub host_address: Signal<In, Bits<6>>,
+    /// Strobe: read it.
+    pub host_read: Signal<In, Bit>,
+    /// The word read.
+    pub host_word: Signal<Out, Bits<32>>,
+    /// Strobe: write one half of it.
+    pub host_write: Signal<In, Bit>,
+    /// The half: 1 = high.
+    pub host_half: Signal<In, Bit>,
+    /// What to write.
+    pub host_data: Signal<In, Bits<16>>,
+    wanted_mode: Reg<Bits<2>>,
+    wanted_majority: Reg<Bit>,
+    bin_shift: Reg<Bits<2>>,
+    wanted_delay: Reg<Bits<15>>,
+    drift_limit: Reg<Bits<12>>,
+    offset_limit: Reg<Bits<7>>,
+    mode: Reg<Bits<2>>,
+    uses_majority: Reg<Bit>,
+    delay: Reg<Bits<15>>,
+    word: Reg<Bits<32>>,
+    read_wanted: Reg<Bit>,
+    read_ram: Reg<Bit>,
+    earliest: Reg<Bits<8>>,
+    latest: Reg<Bits<8>>,
+    start: Reg<Bits<8>>,
+    is_first: Reg<Bit>,
+    told_earliest: Reg<Bits<8>>,
+    told_latest: Reg<Bits<8>>,
+    told_start: Reg<Bits<8>>,
+    worst_earliest: Reg<Bits<8>>,
+    worst_latest: Reg<Bits<8>>,
+    has_worst: Reg<Bit>,
+    reference: Reg<Bits<15>>,
+    was_calibrated: Reg<Bit>,
+    drift: Reg<Bits<15>>,
+    drift_alarm: Reg<Bit>,
+    offset_alarm: Reg<Bit>,
+    glitches: Reg<Bits<16>>,
+    bad_frames: Reg<Bits<16>>,
+    frames: Reg<Bits<32>>,
+    clear: Reg<Bit>,
+    clearing: Reg<Bit>,
+    bin: Reg<Bits<5>>,
+    step: Reg<Bits<2>>,
+    histogram: Vec<Memory<32, 5>>,
+    at: Signal<Local, Bits<6>>,
+    shown: Signal<Local, Bits<32>>,
+    biased: Signal<Local, Bits<8>>,
+    scaled: Signal<Local, Bits<8>>,
+    next_bin: Signal<Local, Bits<5>>,
+    size: Signal<Local, Bits<8>>,
+    has_margin: Constant<Bit>,
+    _histograms: usize,
+}
+
+impl LineMonitor {
+    /// A monitor with these features and settings.
+    pub fn new(features: Features, start: LineStart) -> Self {
+        let histograms = usize::from(features.margin);
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            busy: Default::default(),
+            edge_measured: Default::default(),
+            edge_offset: Default::default(),
+            over: Default::default(),
+            over_bad: Default::default(),
+            glitch: Default::default(),
+            phase: Default::default(),
+            calibrated: Default::default(),
+            phase_mode: Default::default(),
+            fixed_delay: Default::default(),
+            majority: Default::default(),
+            alarm: Default::default(),
+            host_address: Default::default(),
+            host_read: Default::default(),
+            host_word: Default::default(),
+            host_write: Default::default(),
+            host_half: Default::default(),
+            host_data: Default::default(),
+            wanted_mode: Reg::new(start.phase_mode.into()),
+            wanted_majority: Reg::new(start.majority),
+            bin_shift: Default::default(),
+            wanted_delay: Reg::new(start.fixed_delay.into()),
+            drift_limit: Reg::new(start.drift_limit.into()),
+            offset_limit: Reg::new(start.offset_limit.into()),
+            mode: Reg::new(start.phase_mode.into()),
+            uses_majority: Reg::new(start.majority),
+            delay: Reg::new(start.fixed_delay.into()),
+            word: Default::default(),
+            read_wanted: Default::default(),
+            read_ram: Default::default(),
+            earliest: Default::default(),
+            latest: Default::default(),
+            start: Default::default(),
+            is_first: Reg::new(true),
+            told_earliest: Default::default(),
+            told_latest: Default::default(),
+            told_start: Default::default(),
+            worst_earliest: Default::default(),
+            worst_latest: Default::default(),
+            has_worst: Default::default(),
+            reference: Default::default(),
+            was_calibrated: Default::default(),
+            drift: Default::default(),
+            drift_alarm: Default::default(),
+            offset_alarm: Default::default(),
+            glitches: Default::default(),
+            bad_frames: Default::default(),
+            frames: Default::default(),
+            clear: Default::default(),
+            clearing: Default::default(),
+            bin: Default::default(),
+            step: Default::default(),
+            histogram: (0..histograms).map(|_| Default::default()).collect(),
+            at: Default::default(),
+            shown: Default::default(),
+            biased: Default::default(),
+            scaled: Default::default(),
+            next_bin: Default::default(),
+            size: Default::default(),
+            has_margin: Constant::new(features.margin),
+            _histograms: histograms,
+        }
+    }
+}
+
+impl Logic for LineMonitor {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self,
+            clock,
+            wanted_mode,
+            wanted_majority,
+            bin_shift,
+            wanted_delay,
+            drift_limit,
+            offset_limit,
+            mode,
+            uses_majority,
+            delay,
+            word,
+            read_wanted,
+            read_ram
+        );
+        dff_setup!(
+            self,
+            clock,
+            earliest,
+            latest,
+            start,
+            is_first,
+            told_earliest,
+            told_latest,
+            told_start,
+            worst_earliest,
+            worst_latest,
+            has_worst
+        );
+        dff_setup!(
+            self,
+            clock,
+            reference,
+            was_calibrated,
+            drift,
+            drift_alarm,
+            offset_alarm,
+            glitches,
+            bad_frames,
+            frames,
+            clear,
+            clearing,
+            bin,
+            step
+        );
+        self.wanted_mode.reset.next = self.reset.val();
+        self.wanted_majority.reset.next = self.reset.val();
+        self.bin_shift.reset.next = self.reset.val();
+        self.wanted_delay.reset.next = self.reset.val();
+        self.drift_limit.reset.next = self.reset.val();
+        self.offset_limit.reset.next = self.reset.val();
+        self.mode.reset.next = self.reset.val();
+        self.uses_majority.reset.next = self.reset.val();
+        self.delay.reset.next = self.reset.val();
+        self.word.reset.next = self.reset.val();
+        self.read_wanted.reset.next = self.reset.val();
+        self.read_ram.reset.next = self.reset.val();
+        self.earliest.reset.next = self.reset.val();
+        self.latest.reset.next = self.reset.val();
+        self.start.reset.next = self.reset.val();
+        self.is_first.reset.next = self.reset.val();
+        self.told_earliest.reset.next = self.reset.val();
+        self.told_latest.reset.next = self.reset.val();
+        self.told_start.reset.next = self.reset.val();
+        self.worst_earliest.reset.next = self.reset.val();
+        self.worst_latest.reset.next = self.reset.val();
+        self.has_worst.reset.next = self.reset.val();
+        self.reference.reset.next = self.reset.val();
+        self.was_calibrated.reset.next = self.reset.val();
+        self.drift.reset.next = self.reset.val();
+        self.drift_alarm.reset.next = self.reset.val();
+        self.offset_alarm.reset.next = self.reset.val();
+        self.glitches.reset.next = self.reset.val();
+        self.bad_frames.reset.next = self.reset.val();
+        self.frames.reset.next = self.reset.val();
+        self.clear.reset.next = self.reset.val();
+        self.clearing.reset.next = self.reset.val();
+        self.bin.reset.next = self.reset.val();
+        self.step.reset.next = self.reset.val();
+
+        // Settings: written in halves, taken over between two frames.
+        self.at.next = self.host_address.val();
+        self.clear.d.next = false;
+        if self.host_write.val() & !self.host_half.val() {
+            if self.at.val() == 32 {
+                self.wanted_mode.d.next = self.host_data.val().get_bits::<2>(0);
+                self.wanted_majority.d.next = self.host_data.val().get_bit(4);
+                self.bin_shift.d.next = self.host_data.val().get_bits::<2>(8);
+            }
+            if self.at.val() == 33 {
+                self.wanted_delay.d.next = self.host_data.val().get_bits::<15>(0);
+            }
+            if self.at.val() == 34 {
+                self.drift_limit.d.next = self.host_data.val().get_bits::<12>(0);
+            }
+            if self.at.val() == 35 {
+                self.clear.d.next = self.host_data.val().get_bit(0);
+                if self.host_data.val().get_bit(1) {
+                    self.reference.d.next = self.phase.val();
+                }
+            }
+        }
+        if self.host_write.val() & self.host_half.val() & (self.at.val() == 34) {
+            self.offset_limit.d.next = self.host_data.val().get_bits::<7>(0);
+        }
+        if !self.busy.val() {
+            self.mode.d.next = self.wanted_mode.q.val();
+            self.uses_majority.d.next = self.wanted_majority.q.val();
+            self.delay.d.next = self.wanted_delay.q.val();
+        }
+        self.phase_mode.next = self.mode.q.val();
+        self.majority.next = self.uses_majority.q.val();
+        self.fixed_delay.next = self.delay.q.val();
+
+        // Offsets with their sign turned round: earlier is smaller.
+        self.biased.next = self.edge_offset.val() ^ 0x80;
+        if self.edge_measured.val() & self.has_margin.val() {
+            if self.is_first.q.val() {
+                self.start.d.next = self.biased.val();
+            }
+            if self.is_first.q.val() | (self.biased.val() < self.earliest.q.val()) {
+                self.earliest.d.next = self.biased.val();
+            }
+            if self.is_first.q.val() | (self.biased.val() > self.latest.q.val()) {
+                self.latest.d.next = self.biased.val();
+            }
+            self.is_first.d.next = false;
+        }
+        if self.over.val() & self.has_margin.val() {
+            self.frames.d.next = self.frames.q.val() + 1;
+            if self.over_bad.val() {
+                self.bad_frames.d.next = self.bad_frames.q.val() + 1;
+            }
+            self.is_first.d.next = true;
+            if !self.is_first.q.val() {
+                self.told_earliest.d.next = self.earliest.q.val();
+                self.told_latest.d.next = self.latest.q.val();
+                self.told_start.d.next = self.start.q.val();
+                self.has_worst.d.next = true;
+                if !self.has_worst.q.val() | (self.earliest.q.val() < self.worst_earliest.q.val())
+                {
+                    self.worst_earliest.d.next = self.earliest.q.val();
+                }
+                if !self.has_worst.q.val() | (self.latest.q.val() > self.worst_latest.q.val()) {
+                    self.worst_latest.d.next = self.latest.q.val();
+                }
+            }
+        }
+        if self.glitch.val() & self.has_margin.val() {
+            self.glitches.d.next = self.glitches.q.val() + 1;
+        }
+
+        // Alarms.
+        self.was_calibrated.d.next = self.calibrated.val();
+        if self.calibrated.val() & !self.was_calibrated.q.val() {
+            self.reference.d.next = self.phase.val();
+        }
+        self.drift.d.next = self.phase.val() - self.reference.q.val();
+        if self.phase.val() < self.reference.q.val() {
+            self.drift.d.next = self.reference.q.val() - self.phase.val();
+        }
+        if self.drift_limit.q.val().any()
+            & self.was_calibrated.q.val()
+            & (self.drift.q.val() > bit_cast::<15, 12>(self.drift_limit.q.val()))
+        {
+            self.drift_alarm.d.next = true;
+        }
+        self.size.next = self.edge_offset.val();
+        if self.edge_offset.val().get_bit(7) {
+            self.size.next = !self.edge_offset.val();
+        }
+        if self.offset_limit.q.val().any()
+            & self.edge_measured.val()
+            & (self.size.val() > bit_cast::<8, 7>(self.offset_limit.q.val()))
+        {
+            self.offset_alarm.d.next = true;
+        }
+        self.alarm.next = self.drift_alarm.q.val() | self.offset_alarm.q.val();
+
+        // Histogram: an edge that comes while the one before is counted is not.
+        self.scaled.next = self.size.val() >> self.bin_shift.q.val();
+        self.next_bin.next = self.scaled.val().get_bits::<5>(0) | 0x10;
+        if self.scaled.val().get_bits::<4>(4).any() {
+            self.next_bin.next = 31.into();
+        }
+        if self.edge_offset.val().get_bit(7) {
+            self.next_bin.next = !self.scaled.val().get_bits::<5>(0) & 0x0F;
+            if self.scaled.val().get_bits::<4>(4).any() {
+                self.next_bin.next = 0.into();
+            }
+        }
+        if self.step.q.val().any() {
+            self.step.d.next = self.step.q.val() - 1;
+        } else {
+            if self.edge_measured.val() & self.has_margin.val() & !self.clearing.q.val() {
+                self.bin.d.next = self.next_bin.val();
+                self.step.d.next = 3.into();
+            }
+        }
+        if self.clearing.q.val() {
+            self.bin.d.next = self.bin.q.val() + 1;
+            if self.bin.q.val().all() {
+                self.clearing.d.next = false;
+            }
+        }
+        if self.clear.q.val() {
+            self.has_worst.d.next = false;
+            self.worst_earliest.d.next = 0.into();
+            self.worst_latest.d.next = 0.into();
+            self.drift_alarm.d.next = false;
+            self.offset_alarm.d.next = false;
+            self.glitches.d.next = 0.into();
+            self.bad_frames.d.next = 0.into();
+            self.frames.d.next = 0.into();
+            self.clearing.d.next = self.has_margin.val();
+            self.bin.d.next = 0.into();
+            self.step.d.next = 0.into();
+        }
+
+        // Reading: the RAM is asked when it is not counting.
+        self.shown.next = 0.into();
+        match self.at.val().index() {
+            32 => {
+                self.shown.next = bit_cast::<32, 2>(self.wanted_mode.q.val())
+                    | (bit_cast::<32, 1>(self.wanted_majority.q.val().into()) << 4)
+                    | (bit_cast::<32, 2>(self.bin_shift.q.val()) << 8);
+            }
+            33 => {
+                self.shown.next = bit_cast::<32, 15>(self.wanted_delay.q.val());
+            }
+            34 => {
+                self.shown.next = bit_cast::<32, 12>(self.drift_limit.q.val())
+                    | (bit_cast::<32, 7>(self.offset_limit.q.val()) << 16);
+            }
+            40 => {
+                self.shown.next = bit_cast::<32, 8>(self.told_earliest.q.val() ^ 0x80)
+                    | (bit_cast::<32, 8>(self.told_latest.q.val() ^ 0x80) << 8)
+                    | (bit_cast::<32, 8>(self.told_start.q.val() ^ 0x80) << 16);
+            }
+            41 => {
+                self.shown.next = bit_cast::<32, 8>(self.worst_earliest.q.val() ^ 0x80)
+                    | (bit_cast::<32, 8>(self.worst_latest.q.val() ^ 0x80) << 8)
+                    | (bit_cast::<32, 1>(self.has_worst.q.val().into()) << 16)
+                    | (bit_cast::<32, 1>(self.drift_alarm.q.val().into()) << 24)
+                    | (bit_cast::<32, 1>(self.offset_alarm.q.val().into()) << 25);
+            }
+            42 => {
+                self.shown.next = bit_cast::<32, 15>(self.phase.val())
+                    | (bit_cast::<32, 15>(self.reference.q.val()) << 16);
+            }
+            43 => {
+                self.shown.next = bit_cast::<32, 16>(self.glitches.q.val())
+                    | (bit_cast::<32, 16>(self.bad_frames.q.val()) << 16);
+            }
+            44 => {
+                self.shown.next = self.frames.q.val();
+            }
+            _ => {}
+        }
+        if self.host_read.val() {
+            self.read_wanted.d.next = true;
+            self.word.d.next = self.shown.val();
+        }
+        self.read_ram.d.next = false;
+        if self.read_wanted.q.val() & !self.step.q.val().any() {
+            self.read_wanted.d.next = false;
+            self.read_ram.d.next = !self.at.val().get_bit(5) & self.has_margin.val();
+        }
+        for i in 0..self._histograms {
+            self.histogram[i].clock.next = self.clock.val();
+            self.histogram[i].read_address.next = self.bin.q.val();
+            if !self.step.q.val().any() {
+                self.histogram[i].read_address.next = self.at.val().get_bits::<5>(0);
+            }
+            self.histogram[i].write_address.next = self.bin.q.val();
+            self.histogram[i].write_enable.next =
+                (self.step.q.val() == 1) | self.clearing.q.val();
+            self.histogram[i].write_data.next = self.histogram[i].read_data.val() + 1;
+            if self.clearing.q.val() {
+                self.histogram[i].write_data.next = 0.into();
+            }
+            if self.read_ram.q.val() {
+                self.word.d.next = self.histogram[i].read_data.val();
+            }
+        }
+        self.host_word.next = self.word.q.val();
+    }
+}

@@ -1,0 +1,140 @@
+//! The words of a line monitor; their places come from [`crate::line_monitor::word`].
+
+use super::values::{Values, PHASE_MODES};
+use super::{Access, Block, Field, Register, LINE_BASE, LINE_STRIDE};
+use crate::config::CardConfig;
+use crate::line_monitor::word as at;
+use Access::{ReadOnly, ReadWrite, Strobe};
+
+fn zero(_: &CardConfig, _: usize) -> u64 {
+    0
+}
+
+const fn field(
+    name: &'static str,
+    lsb: u32,
+    width: u32,
+    unit: &'static str,
+    meaning: &'static str,
+) -> Field {
+    Field {
+        name,
+        lsb,
+        width,
+        unit,
+        meaning,
+        start: zero,
+        values: Values::Plain,
+    }
+}
+
+const fn word(
+    name: &'static str,
+    offset: u64,
+    access: Access,
+    meaning: &'static str,
+    fields: &'static [Field],
+) -> Register {
+    Register {
+        name,
+        offset: offset as u16,
+        access,
+        meaning,
+        fields,
+    }
+}
+
+/// Whether a word is there without the part `margin`.
+pub(super) fn is_setting(offset: u16) -> bool {
+    [at::ALIGNMENT, at::FIXED_DELAY, at::LIMITS, at::CLEAR, at::PHASE]
+        .contains(&u64::from(offset))
+}
+
+const EDGES: &[Field] = &[field("edges", 0, 32, "", "Edges since clear, wrapping")];
+
+const fn bin(name: &'static str, index: u64, meaning: &'static str) -> Register {
+    word(name, at::HISTOGRAM + index, ReadOnly, meaning, EDGES)
+}
+
+/// Phase of the samples, and how much margin they have.
+pub const LINE: Block = Block {
+    name: "line",
+    base: LINE_BASE,
+    stride: LINE_STRIDE,
+    per_channel: true,
+    meaning: "Phase of the samples, and how much margin they have. A place is a system clock cycle, or half of one with double_edge; offsets are signed.",
+    is_ram: false,
+    registers: &[
+        bin("edges_0", 0, "Edges with offset -16 or less (all bins: offset divided by 2^bin_shift)."),
+        bin("edges_1", 1, "Edges with offset -15."),
+        bin("edges_2", 2, "Edges with offset -14."),
+        bin("edges_3", 3, "Edges with offset -13."),
+        bin("edges_4", 4, "Edges with offset -12."),
+        bin("edges_5", 5, "Edges with offset -11."),
+        bin("edges_6", 6, "Edges with offset -10."),
+        bin("edges_7", 7, "Edges with offset -9."),
+        bin("edges_8", 8, "Edges with offset -8."),
+        bin("edges_9", 9, "Edges with offset -7."),
+        bin("edges_10", 10, "Edges with offset -6."),
+        bin("edges_11", 11, "Edges with offset -5."),
+        bin("edges_12", 12, "Edges with offset -4."),
+        bin("edges_13", 13, "Edges with offset -3."),
+        bin("edges_14", 14, "Edges with offset -2."),
+        bin("edges_15", 15, "Edges with offset -1: at the expected place, or up to one place before."),
+        bin("edges_16", 16, "Edges with offset 0: up to one place after the expected one."),
+        bin("edges_17", 17, "Edges with offset 1."),
+        bin("edges_18", 18, "Edges with offset 2."),
+        bin("edges_19", 19, "Edges with offset 3."),
+        bin("edges_20", 20, "Edges with offset 4."),
+        bin("edges_21", 21, "Edges with offset 5."),
+        bin("edges_22", 22, "Edges with offset 6."),
+        bin("edges_23", 23, "Edges with offset 7."),
+        bin("edges_24", 24, "Edges with offset 8."),
+        bin("edges_25", 25, "Edges with offset 9."),
+        bin("edges_26", 26, "Edges with offset 10."),
+        bin("edges_27", 27, "Edges with offset 11."),
+        bin("edges_28", 28, "Edges with offset 12."),
+        bin("edges_29", 29, "Edges with offset 13."),
+        bin("edges_30", 30, "Edges with offset 14."),
+        bin("edges_31", 31, "Edges with offset 15 or more."),
+        word("alignment", at::ALIGNMENT, ReadWrite, "Source of the phase; taken over between two frames.", &[
+            field("mode", 0, 2, "", "Where the phase of the samples comes from").codes(&PHASE_MODES),
+            field("majority", 4, 1, "", "Each sample is the majority of itself and its neighbours; measure the delay again after a change"),
+            field("bin_shift", 8, 2, "", "Bins of the histogram are 2^bin_shift places wide; clear after a change"),
+        ]),
+        word("fixed_delay", at::FIXED_DELAY, ReadWrite, "Delay in mode fixed, synchroniser and filter included.", &[
+            field("value", 0, 15, "cycles/16", "As phase.tracked shows it"),
+        ]),
+        word("limits", at::LIMITS, ReadWrite, "Limits of the alarms; 0 = none.", &[
+            field("drift", 0, 12, "cycles/16", "Most that the tracked delay may be from its reference"),
+            field("offset", 16, 7, "places", "Most that an edge may be from its expected place"),
+        ]),
+        word("clear", at::CLEAR, Strobe, "Clears, or takes a new reference.", &[
+            field("clear", 0, 1, "", "Write 1: histogram, worst edges, alarms, counters"),
+            field("reference", 1, 1, "", "Write 1: the tracked delay becomes the reference"),
+        ]),
+        word("frame", at::FRAME, ReadOnly, "Edges of the last frame.", &[
+            field("earliest", 0, 8, "places", "Smallest offset"),
+            field("latest", 8, 8, "places", "Largest offset"),
+            field("start", 16, 8, "places", "Offset of the start bit's edge"),
+        ]),
+        word("worst", at::WORST, ReadOnly, "Edges since clear.", &[
+            field("earliest", 0, 8, "places", "Smallest offset"),
+            field("latest", 8, 8, "places", "Largest offset"),
+            field("valid", 16, 1, "", "There were edges"),
+            field("drift_alarm", 24, 1, "", "The drift has been beyond its limit"),
+            field("offset_alarm", 25, 1, "", "An edge has been beyond its limit"),
+        ]),
+        word("phase", at::PHASE, ReadOnly, "Tracked delay, synchroniser and filter included.", &[
+            field("tracked", 0, 15, "cycles/16", "Mean place of the edges after their clock edge"),
+            field("reference", 16, 15, "cycles/16", "What it was when it had been measured"),
+        ]),
+        word("counts", at::COUNTS, ReadOnly, "Counters, wrapping.", &[
+            field("glitches", 0, 16, "", "Pulses that the input filter has removed since clear"),
+            field("bad_frames", 16, 16, "", "Frames with a cause other than 0 since clear"),
+        ]),
+        word("frames", at::FRAMES, ReadOnly, "Frames since clear, wrapping.", &[
+            field("value", 0, 32, "", "Frames"),
+        ]),
+    ],
+};
