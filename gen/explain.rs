@@ -75,6 +75,8 @@ pub struct ChannelReport {
     pub delay_max_ns: u64,
     /// Input filter, in ns.
     pub filter_ns: f64,
+    /// Longest filter behind which a pulse that it removes cannot spoil a bit, in ns.
+    pub filter_recommended_ns: f64,
     /// Half width of the start window, in ns.
     pub start_window_ns: f64,
     /// Longest wait for the start bit, in microseconds.
@@ -123,6 +125,8 @@ pub struct Report {
     pub service: Vec<&'static str>,
     /// Host link.
     pub link: LinkReport,
+    /// What each channel does about its line delay besides following it.
+    pub line: Vec<&'static str>,
 }
 
 fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelReport {
@@ -156,6 +160,7 @@ fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelR
         calibration_us: us(config.calibration_cycles(system_hz)),
         delay_max_ns: request.delay_max_ns(),
         filter_ns: us(config.filter_cycles) * 1e3,
+        filter_recommended_ns: us(config.filter_recommended_cycles()) * 1e3,
         start_window_ns: us(config.start_window_cycles) * 1e3,
         start_timeout_us: config.start_timeout_us,
     }
@@ -204,6 +209,15 @@ pub fn report(project: &Project) -> Report {
             (card.service.diagnosis, "diagnosis"),
             (card.service.continuous, "continuous"),
             (card.service.initialise, "initialise"),
+        ]
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name)
+        .collect(),
+        line: [
+            (card.line.alignment, "alignment"),
+            (card.line.margin, "margin"),
+            (card.line.double_edge, "double_edge"),
         ]
         .into_iter()
         .filter(|(on, _)| *on)
@@ -297,7 +311,11 @@ const ROWS: [Row; 18] = [
         )
     }),
     ("input filter", |c| {
-        format!("{} ns", decimal(c.filter_ns, 1))
+        format!(
+            "{} ns, at most {} recommended",
+            decimal(c.filter_ns, 1),
+            decimal(c.filter_recommended_ns, 1)
+        )
     }),
     ("start window", |c| {
         format!("+-{} ns", decimal(c.start_window_ns, 1))
@@ -368,7 +386,14 @@ impl fmt::Display for Report {
                 writeln!(f, "initialisation: triggers are lost until about 2 s after reset, and after a plug; it measures the delay, too.")?;
             }
         }
-        writeln!(f, "tm is the recovery time; the calibration frame, the first after reset, measures the delay of the cable.")
+        let first = match self.line.is_empty() {
+            true => "frame, the first after reset, measures",
+            false => {
+                writeln!(f, "line: {}", list(&self.line))?;
+                "frames, the first four after reset, measure"
+            }
+        };
+        writeln!(f, "tm is the recovery time; the calibration {first} the delay of the cable.")
     }
 }
 

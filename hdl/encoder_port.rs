@@ -12,6 +12,7 @@ use crate::channel::{Channel, Features, FixedTimes};
 use crate::line_monitor::{LineMonitor, LineStart};
 use crate::service::program::ServiceTimes;
 use crate::service::Service;
+use crate::transaction::cause;
 use rust_hdl::prelude::*;
 
 /// One encoder.
@@ -132,6 +133,9 @@ pub struct EncoderPort {
     channel: Channel,
     service: Vec<Service>,
     monitor: Vec<LineMonitor>,
+    trigger_overrun: Constant<Bits<5>>,
+    info_missing: Constant<Bits<5>>,
+    recovery_too_short: Constant<Bits<5>>,
     _services: usize,
     _monitors: usize,
 }
@@ -221,6 +225,9 @@ impl EncoderPort {
             monitor: (0..usize::from(line.alignment))
                 .map(|_| LineMonitor::new(line, LineStart::default()))
                 .collect(),
+            trigger_overrun: Constant::new(cause::TRIGGER_OVERRUN.into()),
+            info_missing: Constant::new(cause::INFO_MISSING.into()),
+            recovery_too_short: Constant::new(cause::RECOVERY_TOO_SHORT.into()),
             _services: service.iter().count(),
             _monitors: usize::from(line.alignment),
         }
@@ -349,7 +356,11 @@ impl Logic for EncoderPort {
             self.monitor[i].edge_measured.next = self.channel.edge_measured.val();
             self.monitor[i].edge_offset.next = self.channel.edge_offset.val();
             self.monitor[i].over.next = self.channel.over.val();
-            self.monitor[i].over_bad.next = self.channel.over_cause.val().any();
+            // These come with a good position.
+            self.monitor[i].over_bad.next = self.channel.over_cause.val().any()
+                & (self.channel.over_cause.val() != self.trigger_overrun.val())
+                & (self.channel.over_cause.val() != self.info_missing.val())
+                & (self.channel.over_cause.val() != self.recovery_too_short.val());
             self.monitor[i].glitch.next = self.channel.glitch.val();
             self.monitor[i].phase.next = self.channel.phase.val();
             self.monitor[i].calibrated.next = self.channel.calibrated.val();

@@ -128,6 +128,7 @@ pub struct LineDelay {
     center_place: Signal<Local, Bit>,
     distance: Signal<Local, Bits<8>>,
     good_edge: Signal<Local, Bit>,
+    is_open: Signal<Local, Bit>,
     is_later: Signal<Local, Bit>,
     due: Signal<Local, Bit>,
     was_over: Reg<Bit>,
@@ -224,6 +225,7 @@ impl LineDelay {
             center_place: Default::default(),
             distance: Default::default(),
             good_edge: Default::default(),
+            is_open: Default::default(),
             is_later: Default::default(),
             due: Default::default(),
             was_over: Default::default(),
@@ -416,6 +418,10 @@ impl Logic for LineDelay {
             self.edge_seen.d.next = true;
             self.edge_late.d.next = self.late_now.val();
             self.edge_place.d.next = self.place_now.val();
+            if self.next_cell.val() {
+                self.edge_late.d.next = false;
+                self.edge_place.d.next = true;
+            }
         }
         if (self.center_seen.q.val() & !self.edge_now.val())
             | (self.edge_seen.q.val() & !self.center_seen.q.val())
@@ -466,10 +472,13 @@ impl Logic for LineDelay {
                     + bit_cast::<8, 1>((!self.center_place.val()).into());
             }
         }
+        // While the mean is still being looked for, and where there is none, every edge counts.
+        self.is_open.next =
+            self.is_frame.val() | (self.has_alignment.val() & self.slow.val());
         self.good_edge.next = self.has_alignment.val()
             & self.sample_now.val()
             & self.edge_now.val()
-            & !self.edge_outside.q.val()
+            & (!self.edge_outside.q.val() | self.is_open.val())
             & (self.follow.val() | (self.in_answer.val() & !self.is_frame.val()));
         self.measured_now.d.next = self.good_edge.val();
         self.offset_now.d.next = self.distance.val();
@@ -525,7 +534,7 @@ impl Logic for LineDelay {
         self.sample.next = self.sample_now.val();
         self.center.next = self.center_now.val();
         self.edge_in_window.next =
-            self.edge_now.val() & (!self.edge_outside.q.val() | self.is_frame.val());
+            self.edge_now.val() & (!self.edge_outside.q.val() | self.is_open.val());
         self.outstanding.next = self.pulses.q.val();
         self.sample_second.next = self.second.q.val();
         self.delay_cycles.next = self.delay_now.val();

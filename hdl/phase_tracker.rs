@@ -1,14 +1,14 @@
 //! Phase tracker: where the data edges come, to a part of a cycle, from the mean over many of them.
 //!
 //! ```text
-//! edge of this cell: places after the tracked one -->(+)--> 1/8, 1/32 or 1/256 of it --> phase (12 bits before the point, 12 behind)
+//! edge of this cell: places after the tracked one -->(+)--> 1/8, 1/32 or 1/512 of it --> phase (12 bits before the point, 12 behind)
 //!                                                   - ^                                    |
 //!                                                     +------------ part behind the point -+--> delay for the cells
 //! ```
 //!
 //! A place is where the data line is looked at: a system clock cycle, or half of one. The start edge of the first frame sets the phase.
 //! The edges after it in that frame count for an eighth, those of the other frames at the calibration clock for a 32nd, and
-//! from then on for a 256th: then jitter averages out, and a cable that grows warm is followed.
+//! from then on for a 512th: then jitter averages out, and a cable that grows warm is followed.
 //!
 //! In mode `fixed` the delay comes from a register, and the phase stays as it is.
 
@@ -58,6 +58,7 @@ pub struct PhaseTracker {
     middle: Reg<Bits<5>>,
     has_double: Constant<Bit>,
     negative: Constant<Bits<32>>,
+    top: Constant<Bits<24>>,
     innovation: Signal<Local, Bits<32>>,
     step: Signal<Local, Bits<24>>,
     moved: Signal<Local, Bits<5>>,
@@ -90,6 +91,7 @@ impl PhaseTracker {
             middle: Default::default(),
             has_double: Constant::new(features.double_edge),
             negative: Constant::new(0xFFF0_0000u64.into()),
+            top: Constant::new(0x80_0000u64.into()),
             innovation: Default::default(),
             step: Default::default(),
             moved: Default::default(),
@@ -133,7 +135,11 @@ impl Logic for PhaseTracker {
                 | (bit_cast::<32, 8>(self.distance.val()) << 12)
                 | self.negative.val();
         }
-        self.step.next = self.innovation.val().get_bits::<24>(8);
+        self.step.next = bit_cast::<24, 23>(self.innovation.val().get_bits::<23>(9));
+        if self.distance.val().get_bit(7) {
+            self.step.next =
+                bit_cast::<24, 23>(self.innovation.val().get_bits::<23>(9)) | self.top.val();
+        }
         if self.quick.val() {
             self.step.next = self.innovation.val().get_bits::<24>(5);
         }

@@ -1,5 +1,6 @@
 //! Tests of the whole system, one module per topic.
 
+mod alignment;
 mod campaign;
 mod cli;
 mod config;

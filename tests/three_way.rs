@@ -17,6 +17,8 @@ pub struct Stimulus {
     pub inputs: Vec<String>,
     /// For each cycle, the value of each input.
     pub cycles: Vec<Vec<u128>>,
+    /// The same in the middle of each cycle, at the falling edge of the clock; empty if that edge means nothing.
+    pub middle: Vec<Vec<u128>>,
 }
 
 /// What the outputs were, cycle by cycle.
@@ -39,17 +41,24 @@ pub fn record(engine: &mut dyn Engine, stimulus: &Stimulus) -> Recording {
         .cloned()
         .collect();
     let ids: Vec<PortId> = outputs.iter().map(|p| engine.port(&p.name)).collect();
-    let cycle = |values: &Vec<u128>| {
+    let set = |engine: &mut dyn Engine, values: &[u128]| {
         for (port, value) in inputs.iter().zip(values) {
             engine.set(*port, *value);
         }
+    };
+    let cycle = |(cycle, values): (usize, &Vec<u128>)| {
+        if let Some(middle) = stimulus.middle.get(cycle) {
+            set(engine, middle);
+            engine.fall();
+        }
+        set(engine, values);
         let row = ids.iter().map(|id| engine.get(*id)).collect();
         engine.tick();
         row
     };
     Recording {
         outputs,
-        cycles: stimulus.cycles.iter().map(cycle).collect(),
+        cycles: stimulus.cycles.iter().enumerate().map(cycle).collect(),
     }
 }
 
@@ -151,6 +160,9 @@ pub fn lanes_agree(
             .cycles
             .rotate_left(lane % stimulus.cycles.len().max(1));
         moved
+            .middle
+            .rotate_left(lane % stimulus.middle.len().max(1));
+        moved
     };
     for (name, lanes) in made {
         let mut lanes = lanes.map_err(error)?;
@@ -163,6 +175,15 @@ pub fn lanes_agree(
         let watched = [0, 1, 31, lanes.lanes() / 2, lanes.lanes() - 1];
         let mut got: Vec<Vec<Vec<u128>>> = vec![vec![]; watched.len()];
         for cycle in 0..stimulus.cycles.len() {
+            if !stimulus.middle.is_empty() {
+                for lane in 0..lanes.lanes() {
+                    let row = &stimulus.middle[(cycle + lane) % stimulus.middle.len()];
+                    for (port, value) in inputs.iter().zip(row) {
+                        lanes.set(*port, lane, *value);
+                    }
+                }
+                lanes.fall();
+            }
             for lane in 0..lanes.lanes() {
                 let row = &stimulus.cycles[(cycle + lane) % stimulus.cycles.len()];
                 for (port, value) in inputs.iter().zip(row) {
@@ -232,6 +253,10 @@ pub fn replay(
         rows(&expected.cycles, &widths(&expected.outputs)),
     )
     .unwrap();
+    if !stimulus.middle.is_empty() {
+        let middle = rows(&stimulus.middle, &widths(&inputs));
+        fs::write(folder.join("middle.hex"), middle).unwrap();
+    }
     let arguments = ["-g2005", "-Wall", "-o", "bench.vvp", "design.v", "bench.v"];
     let (good, text) = tools::run("iverilog", &folder, &arguments);
     if !good || !text.is_empty() {
@@ -304,6 +329,15 @@ fn bench(design: &Design, stimulus: &Stimulus, expected: &Recording) -> String {
         );
         low += port.width_bits;
     }
+    // The clock stays HIGH into the next cycle if its falling edge means something.
+    let (load_middle, fall, end) = match stimulus.middle.is_empty() {
+        true => (String::new(), "", "            clk = 1'b0;\n"),
+        false => (
+            format!("    reg [{}:0] middle [0:{last}];\n    initial $readmemb(\"middle.hex\", middle);\n", input_bits - 1),
+            "            in = middle[cycle];\n            #5;\n            clk = 1'b0;\n            #1;\n",
+            "",
+        ),
+    };
     format!(
         "`timescale 1ns / 1ps
 module bench;
@@ -314,19 +348,18 @@ module bench;
     reg [{output_top}:0] want;
     wire [{output_top}:0] out;
     integer cycle;
-    {name} dut ({connections});
+{load_middle}    {name} dut ({connections});
     initial begin
         $readmemb(\"stimulus.hex\", stimulus);
         $readmemb(\"expected.hex\", expected);
         clk = 1'b0;
         for (cycle = 0; cycle <= {last}; cycle = cycle + 1) begin
-            in = stimulus[cycle];
+{fall}            in = stimulus[cycle];
             want = expected[cycle];
             #5;
 {checks}            clk = 1'b1;
             #5;
-            clk = 1'b0;
-        end
+{end}        end
         $display(\"PASS\");
         $finish;
     end

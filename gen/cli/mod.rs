@@ -82,6 +82,8 @@ enum Command {
     Campaign(campaign::CampaignArgs),
     /// Map where frames are good, and by what margin: cable, clock, jitter, noise ...
     Shmoo(shmoo::ShmooArgs),
+    /// Move the sample over the bit: how much jitter it stands where; options as those of shmoo
+    Eye(shmoo::ShmooArgs),
 }
 
 /// Which configuration.
@@ -163,6 +165,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Bench(arguments)) => bench::run(&arguments).map(with_engine),
         Some(Command::Campaign(arguments)) => campaign::run(&arguments).map(with_engine),
         Some(Command::Shmoo(arguments)) => shmoo::run(&arguments).map(with_engine),
+        Some(Command::Eye(arguments)) => shmoo::eye(arguments).map(with_engine),
     }
 }
 

@@ -131,6 +131,17 @@ const FRAMES_MAX: u64 = 10_000;
 /// System clock in hertz, and the receiver that works with it.
 type Clocks = (u64, ReceiverKind);
 
+/// Runs `eye`: the sample is moved over the bit, and the jitter upwards.
+pub fn eye(arguments: ShmooArgs) -> Result<Outcome, GenError> {
+    let or = |given: Option<String>, usual: &str| Some(given.unwrap_or_else(|| usual.into()));
+    run(&ShmooArgs {
+        x: or(arguments.x, "offset_percent=-60:60:2.5"),
+        y: or(arguments.y, "jitter_ns=0:60:2.5"),
+        phase: PhaseArg::Fixed,
+        ..arguments
+    })
+}
+
 /// Runs the command.
 pub fn run(arguments: &ShmooArgs) -> Result<Outcome, GenError> {
     let plan = plan(arguments)?;
@@ -172,6 +183,7 @@ pub fn run(arguments: &ShmooArgs) -> Result<Outcome, GenError> {
 fn title(plan: &Plan) -> String {
     let what = |axis: &Axis| axis.quantity.title();
     match (plan.x.quantity, plan.y.quantity) {
+        (Quantity::Offset, Quantity::Jitter) => "Eye: where the sample may be, and how much jitter it stands".into(),
         (Quantity::Cable, Quantity::Clock) | (Quantity::Clock, Quantity::Cable) => {
             "Cable and clock: where every frame is good, and by what margin".into()
         }
@@ -221,6 +233,13 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
         }
         set.push(quantity);
         conditions.set(quantity, one("--at", text, quantity, value, clocks)?);
+    }
+    let moves = |axis: &Option<String>| axis.as_ref().is_some_and(|a| a.starts_with(Quantity::Offset.name()));
+    let is_moved = set.contains(&Quantity::Offset) || moves(&arguments.x) || moves(&arguments.y);
+    if is_moved && conditions.receiver.phase != Phase::Fixed {
+        return Err(GenError::input(
+            "offset_percent: moves the sample, which only a phase from a register allows; add --phase fixed, or use eye",
+        ));
     }
     let (_, fastest) = Quantity::Clock.range(system_hz, conditions.receiver);
     let usual = |axis: &str| match axis {

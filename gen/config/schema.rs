@@ -62,11 +62,14 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let system_hz = system_hz.filter(|hz| system_limits.contains(*hz));
     let endat = root.table("endat", &empty);
     let defaults = read_line_keys(&endat, system_hz);
+    let line_table = root.table("line", &empty);
+    let line_parts = read_line_parts(&line_table);
+    let is_aligned = line_parts.is_some_and(|parts| parts.alignment);
     let tables = root.tables("channel");
     let channels: Option<Vec<Option<Channel>>> = tables.as_ref().map(|tables| {
         let channels = tables.iter();
         channels
-            .map(|t| read_channel(t, &defaults, system_hz))
+            .map(|t| read_channel(t, &defaults, system_hz, is_aligned))
             .collect()
     });
     let trigger = root.table("trigger", &empty);
@@ -80,8 +83,6 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let read_hz = link.integer("read_hz", &limits("read_hz", system_hz));
     let service = root.table("service", &empty);
     let parts = read_service(&service);
-    let line_table = root.table("line", &empty);
-    let line_parts = read_line_parts(&line_table);
     let pins = root.table("pins", &empty);
     for table in tables.iter().flatten().chain([
         &clock,
@@ -276,6 +277,7 @@ fn read_channel(
     table: &Table<'_, '_>,
     defaults: &LineKeys,
     system_hz: Option<u64>,
+    is_aligned: bool,
 ) -> Option<Channel> {
     let encoder = read_encoder(table);
     let limits = limits("position_bits", system_hz);
@@ -313,7 +315,7 @@ fn read_channel(
         position_bits: position.value,
         filter_ns: value("filter_ns").unwrap_or(0),
         start_window_ns: value("start_window_ns")
-            .unwrap_or_else(|| usual_window_ns(clock_hz, system_hz.unwrap_or(0))),
+            .unwrap_or_else(|| usual_window_ns(clock_hz, system_hz.unwrap_or(0), is_aligned)),
         tcal_max_ns: value("tcal_max_ns").unwrap_or(TCAL_MAX_NS),
         recovery_min_ns: value("recovery_min_ns").unwrap_or(RECOVERY_MIN_NS),
         recovery_max_ns: value("recovery_max_ns").unwrap_or(RECOVERY_MAX_NS),
@@ -353,12 +355,15 @@ fn read_encoder(table: &Table<'_, '_>) -> Option<String> {
 }
 
 /// A quarter of a period, as far as the counter of the start window reaches.
-fn usual_window_ns(clock_hz: u64, system_hz: u64) -> u64 {
+fn usual_window_ns(clock_hz: u64, system_hz: u64, is_aligned: bool) -> u64 {
     if clock_hz == 0 || system_hz == 0 {
         return 0;
     }
     let cycle_ns = 1_000_000_000u64.div_ceil(system_hz);
-    let mut window_ns = (250_000_000 / clock_hz).max(cycle_ns);
+    let bit_ns = 1_000_000_000 / clock_hz;
+    // The mean phase stands jitter of half a bit; a quarter is for one that goes from frame to frame.
+    let part = if is_aligned { 2 } else { 4 };
+    let mut window_ns = (bit_ns / part).max(cycle_ns);
     let most = (1 << START_WINDOW_BITS) - 1;
     if cycles_at_most(window_ns, system_hz) > most {
         window_ns = most * 1_000_000_000 / system_hz;

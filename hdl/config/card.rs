@@ -8,6 +8,22 @@ use crate::timing::*;
 /// Where the upper limit of the UART rate comes from when it is not the system clock.
 pub const BAUD_NOTE: &str = "the most that the board passes on to the host";
 
+/// Fewest system clock cycles in an EnDat period with which the phase can follow while the clock goes on.
+const CONTINUOUS_PERIOD_MIN: u64 = 8;
+
+fn too_fast_for_continuous(index: usize, channel: &ChannelConfig, system_hz: u64) -> Problem {
+    Problem {
+        section: Section::Channel(index),
+        key: "clock_hz",
+        value: channel.request.clock_hz.to_string(),
+        text: format!(
+            "its period is {} cycles of clock.system_hz = {system_hz}, continuous clock takes {CONTINUOUS_PERIOD_MIN}; use at most {} Hz, or leave \"continuous\" out of service.parts",
+            channel.period_cycles,
+            system_hz / CONTINUOUS_PERIOD_MIN
+        ),
+    }
+}
+
 impl CardDraft {
     /// Converts and checks what is there; `Err` has every problem found, none when only something is missing.
     pub fn resolve(&self) -> Result<CardConfig, Vec<Problem>> {
@@ -45,7 +61,12 @@ impl CardDraft {
                 .as_ref()
                 .map(|c| ChannelConfig::resolve(c, system_hz, index))
             {
-                Some(Ok(channel)) => channels.push((index, channel)),
+                Some(Ok(channel)) => {
+                    if self.service.continuous && channel.period_cycles < CONTINUOUS_PERIOD_MIN {
+                        problems.push(too_fast_for_continuous(index, &channel, system_hz));
+                    }
+                    channels.push((index, channel));
+                }
                 Some(Err(more)) => problems.extend(more),
                 None => {}
             }

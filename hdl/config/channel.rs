@@ -75,6 +75,16 @@ impl ChannelConfig {
         }
     }
 
+    /// Longest input filter that is worth having: an edge and the longest pulse that is removed fit into half a bit.
+    pub const fn filter_recommended_cycles(&self) -> u64 {
+        let most = (self.period_cycles / 4).saturating_sub(1);
+        if most < max_of(FILTER_BITS) {
+            most
+        } else {
+            max_of(FILTER_BITS)
+        }
+    }
+
     /// Whether the encoder's recovery time is to be the short one.
     pub const fn wants_short_recovery(&self) -> bool {
         self.request.recovery_min_ns < RECOVERY_MIN_NS
@@ -267,13 +277,13 @@ fn check_window(
     system_hz: u64,
 ) -> u64 {
     let cycles = cycles_at_most(request.start_window_ns, system_hz);
-    let most = ((period - 1) / 2).min(max_of(START_WINDOW_BITS));
+    let most = (period / 2).min(max_of(START_WINDOW_BITS));
     if !(1..=most).contains(&cycles) {
         check.fail(
             "start_window_ns",
             request.start_window_ns,
             format!(
-                "is {cycles} cycles, outside 1..{most} (less than half an EnDat period, and {} at most); use {}..{} ns",
+                "is {cycles} cycles, outside 1..{most} (half an EnDat period, and {} at most); use {}..{} ns",
                 max_of(START_WINDOW_BITS),
                 cycles_to_ns_up(1, system_hz),
                 cycles_to_ns_up(most, system_hz)

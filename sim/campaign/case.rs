@@ -157,12 +157,7 @@ impl Case {
 
     /// Runs the case alone, on an engine for [`Case::design`], keeping what waveforms and drawings need.
     pub fn run_alone<E: Engine>(&self, engine: E, is_recorded: bool) -> Bench<E> {
-        let pins = crate::bench::PinNames::channel();
-        let mut bench = Bench::new(engine, self.system_hz, vec![(pins, self.link())]);
-        bench.set_sample_latency_halves(self.latency_halves());
-        if self.features.double_edge {
-            bench.set_double_edge();
-        }
+        let mut bench = self.bench(engine);
         if is_recorded {
             bench.record_links();
             for name in crate::scenario::WATCHED {
@@ -171,6 +166,23 @@ impl Case {
                 }
             }
         }
+        self.drive(&mut bench);
+        bench
+    }
+
+    /// The bench of the case, before anything is done on it.
+    pub fn bench<E: Engine>(&self, engine: E) -> Bench<E> {
+        let pins = crate::bench::PinNames::channel();
+        let mut bench = Bench::new(engine, self.system_hz, vec![(pins, self.link())]);
+        bench.set_sample_latency_halves(self.latency_halves());
+        if self.features.double_edge {
+            bench.set_double_edge();
+        }
+        bench
+    }
+
+    /// Resets the bench and triggers until all frames are there.
+    pub fn drive<E: Engine>(&self, bench: &mut Bench<E>) {
         bench.configure(&self.settings);
         bench.reset();
         let end = self.limit_cycles();
@@ -185,7 +197,6 @@ impl Case {
             }
             bench.tick();
         }
-        bench
     }
 
     /// Whether all frames were good and by the rules; if not, what was wrong first.

@@ -38,6 +38,8 @@ pub struct PathConfig {
     pub fall_later: i64,
     /// How much the delay grows with time (temperature), in picoseconds per microsecond; negative = shrinks.
     pub drift: i64,
+    /// From a moment on the delay is longer by so much; negative = shorter.
+    pub step: Option<(Time, i64)>,
     /// Variation from edge to edge.
     pub jitter: Jitter,
     /// Pulses shorter than this do not get through.
@@ -50,6 +52,7 @@ impl Default for PathConfig {
             transceivers: 25 * NS,
             fall_later: 0,
             drift: 0,
+            step: None,
             jitter: Jitter::None,
             shortest_pulse: 2 * NS,
         }

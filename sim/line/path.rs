@@ -57,6 +57,10 @@ impl<T: Edge> Path<T> {
             delay += self.config.fall_later;
         }
         delay += self.config.drift * (time / US) as i64;
+        delay += match self.config.step {
+            Some((from, step)) if from <= time => step,
+            _ => 0,
+        };
         delay += self.config.jitter.draw(&mut self.rng);
         let arrival = time.saturating_add_signed(delay.max(0));
         let earliest = |p: &(Time, T)| p.0 + self.config.shortest_pulse;

@@ -27,6 +27,8 @@ pub enum Quantity {
     Noise,
     /// Input filter.
     Filter,
+    /// How far the sample is from the middle of the bit (phase from a register).
+    Offset,
 }
 
 /// Longest glitch of the noise.
@@ -38,7 +40,7 @@ const FILTER_MAX: f64 = 15.0;
 
 impl Quantity {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Cable,
         Self::Clock,
         Self::Delay,
@@ -46,6 +48,7 @@ impl Quantity {
         Self::Distortion,
         Self::Noise,
         Self::Filter,
+        Self::Offset,
     ];
 
     /// What it is called on the command line and in tables, unit included.
@@ -58,6 +61,7 @@ impl Quantity {
             Self::Distortion => "distortion_ns",
             Self::Noise => "noise_khz",
             Self::Filter => "filter_cycles",
+            Self::Offset => "offset_percent",
         }
     }
 
@@ -71,6 +75,7 @@ impl Quantity {
             Self::Distortion => "falling edges later than rising ones, in ns",
             Self::Noise => "glitches of 2 to 40 ns on DATA, in thousands per second",
             Self::Filter => "input filter in system clock cycles",
+            Self::Offset => "sample before (-) or after (+) the middle of the bit, in percent of the bit",
         }
     }
 
@@ -90,6 +95,7 @@ impl Quantity {
             Self::Distortion => (-1_000.0, 1_000.0),
             Self::Noise => (0.0, 10_000.0),
             Self::Filter => (0.0, FILTER_MAX),
+            Self::Offset => (-100.0, 100.0),
         }
     }
 }
@@ -185,7 +191,7 @@ impl Conditions {
             Phase::Fixed => mode::FIXED,
         };
         case.frames = case.calibration_frames() + frames;
-        case.settings.start_window_cycles = ((case.settings.period_cycles - 1) / 2).clamp(1, 63);
+        case.settings.start_window_cycles = (case.settings.period_cycles / 2).clamp(1, 63);
         case.settings.filter_cycles = self.get(Quantity::Filter).round() as u64;
         case.encoder.clock_to_data = time(Quantity::Delay) as Time;
         case.encoder.seed = seed;
@@ -193,7 +199,10 @@ impl Conditions {
         case.line.data_in.jitter = Jitter::Uniform(time(Quantity::Jitter) as Time);
         case.line.data_in.fall_later = time(Quantity::Distortion) as i64;
         let delay = case.line.round_trip() + case.encoder.clock_to_data;
-        case.settings.fixed_delay = self.fixed_delay(delay);
+        let offset = self.get(Quantity::Offset) / 100.0 * 16.0 * case.settings.period_cycles as f64;
+        case.settings.fixed_delay = self
+            .fixed_delay(delay)
+            .saturating_add_signed(offset.round() as i64);
         let noise = self.get(Quantity::Noise);
         if noise > 0.0 {
             case.line.random_glitches = Some(GlitchRate {

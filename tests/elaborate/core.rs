@@ -28,6 +28,7 @@ fn wandering(lines: &[(&str, u64)], cycles: usize, seed: u64) -> Stimulus {
     Stimulus {
         inputs: lines.iter().map(|(name, _)| name.to_string()).collect(),
         cycles: (0..cycles).map(&mut cycle).collect(),
+        middle: vec![],
     }
 }
 
@@ -66,11 +67,11 @@ fn channel_agrees(name: &str, features: Features) {
     let design = elaborate(&block, "channel").unwrap();
     let mut kernel = kernel_engine!(block; clock;
         in reset, tick_us, timestamp, trigger, calibrate, data_i, period_cycles, first_low_extra_cycles, command,
-        position_bits, filter_cycles, start_window_cycles, start_timeout_us, recovery_limit_cycles,
+        position_bits, filter_cycles, phase_mode, fixed_delay, majority, start_window_cycles, start_timeout_us, recovery_limit_cycles,
         recovery_min_cycles, watchdog_us, continuous, stop_at_error, request_command, request_parameter, request_ride, request_own, request_cancel, hold_off, clock_low, forced;
         out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
-        first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles, busy,
-        sample_strobe, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply, reply_good, info_active, info_1, info_2,
+        first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles, phase, edge_measured, edge_offset, glitch, busy,
+        sample_strobe, sample_second, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply, reply_good, info_active, info_1, info_2,
         info_came, info_good, calibrated);
     let lines = [
         ("tick_us", 2),
@@ -99,6 +100,9 @@ fn channel_agrees(name: &str, features: Features) {
         ("continuous", 1),
         ("stop_at_error", 0),
         ("timestamp", 0),
+        ("phase_mode", 0),
+        ("fixed_delay", 0),
+        ("majority", 0),
         ("request_command", 0),
         ("request_parameter", 0x5C_A3C5),
         ("forced", 0),

@@ -54,6 +54,7 @@ fn all_values_agree() {
         cycles: (0..1 << 13)
             .map(|v: u128| vec![v & 63, v >> 6 & 63, v >> 12])
             .collect(),
+        middle: vec![],
     };
     three_way("mismatch", &mut kernel, &design, &stimulus).unwrap();
 }

@@ -23,6 +23,7 @@ fn stimulus(generator: &mut Generator) -> Stimulus {
         row
     };
     Stimulus {
+        middle: vec![],
         inputs,
         cycles: (0..CYCLES).map(cycle).collect(),
     }

@@ -19,6 +19,7 @@ pub fn random_stimulus(engine: &dyn Engine, cycles: usize, seed: u64) -> Stimulu
         }
     };
     Stimulus {
+        middle: vec![],
         cycles: (0..cycles)
             .map(|cycle| {
                 inputs

@@ -35,6 +35,7 @@ fn stimulus(design: &Design, cycles: usize, seed: u64) -> Stimulus {
     Stimulus {
         inputs: nets.iter().map(|n| n.name.clone()).collect(),
         cycles: (0..cycles).map(&mut cycle).collect(),
+        middle: vec![],
     }
 }
 
@@ -77,6 +78,7 @@ fn play(engine: &mut dyn Engine, stimulus: &Stimulus, cycles: std::ops::Range<us
     let part = Stimulus {
         inputs: stimulus.inputs.clone(),
         cycles: stimulus.cycles[cycles].to_vec(),
+        middle: vec![],
     };
     record(engine, &part)
 }

@@ -1,7 +1,7 @@
 //! Benches of one elaborated channel, and what a sound run looks like.
 
 use endat_hdl::{
-    channel::{Channel, FixedTimes},
+    channel::{Channel, Features, FixedTimes},
     elaborate::elaborate,
     protocol::ModeCommand,
 };
@@ -208,6 +208,7 @@ pub fn crc_sent(frame: &FrameLog) -> u64 {
 /// Asserts that all frames so far were good and by the rules. The channel must be idle.
 pub fn assert_sound(setup: &Setup, rig: &Rig) {
     let case = Case {
+        features: Features::NONE,
         title: String::new(),
         system_hz: setup.system_hz,
         settings: setup.settings,
