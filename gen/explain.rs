@@ -393,7 +393,10 @@ impl fmt::Display for Report {
                 "frames, the first four after reset, measure"
             }
         };
-        writeln!(f, "tm is the recovery time; the calibration {first} the delay of the cable.")
+        writeln!(
+            f,
+            "tm is the recovery time; the calibration {first} the delay of the cable."
+        )
     }
 }
 

@@ -43,8 +43,8 @@ pub struct InputFilter {
     fall2: Vec<SyncReg<Bit>>,
     fall3: Vec<SyncReg<Bit>>,
     fall4: Vec<SyncReg<Bit>>,
-    before: Reg<Bit>,
-    before_first: Reg<Bit>,
+    earlier: Reg<Bit>,
+    earlier_first: Reg<Bit>,
     different: Reg<Bits<5>>,
     level_now: Reg<Bit>,
     first_now: Reg<Bit>,
@@ -88,8 +88,8 @@ impl InputFilter {
             fall2: (0..doubles).map(|_| Default::default()).collect(),
             fall3: (0..doubles).map(|_| Default::default()).collect(),
             fall4: (0..doubles).map(|_| Default::default()).collect(),
-            before: Default::default(),
-            before_first: Default::default(),
+            earlier: Default::default(),
+            earlier_first: Default::default(),
             different: Default::default(),
             level_now: Default::default(),
             first_now: Default::default(),
@@ -116,13 +116,13 @@ impl Logic for InputFilter {
     #[hdl_gen]
     fn update(&mut self) {
         clock!(self, clock, sync1, sync2, sync3);
-        dff_setup!(self, clock, before, before_first, different, level_now);
+        dff_setup!(self, clock, earlier, earlier_first, different, level_now);
         dff_setup!(self, clock, first_now, edge_now, second_now, removed);
         self.sync1.reset.next = self.reset.val();
         self.sync2.reset.next = self.reset.val();
         self.sync3.reset.next = self.reset.val();
-        self.before.reset.next = self.reset.val();
-        self.before_first.reset.next = self.reset.val();
+        self.earlier.reset.next = self.reset.val();
+        self.earlier_first.reset.next = self.reset.val();
         self.different.reset.next = self.reset.val();
         self.level_now.reset.next = self.reset.val();
         self.first_now.reset.next = self.reset.val();
@@ -150,23 +150,23 @@ impl Logic for InputFilter {
         }
 
         // The majority waits for the next sample.
-        self.before.d.next = self.sync3.q.val() & self.has_alignment.val();
-        self.before_first.d.next = self.before.q.val();
+        self.earlier.d.next = self.sync3.q.val() & self.has_alignment.val();
+        self.earlier_first.d.next = self.earlier.q.val();
         self.sample.next = self.sync3.q.val();
         self.sample_first.next = self.first.val();
         if self.has_double.val() {
-            self.before_first.d.next = self.first.val();
+            self.earlier_first.d.next = self.first.val();
         }
         if self.has_alignment.val() & self.majority.val() {
-            self.sample.next = (self.sync3.q.val() & self.before.q.val())
-                | (self.sync3.q.val() & self.before_first.q.val())
-                | (self.before.q.val() & self.before_first.q.val());
+            self.sample.next = (self.sync3.q.val() & self.earlier.q.val())
+                | (self.sync3.q.val() & self.earlier_first.q.val())
+                | (self.earlier.q.val() & self.earlier_first.q.val());
             if self.has_double.val() {
-                self.sample_first.next = (self.before_first.q.val() & self.before.q.val())
-                    | (self.before_first.q.val() & self.first.val())
-                    | (self.before.q.val() & self.first.val());
-                self.sample.next = (self.before.q.val() & self.first.val())
-                    | (self.before.q.val() & self.sync3.q.val())
+                self.sample_first.next = (self.earlier_first.q.val() & self.earlier.q.val())
+                    | (self.earlier_first.q.val() & self.first.val())
+                    | (self.earlier.q.val() & self.first.val());
+                self.sample.next = (self.earlier.q.val() & self.first.val())
+                    | (self.earlier.q.val() & self.sync3.q.val())
                     | (self.first.val() & self.sync3.q.val());
             }
         }
@@ -197,8 +197,7 @@ impl Logic for InputFilter {
             } else {
                 self.different.d.next = self.middle_different.val() + 1;
                 if !self.has_double.val() {
-                    self.different.d.next =
-                        (self.middle_different.val() + 1).replace_bit(4, false);
+                    self.different.d.next = (self.middle_different.val() + 1).replace_bit(4, false);
                 }
             }
         } else {

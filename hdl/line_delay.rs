@@ -261,7 +261,15 @@ impl Logic for LineDelay {
             shorten,
             lengthen
         );
-        dff_setup!(self, clock, offset_now, measured_now, second, edge_place, was_over);
+        dff_setup!(
+            self,
+            clock,
+            offset_now,
+            measured_now,
+            second,
+            edge_place,
+            was_over
+        );
         self.was_over.reset.next = self.reset.val();
         clock!(self, clock, half);
         self.delay.reset.next = self.reset.val();
@@ -329,16 +337,15 @@ impl Logic for LineDelay {
             & self.hunting.val()
             & self.data_edge.val()
             & !self.cells_run.q.val();
-        self.first_center.next = self.acquired.val()
-            | (self.due.val() & !self.cells_run.q.val() & !self.acquire.val());
+        self.first_center.next =
+            self.acquired.val() | (self.due.val() & !self.cells_run.q.val() & !self.acquire.val());
         // The half period timer runs one cycle ahead: its ticks are registered before they are used.
         self.sample_strobe.d.next =
             self.half.tick.val() & !self.second_half.q.val() & self.cells_run.q.val();
         self.center_strobe.d.next = (self.half.tick.val() & self.second_half.q.val())
             | (self.first_center.val() & !self.acquired.val());
         // Phase from the start bit: its edge is the middle, wherever the tracked one is.
-        self.is_frame.next =
-            self.has_alignment.val() & (self.mode.val() == self.frame_mode.val());
+        self.is_frame.next = self.has_alignment.val() & (self.mode.val() == self.frame_mode.val());
         self.snap.next = self.is_frame.val()
             & self.hunting.val()
             & self.data_edge.val()
@@ -349,13 +356,11 @@ impl Logic for LineDelay {
         self.sample_now.next = self.sample_strobe.q.val()
             & !self.snap.val()
             & !(self.has_double.val() & self.afresh.q.val());
-        self.center_now.next =
-            self.acquired.val() | self.center_strobe.q.val() | self.snap.val();
+        self.center_now.next = self.acquired.val() | self.center_strobe.q.val() | self.snap.val();
 
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.second_half.q.val();
-        self.half.restart.next =
-            !self.cells_run.q.val() | self.last_cell.val() | self.snap.val();
+        self.half.restart.next = !self.cells_run.q.val() | self.last_cell.val() | self.snap.val();
         self.half.began.next = self.acquired.val() | self.snap.val();
         // An odd period has halves of a whole number of half cycles: every other one begins in the middle of a cycle.
         if self.has_double.val() {
@@ -473,8 +478,7 @@ impl Logic for LineDelay {
             }
         }
         // While the mean is still being looked for, and where there is none, every edge counts.
-        self.is_open.next =
-            self.is_frame.val() | (self.has_alignment.val() & self.slow.val());
+        self.is_open.next = self.is_frame.val() | (self.has_alignment.val() & self.slow.val());
         self.good_edge.next = self.has_alignment.val()
             & self.sample_now.val()
             & self.edge_now.val()
@@ -493,8 +497,7 @@ impl Logic for LineDelay {
             self.tracker[i].clock.next = self.clock.val();
             self.tracker[i].reset.next = self.reset.val();
             self.tracker[i].acquired.next = self.acquired.val();
-            self.tracker[i].measured_places.next =
-                bit_cast::<12, 11>(self.since_rise.q.val());
+            self.tracker[i].measured_places.next = bit_cast::<12, 11>(self.since_rise.q.val());
             if self.has_double.val() {
                 self.tracker[i].measured_places.next =
                     (bit_cast::<12, 11>(self.since_rise.q.val()) << 1)

@@ -358,8 +358,7 @@ impl Logic for LineMonitor {
                 self.told_latest.d.next = self.latest.q.val();
                 self.told_start.d.next = self.start.q.val();
                 self.has_worst.d.next = true;
-                if !self.has_worst.q.val() | (self.earliest.q.val() < self.worst_earliest.q.val())
-                {
+                if !self.has_worst.q.val() | (self.earliest.q.val() < self.worst_earliest.q.val()) {
                     self.worst_earliest.d.next = self.earliest.q.val();
                 }
                 if !self.has_worst.q.val() | (self.latest.q.val() > self.worst_latest.q.val()) {
@@ -494,8 +493,7 @@ impl Logic for LineMonitor {
                 self.histogram[i].read_address.next = self.at.val().get_bits::<5>(0);
             }
             self.histogram[i].write_address.next = self.bin.q.val();
-            self.histogram[i].write_enable.next =
-                (self.step.q.val() == 1) | self.clearing.q.val();
+            self.histogram[i].write_enable.next = (self.step.q.val() == 1) | self.clearing.q.val();
             self.histogram[i].write_data.next = self.histogram[i].read_data.val() + 1;
             if self.clearing.q.val() {
                 self.histogram[i].write_data.next = 0.into();

@@ -158,8 +158,7 @@ impl Logic for PhaseTracker {
         self.phase.next = self.place.q.val().get_bits::<15>(8);
         if self.is_fixed.val() {
             self.past_half.next = self.fixed_delay.val().get_bit(3);
-            self.delay_places.next =
-                bit_cast::<12, 11>(self.fixed_delay.val().get_bits::<11>(4));
+            self.delay_places.next = bit_cast::<12, 11>(self.fixed_delay.val().get_bits::<11>(4));
         }
         if self.has_double.val() {
             self.phase.next = self.place.q.val().get_bits::<15>(9);

@@ -605,10 +605,10 @@ impl Logic for Receiver {
         self.done_now.d.next = self.last_taken.q.val();
         // With two or three system clock cycles in a bit the word is not aligned yet.
         if self.has_double.val() {
-            self.done_now.d.next = (self.last_taken.q.val() | self.waiting.q.val())
-                & !self.align.q.val();
-            self.waiting.d.next = (self.last_taken.q.val() | self.waiting.q.val())
-                & self.align.q.val();
+            self.done_now.d.next =
+                (self.last_taken.q.val() | self.waiting.q.val()) & !self.align.q.val();
+            self.waiting.d.next =
+                (self.last_taken.q.val() | self.waiting.q.val()) & self.align.q.val();
         }
         self.parallel_equal.d.next = self.crc_bits.q.val() == self.crc_calc.q.val();
         self.serial_good.d.next = self.serial.residue_ok.val();

@@ -664,13 +664,13 @@ impl Logic for Transaction {
             & !self.going.q.val()
             & ((!self.accept.val() & !self.idle.val()) | (self.accept.val() & self.own.val()));
         self.verdict.lost.next = self.lost.val();
-        self.known.next = self.is_calibrated.q.val()
-            | (self.has_alignment.val() & self.is_fixed.val());
+        self.known.next =
+            self.is_calibrated.q.val() | (self.has_alignment.val() & self.is_fixed.val());
         if self.accept.val() {
             self.answered.d.next = false;
             self.in_supplement.d.next = false;
-            self.acquiring.d.next = !self.known.val()
-                & !(self.has_alignment.val() & self.passes.q.val().any());
+            self.acquiring.d.next =
+                !self.known.val() & !(self.has_alignment.val() & self.passes.q.val().any());
             self.slow_now.d.next = !self.known.val();
             self.tail_sampled.d.next = false;
             self.late.d.next = false;
@@ -720,10 +720,7 @@ impl Logic for Transaction {
         }
         self.hold.d.next =
             (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val() | self.parking.val();
-        if self.has_double.val()
-            & self.all_sent.q.val()
-            & !self.started.val()
-            & !self.going.q.val()
+        if self.has_double.val() & self.all_sent.q.val() & !self.started.val() & !self.going.q.val()
         {
             self.hold.d.next = true;
         }
@@ -732,8 +729,7 @@ impl Logic for Transaction {
         if self.has_all.val() {
             self.drain.next = self.stalled.q.val() | (self.phase.q.val() == Phase::Park);
         }
-        self.stop_now.d.next =
-            !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
+        self.stop_now.d.next = !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
         // The high phase of the last pulse may last two cycles only.
         self.stop.next = self.stop_now.q.val() | self.sent.val();
         self.acquire.next = self.acquiring.q.val();

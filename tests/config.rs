@@ -82,17 +82,17 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("system_hz = 100_000_000", "system_hz = 300_000_000", "outside 8000000..250000000"),
         ("system_hz = 100_000_000", "system_hz = 99_999_999", "the clock manager cannot make it from the board's 32000000 Hz; use 99200000 or 100000000 Hz"),
         ("clock_hz = 3_125_000", "clock_hz = 9_000_000", "endat.clock_hz = 9000000: would become 9090909 Hz (+10101 ppm), more than the allowed 5000 ppm"),
-        ("clock_hz = 3_125_000", "clock_hz = 16_000_000", "needs a system clock of at least 128000000 Hz"),
+        ("clock_hz = 3_125_000", "clock_hz = 16_000_000", "would become 16666667 Hz (+41667 ppm), more than the allowed 5000 ppm"),
         ("clock_hz = 3_125_000", "clock_hz = 99_000", "outside 100000..16000000"),
         ("tst_ns = 2_000", "tst_ns = 400", "endat.tst_ns = 400: neither 0 nor in 500..10000"),
         ("filter_ns = 20", "filter_ns = 1_000", "endat.filter_ns = 1000: is 100 cycles, more than 15"),
-        ("start_window_ns = 80", "start_window_ns = 0", "endat.start_window_ns = 0: is 0 cycles, outside 1..15"),
-        ("start_window_ns = 80", "start_window_ns = 160", "use 10..150 ns"),
+        ("start_window_ns = 80", "start_window_ns = 0", "endat.start_window_ns = 0: is 0 cycles, outside 1..16"),
+        ("start_window_ns = 80", "start_window_ns = 170", "use 10..160 ns"),
         ("tcal_max_ns = 5_000", "tcal_max_ns = 0", "endat.tcal_max_ns = 0: outside 1..4082800"),
         ("recovery_min_ns = 10_000", "recovery_min_ns = 40_000", "above recovery_max_ns = 30000; lower it, or raise recovery_max_ns"),
         ("recovery_min_ns = 10_000", "recovery_min_ns = 100", "outside 1250..80390"),
         ("recovery_max_ns = 30_000", "recovery_max_ns = 4_000_000_000", "outside 1250..80390"),
-        ("cable_m = 100", "cable_m = 1_000", "endat.cable_m = 1000: outside 0..150"),
+        ("cable_m = 100", "cable_m = 1_000", "endat.cable_m = 1000: outside 0..780"),
         ("position_bits = 29", "position_bits = 0", "channel[0].position_bits = 0: outside 1..48"),
         ("position_bits = 29", "position_bits = 49", "channel[0].position_bits = 49: outside 1..48"),
         ("position_bits = 29", "position_bits = 29\nclock_hz = 9_000_000", "channel[0].clock_hz = 9000000: would become"),
@@ -135,8 +135,8 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("[pins]", "[pins]\ntrigger_i = 5", "pins.trigger_i = 5: is an integer, must be text in quotes"),
         // negative and huge numbers, with the range that counts
         ("position_bits = 29", "position_bits = -3", "channel[0].position_bits = -3: outside 1..48"),
-        ("cable_m = 100", "cable_m = -1", "endat.cable_m = -1: outside 0..150"),
-        ("filter_ns = 20", "filter_ns = -1", "endat.filter_ns = -1: outside 0..150"),
+        ("cable_m = 100", "cable_m = -1", "endat.cable_m = -1: outside 0..780"),
+        ("filter_ns = 20", "filter_ns = -1", "endat.filter_ns = -1: outside 0..780"),
         ("start_window_ns = 80", "start_window_ns = -1", "endat.start_window_ns = -1: outside 10..630"),
         ("recovery_max_ns = 30_000", "recovery_max_ns = -1", "endat.recovery_max_ns = -1: outside 1250.."),
         ("tst_ns = 2_000", "tst_ns = -1", "endat.tst_ns = -1: neither 0 nor in 500..10000"),
@@ -358,14 +358,14 @@ fn what_follows_from_another_mistake_is_not_told() {
 
 #[test]
 fn too_many_channels_are_one_mistake_on_the_line_of_the_first_one_too_many() {
-    let more = "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n".repeat(3);
+    let more = "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n".repeat(7);
     let (text, line) = changed("[trigger]", &format!("{more}[trigger]"));
     let found = refuse(&text);
     assert_eq!(found.len(), 1, "{found:#?}");
-    assert_eq!(found[0].line, line + 6);
+    assert_eq!(found[0].line, line + 18);
     assert!(found[0]
         .text
-        .starts_with("channel = 5 tables: a card has 1..4 channels"));
+        .starts_with("channel = 9 tables: a card has 1..8 channels"));
 }
 
 #[test]
@@ -390,7 +390,7 @@ fn a_file_with_only_a_name_is_checked_as_a_whole() {
             .any(|d| d.line == 0 && d.text.starts_with(text))
     };
     assert!(
-        has("channel = 0 tables: a card has 1..4 channels"),
+        has("channel = 0 tables: a card has 1..8 channels"),
         "{found:#?}"
     );
     assert!(

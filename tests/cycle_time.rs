@@ -7,9 +7,9 @@ fn the_limits_of_cycle_time_are_said() {
     for (option, text, wanted) in [
         ("--bits", "0", "outside 1..48"),
         ("--bits", "x", "is not a number from 1 to 48"),
-        ("--cable-m", "151", "outside 0..150"),
-        ("--cable-m", "-1", "outside 0..150"),
-        ("--cable-m", "1.5", "is not a number from 0 to 150"),
+        ("--cable-m", "781", "outside 0..780"),
+        ("--cable-m", "-1", "outside 0..780"),
+        ("--cable-m", "1.5", "is not a number from 0 to 780"),
         ("--tcal-ns", "100001", "outside 0..100000"),
         ("--tm-ns", "1249", "outside 1250..30000"),
         ("--tm-ns", "30001", "outside 1250..30000"),

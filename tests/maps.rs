@@ -17,6 +17,11 @@ fn projects() -> Vec<Project> {
     let mut projects = ["s6_two_channel", "s6_two_channel_service"]
         .map(|name| load_preset(name).unwrap())
         .to_vec();
+    projects[1].card.line = endat_hdl::config::LineParts {
+        alignment: true,
+        margin: true,
+        double_edge: true,
+    };
     let text = preset("s6_two_channel").unwrap();
     // A good name, and a keyword of SystemRDL.
     let text = text.replace("name = \"s6_two_channel\"", "name = \"field\"");

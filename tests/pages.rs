@@ -24,6 +24,12 @@ fn the_sizes_in_the_readme_are_those_of_the_area_table() {
         ("| the same with line diagnosis", "channel_diagnosis"),
         ("| the same with continuous", "channel_continuous"),
         ("| the same with the three", "channel_all"),
+        ("| the same with alignment |", "channel_alignment"),
+        (
+            "| the same with alignment and double edge",
+            "channel_double_edge",
+        ),
+        ("| a port with alignment and margin", "port_margin"),
         ("| a port with requests", "port_service"),
         ("| a port with everything", "port_all"),
         ("| two-channel card", "card"),
@@ -81,7 +87,7 @@ fn every_command_is_on_the_page() {
 #[test]
 fn every_key_of_the_preset_is_on_the_page() {
     let page = include_str!("../docs/configuration.md");
-    for words in ["1 to 4 of them", "`[]`", "6 at 100 MHz", "--name my_card"] {
+    for words in ["1 to 8 of them", "`[]`", "6 at 100 MHz", "--name my_card"] {
         assert!(page.contains(words), "{words}");
     }
 }
@@ -140,6 +146,7 @@ fn the_maps_in_the_page_on_margin_are_the_program_s() {
     let maps = [
         ("shmoo.svg", include_str!("../docs/shmoo.svg")),
         ("jitter.svg", include_str!("../docs/jitter.svg")),
+        ("eye.svg", include_str!("../docs/eye.svg")),
     ];
     for (name, committed) in maps {
         assert!(page.contains(&format!("]({name})](")), "{name}");

@@ -114,9 +114,16 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "channel_double_edge",
             "the same with double edge",
-            Channel::with(
+            Channel::with(times, part(|f| (f.alignment, f.double_edge) = (true, true))),
+        )?,
+        Subject::new(
+            "port_margin",
+            "one port with alignment and margin, without service",
+            EncoderPort::with_line(
                 times,
-                part(|f| (f.alignment, f.double_edge) = (true, true)),
+                None,
+                false,
+                part(|f| (f.alignment, f.margin) = (true, true)),
             ),
         )?,
         Subject::new(
@@ -124,7 +131,11 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             "order and time-outs",
             Transaction::new(times, Features::default()),
         )?,
-        Subject::new("line_delay", "propagation delay", LineDelay::new(Features::NONE))?,
+        Subject::new(
+            "line_delay",
+            "propagation delay",
+            LineDelay::new(Features::NONE),
+        )?,
         Subject::new(
             "receiver",
             "receiver with both CRCs",

@@ -183,7 +183,9 @@ pub fn run(arguments: &ShmooArgs) -> Result<Outcome, GenError> {
 fn title(plan: &Plan) -> String {
     let what = |axis: &Axis| axis.quantity.title();
     match (plan.x.quantity, plan.y.quantity) {
-        (Quantity::Offset, Quantity::Jitter) => "Eye: where the sample may be, and how much jitter it stands".into(),
+        (Quantity::Offset, Quantity::Jitter) => {
+            "Eye: where the sample may be, and how much jitter it stands".into()
+        }
         (Quantity::Cable, Quantity::Clock) | (Quantity::Clock, Quantity::Cable) => {
             "Cable and clock: where every frame is good, and by what margin".into()
         }
@@ -234,7 +236,10 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
         set.push(quantity);
         conditions.set(quantity, one("--at", text, quantity, value, clocks)?);
     }
-    let moves = |axis: &Option<String>| axis.as_ref().is_some_and(|a| a.starts_with(Quantity::Offset.name()));
+    let moves = |axis: &Option<String>| {
+        axis.as_ref()
+            .is_some_and(|a| a.starts_with(Quantity::Offset.name()))
+    };
     let is_moved = set.contains(&Quantity::Offset) || moves(&arguments.x) || moves(&arguments.y);
     if is_moved && conditions.receiver.phase != Phase::Fixed {
         return Err(GenError::input(

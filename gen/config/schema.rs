@@ -440,7 +440,11 @@ fn read_line_parts(table: &Table<'_, '_>) -> Option<LineParts> {
     let last = read_parts(
         table,
         &["alignment", "margin", "double_edge"],
-        &mut [&mut parts.alignment, &mut parts.margin, &mut parts.double_edge],
+        &mut [
+            &mut parts.alignment,
+            &mut parts.margin,
+            &mut parts.double_edge,
+        ],
     )?;
     if let (Some((line, shown)), false) = (last, parts.alignment) {
         let text = "every other part takes alignment; add \"alignment\"";

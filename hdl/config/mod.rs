@@ -15,9 +15,9 @@ pub use card::{needed_baud, read_bytes, BAUD_NOTE};
 pub use limits::{limits, Limits};
 
 use crate::protocol::ModeCommand;
+use crate::regs::CHANNELS_MAX;
 use crate::timing::{TST_FROM_HZ, TST_USUAL_NS};
 use std::fmt;
-use crate::regs::CHANNELS_MAX;
 use std::ops::RangeInclusive;
 
 /// Channels a card may have.

@@ -35,8 +35,13 @@ struct Builder {
 
 /// What a child block is.
 enum Kind {
-    Register { is_synchroniser: bool, on_fall: bool },
-    Memory { is_read_only: bool },
+    Register {
+        is_synchroniser: bool,
+        on_fall: bool,
+    },
+    Memory {
+        is_read_only: bool,
+    },
     Block,
 }
 
@@ -73,9 +78,7 @@ impl Builder {
                 Kind::Register {
                     is_synchroniser,
                     on_fall,
-                } => {
-                    self.register(&mut draft, child, is_synchroniser, on_fall)?
-                }
+                } => self.register(&mut draft, child, is_synchroniser, on_fall)?,
                 Kind::Memory { is_read_only } => draft.memory(child, is_read_only)?,
                 Kind::Block => {
                     let id = self.block(child)?;

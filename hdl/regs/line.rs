@@ -46,8 +46,14 @@ const fn word(
 
 /// Whether a word is there without the part `margin`.
 pub(super) fn is_setting(offset: u16) -> bool {
-    [at::ALIGNMENT, at::FIXED_DELAY, at::LIMITS, at::CLEAR, at::PHASE]
-        .contains(&u64::from(offset))
+    [
+        at::ALIGNMENT,
+        at::FIXED_DELAY,
+        at::LIMITS,
+        at::CLEAR,
+        at::PHASE,
+    ]
+    .contains(&u64::from(offset))
 }
 
 const EDGES: &[Field] = &[field("edges", 0, 32, "", "Edges since clear, wrapping")];

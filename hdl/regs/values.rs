@@ -128,7 +128,11 @@ pub const FEATURES: [Named; 11] = [
     named("initialise", 5, "initialisation"),
     named("diagnosis", 6, "diagnosis of the line"),
     named("continuous", 7, "continuous clock"),
-    named("alignment", 8, "phase at the host's choice, mean over many edges"),
+    named(
+        "alignment",
+        8,
+        "phase at the host's choice, mean over many edges",
+    ),
     named("margin", 9, "margin of the samples"),
     named("double_edge", 10, "DATA on both edges of the system clock"),
 ];

@@ -46,6 +46,12 @@ module endat_channel (
     input  wire   [5:0] position_bits,
     // Pulses on the data line of at most this many system clock cycles are ignored.
     input  wire   [3:0] filter_cycles,
+    // Where the phase comes from, see mode.
+    input  wire   [1:0] phase_mode,
+    // Delay in mode fixed, in sixteenths of a system clock cycle.
+    input  wire  [14:0] fixed_delay,
+    // Each sample is the majority of itself and its neighbours.
+    input  wire         majority,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
     // Longest wait for the start bit after the turnaround, in microseconds.
@@ -91,7 +97,15 @@ module endat_channel (
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles,
     // Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
-    output wire   [9:0] delay_cycles,
+    output wire  [10:0] delay_cycles,
+    // The delay as the mean of many edges, in sixteenths of a system clock cycle.
+    output wire  [14:0] phase,
+    // Strobe: an edge of the answer has been measured.
+    output wire         edge_measured,
+    // Places (cycles, or half ones with the double edge) from the tracked one to this edge, less one, in two's complement.
+    output wire   [7:0] edge_offset,
+    // Strobe: the filter has removed a pulse.
+    output wire         glitch,
     // A trigger would not be taken.
     output wire         busy,
     // The frame under way has the request.
@@ -125,9 +139,13 @@ module endat_channel (
     // The propagation delay is known: frames run at the full clock, requests may ride.
     output wire         calibrated,
     // Strobe: the data line is sampled for a bit of the answer.
-    output wire         sample_strobe
+    output wire         sample_strobe,
+    // With that, and double edge: at the clock edge, not half a cycle before it.
+    output wire         sample_second
 );
     localparam         HAS_REQUESTS = 1'b0;
+    localparam         HAS_DOUBLE = 1'b0;
+    localparam   [1:0] FIXED_MODE = 2'd1;
     localparam   [5:0] PARAMETER_BITS = 6'd24;
     localparam   [5:0] TEST_VALUE_BITS = 6'd40;
     localparam  [10:0] CALIBRATION_PERIOD_CYCLES = 11'd500;
@@ -138,16 +156,21 @@ module endat_channel (
     wire         crc_ok;
     reg   [10:0] period;
     wire         filter_level;
-    wire         filter_rise;
+    wire         filter_level_first;
+    wire         filter_edge_strobe;
+    wire         filter_edge_second;
     wire         clock_gen_endat_clk;
+    wire         clock_gen_will_rise;
     wire         clock_gen_rise;
     wire         clock_gen_fall;
     wire         sender_data;
     wire         sender_oe;
+    wire         delay_in_answer;
     wire         delay_sample;
     wire         delay_center;
     wire         delay_edge_in_window;
-    wire   [5:0] delay_outstanding;
+    wire   [6:0] delay_outstanding;
+    reg          receiver_level;
     wire         receiver_skipping;
     wire         receiver_hunting;
     wire         receiver_start_found;
@@ -169,6 +192,7 @@ module endat_channel (
     wire   [4:0] receiver_crc_computed;
     wire         receiver_serial_ok;
     wire         receiver_parallel_ok;
+    wire         transaction_is_fixed;
     wire         transaction_begin_own;
     wire         transaction_continuous;
     wire         transaction_line_wanted;
@@ -184,8 +208,10 @@ module endat_channel (
     wire         transaction_probe;
     wire         transaction_is_probed;
     wire         transaction_going_on;
+    wire         transaction_last_cell;
     wire         transaction_start_supplement;
     wire         transaction_acquire;
+    wire         transaction_slow;
     wire         transaction_publish;
     wire         transaction_good;
     wire         transaction_late_fault;
@@ -228,8 +254,13 @@ module endat_channel (
         .reset(reset),
         .pin(data_i),
         .filter_cycles(filter_cycles),
+        .majority(majority),
+        .both_edges(receiver_started),
         .level(filter_level),
-        .rise(filter_rise)
+        .level_first(filter_level_first),
+        .edge_strobe(filter_edge_strobe),
+        .edge_second(filter_edge_second),
+        .glitch(glitch)
     );
     endat_clock_gen u_clock_gen (
         .clock(clock),
@@ -239,6 +270,7 @@ module endat_channel (
         .stop(transaction_stop),
         .period_cycles(period),
         .endat_clk(clock_gen_endat_clk),
+        .will_rise(clock_gen_will_rise),
         .rise(clock_gen_rise),
         .fall(clock_gen_fall)
     );
@@ -261,18 +293,29 @@ module endat_channel (
         .run(transaction_run),
         .drain(transaction_drain),
         .acquire(transaction_acquire),
+        .last_cell(transaction_last_cell),
         .hunting(receiver_hunting),
+        .will_rise(clock_gen_will_rise),
         .rise(clock_gen_rise),
-        .data_rise(filter_rise),
+        .data_edge(filter_edge_strobe),
+        .edge_second(filter_edge_second),
+        .in_answer(delay_in_answer),
+        .slow(transaction_slow),
+        .mode(phase_mode),
+        .fixed_delay(fixed_delay),
         .follow(receiver_start_found),
         .going_on(transaction_going_on),
         .period_cycles(period),
         .start_window_cycles(start_window_cycles),
         .sample(delay_sample),
+        .sample_second(sample_second),
         .center(delay_center),
         .edge_in_window(delay_edge_in_window),
         .outstanding(delay_outstanding),
-        .delay_cycles(delay_cycles)
+        .delay_cycles(delay_cycles),
+        .phase(phase),
+        .measured(edge_measured),
+        .offset(edge_offset)
     );
     endat_receiver u_receiver (
         .clock(clock),
@@ -281,7 +324,7 @@ module endat_channel (
         .acquire(transaction_acquire),
         .rise(clock_gen_rise),
         .sample(delay_sample),
-        .level(filter_level),
+        .level(receiver_level),
         .edge_in_window(delay_edge_in_window),
         .payload_bits(payload_bits),
         .has_f1(shape_has_f1),
@@ -320,6 +363,7 @@ module endat_channel (
         .tick_us(tick_us),
         .trigger(trigger),
         .calibrate(calibrate),
+        .is_fixed(transaction_is_fixed),
         .level(filter_level),
         .sample(delay_sample),
         .center(delay_center),
@@ -345,6 +389,7 @@ module endat_channel (
         .parallel_ok(receiver_parallel_ok),
         .f1(transaction_f1),
         .f2(transaction_f2),
+        .will_rise(clock_gen_will_rise),
         .outstanding(delay_outstanding),
         .cells_left(receiver_cells_left),
         .first_low_extra_cycles(first_low_extra_cycles),
@@ -361,8 +406,10 @@ module endat_channel (
         .probe(transaction_probe),
         .is_probed(transaction_is_probed),
         .going_on(transaction_going_on),
+        .last_cell(transaction_last_cell),
         .start_supplement(transaction_start_supplement),
         .acquire(transaction_acquire),
+        .slow(transaction_slow),
         .busy(busy),
         .publish(transaction_publish),
         .good(transaction_good),
@@ -436,7 +483,7 @@ module endat_channel (
 
     always @* begin
         period = period_cycles;
-        if (transaction_acquire) begin
+        if (transaction_slow) begin
             period = CALIBRATION_PERIOD_CYCLES;
         end
     end
@@ -459,6 +506,15 @@ module endat_channel (
             end
         end
     end
+    assign delay_in_answer = receiver_started & !receiver_skipping;
+
+    always @* begin
+        receiver_level = filter_level;
+        if (HAS_DOUBLE & !sample_second) begin
+            receiver_level = filter_level_first;
+        end
+    end
+    assign transaction_is_fixed = phase_mode == FIXED_MODE;
     assign transaction_begin_own = frame_own & own_wanted;
 
     always @* begin

@@ -39,7 +39,7 @@ module endat_channel_registers (
     // Recovery time, in system clock cycles.
     input  wire  [12:0] recovery_cycles,
     // Tracked line delay, in system clock cycles.
-    input  wire   [9:0] delay_cycles,
+    input  wire  [10:0] delay_cycles,
     // A trigger has been taken and its result is not there yet.
     output wire         pending,
     // The held words follow the result.
@@ -164,8 +164,8 @@ module endat_channel_registers (
     assign word_1 = position[31:0];
     assign word_2 = {16'd0, position[47:32]};
     assign word_3 = first_fall_timestamp;
-    assign word_4 = {27'd0, crc_received} | ({27'd0, crc_computed} << 3'd5) | ({22'd0, delay_cycles} << 4'd10) | ({20'd0, flags[11:0]} << 5'd20);
-    assign word_5 = {16'd0, age_us} | ({19'd0, recovery_cycles} << 5'd16);
+    assign word_4 = {27'd0, crc_received} | ({27'd0, crc_computed} << 3'd5) | ({22'd0, delay_cycles[9:0]} << 4'd10) | ({20'd0, flags[11:0]} << 5'd20);
+    assign word_5 = {16'd0, age_us} | ({19'd0, recovery_cycles} << 5'd16) | ({31'd0, delay_cycles[10]} << 5'd29);
 
     always @* begin
         held_0_next = held_0;

@@ -20,6 +20,8 @@ module endat_clock_gen (
     input  wire  [10:0] period_cycles,
     // The EnDat clock, one cycle before it reaches the pin.
     output wire         endat_clk,
+    // High in the last cycle before a rising edge.
+    output wire         will_rise,
     // High in the first cycle after a rising edge.
     output wire         rise,
     // High in the last cycle before a falling edge.
@@ -34,10 +36,11 @@ module endat_clock_gen (
     reg          level_next;
     reg          risen = 1'b0;
 
-    endat_half_period_restart_count2 u_half (
+    endat_half_period u_half (
         .clock(clock),
         .reset(reset),
         .restart(half_restart),
+        .began(1'b0),
         .second(level),
         .shorten(1'b0),
         .lengthen(1'b0),
@@ -60,6 +63,7 @@ module endat_clock_gen (
         end
     end
     assign endat_clk = level;
+    assign will_rise = rise_now;
     assign rise = risen;
     assign fall = fall_now;
 

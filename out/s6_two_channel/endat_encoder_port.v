@@ -67,7 +67,7 @@ module endat_encoder_port (
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles,
     // Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
-    output wire   [9:0] delay_cycles,
+    output wire  [10:0] delay_cycles,
     // A trigger would not be taken.
     output wire         busy,
     // The frame under way has the request.
@@ -102,10 +102,12 @@ module endat_encoder_port (
     output wire         calibrated,
     // Strobe: the data line is sampled for a bit of the answer.
     output wire         sample_strobe,
-    // The service's alarm: too many bad frames, or positions 1 and 2 apart.
+    // The service's alarm: too many bad frames, or positions 1 and 2 apart; or that of the line: drift or edges beyond their limits.
     output wire         alarm,
     // Word of the service's RAM that the host accesses; stays put from one strobe to the next, 8 cycles at least.
     input  wire   [6:0] host_address,
+    // The word is one of the line monitor, not of the service.
+    input  wire         host_line,
     // Strobe: read it.
     input  wire         host_read,
     // The word read; 0 without service.
@@ -117,7 +119,12 @@ module endat_encoder_port (
     // What to write.
     input  wire  [15:0] host_data
 );
-    wire         _unused_ok = &{1'b0, host_address, host_read, host_write, host_half, host_data};
+    wire  [14:0] channel_phase;
+    wire         channel_edge_measured;
+    wire   [7:0] channel_edge_offset;
+    wire         channel_glitch;
+    wire         channel_sample_second;
+    wire         _unused_ok = &{1'b0, host_address, host_line, host_read, host_write, host_half, host_data, channel_phase, channel_edge_measured, channel_edge_offset, channel_glitch, channel_sample_second};
 
     endat_channel u_channel (
         .clock(clock),
@@ -140,6 +147,9 @@ module endat_encoder_port (
         .forced(3'd0),
         .position_bits(position_bits),
         .filter_cycles(filter_cycles),
+        .phase_mode(2'd0),
+        .fixed_delay(15'd0),
+        .majority(1'b0),
         .start_window_cycles(start_window_cycles),
         .start_timeout_us(start_timeout_us),
         .recovery_limit_cycles(recovery_limit_cycles),
@@ -163,6 +173,10 @@ module endat_encoder_port (
         .crc_computed(crc_computed),
         .recovery_cycles(recovery_cycles),
         .delay_cycles(delay_cycles),
+        .phase(channel_phase),
+        .edge_measured(channel_edge_measured),
+        .edge_offset(channel_edge_offset),
+        .glitch(channel_glitch),
         .busy(busy),
         .request_runs(request_runs),
         .line_high(line_high),
@@ -179,7 +193,8 @@ module endat_encoder_port (
         .info_came(info_came),
         .info_good(info_good),
         .calibrated(calibrated),
-        .sample_strobe(sample_strobe)
+        .sample_strobe(sample_strobe),
+        .sample_second(channel_sample_second)
     );
 
     assign alarm = 1'b0;

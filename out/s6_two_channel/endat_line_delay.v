@@ -16,12 +16,26 @@ module endat_line_delay (
     input  wire         drain,
     // This frame measures the delay instead of using it.
     input  wire         acquire,
+    // Strobe: the next sample comes half a period after this, which may be that of another clock.
+    input  wire         last_cell,
     // The start bit may come now.
     input  wire         hunting,
+    // Strobe one cycle before each rising clock edge.
+    input  wire         will_rise,
     // Strobe of each rising clock edge.
     input  wire         rise,
-    // Strobe: the data line has just gone high.
-    input  wire         data_rise,
+    // Strobe: the data line has just gone high, or has changed within the answer.
+    input  wire         data_edge,
+    // This edge is half a cycle later than others (double edge only).
+    input  wire         edge_second,
+    // The cell is one of the answer behind the start bit: its edge counts (alignment only).
+    input  wire         in_answer,
+    // The frame runs at the calibration clock.
+    input  wire         slow,
+    // Where the phase comes from, see mode (alignment only).
+    input  wire   [1:0] mode,
+    // Delay in mode fixed, in sixteenths of a system clock cycle.
+    input  wire  [14:0] fixed_delay,
     // Strobe, together with sample: this sample is a good start bit, follow its edge.
     input  wire         follow,
     // The clock goes on after the frame: the phase of the running cells follows, too.
@@ -32,27 +46,56 @@ module endat_line_delay (
     input  wire   [5:0] start_window_cycles,
     // Strobe: sample the data line.
     output wire         sample,
+    // With sample: half a cycle later than others (double edge only).
+    output wire         sample_second,
     // Strobe: the middle of the expected place of a data edge.
     output wire         center,
     // A rising data edge lies within the window of this cell.
     output wire         edge_in_window,
     // Clock pulses sent whose cell has not ended.
-    output wire   [5:0] outstanding,
+    output wire   [6:0] outstanding,
     // Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
-    output wire   [9:0] delay_cycles
+    output wire  [10:0] delay_cycles,
+    // The same, mean of many edges, in sixteenths of a cycle (alignment only).
+    output wire  [14:0] phase,
+    // Strobe one cycle after sample: an edge of the answer has been measured (alignment only).
+    output wire         measured,
+    // Places from the tracked one to this edge, less one, in two's complement.
+    output wire   [7:0] offset
 );
+    localparam         HAS_ALIGNMENT = 1'b0;
+    localparam         HAS_DOUBLE = 1'b0;
+    localparam   [1:0] FRAME_MODE = 2'd2;
+
     wire         first_rise;
     wire         acquired;
     wire         first_center;
     wire         center_now;
     wire         sample_now;
-    reg    [9:0] step;
+    reg   [10:0] step;
+    wire         edge_now;
+    wire         over;
+    wire  [11:0] places;
+    reg   [10:0] delay_now;
+    wire         is_frame;
+    wire         snap;
+    wire         next_cell;
+    reg          late_now;
+    reg          place_now;
+    reg          center_place;
+    reg    [7:0] distance;
+    wire         good_edge;
+    wire         is_open;
+    wire         is_later;
+    reg          due;
     wire         half_restart;
+    wire         half_began;
+    reg          half_second;
     wire         half_tick;
-    reg    [9:0] delay = 10'd0;
-    reg    [9:0] delay_next;
-    reg    [9:0] since_rise = 10'd0;
-    reg    [9:0] since_rise_next;
+    reg   [10:0] delay = 11'd0;
+    reg   [10:0] delay_next;
+    reg   [10:0] since_rise = 11'd0;
+    reg   [10:0] since_rise_next;
     reg          timing_armed = 1'b0;
     reg          timing_armed_next;
     reg          delay_over = 1'b0;
@@ -65,8 +108,8 @@ module endat_line_delay (
     reg          sample_strobe_next;
     reg          center_strobe = 1'b0;
     reg          center_strobe_next;
-    reg    [5:0] pulses = 6'd0;
-    reg    [5:0] pulses_next;
+    reg    [6:0] pulses = 7'd0;
+    reg    [6:0] pulses_next;
     reg          center_seen = 1'b0;
     reg          center_seen_next;
     reg          not_yet = 1'b0;
@@ -84,12 +127,23 @@ module endat_line_delay (
     reg          shorten_next;
     reg          lengthen = 1'b0;
     reg          lengthen_next;
+    reg    [7:0] offset_now = 8'd0;
+    reg    [7:0] offset_now_next;
+    reg          measured_now = 1'b0;
+    reg          second = 1'b0;
+    reg          second_next;
+    reg          edge_place = 1'b0;
+    reg          edge_place_next;
+    reg          was_over = 1'b0;
+    reg          was_over_next;
+    wire         _unused_ok = &{1'b0, fixed_delay};
 
-    endat_half_period_restart_count3 u_half (
+    endat_half_period u_half (
         .clock(clock),
         .reset(reset),
         .restart(half_restart),
-        .second(second_half),
+        .began(half_began),
+        .second(half_second),
         .shorten(shorten),
         .lengthen(lengthen),
         .period_cycles(period_cycles),
@@ -97,91 +151,120 @@ module endat_line_delay (
     );
 
     assign first_rise = rise & (acquire | !timing_armed);
-    assign acquired = acquire & hunting & data_rise & !cells_run;
-    assign first_center = acquired | (delay_over & !cells_run & !acquire);
-    assign sample_now = sample_strobe;
+    assign places = {1'b0, delay};
+
+    always @* begin
+        delay_now = places[10:0];
+        if (HAS_DOUBLE) begin
+            delay_now = places[11:1];
+        end
+    end
+    assign is_later = 1'b0;
+
+    always @* begin
+        due = delay_over;
+        if (is_later) begin
+            due = was_over;
+        end
+    end
+    assign acquired = acquire & hunting & data_edge & !cells_run;
+    assign first_center = acquired | (due & !cells_run & !acquire);
+    assign is_frame = HAS_ALIGNMENT & (mode == FRAME_MODE);
+    assign snap = is_frame & hunting & data_edge & !edge_seen & cells_run & !acquire;
+    assign sample_now = sample_strobe & !snap & !(HAS_DOUBLE & afresh);
+    assign center_now = acquired | center_strobe | snap;
+
+    always @* begin
+        half_second = second_half;
+        if (HAS_DOUBLE) begin
+            half_second = second;
+        end
+    end
 
     always @* begin
         timing_armed_next = timing_armed;
         cells_run_next = cells_run;
         second_half_next = second_half;
         pulses_next = pulses;
-        since_rise_next = since_rise + 10'd1;
+        since_rise_next = since_rise + 11'd1;
         if (first_rise) begin
             timing_armed_next = 1'b1;
-            since_rise_next = 10'd2;
+            since_rise_next = 11'd3;
             if (acquire) begin
-                since_rise_next = 10'd1;
+                since_rise_next = 11'd1;
             end
         end
-        delay_over_next = timing_armed & (since_rise == delay);
+        delay_over_next = timing_armed & (since_rise == delay_now);
+        was_over_next = delay_over & HAS_ALIGNMENT;
         sample_strobe_next = half_tick & !second_half & cells_run;
-        center_strobe_next = half_tick & second_half;
+        center_strobe_next = (half_tick & second_half) | (first_center & !acquired);
         if (half_tick & cells_run) begin
             second_half_next = !second_half;
         end
-        if (first_center) begin
+        if (first_center | snap) begin
             cells_run_next = 1'b1;
             second_half_next = 1'b0;
         end
-        if (rise & !sample_now) begin
-            pulses_next = pulses + 6'd1;
+        if (snap) begin
+            sample_strobe_next = 1'b0;
+            center_strobe_next = 1'b0;
         end
-        if (sample_now & !rise) begin
-            pulses_next = pulses - 6'd1;
+        if (will_rise & !sample_now) begin
+            pulses_next = pulses + 7'd1;
+        end
+        if (sample_now & !will_rise) begin
+            pulses_next = pulses - 7'd1;
         end
         if (acquire & !cells_run) begin
-            pulses_next = 6'd0;
+            pulses_next = 7'd0;
         end
         if (acquired) begin
-            pulses_next = 6'd1;
+            pulses_next = 7'd1;
         end
         if (afresh) begin
             cells_run_next = 1'b0;
             second_half_next = 1'b0;
             timing_armed_next = 1'b0;
             delay_over_next = 1'b0;
+            was_over_next = 1'b0;
             sample_strobe_next = 1'b0;
             center_strobe_next = 1'b0;
-            pulses_next = 6'd0;
+            pulses_next = 7'd0;
         end
     end
-    assign center_now = first_center | center_strobe;
 
     always @* begin
-        center_seen_next = center_seen;
-        edge_seen_next = edge_seen;
-        edge_late_next = edge_late;
-        edge_error_next = edge_error;
-        edge_outside_next = edge_outside;
-        if (center_now) begin
-            center_seen_next = 1'b1;
-        end
-        if (data_rise) begin
-            edge_seen_next = 1'b1;
-            if (!edge_seen) begin
-                edge_late_next = center_seen;
+        second_next = second;
+        if (HAS_DOUBLE) begin
+            if (half_tick & cells_run) begin
+                second_next = second ^ period_cycles[0];
             end
-        end
-        if (center_seen ^ edge_seen) begin
-            edge_error_next = edge_error + 6'd1;
-            if (edge_error == start_window_cycles) begin
-                edge_outside_next = 1'b1;
+            if (first_center) begin
+                second_next = places[0];
             end
-        end
-        if (sample_now | not_yet) begin
-            center_seen_next = 1'b0;
-            edge_seen_next = 1'b0;
-            edge_error_next = 6'd0;
-            edge_outside_next = 1'b0;
+            if (acquired | snap) begin
+                second_next = edge_second;
+            end
         end
     end
-    assign half_restart = !cells_run;
+    assign half_restart = !cells_run | last_cell | snap;
+    assign half_began = acquired | snap;
+    assign next_cell = HAS_DOUBLE & sample_now & edge_second & !second;
+    assign edge_now = edge_seen | (data_edge & !next_cell);
 
     always @* begin
-        step = 10'd1023;
+        late_now = edge_late;
+        place_now = edge_place;
+        if (!edge_seen) begin
+            late_now = center_seen;
+            place_now = edge_second;
+        end
+    end
+
+    always @* begin
+        step = 11'd2047;
         if (edge_late) begin
-            step = 10'd1;
+            step = 11'd1;
         end
     end
 
@@ -201,24 +284,90 @@ module endat_line_delay (
         if (acquired) begin
             delay_next = since_rise;
         end
+        if (HAS_ALIGNMENT) begin
+            delay_next = 11'd0;
+        end
     end
+
+    always @* begin
+        center_place = 1'b0;
+        distance = {2'd0, edge_error};
+        if (HAS_DOUBLE) begin
+            center_place = second ^ period_cycles[0];
+            distance = (({2'd0, edge_error} << 1'b1) + {7'd0, center_place}) - {7'd0, place_now};
+            if (late_now) begin
+                distance = ({2'd0, edge_error} << 1'b1) + {7'd0, place_now} + {7'd0, !center_place};
+            end
+        end
+    end
+
+    always @* begin
+        center_seen_next = center_seen;
+        edge_seen_next = edge_seen;
+        edge_late_next = edge_late;
+        edge_error_next = edge_error;
+        edge_outside_next = edge_outside;
+        edge_place_next = edge_place;
+        if (center_now) begin
+            center_seen_next = 1'b1;
+        end
+        if (data_edge) begin
+            edge_seen_next = 1'b1;
+            edge_late_next = late_now;
+            edge_place_next = place_now;
+            if (next_cell) begin
+                edge_late_next = 1'b0;
+                edge_place_next = 1'b1;
+            end
+        end
+        if ((center_seen & !edge_now) | (edge_seen & !center_seen)) begin
+            edge_error_next = edge_error + 6'd1;
+            if (edge_error == start_window_cycles) begin
+                edge_outside_next = 1'b1;
+            end
+        end
+        if (snap & !center_seen & !center_strobe) begin
+            edge_error_next = 6'd2;
+        end
+        offset_now_next = distance;
+        if (!late_now) begin
+            offset_now_next = ~distance;
+        end
+        if (!HAS_ALIGNMENT) begin
+            offset_now_next = 8'd0;
+            edge_place_next = 1'b0;
+        end
+        if (sample_now | not_yet) begin
+            center_seen_next = 1'b0;
+            edge_seen_next = next_cell & data_edge & !not_yet;
+            edge_error_next = 6'd0;
+            edge_outside_next = 1'b0;
+        end
+    end
+    assign is_open = is_frame | (HAS_ALIGNMENT & slow);
+    assign good_edge = HAS_ALIGNMENT & sample_now & edge_now & (!edge_outside | is_open) & (follow | (in_answer & !is_frame));
+    assign over = !run | (drain & !(|pulses));
     assign sample = sample_now;
     assign center = center_now;
-    assign edge_in_window = edge_seen & !edge_outside;
+    assign edge_in_window = edge_now & (!edge_outside | is_open);
     assign outstanding = pulses;
-    assign delay_cycles = delay;
+    assign sample_second = second;
+    assign delay_cycles = delay_now;
+    assign measured = measured_now;
+    assign offset = offset_now;
+    assign phase = 15'd0;
 
     always @(posedge clock) begin
         if (reset) begin
-            delay <= 10'd0;
-            since_rise <= 10'd0;
+            delay <= 11'd0;
+            since_rise <= 11'd0;
             timing_armed <= 1'b0;
             delay_over <= 1'b0;
             cells_run <= 1'b0;
             second_half <= 1'b0;
             sample_strobe <= 1'b0;
             center_strobe <= 1'b0;
-            pulses <= 6'd0;
+            pulses <= 7'd0;
             center_seen <= 1'b0;
             not_yet <= 1'b0;
             afresh <= 1'b0;
@@ -229,6 +378,11 @@ module endat_line_delay (
             edge_outside <= 1'b0;
             shorten <= 1'b0;
             lengthen <= 1'b0;
+            offset_now <= 8'd0;
+            measured_now <= 1'b0;
+            second <= 1'b0;
+            edge_place <= 1'b0;
+            was_over <= 1'b0;
         end else begin
             delay <= delay_next;
             since_rise <= since_rise_next;
@@ -240,8 +394,8 @@ module endat_line_delay (
             center_strobe <= center_strobe_next;
             pulses <= pulses_next;
             center_seen <= center_seen_next;
-            not_yet <= !run | (acquire & !hunting);
-            afresh <= !run | (drain & !(|pulses));
+            not_yet <= over | (acquire & !hunting);
+            afresh <= over;
             follow_now <= follow & (|edge_error);
             edge_seen <= edge_seen_next;
             edge_late <= edge_late_next;
@@ -249,6 +403,11 @@ module endat_line_delay (
             edge_outside <= edge_outside_next;
             shorten <= shorten_next;
             lengthen <= lengthen_next;
+            offset_now <= offset_now_next;
+            measured_now <= good_edge;
+            second <= second_next;
+            edge_place <= edge_place_next;
+            was_over <= was_over_next;
         end
     end
 endmodule

@@ -86,6 +86,7 @@ module endat_receiver (
     localparam         HAS_ALL = 1'b0;
     localparam         HAS_DIAGNOSIS = 1'b0;
     localparam         HAS_CONTINUOUS = 1'b0;
+    localparam         HAS_DOUBLE = 1'b0;
     localparam   [3:0] SKIP_FROM = 4'd5;
     localparam   [3:0] LONG_SKIP_FROM = 4'd11;
     localparam   [6:0] FIXED_CELLS = 7'd17;
@@ -149,7 +150,10 @@ module endat_receiver (
     reg          align_first = 1'b0;
     reg          last_taken = 1'b0;
     reg          last_taken_next;
+    reg          waiting = 1'b0;
+    reg          waiting_next;
     reg          done_now = 1'b0;
+    reg          done_now_next;
     reg          parallel_equal = 1'b0;
     reg          serial_good = 1'b0;
     reg          refused = 1'b0;
@@ -191,6 +195,15 @@ module endat_receiver (
         .bit_value(level),
         .residue_ok(serial_residue_ok)
     );
+
+    always @* begin
+        waiting_next = waiting;
+        done_now_next = last_taken;
+        if (HAS_DOUBLE) begin
+            done_now_next = (last_taken | waiting) & !align;
+            waiting_next = (last_taken | waiting) & align;
+        end
+    end
 
     always @* begin
         cells_after = 7'd1;
@@ -538,6 +551,7 @@ module endat_receiver (
             align <= 1'b0;
             align_first <= 1'b0;
             last_taken <= 1'b0;
+            waiting <= 1'b0;
             done_now <= 1'b0;
             parallel_equal <= 1'b0;
             serial_good <= 1'b0;
@@ -569,7 +583,8 @@ module endat_receiver (
             align <= align_next;
             align_first <= take_crc;
             last_taken <= last_taken_next;
-            done_now <= last_taken;
+            waiting <= waiting_next;
+            done_now <= done_now_next;
             parallel_equal <= crc_bits == crc_calc;
             serial_good <= serial_residue_ok;
             refused <= start_sample & !edge_in_window;

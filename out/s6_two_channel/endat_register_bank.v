@@ -48,6 +48,8 @@ module endat_register_bank (
     input  wire   [7:0] ring_in,
     // Byte to the last channel's ring block.
     output wire   [7:0] ring_out,
+    // The word is one of a line monitor, not of a service.
+    output wire         service_line,
     // Word of a service's RAM.
     output wire   [6:0] service_address,
     // The channel that it belongs to, one bit per channel.
@@ -74,8 +76,9 @@ module endat_register_bank (
     output wire  [23:0] period_cycles
 );
     localparam         HAS_SERVICE = 1'b0;
+    localparam         HAS_LINE = 1'b0;
     localparam  [31:0] ID = 32'h456e4474;
-    localparam  [31:0] VERSION = 32'h30000;
+    localparam  [31:0] VERSION = 32'h40000;
     localparam  [31:0] CAPABILITIES = 32'hf3002;
     localparam  [31:0] SYSTEM_HZ = 32'h5f5e100;
     localparam  [31:0] CONFIGURATION_HASH = 32'hcff72a77;
@@ -95,6 +98,8 @@ module endat_register_bank (
     wire         result_page;
     reg    [7:0] head;
     reg   [31:0] rom_word;
+    wire         line_page;
+    reg    [2:0] service_channel;
     wire   [7:0] ring_byte_out;
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
@@ -367,11 +372,20 @@ module endat_register_bank (
     assign word_skip = skipped_words;
     assign channel_skip = skipped_channels;
     assign service_page = HAS_SERVICE & in_range & word_address[10];
+    assign line_page = HAS_LINE & in_range & !word_address[10] & word_address[9];
+    assign service_line = line_page;
+
+    always @* begin
+        service_channel = word_address[9:7];
+        if (line_page) begin
+            service_channel = word_address[8:6];
+        end
+    end
 
     always @* begin
         service_selected_next = 8'd0;
-        if (service_page) begin
-            case (word_address[9:7])
+        if (service_page | line_page) begin
+            case (service_channel)
                 3'd0: begin
                     service_selected_next = 8'd1;
                 end
@@ -477,7 +491,7 @@ module endat_register_bank (
             active_period <= active_period_next;
             hold <= hold_next;
             follow <= !(pending | reading | hold);
-            service_skip <= !service_page;
+            service_skip <= !(service_page | line_page);
             service_selected <= service_selected_next;
             service_first <= access;
         end

@@ -19,7 +19,7 @@ module endat_snapshot (
     // Strobe: the encoder has taken a position by itself, delay_cycles ago.
     input  wire         latched,
     // Propagation delay, in system clock cycles.
-    input  wire   [9:0] delay_cycles,
+    input  wire  [10:0] delay_cycles,
     // Strobe: take the result of a trigger.
     input  wire         publish,
     // With publish: the position is good.
@@ -91,7 +91,7 @@ module endat_snapshot (
             moment_next = timestamp;
         end
         if (latched) begin
-            moment_next = timestamp - {22'd0, delay_cycles};
+            moment_next = timestamp - {21'd0, delay_cycles};
         end
     end
 

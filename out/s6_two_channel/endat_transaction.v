@@ -16,6 +16,8 @@ module endat_transaction (
     input  wire         trigger,
     // Strobe: measure the propagation delay again with the next frame.
     input  wire         calibrate,
+    // The delay comes from a register: no frame measures it.
+    input  wire         is_fixed,
     // The data line.
     input  wire         level,
     // Strobe: the data line is sampled.
@@ -66,8 +68,10 @@ module endat_transaction (
     input  wire         f1,
     // Error bit 2, low = alarm.
     input  wire         f2,
+    // Strobe one cycle before each rising clock edge.
+    input  wire         will_rise,
     // Clock pulses whose cell has not ended.
-    input  wire   [5:0] outstanding,
+    input  wire   [6:0] outstanding,
     // Cells still to come.
     input  wire   [6:0] cells_left,
     // How much longer than half a period the first low phase is; 0, or at least 4 cycles.
@@ -98,10 +102,14 @@ module endat_transaction (
     output wire         is_probed,
     // The clock goes on after this frame.
     output wire         going_on,
+    // One-cycle strobe: the last cell has begun; the period may change with it.
+    output wire         last_cell,
     // One-cycle strobe: the supplement begins.
     output wire         start_supplement,
     // This frame measures the propagation delay.
     output wire         acquire,
+    // This frame runs at the calibration clock.
+    output wire         slow,
     // A trigger would not be taken.
     output wire         busy,
     // Strobe: result of a trigger, cause and flags are valid.
@@ -130,6 +138,8 @@ module endat_transaction (
     localparam         HAS_ALL = 1'b0;
     localparam         HAS_DIAGNOSIS = 1'b0;
     localparam         HAS_CONTINUOUS = 1'b0;
+    localparam         HAS_ALIGNMENT = 1'b0;
+    localparam         HAS_DOUBLE = 1'b0;
     localparam  [15:0] READY_LOW_CYCLES = 16'd51;
     localparam  [15:0] ABORT_US = 16'h7530;
     localparam  [15:0] PARK_CYCLES = 16'd200;
@@ -183,6 +193,7 @@ module endat_transaction (
     reg          probed;
     wire         endless;
     reg          watched;
+    wire         known;
     reg          found_late;
     wire         leave;
     wire         lost;
@@ -207,6 +218,7 @@ module endat_transaction (
     reg          timer_hit_next;
     reg          timer_step = 1'b0;
     reg          hold = 1'b0;
+    reg          hold_next;
     reg          start_now = 1'b0;
     reg          run_now = 1'b0;
     reg          extra = 1'b0;
@@ -215,9 +227,16 @@ module endat_transaction (
     reg          is_calibrated_next;
     reg          acquiring = 1'b0;
     reg          acquiring_next;
+    reg          slow_now = 1'b0;
+    reg          slow_now_next;
+    reg    [1:0] passes = 2'd0;
+    reg    [1:0] passes_next;
     reg          stalled = 1'b0;
     reg          stalled_next;
     reg          all_sent = 1'b0;
+    reg          all_sent_next;
+    reg          one_left = 1'b0;
+    reg          one_left_next;
     reg          tail_sampled = 1'b0;
     reg          tail_sampled_next;
     reg   [12:0] recovery = 13'd0;
@@ -229,6 +248,7 @@ module endat_transaction (
     reg          answered = 1'b0;
     reg          answered_next;
     reg          was_hunting = 1'b0;
+    reg          was_center = 1'b0;
     reg          late = 1'b0;
     reg          late_next;
     reg          probing = 1'b0;
@@ -299,6 +319,15 @@ module endat_transaction (
             stalled_next = 1'b0;
         end
     end
+
+    always @* begin
+        one_left_next = one_left;
+        all_sent_next = outstanding == cells_left;
+        if (HAS_DOUBLE) begin
+            one_left_next = (outstanding + 7'd1) == cells_left;
+            all_sent_next = (outstanding == cells_left) | (one_left & will_rise);
+        end
+    end
     assign own = is_own & HAS_ALL;
     assign triggered = trigger & !(hold_off & HAS_ALL);
     assign wanted = triggered | (begin_own & HAS_ALL);
@@ -320,7 +349,9 @@ module endat_transaction (
             no_start = NO_START_BIT | STUCK_LOW;
         end
     end
-    assign leave = going & verdict_taken & (!continuous | line_wanted | !is_calibrated | (stop_at_error & verdict_is_bad));
+    assign last_cell = (phase == PHASE_TAIL) & was_center;
+    assign known = is_calibrated | (HAS_ALIGNMENT & is_fixed);
+    assign leave = going & verdict_taken & (!continuous | line_wanted | !known | (stop_at_error & verdict_is_bad));
 
     always @* begin
         phase_next = phase;
@@ -336,6 +367,8 @@ module endat_transaction (
         settling_next = settling;
         going_next = going;
         leaving_next = leaving;
+        slow_now_next = slow_now;
+        passes_next = passes;
         refuse = 1'b0;
         normal_end = 1'b0;
         supplement_now_next = 1'b0;
@@ -477,9 +510,10 @@ module endat_transaction (
                     found = TAIL_LOW;
                     give_up = 1'b1;
                 end
-                if (center) begin
+                if (was_center) begin
                     phase_next = PHASE_RECOVERY;
                     acquiring_next = 1'b0;
+                    slow_now_next = 1'b0;
                 end
             end
             PHASE_RECOVERY: begin
@@ -572,11 +606,15 @@ module endat_transaction (
         if (accept) begin
             timer_next = 16'd2;
         end
-        if ((phase == PHASE_TAIL) & center) begin
-            timer_next = 16'd1;
+        if (last_cell) begin
+            timer_next = 16'd2;
         end
         if (verdict_is_received) begin
             is_calibrated_next = 1'b1;
+            if (HAS_ALIGNMENT & slow_now) begin
+                passes_next = passes + 2'd1;
+                is_calibrated_next = &passes;
+            end
         end
         if (verdict_is_doubtful) begin
             is_calibrated_next = 1'b0;
@@ -584,10 +622,11 @@ module endat_transaction (
         if (accept) begin
             answered_next = 1'b0;
             in_supplement_next = 1'b0;
-            acquiring_next = !is_calibrated;
+            acquiring_next = !known & !(HAS_ALIGNMENT & (|passes));
+            slow_now_next = !known;
             tail_sampled_next = 1'b0;
             late_next = 1'b0;
-            going_next = HAS_CONTINUOUS & continuous & is_calibrated & !own;
+            going_next = HAS_CONTINUOUS & continuous & known & !own;
         end
         if (leave) begin
             phase_next = PHASE_ABORT;
@@ -605,6 +644,9 @@ module endat_transaction (
         if (calibrate) begin
             is_calibrated_next = 1'b0;
         end
+        if (calibrate | abort | verdict_is_doubtful) begin
+            passes_next = 2'd0;
+        end
     end
     assign verdict_is_late = answered | found_late;
     assign lost = trigger & !going & ((!accept & !idle) | (accept & own));
@@ -619,6 +661,13 @@ module endat_transaction (
             sent = 1'b0;
         end
     end
+
+    always @* begin
+        hold_next = (phase == PHASE_FIRST_LOW) | stalled | parking;
+        if (HAS_DOUBLE & all_sent & !started & !going) begin
+            hold_next = 1'b1;
+        end
+    end
     assign hold_low = hold;
 
     always @* begin
@@ -627,13 +676,14 @@ module endat_transaction (
             drain = stalled | (phase == PHASE_PARK);
         end
     end
-    assign stop = stop_now;
+    assign stop = stop_now | sent;
     assign acquire = acquiring;
+    assign slow = slow_now;
     assign busy = !idle | (begin_own & HAS_ALL);
     assign start_supplement = supplement_now;
     assign begun = accept | refuse;
     assign is_at_rest = ((phase == PHASE_NOT_READY) | (phase == PHASE_READY)) & !verdict_is_telling;
-    assign calibrated = is_calibrated;
+    assign calibrated = known;
     assign recovery_cycles = recovery;
     assign probe = probing & HAS_DIAGNOSIS;
     assign is_probed = (probing | settling) & HAS_DIAGNOSIS;
@@ -655,14 +705,18 @@ module endat_transaction (
             stop_now <= 1'b1;
             is_calibrated <= 1'b0;
             acquiring <= 1'b0;
+            slow_now <= 1'b0;
+            passes <= 2'd0;
             stalled <= 1'b0;
             all_sent <= 1'b0;
+            one_left <= 1'b0;
             tail_sampled <= 1'b0;
             recovery <= 13'd0;
             in_supplement <= 1'b0;
             supplement_now <= 1'b0;
             answered <= 1'b0;
             was_hunting <= 1'b0;
+            was_center <= 1'b0;
             late <= 1'b0;
             probing <= 1'b0;
             settling <= 1'b0;
@@ -674,21 +728,25 @@ module endat_transaction (
             timer_limit <= limit;
             timer_hit <= timer_hit_next;
             timer_step <= !in_us | tick_us;
-            hold <= (phase == PHASE_FIRST_LOW) | stalled | parking;
+            hold <= hold_next;
             start_now <= accept;
             run_now <= running;
             extra <= |first_low_extra_cycles;
-            stop_now <= sent | !running | abort | leave;
+            stop_now <= !running | abort | leave;
             is_calibrated <= is_calibrated_next;
             acquiring <= acquiring_next;
+            slow_now <= slow_now_next;
+            passes <= passes_next;
             stalled <= stalled_next;
-            all_sent <= {1'b0, outstanding} == cells_left;
+            all_sent <= all_sent_next;
+            one_left <= one_left_next;
             tail_sampled <= tail_sampled_next;
             recovery <= recovery_next;
             in_supplement <= in_supplement_next;
             supplement_now <= supplement_now_next;
             answered <= answered_next;
             was_hunting <= hunting;
+            was_center <= center;
             late <= late_next;
             probing <= probing_next;
             settling <= settling_next;

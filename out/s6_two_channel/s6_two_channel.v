@@ -10,24 +10,24 @@
 //   host link          2000000 bit/s, as asked
 //   reading            62 bytes, 1000 times a second: 620000 bit/s, 31 % of the link; at most 3225 a second
 //
-//                      channel 0                channel 1
-//   encoder            RCN 8510                 RCN 8510
-//   mode command       111000                   111000
-//   position           29 bits                  29 bits
-//   clock asked        3125000 Hz               3125000 Hz
-//   clock made         3125000 Hz               3125000 Hz
-//   deviation          +0 ppm                   +0 ppm
-//   period             32 cycles                32 cycles
-//   first low phase    2000 ns (tST 2000)       2000 ns (tST 2000)
-//   pulses per frame   48 = 10+37+1             48 = 10+37+1
-//   frame time         17.04 us                 17.04 us
-//   frame + tm         27.04..47.04 us          27.04..47.04 us
-//   highest sampling   21259..36982 Hz          21259..36982 Hz
-//   worst case         20379 Hz (tD 1200 ns)    20379 Hz (tD 1200 ns)
-//   input filter       20 ns                    20 ns
-//   start window       +-80 ns                  +-80 ns
-//   start time-out     18 us                    18 us
-//   calibration frame  239.3 us at 200000 Hz    239.3 us at 200000 Hz
+//                      channel 0                     channel 1
+//   encoder            RCN 8510                      RCN 8510
+//   mode command       111000                        111000
+//   position           29 bits                       29 bits
+//   clock asked        3125000 Hz                    3125000 Hz
+//   clock made         3125000 Hz                    3125000 Hz
+//   deviation          +0 ppm                        +0 ppm
+//   period             32 cycles                     32 cycles
+//   first low phase    2000 ns (tST 2000)            2000 ns (tST 2000)
+//   pulses per frame   48 = 10+37+1                  48 = 10+37+1
+//   frame time         17.04 us                      17.04 us
+//   frame + tm         27.04..47.04 us               27.04..47.04 us
+//   highest sampling   21259..36982 Hz               21259..36982 Hz
+//   worst case         20379 Hz (tD 1200 ns)         20379 Hz (tD 1200 ns)
+//   input filter       20 ns, at most 70 recommended 20 ns, at most 70 recommended
+//   start window       +-80 ns                       +-80 ns
+//   start time-out     18 us                         18 us
+//   calibration frame  239.3 us at 200000 Hz         239.3 us at 200000 Hz
 //
 //   tm is the recovery time; the calibration frame, the first after reset, measures the delay of the cable.
 //
@@ -127,6 +127,7 @@ module s6_two_channel (
     wire         bank_ring_turn;
     wire         bank_ring_home;
     wire   [7:0] bank_ring_in;
+    wire         bank_service_line;
     wire   [6:0] bank_service_address;
     wire   [7:0] bank_service_channels;
     wire   [7:0] bank_service_read;
@@ -168,7 +169,7 @@ module s6_two_channel (
     wire   [4:0] port_0_crc_received;
     wire   [4:0] port_0_crc_computed;
     wire  [12:0] port_0_recovery_cycles;
-    wire   [9:0] port_0_delay_cycles;
+    wire  [10:0] port_0_delay_cycles;
     wire         port_0_busy;
     wire         port_0_request_runs;
     wire         port_0_line_high;
@@ -199,7 +200,7 @@ module s6_two_channel (
     wire   [4:0] port_1_crc_received;
     wire   [4:0] port_1_crc_computed;
     wire  [12:0] port_1_recovery_cycles;
-    wire   [9:0] port_1_delay_cycles;
+    wire  [10:0] port_1_delay_cycles;
     wire         port_1_busy;
     wire         port_1_request_runs;
     wire         port_1_line_high;
@@ -276,6 +277,7 @@ module s6_two_channel (
         .ring_home(bank_ring_home),
         .ring_in(bank_ring_in),
         .ring_out(ring_link_2),
+        .service_line(bank_service_line),
         .service_address(bank_service_address),
         .service_channels(bank_service_channels),
         .service_read(bank_service_read),
@@ -416,6 +418,7 @@ module s6_two_channel (
         .sample_strobe(port_0_sample_strobe),
         .alarm(port_0_alarm),
         .host_address(bank_service_address),
+        .host_line(bank_service_line),
         .host_read(bank_service_read[0]),
         .host_word(port_0_host_word),
         .host_write(bank_service_write[0]),
@@ -473,6 +476,7 @@ module s6_two_channel (
         .sample_strobe(port_1_sample_strobe),
         .alarm(port_1_alarm),
         .host_address(bank_service_address),
+        .host_line(bank_service_line),
         .host_read(bank_service_read[1]),
         .host_word(port_1_host_word),
         .host_write(bank_service_write[1]),

@@ -232,6 +232,7 @@ module s6_two_channel_tb;
     localparam integer EVIDENCE_FLAGS_LSB = 20, EVIDENCE_FLAGS_BITS = 12;
     localparam integer AGE_RECOVERY_AGE_US_LSB = 0, AGE_RECOVERY_AGE_US_BITS = 16;
     localparam integer AGE_RECOVERY_RECOVERY_CYCLES_LSB = 16, AGE_RECOVERY_RECOVERY_CYCLES_BITS = 13;
+    localparam integer AGE_RECOVERY_DELAY_HIGH_LSB = 29, AGE_RECOVERY_DELAY_HIGH_BITS = 1;
     // Causes.
     localparam [3:0] NO_START_BIT = 4'd2;
     localparam [3:0] CRC = 4'd4;
@@ -637,7 +638,7 @@ module s6_two_channel_tb;
         #(CALIBRATION_NS);
         read_words(CARD_ID, 5);
         check("identification word 0", word(0), 32'h456E4474);
-        check("identification word 1", word(1), 32'h00030000);
+        check("identification word 1", word(1), 32'h00040000);
         check("identification word 2", word(2), 32'h000F3002);
         check("identification word 3", word(3), 32'h05F5E100);
         check("identification word 4", word(4), 32'hCFF72A77);

@@ -197,12 +197,7 @@ impl LaneBench {
         for port in &mut self.ports {
             port.take_pins(&mut self.engine, now);
             if self.keeps_samples {
-                port.take_samples(
-                    &mut self.engine,
-                    self.cycle,
-                    self.system_hz,
-                    self.is_double,
-                );
+                port.take_samples(&mut self.engine, self.cycle, self.system_hz, self.is_double);
             }
         }
         self.note_results(now);

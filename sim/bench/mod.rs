@@ -411,8 +411,8 @@ impl<E: Engine> Bench<E> {
             if let Some(strobe) = port.ids.sample_strobe {
                 if self.engine.get(strobe) != 0 {
                     let second = port.ids.sample_second;
-                    let is_first = self.is_double
-                        && second.is_some_and(|id| self.engine.get(id) == 0);
+                    let is_first =
+                        self.is_double && second.is_some_and(|id| self.engine.get(id) == 0);
                     port.sampler.strobe(self.cycle, self.system_hz, is_first);
                 }
             }

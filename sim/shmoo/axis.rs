@@ -75,7 +75,9 @@ impl Quantity {
             Self::Distortion => "falling edges later than rising ones, in ns",
             Self::Noise => "glitches of 2 to 40 ns on DATA, in thousands per second",
             Self::Filter => "input filter in system clock cycles",
-            Self::Offset => "sample before (-) or after (+) the middle of the bit, in percent of the bit",
+            Self::Offset => {
+                "sample before (-) or after (+) the middle of the bit, in percent of the bit"
+            }
         }
     }
 

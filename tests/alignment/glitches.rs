@@ -20,7 +20,11 @@ fn quiet(kind: Kind) -> (Case, Time, Time) {
     let all = count(&case, &Traces::of(&bench), 0);
     assert_eq!(all.good, all.frames);
     let last = bench.frames(0).last().unwrap();
-    (case, last.first_fall, last.last_rise + 2 * kind.bit() as Time)
+    (
+        case,
+        last.first_fall,
+        last.last_rise + 2 * kind.bit() as Time,
+    )
 }
 
 /// A glitch of this width at every third of a cycle of the last frame, each in a channel of its own.
@@ -47,7 +51,11 @@ fn pulses_below_the_filter_have_no_effect_at_any_phase() {
             let cases = with_glitches(kind, width);
             assert!(cases.len() > 1_000 / (1 + kind.double_edge as usize));
             for (i, got) in run(&cases, 0).iter().enumerate() {
-                assert_eq!((got.good, got.wrong), (got.frames, 0), "{kind:?} {width} {i}");
+                assert_eq!(
+                    (got.good, got.wrong),
+                    (got.frames, 0),
+                    "{kind:?} {width} {i}"
+                );
             }
         }
     }

@@ -59,7 +59,10 @@ fn link(channel: usize) -> Link {
 
 /// What stands at the pins of a channel in each cycle, with encoders on these channels only.
 fn pins(engine: &Compiled, with: &[usize]) -> Vec<Vec<u8>> {
-    let links = with.iter().map(|n| (PinNames::card(*n), link(*n))).collect();
+    let links = with
+        .iter()
+        .map(|n| (PinNames::card(*n), link(*n)))
+        .collect();
     let mut bench = Bench::new(engine.clone(), config().system_hz, links);
     bench.set("uart_rx_i", 1);
     bench.reset();
@@ -79,7 +82,11 @@ fn pins(engine: &Compiled, with: &[usize]) -> Vec<Vec<u8>> {
         bench.tick();
         for (rows, ids) in all.iter_mut().zip(&ids) {
             let bit = |id| bench.engine().get(id) as u8;
-            rows.push(ids.map(bit).into_iter().fold(0, |byte, bit| byte << 1 | bit));
+            rows.push(
+                ids.map(bit)
+                    .into_iter()
+                    .fold(0, |byte, bit| byte << 1 | bit),
+            );
         }
     }
     all

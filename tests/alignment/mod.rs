@@ -52,8 +52,8 @@ impl Kind {
     /// EnDat clock in hertz, whose period is a whole number of picoseconds.
     fn clock_hz(self) -> u64 {
         match self.cycles {
-            ..=8 => 16_000_000,
-            ..=16 => 8_000_000,
+            0..=8 => 16_000_000,
+            9..=16 => 8_000_000,
             _ => 4_000_000,
         }
     }

@@ -92,7 +92,10 @@ impl Host {
     }
 
     fn field(&mut self, name: &str, field: &str, channel: usize) -> u32 {
-        let field = *LINE.register(name).and_then(|r| r.field(field)).expect("a field");
+        let field = *LINE
+            .register(name)
+            .and_then(|r| r.field(field))
+            .expect("a field");
         (self.read(name, channel) & field.mask()) >> field.lsb
     }
 
@@ -109,7 +112,10 @@ impl Host {
     }
 
     fn histogram(&mut self, channel: usize) -> Vec<u32> {
-        let bins = LINE.registers.iter().filter(|r| r.name.starts_with("edges_"));
+        let bins = LINE
+            .registers
+            .iter()
+            .filter(|r| r.name.starts_with("edges_"));
         bins.map(|r| self.word(LINE.address(r, channel))).collect()
     }
 }
@@ -156,7 +162,7 @@ fn drift_and_jitter_give_alarm_beyond_their_limits() {
     host.bench.run_for(3 * MS);
     for channel in [0, 1] {
         // 12 places, 3 cycles of drift.
-        host.write("limits", channel, 12 << 16 | 3 * 16);
+        host.write("limits", channel, (12 << 16) | (3 * 16));
         host.write("clear", channel, 3);
         assert_eq!(host.field("worst", "drift_alarm", channel), 0);
     }
@@ -215,7 +221,11 @@ fn the_words_of_all_blocks_are_apart() {
         for (register, channel) in
             (block.registers.iter()).flat_map(|r| (0..channels).map(move |c| (r, c)))
         {
-            assert!(seen.insert(block.address(register, channel)), "{}", register.name);
+            assert!(
+                seen.insert(block.address(register, channel)),
+                "{}",
+                register.name
+            );
         }
     }
 }

@@ -36,13 +36,20 @@ fn double_edge_agrees_on_a_line_with_jitter() {
             rows.iter().map(row).collect()
         };
         let stimulus = Stimulus {
-            inputs: inputs.iter().map(|i| recorded.ports[*i].name.clone()).collect(),
+            inputs: inputs
+                .iter()
+                .map(|i| recorded.ports[*i].name.clone())
+                .collect(),
             cycles: columns(&recorded.rows),
             middle: columns(&recorded.middle),
         };
         assert_eq!(stimulus.middle.len(), stimulus.cycles.len());
         // The two looks differ: without the falling edge the rest would be another run.
-        assert!(stimulus.middle.iter().zip(&stimulus.cycles).any(|(a, b)| a != b));
+        assert!(stimulus
+            .middle
+            .iter()
+            .zip(&stimulus.cycles)
+            .any(|(a, b)| a != b));
         let mut kernel = kernel_engine!(block; clock;
             in reset, tick_us, timestamp, trigger, calibrate, data_i, period_cycles, first_low_extra_cycles, command,
             position_bits, filter_cycles, phase_mode, fixed_delay, majority, start_window_cycles, start_timeout_us, recovery_limit_cycles,

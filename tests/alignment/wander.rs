@@ -17,7 +17,10 @@ fn wanders(kind: Kind, jitter_bits: f64) {
     let results = bench.results();
     let places = results[results.len() - 1].delay_cycles - results[4].delay_cycles;
     let cycle = 1e12 / case.system_hz as f64;
-    assert!((places as f64 - moved as f64 / cycle).abs() < 3.0, "{places}");
+    assert!(
+        (places as f64 - moved as f64 / cycle).abs() < 3.0,
+        "{places}"
+    );
 }
 
 #[test]
@@ -29,7 +32,12 @@ fn slow_drift_costs_no_frame() {
 
 #[test]
 fn a_step_costs_one_frame_at_most_and_never_a_wrong_position() {
-    for kind in [Kind::single(4), Kind::single(8), Kind::double(4), Kind::single(32)] {
+    for kind in [
+        Kind::single(4),
+        Kind::single(8),
+        Kind::double(4),
+        Kind::single(32),
+    ] {
         for sign in [-1.0, 1.0] {
             for sixteenths in 1..=16 {
                 let mut case = kind.case(0.05, 3.0, 60, sixteenths);

@@ -108,7 +108,7 @@ impl Rig {
     /// Up to the trigger of the frame that the mishap is for: line delay measured, both informations selected, the supplement waiting.
     pub fn new(cases: &[(EncoderConfig, LineConfig)]) -> Self {
         let mut rig = Self::on(engine(), cases);
-        rig.bench.keep_samples(|_| SAMPLE_LATENCY_CYCLES);
+        rig.bench.keep_samples(|_| 2 * SAMPLE_LATENCY_CYCLES);
         rig.reset();
         rig.settle(100);
         rig.position(400);

@@ -43,14 +43,14 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "one clock pulse fewer",
         "endat_transaction.v",
-        "outstanding == cells_left",
-        "outstanding == cells_left - 7'd1",
+        "all_sent_next = outstanding == cells_left",
+        "all_sent_next = outstanding == cells_left - 7'd1",
     ),
     mutation(
         "clock pulses on the cable not counted",
         "endat_transaction.v",
-        "outstanding == cells_left",
-        "7'd1 == cells_left",
+        "all_sent_next = outstanding == cells_left",
+        "all_sent_next = 7'd1 == cells_left",
     ),
     mutation(
         "driver never released",

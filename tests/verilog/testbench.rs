@@ -58,7 +58,7 @@ fn bench_passes_on_other_cards() {
 fn bench_passes_on_a_card_with_requests() {
     if tools::require("iverilog", "emitted test bench") {
         let text = preset("s6_two_channel").unwrap();
-        let text = text.replace("parts = []", "parts = [\"requests\"]");
+        let text = text.replacen("parts = []", "parts = [\"requests\"]", 1);
         let files = endat_gen::emit(&parse("requests.toml", &text).unwrap()).unwrap();
         assert!(files.iter().any(|f| f.path == "endat_service.v"));
         assert_eq!(run_bench("requests", &files, &[]), "PASS\n");

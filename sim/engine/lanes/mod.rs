@@ -370,7 +370,9 @@ impl Lanes {
                     let new = match form.place(*next) {
                         Place::Constant(value) if value >> bit & 1 == 1 => u64::MAX,
                         Place::Constant(_) | Place::Dropped => 0,
-                        Place::Net(net) => self.state[self.layout.place(net) + bit * self.words + part],
+                        Place::Net(net) => {
+                            self.state[self.layout.place(net) + bit * self.words + part]
+                        }
                     };
                     let word = &mut self.state[self.layout.place(*q) + bit * self.words + part];
                     if std::mem::replace(word, new) != new {
