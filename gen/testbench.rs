@@ -5,6 +5,7 @@ use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
 use crate::template;
+use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, RESULT};
 use endat_hdl::service::program::{program, ServiceTimes};
@@ -200,6 +201,7 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         clk_ns => real(1e9 / hz as f64),
         uart_bit_ns => real(1e9 / card.baud as f64),
         calibration_ns => whole(calibration_ns),
+        calibration_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
         cycle_ns => whole(cycle_ns),
         fault_ns => whole(cycle_ns + longest_ns(card, timeout) + ENCODER_GIVES_UP_NS),
         abort_ns => whole(abort_ns.unwrap_or(0) + MARGIN_NS),

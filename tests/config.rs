@@ -136,7 +136,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         // negative and huge numbers, with the range that counts
         ("position_bits = 29", "position_bits = -3", "channel[0].position_bits = -3: outside 1..48"),
         ("cable_m = 100", "cable_m = -1", "endat.cable_m = -1: outside 0..780"),
-        ("filter_ns = 20", "filter_ns = -1", "endat.filter_ns = -1: outside 0..780"),
+        ("filter_ns = 20", "filter_ns = -1", "endat.filter_ns = -1: outside 0..150"),
         ("start_window_ns = 80", "start_window_ns = -1", "endat.start_window_ns = -1: outside 10..630"),
         ("recovery_max_ns = 30_000", "recovery_max_ns = -1", "endat.recovery_max_ns = -1: outside 1250.."),
         ("tst_ns = 2_000", "tst_ns = -1", "endat.tst_ns = -1: neither 0 nor in 500..10000"),

@@ -11,7 +11,7 @@ fn a_map_is_drawn_written_and_told() {
     let outcome = run(&[
         "shmoo",
         "--x",
-        "jitter_ns=0,20,150",
+        "jitter_ns=0,40,150",
         "--y",
         "clock_mhz=4,8",
         "--at",

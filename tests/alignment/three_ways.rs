@@ -13,7 +13,7 @@ fn double_edge_agrees_on_a_line_with_jitter() {
         ("double_edge_2", Kind::double(2), false),
         ("double_edge_5", Kind::double(5), true),
     ] {
-        let mut case = kind.case(0.1, 2.2, 3, 5);
+        let mut case = kind.case(0.1, 2.2, 1, 5);
         case.settings.majority = majority;
         case.settings.filter_cycles = u64::from(majority);
         let times = FixedTimes {

@@ -67,7 +67,7 @@ fn reached(kind: Kind, phase_mode: u64, percent: &[u32]) -> f64 {
 #[test]
 fn tracked_phase_stands_the_jitter_that_an_ideal_receiver_stands() {
     let kinds = [4, 6, 8, 16, 32].map(Kind::single).into_iter();
-    let percent: Vec<u32> = (80..98).step_by(3).chain(98..=110).collect();
+    let percent = [80, 90, 95, 98, 100, 102, 104, 106, 108, 110];
     let mut low = vec![];
     for kind in kinds.chain([2, 4, 8].map(Kind::double)) {
         let tracked = reached(kind, mode::TRACKED, &percent);
@@ -89,7 +89,7 @@ fn tracked_phase_stands_the_jitter_that_an_ideal_receiver_stands() {
 #[test]
 fn phase_from_the_start_bit_stands_half_of_that() {
     for kind in [Kind::single(8), Kind::single(16)] {
-        let part = reached(kind, mode::FRAME, &[35, 40, 45, 50, 55, 60, 65, 70, 75, 80]);
+        let part = reached(kind, mode::FRAME, &[40, 45, 50, 60, 70, 80]);
         assert!((0.45..=0.7).contains(&part), "{kind:?}: {part}");
     }
 }

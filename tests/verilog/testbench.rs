@@ -53,6 +53,20 @@ fn bench_passes_on_other_cards() {
     );
 }
 
+/// With everything about the line delay, double edge included: four frames measure the delay.
+#[test]
+fn bench_passes_on_a_card_with_all_line_parts() {
+    if tools::require("iverilog", "emitted test bench") {
+        let text = preset("s6_two_channel").unwrap();
+        let (head, tail) = text.split_once("[line]").unwrap();
+        let parts = "parts = [\"alignment\", \"margin\", \"double_edge\"]";
+        let text = format!("{head}[line]{}", tail.replacen("parts = []", parts, 1));
+        let files = endat_gen::emit(&parse("line.toml", &text).unwrap()).unwrap();
+        assert!(files.iter().any(|f| f.path == "endat_line_monitor.v"));
+        assert_eq!(run_bench("line", &files, &[]), "PASS\n");
+    }
+}
+
 /// Positions of a card that also takes requests are those of one that does not.
 #[test]
 fn bench_passes_on_a_card_with_requests() {
