@@ -68,12 +68,6 @@ impl HalfPeriod {
     }
 }
 
-impl Default for HalfPeriod {
-    fn default() -> Self {
-        Self::new(false, false)
-    }
-}
-
 impl Logic for HalfPeriod {
     #[hdl_gen]
     fn update(&mut self) {

@@ -19,25 +19,25 @@ use rust_hdl::prelude::*;
 /// Where the words of a monitor are, see [`crate::regs::LINE`].
 pub mod word {
     /// Histogram of the offsets, -16 and before to 15 and after.
-    pub const HISTOGRAM: u64 = 0;
+    pub const HISTOGRAM: u8 = 0;
     /// Source of the phase, majority, bin width.
-    pub const ALIGNMENT: u64 = 32;
+    pub const ALIGNMENT: u8 = 32;
     /// Delay in mode `fixed`.
-    pub const FIXED_DELAY: u64 = 33;
+    pub const FIXED_DELAY: u8 = 33;
     /// Limits of the alarms.
-    pub const LIMITS: u64 = 34;
+    pub const LIMITS: u8 = 34;
     /// Clears.
-    pub const CLEAR: u64 = 35;
+    pub const CLEAR: u8 = 35;
     /// Offsets of the last frame.
-    pub const FRAME: u64 = 40;
+    pub const FRAME: u8 = 40;
     /// Offsets since cleared, alarms.
-    pub const WORST: u64 = 41;
+    pub const WORST: u8 = 41;
     /// Tracked delay and its reference.
-    pub const PHASE: u64 = 42;
+    pub const PHASE: u8 = 42;
     /// Glitches and bad frames.
-    pub const COUNTS: u64 = 43;
+    pub const COUNTS: u8 = 43;
     /// Frames.
-    pub const FRAMES: u64 = 44;
+    pub const FRAMES: u8 = 44;
 }
 
 /// What the settings are after reset.

@@ -22,7 +22,7 @@ pub use table::{CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT};
 
 use crate::config::CardConfig;
 use crate::config_ring::RING_WORDS;
-use crate::service::map::{word, COUNTER_POSITION_2};
+use crate::service::map::{self, COUNTER_POSITION_2};
 use crate::transaction::cause;
 use values::Values;
 
@@ -143,6 +143,45 @@ impl Register {
     }
 }
 
+fn zero(_: &CardConfig, _: usize) -> u64 {
+    0
+}
+
+/// A field that is 0 after reset.
+const fn field(
+    name: &'static str,
+    lsb: u32,
+    width: u32,
+    unit: &'static str,
+    meaning: &'static str,
+) -> Field {
+    Field {
+        name,
+        lsb,
+        width,
+        unit,
+        meaning,
+        start: zero,
+        values: Values::Plain,
+    }
+}
+
+const fn word(
+    name: &'static str,
+    offset: u8,
+    access: Access,
+    meaning: &'static str,
+    fields: &'static [Field],
+) -> Register {
+    Register {
+        name,
+        offset: offset as u16,
+        access,
+        meaning,
+        fields,
+    }
+}
+
 /// Words that stand together, once in the card or once for each channel.
 #[derive(Clone, Copy, Debug)]
 pub struct Block {
@@ -177,8 +216,8 @@ impl Block {
     /// Its words on this card: what only parts fill that the card does not have is left out.
     pub fn present(&self, config: &CardConfig) -> impl Iterator<Item = &'static Register> {
         let (base, parts) = (self.base, config.service);
-        let first_line = u16::from(word::COUNTERS) + cause::NO_ENCODER as u16;
-        let past_line = u16::from(word::COUNTERS + COUNTER_POSITION_2);
+        let first_line = u16::from(map::word::COUNTERS) + cause::NO_ENCODER as u16;
+        let past_line = u16::from(map::word::COUNTERS + COUNTER_POSITION_2);
         let margin = config.line.margin;
         self.registers.iter().filter(move |register| {
             if base == LINE_BASE {
@@ -186,12 +225,15 @@ impl Block {
             }
             let at = |word: u8| register.offset == u16::from(word);
             base != SERVICE_BASE
-                || if at(word::PROGRESS) || register.offset >= u16::from(word::NAME_PLATE) {
+                || if at(map::word::PROGRESS) || register.offset >= u16::from(map::word::NAME_PLATE)
+                {
                     parts.initialise
-                } else if at(word::LIMITS) || (first_line..past_line).contains(&register.offset) {
+                } else if at(map::word::LIMITS)
+                    || (first_line..past_line).contains(&register.offset)
+                {
                     parts.diagnosis
                 } else {
-                    !at(word::CONTINUOUS) || parts.continuous
+                    !at(map::word::CONTINUOUS) || parts.continuous
                 }
         })
     }

@@ -9,6 +9,7 @@ mod cycle_time;
 mod elaborate;
 mod engines;
 mod files;
+mod host;
 mod maps;
 mod pages;
 mod position;

@@ -1,48 +1,9 @@
 //! The words of a line monitor; their places come from [`crate::line_monitor::word`].
 
-use super::values::{Values, PHASE_MODES};
-use super::{Access, Block, Field, Register, LINE_BASE, LINE_STRIDE};
-use crate::config::CardConfig;
+use super::values::PHASE_MODES;
+use super::{field, word, Access, Block, Field, Register, LINE_BASE, LINE_STRIDE};
 use crate::line_monitor::word as at;
 use Access::{ReadOnly, ReadWrite, Strobe};
-
-fn zero(_: &CardConfig, _: usize) -> u64 {
-    0
-}
-
-const fn field(
-    name: &'static str,
-    lsb: u32,
-    width: u32,
-    unit: &'static str,
-    meaning: &'static str,
-) -> Field {
-    Field {
-        name,
-        lsb,
-        width,
-        unit,
-        meaning,
-        start: zero,
-        values: Values::Plain,
-    }
-}
-
-const fn word(
-    name: &'static str,
-    offset: u64,
-    access: Access,
-    meaning: &'static str,
-    fields: &'static [Field],
-) -> Register {
-    Register {
-        name,
-        offset: offset as u16,
-        access,
-        meaning,
-        fields,
-    }
-}
 
 /// Whether a word is there without the part `margin`.
 pub(super) fn is_setting(offset: u16) -> bool {
@@ -53,12 +14,13 @@ pub(super) fn is_setting(offset: u16) -> bool {
         at::CLEAR,
         at::PHASE,
     ]
-    .contains(&u64::from(offset))
+    .map(u16::from)
+    .contains(&offset)
 }
 
 const EDGES: &[Field] = &[field("edges", 0, 32, "", "Edges since clear, wrapping")];
 
-const fn bin(name: &'static str, index: u64, meaning: &'static str) -> Register {
+const fn bin(name: &'static str, index: u8, meaning: &'static str) -> Register {
     word(name, at::HISTOGRAM + index, ReadOnly, meaning, EDGES)
 }
 

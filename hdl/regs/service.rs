@@ -1,48 +1,9 @@
 //! The words of a service; their places come from [`crate::service::map`].
 
-use super::values::{Values, MODE_COMMANDS, REQUEST_ERRORS};
-use super::{Access, Block, Field, Register, SERVICE_BASE};
-use crate::config::CardConfig;
+use super::values::{MODE_COMMANDS, REQUEST_ERRORS};
+use super::{field, word, Access, Block, Field, Register, SERVICE_BASE};
 use crate::service::map::{word as at, COUNTER_POSITION_2, NAME_PLATE};
 use Access::{ReadOnly, ReadWrite};
-
-fn zero(_: &CardConfig, _: usize) -> u64 {
-    0
-}
-
-const fn field(
-    name: &'static str,
-    lsb: u32,
-    width: u32,
-    unit: &'static str,
-    meaning: &'static str,
-) -> Field {
-    Field {
-        name,
-        lsb,
-        width,
-        unit,
-        meaning,
-        start: zero,
-        values: Values::Plain,
-    }
-}
-
-const fn word(
-    name: &'static str,
-    offset: u8,
-    access: Access,
-    meaning: &'static str,
-    fields: &'static [Field],
-) -> Register {
-    Register {
-        name,
-        offset: offset as u16,
-        access,
-        meaning,
-        fields,
-    }
-}
 
 const VALUE: &[Field] = &[field("value", 0, 32, "", "Number")];
 const HIGH: &[Field] = &[field("value", 0, 16, "", "Bits 47..32")];

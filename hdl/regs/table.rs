@@ -1,27 +1,14 @@
 //! The words themselves.
 
-use super::values::{Values, CAUSES, EVIDENCE_FLAGS, FEATURES, LINE_FLAGS, POSITION_COMMANDS};
-use super::{Access, Block, Field, Register, BLOCK_STRIDE, CONFIG_BASE, ID, RESULT_BASE, VERSION};
+use super::values::{CAUSES, EVIDENCE_FLAGS, FEATURES, LINE_FLAGS, POSITION_COMMANDS};
+use super::{
+    word, zero, Access, Block, Field, BLOCK_STRIDE, CONFIG_BASE, ID, RESULT_BASE, VERSION,
+};
 use crate::config::{CardConfig, ChannelConfig};
 use crate::protocol::MAX_POSITION_BITS;
 use Access::{ReadOnly, ReadWrite, Strobe};
 
-const fn word(
-    name: &'static str,
-    offset: u16,
-    access: Access,
-    meaning: &'static str,
-    fields: &'static [Field],
-) -> Register {
-    Register {
-        name,
-        offset,
-        access,
-        meaning,
-        fields,
-    }
-}
-
+/// A field with a value of its own after reset.
 const fn field(
     name: &'static str,
     lsb: u32,
@@ -31,18 +18,9 @@ const fn field(
     start: fn(&CardConfig, usize) -> u64,
 ) -> Field {
     Field {
-        name,
-        lsb,
-        width,
-        unit,
-        meaning,
         start,
-        values: Values::Plain,
+        ..super::field(name, lsb, width, unit, meaning)
     }
-}
-
-fn zero(_: &CardConfig, _: usize) -> u64 {
-    0
 }
 
 /// The channel's start values; zeros for a channel that the card does not have.

@@ -131,7 +131,7 @@ impl Engine for Interpreter {
     }
 
     fn tick(&mut self) {
-        if !std::mem::take(&mut self.has_fallen) {
+        if !std::mem::take(&mut self.has_fallen) && !self.falling.is_empty() {
             self.fall();
             self.has_fallen = false;
         }

@@ -1,34 +1,25 @@
 //! The line's words behind the host link of a card: settings, edges, alarms.
 
-use endat_gen::config::load_preset;
 use endat_hdl::{
     card::Card,
     config::LineParts,
-    elaborate::elaborate,
     line_delay::mode,
     regs::{BLOCKS, LINE, RESULT},
 };
 use endat_sim::{
-    bench::{Bench, Link, PinNames},
+    bench::Link,
     encoder::EncoderConfig,
-    engine::Compiled,
     line::{Jitter, LineConfig},
     MS, NS, US,
 };
-use rust_hdl::prelude::Block;
 
-/// System clock cycles in a UART bit.
-const BIT: u64 = 8;
-
-struct Host {
-    bench: Bench<Compiled>,
-}
+/// The line's words behind it.
+struct Host(crate::host::Host);
 
 impl Host {
     /// A card with a sound line on channel 0, and one with jitter on channel 1.
     fn new(jitter_ns: u64, drift: i64) -> Self {
-        let mut config = load_preset("s6_two_channel").unwrap().card;
-        config.uart_bit_cycles = BIT;
+        let mut config = crate::host::card("s6_two_channel");
         config.line = LineParts {
             alignment: true,
             margin: true,
@@ -37,9 +28,6 @@ impl Host {
         for channel in &mut config.channels {
             (channel.filter_cycles, channel.start_window_cycles) = (0, 15);
         }
-        let mut block = Card::with_timeout(&config, 100);
-        block.connect_all();
-        let engine = Compiled::new(&elaborate(&block, "card").unwrap()).unwrap();
         let link = |jitter_ns: u64, drift| {
             let mut encoder = EncoderConfig::endat22(29).seed(4);
             encoder.tm = 10 * US..=12 * US;
@@ -48,47 +36,17 @@ impl Host {
             line.data_in.drift = drift;
             Link::new(line, encoder)
         };
-        let links = vec![
-            (PinNames::card(0), link(0, 0)),
-            (PinNames::card(1), link(jitter_ns, drift)),
-        ];
-        let mut bench = Bench::new(engine, config.system_hz, links);
-        bench.set("uart_rx_i", 1);
-        bench.reset();
-        Self { bench }
-    }
-
-    fn send(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            let bits = u16::from(*byte) << 1 | 1 << 9;
-            for i in 0..10 {
-                self.bench.set("uart_rx_i", (bits >> i & 1).into());
-                self.bench.run_cycles(BIT);
-            }
-        }
-    }
-
-    fn receive(&mut self) -> u8 {
-        assert!(self.bench.run_until_done(MS, |b| b.get("uart_tx_o") == 0));
-        self.bench.run_cycles(BIT / 2);
-        let mut byte = 0;
-        for i in 0..8 {
-            self.bench.run_cycles(BIT);
-            byte |= (self.bench.get("uart_tx_o") as u8) << i;
-        }
-        self.bench.run_cycles(BIT);
-        byte
-    }
-
-    fn word(&mut self, address: u16) -> u32 {
-        let [high, low] = address.to_be_bytes();
-        self.send(&[2, 1, 0, 0, high, low]);
-        u32::from_be_bytes([0; 4].map(|_: u8| self.receive()))
+        let card = Card::with_timeout(&config, 100);
+        let links = vec![link(0, 0), link(jitter_ns, drift)];
+        Self(crate::host::Host::new(card, config.system_hz, links))
     }
 
     fn read(&mut self, name: &str, channel: usize) -> u32 {
-        let register = LINE.register(name).expect("a register");
-        self.word(LINE.address(register, channel))
+        self.0.read(&LINE, name, channel)
+    }
+
+    fn write(&mut self, name: &str, channel: usize, value: u32) {
+        self.0.write(&LINE, name, channel, value);
     }
 
     fn field(&mut self, name: &str, field: &str, channel: usize) -> u32 {
@@ -103,31 +61,23 @@ impl Host {
         self.field(name, field, channel) as u8 as i8
     }
 
-    fn write(&mut self, name: &str, channel: usize, value: u32) {
-        let register = LINE.register(name).expect("a register");
-        let [high, low] = LINE.address(register, channel).to_be_bytes();
-        let [a, b, c, d] = value.to_be_bytes();
-        self.send(&[1, 1, 0, 0, high, low, a, b, c, d]);
-        self.bench.run_cycles(20 * BIT);
-    }
-
     fn histogram(&mut self, channel: usize) -> Vec<u32> {
         let bins = LINE
             .registers
             .iter()
             .filter(|r| r.name.starts_with("edges_"));
-        bins.map(|r| self.word(LINE.address(r, channel))).collect()
+        bins.map(|r| self.read(r.name, channel)).collect()
     }
 }
 
 #[test]
 fn edges_are_counted_and_the_worst_ones_kept() {
     let mut host = Host::new(60, 0);
-    host.bench.run_for(3 * MS);
+    host.0.bench.run_for(3 * MS);
     // 10 ns cycles: jitter of 60 ns is 6 places to either side.
     for (channel, least, most) in [(0, 0, 1), (1, 4, 7)] {
         host.write("clear", channel, 1);
-        host.bench.run_for(2 * MS);
+        host.0.bench.run_for(2 * MS);
         let (earliest, latest) = (
             host.offset("worst", "earliest", channel),
             host.offset("worst", "latest", channel),
@@ -148,8 +98,7 @@ fn edges_are_counted_and_the_worst_ones_kept() {
         assert_eq!(host.read("counts", channel), 0);
     }
     // The delay that is tracked is the one of the result, with its part of a cycle.
-    let evidence = RESULT.register("evidence").unwrap();
-    let delay = host.word(RESULT.address(evidence, 0)) >> 10 & 0x3FF;
+    let delay = host.0.read(&RESULT, "evidence", 0) >> 10 & 0x3FF;
     assert_eq!(host.field("phase", "tracked", 0) >> 4, delay);
     host.write("clear", 1, 1);
     let sum: u32 = host.histogram(1).iter().sum();
@@ -159,20 +108,20 @@ fn edges_are_counted_and_the_worst_ones_kept() {
 #[test]
 fn drift_and_jitter_give_alarm_beyond_their_limits() {
     let mut host = Host::new(60, 8);
-    host.bench.run_for(3 * MS);
+    host.0.bench.run_for(3 * MS);
     for channel in [0, 1] {
         // 12 places, 3 cycles of drift.
         host.write("limits", channel, (12 << 16) | (3 * 16));
         host.write("clear", channel, 3);
         assert_eq!(host.field("worst", "drift_alarm", channel), 0);
     }
-    host.bench.run_for(10 * MS);
+    host.0.bench.run_for(10 * MS);
     assert_eq!(host.field("worst", "drift_alarm", 0), 0);
     assert_eq!(host.field("worst", "drift_alarm", 1), 1);
     assert_eq!(host.field("worst", "offset_alarm", 1), 0);
     host.write("limits", 1, 2 << 16);
     host.write("clear", 1, 1);
-    host.bench.run_for(MS);
+    host.0.bench.run_for(MS);
     assert_eq!(host.field("worst", "drift_alarm", 1), 0);
     assert_eq!(host.field("worst", "offset_alarm", 1), 1);
 }
@@ -180,7 +129,7 @@ fn drift_and_jitter_give_alarm_beyond_their_limits() {
 #[test]
 fn the_host_chooses_where_the_phase_comes_from() {
     let mut host = Host::new(0, 0);
-    host.bench.run_for(3 * MS);
+    host.0.bench.run_for(3 * MS);
     let tracked = host.field("phase", "tracked", 0);
     let modes = [
         (mode::FRAME, 0, true),
@@ -195,20 +144,20 @@ fn the_host_chooses_where_the_phase_comes_from() {
         host.write("alignment", 0, mode as u32);
         assert_eq!(host.read("alignment", 0), mode as u32);
         assert_eq!(host.read("fixed_delay", 0), delay);
-        host.bench.run_for(MS);
+        host.0.bench.run_for(MS);
         if !is_good {
             // What an aborted frame costs.
-            host.bench.run_for(35 * MS);
+            host.0.bench.run_for(35 * MS);
         }
         host.write("clear", 0, 1);
-        host.bench.run_for(MS);
+        host.0.bench.run_for(MS);
         let bad = host.field("counts", "bad_frames", 0);
         assert_eq!(bad == 0, is_good, "mode {mode}, delay {delay}");
         // The other channel does not mind.
         assert_eq!(host.field("counts", "bad_frames", 1), 0);
         if !is_good {
             host.write("alignment", 0, mode::TRACKED as u32);
-            host.bench.run_for(35 * MS);
+            host.0.bench.run_for(35 * MS);
         }
     }
 }
