@@ -22,6 +22,7 @@ mod scratch;
 pub mod template;
 pub mod testbench;
 pub mod verilog;
+pub mod virtual_card;
 
 use artifact::Artifact;
 use config::Project;

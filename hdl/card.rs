@@ -100,14 +100,18 @@ impl Card {
 
     /// A card with another limit on pauses within a host command, for quick tests.
     pub fn with_timeout(config: &CardConfig, timeout_us: u64) -> Self {
-        let service = ServiceTimes {
+        Self::with_times(config, timeout_us, &Self::service_times(config))
+    }
+
+    /// Parts and waits of its services.
+    pub fn service_times(config: &CardConfig) -> ServiceTimes {
+        ServiceTimes {
             initialise: config.service.initialise,
             diagnosis: config.service.diagnosis,
             continuous: config.service.continuous,
             infos: config.service.infos,
             ..ServiceTimes::at(config.system_hz)
-        };
-        Self::with_times(config, timeout_us, &service)
+        }
     }
 
     /// A card with other waits, too.

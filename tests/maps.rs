@@ -498,3 +498,15 @@ fn maps_list_every_word_and_field_that_the_card_has() {
         }
     }
 }
+
+/// Catches a host library whose map is another than the card's.
+#[test]
+fn the_host_library_has_the_table() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("host/map.rs");
+    let expected = endat_gen::maps::host::write();
+    if std::env::var_os("UPDATE_EXPECT").is_some() {
+        fs::write(&path, &expected).unwrap();
+    }
+    let found = fs::read_to_string(&path).unwrap();
+    assert!(found == expected, "host/map.rs is not the table's; UPDATE_EXPECT=1 cargo test --test system -- maps::the_host");
+}

@@ -5,12 +5,14 @@
 //!                                -> header.rs    C and C++
 //!                                -> svd.rs       CMSIS-SVD
 //!                                -> rdl.rs       SystemRDL
+//!                     (every part) -> host.rs      Rust, for the host library
 //! ```
 //!
 //! [`Map::new`] is the only walk over the table: what the card has, under which names, with which start values. A writer
 //! adds the form of its language and nothing else.
 
 mod header;
+pub mod host;
 mod markdown;
 mod rdl;
 mod svd;
@@ -69,11 +71,6 @@ impl Map {
     pub fn new(project: &Project) -> Self {
         let config = &project.card;
         let blocks: Vec<Block> = regs::blocks(config).collect();
-        // `config` is the card's and each channel's; most languages want two names.
-        let shares_name = |block: &Block| {
-            let twin = |b: &Block| b.name == block.name && b.per_channel;
-            !block.per_channel && blocks.iter().any(twin)
-        };
         let map_block = |block: &Block| {
             let copies = if block.per_channel {
                 config.channels.len()
@@ -88,11 +85,7 @@ impl Map {
                     .collect(),
             });
             MapBlock {
-                id: if shares_name(block) {
-                    format!("card_{}", block.name)
-                } else {
-                    block.name.to_owned()
-                },
+                id: map_id(block, &blocks),
                 block: *block,
                 copies: copies as u32,
                 registers: registers.collect(),
@@ -132,6 +125,16 @@ impl Map {
             self.name,
             self.version()
         )
+    }
+}
+
+/// Name of a block that is unique in a map: `config` is the card's and each channel's.
+fn map_id(block: &Block, blocks: &[Block]) -> String {
+    let twin = |b: &Block| b.name == block.name && b.per_channel;
+    if !block.per_channel && blocks.iter().any(twin) {
+        format!("card_{}", block.name)
+    } else {
+        block.name.to_owned()
     }
 }
 

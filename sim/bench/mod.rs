@@ -14,12 +14,14 @@ mod sampler;
 mod settings;
 #[cfg(test)]
 mod tests;
+mod uart;
 
 pub use lanes::LaneBench;
 pub use link::{Link, LinkTrace};
 pub use pins::PinNames;
 pub use record::{ChannelResult, Cycles, Watched};
 pub use settings::ChannelSettings;
+pub use uart::Uart;
 
 use crate::{
     encoder::{Drive, FrameLog, Violation},

@@ -1,0 +1,252 @@
+//! A card without hardware: the core as it is emitted, in the compiled engine, with an encoder on a cable at each port and a host at
+//! its UART.
+//!
+//! ```text
+//! host's bytes <-> Uart <-> Card (compiled) <-> line <-> encoder model, turning
+//! ```
+//!
+//! Time is simulated time. In the same process ([`VirtualCard`] is a [`Transport`]) a host waits for nothing; behind a port
+//! ([`serve`]) the card keeps real time as well as it can.
+
+mod serve;
+
+pub use serve::{serve, Door, Pace};
+
+use crate::config::Project;
+use crate::error::{shown, GenError};
+use endat_hdl::card::Card;
+use endat_hdl::elaborate::elaborate;
+use endat_hdl::protocol::ModeCommand;
+use endat_hdl::service::program::ServiceTimes;
+use endat_host::Transport;
+use endat_sim::bench::{Bench, Link, PinNames, Uart};
+use endat_sim::encoder::{EncoderConfig, PositionSource, DEVICES};
+use endat_sim::engine::Compiled;
+use endat_sim::line::LineConfig;
+use endat_sim::{Time, MS, SECOND};
+use rust_hdl::prelude::Block;
+use std::io;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Cable between card and encoders, unless told otherwise.
+pub const CABLE_M: f64 = 10.0;
+/// A half-sent command is forgotten after this; real cards take 100 ms, which would be seconds of simulation.
+const LINK_TIMEOUT_US: u64 = 5_000;
+/// Waits of the initialisation, for the same reason; real ones add up to 1.9 s.
+const POWER_UP_MS: u16 = 2;
+const RESET_MS: u16 = 3;
+const WRITE_MS: u16 = 2;
+
+/// What a virtual card is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VirtualConfig {
+    /// Device at each port, `none` for an open plug; one for all, or one for each. Empty: what the configuration names.
+    pub encoders: Vec<String>,
+    /// Cable to each encoder in metres.
+    pub cable_m: f64,
+    /// How fast shafts turn, in turns per second (linear encoders: hundredths of a metre per second).
+    pub speed: f64,
+    /// Seed of everything random.
+    pub seed: u64,
+}
+
+impl Default for VirtualConfig {
+    fn default() -> Self {
+        Self {
+            encoders: Vec::new(),
+            cable_m: CABLE_M,
+            speed: 0.25,
+            seed: 1,
+        }
+    }
+}
+
+/// A simulated card.
+pub struct VirtualCard {
+    bench: Bench<Compiled>,
+    uart: Uart,
+    /// Cycles that a wait of a host takes here, per microsecond.
+    cycles_per_us: u64,
+}
+
+/// A name as people write it: without spaces, dashes and case.
+fn plain(name: &str) -> String {
+    let kept = name.chars().filter(|c| c.is_ascii_alphanumeric());
+    kept.map(|c| c.to_ascii_lowercase()).collect()
+}
+
+/// The encoder called `name`; of the width and command that the channel is configured for when nobody says which.
+fn encoder(
+    project: &Project,
+    channel: usize,
+    wanted: Option<&str>,
+) -> Result<EncoderConfig, GenError> {
+    let name = wanted.unwrap_or(&project.encoders[channel]);
+    if let Some(device) = DEVICES.iter().find(|d| plain(d.name) == plain(name)) {
+        return Ok(device.encoder());
+    }
+    let known: Vec<&str> = DEVICES.iter().map(|d| d.name).collect();
+    if wanted.is_some() {
+        return Err(GenError::input(format!(
+            "--encoder = {}: unknown device; known devices: {}, none",
+            shown(name),
+            known.join(", ")
+        )));
+    }
+    let config = &project.card.channels[channel];
+    let bits = config.position_bits as u32;
+    Ok(
+        if config.command == u64::from(ModeCommand::SendPosition.code()) {
+            EncoderConfig::endat21(bits)
+        } else {
+            EncoderConfig::endat22(bits)
+        },
+    )
+}
+
+/// A shaft that turns evenly, with a slow swing on top; a carriage that goes to and fro.
+fn motion(encoder: &EncoderConfig, channel: usize, speed: f64) -> PositionSource {
+    let bits = encoder.position_bits;
+    let (steps, is_rotary) = (
+        f64::from(encoder.plate.measuring_steps),
+        encoder.plate.rotary,
+    );
+    // Each channel at a pace of its own, so that nobody mistakes one for the other.
+    let speed = speed * (1.0 + 0.5 * channel as f64);
+    let start = 0.1 * (channel + 1) as f64;
+    PositionSource::Function(Arc::new(move |_, time: Time| {
+        let s = time as f64 / SECOND as f64;
+        let swing = (s * 2.0).sin();
+        let position = if is_rotary {
+            (start + speed * s + 0.002 * swing) * steps
+        } else {
+            // Nanometres by nanometres per step: 10 mm to and fro around 100 mm.
+            (1e8 + 1e7 * (speed * s).sin()) / steps.max(1.0)
+        };
+        position.max(0.0) as u64 & ((1u64 << bits) - 1)
+    }))
+}
+
+impl VirtualCard {
+    /// The card of a configuration.
+    pub fn new(project: &Project, config: &VirtualConfig) -> Result<Self, GenError> {
+        let fault = |e: &dyn std::fmt::Display| {
+            GenError::input(format!(
+                "design: {e}; this is a fault of endat-gen, please report it"
+            ))
+        };
+        let card = &project.card;
+        if ![0, 1, card.channels.len()].contains(&config.encoders.len()) {
+            return Err(GenError::input(format!(
+                "--encoder: given {} times; the card has {} channels: give one for all, or one for each",
+                config.encoders.len(),
+                card.channels.len()
+            )));
+        }
+        let service = ServiceTimes {
+            power_up_ms: POWER_UP_MS,
+            after_pulse_ms: POWER_UP_MS,
+            reset_ms: RESET_MS,
+            write_ms: WRITE_MS,
+            ..Card::service_times(card)
+        };
+        let mut block = Card::with_times(card, LINK_TIMEOUT_US, &service);
+        block.connect_all();
+        let design = elaborate(&block, "card").map_err(|e| fault(&e))?;
+        let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
+        let mut links = Vec::new();
+        for channel in 0..card.channels.len() {
+            let wanted = config.encoders.get(channel).or(config.encoders.first());
+            let is_open = wanted.is_some_and(|name| name == "none");
+            let mut encoder = encoder(
+                project,
+                channel,
+                wanted.filter(|_| !is_open).map(|s| s.as_str()),
+            )?;
+            encoder.position = motion(&encoder, channel, config.speed);
+            encoder.seed = config.seed.wrapping_add(channel as u64);
+            // As short as the card's waits.
+            encoder.reset_time = encoder.reset_time.min(Time::from(RESET_MS) * MS);
+            encoder.write_time = MS..=MS;
+            if is_open {
+                encoder.unplugged.push(0..Time::MAX);
+            }
+            let line =
+                LineConfig::cable(config.cable_m).seed(config.seed.wrapping_add(channel as u64));
+            links.push((PinNames::card(channel), Link::new(line, encoder)));
+        }
+        let mut bench = Bench::new(engine, card.system_hz, links);
+        if card.line.double_edge {
+            bench.set_double_edge();
+        }
+        let uart = Uart::new(&mut bench, card.uart_bit_cycles);
+        bench.reset();
+        Ok(Self {
+            bench,
+            uart,
+            cycles_per_us: (card.system_hz / 1_000_000).max(1),
+        })
+    }
+
+    /// Runs for some system clock cycles.
+    pub fn run(&mut self, cycles: u64) {
+        for _ in 0..cycles {
+            self.uart.tick(&mut self.bench);
+        }
+    }
+
+    /// Simulated time since power-up.
+    pub fn now(&self) -> Time {
+        self.bench.now()
+    }
+
+    /// Bytes for the card.
+    pub fn send_bytes(&mut self, bytes: &[u8]) {
+        self.uart.send(bytes);
+    }
+
+    /// Bytes that have come from it.
+    pub fn take_bytes(&mut self) -> Vec<u8> {
+        self.uart.received().drain(..).collect()
+    }
+
+    /// Bytes that the card has not taken yet.
+    pub fn unsent(&self) -> usize {
+        self.uart.unsent()
+    }
+
+    /// Its bench, to make something wrong.
+    pub fn bench(&mut self) -> &mut Bench<Compiled> {
+        &mut self.bench
+    }
+
+    /// Rising edge at the trigger pin.
+    pub fn trigger(&mut self) {
+        self.bench.trigger();
+    }
+}
+
+/// Cycles between two looks at whether an answer has come.
+const STEP_CYCLES: u64 = 64;
+
+impl Transport for VirtualCard {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.uart.send(bytes);
+        Ok(())
+    }
+
+    /// A wait is simulated time; waits of a host that would be long are cut, since this card has shorter ones itself.
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        let us = (wait.as_micros() as u64).min(4 * LINK_TIMEOUT_US);
+        let end = self.bench.cycle() + us * self.cycles_per_us;
+        while self.uart.received().is_empty() && self.bench.cycle() < end {
+            self.run(STEP_CYCLES);
+        }
+        let count = buffer.len().min(self.uart.received().len());
+        for (to, from) in buffer.iter_mut().zip(self.uart.received().drain(..count)) {
+            *to = from;
+        }
+        Ok(count)
+    }
+}

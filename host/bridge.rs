@@ -1,0 +1,237 @@
+//! Words of a card over a link of bytes, in the UARTBone format, beside the sample sets that the card pushes.
+//!
+//! Ref: LiteX, `litex/tools/remote/comm_uart.py`.
+
+use crate::stream::{Decoder, SampleSet};
+use crate::transport::Transport;
+use crate::HostError;
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+/// Most words in one command.
+pub const WORDS_MAX: usize = 255;
+/// How long an answer is waited for, unless told otherwise.
+pub const WAIT: Duration = Duration::from_millis(500);
+/// A card forgets a command that pauses for 100 ms.
+const FORGET: Duration = Duration::from_millis(120);
+/// How often a read is tried.
+const TRIES: u32 = 3;
+/// How long the frame behind an answer is waited for.
+const NEXT_FRAME: Duration = Duration::from_millis(5);
+/// Word that switches the stream; on a card without one, writing it does nothing.
+const STREAM_CONTROL: u16 = 0x00C;
+/// Comes before an answer while the card pushes sample sets; no frame begins with it.
+const ANSWER: u8 = 0xFF;
+
+/// Access to words.
+pub struct Bridge<T> {
+    transport: T,
+    wait: Duration,
+    pushes: bool,
+    inbox: VecDeque<u8>,
+    /// The next byte begins a frame, or an answer.
+    at_boundary: bool,
+    decoder: Decoder,
+    retries: u64,
+}
+
+impl<T: Transport> Bridge<T> {
+    /// A bridge over a link.
+    pub fn new(transport: T) -> Self {
+        Self {
+            transport,
+            wait: WAIT,
+            pushes: false,
+            inbox: VecDeque::new(),
+            at_boundary: true,
+            decoder: Decoder::default(),
+            retries: 0,
+        }
+    }
+
+    /// Waits this long for an answer.
+    pub fn set_wait(&mut self, wait: Duration) {
+        self.wait = wait;
+    }
+
+    /// The link.
+    pub fn transport(&mut self) -> &mut T {
+        &mut self.transport
+    }
+
+    /// Answers that did not come and were asked for again.
+    pub fn retries(&self) -> u64 {
+        self.retries
+    }
+
+    /// What became of the pushed bytes.
+    pub fn decoder(&self) -> &Decoder {
+        &self.decoder
+    }
+
+    /// Tells whether the card pushes sample sets from now on: answers have a marker then.
+    pub fn set_pushes(&mut self, pushes: bool) {
+        self.pushes = pushes;
+        self.at_boundary = true;
+        self.decoder.forget();
+    }
+
+    /// Brings the link into a known state, whoever used it before: nothing is half sent, and the card pushes nothing.
+    pub fn calm(&mut self) -> Result<(), HostError> {
+        self.set_pushes(false);
+        self.settle()?;
+        self.write(STREAM_CONTROL, &[0])?;
+        self.settle()?;
+        // The first answer after a push has its marker.
+        self.send(&[2, 1, 0, 0, 0, 0])?;
+        self.settle()
+    }
+
+    /// Sample sets that have come, after waiting at most `wait` for bytes.
+    pub fn pushed(&mut self, wait: Duration) -> Result<Vec<SampleSet>, HostError> {
+        if self.inbox.is_empty() {
+            self.fill(wait)?;
+        }
+        while let Some(byte) = self.inbox.pop_front() {
+            self.pushed_byte(byte);
+        }
+        Ok(self.decoder.take())
+    }
+
+    fn pushed_byte(&mut self, byte: u8) {
+        self.at_boundary = byte == 0;
+        self.decoder.push(byte);
+    }
+
+    /// Reads `count` words from `address` on, in one command.
+    pub fn read(&mut self, address: u16, count: usize) -> Result<Vec<u32>, HostError> {
+        self.read_as(2, address, count)
+    }
+
+    /// Reads the word at `address` `count` times, in one command.
+    pub fn read_fixed(&mut self, address: u16, count: usize) -> Result<Vec<u32>, HostError> {
+        self.read_as(4, address, count)
+    }
+
+    fn read_as(&mut self, command: u8, address: u16, count: usize) -> Result<Vec<u32>, HostError> {
+        debug_assert!((1..=WORDS_MAX).contains(&count));
+        let [high, low] = address.to_be_bytes();
+        // Reading what a read changes must not be done twice: the caller decides.
+        let tries = if command == 4 { 1 } else { TRIES };
+        for attempt in 0..tries {
+            if attempt > 0 {
+                self.retries += 1;
+                self.settle()?;
+            }
+            if !self.pushes {
+                // Bytes of earlier answers.
+                self.inbox.clear();
+            }
+            self.send(&[command, count as u8, 0, 0, high, low])?;
+            if let Some(bytes) = self.answer(4 * count)? {
+                if !self.goes_on_well()? {
+                    continue;
+                }
+                let word = |b: &[u8]| u32::from_be_bytes([b[0], b[1], b[2], b[3]]);
+                return Ok(bytes.chunks_exact(4).map(word).collect());
+            }
+        }
+        Err(HostError::Silent {
+            tries,
+            wait_ms: self.wait.as_millis() as u64,
+        })
+    }
+
+    /// Writes words from `address` on, in one command; there is no answer.
+    pub fn write(&mut self, address: u16, words: &[u32]) -> Result<(), HostError> {
+        debug_assert!((1..=WORDS_MAX).contains(&words.len()));
+        let [high, low] = address.to_be_bytes();
+        let mut bytes = vec![1, words.len() as u8, 0, 0, high, low];
+        bytes.extend(words.iter().flat_map(|w| w.to_be_bytes()));
+        self.send(&bytes)
+    }
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), HostError> {
+        self.transport.send(bytes).map_err(lost)
+    }
+
+    /// Takes the bytes that come within `wait` to the inbox.
+    fn fill(&mut self, wait: Duration) -> Result<usize, HostError> {
+        let mut buffer = [0; 4096];
+        let count = self.transport.receive(&mut buffer, wait).map_err(lost)?;
+        self.inbox.extend(&buffer[..count]);
+        Ok(count)
+    }
+
+    /// Waits until the card has forgotten what was sent to it, and nothing comes any more (unless it pushes).
+    fn settle(&mut self) -> Result<(), HostError> {
+        let end = Instant::now() + self.wait.max(FORGET);
+        let mut quiet_since = Instant::now();
+        while quiet_since.elapsed() < FORGET && Instant::now() < end {
+            if self.fill(FORGET)? > 0 {
+                quiet_since = Instant::now();
+            }
+            if self.pushes {
+                while let Some(byte) = self.inbox.pop_front() {
+                    self.pushed_byte(byte);
+                }
+            } else {
+                self.inbox.clear();
+            }
+        }
+        Ok(())
+    }
+
+    /// An answer that lost a byte has eaten one of the frame behind it: then that frame is damaged.
+    fn goes_on_well(&mut self) -> Result<bool, HostError> {
+        if !self.pushes {
+            return Ok(true);
+        }
+        let damaged = self.decoder.damaged();
+        loop {
+            let Some(byte) = self.inbox.pop_front() else {
+                if self.fill(NEXT_FRAME)? == 0 {
+                    return Ok(true);
+                }
+                continue;
+            };
+            self.pushed_byte(byte);
+            if self.at_boundary {
+                return Ok(self.decoder.damaged() == damaged);
+            }
+        }
+    }
+
+    fn answer(&mut self, count: usize) -> Result<Option<Vec<u8>>, HostError> {
+        let end = Instant::now() + self.wait;
+        let mut bytes = Vec::with_capacity(count);
+        let mut has_begun = !self.pushes;
+        while bytes.len() < count {
+            let Some(byte) = self.inbox.pop_front() else {
+                let left = end.saturating_duration_since(Instant::now());
+                if self.fill(left)? == 0 && Instant::now() >= end {
+                    return Ok(None);
+                }
+                continue;
+            };
+            if has_begun {
+                bytes.push(byte);
+            } else if self.at_boundary && byte == ANSWER {
+                has_begun = true;
+            } else {
+                self.pushed_byte(byte);
+            }
+        }
+        self.at_boundary = true;
+        Ok(Some(bytes))
+    }
+}
+
+fn lost(error: std::io::Error) -> HostError {
+    HostError::Link {
+        address: "link".into(),
+        action: "lost",
+        error,
+        remedy: "is the card still plugged in?",
+    }
+}

@@ -1,0 +1,247 @@
+//! A card: who it is, its words by name, its results.
+
+use crate::bridge::Bridge;
+use crate::map;
+use crate::name_plate::NamePlate;
+use crate::registers::{Access, Place, Values};
+use crate::result::{Reading, STRIDE, WORDS};
+use crate::transport::Transport;
+use crate::HostError;
+use std::time::Duration;
+
+/// The ASCII letters EnDt.
+const ID: u32 = 0x456E_4474;
+/// How long a request may take, unless told otherwise: 12 ms in the encoder, waits of the card, and a slow link.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// What a card says about itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Identity {
+    /// Major, minor and patch version of its register map.
+    pub version: [u8; 3],
+    /// Encoder ports.
+    pub channels: usize,
+    /// Widest position.
+    pub max_position_bits: u32,
+    /// Parts, bit by bit; see [`Identity::has`].
+    pub features: u32,
+    /// System clock: the unit of every number of cycles.
+    pub system_hz: u32,
+    /// Which configuration it was made from.
+    pub configuration_hash: u32,
+}
+
+impl Identity {
+    /// Names and meanings of the parts that it has.
+    pub fn parts(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        let features = self.features;
+        let field = Place::field_at("card", "capabilities", "features", 0).field;
+        let bits = match field.map(|f| f.values) {
+            Some(Values::Bits(bits)) => bits,
+            _ => &[],
+        };
+        bits.iter()
+            .filter(move |b| features >> b.number & 1 == 1)
+            .map(|b| (b.name, b.meaning))
+    }
+
+    /// Whether it has a part.
+    pub fn has(&self, part: &str) -> bool {
+        self.parts().any(|(name, _)| name == part)
+    }
+
+    /// Whether it has a block of the map, and the channel.
+    pub fn has_block(&self, block: &str) -> bool {
+        match block {
+            "service" => self.has("requests"),
+            "line" => self.has("alignment"),
+            _ => true,
+        }
+    }
+}
+
+/// Results of all channels at one moment.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Results {
+    /// One for each channel.
+    pub channels: Vec<Reading>,
+}
+
+/// A card at the other end of a link.
+pub struct Card<T> {
+    bridge: Bridge<T>,
+    identity: Identity,
+    patience: Duration,
+}
+
+impl<T: Transport> Card<T> {
+    /// Finds out who answers.
+    pub fn find(mut bridge: Bridge<T>) -> Result<Self, HostError> {
+        let mut words = bridge.read(0, 5).unwrap_or_default();
+        if words.first() != Some(&ID) {
+            bridge.calm()?;
+            words = bridge.read(0, 5)?;
+        }
+        if words[0] != ID {
+            return Err(HostError::NoCard(format!(
+                "word 0 is 0x{:08X}, not 0x{ID:08X}: this is no EnDat card, or the baud rate is another (--baud)",
+                words[0]
+            )));
+        }
+        let [major, minor, ..] = words[1].to_be_bytes();
+        let version = [major, minor, words[1] as u8];
+        if major != map::VERSION[0] {
+            return Err(HostError::NoCard(format!(
+                "register map {major}.{minor}: this program knows {}.x; take the program that the card was emitted with",
+                map::VERSION[0]
+            )));
+        }
+        let [high, low, bits, channels] = words[2].to_be_bytes();
+        if channels == 0 || channels > 8 {
+            return Err(HostError::NoCard(format!(
+                "capabilities = 0x{:08X}: {channels} channels, outside 1..8; is the link disturbed?",
+                words[2]
+            )));
+        }
+        let identity = Identity {
+            version,
+            channels: channels.into(),
+            max_position_bits: bits.into(),
+            features: u16::from_be_bytes([high, low]).into(),
+            system_hz: words[3],
+            configuration_hash: words[4],
+        };
+        Ok(Self {
+            bridge,
+            identity,
+            patience: PATIENCE,
+        })
+    }
+
+    /// Who it is.
+    pub fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    /// The words' link.
+    pub fn bridge(&mut self) -> &mut Bridge<T> {
+        &mut self.bridge
+    }
+
+    /// How long a request may take.
+    pub fn patience(&self) -> Duration {
+        self.patience
+    }
+
+    /// Lets requests take this long.
+    pub fn set_patience(&mut self, patience: Duration) {
+        self.patience = patience;
+    }
+
+    /// The place of that name on this card.
+    pub fn place(&self, name: &str) -> Result<Place, HostError> {
+        let place = Place::named(name, self.identity.channels)?;
+        if !self.identity.has_block(place.block.name) {
+            return Err(HostError::Name(format!(
+                "register = {name:?}: this card has no block {}; emit one that has the part ({})",
+                place.block.name,
+                if place.block.name == "line" {
+                    "[line] parts"
+                } else {
+                    "[service] parts"
+                }
+            )));
+        }
+        Ok(place)
+    }
+
+    /// Reads a word, or the field that is meant.
+    pub fn read(&mut self, place: &Place) -> Result<u32, HostError> {
+        Ok(place.of(self.bridge.read(place.address(), 1)?[0]))
+    }
+
+    /// Writes a word, or changes the field that is meant and leaves the others.
+    pub fn write(&mut self, place: &Place, value: u32) -> Result<(), HostError> {
+        if place.register.access == Access::ReadOnly {
+            return Err(HostError::Name(format!(
+                "register = {place}: is read only; nothing was written"
+            )));
+        }
+        let word = match place.field {
+            None => value,
+            Some(field) => {
+                let before = match place.register.access {
+                    Access::Strobe => 0,
+                    _ => self.bridge.read(place.address(), 1)?[0],
+                };
+                field.put(before, value).ok_or_else(|| {
+                    HostError::Name(format!(
+                        "value = {value}: does not fit {place}, which has {} bits; give 0 to {}",
+                        field.width,
+                        (1u64 << field.width) - 1
+                    ))
+                })?
+            }
+        };
+        self.bridge.write(place.address(), &[word])
+    }
+
+    /// Results of all channels, of one moment.
+    pub fn results(&mut self) -> Result<Results, HostError> {
+        let first = Place::at("result", "status", 0).address();
+        let count = STRIDE * (self.identity.channels - 1) + WORDS;
+        let words = self.bridge.read(first, count)?;
+        let one = |channel: usize| {
+            let mut of_one = [0; WORDS];
+            of_one.copy_from_slice(&words[STRIDE * channel..][..WORDS]);
+            Reading::new(&of_one)
+        };
+        Ok(Results {
+            channels: (0..self.identity.channels).map(one).collect(),
+        })
+    }
+
+    /// The name plate of a channel's encoder.
+    pub fn name_plate(&mut self, channel: usize) -> Result<NamePlate, HostError> {
+        self.needs_requests("name plate")?;
+        if !self.identity.has("initialise") {
+            return Err(HostError::Part {
+                what: "name plate",
+                part: "initialise",
+                remedy: "[service] parts = [\"requests\", \"initialise\"]",
+            });
+        }
+        let at = |register| Place::at("service", register, channel);
+        let (first, last) = (at("alarms").address(), at("delay").address());
+        let words = self.bridge.read(first, usize::from(last - first) + 1)?;
+        let head = at("progress").address();
+        let state = self.bridge.read(head, 2)?;
+        let field = |register: &str, field: &str, word: u32| {
+            Place::field_at("service", register, field, 0).of(word)
+        };
+        let step = |name| Some(field("progress", name, state[0]) as u16).filter(|s| *s != 0);
+        let word = |name: &str| {
+            let word = words[usize::from(Place::at("service", name, channel).address() - first)];
+            (word >> 16 & 1 == 1).then_some(word as u16)
+        };
+        Ok(NamePlate {
+            initialised: field("state", "initialised", state[1]) == 1,
+            endat22: field("state", "endat22", state[1]) == 1,
+            step: step("step"),
+            failed: step("failed"),
+            delay_cycles: word("delay"),
+            ..NamePlate::new(word)
+        })
+    }
+
+    pub(crate) fn needs_requests(&self, what: &'static str) -> Result<(), HostError> {
+        match self.identity.has("requests") {
+            true => Ok(()),
+            false => Err(HostError::Part {
+                what,
+                part: "requests",
+                remedy: "[service] parts = [\"requests\", ...] (preset s6_two_channel_service)",
+            }),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Causes: what can be wrong with a result, and what helps.
+
+use crate::registers::{Named, Place, Values};
+
+/// All causes, 0 = none.
+pub fn all() -> &'static [Named] {
+    let field = Place::field_at("result", "status", "cause", 0).field;
+    match field.map(|f| f.values) {
+        Some(Values::Codes(causes)) => causes,
+        _ => &[],
+    }
+}
+
+/// Name of a cause, as counters and files have it.
+pub fn name(cause: u8) -> &'static str {
+    let known = all().iter().find(|c| c.number == u32::from(cause));
+    known.map_or("unknown", |c| c.name)
+}
+
+/// What the cause means for a user, and what to do about it.
+pub fn advice(name: &str) -> Option<[&'static str; 2]> {
+    Some(match name {
+        "none" => ["The frame was good.", "Nothing."],
+        "data_not_low" => [
+            "DATA was HIGH before the frame began: the line is open, the encoder has no supply, or it is lost within a frame.",
+            "Look at plug and supply. The card waits 30 ms and tries again.",
+        ],
+        "no_start_bit" => [
+            "The encoder did not answer: it is silent, does not know the mode command, or needs a longer calculation time than configured.",
+            "Try the command 000111; raise tcal_max_ns; lower the clock.",
+        ],
+        "start_window" => [
+            "The start bit came at another phase than expected: a glitch, another cable, or a tcal that is not the configured one.",
+            "Widen start_window_ns, or filter_ns against glitches. The card measures the line delay again.",
+        ],
+        "crc" => [
+            "The CRC of the answer is wrong: a bit was disturbed, the width is not the encoder's, or the sample is near an edge.",
+            "Compare position_bits with the data sheet; look at `margin`; lower the clock; check termination and shield.",
+        ],
+        "f1" => [
+            "The encoder reports an alarm in F1: a malfunction that can make positions wrong.",
+            "Read the alarms (`param read 0xB9 0`), then clear them with the command 101101. After power-up an alarm is usual.",
+        ],
+        "f2" => [
+            "The encoder reports an alarm in F2, found independently of F1.",
+            "As for f1.",
+        ],
+        "data_not_falling" => [
+            "DATA stayed HIGH after the frame: the encoder has more bits than configured, or a recovery time longer than recovery_max_ns.",
+            "Compare position_bits and recovery_max_ns with the data sheet.",
+        ],
+        "trigger_overrun" => [
+            "A trigger came while a frame was under way; the position of that frame is good.",
+            "Trigger more slowly: `explain` shows the highest rate.",
+        ],
+        "unknown_command" => [
+            "The configured command is none of the mode commands; nothing was sent.",
+            "Write 7 (000111) or 56 (111000) to config0.frame.command.",
+        ],
+        "info_missing" => [
+            "An additional information that was expected did not come; the position is good.",
+            "The card finds out in the next frames what the encoder sends.",
+        ],
+        "no_encoder" => [
+            "Nothing is plugged in: DATA is HIGH, and LOW when the card drives it.",
+            "Plug the encoder in; the card goes on by itself.",
+        ],
+        "stuck_high" => [
+            "DATA stays HIGH although the card drives it LOW.",
+            "Look for a short circuit to the supply, and for the driver enable.",
+        ],
+        "stuck_low" => [
+            "DATA stays LOW: not even the card's own mode command is heard.",
+            "Look for a short circuit, a swapped pair, and that the receiver stays enabled while sending.",
+        ],
+        "late_start" => [
+            "The start bit came after the limit, but it came.",
+            "Raise tcal_max_ns to the encoder's.",
+        ],
+        "watchdog" => [
+            "The frame took longer than limits.watchdog_us.",
+            "Look at limits.watchdog_us and at the encoder's times.",
+        ],
+        "own_echo" => [
+            "What came back is the card's own mode command.",
+            "Look for a converter that sends back what it gets, or a pair that is swapped.",
+        ],
+        "recovery_too_short" => [
+            "DATA fell before limits.recovery_min_cycles: the encoder has another recovery time than the card; the position is good.",
+            "Set recovery_min_ns to what the encoder is set to.",
+        ],
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_cause_has_advice() {
+        assert_eq!(all().len(), 18);
+        for cause in all() {
+            assert!(advice(cause.name).is_some(), "{}", cause.name);
+            assert_eq!(name(cause.number as u8), cause.name);
+        }
+        assert_eq!(name(31), "unknown");
+    }
+}

@@ -1,0 +1,33 @@
+//! The host's side of a card: everything between a serial port and an angle in degrees.
+//!
+//! ```text
+//! serial port, TCP, a card in the same process
+//!        v  Transport
+//!     Bridge    words, in the UARTBone byte format; tells answers from pushed sample sets
+//!        v
+//!      Card     registers by name, results of one moment, name plate, requests
+//!        v
+//!     Scale     degrees, turns, millimetres
+//! ```
+//!
+//! Nothing here knows how the card is made; names and places of its registers are in [`map`], which is generated from the card's
+//! own table.
+
+pub mod bridge;
+pub mod card;
+pub mod causes;
+mod error;
+#[rustfmt::skip]
+pub mod map;
+pub mod mailbox;
+pub mod name_plate;
+pub mod registers;
+pub mod result;
+pub mod stream;
+pub mod transport;
+pub mod units;
+
+pub use bridge::Bridge;
+pub use card::Card;
+pub use error::HostError;
+pub use transport::Transport;

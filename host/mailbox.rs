@@ -1,0 +1,140 @@
+//! Requests: mode commands with a parameter, sent through the card's request word.
+
+use crate::card::Card;
+use crate::registers::{Place, Values};
+use crate::transport::Transport;
+use crate::HostError;
+use std::time::{Duration, Instant};
+
+/// EnDat 2.1 mode commands that `param` needs.
+pub mod command {
+    /// 001110 selection of memory area.
+    pub const SELECT_MEMORY: u8 = 0b001110;
+    /// 011100 receive parameter (a write, from the host's side).
+    pub const RECEIVE_PARAMETER: u8 = 0b011100;
+    /// 100011 send parameter (a read).
+    pub const SEND_PARAMETER: u8 = 0b100011;
+}
+
+/// Address in the data of 001110 for areas without blocks.
+const NO_BLOCK: u16 = 0;
+
+/// A request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Request {
+    /// Mode command.
+    pub command: u8,
+    /// MRS code, address or port.
+    pub address: u8,
+    /// Data.
+    pub data: u16,
+}
+
+/// What came back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// Echo of MRS code or address, or the status byte of additional information 1.
+    pub address: u8,
+    /// Data.
+    pub data: u16,
+    /// How long the request took.
+    pub duration: Duration,
+}
+
+impl<T: Transport> Card<T> {
+    /// Sends a request through channel `channel`, and waits for the answer.
+    pub fn request(&mut self, channel: usize, request: Request) -> Result<Answer, HostError> {
+        self.needs_requests("requests to the encoder")?;
+        let at = |register| Place::at("service", register, channel);
+        let finished = |state: u32| state >> 16;
+        let before = self.read(&at("request_state"))?;
+        let word = u32::from(request.command) << 24
+            | u32::from(request.address) << 16
+            | u32::from(request.data);
+        self.write(&at("request"), word)?;
+        let end = Instant::now() + self.patience();
+        let state = loop {
+            let state = self.read(&at("request_state"))?;
+            if finished(state) != finished(before) && state & 1 == 0 {
+                break state;
+            }
+            if Instant::now() > end {
+                return Err(HostError::Refused(format!(
+                    "request {:06b} of channel {channel}: not finished after {} s; are positions triggered (supplements ride on them), is the encoder plugged in?",
+                    request.command,
+                    self.patience().as_secs()
+                )));
+            }
+        };
+        let error = Place::field_at("service", "request_state", "error", channel);
+        let code = error.of(state);
+        if code != 0 {
+            let meaning = match error.field.map(|f| f.values) {
+                Some(Values::Codes(codes)) => codes.iter().find(|c| c.number == code),
+                _ => None,
+            };
+            return Err(HostError::Refused(format!(
+                "request {:06b}, address 0x{:02X}, of channel {channel}: {}",
+                request.command,
+                request.address,
+                meaning.map_or("unknown error", |m| m.meaning)
+            )));
+        }
+        let answer = self.read(&at("answer"))?;
+        let duration = self.read(&at("duration"))?;
+        let (us, ms) = (u64::from(duration & 0xFFFF), u64::from(duration >> 16));
+        let duration = if ms < 60 {
+            Duration::from_micros(us)
+        } else {
+            Duration::from_millis(ms)
+        };
+        Ok(Answer {
+            address: (answer >> 16) as u8,
+            data: answer as u16,
+            duration,
+        })
+    }
+
+    /// Selects a memory area of the encoder.
+    pub fn select_memory(&mut self, channel: usize, mrs: u8) -> Result<(), HostError> {
+        let request = Request {
+            command: command::SELECT_MEMORY,
+            address: mrs,
+            data: NO_BLOCK,
+        };
+        self.request(channel, request).map(|_| ())
+    }
+
+    /// Reads a word of the encoder's memory.
+    pub fn read_parameter(
+        &mut self,
+        channel: usize,
+        mrs: u8,
+        address: u8,
+    ) -> Result<Answer, HostError> {
+        self.select_memory(channel, mrs)?;
+        let request = Request {
+            command: command::SEND_PARAMETER,
+            address,
+            data: 0,
+        };
+        self.request(channel, request)
+    }
+
+    /// Writes a word of the encoder's memory.
+    pub fn write_parameter(
+        &mut self,
+        channel: usize,
+        mrs: u8,
+        address: u8,
+        data: u16,
+    ) -> Result<Answer, HostError> {
+        self.select_memory(channel, mrs)?;
+        let request = Request {
+            command: command::RECEIVE_PARAMETER,
+            address,
+            data,
+        };
+        self.request(channel, request)
+    }
+}

@@ -1,0 +1,104 @@
+//! What the encoder says about itself, as the card read it at initialisation.
+
+use crate::units::Scale;
+
+/// Name plate of an encoder. What the card has not read is `None`.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct NamePlate {
+    /// The card has initialised the encoder with success.
+    pub initialised: bool,
+    /// Step of the initialisation that is under way.
+    pub step: Option<u16>,
+    /// Step that failed.
+    pub failed: Option<u16>,
+    /// The encoder knows EnDat 2.2.
+    pub endat22: bool,
+    /// Width of the position.
+    pub position_bits: Option<u32>,
+    /// Rotary, not linear.
+    pub rotary: Option<bool>,
+    /// Signal periods per revolution, or the signal period in nm.
+    pub signal_periods: Option<u32>,
+    /// Distinguishable revolutions, 0 or 1 = singleturn.
+    pub revolutions: Option<u32>,
+    /// Measuring steps per revolution, or the measuring step in nm.
+    pub steps: Option<u32>,
+    /// ID number as printed on the encoder.
+    pub id: Option<String>,
+    /// Serial number.
+    pub serial: Option<String>,
+    /// Functional safety.
+    pub safety: Option<bool>,
+    /// Longest calculation time tcal, as the encoder's word 39 has it.
+    pub tcal: Option<u16>,
+    /// Supported additional informations 1, bit n = code 0x40 + n.
+    pub infos_1: Option<u16>,
+    /// Supported additional informations 2, bit n = code 0x50 + n.
+    pub infos_2: Option<u16>,
+    /// Fastest clock in kHz.
+    pub clock_max_khz: Option<u32>,
+    /// Short recovery time is selected.
+    pub short_recovery: Option<bool>,
+    /// Alarms before they were cleared.
+    pub alarms: Option<u16>,
+    /// Warnings before they were cleared.
+    pub warnings: Option<u16>,
+    /// Line delay measured at initialisation, in system clock cycles.
+    pub delay_cycles: Option<u16>,
+}
+
+/// Printable characters of a number's letters.
+fn letters(bytes: &[u8]) -> String {
+    let printable = bytes.iter().filter(|b| b.is_ascii_graphic());
+    printable.map(|b| char::from(*b)).collect()
+}
+
+impl NamePlate {
+    /// Puts the words together; `word` gives one by its name, if the card has read it.
+    pub(crate) fn new(word: impl Fn(&str) -> Option<u16>) -> Self {
+        let long =
+            |low: &str, high: &str| Some(u32::from(word(low)?) | u32::from(word(high)?) << 16);
+        let id = || {
+            let head = letters(&word("id_0")?.to_be_bytes());
+            Some(format!("{head}{}", long("id_1", "id_2")?))
+        };
+        let serial = || {
+            let (first, middle, last) = (word("serial_0")?, word("serial_1")?, word("serial_2")?);
+            let [high, head] = first.to_be_bytes();
+            let [tail, low] = last.to_be_bytes();
+            let number = u32::from(high) << 24 | u32::from(middle) << 8 | u32::from(low);
+            Some(format!("{}{number}{}", letters(&[head]), letters(&[tail])))
+        };
+        Self {
+            position_bits: word("position_bits").map(|w| u32::from(w & 0x3F)),
+            rotary: word("encoder_type").map(|w| w >> 15 == 1),
+            signal_periods: long("signal_periods_low", "signal_periods_high"),
+            revolutions: word("revolutions").map(u32::from),
+            steps: long("steps_low", "steps_high"),
+            id: id(),
+            serial: serial(),
+            safety: word("commands").map(|w| w >> 2 & 3 == 1),
+            tcal: word("tcal"),
+            infos_1: word("infos_1"),
+            infos_2: word("infos_2"),
+            clock_max_khz: word("clock_max_khz").map(u32::from),
+            short_recovery: word("recovery").map(|w| w == 1),
+            alarms: word("alarms"),
+            warnings: word("warnings"),
+            ..Self::default()
+        }
+    }
+
+    /// What a measuring step is, if the encoder said so.
+    pub fn scale(&self) -> Option<Scale> {
+        let steps = self.steps.filter(|s| *s > 0)?;
+        Some(match self.rotary? {
+            true => Scale::Rotary {
+                steps_per_turn: u64::from(steps),
+            },
+            false => Scale::Linear {
+                step_nm: f64::from(steps),
+            },
+        })
+    }
+}

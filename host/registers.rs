@@ -1,0 +1,339 @@
+//! Registers by name: `result0.status`, `config1.frame.period_cycles`, `service0.request`.
+
+use crate::map::BLOCKS;
+use crate::HostError;
+use std::fmt;
+
+/// A number, or a bit, with a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Named {
+    /// Name, unique in its field.
+    pub name: &'static str,
+    /// The field's number; of a bit its place, counted from the field's lowest bit.
+    pub number: u32,
+    /// What it stands for.
+    pub meaning: &'static str,
+}
+
+/// How the content of a field is to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Values {
+    /// As a number.
+    Plain,
+    /// Each of these numbers has a meaning of its own.
+    Codes(&'static [Named]),
+    /// Each of these bits has a meaning of its own.
+    Bits(&'static [Named]),
+}
+
+/// Some bits of a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Name, unique in its word.
+    pub name: &'static str,
+    /// Lowest bit.
+    pub lsb: u32,
+    /// Number of bits.
+    pub width: u32,
+    /// Unit of the number, or "".
+    pub unit: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// What its numbers or bits stand for.
+    pub values: Values,
+}
+
+/// What a host may do with a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Read only.
+    ReadOnly,
+    /// Read and write.
+    ReadWrite,
+    /// Write only: ones act once.
+    Strobe,
+}
+
+/// One word of 32 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Register {
+    /// Name, unique in its block.
+    pub name: &'static str,
+    /// Word offset in its block.
+    pub offset: u16,
+    /// What a host may do with it.
+    pub access: Access,
+    /// One sentence.
+    pub meaning: &'static str,
+    /// Fields, lowest first.
+    pub fields: &'static [Field],
+}
+
+/// Words that stand together, once in the card or once for each channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// Name, unique in the map; with its channel's number behind it if each channel has one.
+    pub name: &'static str,
+    /// First word, for channel 0.
+    pub base: u16,
+    /// Words from one channel's to the next one's.
+    pub stride: u16,
+    /// Whether every channel has one.
+    pub per_channel: bool,
+    /// One sentence.
+    pub meaning: &'static str,
+    /// Its words, lowest offset first.
+    pub registers: &'static [Register],
+}
+
+impl Field {
+    /// The field's number in a word.
+    pub const fn of(&self, word: u32) -> u32 {
+        (word & self.mask()) >> self.lsb
+    }
+
+    /// The field's bits within its word.
+    pub const fn mask(&self) -> u32 {
+        (((1u64 << self.width) - 1) << self.lsb) as u32
+    }
+
+    /// A word with this field changed; none if `value` does not fit.
+    pub fn put(&self, word: u32, value: u32) -> Option<u32> {
+        let is_fitting = u64::from(value) < 1u64 << self.width;
+        is_fitting.then(|| word & !self.mask() | value << self.lsb)
+    }
+
+    /// What the field's number in a word says, if it stands for something.
+    pub fn told(&self, word: u32) -> Option<String> {
+        let value = self.of(word);
+        match self.values {
+            Values::Plain => None,
+            Values::Codes(codes) => codes
+                .iter()
+                .find(|c| c.number == value)
+                .map(|c| c.meaning.to_owned()),
+            Values::Bits(bits) => {
+                let set = bits.iter().filter(|b| value >> b.number & 1 == 1);
+                let names: Vec<_> = set.map(|b| b.meaning).collect();
+                (!names.is_empty()).then(|| names.join(", "))
+            }
+        }
+    }
+
+    /// Its bits as `15:0`, or `3`.
+    pub fn bits(&self) -> String {
+        match self.width {
+            1 => self.lsb.to_string(),
+            width => format!("{}:{}", self.lsb + width - 1, self.lsb),
+        }
+    }
+}
+
+impl Register {
+    /// The field called `name`.
+    pub fn field(&self, name: &str) -> Option<&'static Field> {
+        self.fields.iter().find(|f| f.name == name)
+    }
+}
+
+impl Block {
+    /// The register called `name`.
+    pub fn register(&self, name: &str) -> Option<&'static Register> {
+        self.registers.iter().find(|r| r.name == name)
+    }
+}
+
+/// A word of a card, and perhaps one of its fields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Block that it stands in.
+    pub block: &'static Block,
+    /// Channel whose block it is, 0 for words of the card.
+    pub channel: usize,
+    /// The word.
+    pub register: &'static Register,
+    /// The field, if one is meant.
+    pub field: Option<&'static Field>,
+}
+
+/// At most 40 characters of what a user typed.
+fn shown(text: &str) -> String {
+    let clean: String = text.chars().filter(|c| !c.is_control()).take(40).collect();
+    format!("{clean:?}")
+}
+
+fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    names.collect::<Vec<_>>().join(", ")
+}
+
+impl Place {
+    /// The place called `name`, on a card with `channels` channels.
+    pub fn named(name: &str, channels: usize) -> Result<Self, HostError> {
+        let fail = |what: String| {
+            Err(HostError::Name(format!(
+                "register = {}: {what}",
+                shown(name)
+            )))
+        };
+        let mut parts = name.split('.');
+        let block_name = parts.next().unwrap_or("");
+        let stem = block_name.trim_end_matches(|c: char| c.is_ascii_digit());
+        let whole = |b: &&Block| !b.per_channel && b.name == block_name;
+        let one = |b: &&Block| b.per_channel && b.name == stem;
+        let Some(block) = BLOCKS.iter().find(|b| whole(b) || one(b)) else {
+            let names = BLOCKS.iter().map(|b| match b.per_channel {
+                true => format!("{}0", b.name),
+                false => b.name.to_owned(),
+            });
+            let names: Vec<String> = names.collect();
+            return fail(format!(
+                "has no block of that name; write BLOCK.REGISTER or BLOCK.REGISTER.FIELD; blocks are {} (0 = channel)",
+                names.join(", ")
+            ));
+        };
+        let number = &block_name[stem.len()..];
+        let channel = match (block.per_channel, number.parse::<usize>()) {
+            (false, _) => 0,
+            (true, Ok(n)) if n < channels => n,
+            (true, _) => {
+                return fail(format!(
+                    "{} needs a channel: write {stem}0 to {stem}{}",
+                    stem,
+                    channels.max(1) - 1
+                ))
+            }
+        };
+        let Some(register_name) = parts.next() else {
+            return fail(format!(
+                "names no register; {block_name} has {}",
+                list(block.registers.iter().map(|r| r.name))
+            ));
+        };
+        let Some(register) = block.register(register_name) else {
+            return fail(format!(
+                "no register of that name in {block_name}; it has {}",
+                list(block.registers.iter().map(|r| r.name))
+            ));
+        };
+        let field = match parts.next() {
+            None => None,
+            Some(field) => match register.field(field) {
+                Some(field) => Some(field),
+                None => {
+                    return fail(format!(
+                        "no field of that name in {block_name}.{register_name}; it has {}",
+                        list(register.fields.iter().map(|f| f.name))
+                    ))
+                }
+            },
+        };
+        match parts.next() {
+            None => Ok(Self {
+                block,
+                channel,
+                register,
+                field,
+            }),
+            Some(_) => fail("has too many parts; write BLOCK.REGISTER.FIELD".into()),
+        }
+    }
+
+    /// A word that is known to be in the map.
+    pub(crate) fn at(block: &str, register: &str, channel: usize) -> Self {
+        let block = BLOCKS.iter().find(|b| b.name == block);
+        let register = block.and_then(|b| Some((b, b.register(register)?)));
+        let (block, register) = register.expect("a register of the map");
+        Self {
+            block,
+            channel,
+            register,
+            field: None,
+        }
+    }
+
+    /// A field that is known to be in the map.
+    pub(crate) fn field_at(block: &str, register: &str, field: &str, channel: usize) -> Self {
+        let place = Self::at(block, register, channel);
+        let field = place.register.field(field).expect("a field of the map");
+        Self {
+            field: Some(field),
+            ..place
+        }
+    }
+
+    /// Word address.
+    pub fn address(&self) -> u16 {
+        self.block.base + self.block.stride * self.channel as u16 + self.register.offset
+    }
+
+    /// The number that is meant in a word: the field's, or the whole.
+    pub fn of(&self, word: u32) -> u32 {
+        self.field.map_or(word, |f| f.of(word))
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.block.name)?;
+        if self.block.per_channel {
+            write!(f, "{}", self.channel)?;
+        }
+        write!(f, ".{}", self.register.name)?;
+        self.field
+            .map_or(Ok(()), |field| write!(f, ".{}", field.name))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_leads_to_its_place() {
+        for block in BLOCKS {
+            for register in block.registers {
+                for field in register.fields {
+                    let number = if block.per_channel { "1" } else { "" };
+                    let name = format!("{}{number}.{}.{}", block.name, register.name, field.name);
+                    let place = Place::named(&name, 2).unwrap();
+                    assert_eq!(place.to_string(), name);
+                    let shift = if block.per_channel { block.stride } else { 0 };
+                    assert_eq!(place.address(), block.base + shift + register.offset);
+                    assert_eq!(place.field, Some(field));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_wrong_name_is_answered_with_the_right_ones() {
+        for (name, told) in [
+            ("", "blocks are card, card_config, config0"),
+            ("nothing.id", "blocks are card"),
+            ("result.status", "result0 to result1"),
+            ("result2.status", "result0 to result1"),
+            ("result0", "result0 has status, position_low"),
+            ("result0.statu", "it has status, position_low"),
+            ("result0.status.caus", "it has sequence, cause"),
+            ("result0.status.cause.x", "too many parts"),
+            ("card0.id", "blocks are card"),
+        ] {
+            let error = Place::named(name, 2).unwrap_err().to_string();
+            assert!(error.contains(told), "{name}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_field_is_put_into_its_bits_alone() {
+        let field = Place::field_at("config", "frame", "command", 0)
+            .field
+            .unwrap();
+        assert_eq!(field.put(0xFFFF_FFFF, 7), Some(0xC7FF_FFFF));
+        assert_eq!(field.put(0, 64), None);
+        assert_eq!(field.of(0x0700_0000), 7);
+        assert_eq!(
+            field.told(0x0700_0000).unwrap(),
+            "000111 send position (EnDat 2.1)"
+        );
+    }
+}

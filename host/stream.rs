@@ -1,0 +1,359 @@
+//! Sample sets out of the stream of bytes: COBS frames with a CRC-16, found again after any garbage.
+
+use crate::causes;
+use crc::{Crc, CRC_16_IBM_3740};
+use std::mem;
+
+/// Check sum of a frame.
+const CHECK: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
+/// Type of a frame with a sample set, in bits 7..4 of its first byte.
+const SAMPLE_SET: u8 = 1;
+/// Bytes before the channels.
+const HEAD_BYTES: usize = 8;
+/// Bytes of a channel.
+const CHANNEL_BYTES: usize = 8;
+/// Most channels of a card.
+const CHANNELS_MAX: usize = 8;
+/// Bytes of the check sum.
+const CHECK_BYTES: usize = 2;
+/// Longest frame, COBS included; what is longer is garbage.
+const ENCODED_MAX: usize = HEAD_BYTES + CHANNELS_MAX * CHANNEL_BYTES + CHECK_BYTES + 1;
+
+/// A channel's part of a sample set.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sample {
+    /// Last good position.
+    pub position: u64,
+    /// Primary cause, 0 = none.
+    pub cause: u8,
+    /// There is a good position.
+    pub valid: bool,
+    /// This trigger brought it.
+    pub fresh: bool,
+    /// The channel took this trigger.
+    pub taken: bool,
+    /// It did, but the next trigger came before its result.
+    pub missing: bool,
+    /// Raw flags of the line: bit k stands for cause k + 11.
+    pub line: u8,
+}
+
+impl Sample {
+    /// Name of the primary cause.
+    pub fn cause_name(&self) -> &'static str {
+        causes::name(self.cause)
+    }
+}
+
+/// What one trigger brought.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SampleSet {
+    /// Sample sets that the card dropped just before this one; 255 = that many or more.
+    pub lost: u8,
+    /// Number of the trigger, wrapping.
+    pub sequence: u16,
+    /// System clock cycle of the trigger, wrapping.
+    pub timestamp: u32,
+    /// One for each channel.
+    pub channels: Vec<Sample>,
+}
+
+/// Places in a sample's status, which is the upper half of the word `result.status` and two bits more.
+mod status {
+    /// Primary cause.
+    pub const CAUSE: u16 = 0x1F;
+    /// The channel took this trigger.
+    pub const TAKEN: u16 = 1 << 5;
+    /// There is a good position.
+    pub const VALID: u16 = 1 << 6;
+    /// This trigger brought it.
+    pub const FRESH: u16 = 1 << 7;
+    /// Raw flags of the line.
+    pub const LINE_LSB: u32 = 8;
+    /// Flags of the line.
+    pub const LINE: u16 = 0x7F;
+    /// The set was closed before the channel's result.
+    pub const MISSING: u16 = 1 << 15;
+}
+
+impl SampleSet {
+    /// A frame without COBS; none if it is no sample set, or damaged.
+    fn new(frame: &[u8]) -> Option<Self> {
+        let (body, check) = frame.split_at_checked(frame.len().checked_sub(CHECK_BYTES)?)?;
+        let channels = usize::from(body.first()? & 0xF);
+        let is_whole = body[0] >> 4 == SAMPLE_SET
+            && (1..=CHANNELS_MAX).contains(&channels)
+            && body.len() == HEAD_BYTES + CHANNEL_BYTES * channels
+            && check == CHECK.checksum(body).to_le_bytes();
+        if !is_whole {
+            return None;
+        }
+        let sample = |bytes: &[u8]| {
+            let mut word = [0; 8];
+            word[..6].copy_from_slice(&bytes[..6]);
+            let status = u16::from_le_bytes([bytes[6], bytes[7]]);
+            Sample {
+                position: u64::from_le_bytes(word),
+                cause: (status & status::CAUSE) as u8,
+                valid: status & status::VALID != 0,
+                fresh: status & status::FRESH != 0,
+                taken: status & status::TAKEN != 0,
+                missing: status & status::MISSING != 0,
+                line: (status >> status::LINE_LSB & status::LINE) as u8,
+            }
+        };
+        Some(Self {
+            lost: body[1],
+            sequence: u16::from_le_bytes([body[2], body[3]]),
+            timestamp: u32::from_le_bytes([body[4], body[5], body[6], body[7]]),
+            channels: body[HEAD_BYTES..]
+                .chunks_exact(CHANNEL_BYTES)
+                .map(sample)
+                .collect(),
+        })
+    }
+}
+
+/// What became of the bytes of a stream.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Sample sets.
+    pub sets: u64,
+    /// Sample sets that the card dropped, as it says itself.
+    pub lost_in_card: u64,
+    /// Frames that were damaged on the way.
+    pub damaged: u64,
+    /// Triggers of which no sample set came, whatever the reason.
+    pub missing: u64,
+}
+
+/// Finds sample sets in bytes.
+#[derive(Clone, Debug, Default)]
+pub struct Decoder {
+    frame: Vec<u8>,
+    is_too_long: bool,
+    /// Nothing is known of the bytes before: the first frame may be half of one.
+    is_settled: bool,
+    last_sequence: Option<u16>,
+    counts: Counts,
+    sets: Vec<SampleSet>,
+}
+
+impl Decoder {
+    /// Takes a byte.
+    pub fn push(&mut self, byte: u8) {
+        if byte != 0 {
+            if self.frame.len() < ENCODED_MAX {
+                self.frame.push(byte);
+            } else {
+                self.is_too_long = true;
+            }
+            return;
+        }
+        let frame = mem::take(&mut self.frame);
+        let is_too_long = mem::take(&mut self.is_too_long);
+        let was_settled = mem::replace(&mut self.is_settled, true);
+        if frame.is_empty() && !is_too_long {
+            return;
+        }
+        let set = (!is_too_long)
+            .then(|| cobs::decode_vec(&frame).ok())
+            .flatten()
+            .and_then(|frame| SampleSet::new(&frame));
+        match set {
+            Some(set) => self.note(set),
+            None if was_settled => self.counts.damaged += 1,
+            None => {}
+        }
+    }
+
+    fn note(&mut self, set: SampleSet) {
+        self.counts.sets += 1;
+        self.counts.lost_in_card += u64::from(set.lost);
+        if let Some(last) = self.last_sequence {
+            self.counts.missing += u64::from(set.sequence.wrapping_sub(last).wrapping_sub(1));
+        }
+        self.last_sequence = Some(set.sequence);
+        self.sets.push(set);
+    }
+
+    /// The sets that have come.
+    pub fn take(&mut self) -> Vec<SampleSet> {
+        mem::take(&mut self.sets)
+    }
+
+    /// How many frames were damaged so far.
+    pub fn damaged(&self) -> u64 {
+        self.counts.damaged
+    }
+
+    /// Forgets the frame under way, and where the sequence stood: another stream begins.
+    pub fn forget(&mut self) {
+        self.frame.clear();
+        self.is_too_long = false;
+        self.is_settled = false;
+        self.last_sequence = None;
+    }
+
+    /// Counters.
+    pub fn counts(&self) -> Counts {
+        self.counts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The example of the stream page.
+    const FRAME: &str =
+        "02 12 06 34 12 EF CD AB 05 67 45 23 01 01 02 E0 01 01 01 01 01 01 05 20 80 1D D6 00";
+
+    fn bytes(hex: &str) -> Vec<u8> {
+        hex.split(' ')
+            .map(|b| u8::from_str_radix(b, 16).unwrap())
+            .collect()
+    }
+
+    fn decode(bytes: &[u8]) -> (Vec<SampleSet>, Counts) {
+        let mut decoder = Decoder::default();
+        bytes.iter().for_each(|b| decoder.push(*b));
+        (decoder.take(), decoder.counts())
+    }
+
+    fn encode(set: &SampleSet) -> Vec<u8> {
+        let mut body = vec![0x10 | set.channels.len() as u8, set.lost];
+        body.extend(set.sequence.to_le_bytes());
+        body.extend(set.timestamp.to_le_bytes());
+        for c in &set.channels {
+            body.extend(&c.position.to_le_bytes()[..6]);
+            let status = u16::from(c.cause)
+                | u16::from(c.taken) << 5
+                | u16::from(c.valid) << 6
+                | u16::from(c.fresh) << 7
+                | u16::from(c.line) << 8
+                | u16::from(c.missing) << 15;
+            body.extend(status.to_le_bytes());
+        }
+        body.extend(CHECK.checksum(&body).to_le_bytes());
+        let mut frame = cobs::encode_vec(&body);
+        frame.push(0);
+        frame
+    }
+
+    fn set(sequence: u16) -> SampleSet {
+        let channel = |n: u64| Sample {
+            position: u64::from(sequence) * 1_000_003 % (1 << 29) + n,
+            fresh: true,
+            valid: true,
+            taken: true,
+            ..Sample::default()
+        };
+        SampleSet {
+            sequence,
+            timestamp: u32::from(sequence).wrapping_mul(10_000),
+            channels: vec![channel(0), channel(1)],
+            ..SampleSet::default()
+        }
+    }
+
+    #[test]
+    fn the_example_of_the_page() {
+        let (sets, counts) = decode(&bytes(FRAME));
+        let whole = Sample {
+            position: 0x0123_4567,
+            valid: true,
+            fresh: true,
+            taken: true,
+            ..Sample::default()
+        };
+        let missing = Sample {
+            taken: true,
+            missing: true,
+            ..Sample::default()
+        };
+        let expected = SampleSet {
+            lost: 0,
+            sequence: 0x1234,
+            timestamp: 0x00AB_CDEF,
+            channels: vec![whole, missing],
+        };
+        assert_eq!(sets, [expected.clone()]);
+        assert_eq!((counts.sets, counts.damaged), (1, 0));
+        assert_eq!(encode(&expected), bytes(FRAME));
+    }
+
+    /// Two frames at most are lost to whatever happens in one place.
+    #[test]
+    fn after_loss_insertion_and_corruption_it_is_there_again() {
+        let frames: Vec<Vec<u8>> = (0..6).map(|n| encode(&set(n))).collect();
+        let stream: Vec<u8> = frames.concat();
+        let all: Vec<SampleSet> = (0..6).map(set).collect();
+        for place in 0..stream.len() {
+            for change in 0..4 {
+                let mut damaged = stream.clone();
+                match change {
+                    0 => drop(damaged.remove(place)),
+                    1 => damaged.insert(place, 0x00),
+                    2 => damaged.insert(place, 0x5A),
+                    _ => damaged[place] ^= 0x10,
+                }
+                let (sets, counts) = decode(&damaged);
+                assert!(sets.iter().all(|s| all.contains(s)), "{place}: a wrong set");
+                assert!(sets.len() >= 4, "{place}, {change}: {} sets", sets.len());
+                let seen = counts.sets + counts.missing;
+                let ends = u64::from(!sets.contains(&all[5])) + u64::from(!sets.contains(&all[0]));
+                assert!(seen + ends >= 5, "{place}, {change}: {counts:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn ten_megabytes_of_garbage_are_no_sample_and_do_not_stop_it() {
+        let mut state = 0x1234_5678_9ABC_DEF1u64;
+        let mut decoder = Decoder::default();
+        for _ in 0..10_000_000 {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            decoder.push(state as u8);
+        }
+        // 40 000 frames end in it; each has to get past type, length and CRC-16.
+        assert!(decoder.take().len() <= 1, "garbage was taken for samples");
+        assert!(decoder.frame.len() <= ENCODED_MAX);
+        decoder.push(0);
+        encode(&set(3)).iter().for_each(|b| decoder.push(*b));
+        assert_eq!(decoder.take(), [set(3)]);
+    }
+
+    #[test]
+    fn what_the_card_dropped_and_what_the_line_dropped_are_counted_apart() {
+        let mut late = set(9);
+        late.lost = 3;
+        let stream = [encode(&set(5)), encode(&late)].concat();
+        let counts = decode(&stream).1;
+        assert_eq!(
+            (counts.sets, counts.lost_in_card, counts.missing),
+            (2, 3, 3)
+        );
+        let wrapped = [encode(&set(0xFFFF)), encode(&set(0))].concat();
+        assert_eq!(decode(&wrapped).1.missing, 0);
+    }
+
+    proptest! {
+        #[test]
+        fn any_set_comes_back(
+            channels in prop::collection::vec((0u64..1 << 48, 0u8..32, any::<[bool; 4]>(), 0u8..128), 1..=8),
+            lost: u8, sequence: u16, timestamp: u32,
+        ) {
+            let channels = channels.into_iter().map(|(position, cause, flags, line)| Sample {
+                position, cause, line, taken: flags[0], valid: flags[1], fresh: flags[2], missing: flags[3],
+            });
+            let set = SampleSet { lost, sequence, timestamp, channels: channels.collect() };
+            let frame = encode(&set);
+            prop_assert!(frame[0] <= 75 && !frame[..frame.len() - 1].contains(&0));
+            prop_assert_eq!(decode(&frame).0, vec![set]);
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Bytes to a card and back.
+
+use crate::HostError;
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+/// A link of bytes.
+pub trait Transport {
+    /// Sends all of `bytes`.
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
+
+    /// Waits at most `wait` for bytes, and returns how many came: 0 = none.
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
+}
+
+impl<T: Transport + ?Sized> Transport for Box<T> {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        (**self).send(bytes)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        (**self).receive(buffer, wait)
+    }
+}
+
+/// A time-out is no error: nothing came.
+fn or_nothing(result: io::Result<usize>) -> io::Result<usize> {
+    match result {
+        Err(e)
+            if [
+                ErrorKind::TimedOut,
+                ErrorKind::WouldBlock,
+                ErrorKind::Interrupted,
+            ]
+            .contains(&e.kind()) =>
+        {
+            Ok(0)
+        }
+        other => other,
+    }
+}
+
+/// Ports refuse a wait of zero.
+fn at_least_1_ms(wait: Duration) -> Duration {
+    wait.max(Duration::from_millis(1))
+}
+
+struct Serial(Box<dyn serialport::SerialPort>);
+
+impl Transport for Serial {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.0.write_all(bytes)?;
+        self.0.flush()
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        self.0.set_timeout(at_least_1_ms(wait))?;
+        or_nothing(self.0.read(buffer))
+    }
+}
+
+struct Tcp(TcpStream);
+
+impl Transport for Tcp {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.0.write_all(bytes)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        self.0.set_read_timeout(Some(at_least_1_ms(wait)))?;
+        match or_nothing(self.0.read(buffer)) {
+            // A socket that is readable and has nothing has been closed; a time-out came as 0, too, but took its time.
+            Ok(0) if self.is_closed() => Err(ErrorKind::ConnectionAborted.into()),
+            other => other,
+        }
+    }
+}
+
+impl Tcp {
+    fn is_closed(&self) -> bool {
+        let _ = self.0.set_nonblocking(true);
+        let peeked = self.0.peek(&mut [0]);
+        let _ = self.0.set_nonblocking(false);
+        matches!(peeked, Ok(0))
+    }
+}
+
+/// How long opening a TCP connection may take.
+const CONNECT_WAIT: Duration = Duration::from_secs(3);
+
+fn open_once(address: &str, baud: u32) -> io::Result<Box<dyn Transport>> {
+    if let Some(socket) = address.strip_prefix("tcp:") {
+        use std::net::ToSocketAddrs;
+        let mut last = io::Error::new(ErrorKind::NotFound, "the name has no address");
+        for address in socket.to_socket_addrs()? {
+            match TcpStream::connect_timeout(&address, CONNECT_WAIT) {
+                Ok(stream) => {
+                    stream.set_nodelay(true)?;
+                    return Ok(Box::new(Tcp(stream)));
+                }
+                Err(e) => last = e,
+            }
+        }
+        return Err(last);
+    }
+    let port = serialport::new(address, baud).open();
+    Ok(Box::new(Serial(port.map_err(io::Error::from)?)))
+}
+
+/// A port that is opened again when it was unplugged and has come back.
+pub struct Port {
+    address: String,
+    baud: u32,
+    open: Option<Box<dyn Transport>>,
+    /// How often it was opened again.
+    pub reopened: u64,
+}
+
+impl Port {
+    /// Opens `tcp:HOST:PORT`, or the serial port of that name with this baud rate.
+    pub fn open(address: &str, baud: u32) -> Result<Self, HostError> {
+        let open = open_once(address, baud).map_err(|error| HostError::Link {
+            address: address.to_owned(),
+            action: "cannot be opened",
+            error,
+            remedy: "give the card's serial port, or tcp:HOST:PORT",
+        })?;
+        Ok(Self {
+            address: address.to_owned(),
+            baud,
+            open: Some(open),
+            reopened: 0,
+        })
+    }
+
+    /// Does something with the open port; one that fails is closed, and tried again with the next call.
+    fn with(
+        &mut self,
+        wait: Duration,
+        act: impl FnOnce(&mut dyn Transport) -> io::Result<usize>,
+    ) -> io::Result<usize> {
+        if self.open.is_none() {
+            match open_once(&self.address, self.baud) {
+                Ok(port) => {
+                    self.open = Some(port);
+                    self.reopened += 1;
+                }
+                Err(_) => {
+                    std::thread::sleep(wait.min(Duration::from_millis(100)));
+                    return Ok(0);
+                }
+            }
+        }
+        let result = match &mut self.open {
+            Some(port) => act(port.as_mut()),
+            None => Ok(0),
+        };
+        if result.is_err() {
+            self.open = None;
+        }
+        result.or(Ok(0))
+    }
+}
+
+impl Transport for Port {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.with(Duration::ZERO, |port| port.send(bytes).map(|()| 0))
+            .map(|_| ())
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        let end = Instant::now() + wait;
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            let count = self.with(left, |port| port.receive(buffer, left))?;
+            if count > 0 || Instant::now() >= end {
+                return Ok(count);
+            }
+        }
+    }
+}

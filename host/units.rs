@@ -1,0 +1,106 @@
+//! Positions in units: degrees and turns of a rotary encoder, millimetres of a linear one.
+
+use std::f64::consts::TAU;
+
+/// What a measuring step of an encoder is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scale {
+    /// Measuring steps per revolution.
+    Rotary {
+        /// Measuring steps per revolution.
+        steps_per_turn: u64,
+    },
+    /// Measuring step in nanometres.
+    Linear {
+        /// Measuring step in nanometres.
+        step_nm: f64,
+    },
+}
+
+/// A position in units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InUnits {
+    /// Degrees within the turn, or millimetres.
+    pub value: f64,
+    /// `deg` or `mm`.
+    pub unit: &'static str,
+    /// Whole turns, of a rotary encoder.
+    pub turns: Option<u64>,
+}
+
+impl Scale {
+    /// A singleturn encoder of `bits` bits.
+    pub fn singleturn(bits: u32) -> Self {
+        Self::Rotary {
+            steps_per_turn: 1 << bits.min(63),
+        }
+    }
+
+    /// A position in units.
+    pub fn convert(&self, position: u64) -> InUnits {
+        match *self {
+            Self::Rotary { steps_per_turn } => {
+                let steps = steps_per_turn.max(1);
+                InUnits {
+                    value: (position % steps) as f64 * 360.0 / steps as f64,
+                    unit: "deg",
+                    turns: Some(position / steps),
+                }
+            }
+            Self::Linear { step_nm } => InUnits {
+                value: position as f64 * step_nm * 1e-6,
+                unit: "mm",
+                turns: None,
+            },
+        }
+    }
+
+    /// The same in radians, or metres.
+    pub fn si(&self, position: u64) -> f64 {
+        let units = self.convert(position);
+        match self {
+            Self::Rotary { .. } => units.value / 360.0 * TAU,
+            Self::Linear { .. } => units.value * 1e-3,
+        }
+    }
+
+    /// Digits behind the point that show one measuring step.
+    pub fn digits(&self) -> usize {
+        let step = match *self {
+            Self::Rotary { steps_per_turn } => 360.0 / steps_per_turn.max(1) as f64,
+            Self::Linear { step_nm } => step_nm * 1e-6,
+        };
+        (-step.log10()).ceil().clamp(0.0, 12.0) as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn degrees_turns_and_millimetres() {
+        let multiturn = Scale::Rotary {
+            steps_per_turn: 1 << 25,
+        };
+        let quarter = multiturn.convert((7 << 25) | (1 << 23));
+        assert_eq!(
+            (quarter.value, quarter.turns, quarter.unit),
+            (90.0, Some(7), "deg")
+        );
+        assert_eq!(multiturn.digits(), 5);
+        assert_eq!(Scale::singleturn(29).digits(), 7);
+        let linear = Scale::Linear { step_nm: 10.0 };
+        assert_eq!(linear.convert(123_456).value, 1.23456);
+        assert_eq!(linear.convert(123_456).turns, None);
+        assert_eq!(linear.digits(), 5);
+        assert!((multiturn.si(1 << 24) - std::f64::consts::PI).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_encoder_without_steps_divides_by_nothing() {
+        let odd = Scale::Rotary { steps_per_turn: 0 };
+        assert_eq!(odd.convert(5).value, 0.0);
+        assert_eq!(odd.convert(5).turns, Some(5));
+    }
+}
