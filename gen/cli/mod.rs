@@ -5,6 +5,7 @@ mod bench;
 mod campaign;
 mod crc_command;
 mod emit;
+mod host;
 mod number;
 mod pictures;
 mod shmoo;
@@ -62,8 +63,12 @@ enum Command {
         #[arg(long, conflicts_with = "show")]
         json: bool,
     },
-    /// Show what a configuration becomes: clocks, timing, frame lengths, sampling rates, link load
+    /// Show what a configuration becomes: clocks, timing, frame lengths, sampling rates, link load; or what a cause, register
+    /// or field means
     Explain {
+        /// Name of a cause, register or field, for example crc, result.status or tracked
+        #[arg(value_name = "NAME", conflicts_with_all = ["config", "preset", "json"])]
+        name: Option<String>,
         #[command(flatten)]
         source: SourceArgs,
         /// As JSON
@@ -84,6 +89,22 @@ enum Command {
     Shmoo(shmoo::ShmooArgs),
     /// Move the sample over the bit: how much jitter it stands where; options as those of shmoo
     Eye(shmoo::ShmooArgs),
+    /// Run a card without hardware, for this program and others: the core and encoders, simulated, behind a port
+    Card(host::virtual_card::CardArgs),
+    /// Ask a card who it is, and what its encoders are
+    Id(host::id::IdArgs),
+    /// Read the latest position of every channel
+    Read(host::read::ReadArgs),
+    /// Log positions as CSV or JSON lines
+    Log(host::log::LogArgs),
+    /// Watch positions, rate, health and margin live
+    Monitor(host::monitor::MonitorArgs),
+    /// Read and write registers of a card by name
+    Reg(host::reg::RegArgs),
+    /// Read and write words of the encoder's memory
+    Param(host::param::ParamArgs),
+    /// Show where the edges of DATA are, as the card has measured it
+    Margin(host::margin::MarginArgs),
 }
 
 /// Which configuration.
@@ -151,7 +172,10 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
             show: Some(name), ..
         }) => config::preset_of("--show", &name).map(Outcome::good),
         Some(Command::Presets { json, .. }) => presets(json),
-        Some(Command::Explain { source, json }) => {
+        Some(Command::Explain {
+            name: Some(name), ..
+        }) => host::explain_name::text(&name).map(Outcome::good),
+        Some(Command::Explain { source, json, .. }) => {
             let report = explain::report(&source.load()?);
             Ok(Outcome::good(if json {
                 to_json(&report)?
@@ -166,6 +190,14 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Campaign(arguments)) => campaign::run(&arguments).map(with_engine),
         Some(Command::Shmoo(arguments)) => shmoo::run(&arguments).map(with_engine),
         Some(Command::Eye(arguments)) => shmoo::eye(arguments).map(with_engine),
+        Some(Command::Card(arguments)) => host::virtual_card::run(&arguments).map(with_engine),
+        Some(Command::Id(arguments)) => host::id::run(&arguments),
+        Some(Command::Read(arguments)) => host::read::run(&arguments),
+        Some(Command::Log(arguments)) => host::log::run(&arguments),
+        Some(Command::Monitor(arguments)) => host::monitor::run(&arguments),
+        Some(Command::Reg(arguments)) => host::reg::run(&arguments),
+        Some(Command::Param(arguments)) => host::param::run(&arguments),
+        Some(Command::Margin(arguments)) => host::margin::run(&arguments),
     }
 }
 

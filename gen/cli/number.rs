@@ -28,3 +28,19 @@ pub fn number(flag: &str, text: &str, range: RangeInclusive<u64>) -> Result<u64,
         )),
     }
 }
+
+/// A number with a point, within `range`.
+pub fn decimal(flag: &str, text: &str, range: RangeInclusive<f64>) -> Result<f64, GenError> {
+    let (low, high) = (range.start(), range.end());
+    match text.replace('_', "").parse::<f64>() {
+        Ok(value) if range.contains(&value) => Ok(value),
+        Ok(_) => Err(GenError::input(format!(
+            "{flag} = {}: outside {low}..{high}; give a number in that range",
+            shown(text)
+        ))),
+        Err(_) => Err(GenError::input(format!(
+            "{flag} = {}: is not a number from {low} to {high}; write 12 or 0.5",
+            shown(text)
+        ))),
+    }
+}

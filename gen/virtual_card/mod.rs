@@ -23,7 +23,7 @@ use endat_sim::bench::{Bench, Link, PinNames, Uart};
 use endat_sim::encoder::{EncoderConfig, PositionSource, DEVICES};
 use endat_sim::engine::Compiled;
 use endat_sim::line::LineConfig;
-use endat_sim::{Time, MS, SECOND};
+use endat_sim::{Time, MS};
 use rust_hdl::prelude::Block;
 use std::io;
 use std::sync::Arc;
@@ -37,6 +37,9 @@ const LINK_TIMEOUT_US: u64 = 5_000;
 const POWER_UP_MS: u16 = 2;
 const RESET_MS: u16 = 3;
 const WRITE_MS: u16 = 2;
+
+/// A second of simulated time.
+const SECOND: f64 = 1_000.0 * MS as f64;
 
 /// What a virtual card is made of.
 #[derive(Clone, Debug, PartialEq)]
@@ -96,13 +99,11 @@ fn encoder(
     }
     let config = &project.card.channels[channel];
     let bits = config.position_bits as u32;
-    Ok(
-        if config.command == u64::from(ModeCommand::SendPosition.code()) {
-            EncoderConfig::endat21(bits)
-        } else {
-            EncoderConfig::endat22(bits)
-        },
-    )
+    Ok(if config.command == ModeCommand::SendPosition {
+        EncoderConfig::endat21(bits)
+    } else {
+        EncoderConfig::endat22(bits)
+    })
 }
 
 /// A shaft that turns evenly, with a slow swing on top; a carriage that goes to and fro.
@@ -116,7 +117,7 @@ fn motion(encoder: &EncoderConfig, channel: usize, speed: f64) -> PositionSource
     let speed = speed * (1.0 + 0.5 * channel as f64);
     let start = 0.1 * (channel + 1) as f64;
     PositionSource::Function(Arc::new(move |_, time: Time| {
-        let s = time as f64 / SECOND as f64;
+        let s = time as f64 / SECOND;
         let swing = (s * 2.0).sin();
         let position = if is_rotary {
             (start + speed * s + 0.002 * swing) * steps

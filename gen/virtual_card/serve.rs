@@ -1,6 +1,6 @@
 //! A virtual card behind a port that other programs open: a pseudo terminal, or TCP.
 
-use super::VirtualCard;
+use super::{VirtualCard, SECOND};
 use crate::error::GenError;
 use std::io::{ErrorKind, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -129,19 +129,22 @@ const SLICE_US: u64 = 100;
 /// Time between two reports.
 const REPORT: Duration = Duration::from_secs(2);
 
-/// Runs a card behind a door, never faster than real time, until `stop` says so; tells its pace now and then.
+/// Runs a card behind a door, never faster than real time, until `stop` is raised or `limit` is over; tells its pace now and
+/// then.
 pub fn serve(
     card: &mut VirtualCard,
     door: &mut Door,
     stop: &AtomicBool,
+    limit: Option<Duration>,
     mut report: impl FnMut(Pace),
 ) {
     let begin = Instant::now();
     let first = card.now();
-    let simulated = |card: &VirtualCard| (card.now() - first) as f64 / endat_sim::SECOND as f64;
+    let simulated = |card: &VirtualCard| (card.now() - first) as f64 / SECOND;
     let mut reported = begin;
     let mut at_report = (0.0, 0.0);
-    while !stop.load(Ordering::Relaxed) {
+    let is_over = || limit.is_some_and(|l| begin.elapsed() >= l);
+    while !stop.load(Ordering::Relaxed) && !is_over() {
         let bytes = door.read();
         card.send_bytes(&bytes);
         card.run(SLICE_US * card.cycles_per_us);

@@ -3,6 +3,7 @@
 //! CLOCK with its rising edges counted, DATA coloured by who drives it and cut into its fields, the times that matter, and an axis in
 //! microseconds. Long quiet spans are shortened and marked. If the cable is long, both ends are shown.
 
+mod edges;
 mod groups;
 mod map;
 mod overview;
@@ -19,6 +20,7 @@ use crate::{
     segments::{data_segments, first_falls, By, Level, Meaning, Segment},
     Time, US,
 };
+pub use edges::{edges_svg, Edges};
 pub use map::map_svg;
 pub use overview::overview_svg;
 pub use svg::is_drawing;

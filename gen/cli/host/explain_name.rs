@@ -1,0 +1,130 @@
+//! `explain NAME`: what a cause, a register or a field is.
+
+use crate::error::{shown, GenError};
+use endat_host::causes;
+use endat_host::map::BLOCKS;
+use endat_host::registers::{Access, Block, Field, Register, Values};
+use std::fmt::Write;
+
+/// Everything called `name`: causes, registers, fields, values, with or without block and channel in front.
+pub fn text(name: &str) -> Result<String, GenError> {
+    let mut text = String::new();
+    if let Some(cause) = causes::all()
+        .iter()
+        .find(|c| c.name == name || c.number.to_string() == name)
+    {
+        let [means, then] = causes::advice(cause.name).unwrap_or([cause.meaning, ""]);
+        let _ = writeln!(
+            text,
+            "cause {} ({}): {}\n  {means}\n  {then}",
+            cause.number, cause.name, cause.meaning
+        );
+        let counter = match cause.name {
+            "none" => "frames_good".to_owned(),
+            name => format!("frames_{name}"),
+        };
+        let _ = writeln!(
+            text,
+            "  counted in service<n>.{counter}, on cards with the part requests"
+        );
+    }
+    let parts: Vec<&str> = name.split('.').collect();
+    for block in BLOCKS {
+        let block_matches = |part: &str| {
+            part == block.name
+                || block.per_channel
+                    && part.trim_end_matches(|c: char| c.is_ascii_digit()) == block.name
+        };
+        if parts.len() == 1 && block_matches(name) {
+            let _ = writeln!(text, "block {}: {}", block.name, block.meaning);
+            let names: Vec<&str> = block.registers.iter().map(|r| r.name).collect();
+            let _ = writeln!(text, "  registers: {}", names.join(", "));
+        }
+        for register in block.registers {
+            let is_meant = match parts[..] {
+                [one] => one == register.name,
+                [first, second] => block_matches(first) && second == register.name,
+                _ => false,
+            };
+            if is_meant {
+                describe(&mut text, block, register);
+            }
+            for field in register.fields {
+                let is_meant = match parts[..] {
+                    [one] => one == field.name && field.name != "value",
+                    [first, second] => first == register.name && second == field.name,
+                    [first, second, third] => {
+                        block_matches(first) && second == register.name && third == field.name
+                    }
+                    _ => false,
+                };
+                if is_meant {
+                    let _ = writeln!(text, "field of {}", full(block, register));
+                    field_text(&mut text, field);
+                }
+            }
+        }
+    }
+    if text.is_empty() {
+        let causes: Vec<&str> = causes::all().iter().map(|c| c.name).collect();
+        return Err(GenError::input(format!(
+            "name = {}: is no cause, block, register or field; causes are {}; registers: `endat-gen reg list`",
+            shown(name),
+            causes.join(", ")
+        )));
+    }
+    Ok(text)
+}
+
+fn full(block: &Block, register: &Register) -> String {
+    let number = if block.per_channel { "<n>" } else { "" };
+    format!("{}{number}.{}", block.name, register.name)
+}
+
+fn describe(text: &mut String, block: &Block, register: &Register) {
+    let access = match register.access {
+        Access::ReadOnly => "read only",
+        Access::ReadWrite => "read and write",
+        Access::Strobe => "write only, acts once",
+    };
+    let address = block.base + register.offset;
+    let place = match block.per_channel {
+        true => format!("word 0x{address:03X} + {} n", block.stride),
+        false => format!("word 0x{address:03X}"),
+    };
+    let _ = writeln!(
+        text,
+        "{}: {}\n  {place}, {access}",
+        full(block, register),
+        register.meaning
+    );
+    for field in register.fields {
+        field_text(text, field);
+    }
+}
+
+fn field_text(text: &mut String, field: &Field) {
+    let unit = match field.unit {
+        "" => String::new(),
+        unit => format!(" ({unit})"),
+    };
+    let _ = writeln!(
+        text,
+        "  {:>5}  {}: {}{unit}",
+        field.bits(),
+        field.name,
+        field.meaning
+    );
+    let (kind, values) = match field.values {
+        Values::Plain => return,
+        Values::Codes(values) => ("", values),
+        Values::Bits(values) => ("bit ", values),
+    };
+    for value in values {
+        let _ = writeln!(
+            text,
+            "           {kind}{} {}: {}",
+            value.number, value.name, value.meaning
+        );
+    }
+}

@@ -1,0 +1,236 @@
+//! `id`: who the card is, and the name plates of its encoders.
+
+use super::super::{to_json, Outcome};
+use super::{told, PortArgs};
+use crate::error::GenError;
+use clap::Args;
+use endat_host::card::Identity;
+use endat_host::map::STEPS;
+use endat_host::name_plate::NamePlate;
+use serde_json::{json, Value};
+use std::fmt::Write;
+use std::time::{Duration, Instant};
+
+/// Longest wait for an initialisation that is under way.
+const WAIT: Duration = Duration::from_secs(30);
+
+/// Arguments of `id`.
+#[derive(Args)]
+pub struct IdArgs {
+    #[command(flatten)]
+    port: PortArgs,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Runs the command.
+pub fn run(arguments: &IdArgs) -> Result<Outcome, GenError> {
+    let mut card = arguments.port.open()?;
+    let identity = *card.identity();
+    let mut plates = Vec::new();
+    if identity.has("initialise") {
+        let end = Instant::now() + WAIT;
+        for channel in 0..identity.channels {
+            let mut plate = card.name_plate(channel).map_err(told)?;
+            while !plate.initialised && plate.failed.is_none() && Instant::now() < end {
+                plate = card.name_plate(channel).map_err(told)?;
+            }
+            plates.push(plate);
+        }
+    }
+    let is_good = plates.iter().all(|p| p.initialised);
+    let stdout = if arguments.json {
+        to_json(&as_json(&identity, &plates))?
+    } else {
+        as_text(&identity, &plates)
+    };
+    Ok(Outcome {
+        exit_code: u8::from(!is_good),
+        ..Outcome::good(stdout)
+    })
+}
+
+fn version(identity: &Identity) -> String {
+    identity.version.map(|n| n.to_string()).join(".")
+}
+
+fn as_text(identity: &Identity, plates: &[NamePlate]) -> String {
+    let mut text = format!(
+        "card               {} channel{}, positions to {} bits, system clock {} Hz\n\
+         register map       {}\nconfiguration      {:08x}\n",
+        identity.channels,
+        if identity.channels == 1 { "" } else { "s" },
+        identity.max_position_bits,
+        identity.system_hz,
+        version(identity),
+        identity.configuration_hash
+    );
+    for (name, meaning) in identity.parts() {
+        let _ = writeln!(text, "part               {name}: {meaning}");
+    }
+    if plates.is_empty() {
+        text.push_str("encoders           not read: the card has no part initialise\n");
+    }
+    for (channel, plate) in plates.iter().enumerate() {
+        let _ = write!(
+            text,
+            "\nencoder {channel}\n{}",
+            plate_text(plate, identity.system_hz)
+        );
+    }
+    text
+}
+
+/// Name of a step.
+fn step(number: u16) -> String {
+    let name = STEPS.get(usize::from(number).wrapping_sub(1));
+    format!("step {number} ({})", name.unwrap_or(&"unknown"))
+}
+
+fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: Option<String>| {
+        if let Some(value) = value {
+            let _ = writeln!(text, "  {name:<17}{value}");
+        }
+    };
+    let state = match (plate.initialised, plate.failed, plate.step) {
+        (true, ..) => "yes".to_owned(),
+        (_, Some(failed), _) => format!("no: {} failed; is the encoder plugged in?", step(failed)),
+        (_, _, Some(now)) => format!("under way: {}", step(now)),
+        _ => "no".to_owned(),
+    };
+    line("initialised", Some(state));
+    let is_rotary = plate.rotary.unwrap_or(true);
+    line(
+        "type",
+        plate.rotary.map(|rotary| {
+            let kind = if rotary { "rotary" } else { "linear" };
+            let endat = if plate.endat22 {
+                "EnDat 2.2"
+            } else {
+                "EnDat 2.1"
+            };
+            let safety = if plate.safety == Some(true) {
+                ", functional safety"
+            } else {
+                ""
+            };
+            format!("{kind}, {endat}{safety}")
+        }),
+    );
+    line(
+        "position",
+        plate.position_bits.map(|bits| format!("{bits} bits")),
+    );
+    line(
+        "resolution",
+        plate.steps.map(|steps| match is_rotary {
+            true => format!("{steps} measuring steps per revolution"),
+            false => format!("{steps} nm"),
+        }),
+    );
+    line(
+        "revolutions",
+        plate.revolutions.filter(|_| is_rotary).map(|n| match n {
+            0 | 1 => "singleturn".to_owned(),
+            n => n.to_string(),
+        }),
+    );
+    line(
+        "signal periods",
+        plate.signal_periods.map(|periods| match is_rotary {
+            true => format!("{periods} per revolution"),
+            false => format!("{periods} nm"),
+        }),
+    );
+    line("ID number", plate.id.clone());
+    line("serial number", plate.serial.clone());
+    line(
+        "tcal",
+        plate
+            .tcal
+            .map(|tcal| format!("{tcal} (word 39; its unit is not published)")),
+    );
+    line(
+        "fastest clock",
+        plate.clock_max_khz.map(|khz| format!("{khz} kHz")),
+    );
+    line(
+        "recovery time tm",
+        plate.short_recovery.map(|short| {
+            let range = if short {
+                "1.25 to 3.75 us"
+            } else {
+                "10 to 30 us"
+            };
+            range.to_owned()
+        }),
+    );
+    let codes = |bits: u16, first: u8| {
+        let set = (0..16).filter(|n| bits >> n & 1 == 1);
+        set.map(|n| format!("{:02X}", first + n))
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    line(
+        "informations 1",
+        plate.infos_1.map(|bits| codes(bits, 0x40)),
+    );
+    line(
+        "informations 2",
+        plate.infos_2.map(|bits| codes(bits, 0x50)),
+    );
+    line(
+        "alarms at start",
+        plate.alarms.map(|bits| format!("0x{bits:04X}")),
+    );
+    line(
+        "warnings at start",
+        plate.warnings.map(|bits| format!("0x{bits:04X}")),
+    );
+    line(
+        "line delay",
+        plate.delay_cycles.map(|cycles| {
+            let ns = f64::from(cycles) * 1e9 / f64::from(system_hz.max(1));
+            format!("{cycles} system clocks, {ns:.0} ns, with synchroniser and filter")
+        }),
+    );
+    text
+}
+
+fn as_json(identity: &Identity, plates: &[NamePlate]) -> Value {
+    let plate = |p: &NamePlate| {
+        json!({
+            "initialised": p.initialised,
+            "failed_step": p.failed,
+            "endat22": p.endat22,
+            "position_bits": p.position_bits,
+            "rotary": p.rotary,
+            "steps": p.steps,
+            "revolutions": p.revolutions,
+            "signal_periods": p.signal_periods,
+            "id": p.id,
+            "serial": p.serial,
+            "safety": p.safety,
+            "tcal_word": p.tcal,
+            "clock_max_khz": p.clock_max_khz,
+            "short_recovery": p.short_recovery,
+            "infos_1": p.infos_1,
+            "infos_2": p.infos_2,
+            "alarms": p.alarms,
+            "warnings": p.warnings,
+            "delay_cycles": p.delay_cycles,
+        })
+    };
+    json!({
+        "channels": identity.channels,
+        "max_position_bits": identity.max_position_bits,
+        "system_hz": identity.system_hz,
+        "register_map": version(identity),
+        "configuration": format!("{:08x}", identity.configuration_hash),
+        "parts": identity.parts().map(|(name, _)| name).collect::<Vec<_>>(),
+        "encoders": plates.iter().map(plate).collect::<Vec<_>>(),
+    })
+}

@@ -1,0 +1,490 @@
+//! `log`: sample sets into a file, as CSV or JSON lines.
+
+use super::super::number::number;
+use super::super::Outcome;
+use super::{interrupted, scale, settled, told, AnyCard, PortArgs};
+use crate::error::GenError;
+use clap::{Args, ValueEnum};
+use endat_host::causes;
+use endat_host::units::Scale;
+use serde_json::json;
+use std::collections::VecDeque;
+use std::fs::File;
+use std::io::{self, BufWriter, IsTerminal, Write};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Form of the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// Comma separated values, with a head line
+    Csv,
+    /// One JSON object a line
+    Jsonl,
+}
+
+/// Arguments of `log`.
+#[derive(Args)]
+pub struct LogArgs {
+    #[command(flatten)]
+    port: PortArgs,
+    /// Stop after so many sample sets [default: until Ctrl-C]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    samples: Option<String>,
+    /// Stop after so many seconds
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    seconds: Option<String>,
+    /// Write into this file [default: to stdout]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Replace the file if it is there
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Form of the file
+    #[arg(long, value_enum, default_value = "csv")]
+    format: Format,
+    /// Read results one after the other, even if the card can stream
+    #[arg(long)]
+    poll: bool,
+}
+
+/// A channel of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Cell {
+    position: Option<u64>,
+    fresh: bool,
+    cause: &'static str,
+}
+
+/// A line of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Row {
+    /// Number of the trigger, not wrapping.
+    trigger: u64,
+    /// Since the first row.
+    time_s: f64,
+    /// Triggers without a row just before this one.
+    missing: u64,
+    cells: Vec<Cell>,
+}
+
+/// Makes numbers that wrap into numbers that do not.
+#[derive(Default)]
+pub(super) struct Clock {
+    last: Option<(u16, u32)>,
+    trigger: u64,
+    cycles: u64,
+}
+
+impl Clock {
+    /// Takes a trigger's number and moment; gives how many were missing before it.
+    fn step(&mut self, sequence: u16, timestamp: u32) -> u64 {
+        let missing = match self.last {
+            None => {
+                self.trigger = sequence.into();
+                0
+            }
+            Some((last_sequence, last_timestamp)) => {
+                let steps = u64::from(sequence.wrapping_sub(last_sequence));
+                self.trigger += steps;
+                self.cycles += u64::from(timestamp.wrapping_sub(last_timestamp));
+                steps.saturating_sub(1)
+            }
+        };
+        self.last = Some((sequence, timestamp));
+        missing
+    }
+}
+
+/// Where rows come from.
+enum Source {
+    /// The card pushes sample sets.
+    Stream,
+    /// The result registers, again and again.
+    Poll,
+}
+
+/// How long an empty stream is waited for before the end is looked for again.
+const SLICE: Duration = Duration::from_millis(100);
+/// Nothing for this long: something is wrong.
+const SILENCE: Duration = Duration::from_secs(20);
+/// Between two lines of progress.
+const PROGRESS: Duration = Duration::from_secs(2);
+
+struct Feed {
+    source: Source,
+    clock: Clock,
+    rows: VecDeque<Row>,
+    system_hz: f64,
+    lost_in_card: u64,
+}
+
+impl Feed {
+    fn begin(card: &mut AnyCard, poll: bool) -> Result<Self, GenError> {
+        let can_stream = card.identity().has("stream") && !poll;
+        if can_stream {
+            let control = super::place(card, "card.stream_control")?;
+            let clear = super::place(card, "card.stream_clear")?;
+            card.write(&clear, 1).map_err(told)?;
+            card.write(&control, COLLECT_AND_PUSH).map_err(told)?;
+            card.bridge().set_pushes(true);
+        }
+        Ok(Self {
+            source: if can_stream {
+                Source::Stream
+            } else {
+                Source::Poll
+            },
+            clock: Clock::default(),
+            rows: VecDeque::new(),
+            system_hz: card.identity().system_hz.max(1).into(),
+            lost_in_card: 0,
+        })
+    }
+
+    fn end(&self, card: &mut AnyCard) -> Result<(), GenError> {
+        match self.source {
+            Source::Stream => card.bridge().calm().map_err(told),
+            Source::Poll => Ok(()),
+        }
+    }
+
+    fn push(&mut self, sequence: u16, timestamp: u32, cells: Vec<Cell>) {
+        let missing = self.clock.step(sequence, timestamp);
+        self.rows.push_back(Row {
+            trigger: self.clock.trigger,
+            time_s: self.clock.cycles as f64 / self.system_hz,
+            missing,
+            cells,
+        });
+    }
+
+    /// Takes what has come.
+    fn fill(&mut self, card: &mut AnyCard) -> Result<(), GenError> {
+        match self.source {
+            Source::Stream => {
+                for set in card.bridge().pushed(SLICE).map_err(told)? {
+                    self.lost_in_card += u64::from(set.lost);
+                    let cell = |s: &endat_host::stream::Sample| Cell {
+                        position: s.valid.then_some(s.position),
+                        fresh: s.fresh,
+                        cause: match (s.taken, s.missing) {
+                            (false, _) => "not_taken",
+                            (_, true) => "too_late",
+                            _ => s.cause_name(),
+                        },
+                    };
+                    self.push(
+                        set.sequence,
+                        set.timestamp,
+                        set.channels.iter().map(cell).collect(),
+                    );
+                }
+            }
+            Source::Poll => {
+                let results = card.results().map_err(told)?.channels;
+                let last = self.clock.last.map(|(sequence, _)| sequence);
+                if last != Some(results[0].sequence) {
+                    let cell = |r: &endat_host::result::Reading| Cell {
+                        position: r.valid.then_some(r.position),
+                        fresh: r.fresh,
+                        cause: causes::name(r.cause),
+                    };
+                    let first = &results[0];
+                    self.push(
+                        first.sequence,
+                        first.timestamp,
+                        results.iter().map(cell).collect(),
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// `card.stream_control`: collect and push.
+const COLLECT_AND_PUSH: u32 = 0b11;
+
+/// Writes rows.
+pub(super) struct Sheet<W: Write> {
+    format: Format,
+    out: W,
+    scales: Vec<Scale>,
+}
+
+impl<W: Write> Sheet<W> {
+    fn new(format: Format, out: W, scales: Vec<Scale>) -> io::Result<Self> {
+        let mut sheet = Self {
+            format,
+            out,
+            scales,
+        };
+        if format == Format::Csv {
+            let mut names = vec!["trigger".to_owned(), "time_s".into(), "missing".into()];
+            for (n, scale) in sheet.scales.iter().enumerate() {
+                let unit = scale.convert(0).unit;
+                names.extend(
+                    ["raw", unit, "turns", "fresh", "cause"].map(|name| format!("ch{n}_{name}")),
+                );
+            }
+            sheet.record(&names)?;
+        }
+        Ok(sheet)
+    }
+
+    fn record(&mut self, fields: &[String]) -> io::Result<()> {
+        let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
+        writer.write_record(fields)?;
+        let line = writer
+            .into_inner()
+            .map_err(|e| io::Error::other(e.to_string()))?;
+        self.out.write_all(&line)
+    }
+
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        match self.format {
+            Format::Csv => {
+                let mut fields = vec![
+                    row.trigger.to_string(),
+                    format!("{:.9}", row.time_s),
+                    row.missing.to_string(),
+                ];
+                for (cell, scale) in row.cells.iter().zip(&self.scales) {
+                    let units = cell.position.map(|p| scale.convert(p));
+                    let text = |value: Option<String>| value.unwrap_or_default();
+                    fields.push(text(cell.position.map(|p| p.to_string())));
+                    fields.push(text(
+                        units.map(|u| format!("{:.*}", scale.digits(), u.value)),
+                    ));
+                    fields.push(text(units.and_then(|u| u.turns).map(|t| t.to_string())));
+                    fields.push(u8::from(cell.fresh).to_string());
+                    fields.push(cell.cause.to_owned());
+                }
+                self.record(&fields)
+            }
+            Format::Jsonl => {
+                let cells = row.cells.iter().zip(&self.scales).map(|(cell, scale)| {
+                    let units = cell.position.map(|p| scale.convert(p));
+                    json!({
+                        "raw": cell.position,
+                        "value": units.map(|u| u.value),
+                        "unit": scale.convert(0).unit,
+                        "turns": units.and_then(|u| u.turns),
+                        "fresh": cell.fresh,
+                        "cause": cell.cause,
+                    })
+                });
+                let object = json!({
+                    "trigger": row.trigger,
+                    "time_s": row.time_s,
+                    "missing": row.missing,
+                    "channels": cells.collect::<Vec<_>>(),
+                });
+                writeln!(self.out, "{object}")
+            }
+        }
+    }
+}
+
+/// When to stop.
+struct End {
+    samples: Option<u64>,
+    seconds: Option<u64>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
+    let most = 1..=u64::from(u32::MAX);
+    let limit = |flag, text: &Option<String>| {
+        text.as_ref()
+            .map(|text| number(flag, text, most.clone()))
+            .transpose()
+    };
+    let end = End {
+        samples: limit("--samples", &arguments.samples)?,
+        seconds: limit("--seconds", &arguments.seconds)?,
+    };
+    let mut card = arguments.port.open()?;
+    settled(&mut card)?;
+    let scales = (0..card.identity().channels)
+        .map(|channel| scale(&mut card, channel))
+        .collect::<Result<Vec<_>, _>>()?;
+    let (out, name): (Box<dyn Write>, String) = match &arguments.out {
+        None => (Box::new(io::stdout()), "stdout".into()),
+        Some(path) => {
+            let mut options = File::options();
+            options.write(true);
+            let options = match arguments.force {
+                true => options.create(true).truncate(true),
+                false => options.create_new(true),
+            };
+            let remedy = "give another file with --out, or replace it with --force";
+            let file = options
+                .open(path)
+                .map_err(|e| GenError::io("write", path, &e, remedy))?;
+            (Box::new(file), path.display().to_string())
+        }
+    };
+    let failed =
+        |e: io::Error| GenError::input(format!("{name}: cannot write: {e}; is the disk full?"));
+    let mut sheet = Sheet::new(arguments.format, BufWriter::new(out), scales).map_err(failed)?;
+    let mut feed = Feed::begin(&mut card, arguments.poll)?;
+    let stop = interrupted();
+    let result = record(&mut card, &mut feed, &mut sheet, &end, &stop);
+    // Whatever ended it: the card is quiet again, and the file whole.
+    let calm = feed.end(&mut card);
+    let flushed = sheet.out.flush();
+    let totals = match result {
+        // A reader that has gone away (`| head`) is the end, not an error.
+        Err(Failure::Write(e)) if e.kind() == io::ErrorKind::BrokenPipe => {
+            return Ok(Outcome::default())
+        }
+        Err(Failure::Write(e)) => return Err(failed(e)),
+        Err(Failure::Card(e)) => return Err(e),
+        Ok(totals) => totals,
+    };
+    flushed.map_err(failed)?;
+    calm?;
+    let damaged = card.bridge().decoder().damaged();
+    let is_stream = matches!(feed.source, Source::Stream);
+    let mut told = format!(
+        "{name}: {} sample sets in {:.3} s of the card's time",
+        totals.rows, totals.span_s
+    );
+    if is_stream {
+        told += &format!(
+            "; {} triggers missing, {} of them dropped in the card; {damaged} frames damaged on the line",
+            totals.missing, feed.lost_in_card
+        );
+    } else {
+        told += &format!(
+            "; read one by one: {} results in between not read (a card with [stream] gives them all)",
+            totals.missing
+        );
+    }
+    Ok(Outcome {
+        messages: vec![told],
+        exit_code: u8::from(is_stream && totals.missing > 0),
+        ..Outcome::default()
+    })
+}
+
+#[derive(Default)]
+struct Totals {
+    rows: u64,
+    missing: u64,
+    span_s: f64,
+}
+
+enum Failure {
+    Card(GenError),
+    Write(io::Error),
+}
+
+fn record<W: Write>(
+    card: &mut AnyCard,
+    feed: &mut Feed,
+    sheet: &mut Sheet<W>,
+    end: &End,
+    stop: &AtomicBool,
+) -> Result<Totals, Failure> {
+    let begin = Instant::now();
+    let (mut shown, mut heard) = (begin, begin);
+    let mut totals = Totals::default();
+    let shows = io::stderr().is_terminal() || end.samples.is_some();
+    loop {
+        feed.fill(card).map_err(Failure::Card)?;
+        if !feed.rows.is_empty() {
+            heard = Instant::now();
+        }
+        while let Some(row) = feed.rows.pop_front() {
+            sheet.row(&row).map_err(Failure::Write)?;
+            totals.rows += 1;
+            totals.missing += row.missing;
+            totals.span_s = row.time_s;
+            if end.samples == Some(totals.rows) {
+                return Ok(totals);
+            }
+        }
+        let is_over = end
+            .seconds
+            .is_some_and(|s| begin.elapsed() >= Duration::from_secs(s));
+        if is_over || stop.load(Ordering::Relaxed) {
+            return Ok(totals);
+        }
+        if heard.elapsed() > SILENCE {
+            return Err(Failure::Card(GenError::CheckFailed(vec![format!(
+                "no sample for {} s; is a trigger enabled (`endat-gen reg read card_config`), is the card plugged in? {} sets are in the file",
+                SILENCE.as_secs(),
+                totals.rows
+            )])));
+        }
+        if shows && shown.elapsed() >= PROGRESS {
+            shown = Instant::now();
+            let of = end.samples.map_or(String::new(), |n| format!(" of {n}"));
+            let _ = writeln!(io::stderr(), "{}{of} sample sets", totals.rows);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cells(position: u64) -> Vec<Cell> {
+        let good = Cell {
+            position: Some(position),
+            fresh: true,
+            cause: "none",
+        };
+        let none = Cell {
+            position: None,
+            fresh: false,
+            cause: "crc",
+        };
+        vec![good, none]
+    }
+
+    fn written(format: Format) -> String {
+        let scales = vec![Scale::singleturn(8), Scale::Linear { step_nm: 10.0 }];
+        let mut sheet = Sheet::new(format, Vec::new(), scales).unwrap();
+        let mut clock = Clock::default();
+        for (sequence, timestamp) in [(0xFFFE, 0xFFFF_FFF0), (0xFFFF, 0x10), (2, 0x30)] {
+            let missing = clock.step(sequence, timestamp);
+            let row = Row {
+                trigger: clock.trigger,
+                time_s: clock.cycles as f64 / 32.0,
+                missing,
+                cells: cells(64),
+            };
+            sheet.row(&row).unwrap();
+        }
+        String::from_utf8(sheet.out).unwrap()
+    }
+
+    #[test]
+    fn csv_has_units_and_numbers_that_do_not_wrap() {
+        assert_eq!(
+            written(Format::Csv),
+            "trigger,time_s,missing,ch0_raw,ch0_deg,ch0_turns,ch0_fresh,ch0_cause,ch1_raw,ch1_mm,ch1_turns,ch1_fresh,ch1_cause\n\
+             65534,0.000000000,0,64,90,0,1,none,,,,0,crc\n\
+             65535,1.000000000,0,64,90,0,1,none,,,,0,crc\n\
+             65538,2.000000000,2,64,90,0,1,none,,,,0,crc\n"
+        );
+    }
+
+    #[test]
+    fn json_lines_have_the_same() {
+        let text = written(Format::Jsonl);
+        let rows: Vec<serde_json::Value> = text
+            .lines()
+            .map(|l| serde_json::from_str(l).unwrap())
+            .collect();
+        assert_eq!(rows.len(), 3);
+        assert_eq!(rows[2]["missing"], 2);
+        assert_eq!(rows[1]["channels"][0]["value"], 90.0);
+        assert_eq!(rows[1]["channels"][1]["raw"], serde_json::Value::Null);
+    }
+}

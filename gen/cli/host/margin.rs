@@ -1,0 +1,137 @@
+//! `margin`: where the edges of DATA are, as the card itself has measured it.
+
+use super::super::pictures::{write_all, File};
+use super::super::{to_json, Outcome};
+use super::{channel, told, PortArgs};
+use crate::error::GenError;
+use clap::Args;
+use endat_host::registers::Place;
+use endat_host::HostError;
+use endat_sim::diagram::{edges_svg, is_drawing, Edges};
+use serde_json::json;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Arguments of `margin`.
+#[derive(Args)]
+pub struct MarginArgs {
+    #[command(flatten)]
+    port: PortArgs,
+    /// Channel [default: 0]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    channel: Option<String>,
+    /// Clear first, and count this many frames [default: what has been counted]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    frames: Option<String>,
+    /// Draw the histogram
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Bins of the histogram.
+const BINS: usize = 32;
+/// Longest wait for the frames that are asked for.
+const WAIT: Duration = Duration::from_secs(600);
+
+/// Runs the command.
+pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
+    let frames = match &arguments.frames {
+        None => None,
+        Some(text) => {
+            Some(super::super::number::number("--frames", text, 1..=u64::from(u32::MAX))? as u32)
+        }
+    };
+    let mut card = arguments.port.open()?;
+    let channel = channel(&card, arguments.channel.as_deref())?;
+    if !card.identity().has("margin") {
+        return Err(told(HostError::Part {
+            what: "margin",
+            part: "margin",
+            remedy: "[line] parts = [\"alignment\", \"margin\"]",
+        }));
+    }
+    let at = |register: &str| {
+        Place::named(&format!("line{channel}.{register}"), channel + 1).map_err(told)
+    };
+    if let Some(frames) = frames {
+        super::settled(&mut card)?;
+        card.write(&at("clear.clear")?, 1).map_err(told)?;
+        let counted = at("frames")?;
+        let end = std::time::Instant::now() + WAIT;
+        while card.read(&counted).map_err(told)? < frames {
+            if std::time::Instant::now() > end {
+                return Err(GenError::CheckFailed(vec![format!(
+                    "--frames = {frames}: not counted within {} s; is a trigger enabled?",
+                    WAIT.as_secs()
+                )]));
+            }
+        }
+    }
+    let bins = card
+        .bridge()
+        .read(at("edges_0")?.address(), BINS)
+        .map_err(told)?;
+    let mut field = |name: &str| card.read(&at(name)?).map_err(told);
+    let shift = field("alignment.bin_shift")?;
+    let (earliest, latest) = (
+        field("worst.earliest")? as u8 as i8,
+        field("worst.latest")? as u8 as i8,
+    );
+    let has_edges = field("worst.valid")? == 1;
+    let (tracked, reference) = (field("phase.tracked")?, field("phase.reference")?);
+    let (glitches, bad) = (field("counts.glitches")?, field("counts.bad_frames")?);
+    let counted = field("frames")?;
+    let place =
+        Place::named(&format!("config{channel}.frame.period_cycles"), channel + 1).map_err(told)?;
+    let period = card.read(&place).map_err(told)?;
+    let identity = card.identity();
+    let places_per_cycle = if identity.has("double_edge") { 2 } else { 1 };
+    let place_ns = 1e9 / f64::from(identity.system_hz.max(1)) / f64::from(places_per_cycle);
+    let edges = Edges {
+        bins: bins.clone(),
+        places_per_bin: 1 << shift,
+        half_bit_places: f64::from(period * places_per_cycle) / 2.0,
+        place_ns,
+        extremes: has_edges.then_some((earliest, latest)),
+        frames: counted,
+        bad_frames: bad,
+        glitches,
+        drift_ns: (f64::from(tracked) - f64::from(reference)) / 16.0
+            * place_ns
+            * f64::from(places_per_cycle),
+        delay_ns: f64::from(tracked) / 16.0 * place_ns * f64::from(places_per_cycle),
+    };
+    let mut outcome = Outcome::good(if arguments.json {
+        to_json(&json!({
+            "channel": channel,
+            "frames": counted,
+            "bad_frames": bad,
+            "glitches": glitches,
+            "place_ns": place_ns,
+            "half_bit_places": edges.half_bit_places,
+            "places_per_bin": edges.places_per_bin,
+            "earliest_places": has_edges.then_some(earliest),
+            "latest_places": has_edges.then_some(latest),
+            "margin_ns": edges.margin_ns(),
+            "delay_ns": edges.delay_ns,
+            "drift_ns": edges.drift_ns,
+            "edges": bins,
+        }))?
+    } else {
+        edges.to_string()
+    });
+    if let Some(path) = &arguments.svg {
+        let title = format!("Edges of DATA, channel {channel}");
+        let file = File {
+            option: "--svg",
+            path: path.clone(),
+            text: edges_svg(&edges, &title),
+            is_ours: is_drawing,
+        };
+        outcome.messages.extend(write_all(&[file])?);
+    }
+    Ok(outcome)
+}

@@ -1,0 +1,118 @@
+//! The commands that talk to a card, real or virtual.
+
+pub mod explain_name;
+pub mod id;
+pub mod log;
+pub mod margin;
+pub mod monitor;
+pub mod param;
+pub mod read;
+pub mod reg;
+pub mod virtual_card;
+
+use crate::config::{load_preset, DEFAULT_PRESET};
+use crate::error::GenError;
+use crate::virtual_card::{VirtualCard, VirtualConfig};
+use clap::Args;
+use endat_host::registers::Place;
+use endat_host::transport::Port;
+use endat_host::units::Scale;
+use endat_host::{Bridge, HostError, Transport};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
+
+/// Baud rate of the cards that come with the program.
+const BAUD: u32 = 2_000_000;
+
+/// A card, whatever it is behind.
+pub type AnyCard = endat_host::Card<Box<dyn Transport>>;
+
+/// Where the card is.
+#[derive(Args, Clone)]
+pub struct PortArgs {
+    /// Serial port, tcp:HOST:PORT, or virtual[:PRESET] for a simulated card in the program itself
+    #[arg(long, value_name = "PORT")]
+    port: String,
+    /// Baud rate of a serial port [default: 2000000]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    baud: Option<String>,
+}
+
+/// What the library says, as a message of this program.
+pub fn told(error: HostError) -> GenError {
+    match error {
+        HostError::Refused(text) => GenError::CheckFailed(vec![text]),
+        error @ HostError::Silent { .. } => GenError::CheckFailed(vec![error.to_string()]),
+        error => GenError::input(error.to_string()),
+    }
+}
+
+impl PortArgs {
+    /// Opens the link and finds out who answers.
+    pub fn open(&self) -> Result<AnyCard, GenError> {
+        let baud = match &self.baud {
+            None => BAUD,
+            Some(text) => super::number::number("--baud", text, 300..=12_000_000)? as u32,
+        };
+        let transport: Box<dyn Transport> = match self.port.strip_prefix("virtual") {
+            Some("") => virtual_card(DEFAULT_PRESET)?,
+            Some(rest) if rest.starts_with(':') => virtual_card(&rest[1..])?,
+            _ => Box::new(Port::open(&self.port, baud).map_err(told)?),
+        };
+        endat_host::Card::find(Bridge::new(transport)).map_err(told)
+    }
+}
+
+fn virtual_card(preset: &str) -> Result<Box<dyn Transport>, GenError> {
+    let project = load_preset(preset)?;
+    Ok(Box::new(VirtualCard::new(
+        &project,
+        &VirtualConfig::default(),
+    )?))
+}
+
+/// The channel that an option names.
+pub fn channel(card: &AnyCard, text: Option<&str>) -> Result<usize, GenError> {
+    let last = card.identity().channels as u64 - 1;
+    let text = text.unwrap_or("0");
+    super::number::number("--channel", text, 0..=last).map(|n| n as usize)
+}
+
+/// What a measuring step of a channel is: as the encoder says, else as if the position were one turn.
+pub fn scale(card: &mut AnyCard, channel: usize) -> Result<Scale, GenError> {
+    if card.identity().has("initialise") {
+        if let Some(scale) = card.name_plate(channel).map_err(told)?.scale() {
+            return Ok(scale);
+        }
+    }
+    let place = card.place(&format!("config{channel}.frame.position_bits"));
+    let bits = place.and_then(|place| card.read(&place)).map_err(told)?;
+    Ok(Scale::singleturn(bits))
+}
+
+/// Waits until every channel has had a first result, or has none after a second.
+pub fn settled(card: &mut AnyCard) -> Result<(), GenError> {
+    let end = std::time::Instant::now() + std::time::Duration::from_secs(1);
+    while std::time::Instant::now() < end {
+        let results = card.results().map_err(told)?;
+        // The first frame measures the delay; the second one is as all others.
+        if results.channels.iter().all(|r| r.sequence > 1) {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Raised by Ctrl-C.
+pub fn interrupted() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let raised = flag.clone();
+    // Only the first handler counts; a second one in the same process is a test.
+    let _ = ctrlc::set_handler(move || raised.store(true, Ordering::Relaxed));
+    flag
+}
+
+/// A place that is in every map.
+pub fn place(card: &AnyCard, name: &str) -> Result<Place, GenError> {
+    card.place(name).map_err(told)
+}

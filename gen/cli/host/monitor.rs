@@ -1,0 +1,197 @@
+//! `monitor`: positions, rate, health and margin, live.
+
+use super::super::number::{decimal, number};
+use super::super::Outcome;
+use super::read::{shown, verdict};
+use super::{interrupted, scale, settled, told, AnyCard, PortArgs};
+use crate::error::GenError;
+use clap::Args;
+use endat_host::registers::Place;
+use endat_host::result::Reading;
+use endat_host::units::Scale;
+use std::fmt::Write as _;
+use std::io::{IsTerminal, Write};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// Arguments of `monitor`.
+#[derive(Args)]
+pub struct MonitorArgs {
+    #[command(flatten)]
+    port: PortArgs,
+    /// Show so many times [default: until Ctrl-C]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    count: Option<String>,
+    /// Seconds from one to the next [default: 0.2]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    every: Option<String>,
+}
+
+/// What is looked up once.
+struct Places {
+    /// Counters of frames, good ones first.
+    frames: Option<(u16, usize)>,
+    state: Option<Place>,
+    worst: Option<Place>,
+}
+
+impl Places {
+    fn new(card: &AnyCard) -> Result<Self, GenError> {
+        let named =
+            |is_there: bool, name: &str| is_there.then(|| super::place(card, name)).transpose();
+        let identity = card.identity();
+        let frames = named(identity.has("requests"), "service0.frames_good")?;
+        let last = named(identity.has("requests"), "service0.frames_position_2")?;
+        Ok(Self {
+            frames: frames.zip(last).map(|(first, last)| {
+                (
+                    first.address(),
+                    usize::from(last.address() - first.address()),
+                )
+            }),
+            state: named(identity.has("requests"), "service0.state")?,
+            worst: named(identity.has("margin"), "line0.worst")?,
+        })
+    }
+}
+
+/// The same place of another channel.
+fn of(place: &Place, channel: usize) -> Place {
+    Place { channel, ..*place }
+}
+
+/// Results per second, from two looks at a channel; none if no time has passed between their positions.
+fn rate(before: &Reading, now: &Reading, system_hz: f64) -> Option<f64> {
+    let results = now.sequence.wrapping_sub(before.sequence);
+    let cycles = now.timestamp.wrapping_sub(before.timestamp);
+    (cycles > 0).then(|| f64::from(results) * system_hz / f64::from(cycles))
+}
+
+fn screen(
+    card: &mut AnyCard,
+    places: &Places,
+    scales: &[Scale],
+    before: &mut Vec<Reading>,
+) -> Result<String, GenError> {
+    let results = card.results().map_err(told)?.channels;
+    let system_hz = f64::from(card.identity().system_hz.max(1));
+    let mut text = String::new();
+    for (channel, (r, scale)) in results.iter().zip(scales).enumerate() {
+        let _ = writeln!(
+            text,
+            "channel {channel}  {:<28} {}",
+            shown(r, scale),
+            verdict(r)
+        );
+        let rate = before.get(channel).and_then(|b| rate(b, r, system_hz));
+        let rate = rate.map_or("-".into(), |hz| format!("{hz:.0}"));
+        let ns = |cycles: u16| f64::from(cycles) * 1e9 / system_hz;
+        let _ = writeln!(
+            text,
+            "           {rate} results/s, age {} us, line delay {:.0} ns, recovery time {:.2} us",
+            r.age_us,
+            ns(r.delay_cycles),
+            ns(r.recovery_cycles) / 1e3
+        );
+        if let Some((first, causes)) = places.frames {
+            let stride = places.state.map_or(0, |p| p.block.stride);
+            let counts = card
+                .bridge()
+                .read(first + stride * channel as u16, causes)
+                .map_err(told)?;
+            let all: u64 = counts.iter().map(|c| u64::from(*c)).sum();
+            let _ = write!(text, "           frames {all}, good {}", counts[0]);
+            for (cause, count) in counts.iter().enumerate().skip(1).filter(|(_, c)| **c > 0) {
+                let _ = write!(text, ", {} {count}", endat_host::causes::name(cause as u8));
+            }
+            text.push('\n');
+        }
+        if let Some(state) = &places.state {
+            let word = card.read(&of(state, channel)).map_err(told)?;
+            let set = state.register.fields.iter().filter(|f| f.of(word) == 1);
+            let names: Vec<&str> = set.map(|f| f.name).collect();
+            let _ = writeln!(
+                text,
+                "           state: {}",
+                if names.is_empty() {
+                    "-".into()
+                } else {
+                    names.join(", ")
+                }
+            );
+        }
+        if let Some(worst) = &places.worst {
+            let word = card.read(&of(worst, channel)).map_err(told)?;
+            let [_, _, latest, earliest] = word.to_be_bytes().map(|b| b as i8);
+            let _ = writeln!(text, "           edges {earliest} to {latest} places from where they are expected, since cleared");
+        }
+    }
+    let retries = card.bridge().retries();
+    if retries > 0 {
+        let _ = writeln!(text, "link: {retries} answers asked for again");
+    }
+    *before = results;
+    Ok(text)
+}
+
+/// Runs the command.
+pub fn run(arguments: &MonitorArgs) -> Result<Outcome, GenError> {
+    let count = match &arguments.count {
+        None => None,
+        Some(text) => Some(number("--count", text, 1..=u64::from(u32::MAX))?),
+    };
+    let every = match &arguments.every {
+        None => 0.2,
+        Some(text) => decimal("--every", text, 0.0..=3_600.0)?,
+    };
+    let every = Duration::from_secs_f64(every);
+    let mut card = arguments.port.open()?;
+    settled(&mut card)?;
+    let scales = (0..card.identity().channels)
+        .map(|channel| scale(&mut card, channel))
+        .collect::<Result<Vec<_>, _>>()?;
+    let places = Places::new(&card)?;
+    let stop = interrupted();
+    let mut stdout = std::io::stdout();
+    let is_live = stdout.is_terminal();
+    let mut before = Vec::new();
+    let mut done = 0;
+    while !stop.load(Ordering::Relaxed) && count != Some(done) {
+        let begin = Instant::now();
+        let text = screen(&mut card, &places, &scales, &mut before)?;
+        // From the top of the screen, and nothing left below: no flicker.
+        let text = match is_live {
+            true => format!("\x1b[H{}\x1b[J", text.replace('\n', "\x1b[K\n")),
+            false => text + "\n",
+        };
+        if stdout
+            .write_all(text.as_bytes())
+            .and_then(|()| stdout.flush())
+            .is_err()
+        {
+            break;
+        }
+        done += 1;
+        if count != Some(done) {
+            std::thread::sleep(every.saturating_sub(begin.elapsed()));
+        }
+    }
+    Ok(Outcome::default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rate_comes_from_the_cards_own_time() {
+        let at = |sequence, timestamp| Reading {
+            sequence,
+            timestamp,
+            ..Reading::default()
+        };
+        let hz = rate(&at(0xFFFF, 0xFFFF_0000), &at(99, 0x0000_0000), 65_536.0);
+        assert_eq!(hz, Some(100.0));
+        assert_eq!(rate(&at(1, 5), &at(1, 5), 1e6), None);
+    }
+}

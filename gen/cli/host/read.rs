@@ -1,0 +1,99 @@
+//! `read`: the latest positions, once.
+
+use super::super::{to_json, Outcome};
+use super::{scale, settled, told, PortArgs};
+use crate::error::GenError;
+use clap::Args;
+use endat_host::result::Reading;
+use endat_host::units::Scale;
+use serde_json::json;
+use std::fmt::Write;
+
+/// Arguments of `read`.
+#[derive(Args)]
+pub struct ReadArgs {
+    #[command(flatten)]
+    port: PortArgs,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// A position with its unit, as people read it; a dash if there is none.
+pub fn shown(reading: &Reading, scale: &Scale) -> String {
+    if !reading.valid {
+        return "-".into();
+    }
+    let units = scale.convert(reading.position);
+    let value = format!("{:.*} {}", scale.digits(), units.value, units.unit);
+    match units.turns {
+        Some(turns) if turns > 0 => format!("{value} + {turns} turns"),
+        _ => value,
+    }
+}
+
+/// What kind of result it is.
+pub fn verdict(reading: &Reading) -> String {
+    match (reading.fresh, reading.valid, reading.cause) {
+        (true, _, 0) => "good".into(),
+        (true, ..) => format!("good, {}", reading.cause_name()),
+        (_, true, _) => format!("held: {}", reading.cause_name()),
+        _ => format!("none: {}", reading.cause_name()),
+    }
+}
+
+/// Runs the command.
+pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
+    let mut card = arguments.port.open()?;
+    settled(&mut card)?;
+    let scales = (0..card.identity().channels)
+        .map(|channel| scale(&mut card, channel))
+        .collect::<Result<Vec<_>, _>>()?;
+    let results = card.results().map_err(told)?;
+    let system_hz = f64::from(card.identity().system_hz);
+    let is_good = results.channels.iter().all(|r| r.fresh);
+    let each = results.channels.iter().zip(&scales).enumerate();
+    let stdout = if arguments.json {
+        let objects = each.map(|(channel, (r, scale))| {
+            let units = scale.convert(r.position);
+            json!({
+                "channel": channel,
+                "position": r.valid.then_some(r.position),
+                "value": r.valid.then_some(units.value),
+                "unit": units.unit,
+                "turns": units.turns.filter(|_| r.valid),
+                "fresh": r.fresh,
+                "cause": r.cause_name(),
+                "sequence": r.sequence,
+                "timestamp_s": f64::from(r.timestamp) / system_hz,
+                "age_us": r.age_us,
+                "delay_cycles": r.delay_cycles,
+            })
+        });
+        to_json(&objects.collect::<Vec<_>>())?
+    } else {
+        let mut text = format!(
+            "{:>7}  {:<24} {:>16}  {:>9}  {}\n",
+            "channel", "position", "raw", "age us", "result"
+        );
+        for (channel, (r, scale)) in each {
+            let raw = if r.valid {
+                format!("0x{:X}", r.position)
+            } else {
+                "-".into()
+            };
+            let _ = writeln!(
+                text,
+                "{channel:>7}  {:<24} {raw:>16}  {:>9}  {}",
+                shown(r, scale),
+                r.age_us,
+                verdict(r)
+            );
+        }
+        text
+    };
+    Ok(Outcome {
+        exit_code: u8::from(!is_good),
+        ..Outcome::good(stdout)
+    })
+}

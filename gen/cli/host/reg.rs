@@ -1,0 +1,179 @@
+//! `reg`: words of the card by name.
+
+use super::super::number::number;
+use super::super::{to_json, Outcome};
+use super::{told, AnyCard, PortArgs};
+use crate::error::GenError;
+use clap::{Args, Subcommand};
+use endat_host::map::BLOCKS;
+use endat_host::registers::{Access, Place, Values};
+use serde_json::json;
+use std::fmt::Write;
+
+/// Arguments of `reg`.
+#[derive(Args)]
+pub struct RegArgs {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Subcommand)]
+enum Action {
+    /// Read words or fields
+    Read {
+        #[command(flatten)]
+        port: PortArgs,
+        /// BLOCK.REGISTER or BLOCK.REGISTER.FIELD, for example result0.status.cause; BLOCK for all its words
+        #[arg(required = true, value_name = "NAME")]
+        names: Vec<String>,
+        /// As JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Write a word or a field, and read it back
+    Write {
+        #[command(flatten)]
+        port: PortArgs,
+        /// BLOCK.REGISTER or BLOCK.REGISTER.FIELD, for example config0.frame.period_cycles
+        name: String,
+        /// Number, or the name of one of the field's values
+        #[arg(allow_negative_numbers = true)]
+        value: String,
+    },
+    /// List the registers that a card can have, without a card
+    List,
+}
+
+/// Runs the command.
+pub fn run(arguments: &RegArgs) -> Result<Outcome, GenError> {
+    match &arguments.action {
+        Action::Read { port, names, json } => read(&mut port.open()?, names, *json),
+        Action::Write { port, name, value } => write(&mut port.open()?, name, value),
+        Action::List => Ok(Outcome::good(list())),
+    }
+}
+
+/// All words of a block, or the one place.
+fn places(card: &AnyCard, name: &str) -> Result<Vec<Place>, GenError> {
+    if name.contains('.') {
+        return Ok(vec![card.place(name).map_err(told)?]);
+    }
+    // Any register of the block tells whether the block is there.
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let block = BLOCKS
+        .iter()
+        .find(|b| b.name == if b.per_channel { stem } else { name });
+    match block {
+        Some(block) => block
+            .registers
+            .iter()
+            .map(|r| card.place(&format!("{name}.{}", r.name)).map_err(told))
+            .collect(),
+        None => Ok(vec![card.place(name).map_err(told)?]),
+    }
+}
+
+fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, GenError> {
+    let mut all = Vec::new();
+    for name in names {
+        all.extend(places(card, name)?);
+    }
+    let mut text = String::new();
+    let mut objects = Vec::new();
+    for place in all {
+        let value = card.read(&place).map_err(told)?;
+        let fields: Vec<_> = match place.field {
+            Some(field) => vec![(field, value, field.told(value << field.lsb))],
+            None => place
+                .register
+                .fields
+                .iter()
+                .map(|f| (f, f.of(value), f.told(value)))
+                .collect(),
+        };
+        if as_data {
+            let fields = fields.iter().map(|(field, value, told)| {
+                (
+                    field.name.to_owned(),
+                    json!({"value": value, "unit": field.unit, "meaning": told}),
+                )
+            });
+            objects.push(json!({
+                "name": place.to_string(),
+                "address": place.address(),
+                "value": value,
+                "fields": fields.collect::<serde_json::Map<_, _>>(),
+            }));
+            continue;
+        }
+        let _ = writeln!(text, "{place} = 0x{value:08X} = {value}");
+        let is_plain = fields.len() == 1 && fields[0].0.width == 32;
+        for (field, value, told) in fields.iter().filter(|_| !is_plain) {
+            let _ = write!(text, "  {:>5}  {:<22} {value}", field.bits(), field.name);
+            if !field.unit.is_empty() {
+                let _ = write!(text, " {}", field.unit);
+            }
+            if let Some(told) = told {
+                let _ = write!(text, "  ({told})");
+            }
+            text.push('\n');
+        }
+    }
+    Ok(Outcome::good(if as_data {
+        to_json(&objects)?
+    } else {
+        text
+    }))
+}
+
+/// A number, or the name of one of the field's values.
+fn value_of(place: &Place, text: &str) -> Result<u32, GenError> {
+    if let Some(Values::Codes(codes)) = place.field.map(|f| f.values) {
+        if let Some(code) = codes.iter().find(|c| c.name == text) {
+            return Ok(code.number);
+        }
+    }
+    let most = place.field.map_or(u32::MAX, |f| f.mask() >> f.lsb);
+    number("value", text, 0..=most.into()).map(|n| n as u32)
+}
+
+fn write(card: &mut AnyCard, name: &str, text: &str) -> Result<Outcome, GenError> {
+    let place = card.place(name).map_err(told)?;
+    let value = value_of(&place, text)?;
+    card.write(&place, value).map_err(told)?;
+    if place.register.access == Access::Strobe {
+        return Ok(Outcome::good(format!("{place}: done\n")));
+    }
+    let now = card.read(&place).map_err(told)?;
+    let mut outcome = Outcome::good(format!("{place} = 0x{now:08X} = {now}\n"));
+    if now != value {
+        outcome.messages.push(format!(
+            "{place}: wrote {value}, reads {now}: the word acts when written, or has bits that do not keep it"
+        ));
+    }
+    Ok(outcome)
+}
+
+fn list() -> String {
+    let mut text = String::new();
+    for block in BLOCKS {
+        let number = if block.per_channel { "0" } else { "" };
+        let _ = writeln!(text, "{}{number}: {}", block.name, block.meaning);
+        for register in block.registers {
+            let access = match register.access {
+                Access::ReadOnly => "ro",
+                Access::ReadWrite => "rw",
+                Access::Strobe => "strobe",
+            };
+            let _ = writeln!(
+                text,
+                "  0x{:03X} {access:<6} {}{number}.{}: {}",
+                block.base + register.offset,
+                block.name,
+                register.name,
+                register.meaning
+            );
+        }
+    }
+    text
+}

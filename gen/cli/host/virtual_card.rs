@@ -1,0 +1,114 @@
+//! `card`: a card without hardware, for other programs.
+
+use super::super::number::decimal;
+use super::super::{Outcome, SourceArgs};
+use super::interrupted;
+use crate::error::GenError;
+use crate::virtual_card::{serve, Door, VirtualCard, VirtualConfig, CABLE_M};
+use clap::Args;
+use std::io::Write;
+use std::time::Duration;
+
+/// Arguments of `card`.
+#[derive(Args)]
+pub struct CardArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// Listen at this address, for example 127.0.0.1:7700
+    #[arg(long, value_name = "HOST:PORT", conflicts_with = "pty")]
+    tcp: Option<String>,
+    /// Make a pseudo terminal, to be opened as a serial port [default, where there are any]
+    #[arg(long)]
+    pty: bool,
+    /// Encoder at each port, or one for all: a device such as RCN-8510, or none [default: as in the configuration]
+    #[arg(long, value_name = "DEVICE")]
+    encoder: Vec<String>,
+    /// Cable to each encoder in metres [default: 10]
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    cable_m: Option<String>,
+    /// Turns per second of the shafts [default: 0.25]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    speed: Option<String>,
+    /// Stop after so many seconds [default: at Ctrl-C]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    seconds: Option<String>,
+}
+
+/// Longest cable of a virtual card, in metres.
+const CABLE_M_MAX: f64 = 780.0;
+/// Fastest shaft.
+const SPEED_MAX: f64 = 1_000.0;
+
+#[cfg(unix)]
+fn usual_door() -> Result<Door, GenError> {
+    Door::terminal()
+}
+
+#[cfg(not(unix))]
+fn usual_door() -> Result<Door, GenError> {
+    Err(GenError::input(
+        "--pty: there are no pseudo terminals here; use --tcp 127.0.0.1:7700",
+    ))
+}
+
+/// Runs the command.
+pub fn run(arguments: &CardArgs) -> Result<Outcome, GenError> {
+    let project = arguments.source.load()?;
+    let within = |flag, text: &Option<String>, usual: f64, most: f64| match text {
+        None => Ok(usual),
+        Some(text) => decimal(flag, text, 0.0..=most),
+    };
+    let config = VirtualConfig {
+        encoders: arguments.encoder.clone(),
+        cable_m: within("--cable-m", &arguments.cable_m, CABLE_M, CABLE_M_MAX)?,
+        speed: within(
+            "--speed",
+            &arguments.speed,
+            VirtualConfig::default().speed,
+            SPEED_MAX,
+        )?,
+        ..VirtualConfig::default()
+    };
+    let seconds = match &arguments.seconds {
+        None => None,
+        Some(text) => Some(Duration::from_secs_f64(decimal(
+            "--seconds",
+            text,
+            0.0..=1e9,
+        )?)),
+    };
+    let mut door = match &arguments.tcp {
+        Some(address) => Door::tcp(address)?,
+        None => usual_door()?,
+    };
+    let mut card = VirtualCard::new(&project, &config)?;
+    let mut stderr = std::io::stderr();
+    // The one line that a program which starts this one reads.
+    let mut stdout = std::io::stdout();
+    let _ = writeln!(stdout, "{}", door.name());
+    let _ = stdout.flush();
+    let _ = writeln!(
+        stderr,
+        "endat-gen: virtual card {} at {}: simulated, nothing is measured; Ctrl-C ends it",
+        project.name,
+        door.name()
+    );
+    let stop = interrupted();
+    let mut is_first = true;
+    serve(&mut card, &mut door, &stop, seconds, |pace| {
+        if is_first {
+            let _ = writeln!(
+                stderr,
+                "endat-gen: the card's time runs at {:.3} of real time ({})",
+                pace.ratio().min(1.0),
+                if pace.ratio() > 0.98 {
+                    "as a real card"
+                } else {
+                    "as fast as this machine simulates"
+                }
+            );
+            is_first = false;
+        }
+    });
+    Ok(Outcome::default())
+}
