@@ -212,10 +212,10 @@ impl<T: Transport> Card<T> {
             });
         }
         let at = |register| Place::at("service", register, channel);
+        // The state first: what it says is there is there when the words are read.
+        let state = self.bridge.read(at("progress").address(), 2)?;
         let (first, last) = (at("alarms").address(), at("delay").address());
         let words = self.bridge.read(first, usize::from(last - first) + 1)?;
-        let head = at("progress").address();
-        let state = self.bridge.read(head, 2)?;
         let field = |register: &str, field: &str, word: u32| {
             Place::field_at("service", register, field, 0).of(word)
         };

@@ -16,7 +16,9 @@ pub mod command {
     pub const SEND_PARAMETER: u8 = 0b100011;
 }
 
-/// Address in the data of 001110 for areas without blocks.
+/// Longest wait for an initialisation that is under way; simulated cards are slow.
+const INITIALISATION: Duration = Duration::from_secs(60);
+/// Data of 001110 for areas without blocks.
 const NO_BLOCK: u16 = 0;
 
 /// A request.
@@ -46,6 +48,7 @@ impl<T: Transport> Card<T> {
     pub fn request(&mut self, channel: usize, request: Request) -> Result<Answer, HostError> {
         self.needs_requests("requests to the encoder")?;
         let at = |register| Place::at("service", register, channel);
+        self.wait_for_initialisation(channel)?;
         let finished = |state: u32| state >> 16;
         let before = self.read(&at("request_state"))?;
         let word = u32::from(request.command) << 24
@@ -93,6 +96,21 @@ impl<T: Transport> Card<T> {
             data: answer as u16,
             duration,
         })
+    }
+
+    /// The card takes no request while it initialises the encoder.
+    fn wait_for_initialisation(&mut self, channel: usize) -> Result<(), HostError> {
+        let running = Place::field_at("service", "state", "initialising", channel);
+        let end = Instant::now() + INITIALISATION;
+        while self.read(&running)? == 1 {
+            if Instant::now() > end {
+                return Err(HostError::Refused(format!(
+                    "channel {channel}: the initialisation of the encoder has not ended within {} s; `id` shows its step",
+                    INITIALISATION.as_secs()
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Selects a memory area of the encoder.

@@ -113,8 +113,7 @@ pub struct Port {
     address: String,
     baud: u32,
     open: Option<Box<dyn Transport>>,
-    /// How often it was opened again.
-    pub reopened: u64,
+    reopened: u64,
 }
 
 impl Port {
@@ -132,6 +131,11 @@ impl Port {
             open: Some(open),
             reopened: 0,
         })
+    }
+
+    /// How often it was opened again.
+    pub fn reopened(&self) -> u64 {
+        self.reopened
     }
 
     /// Does something with the open port; one that fails is closed, and tried again with the next call.

@@ -10,6 +10,7 @@ mod elaborate;
 mod engines;
 mod files;
 mod host;
+mod hosts;
 mod maps;
 mod pages;
 mod position;

@@ -23,7 +23,7 @@ use endat_sim::bench::{Bench, Link, PinNames, Uart};
 use endat_sim::encoder::{EncoderConfig, PositionSource, DEVICES};
 use endat_sim::engine::Compiled;
 use endat_sim::line::LineConfig;
-use endat_sim::{Time, MS};
+use endat_sim::{Time, MS, US};
 use rust_hdl::prelude::Block;
 use std::io;
 use std::sync::Arc;
@@ -170,6 +170,7 @@ impl VirtualCard {
             // As short as the card's waits.
             encoder.reset_time = encoder.reset_time.min(Time::from(RESET_MS) * MS);
             encoder.write_time = MS..=MS;
+            encoder.tac = 50 * US..=100 * US;
             if is_open {
                 encoder.unplugged.push(0..Time::MAX);
             }

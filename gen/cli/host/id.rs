@@ -57,8 +57,8 @@ fn version(identity: &Identity) -> String {
 
 fn as_text(identity: &Identity, plates: &[NamePlate]) -> String {
     let mut text = format!(
-        "card               {} channel{}, positions to {} bits, system clock {} Hz\n\
-         register map       {}\nconfiguration      {:08x}\n",
+        "card                {} channel{}, positions to {} bits, system clock {} Hz\n\
+         register map        {}\nconfiguration       {:08x}\n",
         identity.channels,
         if identity.channels == 1 { "" } else { "s" },
         identity.max_position_bits,
@@ -67,10 +67,10 @@ fn as_text(identity: &Identity, plates: &[NamePlate]) -> String {
         identity.configuration_hash
     );
     for (name, meaning) in identity.parts() {
-        let _ = writeln!(text, "part               {name}: {meaning}");
+        let _ = writeln!(text, "part                {name}: {meaning}");
     }
     if plates.is_empty() {
-        text.push_str("encoders           not read: the card has no part initialise\n");
+        text.push_str("encoders            not read: the card has no part initialise\n");
     }
     for (channel, plate) in plates.iter().enumerate() {
         let _ = write!(
@@ -92,7 +92,7 @@ fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: Option<String>| {
         if let Some(value) = value {
-            let _ = writeln!(text, "  {name:<17}{value}");
+            let _ = writeln!(text, "  {name:<18}{value}");
         }
     };
     let state = match (plate.initialised, plate.failed, plate.step) {

@@ -10,7 +10,7 @@ pub mod read;
 pub mod reg;
 pub mod virtual_card;
 
-use crate::config::{load_preset, DEFAULT_PRESET};
+use crate::config::{load_file, load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
 use crate::virtual_card::{VirtualCard, VirtualConfig};
 use clap::Args;
@@ -18,6 +18,7 @@ use endat_host::registers::Place;
 use endat_host::transport::Port;
 use endat_host::units::Scale;
 use endat_host::{Bridge, HostError, Transport};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
@@ -30,7 +31,7 @@ pub type AnyCard = endat_host::Card<Box<dyn Transport>>;
 /// Where the card is.
 #[derive(Args, Clone)]
 pub struct PortArgs {
-    /// Serial port, tcp:HOST:PORT, or virtual[:PRESET] for a simulated card in the program itself
+    /// Serial port, tcp:HOST:PORT, or virtual, virtual:PRESET, virtual:FILE.toml for a simulated card in the program itself
     #[arg(long, value_name = "PORT")]
     port: String,
     /// Baud rate of a serial port [default: 2000000]
@@ -63,8 +64,11 @@ impl PortArgs {
     }
 }
 
-fn virtual_card(preset: &str) -> Result<Box<dyn Transport>, GenError> {
-    let project = load_preset(preset)?;
+fn virtual_card(name: &str) -> Result<Box<dyn Transport>, GenError> {
+    let project = match name.ends_with(".toml") {
+        true => load_file(Path::new(name))?,
+        false => load_preset(name)?,
+    };
     Ok(Box::new(VirtualCard::new(
         &project,
         &VirtualConfig::default(),

@@ -1,0 +1,27 @@
+//! Programs that nobody here wrote, at a virtual card.
+
+use super::ports::{slow_card, Served};
+use crate::tools;
+use endat_gen::virtual_card::Door;
+use std::process::Command;
+
+/// LiteX's own client reads the identification, and writes and reads back words.
+#[cfg(unix)]
+#[test]
+fn litex_reads_and_writes_the_card_over_a_pseudo_terminal() {
+    if !tools::require_python("litex.tools.remote.comm_uart", "LiteX at the virtual card") {
+        return;
+    }
+    let card = Served::new(slow_card(), || Door::terminal().unwrap());
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/litex_client.py");
+    let output = Command::new("python3")
+        .args([script, &card.name])
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success() && told.contains("LITEX GOOD"),
+        "{told}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}

@@ -1,0 +1,306 @@
+//! The commands of the program, at a card in the same process.
+
+use crate::tools;
+use endat_gen::cli;
+use std::fs;
+
+fn run(arguments: &[&str]) -> cli::Outcome {
+    cli::run(std::iter::once("endat-gen").chain(arguments.iter().copied()))
+}
+
+fn json(outcome: &cli::Outcome) -> serde_json::Value {
+    serde_json::from_str(&outcome.stdout).unwrap()
+}
+
+const PORT: [&str; 2] = ["--port", "virtual"];
+const SERVICE: [&str; 2] = ["--port", "virtual:s6_two_channel_service"];
+
+fn with<'a>(command: &[&'a str], port: [&'a str; 2]) -> cli::Outcome {
+    run(&[command, &port].concat())
+}
+
+#[test]
+fn read_shows_every_channel_in_degrees() {
+    let outcome = with(&["read", "--json"], PORT);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    let channels = json(&outcome);
+    for (n, first_deg) in [(0, 36.0), (1, 72.0)] {
+        let c = &channels[n];
+        assert_eq!(
+            (c["fresh"].as_bool(), c["cause"].as_str()),
+            (Some(true), Some("none"))
+        );
+        // Shafts begin at a tenth of a turn per channel, and turn.
+        let deg = c["value"].as_f64().unwrap();
+        assert!((first_deg..first_deg + 1.0).contains(&deg), "{deg}");
+        let raw = c["position"].as_u64().unwrap() as f64 * 360.0 / f64::from(1 << 29);
+        assert!((raw - deg).abs() < 1e-9);
+    }
+    assert!(with(&["read"], PORT).stdout.contains(" deg "));
+}
+
+#[test]
+fn id_reads_the_name_plate_and_param_the_same_word() {
+    let outcome = with(&["id", "--json"], SERVICE);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    let card = json(&outcome);
+    let encoder = &card["encoders"][1];
+    assert_eq!(encoder["position_bits"], 29);
+    assert_eq!(encoder["steps"], 1 << 29);
+    assert_eq!(
+        (encoder["id"].as_str(), encoder["serial"].as_str()),
+        (Some("123456"), Some("1"))
+    );
+    assert!(encoder["delay_cycles"].as_u64().unwrap() > 10);
+    let word = json(&with(
+        &["param", "read", "0xA1", "0x0D", "--channel", "1", "--json"],
+        SERVICE,
+    ));
+    assert_eq!(word["value"], 0x801D);
+    let plain = with(&["id"], PORT);
+    assert!(
+        plain.stdout.contains("the card has no part initialise"),
+        "{plain:?}"
+    );
+}
+
+#[test]
+fn param_write_changes_the_encoder_and_what_it_refuses_is_told() {
+    // The customer's area 0xA9 can be written.
+    let written = with(
+        &["param", "write", "0xA9", "0x05", "0x1234", "--json"],
+        SERVICE,
+    );
+    assert_eq!(written.exit_code, 0, "{written:?}");
+    assert_eq!(json(&written)["value"], 0x1234);
+    let refused = with(&["param", "write", "0xA1", "0x0D", "1"], SERVICE);
+    assert_eq!(refused.exit_code, 1, "{refused:?}");
+    assert!(refused.messages[0].contains("011100"), "{refused:?}");
+    let absent = with(&["param", "read", "0xA1", "0x0D"], PORT);
+    assert_eq!(absent.exit_code, 2);
+    assert!(
+        absent.messages[0].contains("the card has no part `requests`"),
+        "{absent:?}"
+    );
+}
+
+#[test]
+fn registers_are_read_and_written_by_name() {
+    let read = with(&["reg", "read", "card.id", "config1.frame", "--json"], PORT);
+    let words = json(&read);
+    assert_eq!(words[0]["value"], 0x456E_4474);
+    assert_eq!(words[1]["address"], 0x110);
+    assert_eq!(words[1]["fields"]["position_bits"]["value"], 29);
+    assert_eq!(
+        words[1]["fields"]["command"]["meaning"],
+        "111000 send position with additional information (EnDat 2.2)"
+    );
+    let block = with(&["reg", "read", "result0"], PORT);
+    assert!(
+        block.stdout.contains("result0.age_recovery = "),
+        "{block:?}"
+    );
+    // A field, by name of its value; the fields beside it stay.
+    let written = with(
+        &["reg", "write", "config0.frame.command", "send_position"],
+        PORT,
+    );
+    assert_eq!(written.stdout, "config0.frame.command = 0x00000007 = 7\n");
+    let strobe = with(&["reg", "write", "card.trigger_now", "1"], PORT);
+    assert_eq!(strobe.stdout, "card.trigger_now: done\n");
+    for (arguments, told) in [
+        (&["reg", "read", "result7.status"][..], "result0 to result1"),
+        (
+            &["reg", "write", "result0.status", "1"],
+            "is read only; nothing was written",
+        ),
+        (
+            &["reg", "write", "config0.frame.command", "64"],
+            "value = \"64\": outside 0..63",
+        ),
+        (
+            &["reg", "read", "service0.state"],
+            "this card has no block service",
+        ),
+    ] {
+        let outcome = with(arguments, PORT);
+        assert_eq!(outcome.exit_code, 2, "{outcome:?}");
+        assert!(outcome.messages[0].contains(told), "{outcome:?}");
+    }
+    assert!(run(&["reg", "list"])
+        .stdout
+        .contains("0x180 ro     result0.status"));
+}
+
+#[test]
+fn log_writes_a_file_and_does_not_replace_another() {
+    let folder = tools::folder("host_log");
+    let path = folder.join("angles.csv");
+    let file = path.to_str().unwrap();
+    let log = ["log", "--samples", "25", "--out", file, "--poll"];
+    let outcome = with(&log, PORT);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    let text = fs::read_to_string(&path).unwrap();
+    let mut rows = csv_rows(&text);
+    assert_eq!(rows.len(), 26);
+    let head = rows.remove(0);
+    let column = |name: &str| head.iter().position(|h| h == name).unwrap();
+    let (trigger, time, missing) = (column("trigger"), column("time_s"), column("missing"));
+    for pair in rows.windows(2) {
+        let number = |row: &[String], at: usize| row[at].parse::<f64>().unwrap();
+        let steps = number(&pair[1], trigger) - number(&pair[0], trigger);
+        assert_eq!(number(&pair[1], missing), steps - 1.0);
+        // 10 kHz by the card's own clock.
+        let span = number(&pair[1], time) - number(&pair[0], time);
+        assert!((span - steps * 1e-4).abs() < 1e-7, "{span}");
+        let angle = number(&pair[1], column("ch1_deg")) - number(&pair[0], column("ch1_deg"));
+        assert!(angle > 0.0 && angle < 1.0);
+    }
+    let again = with(&log, PORT);
+    assert_eq!(again.exit_code, 2);
+    assert!(again.messages[0].contains("--force"), "{again:?}");
+    assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    let forced = with(
+        &[&log[..], &["--force", "--format", "jsonl"]].concat(),
+        PORT,
+    );
+    assert_eq!(forced.exit_code, 0, "{forced:?}");
+    let lines = fs::read_to_string(&path).unwrap();
+    assert_eq!(lines.lines().count(), 25);
+    assert!(lines
+        .lines()
+        .all(|l| serde_json::from_str::<serde_json::Value>(l).is_ok()));
+}
+
+fn csv_rows(text: &str) -> Vec<Vec<String>> {
+    let row = |line: &str| line.split(',').map(str::to_owned).collect();
+    text.lines().map(row).collect()
+}
+
+#[test]
+fn margin_is_what_the_card_has_measured() {
+    let folder = tools::folder("host_margin");
+    let toml = folder.join("margin.toml");
+    let text = endat_gen::config::preset("s6_two_channel").unwrap();
+    let parts = "parts = []                      # (default: none)\n\n[board]";
+    assert!(text.contains(parts));
+    let text = text.replace(parts, "parts = [\"alignment\", \"margin\"]\n\n[board]");
+    fs::write(&toml, text).unwrap();
+    let port = format!("virtual:{}", toml.display());
+    let svg = folder.join("edges.svg");
+    let margin = [
+        "margin",
+        "--frames",
+        "30",
+        "--json",
+        "--svg",
+        svg.to_str().unwrap(),
+        "--port",
+        &port,
+    ];
+    let outcome = run(&margin);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    let told = json(&outcome);
+    let edges: Vec<u64> = told["edges"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|e| e.as_u64().unwrap())
+        .collect();
+    assert!(told["frames"].as_u64().unwrap() >= 30 && told["bad_frames"] == 0);
+    // Without jitter all edges are within a place of where they are expected; a bit is 32 places.
+    assert!(edges[14..=17].iter().sum::<u64>() > 300, "{edges:?}");
+    assert_eq!(
+        edges[..14].iter().chain(&edges[18..]).sum::<u64>(),
+        0,
+        "{edges:?}"
+    );
+    let ns = told["margin_ns"].as_f64().unwrap();
+    assert!((130.0..=160.0).contains(&ns), "{ns}");
+    assert!(fs::read_to_string(svg).unwrap().contains("sample before"));
+    let none = with(&["margin"], PORT);
+    assert_eq!(none.exit_code, 2);
+    assert!(none.messages[0].contains("no part `margin`"), "{none:?}");
+}
+
+#[test]
+fn monitor_shows_rate_health_and_state() {
+    let outcome = with(&["monitor", "--count", "3", "--every", "0"], SERVICE);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+}
+
+#[test]
+fn every_name_of_the_map_is_explained() {
+    for name in [
+        "crc",
+        "no_encoder",
+        "result0.status",
+        "tracked",
+        "status.cause",
+        "line",
+        "2",
+    ] {
+        let outcome = run(&["explain", name]);
+        assert_eq!(outcome.exit_code, 0, "{name}: {outcome:?}");
+    }
+    for block in endat_host::map::BLOCKS {
+        for register in block.registers {
+            let name = format!("{}.{}", block.name, register.name);
+            let text = run(&["explain", &name]).stdout;
+            assert!(text.contains(register.meaning), "{name}");
+            for field in register.fields {
+                let text = run(&["explain", &format!("{name}.{}", field.name)]).stdout;
+                assert!(text.contains(field.meaning), "{name}.{}", field.name);
+            }
+        }
+    }
+    let unknown = run(&["explain", "crx"]);
+    assert_eq!(unknown.exit_code, 2);
+    assert!(
+        unknown.messages[0].contains("causes are none, data_not_low"),
+        "{unknown:?}"
+    );
+}
+
+#[test]
+fn what_cannot_be_is_told_with_a_remedy() {
+    for (arguments, code, told) in [
+        (
+            &["read", "--port", "virtual:nothing"][..],
+            2,
+            "known presets",
+        ),
+        (&["read", "--port", "/nowhere/ttyX"], 2, "tcp:HOST:PORT"),
+        (
+            &["read", "--port", "tcp:127.0.0.1:1"],
+            2,
+            "cannot be opened",
+        ),
+        (
+            &["read", "--port", "virtual", "--baud", "5"],
+            2,
+            "--baud = \"5\": outside 300..12000000",
+        ),
+        (&["read"], 2, "--port <PORT>"),
+        (
+            &["log", "--port", "virtual", "--samples", "0"],
+            2,
+            "--samples",
+        ),
+        (
+            &["param", "read", "0x1A1", "0", "--port", "virtual"],
+            2,
+            "area = \"0x1A1\": outside 0..255",
+        ),
+        (&["card", "--tcp", "nowhere"], 2, "give HOST:PORT"),
+        (&["card", "--encoder", "RCN"], 2, "known devices: RCN 8510"),
+        (&["card", "--cable-m", "-3"], 2, "--cable-m"),
+    ] {
+        let outcome = run(arguments);
+        assert_eq!(outcome.exit_code, code, "{arguments:?}: {outcome:?}");
+        assert!(
+            outcome.messages.iter().any(|m| m.contains(told)),
+            "{arguments:?}: {outcome:?}"
+        );
+    }
+}

@@ -1,0 +1,109 @@
+//! Virtual cards behind ports: TCP and pseudo terminals, in threads of the test.
+
+use super::{card_of, changed};
+use endat_gen::config::Project;
+use endat_gen::virtual_card::{serve, Door};
+use endat_host::transport::Port;
+use endat_host::{Bridge, Card};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+
+/// A card in a thread; ends with the value.
+pub struct Served {
+    pub name: String,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Served {
+    pub fn new(project: Project, door: impl FnOnce() -> Door + Send + 'static) -> Self {
+        let stop = Arc::new(AtomicBool::new(false));
+        let (told, name) = std::sync::mpsc::channel();
+        let raised = stop.clone();
+        let thread = thread::spawn(move || {
+            let mut card = card_of(&project);
+            let mut door = door();
+            told.send(door.name()).unwrap();
+            serve(&mut card, &mut door, &raised, None, |_| {});
+        });
+        Self {
+            name: name.recv().unwrap(),
+            stop,
+            thread: Some(thread),
+        }
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Slow enough sampling for a machine that simulates slowly.
+pub fn slow_card() -> Project {
+    changed(
+        "s6_two_channel",
+        &[("sample_hz = 10_000", "sample_hz = 1_000")],
+    )
+}
+
+fn read_and_write(name: &str) {
+    let port = Port::open(name, 2_000_000).unwrap();
+    let mut card = Card::find(Bridge::new(port)).unwrap();
+    let scratch = card.place("card_config.hold.scratch").unwrap();
+    for value in [0x00_0000, 0xFF_FFFF, 0x5A_A513] {
+        card.write(&scratch, value).unwrap();
+        assert_eq!(card.read(&scratch).unwrap(), value);
+    }
+    let sequence = |card: &mut Card<Port>| card.results().unwrap().channels[1].sequence;
+    let first = sequence(&mut card);
+    while sequence(&mut card) == first {}
+}
+
+/// Hosts come and go; the card goes on.
+#[test]
+fn hosts_come_and_go_over_tcp() {
+    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    for _ in 0..3 {
+        read_and_write(&card.name);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pseudo_terminal_is_a_serial_port() {
+    let card = Served::new(slow_card(), || Door::terminal().unwrap());
+    for _ in 0..2 {
+        read_and_write(&card.name);
+    }
+}
+
+/// A link that goes away in mid command, and comes back.
+#[test]
+fn a_port_that_was_unplugged_is_opened_again() {
+    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    let name = card.name.clone();
+    let port = Port::open(&name, 2_000_000).unwrap();
+    let mut bridge = Bridge::new(port);
+    let id = bridge.read(0, 1).unwrap();
+    drop(card);
+    assert!(bridge.read(0, 1).is_err(), "nobody is there");
+    let address = name.trim_start_matches("tcp:").to_owned();
+    let _again = Served::new(slow_card(), move || {
+        // The system keeps the port for a moment.
+        for _ in 0..100 {
+            if let Ok(door) = Door::tcp(&address) {
+                return door;
+            }
+            thread::sleep(std::time::Duration::from_millis(100));
+        }
+        panic!("{address} does not become free");
+    });
+    assert_eq!(bridge.read(0, 1).unwrap(), id);
+    assert!(bridge.transport().reopened() >= 1);
+}
