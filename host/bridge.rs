@@ -14,6 +14,8 @@ pub const WORDS_MAX: usize = 255;
 pub const WAIT: Duration = Duration::from_millis(500);
 /// A card forgets a command that pauses for 100 ms.
 const FORGET: Duration = Duration::from_millis(120);
+/// The longest answer at 9600 baud takes a second; a line that is never quiet is given up after this.
+const SETTLE_MAX: Duration = Duration::from_secs(3);
 /// How often a read is tried.
 const TRIES: u32 = 3;
 /// How long the frame behind an answer is waited for.
@@ -59,7 +61,7 @@ impl<T: Transport> Bridge<T> {
         &mut self.transport
     }
 
-    /// Answers that did not come and were asked for again.
+    /// Answers that did not come and were asked for again, or had bytes too many.
     pub fn retries(&self) -> u64 {
         self.retries
     }
@@ -124,8 +126,13 @@ impl<T: Transport> Bridge<T> {
                 self.settle()?;
             }
             if !self.pushes {
-                // Bytes of earlier answers.
+                // Bytes that nobody asked for: an answer went wrong, and its rest may still be coming.
+                let stale = self.inbox.len() + self.fill(Duration::ZERO)?;
                 self.inbox.clear();
+                if stale > 0 {
+                    self.retries += 1;
+                    self.settle()?;
+                }
             }
             self.send(&[command, count as u8, 0, 0, high, low])?;
             if let Some(bytes) = self.answer(4 * count)? {
@@ -165,7 +172,7 @@ impl<T: Transport> Bridge<T> {
 
     /// Waits until the card has forgotten what was sent to it, and nothing comes any more (unless it pushes).
     fn settle(&mut self) -> Result<(), HostError> {
-        let end = Instant::now() + self.wait.max(FORGET);
+        let end = Instant::now() + SETTLE_MAX;
         let mut quiet_since = Instant::now();
         while quiet_since.elapsed() < FORGET && Instant::now() < end {
             if self.fill(FORGET)? > 0 {

@@ -10,7 +10,7 @@ pub trait Transport {
     /// Sends all of `bytes`.
     fn send(&mut self, bytes: &[u8]) -> io::Result<()>;
 
-    /// Waits at most `wait` for bytes, and returns how many came: 0 = none.
+    /// Waits at most `wait` for bytes, and returns how many came: 0 = none. With a wait of zero, what is there already.
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
 }
 
@@ -41,10 +41,8 @@ fn or_nothing(result: io::Result<usize>) -> io::Result<usize> {
     }
 }
 
-/// Ports refuse a wait of zero.
-fn at_least_1_ms(wait: Duration) -> Duration {
-    wait.max(Duration::from_millis(1))
-}
+/// Ports take a wait of zero for an endless one, or refuse it.
+const SHORTEST: Duration = Duration::from_millis(1);
 
 struct Serial(Box<dyn serialport::SerialPort>);
 
@@ -55,7 +53,10 @@ impl Transport for Serial {
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        self.0.set_timeout(at_least_1_ms(wait))?;
+        if wait.is_zero() && self.0.bytes_to_read()? == 0 {
+            return Ok(0);
+        }
+        self.0.set_timeout(wait.max(SHORTEST))?;
         or_nothing(self.0.read(buffer))
     }
 }
@@ -68,21 +69,17 @@ impl Transport for Tcp {
     }
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        self.0.set_read_timeout(Some(at_least_1_ms(wait)))?;
-        match or_nothing(self.0.read(buffer)) {
-            // A socket that is readable and has nothing has been closed; a time-out came as 0, too, but took its time.
-            Ok(0) if self.is_closed() => Err(ErrorKind::ConnectionAborted.into()),
-            other => other,
+        self.0.set_nonblocking(wait.is_zero())?;
+        if !wait.is_zero() {
+            self.0.set_read_timeout(Some(wait.max(SHORTEST)))?;
         }
-    }
-}
-
-impl Tcp {
-    fn is_closed(&self) -> bool {
-        let _ = self.0.set_nonblocking(true);
-        let peeked = self.0.peek(&mut [0]);
-        let _ = self.0.set_nonblocking(false);
-        matches!(peeked, Ok(0))
+        let result = self.0.read(buffer);
+        self.0.set_nonblocking(false)?;
+        match result {
+            // The end of a socket that has been closed; a time-out is an error of its own.
+            Ok(0) => Err(ErrorKind::ConnectionAborted.into()),
+            other => or_nothing(other),
+        }
     }
 }
 

@@ -229,6 +229,8 @@ impl VirtualCard {
     }
 }
 
+/// A host takes this long for anything.
+const HOST_US: u64 = 20;
 /// Cycles between two looks at whether an answer has come.
 const STEP_CYCLES: u64 = 64;
 
@@ -240,7 +242,7 @@ impl Transport for VirtualCard {
 
     /// A wait is simulated time; waits of a host that would be long are cut, since this card has shorter ones itself.
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
-        let us = (wait.as_micros() as u64).min(4 * LINK_TIMEOUT_US);
+        let us = (wait.as_micros() as u64).clamp(HOST_US, 4 * LINK_TIMEOUT_US);
         let end = self.bench.cycle() + us * self.cycles_per_us;
         while self.uart.received().is_empty() && self.bench.cycle() < end {
             self.run(STEP_CYCLES);

@@ -120,7 +120,7 @@ pub fn edges_svg(edges: &Edges, title: &str) -> String {
     let x = |places: f64| LEFT + BIN * (edges.middle() as f64 + places / per_bin);
     // What lies beyond the samples belongs to another bit.
     let half = edges.half_bit_places;
-    if x(half) < right {
+    if x(half) <= right {
         svg.rect(LEFT, TOP, (x(-half) - LEFT).max(0.0), HEIGHT, "far");
         svg.rect(x(half), TOP, right - x(half), HEIGHT, "far");
     }
@@ -148,7 +148,7 @@ pub fn edges_svg(edges: &Edges, title: &str) -> String {
         "offset from the expected place, ns",
     );
     svg.text(24.0, TOP - 8.0, Anchor::Start, "name", "edges");
-    if x(half) < right {
+    if x(half) <= right {
         for (side, name) in [(-half, "sample before"), (half, "sample")] {
             svg.line(&[(x(side), TOP - 6.0), (x(side), bottom)], "sample");
             svg.text(x(side), bottom + 34.0, Anchor::Middle, "mark", name);
@@ -162,7 +162,7 @@ pub fn edges_svg(edges: &Edges, title: &str) -> String {
         svg.text(at, bottom + 18.0, Anchor::Middle, "tick", &label);
     }
     svg.line(&[(LEFT, bottom), (right, bottom)], "axis");
-    let width = (right + 28.0)
+    let width = (right + 48.0)
         .max(head + 24.0)
         .max(text_width(&edges.told(), 11.5) + 60.0);
     svg.finish(width, bottom + 70.0, title, STYLE)

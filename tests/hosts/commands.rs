@@ -116,7 +116,7 @@ fn registers_are_read_and_written_by_name() {
         ),
         (
             &["reg", "write", "config0.frame.command", "64"],
-            "value = \"64\": outside 0..63",
+            "value = 64: outside 0..63",
         ),
         (
             &["reg", "read", "service0.state"],
@@ -279,7 +279,7 @@ fn what_cannot_be_is_told_with_a_remedy() {
         (
             &["read", "--port", "virtual", "--baud", "5"],
             2,
-            "--baud = \"5\": outside 300..12000000",
+            "--baud = 5: outside 300..12000000",
         ),
         (&["read"], 2, "--port <PORT>"),
         (
@@ -290,7 +290,7 @@ fn what_cannot_be_is_told_with_a_remedy() {
         (
             &["param", "read", "0x1A1", "0", "--port", "virtual"],
             2,
-            "area = \"0x1A1\": outside 0..255",
+            "area = 0x1A1: outside 0..255",
         ),
         (&["card", "--tcp", "nowhere"], 2, "give HOST:PORT"),
         (&["card", "--encoder", "RCN"], 2, "known devices: RCN 8510"),
