@@ -17,10 +17,12 @@ pub mod bridge;
 pub mod card;
 pub mod causes;
 mod error;
+pub mod feed;
 #[rustfmt::skip]
 pub mod map;
 pub mod mailbox;
 pub mod name_plate;
+pub mod panda;
 pub mod registers;
 pub mod result;
 pub mod stream;

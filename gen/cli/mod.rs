@@ -99,6 +99,8 @@ enum Command {
     Log(host::log::LogArgs),
     /// Watch positions, rate, health and margin live
     Monitor(host::monitor::MonitorArgs),
+    /// Serve a card to PandABlocks clients, which record HDF5
+    Serve(host::serve::ServeArgs),
     /// Read and write registers of a card by name
     Reg(host::reg::RegArgs),
     /// Read and write words of the encoder's memory
@@ -195,6 +197,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Read(arguments)) => host::read::run(&arguments),
         Some(Command::Log(arguments)) => host::log::run(&arguments),
         Some(Command::Monitor(arguments)) => host::monitor::run(&arguments),
+        Some(Command::Serve(arguments)) => host::serve::run(&arguments),
         Some(Command::Reg(arguments)) => host::reg::run(&arguments),
         Some(Command::Param(arguments)) => host::param::run(&arguments),
         Some(Command::Margin(arguments)) => host::margin::run(&arguments),

@@ -5,7 +5,7 @@ use super::super::Outcome;
 use super::{interrupted, scale, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::{Args, ValueEnum};
-use endat_host::causes;
+use endat_host::feed::{Feed, Row};
 use endat_host::units::Scale;
 use serde_json::json;
 use std::collections::VecDeque;
@@ -49,62 +49,6 @@ pub struct LogArgs {
     poll: bool,
 }
 
-/// A channel of a row.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Cell {
-    position: Option<u64>,
-    fresh: bool,
-    cause: &'static str,
-}
-
-/// A line of the file.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Row {
-    /// Number of the trigger, not wrapping.
-    trigger: u64,
-    /// Since the first row.
-    time_s: f64,
-    /// Triggers without a row just before this one.
-    missing: u64,
-    cells: Vec<Cell>,
-}
-
-/// Makes numbers that wrap into numbers that do not.
-#[derive(Default)]
-pub(super) struct Clock {
-    last: Option<(u16, u32)>,
-    trigger: u64,
-    cycles: u64,
-}
-
-impl Clock {
-    /// Takes a trigger's number and moment; gives how many were missing before it.
-    fn step(&mut self, sequence: u16, timestamp: u32) -> u64 {
-        let missing = match self.last {
-            None => {
-                self.trigger = sequence.into();
-                0
-            }
-            Some((last_sequence, last_timestamp)) => {
-                let steps = u64::from(sequence.wrapping_sub(last_sequence));
-                self.trigger += steps;
-                self.cycles += u64::from(timestamp.wrapping_sub(last_timestamp));
-                steps.saturating_sub(1)
-            }
-        };
-        self.last = Some((sequence, timestamp));
-        missing
-    }
-}
-
-/// Where rows come from.
-enum Source {
-    /// The card pushes sample sets.
-    Stream,
-    /// The result registers, again and again.
-    Poll,
-}
-
 /// How long an empty stream is waited for before the end is looked for again.
 const SLICE: Duration = Duration::from_millis(100);
 /// Nothing for this long: something is wrong.
@@ -112,114 +56,21 @@ const SILENCE: Duration = Duration::from_secs(20);
 /// Between two lines of progress.
 const PROGRESS: Duration = Duration::from_secs(2);
 
-struct Feed {
-    source: Source,
-    clock: Clock,
-    rows: VecDeque<Row>,
-    system_hz: f64,
-    lost_in_card: u64,
-}
-
-impl Feed {
-    fn begin(card: &mut AnyCard, poll: bool) -> Result<Self, GenError> {
-        let can_stream = card.identity().has("stream") && !poll;
-        if can_stream {
-            let control = super::place(card, "card.stream_control")?;
-            let clear = super::place(card, "card.stream_clear")?;
-            card.write(&clear, 1).map_err(told)?;
-            card.write(&control, COLLECT_AND_PUSH).map_err(told)?;
-            card.bridge().set_pushes(true);
-        }
-        Ok(Self {
-            source: if can_stream {
-                Source::Stream
-            } else {
-                Source::Poll
-            },
-            clock: Clock::default(),
-            rows: VecDeque::new(),
-            system_hz: card.identity().system_hz.max(1).into(),
-            lost_in_card: 0,
-        })
-    }
-
-    fn end(&self, card: &mut AnyCard) -> Result<(), GenError> {
-        match self.source {
-            Source::Stream => card.bridge().calm().map_err(told),
-            Source::Poll => Ok(()),
-        }
-    }
-
-    fn push(&mut self, sequence: u16, timestamp: u32, cells: Vec<Cell>) {
-        let missing = self.clock.step(sequence, timestamp);
-        self.rows.push_back(Row {
-            trigger: self.clock.trigger,
-            time_s: self.clock.cycles as f64 / self.system_hz,
-            missing,
-            cells,
-        });
-    }
-
-    /// Takes what has come.
-    fn fill(&mut self, card: &mut AnyCard) -> Result<(), GenError> {
-        match self.source {
-            Source::Stream => {
-                for set in card.bridge().pushed(SLICE).map_err(told)? {
-                    self.lost_in_card += u64::from(set.lost);
-                    let cell = |s: &endat_host::stream::Sample| Cell {
-                        position: s.valid.then_some(s.position),
-                        fresh: s.fresh,
-                        cause: match (s.taken, s.missing) {
-                            (false, _) => "not_taken",
-                            (_, true) => "too_late",
-                            _ => s.cause_name(),
-                        },
-                    };
-                    self.push(
-                        set.sequence,
-                        set.timestamp,
-                        set.channels.iter().map(cell).collect(),
-                    );
-                }
-            }
-            Source::Poll => {
-                let results = card.results().map_err(told)?.channels;
-                let last = self.clock.last.map(|(sequence, _)| sequence);
-                if last != Some(results[0].sequence) {
-                    let cell = |r: &endat_host::result::Reading| Cell {
-                        position: r.valid.then_some(r.position),
-                        fresh: r.fresh,
-                        cause: causes::name(r.cause),
-                    };
-                    let first = &results[0];
-                    self.push(
-                        first.sequence,
-                        first.timestamp,
-                        results.iter().map(cell).collect(),
-                    );
-                }
-            }
-        }
-        Ok(())
-    }
-}
-
-/// `card.stream_control`: collect and push.
-const COLLECT_AND_PUSH: u32 = 0b11;
-
 /// Writes rows.
-pub(super) struct Sheet<W: Write> {
+struct Sheet<W: Write> {
     format: Format,
     out: W,
     scales: Vec<Scale>,
+    system_hz: f64,
 }
 
 impl<W: Write> Sheet<W> {
-    fn new(format: Format, out: W, scales: Vec<Scale>) -> io::Result<Self> {
+    fn new(format: Format, out: W, scales: Vec<Scale>, system_hz: f64) -> io::Result<Self> {
         let mut sheet = Self {
             format,
             out,
             scales,
+            system_hz,
         };
         if format == Format::Csv {
             let mut names = vec!["trigger".to_owned(), "time_s".into(), "missing".into()];
@@ -234,6 +85,10 @@ impl<W: Write> Sheet<W> {
         Ok(sheet)
     }
 
+    fn time_s(&self, row: &Row) -> f64 {
+        row.cycles as f64 / self.system_hz
+    }
+
     fn record(&mut self, fields: &[String]) -> io::Result<()> {
         let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
         writer.write_record(fields)?;
@@ -244,11 +99,12 @@ impl<W: Write> Sheet<W> {
     }
 
     fn row(&mut self, row: &Row) -> io::Result<()> {
+        let time_s = self.time_s(row);
         match self.format {
             Format::Csv => {
                 let mut fields = vec![
                     row.trigger.to_string(),
-                    format!("{:.9}", row.time_s),
+                    format!("{:.9}", time_s),
                     row.missing.to_string(),
                 ];
                 for (cell, scale) in row.cells.iter().zip(&self.scales) {
@@ -278,7 +134,7 @@ impl<W: Write> Sheet<W> {
                 });
                 let object = json!({
                     "trigger": row.trigger,
-                    "time_s": row.time_s,
+                    "time_s": time_s,
                     "missing": row.missing,
                     "channels": cells.collect::<Vec<_>>(),
                 });
@@ -329,11 +185,14 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     };
     let failed =
         |e: io::Error| GenError::input(format!("{name}: cannot write: {e}; is the disk full?"));
-    let mut sheet = Sheet::new(arguments.format, BufWriter::new(out), scales).map_err(failed)?;
-    let mut feed = Feed::begin(&mut card, arguments.poll)?;
+    let system_hz = f64::from(card.identity().system_hz.max(1));
+    let mut sheet =
+        Sheet::new(arguments.format, BufWriter::new(out), scales, system_hz).map_err(failed)?;
+    let mut feed = Feed::begin(&mut card, arguments.poll).map_err(told)?;
     let stop = interrupted();
     let result = record(&mut card, &mut feed, &mut sheet, &end, &stop);
     // Whatever ended it: the card is quiet again, and the file whole.
+    let (is_stream, lost_in_card) = (feed.streams(), feed.lost_in_card());
     let calm = feed.end(&mut card);
     let flushed = sheet.out.flush();
     let totals = match result {
@@ -346,26 +205,25 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         Ok(totals) => totals,
     };
     flushed.map_err(failed)?;
-    calm?;
+    calm.map_err(told)?;
     let damaged = card.bridge().decoder().damaged();
-    let is_stream = matches!(feed.source, Source::Stream);
-    let mut told = format!(
+    let mut text = format!(
         "{name}: {} sample sets in {:.3} s of the card's time",
         totals.rows, totals.span_s
     );
     if is_stream {
-        told += &format!(
+        text += &format!(
             "; {} triggers missing, {} of them dropped in the card; {damaged} frames damaged on the line",
-            totals.missing, feed.lost_in_card
+            totals.missing, lost_in_card
         );
     } else {
-        told += &format!(
+        text += &format!(
             "; read one by one: {} results in between not read (a card with [stream] gives them all)",
             totals.missing
         );
     }
     Ok(Outcome {
-        messages: vec![told],
+        messages: vec![text],
         exit_code: u8::from(is_stream && totals.missing > 0),
         ..Outcome::default()
     })
@@ -393,17 +251,19 @@ fn record<W: Write>(
     let begin = Instant::now();
     let (mut shown, mut heard) = (begin, begin);
     let mut totals = Totals::default();
+    let mut rows = VecDeque::new();
     let shows = io::stderr().is_terminal() || end.samples.is_some();
     loop {
-        feed.fill(card).map_err(Failure::Card)?;
-        if !feed.rows.is_empty() {
+        let filled = feed.fill(card, &mut rows, SLICE);
+        filled.map_err(|e| Failure::Card(told(e)))?;
+        if !rows.is_empty() {
             heard = Instant::now();
         }
-        while let Some(row) = feed.rows.pop_front() {
+        while let Some(row) = rows.pop_front() {
             sheet.row(&row).map_err(Failure::Write)?;
             totals.rows += 1;
             totals.missing += row.missing;
-            totals.span_s = row.time_s;
+            totals.span_s = sheet.time_s(&row);
             if end.samples == Some(totals.rows) {
                 return Ok(totals);
             }
@@ -432,6 +292,7 @@ fn record<W: Write>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use endat_host::feed::Cell;
 
     fn cells(position: u64) -> Vec<Cell> {
         let good = Cell {
@@ -449,13 +310,11 @@ mod tests {
 
     fn written(format: Format) -> String {
         let scales = vec![Scale::singleturn(8), Scale::Linear { step_nm: 10.0 }];
-        let mut sheet = Sheet::new(format, Vec::new(), scales).unwrap();
-        let mut clock = Clock::default();
-        for (sequence, timestamp) in [(0xFFFE, 0xFFFF_FFF0), (0xFFFF, 0x10), (2, 0x30)] {
-            let missing = clock.step(sequence, timestamp);
+        let mut sheet = Sheet::new(format, Vec::new(), scales, 32.0).unwrap();
+        for (trigger, cycles, missing) in [(65_534, 0, 0), (65_535, 32, 0), (65_538, 64, 2)] {
             let row = Row {
-                trigger: clock.trigger,
-                time_s: clock.cycles as f64 / 32.0,
+                trigger,
+                cycles,
                 missing,
                 cells: cells(64),
             };
@@ -465,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn csv_has_units_and_numbers_that_do_not_wrap() {
+    fn csv_has_units_and_no_position_where_there_is_none() {
         assert_eq!(
             written(Format::Csv),
             "trigger,time_s,missing,ch0_raw,ch0_deg,ch0_turns,ch0_fresh,ch0_cause,ch1_raw,ch1_mm,ch1_turns,ch1_fresh,ch1_cause\n\

@@ -8,6 +8,7 @@ pub mod monitor;
 pub mod param;
 pub mod read;
 pub mod reg;
+pub mod serve;
 pub mod virtual_card;
 
 use crate::config::{load_file, load_preset, DEFAULT_PRESET};

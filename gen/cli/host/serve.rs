@@ -1,0 +1,70 @@
+//! `serve`: a card for PandABlocks clients.
+
+use super::super::number::number;
+use super::super::Outcome;
+use super::{interrupted, scale, settled, told, PortArgs};
+use crate::error::GenError;
+use clap::Args;
+use endat_host::panda::{Column, Ports, Server, CONTROL_PORT, DATA_PORT};
+use std::io::Write;
+use std::sync::atomic::Ordering;
+
+/// Arguments of `serve`.
+#[derive(Args)]
+pub struct ServeArgs {
+    #[command(flatten)]
+    port: PortArgs,
+    /// Address to listen at [default: 127.0.0.1]
+    #[arg(long, value_name = "ADDRESS")]
+    host: Option<String>,
+    /// Port for commands, 0 = a free one [default: 8888]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    control_port: Option<String>,
+    /// Port for data, 0 = a free one [default: 8889]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    data_port: Option<String>,
+    /// End each acquisition after so many samples [default: when it is disarmed]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    samples: Option<String>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
+    let port = |flag, text: &Option<String>, usual: u16| match text {
+        None => Ok(usual),
+        Some(text) => number(flag, text, 0..=u16::MAX.into()).map(|n| n as u16),
+    };
+    let control = port("--control-port", &arguments.control_port, CONTROL_PORT)?;
+    let data = port("--data-port", &arguments.data_port, DATA_PORT)?;
+    let limit = match &arguments.samples {
+        None => None,
+        Some(text) => Some(number("--samples", text, 1..=u64::from(u32::MAX))?),
+    };
+    let host = arguments.host.as_deref().unwrap_or("127.0.0.1");
+    let ports = Ports::open(host, control, data).map_err(|e| {
+        GenError::input(format!(
+            "--host = {host}, ports {control} and {data}: {e}; give other ones with --control-port and --data-port"
+        ))
+    })?;
+    let mut card = arguments.port.open()?;
+    settled(&mut card)?;
+    let scales = (0..card.identity().channels)
+        .map(|channel| scale(&mut card, channel))
+        .collect::<Result<Vec<_>, _>>()?;
+    let columns = Column::all(card.identity().system_hz, &scales);
+    let mut stdout = std::io::stdout();
+    if let Ok([control, data]) = ports.addresses() {
+        let _ = writeln!(stdout, "control {control}\ndata {data}");
+        let _ = stdout.flush();
+    }
+    if !card.identity().has("stream") {
+        let _ = writeln!(
+            std::io::stderr(),
+            "endat-gen: the card has no part stream: results are read one by one, and not every trigger has a sample"
+        );
+    }
+    let stop = interrupted();
+    let mut server = Server::new(&mut card, columns, ports, limit);
+    server.run(|| stop.load(Ordering::Relaxed)).map_err(told)?;
+    Ok(Outcome::default())
+}

@@ -1,0 +1,156 @@
+//! The data port: header, frames of samples, end.
+
+use super::Column;
+use crate::feed::Row;
+
+/// Form that a client asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Form {
+    /// Binary frames with their length; otherwise lines of text.
+    pub is_framed: bool,
+    /// Numbers of 64 bits in floating point, scaled; otherwise integers and the client scales.
+    pub is_scaled: bool,
+    /// A header comes first.
+    pub has_header: bool,
+    /// The header is XML.
+    pub is_xml: bool,
+}
+
+/// The answer to the line that a client sends first.
+pub fn form(line: &str) -> Result<Form, String> {
+    let mut form = Form {
+        is_framed: false,
+        is_scaled: true,
+        has_header: true,
+        is_xml: false,
+    };
+    for word in line.split_whitespace() {
+        match word {
+            "XML" => form.is_xml = true,
+            "FRAMED" => form.is_framed = true,
+            "ASCII" => form.is_framed = false,
+            "SCALED" | "DEFAULT" => form.is_scaled = true,
+            "RAW" | "UNSCALED" => form.is_scaled = false,
+            "NO_HEADER" | "BARE" => form.has_header = false,
+            "NO_STATUS" | "ONE_SHOT" => {}
+            _ => return Err(format!("ERR Invalid option {}", clean(word))),
+        }
+    }
+    Ok(form)
+}
+
+/// A word that may go back to the client.
+pub fn clean(word: &str) -> String {
+    let graphic = word.chars().filter(char::is_ascii_graphic);
+    graphic.take(40).collect()
+}
+
+/// What goes out when an acquisition begins.
+pub fn header(form: Form, columns: &[Column]) -> String {
+    if !form.has_header {
+        return String::new();
+    }
+    let process = if form.is_scaled { "Scaled" } else { "Raw" };
+    let kind = if form.is_scaled { "double" } else { "int64" };
+    let format = if form.is_framed { "Framed" } else { "ASCII" };
+    let bytes = 8 * columns.len();
+    if !form.is_xml {
+        let fields = columns.iter().map(|c| {
+            format!(
+                " {} {kind} Value Scale: {} Offset: 0 Units: {}\n",
+                c.name, c.scale, c.unit
+            )
+        });
+        let fields: String = fields.collect();
+        return format!("missed: 0\nprocess: {process}\nformat: {format}\nfields:\n{fields}\n");
+    }
+    let fields = columns.iter().map(|c| {
+        format!(
+            "<field name=\"{}\" type=\"{kind}\" capture=\"Value\" scale=\"{:e}\" offset=\"0\" units=\"{}\" />\n",
+            c.name, c.scale, c.unit
+        )
+    });
+    let fields: String = fields.collect();
+    format!(
+        "<header>\n<data missed=\"0\" process=\"{process}\" format=\"{format}\" sample_bytes=\"{bytes}\" />\n<fields>\n{fields}</fields>\n</header>\n\n"
+    )
+}
+
+/// Rows as they go out.
+pub fn rows(form: Form, columns: &[Column], rows: &[Row]) -> Vec<u8> {
+    if !form.is_framed {
+        let line = |row: &Row| {
+            let numbers = columns.iter().map(|c| match form.is_scaled {
+                true => format!(" {}", c.raw(row) as f64 * c.scale),
+                false => format!(" {}", c.raw(row)),
+            });
+            numbers.collect::<String>() + "\n"
+        };
+        return rows.iter().map(line).collect::<String>().into_bytes();
+    }
+    let mut bytes = b"BIN ".to_vec();
+    let length = 8 + rows.len() * 8 * columns.len();
+    bytes.extend((length as u32).to_le_bytes());
+    for row in rows {
+        for column in columns {
+            let raw = column.raw(row);
+            bytes.extend(match form.is_scaled {
+                true => (raw as f64 * column.scale).to_le_bytes(),
+                false => raw.to_le_bytes(),
+            });
+        }
+    }
+    bytes
+}
+
+/// The last line of an acquisition.
+pub fn end(samples: u64, reason: &str) -> String {
+    format!("END {samples} {reason}\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::feed::Cell;
+    use crate::units::Scale;
+
+    fn columns() -> Vec<Column> {
+        Column::all(100, &[Scale::singleturn(4)])
+    }
+
+    fn row() -> Row {
+        Row {
+            trigger: 7,
+            cycles: 50,
+            missing: 0,
+            cells: vec![Cell {
+                position: Some(8),
+                fresh: true,
+                cause: "none",
+            }],
+        }
+    }
+
+    #[test]
+    fn frames_say_how_long_they_are() {
+        let raw = form("XML FRAMED RAW").unwrap();
+        let bytes = rows(raw, &columns(), &[row(), row()]);
+        assert_eq!(&bytes[..8], b"BIN \x48\0\0\0");
+        assert_eq!(bytes.len(), 8 + 2 * 4 * 8);
+        let number = |i: usize| i64::from_le_bytes(bytes[8 + 8 * i..][..8].try_into().unwrap());
+        assert_eq!([0, 1, 2, 3].map(number), [50, 7, 8, 1]);
+        let scaled = rows(form("XML FRAMED SCALED").unwrap(), &columns(), &[row()]);
+        let deg = f64::from_le_bytes(scaled[8 + 16..][..8].try_into().unwrap());
+        assert_eq!(deg, 180.0);
+    }
+
+    #[test]
+    fn text_is_for_people() {
+        let ascii = form("").unwrap();
+        assert_eq!(rows(ascii, &columns(), &[row()]), b" 0.5 7 180 1\n");
+        assert!(header(ascii, &columns())
+            .contains(" INENC1.VAL double Value Scale: 22.5 Offset: 0 Units: deg\n"));
+        assert!(form("XML BASE64").is_err());
+        assert_eq!(header(form("XML FRAMED BARE").unwrap(), &columns()), "");
+    }
+}

@@ -1,0 +1,94 @@
+//! The TCP protocol of PandABlocks, as far as its clients need it to find, arm and record a card.
+//!
+//! ```text
+//! control port   *IDN?  *BLOCKS?  *DESC.X?  X.*?  *CAPTURE?  *PCAP.ARM=  *PCAP.DISARM= ...     one line, or lines behind '!'
+//! data port      XML FRAMED RAW -> OK, <header>, BIN <length> <samples> ..., END <count> <reason>
+//! ```
+//!
+//! Ref: PandABlocks-server, `docs/capture.rst` and `docs/commands.rst`; the client `pandablocks` reads little-endian data.
+
+mod control;
+mod data;
+mod server;
+
+pub use server::{Ports, Server, CONTROL_PORT, DATA_PORT};
+
+use crate::feed::Row;
+use crate::units::Scale;
+
+/// A column of the data.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Name, as `BLOCK.FIELD`.
+    pub name: String,
+    /// What a raw number is multiplied with.
+    pub scale: f64,
+    /// Unit after that.
+    pub unit: &'static str,
+    /// One sentence.
+    pub meaning: &'static str,
+    what: What,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum What {
+    Time,
+    Trigger,
+    Position(usize),
+    Fresh(usize),
+}
+
+impl Column {
+    /// The columns of a card.
+    pub fn all(system_hz: u32, scales: &[Scale]) -> Vec<Self> {
+        let mut columns = vec![
+            Self {
+                name: "PCAP.TS_TRIG".into(),
+                scale: 1.0 / f64::from(system_hz.max(1)),
+                unit: "s",
+                meaning: "Moment of the trigger since the first one of the acquisition, in the card's clock",
+                what: What::Time,
+            },
+            Self {
+                name: "TRIGGER.COUNT".into(),
+                scale: 1.0,
+                unit: "",
+                meaning: "Number of the trigger",
+                what: What::Trigger,
+            },
+        ];
+        for (channel, scale) in scales.iter().enumerate() {
+            let one = scale.convert(1);
+            columns.push(Self {
+                name: format!("INENC{}.VAL", channel + 1),
+                scale: match scale {
+                    // Whole turns stay in the number.
+                    Scale::Rotary { steps_per_turn } => 360.0 / (*steps_per_turn).max(1) as f64,
+                    Scale::Linear { .. } => one.value,
+                },
+                unit: one.unit,
+                meaning: "Last good position",
+                what: What::Position(channel),
+            });
+            columns.push(Self {
+                name: format!("INENC{}.FRESH", channel + 1),
+                scale: 1.0,
+                unit: "",
+                meaning:
+                    "1: this trigger brought the position; 0: it is an older one, or there is none",
+                what: What::Fresh(channel),
+            });
+        }
+        columns
+    }
+
+    fn raw(&self, row: &Row) -> i64 {
+        let cell = |channel: usize| row.cells.get(channel);
+        match self.what {
+            What::Time => row.cycles as i64,
+            What::Trigger => row.trigger as i64,
+            What::Position(n) => cell(n).and_then(|c| c.position).unwrap_or(0) as i64,
+            What::Fresh(n) => cell(n).is_some_and(|c| c.fresh).into(),
+        }
+    }
+}
