@@ -91,7 +91,7 @@ mod tests {
         assert_eq!(multiturn.digits(), 5);
         assert_eq!(Scale::singleturn(29).digits(), 7);
         let linear = Scale::Linear { step_nm: 10.0 };
-        assert_eq!(linear.convert(123_456).value, 1.23456);
+        assert!((linear.convert(123_456).value - 1.23456).abs() < 1e-12);
         assert_eq!(linear.convert(123_456).turns, None);
         assert_eq!(linear.digits(), 5);
         assert!((multiturn.si(1 << 24) - std::f64::consts::PI).abs() < 1e-12);
