@@ -8,6 +8,7 @@
 //!               |     ChannelRegisters 0, 1
 //!               |             ^
 //!               +------- RegisterBank <-> UartBridge <-> uart_rx_i, uart_tx_o
+//!               +--> Stream, if there is one: sets of results, by register or pushed
 //! ```
 //!
 //! `led_status_o` blinks slowly while every channel is well, quickly while the last result of one is an error;
@@ -19,6 +20,7 @@ use crate::config::{CardConfig, ChannelConfig};
 use crate::encoder_port::EncoderPort;
 use crate::register_bank::RegisterBank;
 use crate::service::program::ServiceTimes;
+use crate::stream::{channel::SetChannel, Stream};
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
 use crate::uart_bridge::{UartBridge, TIMEOUT_US};
@@ -55,6 +57,14 @@ pub struct Card {
     bank: RegisterBank,
     registers: Vec<ChannelRegisters>,
     port: Vec<EncoderPort>,
+    stream: Vec<Stream>,
+    set: Vec<SetChannel>,
+    set_byte: Vec<Signal<Local, Bits<8>>>,
+    set_owes: Vec<Signal<Local, Bit>>,
+    set_replaced: Vec<Signal<Local, Bit>>,
+    set_taken: Vec<Signal<Local, Bit>>,
+    set_block: Vec<Signal<Local, Bits<4>>>,
+    set_byte_at: Vec<Signal<Local, Bits<3>>>,
     ring_link: Vec<Signal<Local, Bits<8>>>,
     read_link: Vec<Signal<Local, Bits<8>>>,
     service_link: Vec<Signal<Local, Bits<32>>>,
@@ -65,6 +75,9 @@ pub struct Card {
     quick_bit: Constant<Bits<5>>,
     _channels: usize,
     _links: usize,
+    _streams: usize,
+    _sets: usize,
+    _set_links: usize,
 }
 
 /// Time stamp bit that toggles about `hz` times a second.
@@ -113,6 +126,8 @@ impl Card {
     /// A card with other waits, too.
     pub fn with_times(config: &CardConfig, timeout_us: u64, service: &ServiceTimes) -> Self {
         let channels = config.channels.len();
+        let streams = usize::from(config.stream.fifo_bytes != 0);
+        let sets = channels * streams;
         fn each<T: Default>(n: usize) -> Vec<T> {
             (0..n).map(|_| T::default()).collect()
         }
@@ -148,6 +163,20 @@ impl Card {
                     )
                 })
                 .collect(),
+            stream: (0..streams)
+                .map(|_| {
+                    let start = config.stream.start;
+                    let (collect, push) = (start.collects(), start.pushes());
+                    Stream::new(config.stream.fifo_bytes, channels, collect, push)
+                })
+                .collect(),
+            set: (0..sets).map(SetChannel::new).collect(),
+            set_byte: each(sets + streams),
+            set_owes: each(sets + streams),
+            set_replaced: each(sets + streams),
+            set_taken: each(streams),
+            set_block: each(streams),
+            set_byte_at: each(streams),
             ring_link: each(channels + 1),
             read_link: each(channels + 1),
             service_link: each(channels + 1),
@@ -158,6 +187,9 @@ impl Card {
             quick_bit: Constant::new(blink_bit(config.system_hz, 8).into()),
             _channels: channels,
             _links: channels + 1,
+            _streams: streams,
+            _sets: sets,
+            _set_links: sets + streams,
         }
     }
 }
@@ -287,6 +319,61 @@ impl Logic for Card {
                     .val()
                     .get_bit(self.quick_bit.val().index());
             }
+        }
+
+        // The stream, and each channel's place in a set.
+        self.bank.stream_byte.next = 0.into();
+        self.bridge.push.next = false;
+        self.bridge.in_frame.next = false;
+        self.bridge.push_valid.next = false;
+        self.bridge.push_byte.next = 0.into();
+        for i in 0..self._streams {
+            self.stream[i].clock.next = self.clk_i.val();
+            self.stream[i].reset.next = self.rst_i.val();
+            self.stream[i].trigger.next = self.trigger.trigger.val();
+            self.stream[i].trigger_count.next = self.trigger.trigger_count.val();
+            self.stream[i].timestamp.next = self.timebase.timestamp.val();
+            self.stream[i].owes.next = self.set_owes[i].val();
+            self.stream[i].replaced.next = self.set_replaced[i].val();
+            self.stream[i].channel_byte.next = self.set_byte[i].val();
+            self.set_taken[i].next = self.stream[i].take_set.val();
+            self.set_block[i].next = self.stream[i].block.val();
+            self.set_byte_at[i].next = self.stream[i].byte_at.val();
+            self.stream[i].selected.next = self.bank.stream_selected.val();
+            self.stream[i].word.next = self.bridge.word_address.val().get_bits::<2>(0);
+            self.stream[i].lane.next = self.bridge.lane.val();
+            self.stream[i].access.next = self.bridge.access.val();
+            self.stream[i].write.next = self.bridge.write.val();
+            self.stream[i].write_data.next = self.bridge.write_data.val().get_bits::<2>(0);
+            self.bank.stream_byte.next = self.stream[i].read_byte.val();
+            self.bridge.push.next = self.stream[i].push.val();
+            self.bridge.in_frame.next = self.stream[i].in_frame.val();
+            self.bridge.push_valid.next = self.stream[i].push_valid.val();
+            self.bridge.push_byte.next = self.stream[i].push_byte.val();
+            self.stream[i].push_take.next = self.bridge.push_take.val();
+        }
+        for i in 0..self._sets {
+            self.set[i].clock.next = self.clk_i.val();
+            self.set[i].reset.next = self.rst_i.val();
+            self.set[i].trigger.next = self.trigger.trigger.val();
+            self.set[i].busy.next = self.port[i].busy.val();
+            self.set[i].result_strobe.next = self.port[i].result_strobe.val();
+            self.set[i].position.next = self.port[i].position.val();
+            self.set[i].position_valid.next = self.port[i].position_valid.val();
+            self.set[i].fresh.next = self.port[i].fresh.val();
+            self.set[i].cause.next = self.port[i].cause.val();
+            self.set[i].flags.next = self.port[i].flags.val();
+            self.set[i].take.next = self.set_taken[0].val();
+            self.set[i].block.next = self.set_block[0].val();
+            self.set[i].byte_at.next = self.set_byte_at[0].val();
+            self.set_byte[i].next = self.set_byte[i + 1].val() | self.set[i].set_byte.val();
+            self.set_owes[i].next = self.set_owes[i + 1].val() | self.set[i].owes.val();
+            self.set_replaced[i].next = self.set_replaced[i + 1].val() | self.set[i].replaced.val();
+        }
+        for i in self._sets..self._set_links {
+            self.set_byte[i].next = 0.into();
+            self.set_owes[i].next = false;
+            self.set_replaced[i].next = false;
         }
     }
 }

@@ -39,6 +39,7 @@ pub mod regs;
 pub mod sequencer;
 pub mod service;
 pub mod snapshot;
+pub mod stream;
 #[cfg(test)]
 mod testing;
 pub mod timebase;

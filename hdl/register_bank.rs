@@ -79,6 +79,10 @@ pub struct RegisterBank {
     pub service_half: Signal<Out, Bit>,
     /// What is written.
     pub service_data: Signal<Out, Bits<16>>,
+    /// The word is one of the stream's four.
+    pub stream_selected: Signal<Out, Bit>,
+    /// Byte that was read from it; 0 if it is none of them.
+    pub stream_byte: Signal<In, Bits<8>>,
     /// Triggers since reset.
     pub trigger_count: Signal<In, Bits<32>>,
     /// Strobe: trigger now.
@@ -196,6 +200,8 @@ impl RegisterBank {
             service_write: Default::default(),
             service_half: Default::default(),
             service_data: Default::default(),
+            stream_selected: Default::default(),
+            stream_byte: Default::default(),
             trigger_count: Default::default(),
             trigger_now: Default::default(),
             calibrate: Default::default(),
@@ -400,6 +406,8 @@ impl Logic for RegisterBank {
 
         // The card's own words.
         self.card_page.next = self.low_page.val() & !self.word_address.val().get_bits::<5>(4).any();
+        self.stream_selected.next =
+            self.card_page.val() & self.word_address.val().get_bits::<2>(2).all();
         self.rom_word.next = 0.into();
         match self.word_address.val().get_bits::<3>(0).index() {
             0 => {
@@ -604,7 +612,8 @@ impl Logic for RegisterBank {
             | self.count_byte.q.val()
             | self.ring_byte.q.val()
             | self.channel_byte.val()
-            | self.service_byte.q.val();
+            | self.service_byte.q.val()
+            | self.stream_byte.val();
         self.read_byte.next = self.byte.q.val();
     }
 }

@@ -35,6 +35,7 @@ pub fn test_config() -> CardConfig {
         read_hz: 1_000,
         service: Default::default(),
         line: Default::default(),
+        stream: Default::default(),
     })
     .unwrap();
     config.hash = 0x0123_4567_89ab;
