@@ -357,6 +357,3 @@ impl Logic for Stream {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

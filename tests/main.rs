@@ -18,6 +18,7 @@ mod requests;
 mod service;
 mod shmoo;
 mod sim;
+mod stream;
 mod three_way;
 mod tools;
 mod verilog;

@@ -4,8 +4,10 @@ mod names;
 mod pins;
 mod reader;
 mod schema;
+mod stream;
 
 pub use names::{check_name, NAME_MAX};
+pub use stream::start_name;
 
 use crate::artifact::read_regular;
 use crate::board::{Assignment, Board, Pll};

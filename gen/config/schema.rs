@@ -2,7 +2,7 @@
 
 use super::pins::assign_pins;
 use super::reader::{At, Source, Table};
-use super::{check_name, Project};
+use super::{check_name, stream, Project};
 use crate::board::{self, Assignment, Board};
 use crate::error::shorten;
 use endat_hdl::config::*;
@@ -83,6 +83,8 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let read_hz = link.integer("read_hz", &limits("read_hz", system_hz));
     let service = root.table("service", &empty);
     let parts = read_service(&service);
+    let stream_table = root.table("stream", &empty);
+    let stream = stream::read(&stream_table);
     let pins = root.table("pins", &empty);
     for table in tables.iter().flatten().chain([
         &clock,
@@ -91,6 +93,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         &link,
         &service,
         &line_table,
+        &stream_table,
         &board_table,
         &root,
     ]) {
@@ -127,6 +130,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         read_hz: read_hz.as_ref().map(|r| r.value).or(usual_read_hz),
         service: parts.unwrap_or_default(),
         line: line_parts.unwrap_or_default(),
+        stream: stream.parts,
     };
     let channels = channels.unwrap_or_default();
     let card = match draft.resolve() {
@@ -138,6 +142,12 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
                 (Section::Trigger, "sample_hz", line(&sample)),
                 (Section::Link, "baud", line(&baud)),
                 (Section::Link, "read_hz", line(&read_hz)),
+                (Section::Stream, "fifo_bytes", line(&stream.fifo_bytes)),
+                (
+                    Section::Stream,
+                    "start",
+                    stream.start.as_ref().map_or(0, |s| s.line),
+                ),
             ];
             let heads: Vec<usize> = tables.iter().flatten().map(|t| t.line).collect();
             for problem in problems {
@@ -207,6 +217,13 @@ fn canonical(card: &CardConfig, board: &Board, pins: &[Assignment]) -> String {
         lines.push(format!(
             "line margin {} double_edge {}",
             card.line.margin, card.line.double_edge
+        ));
+    }
+    if card.stream.fifo_bytes != 0 {
+        lines.push(format!(
+            "stream fifo_bytes {} start {}",
+            card.stream.fifo_bytes,
+            stream::start_name(card.stream.start)
         ));
     }
     if card.service.requests {
@@ -568,6 +585,7 @@ fn report(
             let table = match section {
                 Section::Clock => "clock",
                 Section::Trigger => "trigger",
+                Section::Stream => "stream",
                 _ => "link",
             };
             (
