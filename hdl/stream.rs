@@ -83,7 +83,6 @@ pub struct Stream {
     head_byte: Reg<Bits<8>>,
     state_held: Reg<Bits<24>>,
     byte_read: Reg<Bits<8>>,
-    clear_now: Reg<Bit>,
     flush: Reg<Bit>,
     mid_frame: Reg<Bit>,
     pushing: Reg<Bit>,
@@ -98,6 +97,7 @@ pub struct Stream {
     skip: Signal<Local, Bit>,
     take: Signal<Local, Bit>,
     more: Signal<Local, Bit>,
+    clear: Signal<Local, Bit>,
     head: Constant<Bits<8>>,
 }
 
@@ -148,7 +148,6 @@ impl Stream {
             head_byte: Default::default(),
             state_held: Default::default(),
             byte_read: Default::default(),
-            clear_now: Default::default(),
             flush: Default::default(),
             mid_frame: Default::default(),
             pushing: Default::default(),
@@ -163,6 +162,7 @@ impl Stream {
             skip: Default::default(),
             take: Default::default(),
             more: Default::default(),
+            clear: Default::default(),
             head: Constant::new((SET_TYPE << 4 | channels as u64).into()),
         }
     }
@@ -183,9 +183,7 @@ impl Logic for Stream {
             lost_before,
             lost_all
         );
-        dff_setup!(
-            self, clock, head_byte, state_held, byte_read, clear_now, flush, mid_frame, pushing
-        );
+        dff_setup!(self, clock, head_byte, state_held, byte_read, flush, mid_frame, pushing);
         self.collect.reset.next = self.reset.val();
         self.push_on.reset.next = self.reset.val();
         self.open.reset.next = self.reset.val();
@@ -197,7 +195,6 @@ impl Logic for Stream {
         self.moment_taken.reset.next = self.reset.val();
         self.lost_taken.reset.next = self.reset.val();
         self.state_held.reset.next = self.reset.val();
-        self.clear_now.reset.next = self.reset.val();
         self.flush.reset.next = self.reset.val();
         self.mid_frame.reset.next = self.reset.val();
         self.pushing.reset.next = self.reset.val();
@@ -234,9 +231,8 @@ impl Logic for Stream {
             self.moment_taken.d.next = self.moment.q.val();
             self.lost_taken.d.next = self.lost_before.q.val();
         }
-        self.lost_before.reset.next =
-            self.reset.val() | self.clear_now.q.val() | self.take_now.val();
-        self.lost_all.reset.next = self.reset.val() | self.clear_now.q.val();
+        self.lost_before.reset.next = self.reset.val() | self.clear.val() | self.take_now.val();
+        self.lost_all.reset.next = self.reset.val() | self.clear.val();
         if self.lost_now.val() & !self.lost_before.q.val().all() {
             self.lost_before.d.next = self.lost_before.q.val() + 1;
         }
@@ -279,7 +275,7 @@ impl Logic for Stream {
         // The host's words.
         self.reads.next = self.access.val() & self.selected.val() & !self.write.val();
         self.writes.next = self.access.val() & self.selected.val() & self.write.val();
-        self.clear_now.d.next =
+        self.clear.next =
             self.writes.val() & (self.word.val() == 3) & self.write_data.val().get_bit(0);
         if self.writes.val() & !self.word.val().any() {
             self.collect.d.next = self.write_data.val().get_bit(0);
@@ -352,7 +348,7 @@ impl Logic for Stream {
         if !self.pushing.q.val() & !self.buffer.waiting_bytes.val().any() {
             self.flush.d.next = false;
         }
-        if self.clear_now.q.val() {
+        if self.clear.val() {
             self.flush.d.next = true;
         }
     }

@@ -36,9 +36,10 @@ fn read_bytes(rig: &mut Rig, lane: &mut u8, count: usize) -> Vec<u8> {
 fn what_does_not_fit_is_dropped_whole_at_every_fill_level() {
     for n in [1, 2, 8] {
         let frame = frame_bytes(n) as usize;
+        let mut rig = Rig::new(1024, n, true, false);
         // The reader stops at every place of a frame, so the buffer is at every level when a set comes.
         for taken in 0..=frame {
-            let mut rig = Rig::new(1024, n, true, false);
+            rig.reset();
             let (mut expected, mut got, mut lane) = (Vec::new(), Vec::new(), 0);
             for i in 0..3 {
                 expected.push(whole(&mut rig, i));
@@ -211,9 +212,10 @@ fn push_some(rig: &mut Rig, count: usize) {
 
 #[test]
 fn push_switched_off_or_cleared_in_mid_frame_ends_the_frame_first() {
+    let mut rig = Rig::new(1024, 2, true, true);
     for taken in 0..=28 {
         for clear in [false, true] {
-            let mut rig = Rig::new(1024, 2, true, true);
+            rig.reset();
             let sets: Vec<Set> = (0..3).map(|i| whole(&mut rig, i << 20)).collect();
             push_some(&mut rig, taken);
             if clear {
@@ -248,9 +250,10 @@ fn push_switched_off_or_cleared_in_mid_frame_ends_the_frame_first() {
 
 #[test]
 fn a_frame_that_the_host_has_read_half_of_is_not_pushed_and_a_clear_ends_it() {
+    let mut rig = Rig::new(1024, 2, true, false);
     for taken in 0..=28 {
         for clear in [false, true] {
-            let mut rig = Rig::new(1024, 2, true, false);
+            rig.reset();
             let sets: Vec<Set> = (0..3).map(|i| whole(&mut rig, i << 20)).collect();
             let mut lane = 0;
             let half = read_bytes(&mut rig, &mut lane, taken);
@@ -280,8 +283,9 @@ fn a_frame_that_the_host_has_read_half_of_is_not_pushed_and_a_clear_ends_it() {
 
 #[test]
 fn a_clear_at_any_moment_of_a_set_leaves_whole_frames() {
+    let mut rig = Rig::new(1024, 2, true, false);
     for moment in 0..500 {
-        let mut rig = Rig::new(1024, 2, true, false);
+        rig.reset();
         whole(&mut rig, 1);
         let second = rig.set_of(&channels(2, 2));
         rig.run(moment);

@@ -175,6 +175,20 @@ impl Rig {
         }
     }
 
+    /// As after power-up, but for what the memory holds: a new rig takes long.
+    pub fn reset(&mut self) {
+        for part in self.set.iter_mut().chain([&mut self.stream]) {
+            part.set("reset", true);
+        }
+        self.step();
+        for part in self.set.iter_mut().chain([&mut self.stream]) {
+            part.set("reset", false);
+        }
+        self.channel.fill(Channel::default());
+        self.pushed.clear();
+        self.triggers = 0;
+    }
+
     /// One cycle.
     pub fn step(&mut self) {
         let (mut owes, mut replaced, mut byte) = (0, 0, 0);
