@@ -117,12 +117,15 @@ impl Logic for ApbFront {
         if self.busy.q.val() & !(self.psel.val() & self.penable.val()) {
             self.abandoned.d.next = true;
         }
-        if self.words.finished.val() {
+        // One that leaves at once has asked for nothing: its word cannot be trusted any more.
+        self.words.request.next = self.request.q.val() & self.psel.val();
+        if self.words.finished.val() | (self.request.q.val() & !self.psel.val()) {
             self.busy.d.next = false;
+        }
+        if self.words.finished.val() {
             self.ready.d.next = self.psel.val() & !self.abandoned.q.val();
         }
 
-        self.words.request.next = self.request.q.val();
         self.words.word_address.next = self.address.q.val();
         self.words.write.next = self.writing.q.val();
         self.words.write_data.next = self.pwdata.val();

@@ -11,6 +11,8 @@ use std::sync::OnceLock;
 pub const SOURCES: &[&str] = &[
     include_str!("../add_info.rs"),
     include_str!("../bus/apb.rs"),
+    include_str!("../bus/axi_lite.rs"),
+    include_str!("../bus/wishbone.rs"),
     include_str!("../bus/word_access.rs"),
     include_str!("../card.rs"),
     include_str!("../card/uart.rs"),
