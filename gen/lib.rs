@@ -25,8 +25,9 @@ pub mod verilog;
 
 use artifact::Artifact;
 use config::Project;
+use endat_hdl::bus::{apb::ApbCard, axi_lite::AxiLiteCard, wishbone::WishboneCard, HostBus};
 use endat_hdl::card::Card;
-use endat_hdl::elaborate::elaborate;
+use endat_hdl::elaborate::{elaborate, Design};
 use error::GenError;
 use rust_hdl::prelude::Block;
 use verilog::Header;
@@ -35,21 +36,36 @@ use verilog::Header;
 pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let mut artifacts = design_artifacts(project)?;
     artifacts.extend(constraints::artifacts(project)?);
-    artifacts.push(testbench::artifact(project)?);
+    // The test bench speaks to the card as a host at the UART does.
+    if project.bus == HostBus::Uart {
+        artifacts.push(testbench::artifact(project)?);
+    }
     artifacts.push(artifact::manifest(&artifacts));
     Ok(artifacts)
 }
 
+/// The card with the front that its configuration asks for.
+pub fn design(project: &Project) -> Result<Design, GenError> {
+    fn of(mut card: impl Block, name: &str) -> Result<Design, GenError> {
+        card.connect_all();
+        elaborate(&card, name).map_err(|e| {
+            GenError::input(format!(
+                "design: {e}; this is a fault of endat-gen, please report it"
+            ))
+        })
+    }
+    let (card, name) = (&project.card, &project.name);
+    match project.bus {
+        HostBus::Uart => of(Card::new(card), name),
+        HostBus::Apb => of(ApbCard::new(card), name),
+        HostBus::Wishbone => of(WishboneCard::new(card), name),
+        HostBus::AxiLite => of(AxiLiteCard::new(card), name),
+    }
+}
+
 /// The card as Verilog, and its register map in every format.
 pub fn design_artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
-    let fault = |e: &dyn std::fmt::Display| {
-        GenError::input(format!(
-            "design: {e}; this is a fault of endat-gen, please report it"
-        ))
-    };
-    let mut card = Card::new(&project.card);
-    card.connect_all();
-    let design = elaborate(&card, &project.name).map_err(|e| fault(&e))?;
+    let design = design(project)?;
     let report = explain::report(project).to_string();
     let channels = project.card.channels.len();
     let header = Header {

@@ -1,4 +1,5 @@
-//! Card: encoder ports, triggers and the host link, with the pins of a board.
+//! Card: encoder ports, triggers and registers. A front connects the registers to a host: [`Card`] with a UART, the tops in
+//! [`crate::bus`] with another bus.
 //!
 //! ```text
 //! trigger_i -> Trigger --+--> EncoderPort 0 -> endat_clk0_o, endat_data0_o, endat_data0_oe <- endat_data0_i
@@ -7,8 +8,8 @@
 //!               |             v   | configuration
 //!               |     ChannelRegisters 0, 1
 //!               |             ^
-//!               +------- RegisterBank <-> UartBridge <-> uart_rx_i, uart_tx_o
-//!               +--> Stream, if there is one: sets of results, by register or pushed
+//!               +------- RegisterBank <-> the front: word_address, access, read_byte, done, ...
+//!               +--> Stream, if there is one: sets of results, by register or pushed through the front
 //! ```
 //!
 //! `led_status_o` blinks slowly while every channel is well, quickly while the last result of one is an error;
@@ -23,22 +24,53 @@ use crate::service::program::ServiceTimes;
 use crate::stream::{channel::SetChannel, Stream};
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
-use crate::uart_bridge::{UartBridge, TIMEOUT_US};
 use rust_hdl::prelude::*;
 
-/// The whole core; the number of channels is that of [`CardConfig::channels`].
+pub use uart::Card;
+
+/// The card but for its front; the number of channels is that of [`CardConfig::channels`].
 #[derive(LogicBlock)]
-pub struct Card {
+pub struct CardCore {
     /// System clock.
     pub clk_i: Signal<In, Clock>,
     /// Synchronous reset, active high.
     pub rst_i: Signal<In, Bit>,
     /// Trigger pin, asynchronous; a rising edge triggers.
     pub trigger_i: Signal<In, Bit>,
-    /// Serial line from the host, asynchronous.
-    pub uart_rx_i: Signal<In, Bit>,
-    /// Serial line to the host.
-    pub uart_tx_o: Signal<Out, Bit>,
+    /// Strobe each microsecond.
+    pub tick_us: Signal<Out, Bit>,
+    /// Word address of an access, constant from `access` to `done`.
+    pub word_address: Signal<In, Bits<11>>,
+    /// The front's address fits `word_address`; otherwise a read gives 0 and a write does nothing.
+    pub in_range: Signal<In, Bit>,
+    /// Byte of the word, 0 = most significant; 0 in a write.
+    pub lane: Signal<In, Bits<2>>,
+    /// One-cycle strobe: begin an access, with the address stable since the cycle before.
+    pub access: Signal<In, Bit>,
+    /// With `access`: write a word; low = read a byte.
+    pub write: Signal<In, Bit>,
+    /// Word to write; moves up by a byte in each cycle with `take_byte`.
+    pub write_data: Signal<In, Bits<32>>,
+    /// The host is reading: results must not change.
+    pub reading: Signal<In, Bit>,
+    /// A byte of the configuration word passes, most significant first: in a write it is replaced by that of `write_data`.
+    pub take_byte: Signal<Out, Bit>,
+    /// With `take_byte`: the byte that stood there.
+    pub passing_byte: Signal<Out, Bits<8>>,
+    /// Byte that was read, from `done` to the next `access`.
+    pub read_byte: Signal<Out, Bits<8>>,
+    /// One-cycle strobe: the access has ended.
+    pub done: Signal<Out, Bit>,
+    /// Frames of the stream are to be pushed; low without a stream.
+    pub push: Signal<Out, Bit>,
+    /// A frame is being pushed: its first byte has been taken, its last one has not.
+    pub in_frame: Signal<Out, Bit>,
+    /// `push_byte` is the next byte to push.
+    pub push_valid: Signal<Out, Bit>,
+    /// The next byte.
+    pub push_byte: Signal<Out, Bits<8>>,
+    /// Strobe, with `push_valid` only: the byte is taken.
+    pub push_take: Signal<In, Bit>,
     /// EnDat clock to the transceiver.
     pub endat_clk_o: Vec<Signal<Out, Bit>>,
     /// EnDat data to the transceiver.
@@ -53,7 +85,6 @@ pub struct Card {
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     timebase: Timebase,
     trigger: Trigger,
-    bridge: UartBridge,
     bank: RegisterBank,
     registers: Vec<ChannelRegisters>,
     port: Vec<EncoderPort>,
@@ -105,38 +136,54 @@ fn line(card: &CardConfig) -> Features {
     }
 }
 
-impl Card {
+/// The waits of a card's services.
+fn service_times(config: &CardConfig) -> ServiceTimes {
+    ServiceTimes {
+        initialise: config.service.initialise,
+        diagnosis: config.service.diagnosis,
+        continuous: config.service.continuous,
+        infos: config.service.infos,
+        ..ServiceTimes::at(config.system_hz)
+    }
+}
+
+/// `n` signals or links.
+pub(crate) fn each<T: Default>(n: usize) -> Vec<T> {
+    (0..n).map(|_| T::default()).collect()
+}
+
+impl CardCore {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
-        Self::with_timeout(config, TIMEOUT_US)
+        Self::with_times(config, &service_times(config))
     }
 
-    /// A card with another limit on pauses within a host command, for quick tests.
-    pub fn with_timeout(config: &CardConfig, timeout_us: u64) -> Self {
-        let service = ServiceTimes {
-            initialise: config.service.initialise,
-            diagnosis: config.service.diagnosis,
-            continuous: config.service.continuous,
-            infos: config.service.infos,
-            ..ServiceTimes::at(config.system_hz)
-        };
-        Self::with_times(config, timeout_us, &service)
-    }
-
-    /// A card with other waits, too.
-    pub fn with_times(config: &CardConfig, timeout_us: u64, service: &ServiceTimes) -> Self {
+    /// A card with other waits of its services.
+    pub fn with_times(config: &CardConfig, service: &ServiceTimes) -> Self {
         let channels = config.channels.len();
         let streams = usize::from(config.stream.fifo_bytes != 0);
         let sets = channels * streams;
-        fn each<T: Default>(n: usize) -> Vec<T> {
-            (0..n).map(|_| T::default()).collect()
-        }
         Self {
             clk_i: Default::default(),
             rst_i: Default::default(),
             trigger_i: Default::default(),
-            uart_rx_i: Default::default(),
-            uart_tx_o: Default::default(),
+            tick_us: Default::default(),
+            word_address: Default::default(),
+            in_range: Default::default(),
+            lane: Default::default(),
+            access: Default::default(),
+            write: Default::default(),
+            write_data: Default::default(),
+            reading: Default::default(),
+            take_byte: Default::default(),
+            passing_byte: Default::default(),
+            read_byte: Default::default(),
+            done: Default::default(),
+            push: Default::default(),
+            in_frame: Default::default(),
+            push_valid: Default::default(),
+            push_byte: Default::default(),
+            push_take: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
@@ -145,7 +192,6 @@ impl Card {
             led_channel_o: each(channels),
             timebase: Timebase::new(config.system_hz),
             trigger: Default::default(),
-            bridge: UartBridge::new(config.uart_bit_cycles, timeout_us),
             bank: RegisterBank::new(config),
             registers: (0..channels)
                 .map(|i| ChannelRegisters::new(config, i))
@@ -194,15 +240,13 @@ impl Card {
     }
 }
 
-impl Logic for Card {
+impl Logic for CardCore {
     #[hdl_gen]
     fn update(&mut self) {
         self.timebase.clock.next = self.clk_i.val();
         self.timebase.reset.next = self.rst_i.val();
         self.trigger.clock.next = self.clk_i.val();
         self.trigger.reset.next = self.rst_i.val();
-        self.bridge.clock.next = self.clk_i.val();
-        self.bridge.reset.next = self.rst_i.val();
         self.bank.clock.next = self.clk_i.val();
         self.bank.reset.next = self.rst_i.val();
 
@@ -211,20 +255,19 @@ impl Logic for Card {
         self.trigger.sources.next = self.bank.sources.val();
         self.trigger.period_cycles.next = self.bank.period_cycles.val();
 
-        self.bridge.tick_us.next = self.timebase.tick_us.val();
-        self.bridge.rx.next = self.uart_rx_i.val();
-        self.bridge.take_byte.next = self.bank.take_byte.val();
-        self.bridge.read_byte.next = self.bank.read_byte.val();
-        self.bridge.done.next = self.bank.done.val();
-        self.uart_tx_o.next = self.bridge.tx.val();
+        self.tick_us.next = self.timebase.tick_us.val();
+        self.take_byte.next = self.bank.take_byte.val();
+        self.passing_byte.next = self.bank.passing_byte.val();
+        self.read_byte.next = self.bank.read_byte.val();
+        self.done.next = self.bank.done.val();
 
-        self.bank.word_address.next = self.bridge.word_address.val();
-        self.bank.in_range.next = self.bridge.in_range.val();
-        self.bank.lane.next = self.bridge.lane.val();
-        self.bank.access.next = self.bridge.access.val();
-        self.bank.write.next = self.bridge.write.val();
-        self.bank.write_data.next = self.bridge.write_data.val();
-        self.bank.reading.next = self.bridge.reading.val();
+        self.bank.word_address.next = self.word_address.val();
+        self.bank.in_range.next = self.in_range.val();
+        self.bank.lane.next = self.lane.val();
+        self.bank.access.next = self.access.val();
+        self.bank.write.next = self.write.val();
+        self.bank.write_data.next = self.write_data.val();
+        self.bank.reading.next = self.reading.val();
         self.bank.trigger_count.next = self.trigger.trigger_count.val();
 
         // From the first channel to the last: read bytes and "some channel" signals. The ring runs the other way.
@@ -284,7 +327,7 @@ impl Logic for Card {
 
             self.registers[i].load.next = self.bank.load.val();
             self.registers[i].word_skip.next = self.bank.word_skip.val();
-            self.registers[i].lane.next = self.bridge.lane.val();
+            self.registers[i].lane.next = self.lane.val();
             self.registers[i].skip.next = self.bank.channel_skip.val().get_bit(i);
             self.registers[i].read_in.next = self.read_link[i].val();
             self.read_link[i + 1].next = self.registers[i].read_out.val();
@@ -323,10 +366,10 @@ impl Logic for Card {
 
         // The stream, and each channel's place in a set.
         self.bank.stream_byte.next = 0.into();
-        self.bridge.push.next = false;
-        self.bridge.in_frame.next = false;
-        self.bridge.push_valid.next = false;
-        self.bridge.push_byte.next = 0.into();
+        self.push.next = false;
+        self.in_frame.next = false;
+        self.push_valid.next = false;
+        self.push_byte.next = 0.into();
         for i in 0..self._streams {
             self.stream[i].clock.next = self.clk_i.val();
             self.stream[i].reset.next = self.rst_i.val();
@@ -340,17 +383,17 @@ impl Logic for Card {
             self.set_block[i].next = self.stream[i].block.val();
             self.set_byte_at[i].next = self.stream[i].byte_at.val();
             self.stream[i].selected.next = self.bank.stream_selected.val();
-            self.stream[i].word.next = self.bridge.word_address.val().get_bits::<2>(0);
-            self.stream[i].lane.next = self.bridge.lane.val();
-            self.stream[i].access.next = self.bridge.access.val();
-            self.stream[i].write.next = self.bridge.write.val();
-            self.stream[i].write_data.next = self.bridge.write_data.val().get_bits::<2>(0);
+            self.stream[i].word.next = self.word_address.val().get_bits::<2>(0);
+            self.stream[i].lane.next = self.lane.val();
+            self.stream[i].access.next = self.access.val();
+            self.stream[i].write.next = self.write.val();
+            self.stream[i].write_data.next = self.write_data.val().get_bits::<2>(0);
             self.bank.stream_byte.next = self.stream[i].read_byte.val();
-            self.bridge.push.next = self.stream[i].push.val();
-            self.bridge.in_frame.next = self.stream[i].in_frame.val();
-            self.bridge.push_valid.next = self.stream[i].push_valid.val();
-            self.bridge.push_byte.next = self.stream[i].push_byte.val();
-            self.stream[i].push_take.next = self.bridge.push_take.val();
+            self.push.next = self.stream[i].push.val();
+            self.in_frame.next = self.stream[i].in_frame.val();
+            self.push_valid.next = self.stream[i].push_valid.val();
+            self.push_byte.next = self.stream[i].push_byte.val();
+            self.stream[i].push_take.next = self.push_take.val();
         }
         for i in 0..self._sets {
             self.set[i].clock.next = self.clk_i.val();
@@ -380,3 +423,4 @@ impl Logic for Card {
 
 #[cfg(test)]
 mod tests;
+mod uart;

@@ -13,6 +13,7 @@
 //! from left to right in the drawing, [`channel`], [`card`]. [`elaborate`] turns any block into a typed `Design`.
 
 pub mod add_info;
+pub mod bus;
 pub mod card;
 pub mod channel;
 pub mod channel_registers;

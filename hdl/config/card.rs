@@ -224,9 +224,13 @@ impl CardDraft {
             let text = format!("no size of a buffer; use 0 (no stream), {sizes}");
             check.fail("fifo_bytes", bytes, text);
         }
+        if self.without_uart && self.stream.start.pushes() {
+            let text = "only a UART pushes; use \"collect\", the host reads stream_data";
+            check.fail("start", "\"push\"", text.into());
+        }
         let (sample_hz, baud, channels) = (self.sample_hz?, self.baud?, channels?);
         let (frame, needed) = (frame_bytes(channels), stream_baud(sample_hz, channels));
-        if needed > baud {
+        if needed > baud && !self.without_uart {
             let most = baud / stream_baud(1, channels);
             check.section = Section::Trigger;
             check.fail(

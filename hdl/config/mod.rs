@@ -193,6 +193,8 @@ pub struct CardDraft {
     pub line: LineParts,
     /// The stream of sample sets.
     pub stream: StreamParts,
+    /// The host has another bus than a UART; the numbers of the UART mean nothing.
+    pub without_uart: bool,
 }
 
 impl From<&CardRequest> for CardDraft {
@@ -208,6 +210,7 @@ impl From<&CardRequest> for CardDraft {
             service: request.service,
             line: request.line,
             stream: request.stream,
+            without_uart: false,
         }
     }
 }
