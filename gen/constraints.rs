@@ -94,24 +94,37 @@ fn ns(hz: u64) -> String {
     decimal(1e9 / hz as f64, 4)
 }
 
-/// Board top, UCF and README of a project.
+/// Board top, UCF and README of a project; without a board only a README that says how to use the card.
 pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
+    let (Some(board), Some(pll)) = (&project.board, &project.pll) else {
+        let context = context! {
+            name => project.name.as_str(),
+            version => env!("CARGO_PKG_VERSION"),
+            hash => project.hash.as_str(),
+            bus => project.bus.name(),
+            system_hz => project.card.system_hz,
+            channels => project.card.channels.len(),
+            timing => explain::report(project).to_string(),
+        };
+        let text = include_str!("../constraints/templates/readme_bus.md.jinja");
+        let text = template::render("readme_bus", text, &context)?;
+        return Ok(vec![Artifact::new("README.md", text)]);
+    };
     let ports: Vec<Value> = project
         .pins
         .iter()
         .map(|pin| Value::from(Serde(Port::new(pin))))
         .collect();
-    let pll = &project.pll;
     let context = context! {
         name => project.name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
-        board => context! { title => project.board.title.as_str(), name => project.board.name.as_str(), part => project.board.part.as_str() },
-        iostandard => project.board.iostandard.as_str(),
+        board => context! { title => board.title.as_str(), name => board.name.as_str(), part => board.part.as_str() },
+        iostandard => board.iostandard.as_str(),
         ports => ports,
         widest => project.pins.iter().map(|p| p.signal.len()).max().unwrap_or(0),
-        oscillator_hz => project.board.oscillator_hz,
-        oscillator_ns => ns(project.board.oscillator_hz),
+        oscillator_hz => board.oscillator_hz,
+        oscillator_ns => ns(board.oscillator_hz),
         system_hz => project.card.system_hz,
         system_ns => ns(project.card.system_hz),
         pll => context! { divide => pll.divide, multiply => pll.multiply, output_divide => pll.output_divide, vco_hz => pll.vco_hz },

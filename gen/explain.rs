@@ -1,6 +1,7 @@
 //! `explain`: what a configuration really becomes, as text and as data.
 
 use crate::config::Project;
+use endat_hdl::bus::HostBus;
 use endat_hdl::config::{read_bytes, CardConfig, ChannelConfig};
 use endat_hdl::timing::deviation_ppm;
 use endat_sim::decimal;
@@ -107,12 +108,12 @@ pub struct Report {
     pub name: String,
     /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
     pub config_hash: String,
-    /// Board.
-    pub board: String,
+    /// Board; none when the bus stays inside the chip.
+    pub board: Option<String>,
     /// Oscillator of the board, in hertz.
-    pub oscillator_hz: u64,
+    pub oscillator_hz: Option<u64>,
     /// Factors of the clock manager: multiply, divide, divide again.
-    pub clock_manager: [u64; 3],
+    pub clock_manager: Option<[u64; 3]>,
     /// System clock, in hertz.
     pub system_hz: u64,
     /// The channels.
@@ -123,8 +124,10 @@ pub struct Report {
     pub sources: Vec<&'static str>,
     /// What each channel does besides positions.
     pub service: Vec<&'static str>,
-    /// Host link.
-    pub link: LinkReport,
+    /// What stands between the registers and the host.
+    pub bus: &'static str,
+    /// Host link; none without a UART.
+    pub link: Option<LinkReport>,
     /// What each channel does about its line delay besides following it.
     pub line: Vec<&'static str>,
 }
@@ -189,13 +192,12 @@ pub fn report(project: &Project) -> Report {
     Report {
         name: project.name.clone(),
         config_hash: project.hash.clone(),
-        board: project.board.name.clone(),
-        oscillator_hz: project.board.oscillator_hz,
-        clock_manager: [
-            project.pll.multiply,
-            project.pll.divide,
-            project.pll.output_divide,
-        ],
+        board: project.board.as_ref().map(|board| board.name.clone()),
+        oscillator_hz: project.board.as_ref().map(|board| board.oscillator_hz),
+        clock_manager: project
+            .pll
+            .as_ref()
+            .map(|pll| [pll.multiply, pll.divide, pll.output_divide]),
         system_hz,
         channels,
         sampling: Rate::new(card.sample_hz, card.actual_sample_hz()),
@@ -223,14 +225,15 @@ pub fn report(project: &Project) -> Report {
         .filter(|(on, _)| *on)
         .map(|(_, name)| name)
         .collect(),
-        link: LinkReport {
+        bus: project.bus.name(),
+        link: (project.bus == HostBus::Uart).then(|| LinkReport {
             baud: Rate::new(card.baud, card.actual_baud()),
             read_hz: card.read_hz,
             bytes_per_read: read_bytes(card.channels.len()),
             needed_baud,
             used_percent: needed_baud as f64 * 100.0 / card.actual_baud(),
             highest_read_hz: card.highest_read_hz(),
-        },
+        }),
     }
 }
 
@@ -332,33 +335,38 @@ const ROWS: [Row; 18] = [
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "{}, configuration {}, board {}",
-            self.name, self.config_hash, self.board
-        )?;
-        let [multiply, divide, output] = self.clock_manager;
-        writeln!(
-            f,
-            "system clock       {} Hz = {} Hz * {multiply} / {divide} / {output}",
-            self.system_hz, self.oscillator_hz
-        )?;
+        write!(f, "{}, configuration {}", self.name, self.config_hash)?;
+        match &self.board {
+            Some(board) => writeln!(f, ", board {board}")?,
+            None => writeln!(f)?,
+        }
+        write!(f, "system clock       {} Hz", self.system_hz)?;
+        match (self.oscillator_hz, self.clock_manager) {
+            (Some(hz), Some([multiply, divide, output])) => {
+                writeln!(f, " = {hz} Hz * {multiply} / {divide} / {output}")?;
+            }
+            _ => writeln!(f, ", from outside")?,
+        }
         writeln!(
             f,
             "sampling           {}, triggers: {}",
             rate(&self.sampling, "Hz"),
             list(&self.sources)
         )?;
-        writeln!(f, "host link          {}", rate(&self.link.baud, "bit/s"))?;
-        writeln!(
-            f,
-            "reading            {} bytes, {} times a second: {} bit/s, {} % of the link; at most {} a second",
-            self.link.bytes_per_read,
-            self.link.read_hz,
-            self.link.needed_baud,
-            decimal(self.link.used_percent, 1),
-            decimal(self.link.highest_read_hz.floor(), 0)
-        )?;
+        if let Some(link) = &self.link {
+            writeln!(f, "host link          {}", rate(&link.baud, "bit/s"))?;
+            writeln!(
+                f,
+                "reading            {} bytes, {} times a second: {} bit/s, {} % of the link; at most {} a second",
+                link.bytes_per_read,
+                link.read_hz,
+                link.needed_baud,
+                decimal(link.used_percent, 1),
+                decimal(link.highest_read_hz.floor(), 0)
+            )?;
+        } else {
+            writeln!(f, "host bus           {}", self.bus)?;
+        }
         writeln!(f)?;
         let heads: Vec<String> = (0..self.channels.len())
             .map(|n| format!("channel {n}"))
@@ -440,7 +448,8 @@ mod tests {
             // As long as the first frame of the scenario `paper` on the elaborated channel.
             assert!((channel.calibration_us - 239.34).abs() < 1e-9);
         }
-        assert_eq!(report.link.bytes_per_read, 62);
-        assert_eq!(report.link.used_percent, 31.0);
+        let link = report.link.unwrap();
+        assert_eq!(link.bytes_per_read, 62);
+        assert_eq!(link.used_percent, 31.0);
     }
 }

@@ -6,7 +6,7 @@ use crate::error::GenError;
 use crate::template::render;
 use endat_hdl::elaborate::{Design, Direction};
 use minijinja::context;
-use minijinja::value::Value;
+use minijinja::value::{Serde, Value};
 use serde::Serialize;
 
 /// End of the file's name, and its template.
@@ -17,8 +17,8 @@ const TEMPLATES: [(&str, &str); 4] = [
         include_str!("templates/integration/vivado.tcl.jinja"),
     ),
     (
-        "_instance.v",
-        include_str!("templates/integration/instance.v.jinja"),
+        "_instance.vh",
+        include_str!("templates/integration/instance.vh.jinja"),
     ),
     (
         "_litex.py",
@@ -61,7 +61,7 @@ pub fn artifacts(
         .ports
         .iter()
         .map(|port| {
-            let net = &top.nets[port.net.0];
+            let net = &top.nets[port.net];
             Port {
                 name: net.name.clone(),
                 direction: match port.direction {
@@ -74,11 +74,13 @@ pub fn artifacts(
         })
         .collect();
     let clock = top.ports.iter().find(|p| p.is_clock);
-    let clock = clock.map(|p| top.nets[p.net.0].name.clone());
-    let reset = ports.iter().find(|p| p.meaning.starts_with("Synchronous reset"));
+    let clock = clock.map(|p| top.nets[p.net].name.clone());
+    let reset = ports
+        .iter()
+        .find(|p| p.meaning.starts_with("Synchronous reset"));
     let has_uart = ports.iter().any(|p| p.name == "uart_rx_i");
     let context = context! {
-        name => project.name,
+        name => project.name.clone(),
         class => class_name(&project.name),
         macro => project.name.to_ascii_uppercase(),
         origin => format!(
@@ -87,14 +89,14 @@ pub fn artifacts(
             project.hash
         ),
         version => env!("CARGO_PKG_VERSION"),
-        hash => project.hash,
+        hash => project.hash.clone(),
         system_hz => project.card.system_hz,
         channels => project.card.channels.len(),
-        sources => sources,
+        sources => Value::from(Serde(sources)),
         has_bench => has_bench,
         clock => clock.unwrap_or_default(),
         reset => reset.map(|p| p.name.clone()).unwrap_or_default(),
-        ports => Value::from_serialize(&ports),
+        ports => Value::from(Serde(&ports)),
     };
     let wanted = TEMPLATES.iter().chain(has_uart.then_some(&EXAMPLE));
     wanted

@@ -17,6 +17,7 @@ pub mod constraints;
 pub mod crc;
 pub mod error;
 pub mod explain;
+pub mod integration;
 pub mod maps;
 mod scratch;
 pub mod template;
@@ -26,31 +27,57 @@ pub mod virtual_card;
 
 use artifact::Artifact;
 use config::Project;
+use endat_hdl::bus::{apb::ApbCard, axi_lite::AxiLiteCard, wishbone::WishboneCard, HostBus};
 use endat_hdl::card::Card;
-use endat_hdl::elaborate::elaborate;
+use endat_hdl::elaborate::{elaborate, Design};
 use error::GenError;
 use rust_hdl::prelude::Block;
 use verilog::Header;
 
 /// All files of a project, the MANIFEST last.
 pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
-    let mut artifacts = design_artifacts(project)?;
+    let design = design(project)?;
+    let mut artifacts = artifacts_of(project, &design)?;
+    let sources = artifacts.iter().map(|a| a.path.clone());
+    let sources: Vec<String> = sources.filter(|p| p.ends_with(".v")).collect();
+    // The test bench speaks to the card as a host at the UART does.
+    let has_bench = project.bus == HostBus::Uart;
+    artifacts.extend(integration::artifacts(
+        project, &design, &sources, has_bench,
+    )?);
     artifacts.extend(constraints::artifacts(project)?);
-    artifacts.push(testbench::artifact(project)?);
+    if has_bench {
+        artifacts.push(testbench::artifact(project)?);
+    }
     artifacts.push(artifact::manifest(&artifacts));
     Ok(artifacts)
 }
 
+/// The card with the front that its configuration asks for.
+pub fn design(project: &Project) -> Result<Design, GenError> {
+    fn of(mut card: impl Block, name: &str) -> Result<Design, GenError> {
+        card.connect_all();
+        elaborate(&card, name).map_err(|e| {
+            GenError::input(format!(
+                "design: {e}; this is a fault of endat-gen, please report it"
+            ))
+        })
+    }
+    let (card, name) = (&project.card, &project.name);
+    match project.bus {
+        HostBus::Uart => of(Card::new(card), name),
+        HostBus::Apb => of(ApbCard::new(card), name),
+        HostBus::Wishbone => of(WishboneCard::new(card), name),
+        HostBus::AxiLite => of(AxiLiteCard::new(card), name),
+    }
+}
+
 /// The card as Verilog, and its register map in every format.
 pub fn design_artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
-    let fault = |e: &dyn std::fmt::Display| {
-        GenError::input(format!(
-            "design: {e}; this is a fault of endat-gen, please report it"
-        ))
-    };
-    let mut card = Card::new(&project.card);
-    card.connect_all();
-    let design = elaborate(&card, &project.name).map_err(|e| fault(&e))?;
+    artifacts_of(project, &design(project)?)
+}
+
+fn artifacts_of(project: &Project, design: &Design) -> Result<Vec<Artifact>, GenError> {
     let report = explain::report(project).to_string();
     let channels = project.card.channels.len();
     let header = Header {
@@ -63,7 +90,7 @@ pub fn design_artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         configuration_hash: project.hash.clone(),
         timing: report.lines().map(str::to_owned).collect(),
     };
-    let files = verilog::print_files(&design, &header);
+    let files = verilog::print_files(design, &header);
     let mut artifacts: Vec<Artifact> = files
         .into_iter()
         .map(|(path, text)| Artifact::new(path, text))

@@ -1,4 +1,5 @@
-//! Card: encoder ports, triggers and the host link, with the pins of a board.
+//! Card: encoder ports, triggers and registers. A front connects the registers to a host: [`Card`] with a UART, the tops in
+//! [`crate::bus`] with another bus.
 //!
 //! ```text
 //! trigger_i -> Trigger --+--> EncoderPort 0 -> endat_clk0_o, endat_data0_o, endat_data0_oe <- endat_data0_i
@@ -7,7 +8,8 @@
 //!               |             v   | configuration
 //!               |     ChannelRegisters 0, 1
 //!               |             ^
-//!               +------- RegisterBank <-> UartBridge <-> uart_rx_i, uart_tx_o
+//!               +------- RegisterBank <-> the front: word_address, access, read_byte, done, ...
+//!               +--> Stream, if there is one: sets of results, by register or pushed through the front
 //! ```
 //!
 //! `led_status_o` blinks slowly while every channel is well, quickly while the last result of one is an error;
@@ -19,24 +21,56 @@ use crate::config::{CardConfig, ChannelConfig};
 use crate::encoder_port::EncoderPort;
 use crate::register_bank::RegisterBank;
 use crate::service::program::ServiceTimes;
+use crate::stream::{channel::SetChannel, Stream};
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
-use crate::uart_bridge::{UartBridge, TIMEOUT_US};
 use rust_hdl::prelude::*;
 
-/// The whole core; the number of channels is that of [`CardConfig::channels`].
+pub use uart::Card;
+
+/// The card but for its front; the number of channels is that of [`CardConfig::channels`].
 #[derive(LogicBlock)]
-pub struct Card {
+pub struct CardCore {
     /// System clock.
     pub clk_i: Signal<In, Clock>,
     /// Synchronous reset, active high.
     pub rst_i: Signal<In, Bit>,
     /// Trigger pin, asynchronous; a rising edge triggers.
     pub trigger_i: Signal<In, Bit>,
-    /// Serial line from the host, asynchronous.
-    pub uart_rx_i: Signal<In, Bit>,
-    /// Serial line to the host.
-    pub uart_tx_o: Signal<Out, Bit>,
+    /// Strobe each microsecond.
+    pub tick_us: Signal<Out, Bit>,
+    /// Word address of an access, constant from `access` to `done`.
+    pub word_address: Signal<In, Bits<11>>,
+    /// The front's address fits `word_address`; otherwise a read gives 0 and a write does nothing.
+    pub in_range: Signal<In, Bit>,
+    /// Byte of the word, 0 = most significant; 0 in a write.
+    pub lane: Signal<In, Bits<2>>,
+    /// One-cycle strobe: begin an access, with the address stable since the cycle before.
+    pub access: Signal<In, Bit>,
+    /// With `access`: write a word; low = read a byte.
+    pub write: Signal<In, Bit>,
+    /// Word to write; moves up by a byte in each cycle with `take_byte`.
+    pub write_data: Signal<In, Bits<32>>,
+    /// The host is reading: results must not change.
+    pub reading: Signal<In, Bit>,
+    /// A byte of the configuration word passes, most significant first: in a write it is replaced by that of `write_data`.
+    pub take_byte: Signal<Out, Bit>,
+    /// With `take_byte`: the byte that stood there.
+    pub passing_byte: Signal<Out, Bits<8>>,
+    /// Byte that was read, from `done` to the next `access`.
+    pub read_byte: Signal<Out, Bits<8>>,
+    /// One-cycle strobe: the access has ended.
+    pub done: Signal<Out, Bit>,
+    /// Frames of the stream are to be pushed; low without a stream.
+    pub push: Signal<Out, Bit>,
+    /// A frame is being pushed: its first byte has been taken, its last one has not.
+    pub in_frame: Signal<Out, Bit>,
+    /// `push_byte` is the next byte to push.
+    pub push_valid: Signal<Out, Bit>,
+    /// The next byte.
+    pub push_byte: Signal<Out, Bits<8>>,
+    /// Strobe, with `push_valid` only: the byte is taken.
+    pub push_take: Signal<In, Bit>,
     /// EnDat clock to the transceiver.
     pub endat_clk_o: Vec<Signal<Out, Bit>>,
     /// EnDat data to the transceiver.
@@ -51,10 +85,17 @@ pub struct Card {
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     timebase: Timebase,
     trigger: Trigger,
-    bridge: UartBridge,
     bank: RegisterBank,
     registers: Vec<ChannelRegisters>,
     port: Vec<EncoderPort>,
+    stream: Vec<Stream>,
+    set: Vec<SetChannel>,
+    set_byte: Vec<Signal<Local, Bits<8>>>,
+    set_owes: Vec<Signal<Local, Bit>>,
+    set_replaced: Vec<Signal<Local, Bit>>,
+    set_taken: Vec<Signal<Local, Bit>>,
+    set_block: Vec<Signal<Local, Bits<4>>>,
+    set_byte_at: Vec<Signal<Local, Bits<3>>>,
     ring_link: Vec<Signal<Local, Bits<8>>>,
     read_link: Vec<Signal<Local, Bits<8>>>,
     service_link: Vec<Signal<Local, Bits<32>>>,
@@ -65,6 +106,9 @@ pub struct Card {
     quick_bit: Constant<Bits<5>>,
     _channels: usize,
     _links: usize,
+    _streams: usize,
+    _sets: usize,
+    _set_links: usize,
 }
 
 /// Time stamp bit that toggles about `hz` times a second.
@@ -92,40 +136,54 @@ fn line(card: &CardConfig) -> Features {
     }
 }
 
-impl Card {
+/// Parts and waits of a card's services.
+pub fn service_times(config: &CardConfig) -> ServiceTimes {
+    ServiceTimes {
+        initialise: config.service.initialise,
+        diagnosis: config.service.diagnosis,
+        continuous: config.service.continuous,
+        infos: config.service.infos,
+        ..ServiceTimes::at(config.system_hz)
+    }
+}
+
+/// `n` signals or links.
+pub(crate) fn each<T: Default>(n: usize) -> Vec<T> {
+    (0..n).map(|_| T::default()).collect()
+}
+
+impl CardCore {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
-        Self::with_timeout(config, TIMEOUT_US)
+        Self::with_times(config, &service_times(config))
     }
 
-    /// A card with another limit on pauses within a host command, for quick tests.
-    pub fn with_timeout(config: &CardConfig, timeout_us: u64) -> Self {
-        Self::with_times(config, timeout_us, &Self::service_times(config))
-    }
-
-    /// Parts and waits of its services.
-    pub fn service_times(config: &CardConfig) -> ServiceTimes {
-        ServiceTimes {
-            initialise: config.service.initialise,
-            diagnosis: config.service.diagnosis,
-            continuous: config.service.continuous,
-            infos: config.service.infos,
-            ..ServiceTimes::at(config.system_hz)
-        }
-    }
-
-    /// A card with other waits, too.
-    pub fn with_times(config: &CardConfig, timeout_us: u64, service: &ServiceTimes) -> Self {
+    /// A card with other waits of its services.
+    pub fn with_times(config: &CardConfig, service: &ServiceTimes) -> Self {
         let channels = config.channels.len();
-        fn each<T: Default>(n: usize) -> Vec<T> {
-            (0..n).map(|_| T::default()).collect()
-        }
+        let streams = usize::from(config.stream.fifo_bytes != 0);
+        let sets = channels * streams;
         Self {
             clk_i: Default::default(),
             rst_i: Default::default(),
             trigger_i: Default::default(),
-            uart_rx_i: Default::default(),
-            uart_tx_o: Default::default(),
+            tick_us: Default::default(),
+            word_address: Default::default(),
+            in_range: Default::default(),
+            lane: Default::default(),
+            access: Default::default(),
+            write: Default::default(),
+            write_data: Default::default(),
+            reading: Default::default(),
+            take_byte: Default::default(),
+            passing_byte: Default::default(),
+            read_byte: Default::default(),
+            done: Default::default(),
+            push: Default::default(),
+            in_frame: Default::default(),
+            push_valid: Default::default(),
+            push_byte: Default::default(),
+            push_take: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
@@ -134,7 +192,6 @@ impl Card {
             led_channel_o: each(channels),
             timebase: Timebase::new(config.system_hz),
             trigger: Default::default(),
-            bridge: UartBridge::new(config.uart_bit_cycles, timeout_us),
             bank: RegisterBank::new(config),
             registers: (0..channels)
                 .map(|i| ChannelRegisters::new(config, i))
@@ -152,6 +209,20 @@ impl Card {
                     )
                 })
                 .collect(),
+            stream: (0..streams)
+                .map(|_| {
+                    let start = config.stream.start;
+                    let (collect, push) = (start.collects(), start.pushes());
+                    Stream::new(config.stream.fifo_bytes, channels, collect, push)
+                })
+                .collect(),
+            set: (0..sets).map(SetChannel::new).collect(),
+            set_byte: each(sets + streams),
+            set_owes: each(sets + streams),
+            set_replaced: each(sets + streams),
+            set_taken: each(streams),
+            set_block: each(streams),
+            set_byte_at: each(streams),
             ring_link: each(channels + 1),
             read_link: each(channels + 1),
             service_link: each(channels + 1),
@@ -162,19 +233,20 @@ impl Card {
             quick_bit: Constant::new(blink_bit(config.system_hz, 8).into()),
             _channels: channels,
             _links: channels + 1,
+            _streams: streams,
+            _sets: sets,
+            _set_links: sets + streams,
         }
     }
 }
 
-impl Logic for Card {
+impl Logic for CardCore {
     #[hdl_gen]
     fn update(&mut self) {
         self.timebase.clock.next = self.clk_i.val();
         self.timebase.reset.next = self.rst_i.val();
         self.trigger.clock.next = self.clk_i.val();
         self.trigger.reset.next = self.rst_i.val();
-        self.bridge.clock.next = self.clk_i.val();
-        self.bridge.reset.next = self.rst_i.val();
         self.bank.clock.next = self.clk_i.val();
         self.bank.reset.next = self.rst_i.val();
 
@@ -183,20 +255,19 @@ impl Logic for Card {
         self.trigger.sources.next = self.bank.sources.val();
         self.trigger.period_cycles.next = self.bank.period_cycles.val();
 
-        self.bridge.tick_us.next = self.timebase.tick_us.val();
-        self.bridge.rx.next = self.uart_rx_i.val();
-        self.bridge.take_byte.next = self.bank.take_byte.val();
-        self.bridge.read_byte.next = self.bank.read_byte.val();
-        self.bridge.done.next = self.bank.done.val();
-        self.uart_tx_o.next = self.bridge.tx.val();
+        self.tick_us.next = self.timebase.tick_us.val();
+        self.take_byte.next = self.bank.take_byte.val();
+        self.passing_byte.next = self.bank.passing_byte.val();
+        self.read_byte.next = self.bank.read_byte.val();
+        self.done.next = self.bank.done.val();
 
-        self.bank.word_address.next = self.bridge.word_address.val();
-        self.bank.in_range.next = self.bridge.in_range.val();
-        self.bank.lane.next = self.bridge.lane.val();
-        self.bank.access.next = self.bridge.access.val();
-        self.bank.write.next = self.bridge.write.val();
-        self.bank.write_data.next = self.bridge.write_data.val();
-        self.bank.reading.next = self.bridge.reading.val();
+        self.bank.word_address.next = self.word_address.val();
+        self.bank.in_range.next = self.in_range.val();
+        self.bank.lane.next = self.lane.val();
+        self.bank.access.next = self.access.val();
+        self.bank.write.next = self.write.val();
+        self.bank.write_data.next = self.write_data.val();
+        self.bank.reading.next = self.reading.val();
         self.bank.trigger_count.next = self.trigger.trigger_count.val();
 
         // From the first channel to the last: read bytes and "some channel" signals. The ring runs the other way.
@@ -256,7 +327,7 @@ impl Logic for Card {
 
             self.registers[i].load.next = self.bank.load.val();
             self.registers[i].word_skip.next = self.bank.word_skip.val();
-            self.registers[i].lane.next = self.bridge.lane.val();
+            self.registers[i].lane.next = self.lane.val();
             self.registers[i].skip.next = self.bank.channel_skip.val().get_bit(i);
             self.registers[i].read_in.next = self.read_link[i].val();
             self.read_link[i + 1].next = self.registers[i].read_out.val();
@@ -292,8 +363,64 @@ impl Logic for Card {
                     .get_bit(self.quick_bit.val().index());
             }
         }
+
+        // The stream, and each channel's place in a set.
+        self.bank.stream_byte.next = 0.into();
+        self.push.next = false;
+        self.in_frame.next = false;
+        self.push_valid.next = false;
+        self.push_byte.next = 0.into();
+        for i in 0..self._streams {
+            self.stream[i].clock.next = self.clk_i.val();
+            self.stream[i].reset.next = self.rst_i.val();
+            self.stream[i].trigger.next = self.trigger.trigger.val();
+            self.stream[i].trigger_count.next = self.trigger.trigger_count.val();
+            self.stream[i].timestamp.next = self.timebase.timestamp.val();
+            self.stream[i].owes.next = self.set_owes[i].val();
+            self.stream[i].replaced.next = self.set_replaced[i].val();
+            self.stream[i].channel_byte.next = self.set_byte[i].val();
+            self.set_taken[i].next = self.stream[i].take_set.val();
+            self.set_block[i].next = self.stream[i].block.val();
+            self.set_byte_at[i].next = self.stream[i].byte_at.val();
+            self.stream[i].selected.next = self.bank.stream_selected.val();
+            self.stream[i].word.next = self.word_address.val().get_bits::<2>(0);
+            self.stream[i].lane.next = self.lane.val();
+            self.stream[i].access.next = self.access.val();
+            self.stream[i].write.next = self.write.val();
+            self.stream[i].write_data.next = self.write_data.val().get_bits::<2>(0);
+            self.bank.stream_byte.next = self.stream[i].read_byte.val();
+            self.push.next = self.stream[i].push.val();
+            self.in_frame.next = self.stream[i].in_frame.val();
+            self.push_valid.next = self.stream[i].push_valid.val();
+            self.push_byte.next = self.stream[i].push_byte.val();
+            self.stream[i].push_take.next = self.push_take.val();
+        }
+        for i in 0..self._sets {
+            self.set[i].clock.next = self.clk_i.val();
+            self.set[i].reset.next = self.rst_i.val();
+            self.set[i].trigger.next = self.trigger.trigger.val();
+            self.set[i].busy.next = self.port[i].busy.val();
+            self.set[i].result_strobe.next = self.port[i].result_strobe.val();
+            self.set[i].position.next = self.port[i].position.val();
+            self.set[i].position_valid.next = self.port[i].position_valid.val();
+            self.set[i].fresh.next = self.port[i].fresh.val();
+            self.set[i].cause.next = self.port[i].cause.val();
+            self.set[i].flags.next = self.port[i].flags.val();
+            self.set[i].take.next = self.set_taken[0].val();
+            self.set[i].block.next = self.set_block[0].val();
+            self.set[i].byte_at.next = self.set_byte_at[0].val();
+            self.set_byte[i].next = self.set_byte[i + 1].val() | self.set[i].set_byte.val();
+            self.set_owes[i].next = self.set_owes[i + 1].val() | self.set[i].owes.val();
+            self.set_replaced[i].next = self.set_replaced[i + 1].val() | self.set[i].replaced.val();
+        }
+        for i in self._sets..self._set_links {
+            self.set_byte[i].next = 0.into();
+            self.set_owes[i].next = false;
+            self.set_replaced[i].next = false;
+        }
     }
 }
 
 #[cfg(test)]
 mod tests;
+mod uart;

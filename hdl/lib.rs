@@ -13,6 +13,7 @@
 //! from left to right in the drawing, [`channel`], [`card`]. [`elaborate`] turns any block into a typed `Design`.
 
 pub mod add_info;
+pub mod bus;
 pub mod card;
 pub mod channel;
 pub mod channel_registers;
@@ -39,6 +40,7 @@ pub mod regs;
 pub mod sequencer;
 pub mod service;
 pub mod snapshot;
+pub mod stream;
 #[cfg(test)]
 mod testing;
 pub mod timebase;

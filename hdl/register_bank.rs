@@ -1,7 +1,7 @@
 //! Register bank: the card's own words, and the decoder in front of all words.
 //!
 //! ```text
-//! access, word_address, lane --> turning: one turn of the configuration ring, whatever is accessed --> done
+//! access, word_address, lane --> turning: one turn of the configuration ring; other words: until their byte is there --> done
 //!                                   |
 //!        constants ---------+       +-- the byte passing the head is read, or replaced by the one to write
 //!        trigger count -----+
@@ -31,14 +31,16 @@ pub struct RegisterBank {
     pub in_range: Signal<In, Bit>,
     /// Byte of the word, 0 = most significant.
     pub lane: Signal<In, Bits<2>>,
-    /// One-cycle strobe: begin an access.
+    /// One-cycle strobe: begin an access, with the address stable since the cycle before.
     pub access: Signal<In, Bit>,
     /// With `access`: write a word; low = read a byte.
     pub write: Signal<In, Bit>,
     /// Word to write.
     pub write_data: Signal<In, Bits<32>>,
-    /// The most significant byte of `write_data` is being taken.
+    /// A byte of the configuration word passes the head, most significant first: in a write that of `write_data` replaces it.
     pub take_byte: Signal<Out, Bit>,
+    /// With `take_byte`: the byte that stood there.
+    pub passing_byte: Signal<Out, Bits<8>>,
     /// Byte that was read, from `done` to the next `access`.
     pub read_byte: Signal<Out, Bits<8>>,
     /// One-cycle strobe: the access has ended.
@@ -79,6 +81,10 @@ pub struct RegisterBank {
     pub service_half: Signal<Out, Bit>,
     /// What is written.
     pub service_data: Signal<Out, Bits<16>>,
+    /// The word is one of the stream's four.
+    pub stream_selected: Signal<Out, Bit>,
+    /// Byte that was read from it; 0 if it is none of them.
+    pub stream_byte: Signal<In, Bits<8>>,
     /// Triggers since reset.
     pub trigger_count: Signal<In, Bits<32>>,
     /// Strobe: trigger now.
@@ -94,7 +100,7 @@ pub struct RegisterBank {
     byte_at: Reg<Bits<4>>,
     block_at: Reg<Bits<4>>,
     turn: Reg<Bit>,
-    word_passes: Reg<Bit>,
+    passes: Reg<Bit>,
     byte_passes: Reg<Bit>,
     ended: Reg<Bit>,
     done_now: Reg<Bit>,
@@ -123,6 +129,7 @@ pub struct RegisterBank {
     low_address: Signal<Local, Bits<9>>,
     service_page: Signal<Local, Bit>,
     at_end: Signal<Local, Bit>,
+    whole_turn: Signal<Local, Bit>,
     at_word: Signal<Local, Bit>,
     block_end: Signal<Local, Bit>,
     card_page: Signal<Local, Bit>,
@@ -176,6 +183,7 @@ impl RegisterBank {
             write: Default::default(),
             write_data: Default::default(),
             take_byte: Default::default(),
+            passing_byte: Default::default(),
             read_byte: Default::default(),
             done: Default::default(),
             reading: Default::default(),
@@ -196,6 +204,8 @@ impl RegisterBank {
             service_write: Default::default(),
             service_half: Default::default(),
             service_data: Default::default(),
+            stream_selected: Default::default(),
+            stream_byte: Default::default(),
             trigger_count: Default::default(),
             trigger_now: Default::default(),
             calibrate: Default::default(),
@@ -206,7 +216,7 @@ impl RegisterBank {
             byte_at: Default::default(),
             block_at: Default::default(),
             turn: Default::default(),
-            word_passes: Default::default(),
+            passes: Default::default(),
             byte_passes: Default::default(),
             ended: Default::default(),
             done_now: Default::default(),
@@ -235,6 +245,7 @@ impl RegisterBank {
             low_address: Default::default(),
             service_page: Default::default(),
             at_end: Default::default(),
+            whole_turn: Default::default(),
             at_word: Default::default(),
             block_end: Default::default(),
             card_page: Default::default(),
@@ -268,7 +279,7 @@ impl Logic for RegisterBank {
             byte_at,
             block_at,
             turn,
-            word_passes,
+            passes,
             byte_passes,
             ended
         );
@@ -306,7 +317,7 @@ impl Logic for RegisterBank {
         self.byte_at.reset.next = self.reset.val();
         self.block_at.reset.next = self.reset.val();
         self.turn.reset.next = self.reset.val();
-        self.word_passes.reset.next = self.reset.val();
+        self.passes.reset.next = self.reset.val();
         self.byte_passes.reset.next = self.reset.val();
         self.ended.reset.next = self.reset.val();
         self.done_now.reset.next = self.reset.val();
@@ -341,9 +352,17 @@ impl Logic for RegisterBank {
         self.service_first.reset.next = self.reset.val();
         self.service_byte.reset.next = self.service_skip.q.val();
 
-        // One turn per access. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
+        // One turn for a configuration word. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
+        // They also time the halves of a written RAM word; everything else ends as soon as its byte is there.
+        self.whole_turn.next =
+            self.config_page.q.val() | (self.write_now.q.val() & !self.service_skip.q.val());
         self.block_end.next = self.byte_at.q.val() == 11;
         self.at_end.next = self.block_end.val() & (self.block_at.q.val() == self.last_block.val());
+        if !self.whole_turn.val() {
+            // The first byte of a RAM word waits for the RAM.
+            self.at_end.next =
+                self.service_skip.q.val() | self.lane.val().any() | (self.byte_at.q.val() == 9);
+        }
         if self.turning.q.val() {
             self.byte_at.d.next = self.byte_at.q.val() + 1;
             if self.block_end.val() {
@@ -361,7 +380,7 @@ impl Logic for RegisterBank {
             self.turning.d.next = true;
             self.write_now.d.next = self.write.val();
         }
-        self.turn.d.next = self.turning.q.val();
+        self.turn.d.next = self.turning.q.val() & self.whole_turn.val();
         self.ended.d.next = self.turning.q.val() & self.at_end.val();
         self.done_now.d.next = self.ended.q.val();
         self.ring_turn.next = self.turn.q.val();
@@ -380,11 +399,11 @@ impl Logic for RegisterBank {
             & self.config_page.q.val()
             & (self.block_at.q.val() == self.word_address.val().get_bits::<4>(3))
             & (self.byte_at.q.val().get_bits::<2>(2) == self.word_address.val().get_bits::<2>(0));
-        self.word_passes.d.next = self.at_word.val() & self.write_now.q.val();
+        self.passes.d.next = self.at_word.val();
         self.byte_passes.d.next =
             self.at_word.val() & (self.byte_at.q.val().get_bits::<2>(0) == self.lane.val());
         self.head.next = self.ring.byte_out.val();
-        if self.word_passes.q.val() {
+        if self.passes.q.val() & self.write_now.q.val() {
             self.head.next = self.write_data.val().get_bits::<8>(24);
         }
         if self.byte_passes.q.val() {
@@ -393,13 +412,16 @@ impl Logic for RegisterBank {
         if self.access.val() {
             self.ring_byte.d.next = 0.into();
         }
-        self.take_byte.next = self.word_passes.q.val();
+        self.take_byte.next = self.passes.q.val();
+        self.passing_byte.next = self.ring.byte_out.val();
         self.ring.turn.next = self.turn.q.val();
         self.ring.byte_in.next = self.ring_in.val();
         self.ring_out.next = self.head.val();
 
         // The card's own words.
         self.card_page.next = self.low_page.val() & !self.word_address.val().get_bits::<5>(4).any();
+        self.stream_selected.next =
+            self.card_page.val() & self.word_address.val().get_bits::<2>(2).all();
         self.rom_word.next = 0.into();
         match self.word_address.val().get_bits::<3>(0).index() {
             0 => {
@@ -604,7 +626,8 @@ impl Logic for RegisterBank {
             | self.count_byte.q.val()
             | self.ring_byte.q.val()
             | self.channel_byte.val()
-            | self.service_byte.q.val();
+            | self.service_byte.q.val()
+            | self.stream_byte.val();
         self.read_byte.next = self.byte.q.val();
     }
 }

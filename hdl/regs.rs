@@ -27,7 +27,7 @@ use crate::transaction::cause;
 use values::Values;
 
 /// Major, minor and patch version of the register map.
-pub const VERSION: [u8; 3] = [0, 4, 0];
+pub const VERSION: [u8; 3] = [0, 5, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the configuration blocks; block 0 is the card's, block n + 1 that of channel n.
@@ -219,7 +219,11 @@ impl Block {
         let first_line = u16::from(map::word::COUNTERS) + cause::NO_ENCODER as u16;
         let past_line = u16::from(map::word::COUNTERS + COUNTER_POSITION_2);
         let margin = config.line.margin;
+        let stream = config.stream.fifo_bytes != 0;
         self.registers.iter().filter(move |register| {
+            if base == CARD.base {
+                return stream || register.offset < u16::from(table::STREAM_FIRST);
+            }
             if base == LINE_BASE {
                 return margin || line::is_setting(register.offset);
             }

@@ -9,6 +9,8 @@
 //! Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
 //! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then.
 //!
+//! Between answers it pushes the frames of a [`crate::stream::Stream`], each in one piece; an answer then begins with 0xFF.
+//!
 //! A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
 //!
 //! Ref: LiteX, `litex/soc/cores/uart.py` (gateware) and `litex/tools/remote/comm_uart.py` (client).
@@ -72,6 +74,16 @@ pub struct UartBridge {
     pub done: Signal<In, Bit>,
     /// A read command is being answered: results must not change.
     pub reading: Signal<Out, Bit>,
+    /// Frames are being pushed: answers begin with 0xFF.
+    pub push: Signal<In, Bit>,
+    /// A frame has begun and not yet ended.
+    pub in_frame: Signal<In, Bit>,
+    /// `push_byte` can be sent.
+    pub push_valid: Signal<In, Bit>,
+    /// Next byte to push.
+    pub push_byte: Signal<In, Bits<8>>,
+    /// Strobe: `push_byte` is taken.
+    pub push_take: Signal<Out, Bit>,
     receiver: UartReceiver,
     transmitter: UartTransmitter,
     state: Reg<BridgeState>,
@@ -93,6 +105,10 @@ pub struct UartBridge {
     idle_us: Reg<Bits<17>>,
     expired: Reg<Bit>,
     stop_timer: Reg<Bit>,
+    marked: Reg<Bit>,
+    marker: Reg<Bit>,
+    from_stream: Signal<Local, Bit>,
+    answer_sent: Signal<Local, Bit>,
     last_lane: Signal<Local, Bit>,
     next_lane: Signal<Local, Bit>,
     next_address: Signal<Local, Bits<12>>,
@@ -119,6 +135,11 @@ impl UartBridge {
             read_byte: Default::default(),
             done: Default::default(),
             reading: Default::default(),
+            push: Default::default(),
+            in_frame: Default::default(),
+            push_valid: Default::default(),
+            push_byte: Default::default(),
+            push_take: Default::default(),
             receiver: UartReceiver::new(bit_cycles),
             transmitter: UartTransmitter::new(bit_cycles),
             state: Reg::new(BridgeState::Command),
@@ -140,6 +161,10 @@ impl UartBridge {
             idle_us: Default::default(),
             expired: Default::default(),
             stop_timer: Default::default(),
+            marked: Default::default(),
+            marker: Default::default(),
+            from_stream: Default::default(),
+            answer_sent: Default::default(),
             last_lane: Default::default(),
             next_lane: Default::default(),
             next_address: Default::default(),
@@ -163,6 +188,9 @@ impl Logic for UartBridge {
             out_of_range
         );
         dff_setup!(self, clock, byte_lane, data, byte_ready, idle_us, expired, stop_timer);
+        dff_setup!(self, clock, marked, marker);
+        self.marked.reset.next = self.reset.val();
+        self.marker.reset.next = self.reset.val();
         dff_setup!(
             self,
             clock,
@@ -198,15 +226,34 @@ impl Logic for UartBridge {
         self.expired.reset.next = self.reset.val();
 
         self.receiver.rx.next = self.rx.val();
+        // A frame that has begun goes first; none begins while an answer is due.
+        self.from_stream.next = self.in_frame.val() | (self.state.q.val() != BridgeState::Read);
         self.transmitter.data.next = self.read_byte.val();
         self.transmitter.valid.next = self.byte_ready.q.val();
+        if self.marker.q.val() {
+            self.transmitter.data.next = 255.into();
+        }
+        if self.from_stream.val() {
+            self.transmitter.data.next = self.push_byte.val();
+            self.transmitter.valid.next = self.push_valid.val();
+        }
+        self.push_take.next = self.transmitter.accept.val() & self.from_stream.val();
+        self.answer_sent.next =
+            self.transmitter.accept.val() & !self.from_stream.val() & !self.marker.q.val();
+        if self.transmitter.accept.val() & !self.from_stream.val() {
+            self.marker.d.next = false;
+        }
+        // The first answer after the last frame has its mark, too: so the host knows it from a frame.
+        if self.push.val() {
+            self.marked.d.next = true;
+        }
         self.tx.next = self.transmitter.tx.val();
 
         self.last_lane.next = self.byte_lane.q.val().all();
         // Bytes are tens of cycles apart: every decision may take a few, which keeps each one short.
         self.last_word.d.next = self.words_left.q.val() == 1;
         self.no_word.d.next = !self.words_left.q.val().any();
-        self.sent.d.next = self.transmitter.accept.val();
+        self.sent.d.next = self.answer_sent.val();
         self.word_end.d.next = false;
         self.step_address.d.next = false;
         self.access_next.d.next = false;
@@ -254,6 +301,7 @@ impl Logic for UartBridge {
                     if self.last_lane.val() {
                         self.state.d.next = BridgeState::Read;
                         self.access_next.d.next = !self.writing.q.val() & !self.no_word.q.val();
+                        self.marker.d.next = self.marked.q.val();
                         if self.writing.q.val() {
                             self.state.d.next = BridgeState::Write;
                         }
@@ -297,6 +345,9 @@ impl Logic for UartBridge {
             self.words_left.d.next = self.words_left.q.val() - 1;
             if self.last_word.q.val() {
                 self.state.d.next = BridgeState::Command;
+                if !self.writing.q.val() & !self.push.val() {
+                    self.marked.d.next = false;
+                }
             }
         }
 
@@ -341,7 +392,7 @@ impl Logic for UartBridge {
         if self.done.val() & (self.state.q.val() == BridgeState::Read) {
             self.byte_ready.d.next = true;
         }
-        if self.transmitter.accept.val() {
+        if self.answer_sent.val() {
             self.byte_ready.d.next = false;
         }
 

@@ -2,6 +2,7 @@
 //!
 //! Ref: LiteX, `litex/tools/remote/comm_uart.py`.
 
+use crate::registers::Place;
 use crate::stream::{Decoder, SampleSet};
 use crate::transport::Transport;
 use crate::HostError;
@@ -20,8 +21,6 @@ const SETTLE_MAX: Duration = Duration::from_secs(3);
 const TRIES: u32 = 3;
 /// How long the frame behind an answer is waited for.
 const NEXT_FRAME: Duration = Duration::from_millis(5);
-/// Word that switches the stream; on a card without one, writing it does nothing.
-const STREAM_CONTROL: u16 = 0x00C;
 /// Comes before an answer while the card pushes sample sets; no frame begins with it.
 const ANSWER: u8 = 0xFF;
 
@@ -82,7 +81,8 @@ impl<T: Transport> Bridge<T> {
     pub fn calm(&mut self) -> Result<(), HostError> {
         self.set_pushes(false);
         self.settle()?;
-        self.write(STREAM_CONTROL, &[0])?;
+        // A card without a stream does nothing about it.
+        self.write(Place::at("card", "stream_control", 0).address(), &[0])?;
         self.settle()?;
         // The first answer after a push has its marker.
         self.send(&[2, 1, 0, 0, 0, 0])?;

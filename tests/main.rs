@@ -1,6 +1,7 @@
 //! Tests of the whole system, one module per topic.
 
 mod alignment;
+mod bus;
 mod campaign;
 mod cli;
 mod config;
@@ -11,6 +12,7 @@ mod engines;
 mod files;
 mod host;
 mod hosts;
+mod integrators;
 mod maps;
 mod pages;
 mod position;
@@ -19,6 +21,7 @@ mod requests;
 mod service;
 mod shmoo;
 mod sim;
+mod stream;
 mod three_way;
 mod tools;
 mod verilog;

@@ -153,6 +153,7 @@ fn alone(arguments: &CampaignArgs, case: &Case, index: usize) -> Result<Outcome,
     let failure = case.check(&traces).err();
     let files = Pictures {
         vcd: arguments.vcd.as_deref(),
+        wires: None,
         svg: arguments.svg.as_deref(),
         frame: Drawn::First,
     };

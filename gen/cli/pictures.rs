@@ -5,7 +5,7 @@ use crate::error::{shown, GenError};
 use endat_sim::bench::Bench;
 use endat_sim::diagram::{frame_svg, is_drawing, overview_svg};
 use endat_sim::engine::Compiled;
-use endat_sim::wave::{is_layout, is_vcd, Wave};
+use endat_sim::wave::{is_layout, is_vcd, write_wires, Wave};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -17,6 +17,8 @@ const DRAWN_FRAME: usize = 1;
 pub struct Pictures<'a> {
     /// Waveforms, with a GTKWave layout beside them.
     pub vcd: Option<&'a Path>,
+    /// The wires of the first link, for logic analysers' programs.
+    pub wires: Option<&'a Path>,
     /// A frame as a timing diagram.
     pub svg: Option<&'a Path>,
     /// What of it.
@@ -75,6 +77,17 @@ pub fn draw(
             path: path.with_extension("gtkw"),
             text: wave.gtkw(&name),
             is_ours: is_layout,
+        });
+    }
+    if let Some(path) = wanted.wires {
+        let mut bytes = Vec::new();
+        write_wires(bench.link(0), &mut bytes)
+            .map_err(|e| GenError::io("write", path, &e, "give another file"))?;
+        files.push(File {
+            option: "--wires",
+            path: path.to_owned(),
+            text: String::from_utf8_lossy(&bytes).into_owned(),
+            is_ours: is_vcd,
         });
     }
     if let Some(path) = wanted.svg {

@@ -35,6 +35,9 @@ pub struct SimArgs {
     /// Write the waveforms, and a GTKWave layout beside them
     #[arg(long, value_name = "FILE", conflicts_with = "list")]
     vcd: Option<PathBuf>,
+    /// Write CLOCK and DATA as they are at the encoder, for logic analysers' programs: scalars, in nanoseconds
+    #[arg(long, value_name = "FILE", conflicts_with = "list")]
+    wires: Option<PathBuf>,
     /// Draw a frame as a timing diagram
     #[arg(long, value_name = "FILE", conflicts_with = "list")]
     svg: Option<PathBuf>,
@@ -94,6 +97,7 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
         if order == 0 {
             let files = Pictures {
                 vcd: arguments.vcd.as_deref(),
+                wires: arguments.wires.as_deref(),
                 svg: arguments.svg.as_deref(),
                 frame,
             };

@@ -4,12 +4,15 @@ mod names;
 mod pins;
 mod reader;
 mod schema;
+mod stream;
 
 pub use names::{check_name, NAME_MAX};
+pub use stream::start_name;
 
 use crate::artifact::read_regular;
 use crate::board::{Assignment, Board, Pll};
 use crate::error::{shown, Diagnostic, GenError};
+use endat_hdl::bus::HostBus;
 use endat_hdl::config::CardConfig;
 use std::path::Path;
 
@@ -77,13 +80,15 @@ pub struct Project {
     pub source: String,
     /// The card in the units of the blocks.
     pub card: CardConfig,
+    /// What stands between the registers and the host.
+    pub bus: HostBus,
     /// Encoder of each channel, for people; may be empty.
     pub encoders: Vec<String>,
-    /// The board.
-    pub board: Board,
-    /// The clock manager.
-    pub pll: Pll,
-    /// Pin of every port of the board top, in the order of the ports.
+    /// The board; none when the host's bus stays inside the chip.
+    pub board: Option<Board>,
+    /// The clock manager of the board.
+    pub pll: Option<Pll>,
+    /// Pin of every port of the board top, in the order of the ports; empty without a board.
     pub pins: Vec<Assignment>,
     /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
     pub hash: String,

@@ -2,9 +2,10 @@
 
 use super::pins::assign_pins;
 use super::reader::{At, Source, Table};
-use super::{check_name, Project};
+use super::{check_name, stream, Project};
 use crate::board::{self, Assignment, Board};
 use crate::error::shorten;
+use endat_hdl::bus::HostBus;
 use endat_hdl::config::*;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::timing::{cycles_at_most, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
@@ -53,8 +54,15 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let empty = DeTable::new();
     let root = Table::root(source, document.get_ref());
     let name = read_name(&root);
+    let host = root.table("host", &empty);
+    let bus = read_bus(&host);
     let board_table = root.table("board", &empty);
-    let board = read_board(&board_table);
+    let is_internal = bus.is_some_and(HostBus::is_internal);
+    let has_uart = bus == Some(HostBus::Uart);
+    let board = match is_internal {
+        true => None,
+        false => read_board(&board_table),
+    };
     let clock = root.table("clock", &empty);
     let system_limits = limits("system_hz", None);
     let system = clock.required_integer("system_hz", "100_000_000", &system_limits);
@@ -79,22 +87,44 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let link = root.table("link", &empty);
     let baud_max = board.as_ref().map(|b| b.uart_baud_max);
     let baud_limits = limits("baud", system_hz).at_most(baud_max.unwrap_or(u64::MAX), BAUD_NOTE);
-    let baud = link.required_integer("baud", "2_000_000", &baud_limits);
-    let read_hz = link.integer("read_hz", &limits("read_hz", system_hz));
+    let baud = match bus {
+        Some(HostBus::Uart) => link.required_integer("baud", "2_000_000", &baud_limits),
+        _ => None,
+    };
+    let read_hz = match bus {
+        Some(HostBus::Uart) => link.integer("read_hz", &limits("read_hz", system_hz)),
+        _ => None,
+    };
     let service = root.table("service", &empty);
     let parts = read_service(&service);
+    let stream_table = root.table("stream", &empty);
+    let stream = stream::read(&stream_table);
     let pins = root.table("pins", &empty);
+    if let Some(bus) = bus.filter(|_| !has_uart) {
+        refuse_unused(
+            &root,
+            bus,
+            &[("link", &link), ("board", &board_table), ("pins", &pins)],
+        );
+    }
     for table in tables.iter().flatten().chain([
         &clock,
         &endat,
         &trigger,
-        &link,
+        &host,
         &service,
         &line_table,
-        &board_table,
+        &stream_table,
         &root,
     ]) {
         table.finish();
+    }
+    // What a bus has no use for has been refused as a whole.
+    if !is_internal {
+        board_table.finish();
+    }
+    if has_uart {
+        link.finish();
     }
     if let (Some(board), Some(system), true) = (&board, &system, system_hz.is_some()) {
         if let Err(text) = board::pll(board.oscillator_hz, system.value) {
@@ -122,11 +152,20 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         channels: requests,
         sample_hz: sample.as_ref().map(|s| s.value),
         sources,
-        baud: baud.as_ref().map(|b| b.value),
-        baud_max,
-        read_hz: read_hz.as_ref().map(|r| r.value).or(usual_read_hz),
+        // Without a UART nothing is asked of it: its numbers stand at what every card can do, and nobody looks at them.
+        baud: match has_uart {
+            true => baud.as_ref().map(|b| b.value),
+            false => system_hz.map(|hz| hz / UART_BIT_CYCLES_MIN),
+        },
+        baud_max: baud_max.filter(|_| has_uart),
+        read_hz: match has_uart {
+            true => read_hz.as_ref().map(|r| r.value).or(usual_read_hz),
+            false => Some(1),
+        },
         service: parts.unwrap_or_default(),
         line: line_parts.unwrap_or_default(),
+        stream: stream.parts,
+        without_uart: !has_uart,
     };
     let channels = channels.unwrap_or_default();
     let card = match draft.resolve() {
@@ -138,6 +177,12 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
                 (Section::Trigger, "sample_hz", line(&sample)),
                 (Section::Link, "baud", line(&baud)),
                 (Section::Link, "read_hz", line(&read_hz)),
+                (Section::Stream, "fifo_bytes", line(&stream.fifo_bytes)),
+                (
+                    Section::Stream,
+                    "start",
+                    stream.start.as_ref().map_or(0, |s| s.line),
+                ),
             ];
             let heads: Vec<usize> = tables.iter().flatten().map(|t| t.line).collect();
             for problem in problems {
@@ -147,9 +192,16 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         }
     };
     let channels: Vec<Channel> = channels.into_iter().collect::<Option<_>>()?;
-    let (name, board, pins) = (name?, board?, assignments?);
-    let pll = board::pll(board.oscillator_hz, card.system_hz).ok()?;
-    let hash = Sha256::digest(canonical(&card, &board, &pins))[..6]
+    let (name, bus) = (name?, bus?);
+    let (board, pll, pins) = match is_internal {
+        true => (None, None, vec![]),
+        false => {
+            let board = board?;
+            let pll = board::pll(board.oscillator_hz, card.system_hz).ok()?;
+            (Some(board), Some(pll), assignments?)
+        }
+    };
+    let hash = Sha256::digest(canonical(&card, bus, board.as_ref(), &pins))[..6]
         .iter()
         .map(|b| format!("{b:02x}"))
         .collect::<String>();
@@ -162,6 +214,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         name,
         source: source.file.into(),
         card,
+        bus,
         encoders,
         board,
         pll,
@@ -191,7 +244,12 @@ fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String
 }
 
 /// The resolved configuration as text, one number a line: what it means, not how the file spells it.
-fn canonical(card: &CardConfig, board: &Board, pins: &[Assignment]) -> String {
+fn canonical(
+    card: &CardConfig,
+    bus: HostBus,
+    board: Option<&Board>,
+    pins: &[Assignment],
+) -> String {
     let mut lines = vec![
         format!("system_hz {}", card.system_hz),
         format!("sample_period_cycles {}", card.sample_period_cycles),
@@ -199,14 +257,26 @@ fn canonical(card: &CardConfig, board: &Board, pins: &[Assignment]) -> String {
             "sources {} {} {}",
             card.sources.pin, card.sources.timer, card.sources.register
         ),
-        format!("uart_bit_cycles {}", card.uart_bit_cycles),
-        format!("part {}", board.part),
-        format!("oscillator_hz {}", board.oscillator_hz),
     ];
+    match bus {
+        HostBus::Uart => lines.push(format!("uart_bit_cycles {}", card.uart_bit_cycles)),
+        bus => lines.push(format!("bus {}", bus.name())),
+    }
+    if let Some(board) = board {
+        lines.push(format!("part {}", board.part));
+        lines.push(format!("oscillator_hz {}", board.oscillator_hz));
+    }
     if card.line.alignment {
         lines.push(format!(
             "line margin {} double_edge {}",
             card.line.margin, card.line.double_edge
+        ));
+    }
+    if card.stream.fifo_bytes != 0 {
+        lines.push(format!(
+            "stream fifo_bytes {} start {}",
+            card.stream.fifo_bytes,
+            stream::start_name(card.stream.start)
         ));
     }
     if card.service.requests {
@@ -531,6 +601,33 @@ fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
     Some(infos)
 }
 
+/// The bus; `None` for what is no bus.
+fn read_bus(table: &Table<'_, '_>) -> Option<HostBus> {
+    let Some(name) = table.string("bus") else {
+        return (!table.has("bus")).then(HostBus::default);
+    };
+    let bus = HostBus::from_name(&name.value);
+    if bus.is_none() {
+        let known: Vec<&str> = HostBus::ALL.map(HostBus::name).to_vec();
+        let text = format!("unknown bus; use {}", known.join(", "));
+        table.complain(name.line, "bus", &format!("{:?}", name.value), &text);
+    }
+    bus
+}
+
+/// Complains about tables that a card with this bus has no use for.
+fn refuse_unused(root: &Table<'_, '_>, bus: HostBus, tables: &[(&str, &Table<'_, '_>)]) {
+    let name = bus.name();
+    for (key, table) in tables.iter().filter(|(key, _)| root.has(key)) {
+        let text = match *key {
+            "link" => format!("[link]: host.bus = \"{name}\" has no UART, and [link] is about its rate; remove the table"),
+            _ if bus.is_internal() => format!("[{key}]: host.bus = \"{name}\" stays inside the chip, so the card has no board top and no pins of its own; remove the table"),
+            _ => continue,
+        };
+        table.complain_plain(text);
+    }
+}
+
 fn read_board(table: &Table<'_, '_>) -> Option<Board> {
     let name = table.required_string("name", "\"papilio_pro\"")?;
     match Board::named(&name.value) {
@@ -568,6 +665,7 @@ fn report(
             let table = match section {
                 Section::Clock => "clock",
                 Section::Trigger => "trigger",
+                Section::Stream => "stream",
                 _ => "link",
             };
             (

@@ -14,7 +14,7 @@ pub use serve::{serve, Door, Pace};
 
 use crate::config::Project;
 use crate::error::{shown, GenError};
-use endat_hdl::card::Card;
+use endat_hdl::card::{service_times, Card};
 use endat_hdl::elaborate::elaborate;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::service::program::ServiceTimes;
@@ -150,7 +150,7 @@ impl VirtualCard {
             after_pulse_ms: POWER_UP_MS,
             reset_ms: RESET_MS,
             write_ms: WRITE_MS,
-            ..Card::service_times(card)
+            ..service_times(card)
         };
         let mut block = Card::with_times(card, LINK_TIMEOUT_US, &service);
         block.connect_all();

@@ -62,7 +62,7 @@ impl Host {
                 self.falls[i].push(self.cycle);
             }
             self.clk[i] = pin.val();
-            self.calibrations[i] += usize::from(self.card.port[i].calibrate.val());
+            self.calibrations[i] += usize::from(self.card.core.port[i].calibrate.val());
         }
         self.tx.push(self.card.uart_tx_o.val());
         self.cycle += 1;
@@ -333,9 +333,9 @@ fn status_led_blinks_quickly_after_an_error_and_slowly_before() {
     assert_eq!(blink_bit(8_000_000, 8), 18);
     let mut host = Host::new(true, 4);
     assert!(host.card.led_channel_o.iter().all(|led| !led.val()));
-    assert!(host.card.faulty.iter().all(|f| !f.val()));
+    assert!(host.card.core.faulty.iter().all(|f| !f.val()));
     host.write(address(CARD, "trigger_now", 0), &[1]);
-    assert!(host.card.faulty[2].val());
+    assert!(host.card.core.faulty[2].val());
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use super::*;
 use crate::protocol::LEAD_PULSES;
 use crate::regs::result_words;
+use crate::stream::buffer::{frame_bytes, frame_cycles, BUFFER_BYTES};
 use crate::timing::*;
 
 /// Where the upper limit of the UART rate comes from when it is not the system clock.
@@ -73,6 +74,7 @@ impl CardDraft {
         }
         let sample_period_cycles = self.check_sampling(&mut problems, system_hz, &channels);
         let uart_bit_cycles = self.check_link(&mut problems, system_hz, count);
+        self.check_stream(&mut problems, system_hz, count);
         let whole = count == Some(channels.len());
         match (sample_period_cycles, uart_bit_cycles, self) {
             (
@@ -85,6 +87,7 @@ impl CardDraft {
                     read_hz: Some(read_hz),
                     service,
                     line,
+                    stream,
                     ..
                 },
             ) if whole && problems.is_empty() => Ok(CardConfig {
@@ -98,6 +101,7 @@ impl CardDraft {
                 read_hz,
                 service,
                 line,
+                stream,
                 hash: 0,
             }),
             _ => Err(problems),
@@ -186,6 +190,69 @@ impl CardDraft {
     }
 }
 
+impl CardDraft {
+    /// Whether the buffer exists, and the sets of all triggers fit through it and onto the line.
+    fn check_stream(
+        &self,
+        problems: &mut Vec<Problem>,
+        system_hz: u64,
+        channels: Option<usize>,
+    ) -> Option<()> {
+        let bytes = self.stream.fifo_bytes;
+        let mut check = Check {
+            section: Section::Stream,
+            problems,
+        };
+        if bytes == 0 {
+            if self.stream.start.collects() {
+                let start = if self.stream.start.pushes() {
+                    "\"push\""
+                } else {
+                    "\"collect\""
+                };
+                check.fail(
+                    "start",
+                    start,
+                    "a stream without a buffer; set stream.fifo_bytes = 2048, or start = \"off\""
+                        .into(),
+                );
+            }
+            return None;
+        }
+        if !BUFFER_BYTES.contains(&bytes) {
+            let sizes = BUFFER_BYTES.map(|b| b.to_string()).join(", ");
+            let text = format!("no size of a buffer; use 0 (no stream), {sizes}");
+            check.fail("fifo_bytes", bytes, text);
+        }
+        if self.without_uart && self.stream.start.pushes() {
+            let text = "only a UART pushes; use \"collect\", the host reads stream_data";
+            check.fail("start", "\"push\"", text.into());
+        }
+        let (sample_hz, baud, channels) = (self.sample_hz?, self.baud?, channels?);
+        let (frame, needed) = (frame_bytes(channels), stream_baud(sample_hz, channels));
+        if needed > baud && !self.without_uart {
+            let most = baud / stream_baud(1, channels);
+            check.section = Section::Trigger;
+            check.fail(
+                "sample_hz",
+                sample_hz,
+                format!("the stream does not fit: {sample_hz} sets a second of {frame} bytes take {needed} bit/s, link.baud is {baud}; lower it to {most} or less, raise link.baud to {needed}, or set stream.fifo_bytes = 0"),
+            );
+        }
+        let cycles = frame_cycles(channels);
+        if sample_hz.saturating_mul(cycles) > system_hz {
+            let most = system_hz / cycles;
+            check.section = Section::Trigger;
+            check.fail(
+                "sample_hz",
+                sample_hz,
+                format!("the stream writes a set of {channels} channels in {cycles} cycles of clock.system_hz = {system_hz}; lower it to {most} or less, or set stream.fifo_bytes = 0"),
+            );
+        }
+        Some(())
+    }
+}
+
 /// Why a trigger would come before a channel is ready, with the shares that can be shortened, the longest first.
 fn too_long(index: usize, channel: &ChannelConfig, cycles: u64, system_hz: u64) -> String {
     let frame = channel.frame_time(system_hz);
@@ -270,4 +337,9 @@ pub const fn read_bytes(channels: usize) -> u64 {
 /// Bits per second of `read_hz` such reads, request and answer one after the other.
 pub const fn needed_baud(read_hz: u64, channels: usize) -> u64 {
     read_hz.saturating_mul(read_bytes(channels) * UART_BITS_PER_BYTE)
+}
+
+/// Bits per second of `sample_hz` frames of the stream.
+pub const fn stream_baud(sample_hz: u64, channels: usize) -> u64 {
+    sample_hz.saturating_mul(frame_bytes(channels) * UART_BITS_PER_BYTE)
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::protocol::POSITION_BITS;
+use crate::stream::buffer::BUFFER_BYTES;
 use crate::timing::*;
 
 /// The values that one key may have.
@@ -73,10 +74,11 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "sample_hz" => slow.div_ceil(max_of(TIMER_BITS))..=1_000_000,
         "baud" => 9_600..=fast / UART_BIT_CYCLES_MIN,
         "read_hz" => 1..=1_000_000,
+        "fifo_bytes" => BUFFER_BYTES[0]..=BUFFER_BYTES[BUFFER_BYTES.len() - 1],
         _ => 0..=u64::MAX,
     };
     Limits {
-        or_zero: key == "tst_ns",
+        or_zero: key == "tst_ns" || key == "fifo_bytes",
         ..Limits::new(range)
     }
 }

@@ -11,7 +11,7 @@ mod card;
 mod channel;
 mod limits;
 
-pub use card::{needed_baud, read_bytes, BAUD_NOTE};
+pub use card::{needed_baud, read_bytes, stream_baud, BAUD_NOTE};
 pub use limits::{limits, Limits};
 
 use crate::protocol::ModeCommand;
@@ -107,6 +107,8 @@ pub struct CardRequest {
     pub service: ServiceParts,
     /// What each channel does about its line delay.
     pub line: LineParts,
+    /// The stream of sample sets.
+    pub stream: StreamParts,
 }
 
 /// What a channel does about its line delay besides following it by a cycle for each frame; what is not asked for takes no logic.
@@ -118,6 +120,39 @@ pub struct LineParts {
     pub margin: bool,
     /// DATA is looked at on both edges of the system clock; takes alignment.
     pub double_edge: bool,
+}
+
+/// The stream of sample sets (`docs/stream.md`); without a buffer there is none, and no logic for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StreamParts {
+    /// Bytes of the buffer, one of [`crate::stream::buffer::BUFFER_BYTES`]; 0 = no stream.
+    pub fifo_bytes: u64,
+    /// What it does after reset.
+    pub start: StreamStart,
+}
+
+/// What a stream does after reset; the host can change it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StreamStart {
+    /// Nothing.
+    #[default]
+    Off,
+    /// Triggers make sets, which wait in the buffer.
+    Collect,
+    /// Triggers make sets, which are pushed.
+    Push,
+}
+
+impl StreamStart {
+    /// Whether triggers make sets.
+    pub const fn collects(self) -> bool {
+        !matches!(self, Self::Off)
+    }
+
+    /// Whether frames go out over the UART.
+    pub const fn pushes(self) -> bool {
+        matches!(self, Self::Push)
+    }
 }
 
 /// What a channel does besides triggered positions; what is not asked for takes no logic.
@@ -156,6 +191,10 @@ pub struct CardDraft {
     pub service: ServiceParts,
     /// What each channel does about its line delay.
     pub line: LineParts,
+    /// The stream of sample sets.
+    pub stream: StreamParts,
+    /// The host has another bus than a UART; the numbers of the UART mean nothing.
+    pub without_uart: bool,
 }
 
 impl From<&CardRequest> for CardDraft {
@@ -170,6 +209,8 @@ impl From<&CardRequest> for CardDraft {
             read_hz: Some(request.read_hz),
             service: request.service,
             line: request.line,
+            stream: request.stream,
+            without_uart: false,
         }
     }
 }
@@ -196,6 +237,8 @@ pub enum Section {
     Trigger,
     /// `[link]`
     Link,
+    /// `[stream]`
+    Stream,
 }
 
 /// One thing that is wrong with a request.
@@ -267,6 +310,8 @@ pub struct CardConfig {
     pub service: ServiceParts,
     /// What each channel does about its line delay.
     pub line: LineParts,
+    /// The stream of sample sets.
+    pub stream: StreamParts,
     /// First 48 bits of the SHA-256 of the canonical configuration (0 until a generator sets it).
     pub hash: u64,
 }

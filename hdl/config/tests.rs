@@ -32,6 +32,7 @@ fn card() -> CardRequest {
         read_hz: 1_000,
         service: Default::default(),
         line: Default::default(),
+        stream: Default::default(),
     }
 }
 

@@ -28,6 +28,9 @@ fn of(config: &CardConfig, channel: usize, value: impl Fn(&ChannelConfig) -> u64
     config.channels.get(channel).map(value).unwrap_or_default()
 }
 
+/// Offset of the first of the stream's four words.
+pub(super) const STREAM_FIRST: u8 = 12;
+
 /// Identification, capabilities, counters and strobes.
 pub const CARD: Block = Block {
     name: "card",
@@ -81,6 +84,7 @@ pub const CARD: Block = Block {
                         | (s.line.alignment as u64) << 8
                         | (s.line.margin as u64) << 9
                         | (s.line.double_edge as u64) << 10
+                        | ((s.stream.fifo_bytes != 0) as u64) << 11
                 })
                 .bits(&FEATURES),
             ],
@@ -126,6 +130,58 @@ pub const CARD: Block = Block {
             Strobe,
             "Makes channels measure their line delay again, with their next frame.",
             &[field("channels", 0, 8, "", "Bit n for channel n", zero)],
+        ),
+        word(
+            "stream_control",
+            STREAM_FIRST,
+            ReadWrite,
+            "What the stream of sample sets does.",
+            &[
+                field("collect", 0, 1, "", "Triggers make sets", |s, _| {
+                    s.stream.start.collects() as u64
+                }),
+                field("push", 1, 1, "", "Frames go out over the UART", |s, _| {
+                    s.stream.start.pushes() as u64
+                }),
+            ],
+        ),
+        word(
+            "stream_state",
+            STREAM_FIRST + 1,
+            ReadOnly,
+            "What is in the stream's buffer, and what did not get in.",
+            &[
+                field("bytes", 0, 16, "bytes", "Bytes that wait", zero),
+                field(
+                    "lost",
+                    16,
+                    16,
+                    "",
+                    "Sets lost since clear; stops at 65535",
+                    zero,
+                ),
+            ],
+        ),
+        word(
+            "stream_data",
+            STREAM_FIRST + 2,
+            ReadOnly,
+            "Takes the next bytes of the stream out of the buffer.",
+            &[field(
+                "bytes",
+                0,
+                32,
+                "",
+                "First byte in bits 31..24; what is not there is 0",
+                zero,
+            )],
+        ),
+        word(
+            "stream_clear",
+            STREAM_FIRST + 3,
+            Strobe,
+            "Empties the buffer, forgets what was lost.",
+            &[field("clear", 0, 1, "", "Write 1", zero)],
         ),
     ],
 };

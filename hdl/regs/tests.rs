@@ -35,6 +35,7 @@ pub fn test_config() -> CardConfig {
         read_hz: 1_000,
         service: Default::default(),
         line: Default::default(),
+        stream: Default::default(),
     })
     .unwrap();
     config.hash = 0x0123_4567_89ab;
@@ -70,6 +71,10 @@ card_configuration_hash 004 ro
 card_trigger_count 008 ro
 card_trigger_now 009 strobe
 card_calibrate 00A strobe
+card_stream_control 00C rw
+card_stream_state 00D ro
+card_stream_data 00E ro
+card_stream_clear 00F strobe
 config_trigger_sources 100 rw
 config_trigger_period 101 rw
 config_hold 102 rw

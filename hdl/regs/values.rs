@@ -119,7 +119,7 @@ pub const PHASE_MODES: [Named; 3] = [
 ];
 
 /// What a card has.
-pub const FEATURES: [Named; 11] = [
+pub const FEATURES: [Named; 12] = [
     named("endat22", 0, "EnDat 2.2 position frames (111000)"),
     named("line_delay", 1, "line delay is measured"),
     named("trigger_pin", 2, "trigger pin"),
@@ -135,6 +135,7 @@ pub const FEATURES: [Named; 11] = [
     ),
     named("margin", 9, "margin of the samples"),
     named("double_edge", 10, "DATA on both edges of the system clock"),
+    named("stream", 11, "stream of sample sets"),
 ];
 
 const fn error(name: &'static str, code: u16) -> Named {

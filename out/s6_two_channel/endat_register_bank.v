@@ -16,14 +16,16 @@ module endat_register_bank (
     input  wire         in_range,
     // Byte of the word, 0 = most significant.
     input  wire   [1:0] lane,
-    // One-cycle strobe: begin an access.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before.
     input  wire         access,
     // With access: write a word; low = read a byte.
     input  wire         write,
     // Word to write.
     input  wire  [31:0] write_data,
-    // The most significant byte of write_data is being taken.
+    // A byte of the configuration word passes the head, most significant first: in a write that of write_data replaces it.
     output wire         take_byte,
+    // With take_byte: the byte that stood there.
+    output wire   [7:0] passing_byte,
     // Byte that was read, from done to the next access.
     output wire   [7:0] read_byte,
     // One-cycle strobe: the access has ended.
@@ -90,7 +92,8 @@ module endat_register_bank (
     wire         low_page;
     wire   [8:0] low_address;
     wire         service_page;
-    wire         at_end;
+    reg          at_end;
+    wire         whole_turn;
     wire         at_word;
     wire         block_end;
     wire         card_page;
@@ -100,7 +103,6 @@ module endat_register_bank (
     reg   [31:0] rom_word;
     wire         line_page;
     reg    [2:0] service_channel;
-    wire   [7:0] ring_byte_out;
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
     wire  [31:0] ring_word2;
@@ -111,7 +113,7 @@ module endat_register_bank (
     reg    [3:0] block_at = 4'd0;
     reg    [3:0] block_at_next;
     reg          turn = 1'b0;
-    reg          word_passes = 1'b0;
+    reg          passes = 1'b0;
     reg          byte_passes = 1'b0;
     reg          ended = 1'b0;
     reg          done_now = 1'b0;
@@ -156,7 +158,7 @@ module endat_register_bank (
         .reset(reset),
         .turn(turn),
         .byte_in(ring_in),
-        .byte_out(ring_byte_out),
+        .byte_out(passing_byte),
         .word0(ring_word0),
         .word1(ring_word1),
         .word2(ring_word2)
@@ -172,7 +174,7 @@ module endat_register_bank (
     always @* begin
         ring_byte_next = ring_byte;
         if (byte_passes) begin
-            ring_byte_next = ring_byte_out;
+            ring_byte_next = passing_byte;
         end
         if (access) begin
             ring_byte_next = 8'd0;
@@ -207,8 +209,15 @@ module endat_register_bank (
             end
         endcase
     end
+    assign whole_turn = config_page | (write_now & !service_skip);
     assign block_end = byte_at == 4'd11;
-    assign at_end = block_end & (block_at == LAST_BLOCK);
+
+    always @* begin
+        at_end = block_end & (block_at == LAST_BLOCK);
+        if (!whole_turn) begin
+            at_end = service_skip | (|lane) | (byte_at == 4'd9);
+        end
+    end
 
     always @* begin
         byte_at_next = byte_at;
@@ -241,12 +250,12 @@ module endat_register_bank (
     assign at_word = turning & config_page & (block_at == word_address[6:3]) & (byte_at[3:2] == word_address[1:0]);
 
     always @* begin
-        head = ring_byte_out;
-        if (word_passes) begin
+        head = passing_byte;
+        if (passes & write_now) begin
             head = write_data[31:24];
         end
     end
-    assign take_byte = word_passes;
+    assign take_byte = passes;
     assign ring_out = head;
     assign card_page = low_page & !(|word_address[8:4]);
 
@@ -445,7 +454,7 @@ module endat_register_bank (
             byte_at <= 4'd0;
             block_at <= 4'd0;
             turn <= 1'b0;
-            word_passes <= 1'b0;
+            passes <= 1'b0;
             byte_passes <= 1'b0;
             ended <= 1'b0;
             done_now <= 1'b0;
@@ -471,8 +480,8 @@ module endat_register_bank (
             turning <= turning_next;
             byte_at <= byte_at_next;
             block_at <= block_at_next;
-            turn <= turning;
-            word_passes <= at_word & write_now;
+            turn <= turning & whole_turn;
+            passes <= at_word;
             byte_passes <= at_word & (byte_at[1:0] == lane);
             ended <= turning & at_end;
             done_now <= ended;

@@ -52,7 +52,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// The whole core; the number of channels is that of channels.
+// The whole core with a UART to the host; the number of channels is that of channels.
 module s6_two_channel (
     // System clock.
     input  wire         clk_i,
@@ -81,36 +81,17 @@ module s6_two_channel (
     // EnDat data from the transceiver, asynchronous.
     input  wire         endat_data1_i,
     // Blinks: slowly = well, quickly = the last result of a channel is an error.
-    output reg          led_status_o,
+    output wire         led_status_o,
     // The channel's last result is a good position.
     output wire         led_channel0_o,
     // The channel's last result is a good position.
     output wire         led_channel1_o
 );
-    localparam   [4:0] SLOW_BIT = 5'd25;
-    localparam   [4:0] QUICK_BIT = 5'd22;
-
-    wire   [7:0] ring_link_0;
-    wire   [7:0] ring_link_1;
-    wire   [7:0] ring_link_2;
-    wire   [7:0] read_link_0;
-    wire   [7:0] read_link_1;
-    wire   [7:0] read_link_2;
-    wire  [31:0] service_link_0;
-    wire  [31:0] service_link_1;
-    wire  [31:0] service_link_2;
-    reg   [31:0] selected_0;
-    reg   [31:0] selected_1;
-    wire         pending_0;
-    wire         pending_1;
-    wire         pending_2;
-    wire         faulty_0;
-    wire         faulty_1;
-    wire         faulty_2;
-    wire         timebase_tick_us;
-    wire  [31:0] timebase_timestamp;
-    wire         trigger_trigger;
-    wire  [31:0] trigger_trigger_count;
+    wire         core_tick_us;
+    wire         core_take_byte;
+    wire   [7:0] core_passing_byte;
+    wire   [7:0] core_read_byte;
+    wire         core_done;
     wire  [10:0] bridge_word_address;
     wire         bridge_in_range;
     wire   [1:0] bridge_lane;
@@ -118,130 +99,40 @@ module s6_two_channel (
     wire         bridge_write;
     wire  [31:0] bridge_write_data;
     wire         bridge_reading;
-    wire         bank_take_byte;
-    wire   [7:0] bank_read_byte;
-    wire         bank_done;
-    wire         bank_load;
-    wire   [5:0] bank_word_skip;
-    wire   [7:0] bank_channel_skip;
-    wire         bank_ring_turn;
-    wire         bank_ring_home;
-    wire   [7:0] bank_ring_in;
-    wire         bank_service_line;
-    wire   [6:0] bank_service_address;
-    wire   [7:0] bank_service_channels;
-    wire   [7:0] bank_service_read;
-    wire   [7:0] bank_service_write;
-    wire         bank_service_half;
-    wire  [15:0] bank_service_data;
-    wire         bank_trigger_now;
-    wire   [7:0] bank_calibrate;
-    wire   [2:0] bank_sources;
-    wire  [23:0] bank_period_cycles;
-    wire         registers_0_pending;
-    wire   [7:0] registers_0_ring_in;
-    wire  [10:0] registers_0_period_cycles;
-    wire  [10:0] registers_0_first_low_extra_cycles;
-    wire   [5:0] registers_0_command;
-    wire   [5:0] registers_0_position_bits;
-    wire   [3:0] registers_0_filter_cycles;
-    wire   [5:0] registers_0_start_window_cycles;
-    wire  [11:0] registers_0_start_timeout_us;
-    wire  [12:0] registers_0_recovery_limit_cycles;
-    wire         registers_1_pending;
-    wire   [7:0] registers_1_ring_in;
-    wire  [10:0] registers_1_period_cycles;
-    wire  [10:0] registers_1_first_low_extra_cycles;
-    wire   [5:0] registers_1_command;
-    wire   [5:0] registers_1_position_bits;
-    wire   [3:0] registers_1_filter_cycles;
-    wire   [5:0] registers_1_start_window_cycles;
-    wire  [11:0] registers_1_start_timeout_us;
-    wire  [12:0] registers_1_recovery_limit_cycles;
-    wire         port_0_result_strobe;
-    wire  [47:0] port_0_position;
-    wire         port_0_position_valid;
-    wire  [15:0] port_0_sequence;
-    wire  [31:0] port_0_first_fall_timestamp;
-    wire  [15:0] port_0_age_us;
-    wire   [4:0] port_0_cause;
-    wire  [18:0] port_0_flags;
-    wire   [4:0] port_0_crc_received;
-    wire   [4:0] port_0_crc_computed;
-    wire  [12:0] port_0_recovery_cycles;
-    wire  [10:0] port_0_delay_cycles;
-    wire         port_0_busy;
-    wire         port_0_request_runs;
-    wire         port_0_line_high;
-    wire         port_0_displaced;
-    wire         port_0_over;
-    wire         port_0_over_request;
-    wire   [4:0] port_0_over_cause;
-    wire  [18:0] port_0_over_flags;
-    wire  [47:0] port_0_reply;
-    wire         port_0_reply_good;
-    wire   [1:0] port_0_info_active;
-    wire  [23:0] port_0_info_1;
-    wire  [23:0] port_0_info_2;
-    wire   [1:0] port_0_info_came;
-    wire   [1:0] port_0_info_good;
-    wire         port_0_calibrated;
-    wire         port_0_sample_strobe;
-    wire         port_0_alarm;
-    wire  [31:0] port_0_host_word;
-    wire         port_1_result_strobe;
-    wire  [47:0] port_1_position;
-    wire         port_1_position_valid;
-    wire  [15:0] port_1_sequence;
-    wire  [31:0] port_1_first_fall_timestamp;
-    wire  [15:0] port_1_age_us;
-    wire   [4:0] port_1_cause;
-    wire  [18:0] port_1_flags;
-    wire   [4:0] port_1_crc_received;
-    wire   [4:0] port_1_crc_computed;
-    wire  [12:0] port_1_recovery_cycles;
-    wire  [10:0] port_1_delay_cycles;
-    wire         port_1_busy;
-    wire         port_1_request_runs;
-    wire         port_1_line_high;
-    wire         port_1_displaced;
-    wire         port_1_over;
-    wire         port_1_over_request;
-    wire   [4:0] port_1_over_cause;
-    wire  [18:0] port_1_over_flags;
-    wire  [47:0] port_1_reply;
-    wire         port_1_reply_good;
-    wire   [1:0] port_1_info_active;
-    wire  [23:0] port_1_info_1;
-    wire  [23:0] port_1_info_2;
-    wire   [1:0] port_1_info_came;
-    wire   [1:0] port_1_info_good;
-    wire         port_1_calibrated;
-    wire         port_1_sample_strobe;
-    wire         port_1_alarm;
-    wire  [31:0] port_1_host_word;
-    wire         _unused_ok = &{1'b0, bank_channel_skip[7:2], bank_service_channels[7:2], bank_service_read[7:2], bank_service_write[7:2], bank_calibrate[7:2], port_0_request_runs, port_0_line_high, port_0_displaced, port_0_over, port_0_over_request, port_0_over_cause, port_0_over_flags, port_0_reply, port_0_reply_good, port_0_info_active, port_0_info_1, port_0_info_2, port_0_info_came, port_0_info_good, port_0_calibrated, port_0_sample_strobe, port_1_request_runs, port_1_line_high, port_1_displaced, port_1_over, port_1_over_request, port_1_over_cause, port_1_over_flags, port_1_reply, port_1_reply_good, port_1_info_active, port_1_info_1, port_1_info_2, port_1_info_came, port_1_info_good, port_1_calibrated, port_1_sample_strobe};
+    wire         _unused_ok = &{1'b0, core_passing_byte};
 
-    endat_timebase u_timebase (
-        .clock(clk_i),
-        .reset(rst_i),
-        .tick_us(timebase_tick_us),
-        .timestamp(timebase_timestamp)
-    );
-    endat_trigger u_trigger (
-        .clock(clk_i),
-        .reset(rst_i),
-        .pin(trigger_i),
-        .register(bank_trigger_now),
-        .sources(bank_sources),
-        .period_cycles(bank_period_cycles),
-        .trigger(trigger_trigger),
-        .trigger_count(trigger_trigger_count)
+    endat_card_core u_core (
+        .clk_i(clk_i),
+        .rst_i(rst_i),
+        .trigger_i(trigger_i),
+        .tick_us(core_tick_us),
+        .word_address(bridge_word_address),
+        .in_range(bridge_in_range),
+        .lane(bridge_lane),
+        .access(bridge_access),
+        .write(bridge_write),
+        .write_data(bridge_write_data),
+        .reading(bridge_reading),
+        .take_byte(core_take_byte),
+        .passing_byte(core_passing_byte),
+        .read_byte(core_read_byte),
+        .done(core_done),
+        .endat_clk0_o(endat_clk0_o),
+        .endat_clk1_o(endat_clk1_o),
+        .endat_data0_o(endat_data0_o),
+        .endat_data1_o(endat_data1_o),
+        .endat_data0_oe(endat_data0_oe),
+        .endat_data1_oe(endat_data1_oe),
+        .endat_data0_i(endat_data0_i),
+        .endat_data1_i(endat_data1_i),
+        .led_status_o(led_status_o),
+        .led_channel0_o(led_channel0_o),
+        .led_channel1_o(led_channel1_o)
     );
     endat_uart_bridge u_bridge (
         .clock(clk_i),
         .reset(rst_i),
-        .tick_us(timebase_tick_us),
+        .tick_us(core_tick_us),
         .rx(uart_rx_i),
         .tx(uart_tx_o),
         .word_address(bridge_word_address),
@@ -250,274 +141,11 @@ module s6_two_channel (
         .access(bridge_access),
         .write(bridge_write),
         .write_data(bridge_write_data),
-        .take_byte(bank_take_byte),
-        .read_byte(bank_read_byte),
-        .done(bank_done),
+        .take_byte(core_take_byte),
+        .read_byte(core_read_byte),
+        .done(core_done),
         .reading(bridge_reading)
     );
-    endat_register_bank u_bank (
-        .clock(clk_i),
-        .reset(rst_i),
-        .word_address(bridge_word_address),
-        .in_range(bridge_in_range),
-        .lane(bridge_lane),
-        .access(bridge_access),
-        .write(bridge_write),
-        .write_data(bridge_write_data),
-        .take_byte(bank_take_byte),
-        .read_byte(bank_read_byte),
-        .done(bank_done),
-        .reading(bridge_reading),
-        .pending(pending_2),
-        .load(bank_load),
-        .word_skip(bank_word_skip),
-        .channel_skip(bank_channel_skip),
-        .channel_byte(read_link_2),
-        .ring_turn(bank_ring_turn),
-        .ring_home(bank_ring_home),
-        .ring_in(bank_ring_in),
-        .ring_out(ring_link_2),
-        .service_line(bank_service_line),
-        .service_address(bank_service_address),
-        .service_channels(bank_service_channels),
-        .service_read(bank_service_read),
-        .service_word(service_link_2),
-        .service_write(bank_service_write),
-        .service_half(bank_service_half),
-        .service_data(bank_service_data),
-        .trigger_count(trigger_trigger_count),
-        .trigger_now(bank_trigger_now),
-        .calibrate(bank_calibrate),
-        .sources(bank_sources),
-        .period_cycles(bank_period_cycles)
-    );
-    endat_channel_registers u_registers_0 (
-        .clock(clk_i),
-        .reset(rst_i),
-        .trigger(trigger_trigger),
-        .busy(port_0_busy),
-        .result_strobe(port_0_result_strobe),
-        .position(port_0_position),
-        .position_valid(port_0_position_valid),
-        .fresh(led_channel0_o),
-        .sequence_value(port_0_sequence),
-        .first_fall_timestamp(port_0_first_fall_timestamp),
-        .age_us(port_0_age_us),
-        .cause(port_0_cause),
-        .flags(port_0_flags),
-        .crc_received(port_0_crc_received),
-        .crc_computed(port_0_crc_computed),
-        .recovery_cycles(port_0_recovery_cycles),
-        .delay_cycles(port_0_delay_cycles),
-        .pending(registers_0_pending),
-        .load(bank_load),
-        .word_skip(bank_word_skip),
-        .lane(bridge_lane),
-        .skip(bank_channel_skip[0]),
-        .read_in(read_link_0),
-        .read_out(read_link_1),
-        .ring_turn(bank_ring_turn),
-        .ring_home(bank_ring_home),
-        .ring_in(registers_0_ring_in),
-        .ring_out(ring_link_0),
-        .period_cycles(registers_0_period_cycles),
-        .first_low_extra_cycles(registers_0_first_low_extra_cycles),
-        .command(registers_0_command),
-        .position_bits(registers_0_position_bits),
-        .filter_cycles(registers_0_filter_cycles),
-        .start_window_cycles(registers_0_start_window_cycles),
-        .start_timeout_us(registers_0_start_timeout_us),
-        .recovery_limit_cycles(registers_0_recovery_limit_cycles)
-    );
-    endat_channel_registers u_registers_1 (
-        .clock(clk_i),
-        .reset(rst_i),
-        .trigger(trigger_trigger),
-        .busy(port_1_busy),
-        .result_strobe(port_1_result_strobe),
-        .position(port_1_position),
-        .position_valid(port_1_position_valid),
-        .fresh(led_channel1_o),
-        .sequence_value(port_1_sequence),
-        .first_fall_timestamp(port_1_first_fall_timestamp),
-        .age_us(port_1_age_us),
-        .cause(port_1_cause),
-        .flags(port_1_flags),
-        .crc_received(port_1_crc_received),
-        .crc_computed(port_1_crc_computed),
-        .recovery_cycles(port_1_recovery_cycles),
-        .delay_cycles(port_1_delay_cycles),
-        .pending(registers_1_pending),
-        .load(bank_load),
-        .word_skip(bank_word_skip),
-        .lane(bridge_lane),
-        .skip(bank_channel_skip[1]),
-        .read_in(read_link_1),
-        .read_out(read_link_2),
-        .ring_turn(bank_ring_turn),
-        .ring_home(bank_ring_home),
-        .ring_in(registers_1_ring_in),
-        .ring_out(ring_link_1),
-        .period_cycles(registers_1_period_cycles),
-        .first_low_extra_cycles(registers_1_first_low_extra_cycles),
-        .command(registers_1_command),
-        .position_bits(registers_1_position_bits),
-        .filter_cycles(registers_1_filter_cycles),
-        .start_window_cycles(registers_1_start_window_cycles),
-        .start_timeout_us(registers_1_start_timeout_us),
-        .recovery_limit_cycles(registers_1_recovery_limit_cycles)
-    );
-    endat_encoder_port u_port_0 (
-        .clock(clk_i),
-        .reset(rst_i),
-        .tick_us(timebase_tick_us),
-        .timestamp(timebase_timestamp),
-        .trigger(trigger_trigger),
-        .calibrate(bank_calibrate[0]),
-        .data_i(endat_data0_i),
-        .period_cycles(registers_0_period_cycles),
-        .first_low_extra_cycles(registers_0_first_low_extra_cycles),
-        .command(registers_0_command),
-        .position_bits(registers_0_position_bits),
-        .filter_cycles(registers_0_filter_cycles),
-        .start_window_cycles(registers_0_start_window_cycles),
-        .start_timeout_us(registers_0_start_timeout_us),
-        .recovery_limit_cycles(registers_0_recovery_limit_cycles),
-        .endat_clk(endat_clk0_o),
-        .data_o(endat_data0_o),
-        .data_oe(endat_data0_oe),
-        .result_strobe(port_0_result_strobe),
-        .position(port_0_position),
-        .position_valid(port_0_position_valid),
-        .fresh(led_channel0_o),
-        .sequence_value(port_0_sequence),
-        .first_fall_timestamp(port_0_first_fall_timestamp),
-        .age_us(port_0_age_us),
-        .cause(port_0_cause),
-        .flags(port_0_flags),
-        .crc_received(port_0_crc_received),
-        .crc_computed(port_0_crc_computed),
-        .recovery_cycles(port_0_recovery_cycles),
-        .delay_cycles(port_0_delay_cycles),
-        .busy(port_0_busy),
-        .request_runs(port_0_request_runs),
-        .line_high(port_0_line_high),
-        .displaced(port_0_displaced),
-        .over(port_0_over),
-        .over_request(port_0_over_request),
-        .over_cause(port_0_over_cause),
-        .over_flags(port_0_over_flags),
-        .reply(port_0_reply),
-        .reply_good(port_0_reply_good),
-        .info_active(port_0_info_active),
-        .info_1(port_0_info_1),
-        .info_2(port_0_info_2),
-        .info_came(port_0_info_came),
-        .info_good(port_0_info_good),
-        .calibrated(port_0_calibrated),
-        .sample_strobe(port_0_sample_strobe),
-        .alarm(port_0_alarm),
-        .host_address(bank_service_address),
-        .host_line(bank_service_line),
-        .host_read(bank_service_read[0]),
-        .host_word(port_0_host_word),
-        .host_write(bank_service_write[0]),
-        .host_half(bank_service_half),
-        .host_data(bank_service_data)
-    );
-    endat_encoder_port u_port_1 (
-        .clock(clk_i),
-        .reset(rst_i),
-        .tick_us(timebase_tick_us),
-        .timestamp(timebase_timestamp),
-        .trigger(trigger_trigger),
-        .calibrate(bank_calibrate[1]),
-        .data_i(endat_data1_i),
-        .period_cycles(registers_1_period_cycles),
-        .first_low_extra_cycles(registers_1_first_low_extra_cycles),
-        .command(registers_1_command),
-        .position_bits(registers_1_position_bits),
-        .filter_cycles(registers_1_filter_cycles),
-        .start_window_cycles(registers_1_start_window_cycles),
-        .start_timeout_us(registers_1_start_timeout_us),
-        .recovery_limit_cycles(registers_1_recovery_limit_cycles),
-        .endat_clk(endat_clk1_o),
-        .data_o(endat_data1_o),
-        .data_oe(endat_data1_oe),
-        .result_strobe(port_1_result_strobe),
-        .position(port_1_position),
-        .position_valid(port_1_position_valid),
-        .fresh(led_channel1_o),
-        .sequence_value(port_1_sequence),
-        .first_fall_timestamp(port_1_first_fall_timestamp),
-        .age_us(port_1_age_us),
-        .cause(port_1_cause),
-        .flags(port_1_flags),
-        .crc_received(port_1_crc_received),
-        .crc_computed(port_1_crc_computed),
-        .recovery_cycles(port_1_recovery_cycles),
-        .delay_cycles(port_1_delay_cycles),
-        .busy(port_1_busy),
-        .request_runs(port_1_request_runs),
-        .line_high(port_1_line_high),
-        .displaced(port_1_displaced),
-        .over(port_1_over),
-        .over_request(port_1_over_request),
-        .over_cause(port_1_over_cause),
-        .over_flags(port_1_over_flags),
-        .reply(port_1_reply),
-        .reply_good(port_1_reply_good),
-        .info_active(port_1_info_active),
-        .info_1(port_1_info_1),
-        .info_2(port_1_info_2),
-        .info_came(port_1_info_came),
-        .info_good(port_1_info_good),
-        .calibrated(port_1_calibrated),
-        .sample_strobe(port_1_sample_strobe),
-        .alarm(port_1_alarm),
-        .host_address(bank_service_address),
-        .host_line(bank_service_line),
-        .host_read(bank_service_read[1]),
-        .host_word(port_1_host_word),
-        .host_write(bank_service_write[1]),
-        .host_half(bank_service_half),
-        .host_data(bank_service_data)
-    );
-
-    assign read_link_0 = 8'd0;
-    assign service_link_0 = 32'd0;
-    assign pending_0 = 1'b0;
-    assign faulty_0 = 1'b0;
-    assign bank_ring_in = ring_link_0;
-
-    always @* begin
-        selected_0 = 32'd0;
-        if (bank_service_channels[0]) begin
-            selected_0 = port_0_host_word;
-        end
-    end
-    assign service_link_1 = service_link_0 | selected_0;
-    assign registers_0_ring_in = ring_link_1;
-    assign pending_1 = pending_0 | registers_0_pending;
-    assign faulty_1 = faulty_0 | (|port_0_cause) | port_0_alarm;
-
-    always @* begin
-        selected_1 = 32'd0;
-        if (bank_service_channels[1]) begin
-            selected_1 = port_1_host_word;
-        end
-    end
-    assign service_link_2 = service_link_1 | selected_1;
-    assign registers_1_ring_in = ring_link_2;
-    assign pending_2 = pending_1 | registers_1_pending;
-    assign faulty_2 = faulty_1 | (|port_1_cause) | port_1_alarm;
-
-    always @* begin
-        led_status_o = timebase_timestamp[SLOW_BIT];
-        if (faulty_2) begin
-            led_status_o = timebase_timestamp[QUICK_BIT];
-        end
-    end
 endmodule
 
 `default_nettype wire

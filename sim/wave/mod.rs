@@ -5,7 +5,7 @@ use crate::{
     engine::Engine,
     line::End,
     segments::{data_segments, By, Level, Segment},
-    Time,
+    Time, NS,
 };
 use std::{
     fmt::Write as _,
@@ -60,6 +60,35 @@ pub fn is_vcd(head: &str) -> bool {
 /// Whether a file that begins like this can be a layout of ours; one that GTKWave has saved is not.
 pub fn is_layout(head: &str) -> bool {
     head.starts_with(LAYOUT_HEAD)
+}
+
+/// CLOCK and DATA of a link at the encoder's end as two scalars without hierarchy, in nanoseconds: what logic analysers' programs read.
+pub fn write_wires(link: &Link, out: impl Write) -> io::Result<()> {
+    let mut w = vcd::Writer::new(out);
+    w.version(&format!("{PROGRAM} {}", env!("CARGO_PKG_VERSION")))?;
+    w.timescale(1, TimescaleUnit::NS)?;
+    let (clk, data) = (w.add_wire(1, "clk")?, w.add_wire(1, "data")?);
+    w.enddefinitions()?;
+    let Some(trace) = link.trace() else {
+        return Ok(());
+    };
+    let of = |changes: &[(Time, bool)], id: IdCode| -> Vec<(Time, IdCode, bool)> {
+        let change = |(time, level): &(Time, bool)| (time / NS, id, *level);
+        changes.iter().map(change).collect()
+    };
+    let mut changes = of(&trace.clock_at_encoder, clk);
+    changes.extend(of(&trace.data_at_encoder, data));
+    // DATA of the same nanosecond is there when CLOCK changes.
+    changes.sort_by_key(|(time, id, _)| (*time, *id == clk));
+    let mut now = None;
+    for (time, id, level) in changes {
+        if now != Some(time) {
+            w.timestamp(time)?;
+            now = Some(time);
+        }
+        w.change_scalar(id, level)?;
+    }
+    Ok(())
 }
 
 /// Name of the outermost scope.

@@ -5,6 +5,31 @@ use crate::tools;
 use endat_gen::virtual_card::Door;
 use std::process::Command;
 
+/// `pandablocks hdf` records a card's stream, and the client library finds its blocks.
+#[test]
+fn pandablocks_finds_and_records_the_card() {
+    let check = "PandABlocks at the virtual card";
+    if !tools::require_python("pandablocks.hdf", check) || !tools::require_python("h5py", check) {
+        return;
+    }
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/panda_client.py");
+    let folder = tools::folder("panda");
+    let output = Command::new("python3")
+        .args([
+            script,
+            env!("CARGO_BIN_EXE_endat-gen"),
+            folder.to_str().unwrap(),
+        ])
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success() && told.contains("PANDA GOOD"),
+        "{told}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
 /// LiteX's own client reads the identification, and writes and reads back words.
 #[cfg(unix)]
 #[test]

@@ -5,6 +5,8 @@ mod commands;
 mod disturbed;
 mod ports;
 
+pub use ports::{slow_card, Served};
+
 use endat_gen::config::{load_preset, parse, preset, Project};
 use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
 use endat_host::{Bridge, Card};

@@ -1,0 +1,252 @@
+//! APB3 front: the card as a slave of an AMBA 3 peripheral bus.
+//!
+//! ```text
+//! psel, penable, pwrite, paddr, pwdata --> start --> WordAccess <-> bank
+//! prdata, pready, pslverr <---------------------------- finished
+//! ```
+//!
+//! Every transfer has wait states; none is without an end. `pslverr` tells an address that is no multiple of 4. A
+//! master that takes `psel` away before `pready` gets no answer, and a write that has begun is carried out.
+//!
+//! Ref: ARM IHI 0024B, AMBA 3 APB Protocol v1.0.
+
+use super::word_access::WordAccess;
+use crate::card::{each, CardCore};
+use crate::config::CardConfig;
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// APB3 slave in front of the register bank.
+#[derive(LogicBlock, Default)]
+pub struct ApbFront {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// The master talks to this slave.
+    pub psel: Signal<In, Bit>,
+    /// Second and later cycles of a transfer.
+    pub penable: Signal<In, Bit>,
+    /// Write.
+    pub pwrite: Signal<In, Bit>,
+    /// Byte address, a multiple of 4.
+    pub paddr: Signal<In, Bits<13>>,
+    /// Word to write.
+    pub pwdata: Signal<In, Bits<32>>,
+    /// Word read, valid with `pready`.
+    pub prdata: Signal<Out, Bits<32>>,
+    /// The transfer ends in this cycle.
+    pub pready: Signal<Out, Bit>,
+    /// With `pready`: the address is no multiple of 4; nothing was done.
+    pub pslverr: Signal<Out, Bit>,
+    /// Strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// To the bank: word address.
+    pub word_address: Signal<Out, Bits<11>>,
+    /// To the bank: byte of the word, 0 = most significant.
+    pub lane: Signal<Out, Bits<2>>,
+    /// To the bank: begin an access.
+    pub access: Signal<Out, Bit>,
+    /// To the bank: with `access`, write.
+    pub bank_write: Signal<Out, Bit>,
+    /// To the bank: word to write.
+    pub bank_data: Signal<Out, Bits<32>>,
+    /// To the bank: results must not change.
+    pub reading: Signal<Out, Bit>,
+    /// From the bank: a byte of the configuration word passes.
+    pub take_byte: Signal<In, Bit>,
+    /// From the bank: the byte that passes.
+    pub passing_byte: Signal<In, Bits<8>>,
+    /// From the bank: the byte that was read.
+    pub read_byte: Signal<In, Bits<8>>,
+    /// From the bank: the access has ended.
+    pub done: Signal<In, Bit>,
+    words: WordAccess,
+    busy: Reg<Bit>,
+    ready: Reg<Bit>,
+    error: Reg<Bit>,
+    request: Reg<Bit>,
+    abandoned: Reg<Bit>,
+    address: Reg<Bits<11>>,
+    writing: Reg<Bit>,
+    start: Signal<Local, Bit>,
+    misaligned: Signal<Local, Bit>,
+}
+
+impl Logic for ApbFront {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, busy, ready, error, request, abandoned, address, writing);
+        self.busy.reset.next = self.reset.val();
+        self.ready.reset.next = self.reset.val();
+        self.error.reset.next = self.reset.val();
+        self.request.reset.next = self.reset.val();
+        self.abandoned.reset.next = self.reset.val();
+        self.address.reset.next = self.reset.val();
+        self.writing.reset.next = self.reset.val();
+        self.words.clock.next = self.clock.val();
+        self.words.reset.next = self.reset.val();
+        self.words.tick_us.next = self.tick_us.val();
+        self.words.take_byte.next = self.take_byte.val();
+        self.words.passing_byte.next = self.passing_byte.val();
+        self.words.read_byte.next = self.read_byte.val();
+        self.words.done.next = self.done.val();
+        self.words.keep_moment.next = false;
+        self.words.end_moment.next = false;
+        self.lane.next = self.words.lane.val();
+        self.access.next = self.words.access.val();
+        self.bank_data.next = self.words.bank_data.val();
+        self.reading.next = self.words.reading.val();
+
+        // Also in the second cycle of a transfer, if one that was abandoned kept it waiting.
+        self.start.next = self.psel.val() & !self.busy.q.val() & !self.ready.q.val();
+        self.misaligned.next = self.paddr.val().get_bits::<2>(0).any();
+        self.ready.d.next = false;
+        self.error.d.next = false;
+        self.request.d.next = false;
+        if self.start.val() {
+            self.address.d.next = self.paddr.val().get_bits::<11>(2);
+            self.writing.d.next = self.pwrite.val();
+            self.abandoned.d.next = false;
+            self.request.d.next = !self.misaligned.val();
+            self.busy.d.next = !self.misaligned.val();
+            self.ready.d.next = self.misaligned.val();
+            self.error.d.next = self.misaligned.val();
+        }
+        // A master that leaves in the middle gets no answer: the next transfer would take it for its own.
+        if self.busy.q.val() & !(self.psel.val() & self.penable.val()) {
+            self.abandoned.d.next = true;
+        }
+        // One that leaves at once has asked for nothing: its word cannot be trusted any more.
+        self.words.request.next = self.request.q.val() & self.psel.val();
+        if self.words.finished.val() | (self.request.q.val() & !self.psel.val()) {
+            self.busy.d.next = false;
+        }
+        if self.words.finished.val() {
+            self.ready.d.next = self.psel.val() & !self.abandoned.q.val();
+        }
+
+        self.words.word_address.next = self.address.q.val();
+        self.words.write.next = self.writing.q.val();
+        self.words.write_data.next = self.pwdata.val();
+        self.word_address.next = self.address.q.val();
+        self.bank_write.next = self.writing.q.val();
+        self.prdata.next = self.words.read_data.val();
+        self.pready.next = self.ready.q.val();
+        self.pslverr.next = self.error.q.val();
+    }
+}
+
+/// The whole core behind APB3; the number of channels is that of [`CardConfig::channels`].
+#[derive(LogicBlock)]
+pub struct ApbCard {
+    /// System clock.
+    pub clk_i: Signal<In, Clock>,
+    /// Synchronous reset, active high.
+    pub rst_i: Signal<In, Bit>,
+    /// Trigger pin, asynchronous; a rising edge triggers.
+    pub trigger_i: Signal<In, Bit>,
+    /// The master talks to this slave.
+    pub s_apb_psel: Signal<In, Bit>,
+    /// Second and later cycles of a transfer.
+    pub s_apb_penable: Signal<In, Bit>,
+    /// Write.
+    pub s_apb_pwrite: Signal<In, Bit>,
+    /// Byte address, a multiple of 4.
+    pub s_apb_paddr: Signal<In, Bits<13>>,
+    /// Word to write.
+    pub s_apb_pwdata: Signal<In, Bits<32>>,
+    /// Word read, valid with `pready`.
+    pub s_apb_prdata: Signal<Out, Bits<32>>,
+    /// The transfer ends in this cycle.
+    pub s_apb_pready: Signal<Out, Bit>,
+    /// With `pready`: the address is no multiple of 4; nothing was done.
+    pub s_apb_pslverr: Signal<Out, Bit>,
+    /// EnDat clock to the transceiver.
+    pub endat_clk_o: Vec<Signal<Out, Bit>>,
+    /// EnDat data to the transceiver.
+    pub endat_data_o: Vec<Signal<Out, Bit>>,
+    /// Driver enable of the EnDat data line.
+    pub endat_data_oe: Vec<Signal<Out, Bit>>,
+    /// EnDat data from the transceiver, asynchronous.
+    pub endat_data_i: Vec<Signal<In, Bit>>,
+    /// Blinks: slowly = well, quickly = the last result of a channel is an error.
+    pub led_status_o: Signal<Out, Bit>,
+    /// The channel's last result is a good position.
+    pub led_channel_o: Vec<Signal<Out, Bit>>,
+    core: CardCore,
+    front: ApbFront,
+    _channels: usize,
+}
+
+impl ApbCard {
+    /// A card.
+    pub fn new(config: &CardConfig) -> Self {
+        let channels = config.channels.len();
+        Self {
+            clk_i: Default::default(),
+            rst_i: Default::default(),
+            trigger_i: Default::default(),
+            s_apb_psel: Default::default(),
+            s_apb_penable: Default::default(),
+            s_apb_pwrite: Default::default(),
+            s_apb_paddr: Default::default(),
+            s_apb_pwdata: Default::default(),
+            s_apb_prdata: Default::default(),
+            s_apb_pready: Default::default(),
+            s_apb_pslverr: Default::default(),
+            endat_clk_o: each(channels),
+            endat_data_o: each(channels),
+            endat_data_oe: each(channels),
+            endat_data_i: each(channels),
+            led_status_o: Default::default(),
+            led_channel_o: each(channels),
+            core: CardCore::new(config),
+            front: Default::default(),
+            _channels: channels,
+        }
+    }
+}
+
+impl Logic for ApbCard {
+    #[hdl_gen]
+    fn update(&mut self) {
+        self.core.clk_i.next = self.clk_i.val();
+        self.core.rst_i.next = self.rst_i.val();
+        self.core.trigger_i.next = self.trigger_i.val();
+        self.front.clock.next = self.clk_i.val();
+        self.front.reset.next = self.rst_i.val();
+
+        self.front.psel.next = self.s_apb_psel.val();
+        self.front.penable.next = self.s_apb_penable.val();
+        self.front.pwrite.next = self.s_apb_pwrite.val();
+        self.front.paddr.next = self.s_apb_paddr.val();
+        self.front.pwdata.next = self.s_apb_pwdata.val();
+        self.s_apb_prdata.next = self.front.prdata.val();
+        self.s_apb_pready.next = self.front.pready.val();
+        self.s_apb_pslverr.next = self.front.pslverr.val();
+
+        self.front.tick_us.next = self.core.tick_us.val();
+        self.front.take_byte.next = self.core.take_byte.val();
+        self.front.passing_byte.next = self.core.passing_byte.val();
+        self.front.read_byte.next = self.core.read_byte.val();
+        self.front.done.next = self.core.done.val();
+        self.core.word_address.next = self.front.word_address.val();
+        self.core.in_range.next = true;
+        self.core.lane.next = self.front.lane.val();
+        self.core.access.next = self.front.access.val();
+        self.core.write.next = self.front.bank_write.val();
+        self.core.write_data.next = self.front.bank_data.val();
+        self.core.push_take.next = false;
+        self.core.reading.next = self.front.reading.val();
+
+        for i in 0..self._channels {
+            self.core.endat_data_i[i].next = self.endat_data_i[i].val();
+            self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();
+            self.endat_data_o[i].next = self.core.endat_data_o[i].val();
+            self.endat_data_oe[i].next = self.core.endat_data_oe[i].val();
+            self.led_channel_o[i].next = self.core.led_channel_o[i].val();
+        }
+        self.led_status_o.next = self.core.led_status_o.val();
+    }
+}

@@ -1,0 +1,445 @@
+//! Parallel front: an asynchronous 16-bit bus with eight registers, as a signal processor has it.
+//!
+//! ```text
+//! cs_n, rd_n, wr_n, register --> synchronisers --> 0 .. 2  position     \
+//!                                                  3, 4    status        >- read round and round by WordAccess <-> bank
+//! data <-- output register <---------------------- 5 .. 7  window       //
+//! ```
+//!
+//! | register | read | write |
+//! |---|---|---|
+//! | 0, 1, 2 | position, bits 15..0, 31..16, 47..32; register 0 takes the moment of 0 to 4 | |
+//! | 3, 4 | word `status` of the result, bits 31..16 and 15..0 | |
+//! | 5 | bit 15 busy, 13:11 channel, 10:0 word address | 13:11 channel of 0 to 4, 10:0 word address; begins to read that word unless bit 14 is set |
+//! | 6, 7 | the word, bits 15..0, 31..16 | the same; writing 7 writes the word |
+//!
+//! A register's data stands at the pins 4 clocks after the register has been selected. While bit 15 of register 5 is set, writes
+//! are ignored. The direct registers follow a result after 130 clocks at most.
+
+use super::word_access::WordAccess;
+use crate::card::{each, CardCore};
+use crate::config::CardConfig;
+use crate::reg::{Reg, SyncReg};
+use rust_hdl::prelude::*;
+
+/// Eight registers of 16 bits in front of the register bank.
+#[derive(LogicBlock, Default)]
+pub struct ParallelFront {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Chip select, active low, asynchronous.
+    pub cs_n: Signal<In, Bit>,
+    /// Read strobe, active low, asynchronous.
+    pub rd_n: Signal<In, Bit>,
+    /// Write strobe, active low, asynchronous; its rising edge writes.
+    pub wr_n: Signal<In, Bit>,
+    /// Register that is read or written, asynchronous.
+    pub register_at: Signal<In, Bits<3>>,
+    /// Data from the processor, asynchronous.
+    pub data_in: Signal<In, Bits<16>>,
+    /// Data to the processor, valid 4 clocks after the register is selected.
+    pub data_out: Signal<Out, Bits<16>>,
+    /// The card drives the data lines, straight from the strobes.
+    pub data_enable: Signal<Out, Bit>,
+    /// Strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// To the bank: word address.
+    pub word_address: Signal<Out, Bits<11>>,
+    /// To the bank: byte of the word, 0 = most significant.
+    pub lane: Signal<Out, Bits<2>>,
+    /// To the bank: begin an access.
+    pub access: Signal<Out, Bit>,
+    /// To the bank: with `access`, write.
+    pub bank_write: Signal<Out, Bit>,
+    /// To the bank: word to write.
+    pub bank_data: Signal<Out, Bits<32>>,
+    /// To the bank: results must not change.
+    pub reading: Signal<Out, Bit>,
+    /// From the bank: a byte of the configuration word passes.
+    pub take_byte: Signal<In, Bit>,
+    /// From the bank: the byte that passes.
+    pub passing_byte: Signal<In, Bits<8>>,
+    /// From the bank: the byte that was read.
+    pub read_byte: Signal<In, Bits<8>>,
+    /// From the bank: the access has ended.
+    pub done: Signal<In, Bit>,
+    words: WordAccess,
+    cs_0: SyncReg<Bit>,
+    cs_1: SyncReg<Bit>,
+    rd_0: SyncReg<Bit>,
+    rd_1: SyncReg<Bit>,
+    wr_0: SyncReg<Bit>,
+    wr_1: SyncReg<Bit>,
+    register_0: SyncReg<Bits<3>>,
+    register_1: SyncReg<Bits<3>>,
+    data_0: SyncReg<Bits<16>>,
+    data_1: SyncReg<Bits<16>>,
+    output: Reg<Bits<16>>,
+    was_first: Reg<Bit>,
+    was_writing: Reg<Bit>,
+    written_register: Reg<Bits<3>>,
+    written: Reg<Bits<16>>,
+    next_status: Reg<Bits<32>>,
+    next_low: Reg<Bits<32>>,
+    live_status: Reg<Bits<32>>,
+    live_position: Reg<Bits<48>>,
+    seen_status: Reg<Bits<32>>,
+    seen_position: Reg<Bits<48>>,
+    window_address: Reg<Bits<11>>,
+    channel: Reg<Bits<3>>,
+    window_low: Reg<Bits<16>>,
+    window_high: Reg<Bits<16>>,
+    wants_read: Reg<Bit>,
+    wants_write: Reg<Bit>,
+    settling: Reg<Bit>,
+    busy: Reg<Bit>,
+    request: Reg<Bit>,
+    address: Reg<Bits<11>>,
+    writing: Reg<Bit>,
+    is_window: Reg<Bit>,
+    step: Reg<Bits<2>>,
+    polled: Reg<Bits<3>>,
+    is_first: Signal<Local, Bit>,
+    is_busy: Signal<Local, Bit>,
+    is_writing: Signal<Local, Bit>,
+}
+
+impl Logic for ParallelFront {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, cs_0, cs_1, rd_0, rd_1, wr_0, wr_1, register_0);
+        dff_setup!(
+            self,
+            clock,
+            register_1,
+            data_0,
+            data_1,
+            output,
+            was_first,
+            was_writing,
+            written_register
+        );
+        dff_setup!(
+            self,
+            clock,
+            written,
+            next_status,
+            next_low,
+            live_status,
+            live_position,
+            seen_status,
+            seen_position
+        );
+        dff_setup!(
+            self,
+            clock,
+            window_address,
+            channel,
+            window_low,
+            window_high,
+            wants_read,
+            wants_write,
+            settling
+        );
+        dff_setup!(self, clock, busy, request, address, writing, is_window, step, polled);
+        self.cs_0.reset.next = self.reset.val();
+        self.cs_1.reset.next = self.reset.val();
+        self.rd_0.reset.next = self.reset.val();
+        self.rd_1.reset.next = self.reset.val();
+        self.wr_0.reset.next = self.reset.val();
+        self.wr_1.reset.next = self.reset.val();
+        self.register_0.reset.next = self.reset.val();
+        self.register_1.reset.next = self.reset.val();
+        self.data_0.reset.next = self.reset.val();
+        self.data_1.reset.next = self.reset.val();
+        self.output.reset.next = self.reset.val();
+        self.was_first.reset.next = self.reset.val();
+        self.was_writing.reset.next = self.reset.val();
+        self.written_register.reset.next = self.reset.val();
+        self.written.reset.next = self.reset.val();
+        self.next_status.reset.next = self.reset.val();
+        self.next_low.reset.next = self.reset.val();
+        self.live_status.reset.next = self.reset.val();
+        self.live_position.reset.next = self.reset.val();
+        self.seen_status.reset.next = self.reset.val();
+        self.seen_position.reset.next = self.reset.val();
+        self.window_address.reset.next = self.reset.val();
+        self.channel.reset.next = self.reset.val();
+        self.window_low.reset.next = self.reset.val();
+        self.window_high.reset.next = self.reset.val();
+        self.wants_read.reset.next = self.reset.val();
+        self.wants_write.reset.next = self.reset.val();
+        self.settling.reset.next = self.reset.val();
+        self.busy.reset.next = self.reset.val();
+        self.request.reset.next = self.reset.val();
+        self.address.reset.next = self.reset.val();
+        self.writing.reset.next = self.reset.val();
+        self.is_window.reset.next = self.reset.val();
+        self.step.reset.next = self.reset.val();
+        self.polled.reset.next = self.reset.val();
+        self.words.clock.next = self.clock.val();
+        self.words.reset.next = self.reset.val();
+        self.words.tick_us.next = self.tick_us.val();
+        self.words.take_byte.next = self.take_byte.val();
+        self.words.passing_byte.next = self.passing_byte.val();
+        self.words.read_byte.next = self.read_byte.val();
+        self.words.done.next = self.done.val();
+        self.words.keep_moment.next = false;
+        self.words.end_moment.next = false;
+        self.lane.next = self.words.lane.val();
+        self.access.next = self.words.access.val();
+        self.bank_data.next = self.words.bank_data.val();
+        self.reading.next = self.words.reading.val();
+
+        self.cs_0.d.next = !self.cs_n.val();
+        self.cs_1.d.next = self.cs_0.q.val();
+        self.rd_0.d.next = !self.rd_n.val();
+        self.rd_1.d.next = self.rd_0.q.val();
+        self.wr_0.d.next = !self.wr_n.val();
+        self.wr_1.d.next = self.wr_0.q.val();
+        self.register_0.d.next = self.register_at.val();
+        self.register_1.d.next = self.register_0.q.val();
+        self.data_0.d.next = self.data_in.val();
+        self.data_1.d.next = self.data_0.q.val();
+
+        // Reading register 0 takes the moment that registers 0 to 4 show.
+        self.is_first.next = self.cs_1.q.val() & self.rd_1.q.val() & !self.register_1.q.val().any();
+        self.was_first.d.next = self.is_first.val();
+        if self.is_first.val() & !self.was_first.q.val() {
+            self.seen_status.d.next = self.live_status.q.val();
+            self.seen_position.d.next = self.live_position.q.val();
+        }
+        self.is_busy.next =
+            self.wants_read.q.val() | self.wants_write.q.val() | self.settling.q.val();
+        match self.register_1.q.val().index() {
+            0 => {
+                self.output.d.next = self.seen_position.q.val().get_bits::<16>(0);
+            }
+            1 => {
+                self.output.d.next = self.seen_position.q.val().get_bits::<16>(16);
+            }
+            2 => {
+                self.output.d.next = self.seen_position.q.val().get_bits::<16>(32);
+            }
+            3 => {
+                self.output.d.next = self.seen_status.q.val().get_bits::<16>(16);
+            }
+            4 => {
+                self.output.d.next = self.seen_status.q.val().get_bits::<16>(0);
+            }
+            5 => {
+                self.output.d.next = bit_cast::<16, 11>(self.window_address.q.val())
+                    | (bit_cast::<16, 3>(self.channel.q.val()) << 11)
+                    | (bit_cast::<16, 1>(self.is_busy.val().into()) << 15);
+            }
+            6 => {
+                self.output.d.next = self.window_low.q.val();
+            }
+            _ => {
+                self.output.d.next = self.window_high.q.val();
+            }
+        }
+        self.data_out.next = self.output.q.val();
+        // No register: the lines are free as soon as the strobe ends.
+        self.data_enable.next = !self.cs_n.val() & !self.rd_n.val();
+
+        // What is written is what stood there last before the strobe ended.
+        self.is_writing.next = self.cs_1.q.val() & self.wr_1.q.val();
+        self.was_writing.d.next = self.is_writing.val();
+        if self.is_writing.val() {
+            self.written_register.d.next = self.register_1.q.val();
+            self.written.d.next = self.data_1.q.val();
+        }
+        if self.was_writing.q.val() & !self.is_writing.val() & !self.is_busy.val() {
+            match self.written_register.q.val().index() {
+                5 => {
+                    self.window_address.d.next = self.written.q.val().get_bits::<11>(0);
+                    self.channel.d.next = self.written.q.val().get_bits::<3>(11);
+                    self.settling.d.next =
+                        self.written.q.val().get_bits::<3>(11) != self.channel.q.val();
+                    self.wants_read.d.next = !self.written.q.val().get_bit(14);
+                }
+                6 => {
+                    self.window_low.d.next = self.written.q.val();
+                }
+                7 => {
+                    self.window_high.d.next = self.written.q.val();
+                    self.wants_write.d.next = true;
+                }
+                _ => {}
+            }
+        }
+
+        // The result of the channel is read over and over: three words, upwards, so of one moment. The window comes between two rounds.
+        self.request.d.next = false;
+        if !self.busy.q.val() {
+            self.busy.d.next = true;
+            self.request.d.next = true;
+            self.writing.d.next = false;
+            self.is_window.d.next = false;
+            self.address.d.next = bit_cast::<11, 2>(self.step.q.val())
+                | (bit_cast::<11, 3>(self.polled.q.val()) << 3)
+                | 0x180;
+            if !self.step.q.val().any() {
+                self.polled.d.next = self.channel.q.val();
+                self.address.d.next = (bit_cast::<11, 3>(self.channel.q.val()) << 3) | 0x180;
+                if self.wants_read.q.val() | self.wants_write.q.val() {
+                    self.is_window.d.next = true;
+                    self.writing.d.next = self.wants_write.q.val();
+                    self.address.d.next = self.window_address.q.val();
+                }
+            }
+        }
+        if self.words.finished.val() {
+            self.busy.d.next = false;
+            if self.is_window.q.val() {
+                self.wants_read.d.next = false;
+                self.wants_write.d.next = false;
+                if !self.writing.q.val() {
+                    self.window_low.d.next = self.words.read_data.val().get_bits::<16>(0);
+                    self.window_high.d.next = self.words.read_data.val().get_bits::<16>(16);
+                }
+            } else {
+                self.step.d.next = self.step.q.val() + 1;
+                match self.step.q.val().index() {
+                    0 => {
+                        self.next_status.d.next = self.words.read_data.val();
+                    }
+                    1 => {
+                        self.next_low.d.next = self.words.read_data.val();
+                    }
+                    _ => {
+                        self.step.d.next = 0.into();
+                        self.live_status.d.next = self.next_status.q.val();
+                        self.live_position.d.next = bit_cast::<48, 32>(self.next_low.q.val())
+                            | (bit_cast::<48, 16>(self.words.read_data.val().get_bits::<16>(0))
+                                << 32);
+                        if self.polled.q.val() == self.channel.q.val() {
+                            self.settling.d.next = false;
+                        }
+                    }
+                }
+            }
+        }
+
+        self.words.request.next = self.request.q.val();
+        self.words.word_address.next = self.address.q.val();
+        self.words.write.next = self.writing.q.val();
+        self.words.write_data.next = bit_cast::<32, 16>(self.window_low.q.val())
+            | (bit_cast::<32, 16>(self.window_high.q.val()) << 16);
+        self.word_address.next = self.address.q.val();
+        self.bank_write.next = self.writing.q.val();
+    }
+}
+
+/// The whole core behind a parallel bus; the number of channels is that of [`CardConfig::channels`].
+#[derive(LogicBlock)]
+pub struct ParallelCard {
+    /// System clock.
+    pub clk_i: Signal<In, Clock>,
+    /// Synchronous reset, active high.
+    pub rst_i: Signal<In, Bit>,
+    /// Trigger pin, asynchronous; a rising edge triggers.
+    pub trigger_i: Signal<In, Bit>,
+    /// Chip select, active low, asynchronous.
+    pub bus_cs_n_i: Signal<In, Bit>,
+    /// Read strobe, active low, asynchronous.
+    pub bus_rd_n_i: Signal<In, Bit>,
+    /// Write strobe, active low, asynchronous; its rising edge writes.
+    pub bus_wr_n_i: Signal<In, Bit>,
+    /// Register that is read or written, asynchronous.
+    pub bus_address_i: Signal<In, Bits<3>>,
+    /// Data from the processor, asynchronous.
+    pub bus_data_i: Signal<In, Bits<16>>,
+    /// Data to the processor, valid 4 clocks after the register is selected.
+    pub bus_data_o: Signal<Out, Bits<16>>,
+    /// The card drives the data lines, straight from the strobes.
+    pub bus_data_oe: Signal<Out, Bit>,
+    /// EnDat clock to the transceiver.
+    pub endat_clk_o: Vec<Signal<Out, Bit>>,
+    /// EnDat data to the transceiver.
+    pub endat_data_o: Vec<Signal<Out, Bit>>,
+    /// Driver enable of the EnDat data line.
+    pub endat_data_oe: Vec<Signal<Out, Bit>>,
+    /// EnDat data from the transceiver, asynchronous.
+    pub endat_data_i: Vec<Signal<In, Bit>>,
+    /// Blinks: slowly = well, quickly = the last result of a channel is an error.
+    pub led_status_o: Signal<Out, Bit>,
+    /// The channel's last result is a good position.
+    pub led_channel_o: Vec<Signal<Out, Bit>>,
+    core: CardCore,
+    front: ParallelFront,
+    _channels: usize,
+}
+
+impl ParallelCard {
+    /// A card.
+    pub fn new(config: &CardConfig) -> Self {
+        let channels = config.channels.len();
+        Self {
+            clk_i: Default::default(),
+            rst_i: Default::default(),
+            trigger_i: Default::default(),
+            bus_cs_n_i: Default::default(),
+            bus_rd_n_i: Default::default(),
+            bus_wr_n_i: Default::default(),
+            bus_address_i: Default::default(),
+            bus_data_i: Default::default(),
+            bus_data_o: Default::default(),
+            bus_data_oe: Default::default(),
+            endat_clk_o: each(channels),
+            endat_data_o: each(channels),
+            endat_data_oe: each(channels),
+            endat_data_i: each(channels),
+            led_status_o: Default::default(),
+            led_channel_o: each(channels),
+            core: CardCore::new(config),
+            front: Default::default(),
+            _channels: channels,
+        }
+    }
+}
+
+impl Logic for ParallelCard {
+    #[hdl_gen]
+    fn update(&mut self) {
+        self.core.clk_i.next = self.clk_i.val();
+        self.core.rst_i.next = self.rst_i.val();
+        self.core.trigger_i.next = self.trigger_i.val();
+        self.front.clock.next = self.clk_i.val();
+        self.front.reset.next = self.rst_i.val();
+
+        self.front.cs_n.next = self.bus_cs_n_i.val();
+        self.front.rd_n.next = self.bus_rd_n_i.val();
+        self.front.wr_n.next = self.bus_wr_n_i.val();
+        self.front.register_at.next = self.bus_address_i.val();
+        self.front.data_in.next = self.bus_data_i.val();
+        self.bus_data_o.next = self.front.data_out.val();
+        self.bus_data_oe.next = self.front.data_enable.val();
+
+        self.front.tick_us.next = self.core.tick_us.val();
+        self.front.take_byte.next = self.core.take_byte.val();
+        self.front.passing_byte.next = self.core.passing_byte.val();
+        self.front.read_byte.next = self.core.read_byte.val();
+        self.front.done.next = self.core.done.val();
+        self.core.word_address.next = self.front.word_address.val();
+        self.core.in_range.next = true;
+        self.core.lane.next = self.front.lane.val();
+        self.core.access.next = self.front.access.val();
+        self.core.write.next = self.front.bank_write.val();
+        self.core.write_data.next = self.front.bank_data.val();
+        self.core.push_take.next = false;
+        self.core.reading.next = self.front.reading.val();
+
+        for i in 0..self._channels {
+            self.core.endat_data_i[i].next = self.endat_data_i[i].val();
+            self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();
+            self.endat_data_o[i].next = self.core.endat_data_o[i].val();
+            self.endat_data_oe[i].next = self.core.endat_data_oe[i].val();
+            self.led_channel_o[i].next = self.core.led_channel_o[i].val();
+        }
+        self.led_status_o.next = self.core.led_status_o.val();
+    }
+}

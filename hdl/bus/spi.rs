@@ -1,0 +1,520 @@
+//! SPI front: frames of mode 0 with a check sum, most significant bit first.
+//!
+//! ```text
+//! read    03 a1 a0 n  xx  -- -- -- -- ... -- --          write   02 a1 a0 n  d3 d2 d1 d0 c1 c0  d3 d2 d1 d0 c1 c0 ...
+//! answer  s  -- -- -- --  d3 d2 d1 d0 ... c1 c0          answer  s
+//! ```
+//!
+//! Addresses count words and rise; `n` words, 1 to 255. `c1 c0` is CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xFFFF): in a read over
+//! the four bytes of the request and all words that came, in a write over everything before it, from the second word on over that
+//! word. A word is written when its check sum is right; otherwise nothing more of the frame is. `s` is 0xA0, or 0xA2 if the last write was refused.
+//! All result words of a frame are of one moment. A frame may end anywhere.
+
+use super::word_access::WordAccess;
+use crate::card::{each, CardCore};
+use crate::config::CardConfig;
+use crate::reg::{Reg, SyncReg};
+use rust_hdl::prelude::*;
+
+/// System clock cycles in the shortest period of the serial clock.
+pub const SCK_CYCLES_MIN: u64 = 8;
+
+/// What the byte means.
+#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+pub enum SpiState {
+    /// 2 = write, 3 = read.
+    Command,
+    /// Word address, bits 15..8.
+    AddressHigh,
+    /// Word address, bits 7..0.
+    AddressLow,
+    /// Number of words.
+    Length,
+    /// Nothing: the first word is being read.
+    Turnaround,
+    /// A word, in either direction.
+    Data,
+    /// Check sum, in either direction.
+    Crc,
+    /// Nothing until the frame ends.
+    Ignore,
+}
+
+/// SPI slave in front of the register bank.
+#[derive(LogicBlock)]
+pub struct SpiFront {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Serial clock, idle low, asynchronous; at most an eighth of the system clock.
+    pub sck: Signal<In, Bit>,
+    /// Chip select, active low, asynchronous.
+    pub cs_n: Signal<In, Bit>,
+    /// Data from the host, taken with the rising edge, asynchronous.
+    pub mosi: Signal<In, Bit>,
+    /// Data to the host; changes after the falling edge.
+    pub miso: Signal<Out, Bit>,
+    /// The card drives `miso`, straight from `cs_n`.
+    pub miso_enable: Signal<Out, Bit>,
+    /// To the bank: the address fits `word_address`.
+    pub in_range: Signal<Out, Bit>,
+    /// Strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// To the bank: word address.
+    pub word_address: Signal<Out, Bits<11>>,
+    /// To the bank: byte of the word, 0 = most significant.
+    pub lane: Signal<Out, Bits<2>>,
+    /// To the bank: begin an access.
+    pub access: Signal<Out, Bit>,
+    /// To the bank: with `access`, write.
+    pub bank_write: Signal<Out, Bit>,
+    /// To the bank: word to write.
+    pub bank_data: Signal<Out, Bits<32>>,
+    /// To the bank: results must not change.
+    pub reading: Signal<Out, Bit>,
+    /// From the bank: a byte of the configuration word passes.
+    pub take_byte: Signal<In, Bit>,
+    /// From the bank: the byte that passes.
+    pub passing_byte: Signal<In, Bits<8>>,
+    /// From the bank: the byte that was read.
+    pub read_byte: Signal<In, Bits<8>>,
+    /// From the bank: the access has ended.
+    pub done: Signal<In, Bit>,
+    words: WordAccess,
+    sck_0: SyncReg<Bit>,
+    sck_1: SyncReg<Bit>,
+    sck_2: Reg<Bit>,
+    cs_0: SyncReg<Bit>,
+    cs_1: SyncReg<Bit>,
+    mosi_0: SyncReg<Bit>,
+    mosi_1: SyncReg<Bit>,
+    state: Reg<SpiState>,
+    bit_count: Reg<Bits<3>>,
+    byte: Reg<Bits<8>>,
+    byte_end: Reg<Bit>,
+    byte_count: Reg<Bits<2>>,
+    crc: Reg<Bits<16>>,
+    output: Reg<Bits<32>>,
+    load_word: Reg<Bit>,
+    load_crc: Reg<Bit>,
+    late: Reg<Bit>,
+    writing: Reg<Bit>,
+    words_left: Reg<Bits<8>>,
+    address: Reg<Bits<11>>,
+    out_of_range: Reg<Bit>,
+    data: Reg<Bits<32>>,
+    busy: Reg<Bit>,
+    request: Reg<Bit>,
+    refused: Reg<Bit>,
+    selected: Signal<Local, Bit>,
+    rise: Signal<Local, Bit>,
+    fall: Signal<Local, Bit>,
+    crc_bit: Signal<Local, Bit>,
+    crc_runs: Signal<Local, Bit>,
+    step_address: Signal<Local, Bit>,
+    next_address: Signal<Local, Bits<12>>,
+    last_word: Signal<Local, Bit>,
+    polynomial: Constant<Bits<16>>,
+}
+
+impl Default for SpiFront {
+    fn default() -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            sck: Default::default(),
+            cs_n: Default::default(),
+            mosi: Default::default(),
+            miso: Default::default(),
+            miso_enable: Default::default(),
+            in_range: Default::default(),
+            tick_us: Default::default(),
+            word_address: Default::default(),
+            lane: Default::default(),
+            access: Default::default(),
+            bank_write: Default::default(),
+            bank_data: Default::default(),
+            reading: Default::default(),
+            take_byte: Default::default(),
+            passing_byte: Default::default(),
+            read_byte: Default::default(),
+            done: Default::default(),
+            words: Default::default(),
+            sck_0: Default::default(),
+            sck_1: Default::default(),
+            sck_2: Default::default(),
+            cs_0: Default::default(),
+            cs_1: Default::default(),
+            mosi_0: Default::default(),
+            mosi_1: Default::default(),
+            state: Reg::new(SpiState::Command),
+            bit_count: Default::default(),
+            byte: Default::default(),
+            byte_end: Default::default(),
+            byte_count: Default::default(),
+            crc: Reg::new(0xffffu64.into()),
+            output: Default::default(),
+            load_word: Default::default(),
+            load_crc: Default::default(),
+            late: Default::default(),
+            writing: Default::default(),
+            words_left: Default::default(),
+            address: Default::default(),
+            out_of_range: Default::default(),
+            data: Default::default(),
+            busy: Default::default(),
+            request: Default::default(),
+            refused: Default::default(),
+            selected: Default::default(),
+            rise: Default::default(),
+            fall: Default::default(),
+            crc_bit: Default::default(),
+            crc_runs: Default::default(),
+            step_address: Default::default(),
+            next_address: Default::default(),
+            last_word: Default::default(),
+            polynomial: Constant::new(0x1021u64.into()),
+        }
+    }
+}
+
+impl Logic for SpiFront {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, sck_0, sck_1, sck_2, cs_0, cs_1, mosi_0, mosi_1);
+        dff_setup!(self, clock, state, bit_count, byte, byte_end, byte_count, crc, output);
+        dff_setup!(
+            self,
+            clock,
+            load_word,
+            load_crc,
+            late,
+            writing,
+            words_left,
+            address,
+            out_of_range
+        );
+        dff_setup!(self, clock, data, busy, request, refused);
+        self.sck_0.reset.next = self.reset.val();
+        self.sck_1.reset.next = self.reset.val();
+        self.sck_2.reset.next = self.reset.val();
+        self.cs_0.reset.next = self.reset.val();
+        self.cs_1.reset.next = self.reset.val();
+        self.mosi_0.reset.next = self.reset.val();
+        self.mosi_1.reset.next = self.reset.val();
+        self.state.reset.next = self.reset.val();
+        self.bit_count.reset.next = self.reset.val();
+        self.byte.reset.next = self.reset.val();
+        self.byte_end.reset.next = self.reset.val();
+        self.byte_count.reset.next = self.reset.val();
+        self.crc.reset.next = self.reset.val();
+        self.output.reset.next = self.reset.val();
+        self.load_word.reset.next = self.reset.val();
+        self.load_crc.reset.next = self.reset.val();
+        self.late.reset.next = self.reset.val();
+        self.writing.reset.next = self.reset.val();
+        self.words_left.reset.next = self.reset.val();
+        self.address.reset.next = self.reset.val();
+        self.out_of_range.reset.next = self.reset.val();
+        self.data.reset.next = self.reset.val();
+        self.busy.reset.next = self.reset.val();
+        self.request.reset.next = self.reset.val();
+        self.refused.reset.next = self.reset.val();
+        self.words.clock.next = self.clock.val();
+        self.words.reset.next = self.reset.val();
+        self.words.tick_us.next = self.tick_us.val();
+        self.words.take_byte.next = self.take_byte.val();
+        self.words.passing_byte.next = self.passing_byte.val();
+        self.words.read_byte.next = self.read_byte.val();
+        self.words.done.next = self.done.val();
+        self.words.keep_moment.next = self.selected.val();
+        self.words.end_moment.next = !self.selected.val();
+        self.lane.next = self.words.lane.val();
+        self.access.next = self.words.access.val();
+        self.bank_data.next = self.words.bank_data.val();
+        self.reading.next = self.words.reading.val();
+
+        self.sck_0.d.next = self.sck.val();
+        self.sck_1.d.next = self.sck_0.q.val();
+        self.sck_2.d.next = self.sck_1.q.val();
+        self.cs_0.d.next = !self.cs_n.val();
+        self.cs_1.d.next = self.cs_0.q.val();
+        self.mosi_0.d.next = self.mosi.val();
+        self.mosi_1.d.next = self.mosi_0.q.val();
+        self.selected.next = self.cs_1.q.val();
+        self.rise.next = self.selected.val() & self.sck_1.q.val() & !self.sck_2.q.val();
+        self.fall.next = self.selected.val() & !self.sck_1.q.val() & self.sck_2.q.val();
+
+        // Bits.
+        self.crc_runs.next = (self.state.q.val() == SpiState::Command)
+            | (self.state.q.val() == SpiState::AddressHigh)
+            | (self.state.q.val() == SpiState::AddressLow)
+            | (self.state.q.val() == SpiState::Length)
+            | (self.state.q.val() == SpiState::Data)
+            | ((self.state.q.val() == SpiState::Crc) & self.writing.q.val());
+        self.crc_bit.next = self.mosi_1.q.val();
+        if (self.state.q.val() == SpiState::Data) & !self.writing.q.val() {
+            self.crc_bit.next = self.output.q.val().get_bit(31);
+        }
+        self.byte_end.d.next = self.rise.val() & self.bit_count.q.val().all();
+        if self.rise.val() {
+            self.bit_count.d.next = self.bit_count.q.val() + 1;
+            self.byte.d.next =
+                (self.byte.q.val() << 1) | bit_cast::<8, 1>(self.mosi_1.q.val().into());
+            if self.crc_runs.val() {
+                self.crc.d.next = self.crc.q.val() << 1;
+                if self.crc.q.val().get_bit(15) ^ self.crc_bit.val() {
+                    self.crc.d.next = (self.crc.q.val() << 1) ^ self.polynomial.val();
+                }
+            }
+        }
+
+        // Bytes.
+        self.request.d.next = false;
+        self.step_address.next = false;
+        self.last_word.next = self.words_left.q.val() == 1;
+        if self.byte_end.q.val() {
+            match self.state.q.val() {
+                SpiState::Command => {
+                    self.state.d.next = SpiState::Ignore;
+                    self.writing.d.next = self.byte.q.val() == 2;
+                    if (self.byte.q.val() == 2) | (self.byte.q.val() == 3) {
+                        self.state.d.next = SpiState::AddressHigh;
+                    }
+                }
+                SpiState::AddressHigh => {
+                    self.state.d.next = SpiState::AddressLow;
+                    self.address.d.next =
+                        bit_cast::<11, 3>(self.byte.q.val().get_bits::<3>(0)) << 8;
+                    self.out_of_range.d.next = self.byte.q.val().get_bits::<5>(3).any();
+                }
+                SpiState::AddressLow => {
+                    self.state.d.next = SpiState::Length;
+                    self.address.d.next =
+                        self.address.q.val() | bit_cast::<11, 8>(self.byte.q.val());
+                    // The first word is there before the host can ask for it.
+                    self.request.d.next = !self.writing.q.val() & !self.busy.q.val();
+                }
+                SpiState::Length => {
+                    self.words_left.d.next = self.byte.q.val();
+                    self.byte_count.d.next = 0.into();
+                    self.state.d.next = SpiState::Turnaround;
+                    if self.writing.q.val() {
+                        self.state.d.next = SpiState::Data;
+                    }
+                    if !self.byte.q.val().any() {
+                        self.state.d.next = SpiState::Ignore;
+                    }
+                }
+                SpiState::Turnaround => {
+                    self.state.d.next = SpiState::Data;
+                    self.load_word.d.next = true;
+                }
+                SpiState::Data => {
+                    self.byte_count.d.next = self.byte_count.q.val() + 1;
+                    if self.writing.q.val() {
+                        self.data.d.next =
+                            (self.data.q.val() << 8) | bit_cast::<32, 8>(self.byte.q.val());
+                    }
+                    if self.byte_count.q.val().all() {
+                        if self.writing.q.val() {
+                            self.state.d.next = SpiState::Crc;
+                        } else {
+                            self.words_left.d.next = self.words_left.q.val() - 1;
+                            self.load_word.d.next = !self.last_word.val();
+                            if self.last_word.val() {
+                                self.load_crc.d.next = true;
+                                self.state.d.next = SpiState::Crc;
+                            }
+                        }
+                    }
+                }
+                SpiState::Crc => {
+                    self.byte_count.d.next = self.byte_count.q.val() + 1;
+                    if self.byte_count.q.val().get_bit(0) {
+                        self.state.d.next = SpiState::Ignore;
+                        if self.writing.q.val() {
+                            // A check sum behind what it belongs to leaves 0.
+                            self.refused.d.next = self.crc.q.val().any() | self.busy.q.val();
+                            if !self.crc.q.val().any() & !self.busy.q.val() {
+                                self.request.d.next = true;
+                                self.words_left.d.next = self.words_left.q.val() - 1;
+                                self.byte_count.d.next = 0.into();
+                                self.crc.d.next = 0xffff.into();
+                                if !self.last_word.val() {
+                                    self.state.d.next = SpiState::Data;
+                                }
+                            }
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+
+        // What goes out changes with the falling edge.
+        if self.fall.val() {
+            self.output.d.next = self.output.q.val() << 1;
+            self.load_word.d.next = false;
+            self.load_crc.d.next = false;
+            if self.load_word.q.val() {
+                self.output.d.next = self.words.read_data.val();
+                // A clock that is too fast must not pass for an answer: the check sum goes out wrong.
+                self.late.d.next = self.late.q.val() | self.busy.q.val();
+                self.step_address.next = !self.last_word.val();
+                self.request.d.next = !self.last_word.val() & !self.busy.q.val();
+            }
+            if self.load_crc.q.val() {
+                self.output.d.next = bit_cast::<32, 16>(self.crc.q.val()) << 16;
+                if self.late.q.val() {
+                    self.output.d.next = (bit_cast::<32, 16>(self.crc.q.val()) << 16) ^ 0xffff0000;
+                }
+            }
+        }
+
+        if self.request.q.val() {
+            self.busy.d.next = true;
+        }
+        if self.words.finished.val() {
+            self.busy.d.next = false;
+            self.step_address.next = self.writing.q.val();
+        }
+        self.next_address.next = bit_cast::<12, 11>(self.address.q.val()) + 1;
+        if self.step_address.val() {
+            self.address.d.next = self.next_address.val().get_bits::<11>(0);
+            if self.next_address.val().get_bit(11) {
+                self.out_of_range.d.next = true;
+            }
+        }
+
+        // Between frames; a word that is being written has what it needs.
+        if !self.selected.val() {
+            self.state.d.next = SpiState::Command;
+            self.bit_count.d.next = 0.into();
+            self.byte_end.d.next = false;
+            self.byte_count.d.next = 0.into();
+            self.crc.d.next = 0xffff.into();
+            self.load_word.d.next = false;
+            self.load_crc.d.next = false;
+            self.late.d.next = false;
+            self.output.d.next = 0xa0000000.into();
+            if self.refused.q.val() {
+                self.output.d.next = 0xa2000000.into();
+            }
+        }
+
+        self.words.request.next = self.request.q.val();
+        self.words.word_address.next = self.address.q.val();
+        self.words.write.next = self.writing.q.val();
+        self.words.write_data.next = self.data.q.val();
+        self.word_address.next = self.address.q.val();
+        self.in_range.next = !self.out_of_range.q.val();
+        self.bank_write.next = self.writing.q.val();
+        self.miso.next = self.output.q.val().get_bit(31);
+        // No register: the line is free as soon as the frame ends.
+        self.miso_enable.next = !self.cs_n.val();
+    }
+}
+
+/// The whole core behind SPI; the number of channels is that of [`CardConfig::channels`].
+#[derive(LogicBlock)]
+pub struct SpiCard {
+    /// System clock.
+    pub clk_i: Signal<In, Clock>,
+    /// Synchronous reset, active high.
+    pub rst_i: Signal<In, Bit>,
+    /// Trigger pin, asynchronous; a rising edge triggers.
+    pub trigger_i: Signal<In, Bit>,
+    /// Serial clock, idle low, asynchronous; at most an eighth of the system clock.
+    pub spi_sck_i: Signal<In, Bit>,
+    /// Chip select, active low, asynchronous.
+    pub spi_cs_n_i: Signal<In, Bit>,
+    /// Data from the host, taken with the rising edge, asynchronous.
+    pub spi_mosi_i: Signal<In, Bit>,
+    /// Data to the host; changes after the falling edge.
+    pub spi_miso_o: Signal<Out, Bit>,
+    /// The card drives `spi_miso_o`, straight from `spi_cs_n_i`.
+    pub spi_miso_oe: Signal<Out, Bit>,
+    /// EnDat clock to the transceiver.
+    pub endat_clk_o: Vec<Signal<Out, Bit>>,
+    /// EnDat data to the transceiver.
+    pub endat_data_o: Vec<Signal<Out, Bit>>,
+    /// Driver enable of the EnDat data line.
+    pub endat_data_oe: Vec<Signal<Out, Bit>>,
+    /// EnDat data from the transceiver, asynchronous.
+    pub endat_data_i: Vec<Signal<In, Bit>>,
+    /// Blinks: slowly = well, quickly = the last result of a channel is an error.
+    pub led_status_o: Signal<Out, Bit>,
+    /// The channel's last result is a good position.
+    pub led_channel_o: Vec<Signal<Out, Bit>>,
+    core: CardCore,
+    front: SpiFront,
+    _channels: usize,
+}
+
+impl SpiCard {
+    /// A card.
+    pub fn new(config: &CardConfig) -> Self {
+        let channels = config.channels.len();
+        Self {
+            clk_i: Default::default(),
+            rst_i: Default::default(),
+            trigger_i: Default::default(),
+            spi_sck_i: Default::default(),
+            spi_cs_n_i: Default::default(),
+            spi_mosi_i: Default::default(),
+            spi_miso_o: Default::default(),
+            spi_miso_oe: Default::default(),
+            endat_clk_o: each(channels),
+            endat_data_o: each(channels),
+            endat_data_oe: each(channels),
+            endat_data_i: each(channels),
+            led_status_o: Default::default(),
+            led_channel_o: each(channels),
+            core: CardCore::new(config),
+            front: Default::default(),
+            _channels: channels,
+        }
+    }
+}
+
+impl Logic for SpiCard {
+    #[hdl_gen]
+    fn update(&mut self) {
+        self.core.clk_i.next = self.clk_i.val();
+        self.core.rst_i.next = self.rst_i.val();
+        self.core.trigger_i.next = self.trigger_i.val();
+        self.front.clock.next = self.clk_i.val();
+        self.front.reset.next = self.rst_i.val();
+
+        self.front.sck.next = self.spi_sck_i.val();
+        self.front.cs_n.next = self.spi_cs_n_i.val();
+        self.front.mosi.next = self.spi_mosi_i.val();
+        self.spi_miso_o.next = self.front.miso.val();
+        self.spi_miso_oe.next = self.front.miso_enable.val();
+
+        self.front.tick_us.next = self.core.tick_us.val();
+        self.front.take_byte.next = self.core.take_byte.val();
+        self.front.passing_byte.next = self.core.passing_byte.val();
+        self.front.read_byte.next = self.core.read_byte.val();
+        self.front.done.next = self.core.done.val();
+        self.core.word_address.next = self.front.word_address.val();
+        self.core.in_range.next = self.front.in_range.val();
+        self.core.lane.next = self.front.lane.val();
+        self.core.access.next = self.front.access.val();
+        self.core.write.next = self.front.bank_write.val();
+        self.core.write_data.next = self.front.bank_data.val();
+        self.core.push_take.next = false;
+        self.core.reading.next = self.front.reading.val();
+
+        for i in 0..self._channels {
+            self.core.endat_data_i[i].next = self.endat_data_i[i].val();
+            self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();
+            self.endat_data_o[i].next = self.core.endat_data_o[i].val();
+            self.endat_data_oe[i].next = self.core.endat_data_oe[i].val();
+            self.led_channel_o[i].next = self.core.led_channel_o[i].val();
+        }
+        self.led_status_o.next = self.core.led_status_o.val();
+    }
+}

@@ -1,0 +1,165 @@
+//! Word access: a 32-bit word of a bus becomes accesses of the register bank's bytes.
+//!
+//! ```text
+//! request, word_address --> [result word: new moment?] --> lane 0 .. 3: access, done --> data --> finished
+//!                                 |                        configuration: one turn, bytes as they pass
+//!                                 +--> reading
+//! ```
+//!
+//! **One moment.** Reads of result words whose addresses rise are of one moment, as one burst of the UART is: the first of them
+//! takes the moment, `reading` holds it. A read of the same or of a lower address takes the next one. A moment ends by itself
+//! 7 to 8 us after its last read, so that a host that stops in the middle does not stop the results.
+//!
+//! From `request` to `finished`: 17 cycles for a word that is read, 3 more for the first of a moment, 26 for a word of a service or line
+//! monitor; 5 for a strobe; a turn of the configuration ring (12 cycles for the card and each channel) and 4 for a configuration word,
+//! read or written, and for a word that is written to a service or line monitor.
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Bit of the microsecond counter that ends a moment.
+pub const QUIET_US: u64 = 8;
+
+/// A word in four bytes.
+#[derive(LogicBlock, Default)]
+pub struct WordAccess {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// Strobe: begin an access; not before the last one has finished.
+    pub request: Signal<In, Bit>,
+    /// Word address, constant from `request` to `finished`.
+    pub word_address: Signal<In, Bits<11>>,
+    /// Write; constant from `request` to `finished`.
+    pub write: Signal<In, Bit>,
+    /// Word to write, with `request`.
+    pub write_data: Signal<In, Bits<32>>,
+    /// The front is within a burst: the moment does not end by itself.
+    pub keep_moment: Signal<In, Bit>,
+    /// Strobe: the moment ends.
+    pub end_moment: Signal<In, Bit>,
+    /// Strobe: the access has ended.
+    pub finished: Signal<Out, Bit>,
+    /// Word that was read, from `finished` to the next `request`.
+    pub read_data: Signal<Out, Bits<32>>,
+    /// To the bank: byte of the word, 0 = most significant.
+    pub lane: Signal<Out, Bits<2>>,
+    /// To the bank: begin an access.
+    pub access: Signal<Out, Bit>,
+    /// To the bank: word to write.
+    pub bank_data: Signal<Out, Bits<32>>,
+    /// To the bank: results must not change.
+    pub reading: Signal<Out, Bit>,
+    /// From the bank: a byte of the configuration word passes.
+    pub take_byte: Signal<In, Bit>,
+    /// From the bank: the byte that passes.
+    pub passing_byte: Signal<In, Bits<8>>,
+    /// From the bank: the byte that was read.
+    pub read_byte: Signal<In, Bits<8>>,
+    /// From the bank: the access has ended.
+    pub done: Signal<In, Bit>,
+    data: Reg<Bits<32>>,
+    byte_lane: Reg<Bits<2>>,
+    access_now: Reg<Bit>,
+    end_now: Reg<Bit>,
+    whole: Reg<Bit>,
+    settle: Reg<Bits<2>>,
+    holding: Reg<Bit>,
+    last_read: Reg<Bits<7>>,
+    quiet_us: Reg<Bits<4>>,
+    is_result: Signal<Local, Bit>,
+    is_config: Signal<Local, Bit>,
+    goes_on: Signal<Local, Bit>,
+}
+
+impl Logic for WordAccess {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, data, byte_lane, access_now, end_now, whole, settle, holding);
+        dff_setup!(self, clock, last_read, quiet_us);
+        self.data.reset.next = self.reset.val();
+        self.byte_lane.reset.next = self.reset.val();
+        self.access_now.reset.next = self.reset.val();
+        self.end_now.reset.next = self.reset.val();
+        self.whole.reset.next = self.reset.val();
+        self.settle.reset.next = self.reset.val();
+        self.holding.reset.next = self.reset.val();
+        self.last_read.reset.next = self.reset.val();
+        self.quiet_us.reset.next = self.reset.val();
+
+        self.is_result.next = !self.write.val() & (self.word_address.val().get_bits::<4>(7) == 3);
+        self.is_config.next =
+            (self.word_address.val().get_bits::<4>(7) == 2) & !self.word_address.val().get_bit(2);
+        self.goes_on.next = self.holding.q.val()
+            & (self.word_address.val().get_bits::<7>(0) > self.last_read.q.val());
+
+        // A moment: `reading` falls for two cycles, in which the held words take over what is there.
+        self.access_now.d.next = false;
+        self.end_now.d.next = false;
+        if self.settle.q.val().any() {
+            self.settle.d.next = self.settle.q.val() - 1;
+        }
+        if self.settle.q.val() == 2 {
+            self.holding.d.next = true;
+        }
+        if self.settle.q.val() == 1 {
+            self.access_now.d.next = true;
+        }
+        if self.tick_us.val() {
+            self.quiet_us.d.next = self.quiet_us.q.val() + 1;
+        }
+        if self.keep_moment.val() {
+            self.quiet_us.d.next = 0.into();
+        }
+        if self.quiet_us.q.val().get_bit(3) | self.end_moment.val() {
+            self.holding.d.next = false;
+            self.quiet_us.d.next = 0.into();
+        }
+
+        // Written words are taken at once, configuration words pass in one access; what else is read comes byte by byte.
+        if self.request.val() {
+            // What is absent reads as 0.
+            self.data.d.next = 0.into();
+            if self.write.val() {
+                self.data.d.next = self.write_data.val();
+            }
+            self.byte_lane.d.next = 0.into();
+            self.whole.d.next = self.write.val() | self.is_config.val();
+            self.access_now.d.next = true;
+            if self.is_result.val() {
+                self.quiet_us.d.next = 0.into();
+                self.last_read.d.next = self.word_address.val().get_bits::<7>(0);
+                self.holding.d.next = self.goes_on.val();
+                if !self.goes_on.val() {
+                    self.settle.d.next = 3.into();
+                    self.access_now.d.next = false;
+                }
+            }
+        }
+        if self.take_byte.val() {
+            self.data.d.next =
+                (self.data.q.val() << 8) | bit_cast::<32, 8>(self.passing_byte.val());
+        }
+        if self.done.val() {
+            if self.whole.q.val() {
+                self.end_now.d.next = true;
+            } else {
+                self.data.d.next =
+                    (self.data.q.val() << 8) | bit_cast::<32, 8>(self.read_byte.val());
+                self.byte_lane.d.next = self.byte_lane.q.val() + 1;
+                self.access_now.d.next = !self.byte_lane.q.val().all();
+                self.end_now.d.next = self.byte_lane.q.val().all();
+            }
+        }
+
+        self.finished.next = self.end_now.q.val();
+        self.read_data.next = self.data.q.val();
+        self.lane.next = self.byte_lane.q.val();
+        self.access.next = self.access_now.q.val();
+        self.bank_data.next = self.data.q.val();
+        self.reading.next = self.holding.q.val();
+    }
+}

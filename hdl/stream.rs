@@ -1,0 +1,355 @@
+//! Stream: the results of each trigger as one set in a buffer, for a host that wants all of them.
+//!
+//! ```text
+//! trigger, time stamp, count --> set under way --(all channels have their result, or the next trigger)--> closed set
+//!                                                                                                            |
+//! SetChannel 0, 1, ... (owes, replaced; byte of the closed set) ------------------------------- byte --> FrameBuffer
+//!                                                                                                            |
+//! host's registers: control, state, data, clear <---- bytes ------------------------------------------------+----> push
+//! ```
+//!
+//! What a set and a frame look like is told in `docs/stream.md`. A set that is closed is taken whole in one cycle, then written in its own
+//! time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
+
+use crate::reg::Reg;
+use buffer::FrameBuffer;
+use rust_hdl::prelude::*;
+
+pub mod buffer;
+pub mod channel;
+
+/// Collector, buffer and their registers.
+#[derive(LogicBlock)]
+pub struct Stream {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe to all channels.
+    pub trigger: Signal<In, Bit>,
+    /// Triggers since reset; counts a cycle after `trigger`.
+    pub trigger_count: Signal<In, Bits<32>>,
+    /// Free-running time in system clock cycles.
+    pub timestamp: Signal<In, Bits<32>>,
+    /// A channel that took the trigger has no result yet.
+    pub owes: Signal<In, Bit>,
+    /// The result of a channel has been replaced by another one.
+    pub replaced: Signal<In, Bit>,
+    /// Strobe: the channels keep what belongs to the set.
+    pub take_set: Signal<Out, Bit>,
+    /// Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
+    pub block: Signal<Out, Bits<4>>,
+    /// Which of them.
+    pub byte_at: Signal<Out, Bits<3>>,
+    /// That byte of the channels.
+    pub channel_byte: Signal<In, Bits<8>>,
+    /// The word that is accessed is one of the stream's.
+    pub selected: Signal<In, Bit>,
+    /// Which of its four words: control, state, data, clear.
+    pub word: Signal<In, Bits<2>>,
+    /// Byte of the word, 0 = most significant.
+    pub lane: Signal<In, Bits<2>>,
+    /// One-cycle strobe: begin an access.
+    pub access: Signal<In, Bit>,
+    /// With `access`: write a word; low = read a byte.
+    pub write: Signal<In, Bit>,
+    /// Low bits of the word to write.
+    pub write_data: Signal<In, Bits<2>>,
+    /// Byte that was read, from the cycle after `access` on; 0 if the word is not one of the stream's.
+    pub read_byte: Signal<Out, Bits<8>>,
+    /// Frames are to be pushed.
+    pub push: Signal<Out, Bit>,
+    /// A frame is being pushed: its first byte has been taken, its last one has not.
+    pub in_frame: Signal<Out, Bit>,
+    /// `push_byte` is the next byte to push.
+    pub push_valid: Signal<Out, Bit>,
+    /// The next byte.
+    pub push_byte: Signal<Out, Bits<8>>,
+    /// Strobe, with `push_valid` only: the byte is taken.
+    pub push_take: Signal<In, Bit>,
+    buffer: FrameBuffer,
+    collect: Reg<Bit>,
+    push_on: Reg<Bit>,
+    open: Reg<Bit>,
+    first: Reg<Bit>,
+    spoilt: Reg<Bit>,
+    sequence: Reg<Bits<16>>,
+    moment: Reg<Bits<32>>,
+    sequence_taken: Reg<Bits<16>>,
+    moment_taken: Reg<Bits<32>>,
+    lost_taken: Reg<Bits<8>>,
+    lost_before: Reg<Bits<8>>,
+    lost_all: Reg<Bits<16>>,
+    head_byte: Reg<Bits<8>>,
+    state_held: Reg<Bits<24>>,
+    byte_read: Reg<Bits<8>>,
+    flush: Reg<Bit>,
+    mid_frame: Reg<Bit>,
+    pushing: Reg<Bit>,
+    wanted: Signal<Local, Bit>,
+    good: Signal<Local, Bit>,
+    take_now: Signal<Local, Bit>,
+    lost_now: Signal<Local, Bit>,
+    reads: Signal<Local, Bit>,
+    writes: Signal<Local, Bit>,
+    bus_may: Signal<Local, Bit>,
+    bus_take: Signal<Local, Bit>,
+    skip: Signal<Local, Bit>,
+    take: Signal<Local, Bit>,
+    more: Signal<Local, Bit>,
+    clear: Signal<Local, Bit>,
+    head: Constant<Bits<8>>,
+}
+
+/// Type of a set of positions, in the upper half of its first byte.
+pub const SET_TYPE: u64 = 1;
+
+impl Stream {
+    /// A stream with a buffer of `bytes` bytes (one of [`buffer::BUFFER_BYTES`]) for `channels` channels, with `collect` and `push` as
+    /// they are after reset.
+    pub fn new(bytes: u64, channels: usize, collect: bool, push: bool) -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            trigger: Default::default(),
+            trigger_count: Default::default(),
+            timestamp: Default::default(),
+            owes: Default::default(),
+            replaced: Default::default(),
+            take_set: Default::default(),
+            block: Default::default(),
+            byte_at: Default::default(),
+            channel_byte: Default::default(),
+            selected: Default::default(),
+            word: Default::default(),
+            lane: Default::default(),
+            access: Default::default(),
+            write: Default::default(),
+            write_data: Default::default(),
+            read_byte: Default::default(),
+            push: Default::default(),
+            in_frame: Default::default(),
+            push_valid: Default::default(),
+            push_byte: Default::default(),
+            push_take: Default::default(),
+            buffer: FrameBuffer::new(bytes, channels),
+            collect: Reg::new(collect),
+            push_on: Reg::new(push),
+            open: Default::default(),
+            first: Default::default(),
+            spoilt: Default::default(),
+            sequence: Default::default(),
+            moment: Default::default(),
+            sequence_taken: Default::default(),
+            moment_taken: Default::default(),
+            lost_taken: Default::default(),
+            lost_before: Default::default(),
+            lost_all: Default::default(),
+            head_byte: Default::default(),
+            state_held: Default::default(),
+            byte_read: Default::default(),
+            flush: Default::default(),
+            mid_frame: Default::default(),
+            pushing: Default::default(),
+            wanted: Default::default(),
+            good: Default::default(),
+            take_now: Default::default(),
+            lost_now: Default::default(),
+            reads: Default::default(),
+            writes: Default::default(),
+            bus_may: Default::default(),
+            bus_take: Default::default(),
+            skip: Default::default(),
+            take: Default::default(),
+            more: Default::default(),
+            clear: Default::default(),
+            head: Constant::new((SET_TYPE << 4 | channels as u64).into()),
+        }
+    }
+}
+
+impl Logic for Stream {
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, buffer);
+        self.buffer.reset.next = self.reset.val();
+        dff_setup!(self, clock, collect, push_on, open, first, spoilt, sequence, moment);
+        dff_setup!(
+            self,
+            clock,
+            sequence_taken,
+            moment_taken,
+            lost_taken,
+            lost_before,
+            lost_all
+        );
+        dff_setup!(self, clock, head_byte, state_held, byte_read, flush, mid_frame, pushing);
+        self.collect.reset.next = self.reset.val();
+        self.push_on.reset.next = self.reset.val();
+        self.open.reset.next = self.reset.val();
+        self.first.reset.next = self.reset.val();
+        self.spoilt.reset.next = self.trigger.val();
+        self.sequence.reset.next = self.reset.val();
+        self.moment.reset.next = self.reset.val();
+        self.sequence_taken.reset.next = self.reset.val();
+        self.moment_taken.reset.next = self.reset.val();
+        self.lost_taken.reset.next = self.reset.val();
+        self.state_held.reset.next = self.reset.val();
+        self.flush.reset.next = self.reset.val();
+        self.mid_frame.reset.next = self.reset.val();
+        self.pushing.reset.next = self.reset.val();
+
+        // The set under way. The number of its trigger is there a cycle after the trigger.
+        self.first.d.next = self.trigger.val();
+        if self.trigger.val() {
+            self.moment.d.next = self.timestamp.val();
+        }
+        if self.first.q.val() {
+            self.sequence.d.next = self.trigger_count.val().get_bits::<16>(0);
+        }
+        if self.replaced.val() {
+            self.spoilt.d.next = true;
+        }
+        self.wanted.next =
+            self.open.q.val() & !self.first.q.val() & (!self.owes.val() | self.trigger.val());
+        self.good.next = self.buffer.room.val() & !self.spoilt.q.val() & !self.replaced.val();
+        self.take_now.next = self.wanted.val() & self.buffer.idle.val() & self.good.val();
+        self.lost_now.next = (self.wanted.val() & self.buffer.idle.val() & !self.good.val())
+            | (self.open.q.val()
+                & self.trigger.val()
+                & (self.first.q.val() | !self.buffer.idle.val()));
+        if self.take_now.val() | self.lost_now.val() {
+            self.open.d.next = false;
+        }
+        if self.trigger.val() & self.collect.q.val() {
+            self.open.d.next = true;
+        }
+        self.take_set.next = self.take_now.val();
+        self.buffer.start.next = self.take_now.val();
+        if self.take_now.val() {
+            self.sequence_taken.d.next = self.sequence.q.val();
+            self.moment_taken.d.next = self.moment.q.val();
+            self.lost_taken.d.next = self.lost_before.q.val();
+        }
+        self.lost_before.reset.next = self.reset.val() | self.clear.val() | self.take_now.val();
+        self.lost_all.reset.next = self.reset.val() | self.clear.val();
+        if self.lost_now.val() & !self.lost_before.q.val().all() {
+            self.lost_before.d.next = self.lost_before.q.val() + 1;
+        }
+        if self.lost_now.val() & !self.lost_all.q.val().all() {
+            self.lost_all.d.next = self.lost_all.q.val() + 1;
+        }
+
+        // Its bytes.
+        self.block.next = self.buffer.block.val();
+        self.byte_at.next = self.buffer.byte_at.val();
+        self.head_byte.reset.next = self.buffer.block.val().any();
+        match self.buffer.byte_at.val().index() {
+            0 => {
+                self.head_byte.d.next = self.head.val();
+            }
+            1 => {
+                self.head_byte.d.next = self.lost_taken.q.val();
+            }
+            2 => {
+                self.head_byte.d.next = self.sequence_taken.q.val().get_bits::<8>(0);
+            }
+            3 => {
+                self.head_byte.d.next = self.sequence_taken.q.val().get_bits::<8>(8);
+            }
+            4 => {
+                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(0);
+            }
+            5 => {
+                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(8);
+            }
+            6 => {
+                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(16);
+            }
+            _ => {
+                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(24);
+            }
+        }
+        self.buffer.set_byte.next = self.head_byte.q.val() | self.channel_byte.val();
+
+        // The host's words.
+        self.reads.next = self.access.val() & self.selected.val() & !self.write.val();
+        self.writes.next = self.access.val() & self.selected.val() & self.write.val();
+        self.clear.next =
+            self.writes.val() & (self.word.val() == 3) & self.write_data.val().get_bit(0);
+        if self.writes.val() & !self.word.val().any() {
+            self.collect.d.next = self.write_data.val().get_bit(0);
+            self.push_on.d.next = self.write_data.val().get_bit(1);
+        }
+        self.bus_may.next = self.buffer.ready.val()
+            & !self.push_on.q.val()
+            & !self.pushing.q.val()
+            & !self.flush.q.val();
+        self.bus_take.next = self.reads.val() & (self.word.val() == 2) & self.bus_may.val();
+        // The state is that of the moment when its first byte was read.
+        if self.reads.val() & !self.lane.val().any() {
+            self.state_held.d.next = bit_cast::<24, 16>(self.buffer.waiting_bytes.val())
+                | (bit_cast::<24, 8>(self.lost_all.q.val().get_bits::<8>(0)) << 16);
+        }
+        self.byte_read.reset.next = self.access.val() & !self.reads.val();
+        if self.reads.val() {
+            self.byte_read.d.next = 0.into();
+            match self.word.val().index() {
+                0 => {
+                    if self.lane.val().all() {
+                        self.byte_read.d.next = bit_cast::<8, 1>(self.collect.q.val().into())
+                            | (bit_cast::<8, 1>(self.push_on.q.val().into()) << 1);
+                    }
+                }
+                1 => match self.lane.val().index() {
+                    0 => {
+                        self.byte_read.d.next = self.lost_all.q.val().get_bits::<8>(8);
+                    }
+                    1 => {
+                        self.byte_read.d.next = self.state_held.q.val().get_bits::<8>(16);
+                    }
+                    2 => {
+                        self.byte_read.d.next = self.state_held.q.val().get_bits::<8>(8);
+                    }
+                    _ => {
+                        self.byte_read.d.next = self.state_held.q.val().get_bits::<8>(0);
+                    }
+                },
+                2 => {
+                    if self.bus_may.val() {
+                        self.byte_read.d.next = self.buffer.data.val();
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.read_byte.next = self.byte_read.q.val();
+
+        // The other end. A frame goes one way from its first byte to its last.
+        self.push.next = self.push_on.q.val();
+        self.in_frame.next = self.pushing.q.val();
+        self.push_byte.next = self.buffer.data.val();
+        self.push_valid.next = self.buffer.ready.val()
+            & (self.pushing.q.val()
+                | (self.push_on.q.val() & !self.mid_frame.q.val() & !self.flush.q.val()));
+        // What a clear throws away, or is left of a frame that the host read half of.
+        self.skip.next = self.buffer.ready.val()
+            & !self.pushing.q.val()
+            & (self.flush.q.val() | (self.push_on.q.val() & self.mid_frame.q.val()));
+        self.take.next = self.bus_take.val() | self.push_take.val() | self.skip.val();
+        self.buffer.take.next = self.take.val();
+        self.more.next = self.buffer.data.val().any();
+        if self.take.val() {
+            self.mid_frame.d.next = self.more.val();
+        }
+        if self.push_take.val() {
+            self.pushing.d.next = self.more.val();
+        }
+        if !self.pushing.q.val() & !self.buffer.waiting_bytes.val().any() {
+            self.flush.d.next = false;
+        }
+        if self.clear.val() {
+            self.flush.d.next = true;
+        }
+    }
+}

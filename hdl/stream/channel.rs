@@ -1,0 +1,171 @@
+//! One channel's part of a sample set: which trigger it took, and its result at the moment when the set is closed.
+//!
+//! ```text
+//! trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
+//!                     ^   |                 ^
+//! result strobe ------+---+-- owes nothing: the set may be closed
+//! ```
+//!
+//! Everything is taken in one cycle, so nothing that comes later can get into the set.
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// A channel's place in a set.
+#[derive(LogicBlock)]
+pub struct SetChannel {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe: the trigger with which a set begins.
+    pub trigger: Signal<In, Bit>,
+    /// The channel does not take a trigger.
+    pub busy: Signal<In, Bit>,
+    /// Strobe: a new result is there.
+    pub result_strobe: Signal<In, Bit>,
+    /// Last good position.
+    pub position: Signal<In, Bits<48>>,
+    /// There is a good position.
+    pub position_valid: Signal<In, Bit>,
+    /// The last result brought the position.
+    pub fresh: Signal<In, Bit>,
+    /// Primary cause of the last result.
+    pub cause: Signal<In, Bits<5>>,
+    /// Raw flags of the last result.
+    pub flags: Signal<In, Bits<19>>,
+    /// Strobe: the set is closed, its content is what is there now.
+    pub take: Signal<In, Bit>,
+    /// Which 8 bytes of the set are asked for: channel n has number n + 1.
+    pub block: Signal<In, Bits<4>>,
+    /// Which of them: 0 = least significant byte of the position, 6 and 7 = status.
+    pub byte_at: Signal<In, Bits<3>>,
+    /// The byte, 1 cycle later; 0 if another channel's is asked for.
+    pub set_byte: Signal<Out, Bits<8>>,
+    /// The channel took the trigger, and its result is not there yet.
+    pub owes: Signal<Out, Bit>,
+    /// The result of the trigger has been replaced by another one (continuous clock).
+    pub replaced: Signal<Out, Bit>,
+    took: Reg<Bit>,
+    waiting: Reg<Bit>,
+    position_taken: Reg<Bits<48>>,
+    status_taken: Reg<Bits<16>>,
+    took_taken: Reg<Bit>,
+    missing_taken: Reg<Bit>,
+    byte_now: Reg<Bits<8>>,
+    open: Signal<Local, Bit>,
+    status: Signal<Local, Bits<16>>,
+    number: Constant<Bits<4>>,
+}
+
+impl SetChannel {
+    /// The place of channel `channel`.
+    pub fn new(channel: usize) -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            trigger: Default::default(),
+            busy: Default::default(),
+            result_strobe: Default::default(),
+            position: Default::default(),
+            position_valid: Default::default(),
+            fresh: Default::default(),
+            cause: Default::default(),
+            flags: Default::default(),
+            take: Default::default(),
+            block: Default::default(),
+            byte_at: Default::default(),
+            set_byte: Default::default(),
+            owes: Default::default(),
+            replaced: Default::default(),
+            took: Default::default(),
+            waiting: Default::default(),
+            position_taken: Default::default(),
+            status_taken: Default::default(),
+            took_taken: Default::default(),
+            missing_taken: Default::default(),
+            byte_now: Default::default(),
+            open: Default::default(),
+            status: Default::default(),
+            number: Constant::new((channel as u64 + 1).into()),
+        }
+    }
+}
+
+impl Logic for SetChannel {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self,
+            clock,
+            took,
+            waiting,
+            position_taken,
+            status_taken,
+            took_taken,
+            missing_taken,
+            byte_now
+        );
+        self.took.reset.next = self.reset.val();
+        self.waiting.reset.next = self.reset.val();
+        self.took_taken.reset.next = self.reset.val();
+        self.missing_taken.reset.next = self.reset.val();
+
+        if self.result_strobe.val() {
+            self.waiting.d.next = false;
+        }
+        if self.trigger.val() {
+            self.took.d.next = !self.busy.val();
+            self.waiting.d.next = !self.busy.val();
+        }
+        self.open.next = self.waiting.q.val() & !self.result_strobe.val();
+        self.owes.next = self.open.val();
+        self.replaced.next = self.took.q.val() & !self.waiting.q.val() & self.result_strobe.val();
+
+        // A result of another trigger never gets in: what the channel does not have is 0.
+        self.position_taken.reset.next = self.take.val() & (!self.took.q.val() | self.open.val());
+        self.status_taken.reset.next = self.take.val() & (!self.took.q.val() | self.open.val());
+        self.status.next = bit_cast::<16, 5>(self.cause.val())
+            | (bit_cast::<16, 1>(self.position_valid.val().into()) << 6)
+            | (bit_cast::<16, 1>(self.fresh.val().into()) << 7)
+            | (bit_cast::<16, 7>(self.flags.val().get_bits::<7>(12)) << 8);
+        if self.take.val() {
+            self.position_taken.d.next = self.position.val();
+            self.status_taken.d.next = self.status.val();
+            self.took_taken.d.next = self.took.q.val();
+            self.missing_taken.d.next = self.open.val();
+        }
+
+        // A reset by deselection alone takes no logic.
+        self.byte_now.reset.next = self.block.val() != self.number.val();
+        match self.byte_at.val().index() {
+            0 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(0);
+            }
+            1 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(8);
+            }
+            2 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(16);
+            }
+            3 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(24);
+            }
+            4 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(32);
+            }
+            5 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(40);
+            }
+            6 => {
+                self.byte_now.d.next = self.status_taken.q.val().get_bits::<8>(0)
+                    | (bit_cast::<8, 1>(self.took_taken.q.val().into()) << 5);
+            }
+            _ => {
+                self.byte_now.d.next = self.status_taken.q.val().get_bits::<8>(8)
+                    | (bit_cast::<8, 1>(self.missing_taken.q.val().into()) << 7);
+            }
+        }
+        self.set_byte.next = self.byte_now.q.val();
+    }
+}

@@ -1,0 +1,79 @@
+//! `host.bus` in a configuration: what is emitted, and what is refused.
+
+use super::{text, WORD_BUSES};
+use endat_gen::config::{load_preset, parse, DEFAULT_PRESET};
+use endat_hdl::bus::HostBus;
+
+#[test]
+fn a_card_with_a_bus_has_no_board_top_and_no_test_bench() {
+    for bus in WORD_BUSES {
+        let project = parse("card.toml", &text(bus, "")).unwrap();
+        let files = endat_gen::emit(&project).unwrap();
+        let has = |end: &str| files.iter().any(|f| f.path.ends_with(end));
+        assert!(has("_card.v") && has("_registers.h") && has(".svd") && has("README.md"));
+        assert!(!has("_top.v") && !has(".ucf") && !has("_tb.v"), "{bus:?}");
+        assert!(!has("uart_bridge.v") && has("_word_access.v"), "{bus:?}");
+        let readme = files.iter().find(|f| f.path == "README.md").unwrap();
+        assert!(
+            readme.text.contains(&format!("`{}`", bus.name()))
+                && readme.text.contains("no board top")
+        );
+    }
+}
+
+#[test]
+fn uart_is_what_a_card_has_if_nothing_is_asked() {
+    let preset = load_preset(DEFAULT_PRESET).unwrap();
+    assert_eq!(preset.bus, HostBus::Uart);
+    let asked = endat_gen::config::preset(DEFAULT_PRESET)
+        .unwrap()
+        .to_owned()
+        + "\n[host]\nbus = \"uart\"\n";
+    assert_eq!(parse("card.toml", &asked).unwrap().hash, preset.hash);
+}
+
+#[test]
+fn what_a_bus_has_no_use_for_is_refused_with_the_reason() {
+    for (bus, more, message) in [
+        (
+            HostBus::Apb,
+            "[link]\nbaud = 9600\n",
+            "[link]: host.bus = \"apb\" has no UART",
+        ),
+        (
+            HostBus::Wishbone,
+            "[board]\nname = \"papilio_pro\"\n",
+            "[board]: host.bus = \"wishbone\" stays inside the chip",
+        ),
+        (
+            HostBus::AxiLite,
+            "[pins]\ntrigger_i = \"A0\"\n",
+            "[pins]: host.bus = \"axi_lite\" stays inside the chip",
+        ),
+    ] {
+        let all = parse("card.toml", &text(bus, more)).unwrap_err();
+        assert_eq!(all.len(), 1, "{all:?}");
+        let found = all[0].to_string();
+        assert!(
+            found.contains(message) && found.contains("remove the table"),
+            "{found}"
+        );
+    }
+    let wrong = text(HostBus::Apb, "").replace("\"apb\"", "\"ahb\"");
+    let all = parse("card.toml", &wrong).unwrap_err();
+    assert!(
+        all[0]
+            .to_string()
+            .contains("host.bus = \"ahb\": unknown bus; use uart, "),
+        "{all:?}"
+    );
+}
+
+#[test]
+fn another_bus_is_another_hash() {
+    let hash = |bus| parse("card.toml", &text(bus, "")).unwrap().hash;
+    let mut hashes: Vec<String> = WORD_BUSES.into_iter().map(hash).collect();
+    hashes.sort();
+    hashes.dedup();
+    assert_eq!(hashes.len(), WORD_BUSES.len());
+}

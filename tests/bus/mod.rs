@@ -1,0 +1,234 @@
+//! The card behind a bus: masters of each bus on a bench with encoders, the same claims for every front.
+
+mod claims;
+mod cocotb;
+mod configuration;
+mod handshake;
+mod three_ways;
+
+use endat_gen::config::parse;
+use endat_hdl::bus::HostBus;
+use endat_hdl::config::CardConfig;
+use endat_sim::bench::{Bench, Link, PinNames};
+use endat_sim::encoder::EncoderConfig;
+use endat_sim::engine::Compiled;
+use endat_sim::line::LineConfig;
+use endat_sim::rng::Rng;
+use endat_sim::US;
+
+/// Every front with words of 32 bits.
+pub const WORD_BUSES: [HostBus; 3] = [HostBus::Apb, HostBus::Wishbone, HostBus::AxiLite];
+
+/// A configuration of two channels with a bus.
+pub fn text(bus: HostBus, more: &str) -> String {
+    let name = bus.name();
+    format!(
+        "name = \"{name}_card\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 3_125_000\n\
+         [[channel]]\nposition_bits = 29\ncommand = \"111000\"\n[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n\
+         [trigger]\nsample_hz = 10_000\nsources = [\"register\"]\n[host]\nbus = \"{name}\"\n{more}"
+    )
+}
+
+/// An access that a master makes, and what it gives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// The word that was read.
+    pub word: u32,
+    /// The slave says that it did nothing.
+    pub refused: bool,
+    /// Cycles from the first to the last of the access.
+    pub cycles: u64,
+}
+
+/// A master at a card.
+pub struct Master {
+    /// Its bus.
+    pub bus: HostBus,
+    /// The card with an encoder on each channel.
+    pub bench: Bench<Compiled>,
+    /// The card.
+    pub config: CardConfig,
+    /// What the master has no reason to do in one way.
+    pub rng: Rng,
+}
+
+impl Master {
+    /// A card with this bus, reset, its encoders at the end of `cable_m` metres.
+    pub fn new(bus: HostBus, more: &str) -> Self {
+        let project = parse("card.toml", &text(bus, more)).unwrap();
+        let design = endat_gen::design(&project).unwrap();
+        let engine = Compiled::new(&design).unwrap();
+        let link = |n: usize, bits| {
+            let mut encoder = EncoderConfig::endat22(bits).seed(n as u64);
+            encoder.tm = 10 * US..=12 * US;
+            let port = PinNames::card(n);
+            (port, Link::new(LineConfig::cable(20.0), encoder))
+        };
+        let links = vec![link(0, 29), link(1, 25)];
+        let mut bench = Bench::new(engine, project.card.system_hz, links);
+        bench.reset();
+        Self {
+            bus,
+            bench,
+            config: project.card,
+            rng: Rng::new(7),
+        }
+    }
+
+    fn tick(&mut self) {
+        self.bench.run_cycles(1);
+    }
+
+    /// Sets an input of the bus.
+    pub fn set(&mut self, name: &str, value: u32) {
+        self.bench.set(name, value.into());
+    }
+
+    fn high(&mut self, name: &str) -> bool {
+        self.bench.get(name) != 0
+    }
+
+    /// Waits for one of these outputs, and ends the cycle in which it is high.
+    ///
+    /// # Panics
+    /// After 300 cycles: the slave hangs.
+    fn wait_for(&mut self, names: &[&str]) -> u64 {
+        for cycles in 1..300 {
+            if names.iter().any(|name| self.high(name)) {
+                return cycles;
+            }
+            self.tick();
+        }
+        panic!("{}: no answer", self.bus.name());
+    }
+
+    /// Reads a word, or writes one; leaves the bus idle.
+    pub fn access(&mut self, word_address: u16, write: Option<u32>) -> Answer {
+        self.transfer(u32::from(word_address) << 2, write, 15)
+    }
+
+    /// The same with a byte address and byte selects.
+    pub fn transfer(&mut self, address: u32, write: Option<u32>, selects: u32) -> Answer {
+        match self.bus {
+            HostBus::Apb => self.apb(address, write),
+            HostBus::Wishbone => self.wishbone(address, write, selects),
+            HostBus::AxiLite => self.axi(address, write, selects),
+            _ => unreachable!("no bus with words"),
+        }
+    }
+
+    /// Reads a word.
+    pub fn read(&mut self, word_address: u16) -> u32 {
+        self.access(word_address, None).word
+    }
+
+    /// Writes a word.
+    pub fn write(&mut self, word_address: u16, value: u32) {
+        assert!(!self.access(word_address, Some(value)).refused);
+    }
+
+    fn apb(&mut self, address: u32, write: Option<u32>) -> Answer {
+        self.set("s_apb_psel", 1);
+        self.set("s_apb_penable", 0);
+        self.set("s_apb_paddr", address);
+        self.set("s_apb_pwrite", write.is_some().into());
+        self.set("s_apb_pwdata", write.unwrap_or(0xdead_beef));
+        assert!(!self.high("s_apb_pready"), "ready before the transfer");
+        self.tick();
+        self.set("s_apb_penable", 1);
+        let cycles = 1 + self.wait_for(&["s_apb_pready"]);
+        let word = self.bench.get("s_apb_prdata") as u32;
+        let refused = self.high("s_apb_pslverr");
+        self.tick();
+        self.set("s_apb_psel", 0);
+        self.set("s_apb_penable", 0);
+        Answer {
+            word,
+            refused,
+            cycles,
+        }
+    }
+
+    fn wishbone(&mut self, address: u32, write: Option<u32>, selects: u32) -> Answer {
+        self.set("wb_cyc_i", 1);
+        self.set("wb_stb_i", 1);
+        self.set("wb_adr_i", address >> 2);
+        self.set("wb_we_i", write.is_some().into());
+        self.set("wb_dat_i", write.unwrap_or(0xdead_beef));
+        self.set("wb_sel_i", selects);
+        let cycles = self.wait_for(&["wb_ack_o", "wb_err_o"]);
+        let word = self.bench.get("wb_dat_o") as u32;
+        let refused = self.high("wb_err_o");
+        self.tick();
+        self.set("wb_cyc_i", 0);
+        self.set("wb_stb_i", 0);
+        assert!(
+            !self.high("wb_ack_o") && !self.high("wb_err_o"),
+            "one cycle"
+        );
+        Answer {
+            word,
+            refused,
+            cycles,
+        }
+    }
+
+    /// Each channel comes after a pause of its own.
+    fn axi(&mut self, address: u32, write: Option<u32>, selects: u32) -> Answer {
+        let started = self.bench.cycle();
+        let mut offers: Vec<(&str, u64)> = match write {
+            Some(_) => vec![("aw", 0), ("w", 0)],
+            None => vec![("ar", 0)],
+        };
+        for (_, pause) in &mut offers {
+            *pause = self.rng.in_range(0, 6);
+        }
+        self.set("s_axi_awaddr", address);
+        self.set("s_axi_araddr", address);
+        self.set("s_axi_wdata", write.unwrap_or(0xdead_beef));
+        self.set("s_axi_wstrb", selects);
+        for cycle in 0..300 {
+            if offers.is_empty() {
+                break;
+            }
+            let mut left = vec![];
+            for (channel, pause) in &offers {
+                let is_offered = cycle >= *pause;
+                self.set(&format!("s_axi_{channel}valid"), is_offered.into());
+                if !(is_offered && self.high(&format!("s_axi_{channel}ready"))) {
+                    left.push((*channel, *pause));
+                }
+            }
+            let taken: Vec<&str> = offers.iter().map(|o| o.0).collect();
+            self.tick();
+            for channel in taken {
+                if !left.iter().any(|l| l.0 == channel) {
+                    self.set(&format!("s_axi_{channel}valid"), 0);
+                }
+            }
+            offers = left;
+        }
+        assert!(offers.is_empty(), "axi_lite: not taken: {offers:?}");
+        let (valid, ready, resp) = match write {
+            Some(_) => ("s_axi_bvalid", "s_axi_bready", "s_axi_bresp"),
+            None => ("s_axi_rvalid", "s_axi_rready", "s_axi_rresp"),
+        };
+        self.wait_for(&[valid]);
+        // The answer waits, and stands still.
+        let word = self.bench.get("s_axi_rdata") as u32;
+        for _ in 0..self.rng.in_range(0, 5) {
+            self.tick();
+            assert!(self.high(valid) && self.bench.get("s_axi_rdata") as u32 == word);
+        }
+        let refused = self.bench.get(resp) == 2;
+        self.set(ready, 1);
+        self.tick();
+        self.set(ready, 0);
+        assert!(!self.high(valid), "{valid} after it was taken");
+        Answer {
+            word,
+            refused,
+            cycles: self.bench.cycle() - started,
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Kernels, engines and emitted Verilog of each front's card agree on a random stimulus, with the bus asked all the time.
+
+use super::{text, WORD_BUSES};
+use crate::three_way::{three_way, Stimulus};
+use endat_gen::config::parse;
+use endat_hdl::bus::{apb::ApbCard, axi_lite::AxiLiteCard, wishbone::WishboneCard, HostBus};
+use endat_hdl::elaborate::Design;
+use endat_sim::engine::{Engine, KernelEngine};
+use endat_sim::kernel_engine;
+use endat_sim::rng::Rng;
+
+const CYCLES: usize = 1_200;
+
+/// The pins that every card has.
+macro_rules! with_channels {
+    ($engine:expr) => {
+        $engine
+            .input("endat_data0_i", |b| &mut b.endat_data_i[0])
+            .input("endat_data1_i", |b| &mut b.endat_data_i[1])
+            .output("endat_clk0_o", |b| &mut b.endat_clk_o[0])
+            .output("endat_clk1_o", |b| &mut b.endat_clk_o[1])
+            .output("endat_data0_o", |b| &mut b.endat_data_o[0])
+            .output("endat_data1_o", |b| &mut b.endat_data_o[1])
+            .output("endat_data0_oe", |b| &mut b.endat_data_oe[0])
+            .output("endat_data1_oe", |b| &mut b.endat_data_oe[1])
+            .output("led_channel0_o", |b| &mut b.led_channel_o[0])
+            .output("led_channel1_o", |b| &mut b.led_channel_o[1])
+    };
+}
+
+/// The card of a bus as kernels.
+fn kernels(bus: HostBus) -> (Box<dyn Engine>, Design) {
+    let project = parse("card.toml", &text(bus, "")).unwrap();
+    let design = endat_gen::design(&project).unwrap();
+    let card = &project.card;
+    fn connected<B: rust_hdl::prelude::Block>(mut block: B) -> B {
+        block.connect_all();
+        block
+    }
+    let kernel: Box<dyn Engine> = match bus {
+        HostBus::Apb => {
+            let engine: KernelEngine<ApbCard> = kernel_engine!(connected(ApbCard::new(card)); clk_i;
+                in rst_i, trigger_i, s_apb_psel, s_apb_penable, s_apb_pwrite, s_apb_paddr, s_apb_pwdata;
+                out s_apb_prdata, s_apb_pready, s_apb_pslverr, led_status_o);
+            Box::new(with_channels!(engine))
+        }
+        HostBus::Wishbone => {
+            let engine: KernelEngine<WishboneCard> = kernel_engine!(connected(WishboneCard::new(card)); clk_i;
+                in rst_i, trigger_i, wb_cyc_i, wb_stb_i, wb_we_i, wb_adr_i, wb_dat_i, wb_sel_i;
+                out wb_dat_o, wb_ack_o, wb_err_o, led_status_o);
+            Box::new(with_channels!(engine))
+        }
+        _ => {
+            let engine: KernelEngine<AxiLiteCard> = kernel_engine!(connected(AxiLiteCard::new(card)); clk_i;
+                in rst_i, trigger_i, s_axi_awaddr, s_axi_awvalid, s_axi_wdata, s_axi_wstrb, s_axi_wvalid, s_axi_bready,
+                   s_axi_araddr, s_axi_arvalid, s_axi_rready;
+                out s_axi_awready, s_axi_wready, s_axi_bresp, s_axi_bvalid, s_axi_arready, s_axi_rdata, s_axi_rresp,
+                    s_axi_rvalid, led_status_o);
+            Box::new(with_channels!(engine))
+        }
+    };
+    (kernel, design)
+}
+
+/// Requests stay for some cycles, addresses are mostly those of words that exist.
+fn stimulus(kernel: &dyn Engine) -> Stimulus {
+    let mut rng = Rng::new(3);
+    let ports: Vec<_> = kernel
+        .ports()
+        .iter()
+        .filter(|p| p.is_input)
+        .cloned()
+        .collect();
+    let addresses = [
+        0u64, 1, 5, 6, 0x100, 0x102, 0x108, 0x109, 0x180, 0x181, 0x183, 0x7ff,
+    ];
+    let mut row = vec![0u128; ports.len()];
+    let mut cycles = vec![];
+    for cycle in 0..CYCLES {
+        for (value, port) in row.iter_mut().zip(&ports) {
+            let name = port.name.as_str();
+            let stays = match name {
+                "rst_i" | "trigger_i" => 400,
+                _ if name.contains("ready") => 2,
+                _ if name.contains("data0_i") || name.contains("data1_i") => 60,
+                _ => 30,
+            };
+            if rng.in_range(1, stays) != 1 {
+                continue;
+            }
+            let shift = if port.width_bits == 13 { 2 } else { 0 };
+            *value = match name {
+                "rst_i" => 0,
+                _ if name.contains("adr") || name.contains("addr") => {
+                    u128::from(addresses[rng.in_range(0, 11) as usize] << shift)
+                }
+                "wb_sel_i" | "s_axi_wstrb" => 15 - u128::from(rng.in_range(0, 9) / 9),
+                // Asked more often than not.
+                _ if port.width_bits == 1 && !name.starts_with("endat") => {
+                    (rng.in_range(0, 3) > 0).into()
+                }
+                _ => u128::from(rng.next_u64()) & ((1 << port.width_bits) - 1),
+            };
+        }
+        let reset = ports.iter().position(|p| p.name == "rst_i").unwrap();
+        row[reset] = (cycle < 2 || cycle == 700).into();
+        cycles.push(row.clone());
+    }
+    Stimulus {
+        inputs: ports.into_iter().map(|p| p.name).collect(),
+        cycles,
+        middle: vec![],
+    }
+}
+
+#[test]
+fn every_front_agrees() {
+    for bus in WORD_BUSES {
+        let (mut kernel, design) = kernels(bus);
+        let stimulus = stimulus(kernel.as_ref());
+        let seen = three_way(
+            &format!("{}_card", bus.name()),
+            kernel.as_mut(),
+            &design,
+            &stimulus,
+        )
+        .unwrap();
+        let answers = match bus {
+            HostBus::Apb => seen.output("s_apb_pready"),
+            HostBus::Wishbone => seen.output("wb_ack_o"),
+            _ => seen.output("s_axi_rvalid"),
+        };
+        let answers = answers.windows(2).filter(|w| w[0] < w[1]).count();
+        assert!(answers > 5, "{bus:?}: {answers} answers");
+    }
+}

@@ -1,0 +1,60 @@
+"""PandABlocks' client: finds blocks and fields, and records HDF5. Arguments: the program, a folder."""
+
+import asyncio
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import numpy as np
+from pandablocks.asyncio import AsyncioClient
+from pandablocks.commands import Get, GetBlockInfo, GetFieldInfo, Identify
+
+SAMPLES = 400
+RATE_HZ = 10_000
+CHANNELS = 2
+
+
+async def introspect():
+    async with AsyncioClient("127.0.0.1") as client:
+        assert (await client.send(Get("*ECHO hello"))) == "hello"
+        await client.send(Identify())
+        blocks = await client.send(GetBlockInfo())
+        assert blocks["INENC"].number == CHANNELS, blocks
+        fields = await client.send(GetFieldInfo("INENC"))
+        assert fields["VAL"].type == "pos_out", fields
+
+
+def main(program, folder):
+    card = ["--port", "virtual:s6_two_channel_service"]
+    server = subprocess.Popen(
+        [program, "serve", *card, "--samples", str(SAMPLES)], stdout=subprocess.PIPE, text=True
+    )
+    try:
+        for expected in ("control 127.0.0.1:8888", "data 127.0.0.1:8889"):
+            line = server.stdout.readline().strip()
+            assert line == expected, line
+        asyncio.run(introspect())
+        scheme = str(Path(folder) / "run-%d.h5")
+        subprocess.run(
+            ["pandablocks", "hdf", "127.0.0.1", scheme, "--num=2", "--arm"], check=True, timeout=300
+        )
+    finally:
+        server.terminate()
+        server.wait()
+    for number in (1, 2):
+        with h5py.File(scheme % number) as file:
+            trigger = np.array(file["TRIGGER.COUNT.Value"])
+            time = np.array(file["PCAP.TS_TRIG.Value"])
+            assert len(trigger) == SAMPLES, len(trigger)
+            assert (np.diff(trigger) == 1).all(), "a sample is missing"
+            assert np.allclose(np.diff(time), 1 / RATE_HZ, atol=1e-7)
+            for channel in range(1, CHANNELS + 1):
+                angle = np.array(file[f"INENC{channel}.VAL.Value"])
+                assert (np.array(file[f"INENC{channel}.FRESH.Value"]) == 1).all()
+                # Shafts turn slowly, and always on.
+                assert (np.diff(angle) > 0).all() and 0 < angle[-1] - angle[0] < 360
+    print("PANDA GOOD")
+
+
+main(*sys.argv[1:])

@@ -1,0 +1,252 @@
+//! What integrators take: each file, used by the program that it is for.
+
+use crate::tools::{self, require, require_python, run};
+use endat_gen::config::{load_preset, Project};
+use endat_gen::{cli, emit};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Writes all files of a project into an empty folder.
+fn emitted(project: &Project, name: &str) -> PathBuf {
+    let folder = tools::folder(name);
+    for artifact in emit(project).unwrap() {
+        fs::write(folder.join(&artifact.path), &artifact.text).unwrap();
+    }
+    folder
+}
+
+fn default_card(name: &str) -> PathBuf {
+    emitted(&load_preset("s6_two_channel").unwrap(), name)
+}
+
+/// Catches a file that the list leaves out, a target that FuseSoC refuses, and lint.
+#[test]
+fn fusesoc_lints_and_simulates_the_core() {
+    let check = "FuseSoC core";
+    let has_all = ["fusesoc", "verilator", "iverilog"]
+        .iter()
+        .all(|t| require(t, check));
+    if !has_all {
+        return;
+    }
+    let folder = default_card("fusesoc");
+    for target in ["lint", "sim"] {
+        let arguments = [
+            "--cores-root",
+            ".",
+            "run",
+            &format!("--target={target}"),
+            "s6_two_channel",
+        ];
+        let (is_good, told) = run("fusesoc", &folder, &arguments);
+        assert!(is_good, "{target}: {told}");
+        assert!(target == "lint" || told.contains("PASS"), "{told}");
+    }
+    let setup = [
+        "--cores-root",
+        ".",
+        "run",
+        "--target=synth",
+        "--setup",
+        "s6_two_channel",
+    ];
+    let (is_good, told) = run("fusesoc", &folder, &setup);
+    assert!(is_good, "{told}");
+}
+
+/// Catches a port that is missing in the template, or has another width.
+#[test]
+fn the_instantiation_template_is_complete() {
+    if !require("iverilog", "instantiation template") {
+        return;
+    }
+    let folder = default_card("instance");
+    let template = fs::read_to_string(folder.join("s6_two_channel_instance.vh")).unwrap();
+    assert_eq!(template.matches("    .").count(), 16, "{template}");
+    let module = format!("module holder;\n{template}\nendmodule\n");
+    fs::write(folder.join("holder.v"), module).unwrap();
+    let sources = fs::read_dir(&folder)
+        .unwrap()
+        .filter_map(|f| f.ok()?.file_name().into_string().ok());
+    let sources: Vec<String> = sources
+        .filter(|f| f.ends_with(".v") && !f.ends_with("_tb.v") && !f.ends_with("_top.v"))
+        .collect();
+    let mut arguments = vec!["-g2005", "-tnull", "-s", "holder"];
+    arguments.extend(sources.iter().map(String::as_str));
+    let (is_good, told) = run("iverilog", &folder, &arguments);
+    assert!(is_good, "{told}");
+}
+
+/// Vivado's commands as tclsh sees them: each called with words that it knows, files that exist, ports that the card has.
+const VIVADO: &str = r#"
+proc create_project args {}
+proc add_files {option file} { if {![file exists $file]} { error "no file $file" } ; incr ::files }
+proc current_fileset {} { return sources_1 }
+proc set_property {name value object} { if {$object eq ""} { error "no object for $name" } }
+proc update_compile_order args {}
+namespace eval ipx {
+    proc package_project args { if {"-root_dir" ni $args} { error "no root" } }
+    proc current_core {} { return core }
+    proc infer_bus_interface {port kind core} { if {$port ni {clk_i rst_i}} { error "no port $port" } ; lappend ::known $port }
+    proc get_bus_interfaces {name option core} { if {$name ni $::known} { error "no interface $name" } ; return $name }
+    proc add_bus_parameter {name interface} { return $interface.$name }
+    proc create_xgui_files core {}
+    proc update_checksums core {}
+    proc save_core core { set ::saved 1 }
+}
+source s6_two_channel_vivado.tcl
+puts "files $files saved $saved"
+"#;
+
+#[test]
+fn the_vivado_script_packages_every_source() {
+    if !require("tclsh", "Vivado script") {
+        return;
+    }
+    let folder = default_card("vivado");
+    fs::write(folder.join("stub.tcl"), VIVADO).unwrap();
+    let (is_good, told) = run("tclsh", &folder, &["stub.tcl"]);
+    let is_source = |f: &fs::DirEntry| {
+        let name = f.file_name().into_string().unwrap();
+        name.ends_with(".v") && !name.ends_with("_tb.v") && !name.ends_with("_top.v")
+    };
+    let sources = fs::read_dir(&folder)
+        .unwrap()
+        .filter(|f| f.as_ref().is_ok_and(is_source))
+        .count();
+    assert!(
+        is_good && told.contains(&format!("files {sources} saved 1")),
+        "{told}"
+    );
+}
+
+#[test]
+fn litex_elaborates_the_module_and_its_verilog_fits_the_card() {
+    let check = "LiteX module";
+    if !require_python("migen", check) || !require("iverilog", check) {
+        return;
+    }
+    let folder = default_card("litex");
+    let script = "
+from migen.fhdl.verilog import convert
+from s6_two_channel_litex import S6TwoChannel, SOURCES
+card = S6TwoChannel()
+ios = {getattr(card, n) for n in vars(card) if n.endswith(('_i', '_o', '_oe'))}
+assert len(ios) == 14, len(ios)
+convert(card, ios, name='soc').write('soc.v')
+open('sources', 'w').write(' '.join(SOURCES))
+";
+    let (is_good, told) = run("python3", &folder, &["-c", script]);
+    assert!(is_good, "{told}");
+    let sources = fs::read_to_string(folder.join("sources")).unwrap();
+    let mut arguments = vec!["-g2005", "-tnull", "-s", "soc", "soc.v"];
+    arguments.extend(sources.split(' '));
+    let (is_good, told) = run("iverilog", &folder, &arguments);
+    assert!(is_good, "{told}");
+}
+
+/// The C example reads a virtual card.
+#[cfg(unix)]
+#[test]
+fn the_c_example_reads_positions() {
+    use crate::hosts::{slow_card, Served};
+    use endat_gen::virtual_card::Door;
+    if !require("gcc", "C example") {
+        return;
+    }
+    let project = slow_card();
+    let folder = emitted(&project, "c_example");
+    let flags = [
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-Wpedantic",
+        "-Wconversion",
+        "-Werror",
+        "-o",
+        "example",
+    ];
+    let (is_good, told) = run(
+        "gcc",
+        &folder,
+        &[&flags[..], &["s6_two_channel_example.c"]].concat(),
+    );
+    assert!(is_good, "{told}");
+    let card = Served::new(project, || Door::terminal().unwrap());
+    let program = folder.join("example");
+    let (is_good, told) = run(program.to_str().unwrap(), &folder, &[&card.name]);
+    assert!(is_good && told.contains("channel 1: position "), "{told}");
+    let (is_good, told) = run(program.to_str().unwrap(), &folder, &["/nowhere"]);
+    assert!(!is_good && told.contains("/nowhere"), "{told}");
+}
+
+/// Runs sigrok's decoder over the wires of a scenario; its annotations.
+fn decoded(scenario: &str, bits: u32) -> Option<(serde_json::Value, String)> {
+    if !require("sigrok-cli", "sigrok decoder") {
+        return None;
+    }
+    let folder = tools::folder(&format!("sigrok_{scenario}"));
+    let wires = folder.join("wires.vcd");
+    let file = wires.to_str().unwrap();
+    let arguments = [
+        "endat-gen",
+        "sim",
+        scenario,
+        "--channel",
+        "0",
+        "--json",
+        "--wires",
+        file,
+    ];
+    let outcome = cli::run(arguments);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    let decoders = Path::new(env!("CARGO_MANIFEST_DIR")).join("sigrok");
+    let output = std::process::Command::new("sigrok-cli")
+        .env("SIGROKDECODE_DIR", decoders)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .args([
+            "-I",
+            "vcd",
+            "-i",
+            file,
+            "-P",
+            &format!("endat:clk=clk:data=data:bits={bits}"),
+            "-A",
+            "endat",
+        ])
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(
+        output.status.success(),
+        "{told}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    Some((serde_json::from_str(&outcome.stdout).unwrap(), told))
+}
+
+/// Catches a decoder that counts another edge, or turns bits round.
+#[test]
+fn sigrok_decodes_every_frame_to_the_encoders_position() {
+    for (scenario, bits) in [("paper", 29), ("real-1", 37)] {
+        let Some((report, told)) = decoded(scenario, bits) else {
+            return;
+        };
+        let frames = report[0]["channels"][0]["frames"].as_array().unwrap();
+        let sent: Vec<u64> = frames
+            .iter()
+            .filter_map(|f| f["encoder"]["position"].as_u64())
+            .collect();
+        let read: Vec<u64> = told
+            .lines()
+            .filter_map(|l| l.split_once("Position ")?.1.split(' ').next()?.parse().ok())
+            .collect();
+        assert!(!sent.is_empty());
+        assert_eq!(read, sent, "{scenario}: {told}");
+        assert!(
+            told.contains("111000 send position with additional information")
+                || scenario != "paper"
+        );
+        assert!(!told.contains("wrong") && !told.contains("short"), "{told}");
+    }
+}

@@ -1,0 +1,329 @@
+//! A stream with its channels, driven cycle by cycle; and its frames read back with the `cobs` and `crc` crates.
+
+use crc::{Crc, CRC_16_IBM_3740};
+use endat_hdl::{
+    elaborate::elaborate,
+    stream::{channel::SetChannel, Stream},
+};
+use endat_sim::engine::{Compiled, Engine, PortId};
+use rust_hdl::prelude::Block;
+use std::collections::HashMap;
+
+/// CRC of a set, by other code than the core's.
+const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
+
+/// Words of the stream.
+pub mod word {
+    pub const CONTROL: u8 = 0;
+    pub const STATE: u8 = 1;
+    pub const DATA: u8 = 2;
+    pub const CLEAR: u8 = 3;
+}
+
+/// A channel in a set.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Part {
+    pub position: u64,
+    pub status: u16,
+}
+
+/// Bits of the status.
+pub const TAKEN: u16 = 1 << 5;
+pub const VALID: u16 = 1 << 6;
+pub const FRESH: u16 = 1 << 7;
+pub const MISSING: u16 = 1 << 15;
+
+/// A set as a host sees it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Set {
+    pub lost: u8,
+    pub sequence: u16,
+    pub timestamp: u32,
+    pub parts: Vec<Part>,
+}
+
+impl Set {
+    /// The frame that it must become.
+    pub fn frame(&self) -> Vec<u8> {
+        let mut bytes = vec![0x10 | self.parts.len() as u8, self.lost];
+        bytes.extend(self.sequence.to_le_bytes());
+        bytes.extend(self.timestamp.to_le_bytes());
+        for part in &self.parts {
+            bytes.extend(&part.position.to_le_bytes()[..6]);
+            bytes.extend(part.status.to_le_bytes());
+        }
+        bytes.extend(CRC.checksum(&bytes).to_le_bytes());
+        let mut frame = cobs::encode_vec(&bytes);
+        frame.push(0);
+        frame
+    }
+
+    /// What a frame (without its zero) means; the text says what is wrong with it.
+    pub fn decode(frame: &[u8]) -> Result<Self, String> {
+        let bytes = cobs::decode_vec(frame).map_err(|e| format!("COBS: {e:?}"))?;
+        let (head, channels) = (bytes[0], usize::from(bytes[0] & 15));
+        if head >> 4 != 1 || bytes.len() != 10 + 8 * channels {
+            return Err(format!("head {head:#x}, {} bytes", bytes.len()));
+        }
+        let (content, crc) = bytes.split_at(bytes.len() - 2);
+        if CRC.checksum(content).to_le_bytes() != crc {
+            return Err("CRC".into());
+        }
+        let part = |b: &[u8]| Part {
+            position: u64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], 0, 0]),
+            status: u16::from_le_bytes([b[6], b[7]]),
+        };
+        Ok(Self {
+            lost: bytes[1],
+            sequence: u16::from_le_bytes([bytes[2], bytes[3]]),
+            timestamp: u32::from_le_bytes([bytes[4], bytes[5], bytes[6], bytes[7]]),
+            parts: content[8..].chunks(8).map(part).collect(),
+        })
+    }
+
+    /// All sets of a stream that ends with a frame's end; empty frames mean nothing.
+    pub fn all(stream: &[u8]) -> Vec<Self> {
+        assert_eq!(stream.last().copied().unwrap_or(0), 0, "half a frame");
+        let frames = stream.split(|b| *b == 0).filter(|f| !f.is_empty());
+        frames.map(|f| Self::decode(f).unwrap()).collect()
+    }
+}
+
+/// An engine with its ports by name.
+pub struct Named {
+    pub engine: Compiled,
+    ids: HashMap<String, PortId>,
+}
+
+impl Named {
+    fn new(mut block: impl Block, name: &str) -> Self {
+        block.connect_all();
+        let engine = Compiled::new(&elaborate(&block, name).unwrap()).unwrap();
+        let names = engine.ports().iter().enumerate();
+        let ids = names.map(|(i, p)| (p.name.clone(), PortId(i))).collect();
+        Self { engine, ids }
+    }
+
+    pub fn set(&mut self, name: &str, value: impl Into<u128>) {
+        self.engine.set(self.ids[name], value.into());
+    }
+
+    pub fn get(&mut self, name: &str) -> u64 {
+        self.engine.get(self.ids[name]) as u64
+    }
+}
+
+/// What a channel shows.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Channel {
+    pub busy: bool,
+    /// In the next cycle.
+    pub strobe: bool,
+    pub position: u64,
+    /// As in a set, without the bits `TAKEN` and `MISSING`.
+    pub status: u16,
+}
+
+/// An access to a word: byte of a read, or a value to write.
+#[derive(Clone, Copy, Debug)]
+pub enum Access {
+    Read {
+        word: u8,
+        lane: u8,
+    },
+    Write {
+        word: u8,
+        value: u32,
+    },
+    /// Of another part of the card.
+    Elsewhere,
+}
+
+/// Everything around a stream.
+pub struct Rig {
+    pub stream: Named,
+    pub set: Vec<Named>,
+    pub channel: Vec<Channel>,
+    /// A trigger in the next cycle.
+    pub trigger: bool,
+    pub access: Option<Access>,
+    /// The line would take a byte in the next cycle.
+    pub line_free: bool,
+    /// What the line took.
+    pub pushed: Vec<u8>,
+    pub triggers: u32,
+    pub timestamp: u32,
+    /// A set was taken in the last cycle.
+    pub taken: bool,
+}
+
+impl Rig {
+    pub fn new(bytes: u64, channels: usize, collect: bool, push: bool) -> Self {
+        Self {
+            stream: Named::new(Stream::new(bytes, channels, collect, push), "stream"),
+            set: (0..channels)
+                .map(|n| Named::new(SetChannel::new(n), "set_channel"))
+                .collect(),
+            channel: vec![Channel::default(); channels],
+            trigger: false,
+            access: None,
+            line_free: false,
+            pushed: Vec::new(),
+            triggers: 0,
+            timestamp: 0xffff_f000,
+            taken: false,
+        }
+    }
+
+    /// As after power-up, but for what the memory holds: a new rig takes long.
+    pub fn reset(&mut self) {
+        for part in self.set.iter_mut().chain([&mut self.stream]) {
+            part.set("reset", true);
+        }
+        self.step();
+        for part in self.set.iter_mut().chain([&mut self.stream]) {
+            part.set("reset", false);
+        }
+        self.channel.fill(Channel::default());
+        self.pushed.clear();
+        self.triggers = 0;
+    }
+
+    /// One cycle.
+    pub fn step(&mut self) {
+        let (mut owes, mut replaced, mut byte) = (0, 0, 0);
+        for (set, channel) in self.set.iter_mut().zip(&self.channel) {
+            set.set("trigger", self.trigger);
+            set.set("busy", channel.busy);
+            set.set("result_strobe", channel.strobe);
+            set.set("position", channel.position);
+            set.set("position_valid", channel.status & VALID != 0);
+            set.set("fresh", channel.status & FRESH != 0);
+            set.set("cause", channel.status & 31);
+            set.set("flags", u128::from(channel.status >> 8 & 127) << 12);
+            owes |= set.get("owes");
+            replaced |= set.get("replaced");
+            byte |= set.get("set_byte");
+        }
+        let s = &mut self.stream;
+        s.set("trigger", self.trigger);
+        s.set("trigger_count", self.triggers);
+        s.set("timestamp", self.timestamp);
+        s.set("owes", owes);
+        s.set("replaced", replaced);
+        s.set("channel_byte", byte);
+        s.set("access", self.access.is_some());
+        let (selected, write, word, lane, value) = match self.access {
+            Some(Access::Read { word, lane }) => (true, false, word, lane, 0),
+            Some(Access::Write { word, value }) => (true, true, word, 0, value),
+            _ => (false, false, 2, 0, 3),
+        };
+        s.set("selected", selected);
+        s.set("write", write);
+        s.set("word", word);
+        s.set("lane", lane);
+        s.set("write_data", value & 3);
+        let take = self.line_free && s.get("push_valid") == 1;
+        s.set("push_take", take);
+        if take {
+            self.pushed.push(s.get("push_byte") as u8);
+        }
+        let (take_set, block, at) = (s.get("take_set"), s.get("block"), s.get("byte_at"));
+        s.engine.tick();
+        for set in &mut self.set {
+            set.set("take", take_set);
+            set.set("block", block);
+            set.set("byte_at", at);
+            set.engine.tick();
+        }
+        self.taken = take_set == 1;
+        self.timestamp = self.timestamp.wrapping_add(1);
+        self.triggers = self.triggers.wrapping_add(u32::from(self.trigger));
+        self.trigger = false;
+        self.access = None;
+        self.line_free = false;
+        self.channel.iter_mut().for_each(|c| c.strobe = false);
+    }
+
+    pub fn run(&mut self, cycles: u64) {
+        (0..cycles).for_each(|_| self.step());
+    }
+
+    /// A word, byte by byte with some cycles between, as a bus reads it.
+    pub fn read(&mut self, word: u8) -> u32 {
+        let mut bytes = [0; 4];
+        for (lane, byte) in bytes.iter_mut().enumerate() {
+            let lane = lane as u8;
+            self.access = Some(Access::Read { word, lane });
+            self.step();
+            *byte = self.stream.get("read_byte") as u8;
+            self.run(3);
+            assert_eq!(self.stream.get("read_byte") as u8, *byte, "stays");
+        }
+        u32::from_be_bytes(bytes)
+    }
+
+    pub fn write(&mut self, word: u8, value: u32) {
+        self.access = Some(Access::Write { word, value });
+        self.step();
+    }
+
+    /// Reads words from `stream_data` until nothing waits.
+    pub fn drain(&mut self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        while self.read(word::STATE) & 0xffff != 0 {
+            bytes.extend(self.read(word::DATA).to_be_bytes());
+        }
+        bytes
+    }
+
+    /// Takes all that is pushed, a byte every `gap` cycles.
+    pub fn push_all(&mut self, gap: u64) {
+        let mut idle = 0;
+        while idle < 8 {
+            let before = self.pushed.len();
+            self.line_free = true;
+            self.step();
+            idle = if self.pushed.len() == before {
+                idle + 1
+            } else {
+                self.run(gap - 1);
+                0
+            };
+        }
+    }
+
+    /// A trigger that all channels take, and their results; the set when it is written.
+    pub fn set_of(&mut self, channels: &[Channel]) -> Set {
+        self.channel.iter_mut().for_each(|c| c.busy = false);
+        self.trigger = true;
+        let timestamp = self.timestamp;
+        self.step();
+        let sequence = self.triggers as u16;
+        self.run(5);
+        for (mine, new) in self.channel.iter_mut().zip(channels) {
+            *mine = Channel {
+                strobe: true,
+                ..*new
+            };
+        }
+        self.step();
+        Set {
+            lost: 0,
+            sequence,
+            timestamp,
+            parts: channels
+                .iter()
+                .map(|c| Part {
+                    position: c.position,
+                    status: c.status | TAKEN,
+                })
+                .collect(),
+        }
+    }
+
+    /// Long enough for a set to be written.
+    pub fn written(&mut self) {
+        self.run(endat_hdl::stream::buffer::frame_cycles(self.set.len()) + 4);
+    }
+}
