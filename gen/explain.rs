@@ -7,6 +7,9 @@ use endat_hdl::timing::deviation_ppm;
 use endat_sim::decimal;
 use serde::Serialize;
 use std::fmt;
+use stream::StreamReport;
+
+mod stream;
 
 /// A rate that was asked for and the one the card makes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -128,6 +131,8 @@ pub struct Report {
     pub bus: &'static str,
     /// Host link; none without a UART.
     pub link: Option<LinkReport>,
+    /// Stream of sample sets; none without a buffer.
+    pub stream: Option<StreamReport>,
     /// What each channel does about its line delay besides following it.
     pub line: Vec<&'static str>,
 }
@@ -226,6 +231,7 @@ pub fn report(project: &Project) -> Report {
         .map(|(_, name)| name)
         .collect(),
         bus: project.bus.name(),
+        stream: StreamReport::of(card, project.bus == HostBus::Uart),
         link: (project.bus == HostBus::Uart).then(|| LinkReport {
             baud: Rate::new(card.baud, card.actual_baud()),
             read_hz: card.read_hz,
@@ -366,6 +372,9 @@ impl fmt::Display for Report {
             )?;
         } else {
             writeln!(f, "host bus           {}", self.bus)?;
+        }
+        if let Some(stream) = &self.stream {
+            write!(f, "{stream}")?;
         }
         writeln!(f)?;
         let heads: Vec<String> = (0..self.channels.len())

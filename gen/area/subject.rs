@@ -13,6 +13,7 @@ use endat_hdl::line_delay::LineDelay;
 use endat_hdl::receiver::Receiver;
 use endat_hdl::service::program::ServiceTimes;
 use endat_hdl::snapshot::Snapshot;
+use endat_hdl::stream::{channel::SetChannel, Stream};
 use endat_hdl::transaction::Transaction;
 use rust_hdl::prelude::Block;
 
@@ -56,6 +57,9 @@ impl Subject {
     }
 }
 
+/// Buffer of the streams that are measured.
+const STREAM_BYTES: u64 = 2048;
+
 /// A channel's features, but for what is changed.
 fn part(change: impl FnOnce(&mut Features)) -> Features {
     let mut features = Features::default();
@@ -76,9 +80,16 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
         EncoderPort::new(FixedTimes::at(card.system_hz), Some(&times), false)
     };
     let full = load_preset("s6_two_channel_service")?.card;
+    let mut streaming = card.clone();
+    streaming.stream.fifo_bytes = STREAM_BYTES;
     Ok(vec![
         Subject::new("card_service", "the card with everything", Card::new(&full))?,
         Subject::new("card", "two-channel card s6_two_channel", Card::new(&card))?,
+        Subject::new(
+            "card_stream",
+            "the same with a stream of 2048 bytes",
+            Card::new(&streaming),
+        )?,
         Subject::new("channel", "one position channel", Channel::new(times))?,
         Subject::new("port_all", "one port with everything", service(true))?,
         Subject::new(
@@ -141,6 +152,12 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             "receiver with both CRCs",
             Receiver::new(Features::default()),
         )?,
+        Subject::new(
+            "stream",
+            "stream with a buffer of 2048 bytes, without the channels' parts",
+            Stream::new(STREAM_BYTES, 2, false, false),
+        )?,
+        Subject::new("set_channel", "a channel's part of it", SetChannel::new(0))?,
         Subject::new("snapshot", "snapshot with time stamp", Snapshot::default())?,
         Subject::new(
             "crc5_parallel",

@@ -117,7 +117,7 @@ fn words() -> Vec<(u16, Access, u32)> {
     let mut words = Vec::new();
     for block in blocks(&config) {
         for channel in 0..if block.per_channel { 2 } else { 1 } {
-            for r in block.registers {
+            for r in block.present(&config) {
                 words.push((
                     block.address(r, channel),
                     r.access,

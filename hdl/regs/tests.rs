@@ -356,6 +356,12 @@ configuration_hash value 31:0
 trigger_count value 31:0
 trigger_now trigger 0:0
 calibrate channels 7:0
+stream_control collect 0:0
+stream_control push 1:1
+stream_state bytes 15:0
+stream_state lost 31:16
+stream_data bytes 31:0
+stream_clear clear 0:0
 trigger_sources pin 0:0
 trigger_sources timer 1:1
 trigger_sources register 2:2

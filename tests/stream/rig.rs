@@ -1,5 +1,6 @@
 //! A stream with its channels, driven cycle by cycle; and its frames read back with the `cobs` and `crc` crates.
 
+use crate::three_way::Stimulus;
 use crc::{Crc, CRC_16_IBM_3740};
 use endat_hdl::{
     elaborate::elaborate,
@@ -93,6 +94,7 @@ impl Set {
 pub struct Named {
     pub engine: Compiled,
     ids: HashMap<String, PortId>,
+    record: Option<Stimulus>,
 }
 
 impl Named {
@@ -101,11 +103,26 @@ impl Named {
         let engine = Compiled::new(&elaborate(&block, name).unwrap()).unwrap();
         let names = engine.ports().iter().enumerate();
         let ids = names.map(|(i, p)| (p.name.clone(), PortId(i))).collect();
-        Self { engine, ids }
+        Self {
+            engine,
+            ids,
+            record: None,
+        }
     }
 
     pub fn set(&mut self, name: &str, value: impl Into<u128>) {
         self.engine.set(self.ids[name], value.into());
+    }
+
+    fn tick(&mut self) {
+        if let Some(record) = &mut self.record {
+            let row = record
+                .inputs
+                .iter()
+                .map(|name| self.engine.get(self.ids[name]));
+            record.cycles.push(row.collect());
+        }
+        self.engine.tick();
     }
 
     pub fn get(&mut self, name: &str) -> u64 {
@@ -189,6 +206,23 @@ impl Rig {
         self.triggers = 0;
     }
 
+    /// From now on what the blocks are given is kept.
+    pub fn record(&mut self) {
+        for part in self.set.iter_mut().chain([&mut self.stream]) {
+            let inputs = part.engine.ports().iter().filter(|p| p.is_input);
+            part.record = Some(Stimulus {
+                inputs: inputs.map(|p| p.name.clone()).collect(),
+                ..Stimulus::default()
+            });
+        }
+    }
+
+    /// What was kept: of the stream, and of each channel.
+    pub fn recorded(self) -> Vec<Stimulus> {
+        let parts = [self.stream].into_iter().chain(self.set);
+        parts.filter_map(|part| part.record).collect()
+    }
+
     /// One cycle.
     pub fn step(&mut self) {
         let (mut owes, mut replaced, mut byte) = (0, 0, 0);
@@ -229,12 +263,12 @@ impl Rig {
             self.pushed.push(s.get("push_byte") as u8);
         }
         let (take_set, block, at) = (s.get("take_set"), s.get("block"), s.get("byte_at"));
-        s.engine.tick();
+        s.tick();
         for set in &mut self.set {
             set.set("take", take_set);
             set.set("block", block);
             set.set("byte_at", at);
-            set.engine.tick();
+            set.tick();
         }
         self.taken = take_set == 1;
         self.timestamp = self.timestamp.wrapping_add(1);
