@@ -98,8 +98,8 @@ impl<T: Transport> Card<T> {
         })
     }
 
-    /// The card takes no request while it initialises the encoder.
-    fn wait_for_initialisation(&mut self, channel: usize) -> Result<(), HostError> {
+    /// Waits until the card no longer initialises the encoder: meanwhile it takes no request and no trigger.
+    pub fn wait_for_initialisation(&mut self, channel: usize) -> Result<(), HostError> {
         let running = Place::field_at("service", "state", "initialising", channel);
         let end = Instant::now() + INITIALISATION;
         while self.read(&running)? == 1 {

@@ -5,7 +5,7 @@
 use crate::registers::{Access, Block, Field, Named, Register, Values};
 
 /// Major, minor and patch version of the map.
-pub const VERSION: [u8; 3] = [0, 4, 0];
+pub const VERSION: [u8; 3] = [0, 5, 0];
 
 /// Steps of the initialisation; `progress` counts from 1.
 pub const STEPS: &[&str] = &[
@@ -59,7 +59,7 @@ pub const BLOCKS: &[Block] = &[
         Register { name: "capabilities", offset: 2, access: Access::ReadOnly, meaning: "What this card has.", fields: &[
             Field { name: "channels", lsb: 0, width: 8, unit: "", meaning: "Encoder ports", values: Values::Plain },
             Field { name: "max_position_bits", lsb: 8, width: 8, unit: "bits", meaning: "Widest position", values: Values::Plain },
-            Field { name: "features", lsb: 16, width: 16, unit: "", meaning: "Parts", values: Values::Bits(&[Named { name: "endat22", number: 0, meaning: "EnDat 2.2 position frames (111000)" }, Named { name: "line_delay", number: 1, meaning: "line delay is measured" }, Named { name: "trigger_pin", number: 2, meaning: "trigger pin" }, Named { name: "trigger_timer", number: 3, meaning: "trigger timer" }, Named { name: "requests", number: 4, meaning: "requests" }, Named { name: "initialise", number: 5, meaning: "initialisation" }, Named { name: "diagnosis", number: 6, meaning: "diagnosis of the line" }, Named { name: "continuous", number: 7, meaning: "continuous clock" }, Named { name: "alignment", number: 8, meaning: "phase at the host's choice, mean over many edges" }, Named { name: "margin", number: 9, meaning: "margin of the samples" }, Named { name: "double_edge", number: 10, meaning: "DATA on both edges of the system clock" }]) },
+            Field { name: "features", lsb: 16, width: 16, unit: "", meaning: "Parts", values: Values::Bits(&[Named { name: "endat22", number: 0, meaning: "EnDat 2.2 position frames (111000)" }, Named { name: "line_delay", number: 1, meaning: "line delay is measured" }, Named { name: "trigger_pin", number: 2, meaning: "trigger pin" }, Named { name: "trigger_timer", number: 3, meaning: "trigger timer" }, Named { name: "requests", number: 4, meaning: "requests" }, Named { name: "initialise", number: 5, meaning: "initialisation" }, Named { name: "diagnosis", number: 6, meaning: "diagnosis of the line" }, Named { name: "continuous", number: 7, meaning: "continuous clock" }, Named { name: "alignment", number: 8, meaning: "phase at the host's choice, mean over many edges" }, Named { name: "margin", number: 9, meaning: "margin of the samples" }, Named { name: "double_edge", number: 10, meaning: "DATA on both edges of the system clock" }, Named { name: "stream", number: 11, meaning: "stream of sample sets" }]) },
         ] },
         Register { name: "system_hz", offset: 3, access: Access::ReadOnly, meaning: "System clock: the unit of every number of cycles.", fields: &[
             Field { name: "value", lsb: 0, width: 32, unit: "Hz", meaning: "Frequency", values: Values::Plain },
@@ -75,6 +75,20 @@ pub const BLOCKS: &[Block] = &[
         ] },
         Register { name: "calibrate", offset: 10, access: Access::Strobe, meaning: "Makes channels measure their line delay again, with their next frame.", fields: &[
             Field { name: "channels", lsb: 0, width: 8, unit: "", meaning: "Bit n for channel n", values: Values::Plain },
+        ] },
+        Register { name: "stream_control", offset: 12, access: Access::ReadWrite, meaning: "What the stream of sample sets does.", fields: &[
+            Field { name: "collect", lsb: 0, width: 1, unit: "", meaning: "Triggers make sets", values: Values::Plain },
+            Field { name: "push", lsb: 1, width: 1, unit: "", meaning: "Frames go out over the UART", values: Values::Plain },
+        ] },
+        Register { name: "stream_state", offset: 13, access: Access::ReadOnly, meaning: "What is in the stream's buffer, and what did not get in.", fields: &[
+            Field { name: "bytes", lsb: 0, width: 16, unit: "bytes", meaning: "Bytes that wait", values: Values::Plain },
+            Field { name: "lost", lsb: 16, width: 16, unit: "", meaning: "Sets lost since clear; stops at 65535", values: Values::Plain },
+        ] },
+        Register { name: "stream_data", offset: 14, access: Access::ReadOnly, meaning: "Takes the next bytes of the stream out of the buffer.", fields: &[
+            Field { name: "bytes", lsb: 0, width: 32, unit: "", meaning: "First byte in bits 31..24; what is not there is 0", values: Values::Plain },
+        ] },
+        Register { name: "stream_clear", offset: 15, access: Access::Strobe, meaning: "Empties the buffer, forgets what was lost.", fields: &[
+            Field { name: "clear", lsb: 0, width: 1, unit: "", meaning: "Write 1", values: Values::Plain },
         ] },
     ] },
     Block { name: "card_config", base: 0x100, stride: 8, per_channel: false, meaning: "Configuration of the card.", registers: &[

@@ -8,6 +8,7 @@ mod groups;
 mod map;
 mod overview;
 mod scale;
+mod series;
 mod svg;
 #[cfg(test)]
 mod tests;
@@ -23,6 +24,7 @@ use crate::{
 pub use edges::{edges_svg, Edges};
 pub use map::map_svg;
 pub use overview::overview_svg;
+pub use series::{series_svg, Series};
 pub use svg::is_drawing;
 
 use groups::{bit_name, fill, groups, segment_fill, stroke};

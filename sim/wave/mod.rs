@@ -62,12 +62,14 @@ pub fn is_layout(head: &str) -> bool {
     head.starts_with(LAYOUT_HEAD)
 }
 
-/// CLOCK and DATA of a link at the encoder's end as two scalars without hierarchy, in nanoseconds: what logic analysers' programs read.
+/// CLOCK and DATA of a link at the encoder's end as two scalars, in nanoseconds: what logic analysers' programs read.
 pub fn write_wires(link: &Link, out: impl Write) -> io::Result<()> {
     let mut w = vcd::Writer::new(out);
     w.version(&format!("{PROGRAM} {}", env!("CARGO_PKG_VERSION")))?;
     w.timescale(1, TimescaleUnit::NS)?;
+    w.add_module(TOP)?;
     let (clk, data) = (w.add_wire(1, "clk")?, w.add_wire(1, "data")?);
+    w.upscope()?;
     w.enddefinitions()?;
     let Some(trace) = link.trace() else {
         return Ok(());

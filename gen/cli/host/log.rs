@@ -1,15 +1,17 @@
 //! `log`: sample sets into a file, as CSV or JSON lines.
 
 use super::super::number::number;
+use super::super::pictures::{check_all, write_all, File};
 use super::super::Outcome;
 use super::{interrupted, scale, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::{Args, ValueEnum};
 use endat_host::feed::{Feed, Row};
 use endat_host::units::Scale;
+use endat_sim::diagram::{is_drawing, series_svg, Series};
 use serde_json::json;
 use std::collections::VecDeque;
-use std::fs::File;
+use std::fs;
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -41,6 +43,9 @@ pub struct LogArgs {
     /// Replace the file if it is there
     #[arg(long, requires = "out")]
     force: bool,
+    /// Draw the positions over time, at the end
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
     /// Form of the file
     #[arg(long, value_enum, default_value = "csv")]
     format: Format,
@@ -62,6 +67,8 @@ struct Sheet<W: Write> {
     out: W,
     scales: Vec<Scale>,
     system_hz: f64,
+    /// What is to be drawn; none if nothing is.
+    plot: Option<Vec<Series>>,
 }
 
 impl<W: Write> Sheet<W> {
@@ -71,6 +78,7 @@ impl<W: Write> Sheet<W> {
             out,
             scales,
             system_hz,
+            plot: None,
         };
         if format == Format::Csv {
             let mut names = vec!["trigger".to_owned(), "time_s".into(), "missing".into()];
@@ -83,6 +91,27 @@ impl<W: Write> Sheet<W> {
             sheet.record(&names)?;
         }
         Ok(sheet)
+    }
+
+    /// From now on positions are kept for a drawing.
+    fn keep(&mut self) {
+        let series = self.scales.iter().enumerate().map(|(n, scale)| Series {
+            name: format!("channel {n}"),
+            unit: scale.convert(0).unit.into(),
+            points: Vec::new(),
+        });
+        self.plot = Some(series.collect());
+    }
+
+    fn draw(&mut self, row: &Row, time_s: f64) {
+        let channels = self.plot.iter_mut().flatten();
+        for ((series, cell), scale) in channels.zip(&row.cells).zip(&self.scales) {
+            let value = cell
+                .position
+                .filter(|_| cell.fresh)
+                .map(|p| scale.convert(p).value);
+            series.points.push((time_s, value));
+        }
     }
 
     fn time_s(&self, row: &Row) -> f64 {
@@ -100,6 +129,7 @@ impl<W: Write> Sheet<W> {
 
     fn row(&mut self, row: &Row) -> io::Result<()> {
         let time_s = self.time_s(row);
+        self.draw(row, time_s);
         match self.format {
             Format::Csv => {
                 let mut fields = vec![
@@ -170,7 +200,7 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     let (out, name): (Box<dyn Write>, String) = match &arguments.out {
         None => (Box::new(io::stdout()), "stdout".into()),
         Some(path) => {
-            let mut options = File::options();
+            let mut options = fs::File::options();
             options.write(true);
             let options = match arguments.force {
                 true => options.create(true).truncate(true),
@@ -188,6 +218,17 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     let system_hz = f64::from(card.identity().system_hz.max(1));
     let mut sheet =
         Sheet::new(arguments.format, BufWriter::new(out), scales, system_hz).map_err(failed)?;
+    let mut drawing = arguments.svg.clone().map(|path| File {
+        option: "--svg",
+        path,
+        text: String::new(),
+        is_ours: is_drawing,
+    });
+    // Refused before the first sample, not after the last.
+    check_all(&drawing.iter().collect::<Vec<_>>())?;
+    if drawing.is_some() {
+        sheet.keep();
+    }
     let mut feed = Feed::begin(&mut card, arguments.poll).map_err(told)?;
     let stop = interrupted();
     let result = record(&mut card, &mut feed, &mut sheet, &end, &stop);
@@ -206,6 +247,19 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     };
     flushed.map_err(failed)?;
     calm.map_err(told)?;
+    let mut messages = Vec::new();
+    if let (Some(file), Some(plot)) = (&mut drawing, &sheet.plot) {
+        let subtitle = format!(
+            "{} sample sets, {} triggers missing",
+            totals.rows, totals.missing
+        );
+        file.text = series_svg(
+            plot,
+            &format!("Positions of {}", arguments.port.name()),
+            &subtitle,
+        );
+        messages.extend(write_all(&drawing.into_iter().collect::<Vec<_>>())?);
+    }
     let damaged = card.bridge().decoder().damaged();
     let mut text = format!(
         "{name}: {} sample sets in {:.3} s of the card's time",
@@ -222,8 +276,9 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
             totals.missing
         );
     }
+    messages.insert(0, text);
     Ok(Outcome {
-        messages: vec![text],
+        messages,
         exit_code: u8::from(is_stream && totals.missing > 0),
         ..Outcome::default()
     })

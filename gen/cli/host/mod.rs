@@ -50,6 +50,11 @@ pub fn told(error: HostError) -> GenError {
 }
 
 impl PortArgs {
+    /// The port as the user named it.
+    pub fn name(&self) -> &str {
+        &self.port
+    }
+
     /// Opens the link and finds out who answers.
     pub fn open(&self) -> Result<AnyCard, GenError> {
         let baud = match &self.baud {
@@ -95,8 +100,13 @@ pub fn scale(card: &mut AnyCard, channel: usize) -> Result<Scale, GenError> {
     Ok(Scale::singleturn(bits))
 }
 
-/// Waits until every channel has had a first result, or has none after a second.
+/// Waits until no encoder is being initialised and every channel has had a first result, or has none after a second.
 pub fn settled(card: &mut AnyCard) -> Result<(), GenError> {
+    if card.identity().has("initialise") {
+        for channel in 0..card.identity().channels {
+            card.wait_for_initialisation(channel).map_err(told)?;
+        }
+    }
     let end = std::time::Instant::now() + std::time::Duration::from_secs(1);
     while std::time::Instant::now() < end {
         let results = card.results().map_err(told)?;

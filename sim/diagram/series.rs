@@ -1,0 +1,164 @@
+//! Draws numbers over time, one panel for each series.
+
+use super::svg::{text_width, Anchor, Svg};
+
+/// Numbers over time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series {
+    /// What they are.
+    pub name: String,
+    /// Their unit.
+    pub unit: String,
+    /// Seconds and value; a gap where there was none.
+    pub points: Vec<(f64, Option<f64>)>,
+}
+
+const STYLE: &str = "\
+text{font-family:'DejaVu Sans',Verdana,Helvetica,sans-serif;fill:#1f2937}\
+.title{font-size:19px;font-weight:bold}.sub{font-size:12.5px;fill:#4b5563}.name{font-size:13px;font-weight:bold}\
+.tick{font-size:11px;fill:#374151}path{fill:none}.axis{stroke:#374151;stroke-width:1}.grid{stroke:#e5e7eb;stroke-width:0.8}\
+.series-0{stroke:#0072b2;stroke-width:1.4}.series-1{stroke:#d55e00;stroke-width:1.4}.series-2{stroke:#009e73;stroke-width:1.4}\
+.series-3{stroke:#cc79a7;stroke-width:1.4}";
+
+const LEFT: f64 = 110.0;
+const TOP: f64 = 92.0;
+const WIDTH: f64 = 820.0;
+const HEIGHT: f64 = 170.0;
+const GAP: f64 = 54.0;
+/// Columns of the drawing: more points than that are thinned out.
+const POINTS_MAX: usize = 1640;
+const COLOURS: usize = 4;
+
+/// Lowest and highest of some numbers; a little apart if they are all the same.
+fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+        (low.min(v), high.max(v))
+    });
+    (low <= high).then(|| {
+        if low < high {
+            (low, high)
+        } else {
+            (low - 0.5, high + 0.5)
+        }
+    })
+}
+
+/// Steps of 1, 2 or 5 times a power of ten, some five of them.
+fn ticks(low: f64, high: f64) -> (Vec<f64>, usize) {
+    let rough = (high - low) / 5.0;
+    let power = 10f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .map(|m| m * power)
+        .into_iter()
+        .find(|s| *s >= rough)
+        .unwrap_or(power);
+    let digits = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
+    let first = (low / step).ceil() as i64;
+    let last = (high / step).floor() as i64;
+    ((first..=last).map(|n| n as f64 * step).collect(), digits)
+}
+
+/// The series as SVG.
+pub fn series_svg(series: &[Series], title: &str, subtitle: &str) -> String {
+    let mut svg = Svg::new();
+    let head = svg.head(title, subtitle);
+    let times = series.iter().flat_map(|s| s.points.iter().map(|p| p.0));
+    let (begin, end) = range(times).unwrap_or((0.0, 1.0));
+    let x = |time: f64| LEFT + WIDTH * (time - begin) / (end - begin);
+    let mut top = TOP;
+    for (index, one) in series.iter().enumerate() {
+        let bottom = top + HEIGHT;
+        let label = format!("{} ({})", one.name, one.unit);
+        svg.text(LEFT, top - 9.0, Anchor::Start, "name", &label);
+        let (low, high) = range(one.points.iter().filter_map(|p| p.1)).unwrap_or((0.0, 1.0));
+        let y = |value: f64| bottom - HEIGHT * (value - low) / (high - low);
+        let (values, digits) = ticks(low, high);
+        for value in values {
+            svg.line(&[(LEFT, y(value)), (LEFT + WIDTH, y(value))], "grid");
+            let text = format!("{value:.digits$}");
+            svg.text(
+                LEFT - 8.0 - text_width(&text, 11.0),
+                y(value) + 4.0,
+                Anchor::Start,
+                "tick",
+                &text,
+            );
+        }
+        let every = one.points.len().div_ceil(POINTS_MAX).max(1);
+        let mut line = Vec::new();
+        let class = format!("series-{}", index % COLOURS);
+        for (time, value) in one.points.iter().step_by(every) {
+            match value {
+                Some(value) => line.push((x(*time), y(*value))),
+                None => {
+                    svg.line(&line, &class);
+                    line.clear();
+                }
+            }
+        }
+        svg.line(&line, &class);
+        svg.line(
+            &[(LEFT, top), (LEFT, bottom), (LEFT + WIDTH, bottom)],
+            "axis",
+        );
+        top = bottom + GAP;
+    }
+    let bottom = top - GAP;
+    let (values, digits) = ticks(begin, end);
+    for time in values {
+        svg.line(&[(x(time), bottom), (x(time), bottom + 5.0)], "axis");
+        svg.text(
+            x(time),
+            bottom + 18.0,
+            Anchor::Middle,
+            "tick",
+            &format!("{time:.digits$}"),
+        );
+    }
+    svg.text(
+        LEFT + WIDTH / 2.0,
+        bottom + 38.0,
+        Anchor::Middle,
+        "name",
+        "time (s)",
+    );
+    svg.finish(
+        (LEFT + WIDTH + 30.0).max(head + 24.0),
+        bottom + 54.0,
+        title,
+        STYLE,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_numbers_within_the_range() {
+        assert_eq!(
+            ticks(0.0, 1.0),
+            (vec![0.0, 0.2, 0.4, 0.6000000000000001, 0.8, 1.0], 1)
+        );
+        assert_eq!(ticks(36.0, 126.0).0, [40.0, 60.0, 80.0, 100.0, 120.0]);
+        assert_eq!(range([3.0].into_iter()), Some((2.5, 3.5)));
+        assert_eq!(range(std::iter::empty()), None);
+    }
+
+    #[test]
+    fn a_gap_stays_a_gap_and_long_series_are_thinned_out() {
+        let point = |n: usize| (n as f64, (n != 2).then_some(n as f64));
+        let one = Series {
+            name: "channel 0".into(),
+            unit: "deg".into(),
+            points: (0..5).map(point).collect(),
+        };
+        let svg = series_svg(&[one.clone()], "log", "");
+        assert_eq!(svg.matches("class=\"series-0\"").count(), 2);
+        let long = Series {
+            points: (0..100_000).map(|n| (n as f64, Some(0.0))).collect(),
+            ..one
+        };
+        assert!(series_svg(&[long], "log", "").len() < 60_000);
+    }
+}
