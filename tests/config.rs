@@ -27,7 +27,10 @@ fn the_preset_gives_the_card_of_the_paper() {
     assert_eq!(project.card.channels[0], project.card.channels[1]);
     assert_eq!(project.card.channels[0].period_cycles, 32);
     assert_eq!(
-        project.pll.as_ref().map(|pll| pll.multiply * 32_000_000 / pll.divide / pll.output_divide),
+        project
+            .pll
+            .as_ref()
+            .map(|pll| pll.multiply * 32_000_000 / pll.divide / pll.output_divide),
         Some(100_000_000)
     );
     assert_eq!(project.pins.len(), 1 + 3 + 8 + 3);

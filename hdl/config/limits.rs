@@ -1,6 +1,7 @@
 //! What each key may be, whatever the other keys say.
 
 use super::*;
+use crate::bus::spi::SCK_CYCLES_MIN;
 use crate::protocol::POSITION_BITS;
 use crate::timing::*;
 
@@ -73,6 +74,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "sample_hz" => slow.div_ceil(max_of(TIMER_BITS))..=1_000_000,
         "baud" => 9_600..=fast / UART_BIT_CYCLES_MIN,
         "read_hz" => 1..=1_000_000,
+        "sck_hz" => 1..=fast / SCK_CYCLES_MIN,
         _ => 0..=u64::MAX,
     };
     Limits {
