@@ -95,6 +95,7 @@ fn stimulus(kernel: &dyn Engine) -> Stimulus {
             let name = port.name.as_str();
             let stays = match name {
                 "rst_i" | "trigger_i" => 400,
+                _ if name.starts_with("bus_") => 6,
                 "spi_cs_n_i" => 500,
                 "spi_sck_i" => 4,
                 "spi_mosi_i" => 20,
