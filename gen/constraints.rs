@@ -102,6 +102,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
             version => env!("CARGO_PKG_VERSION"),
             hash => project.hash.as_str(),
             bus => project.bus.name(),
+            internal => project.bus.is_internal(),
             system_hz => project.card.system_hz,
             channels => project.card.channels.len(),
             timing => explain::report(project).to_string(),

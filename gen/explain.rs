@@ -111,7 +111,7 @@ pub struct Report {
     pub name: String,
     /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
     pub config_hash: String,
-    /// Board; none when the bus stays inside the chip.
+    /// Board; none when the card has another bus than the UART.
     pub board: Option<String>,
     /// Oscillator of the board, in hertz.
     pub oscillator_hz: Option<u64>,

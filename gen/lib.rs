@@ -27,7 +27,10 @@ pub mod virtual_card;
 
 use artifact::Artifact;
 use config::Project;
-use endat_hdl::bus::{apb::ApbCard, axi_lite::AxiLiteCard, wishbone::WishboneCard, HostBus};
+use endat_hdl::bus::{
+    apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
+    wishbone::WishboneCard, HostBus,
+};
 use endat_hdl::card::Card;
 use endat_hdl::elaborate::{elaborate, Design};
 use error::GenError;
@@ -69,6 +72,8 @@ pub fn design(project: &Project) -> Result<Design, GenError> {
         HostBus::Apb => of(ApbCard::new(card), name),
         HostBus::Wishbone => of(WishboneCard::new(card), name),
         HostBus::AxiLite => of(AxiLiteCard::new(card), name),
+        HostBus::Spi => of(SpiCard::new(card), name),
+        HostBus::Parallel => of(ParallelCard::new(card), name),
     }
 }
 

@@ -9,6 +9,8 @@
 
 pub mod apb;
 pub mod axi_lite;
+pub mod parallel;
+pub mod spi;
 pub mod wishbone;
 pub mod word_access;
 
@@ -24,11 +26,22 @@ pub enum HostBus {
     Wishbone,
     /// AXI4-Lite slave.
     AxiLite,
+    /// SPI slave, mode 0, with check sums.
+    Spi,
+    /// Asynchronous bus with eight registers of 16 bits.
+    Parallel,
 }
 
 impl HostBus {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Uart, Self::Apb, Self::Wishbone, Self::AxiLite];
+    pub const ALL: [Self; 6] = [
+        Self::Uart,
+        Self::Apb,
+        Self::Wishbone,
+        Self::AxiLite,
+        Self::Spi,
+        Self::Parallel,
+    ];
 
     /// Name in a configuration.
     pub const fn name(self) -> &'static str {
@@ -37,6 +50,8 @@ impl HostBus {
             Self::Apb => "apb",
             Self::Wishbone => "wishbone",
             Self::AxiLite => "axi_lite",
+            Self::Spi => "spi",
+            Self::Parallel => "parallel",
         }
     }
 

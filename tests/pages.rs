@@ -33,6 +33,11 @@ fn the_sizes_in_the_readme_are_those_of_the_area_table() {
         ("| a port with requests", "port_service"),
         ("| a port with everything", "port_all"),
         ("| two-channel card", "card"),
+        ("| the same behind APB3", "card_apb"),
+        ("| the same behind Wishbone", "card_wishbone"),
+        ("| the same behind AXI4-Lite", "card_axi_lite"),
+        ("| the same behind SPI", "card_spi"),
+        ("| the same behind the parallel bus", "card_parallel"),
         ("| card with everything", "card_service"),
     ] {
         let cells = row(README, head);

@@ -4,6 +4,10 @@ use crate::artifact::Artifact;
 use crate::config::{load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
 use crate::verilog::{print_files, Header};
+use endat_hdl::bus::{
+    apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
+    wishbone::WishboneCard,
+};
 use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, Features, FixedTimes};
 use endat_hdl::crc5::{Crc5Fixed, Crc5Parallel, Crc5Serial};
@@ -89,6 +93,23 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             "card_stream",
             "the same with a stream of 2048 bytes",
             Card::new(&streaming),
+        )?,
+        Subject::new("card_apb", "the same behind APB3", ApbCard::new(&card))?,
+        Subject::new(
+            "card_wishbone",
+            "the same behind Wishbone",
+            WishboneCard::new(&card),
+        )?,
+        Subject::new(
+            "card_axi_lite",
+            "the same behind AXI4-Lite",
+            AxiLiteCard::new(&card),
+        )?,
+        Subject::new("card_spi", "the same behind SPI", SpiCard::new(&card))?,
+        Subject::new(
+            "card_parallel",
+            "the same behind the parallel bus",
+            ParallelCard::new(&card),
         )?,
         Subject::new("channel", "one position channel", Channel::new(times))?,
         Subject::new("port_all", "one port with everything", service(true))?,

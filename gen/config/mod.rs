@@ -84,7 +84,7 @@ pub struct Project {
     pub bus: HostBus,
     /// Encoder of each channel, for people; may be empty.
     pub encoders: Vec<String>,
-    /// The board; none when the host's bus stays inside the chip.
+    /// The board; none when the card has another bus than the UART.
     pub board: Option<Board>,
     /// The clock manager of the board.
     pub pll: Option<Pll>,

@@ -57,17 +57,25 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let host = root.table("host", &empty);
     let bus = read_bus(&host);
     let board_table = root.table("board", &empty);
-    let is_internal = bus.is_some_and(HostBus::is_internal);
+    // Board top, pins and test bench are those of a card with a UART.
     let has_uart = bus == Some(HostBus::Uart);
-    let board = match is_internal {
-        true => None,
-        false => read_board(&board_table),
+    let board = match has_uart {
+        true => read_board(&board_table),
+        false => None,
     };
     let clock = root.table("clock", &empty);
     let system_limits = limits("system_hz", None);
     let system = clock.required_integer("system_hz", "100_000_000", &system_limits);
     let system_hz = system.as_ref().map(|s| s.value);
     let system_hz = system_hz.filter(|hz| system_limits.contains(*hz));
+    if bus == Some(HostBus::Spi) {
+        let sck_limits = limits("sck_hz", system_hz);
+        let sck = host.integer("sck_hz", &sck_limits);
+        if let Some(sck) = sck.filter(|sck| !sck_limits.contains(sck.value)) {
+            let (value, text) = (sck.value.to_string(), sck_limits.to_string());
+            host.complain(sck.line, "sck_hz", &value, &text);
+        }
+    }
     let endat = root.table("endat", &empty);
     let defaults = read_line_keys(&endat, system_hz);
     let line_table = root.table("line", &empty);
@@ -119,11 +127,9 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     ]) {
         table.finish();
     }
-    // What a bus has no use for has been refused as a whole.
-    if !is_internal {
-        board_table.finish();
-    }
+    // Otherwise they have been refused as a whole.
     if has_uart {
+        board_table.finish();
         link.finish();
     }
     if let (Some(board), Some(system), true) = (&board, &system, system_hz.is_some()) {
@@ -193,9 +199,9 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     };
     let channels: Vec<Channel> = channels.into_iter().collect::<Option<_>>()?;
     let (name, bus) = (name?, bus?);
-    let (board, pll, pins) = match is_internal {
-        true => (None, None, vec![]),
-        false => {
+    let (board, pll, pins) = match has_uart {
+        false => (None, None, vec![]),
+        true => {
             let board = board?;
             let pll = board::pll(board.oscillator_hz, card.system_hz).ok()?;
             (Some(board), Some(pll), assignments?)
@@ -622,7 +628,7 @@ fn refuse_unused(root: &Table<'_, '_>, bus: HostBus, tables: &[(&str, &Table<'_,
         let text = match *key {
             "link" => format!("[link]: host.bus = \"{name}\" has no UART, and [link] is about its rate; remove the table"),
             _ if bus.is_internal() => format!("[{key}]: host.bus = \"{name}\" stays inside the chip, so the card has no board top and no pins of its own; remove the table"),
-            _ => continue,
+            _ => format!("[{key}]: a board top is made for a card with a UART only; remove the table, and instantiate the card with host.bus = \"{name}\" in a top of your own"),
         };
         table.complain_plain(text);
     }

@@ -76,7 +76,7 @@ pub struct ParallelFront {
     register_1: SyncReg<Bits<3>>,
     data_0: SyncReg<Bits<16>>,
     data_1: SyncReg<Bits<16>>,
-    output: Reg<Bits<16>>,
+    out_data: Reg<Bits<16>>,
     was_first: Reg<Bit>,
     was_writing: Reg<Bit>,
     written_register: Reg<Bits<3>>,
@@ -116,7 +116,7 @@ impl Logic for ParallelFront {
             register_1,
             data_0,
             data_1,
-            output,
+            out_data,
             was_first,
             was_writing,
             written_register
@@ -154,7 +154,7 @@ impl Logic for ParallelFront {
         self.register_1.reset.next = self.reset.val();
         self.data_0.reset.next = self.reset.val();
         self.data_1.reset.next = self.reset.val();
-        self.output.reset.next = self.reset.val();
+        self.out_data.reset.next = self.reset.val();
         self.was_first.reset.next = self.reset.val();
         self.was_writing.reset.next = self.reset.val();
         self.written_register.reset.next = self.reset.val();
@@ -215,33 +215,33 @@ impl Logic for ParallelFront {
             self.wants_read.q.val() | self.wants_write.q.val() | self.settling.q.val();
         match self.register_1.q.val().index() {
             0 => {
-                self.output.d.next = self.seen_position.q.val().get_bits::<16>(0);
+                self.out_data.d.next = self.seen_position.q.val().get_bits::<16>(0);
             }
             1 => {
-                self.output.d.next = self.seen_position.q.val().get_bits::<16>(16);
+                self.out_data.d.next = self.seen_position.q.val().get_bits::<16>(16);
             }
             2 => {
-                self.output.d.next = self.seen_position.q.val().get_bits::<16>(32);
+                self.out_data.d.next = self.seen_position.q.val().get_bits::<16>(32);
             }
             3 => {
-                self.output.d.next = self.seen_status.q.val().get_bits::<16>(16);
+                self.out_data.d.next = self.seen_status.q.val().get_bits::<16>(16);
             }
             4 => {
-                self.output.d.next = self.seen_status.q.val().get_bits::<16>(0);
+                self.out_data.d.next = self.seen_status.q.val().get_bits::<16>(0);
             }
             5 => {
-                self.output.d.next = bit_cast::<16, 11>(self.window_address.q.val())
+                self.out_data.d.next = bit_cast::<16, 11>(self.window_address.q.val())
                     | (bit_cast::<16, 3>(self.channel.q.val()) << 11)
                     | (bit_cast::<16, 1>(self.is_busy.val().into()) << 15);
             }
             6 => {
-                self.output.d.next = self.window_low.q.val();
+                self.out_data.d.next = self.window_low.q.val();
             }
             _ => {
-                self.output.d.next = self.window_high.q.val();
+                self.out_data.d.next = self.window_high.q.val();
             }
         }
-        self.data_out.next = self.output.q.val();
+        self.data_out.next = self.out_data.q.val();
         // No register: the lines are free as soon as the strobe ends.
         self.data_enable.next = !self.cs_n.val() & !self.rd_n.val();
 
@@ -252,7 +252,11 @@ impl Logic for ParallelFront {
             self.written_register.d.next = self.register_1.q.val();
             self.written.d.next = self.data_1.q.val();
         }
-        if self.was_writing.q.val() & !self.is_writing.val() & !self.is_busy.val() {
+        if self.was_writing.q.val()
+            & !self.is_writing.val()
+            & !self.wants_read.q.val()
+            & !self.wants_write.q.val()
+        {
             match self.written_register.q.val().index() {
                 5 => {
                     self.window_address.d.next = self.written.q.val().get_bits::<11>(0);

@@ -91,11 +91,11 @@ pub struct SpiFront {
     mosi_1: SyncReg<Bit>,
     state: Reg<SpiState>,
     bit_count: Reg<Bits<3>>,
-    byte: Reg<Bits<8>>,
+    byte_in: Reg<Bits<8>>,
     byte_end: Reg<Bit>,
     byte_count: Reg<Bits<2>>,
     crc: Reg<Bits<16>>,
-    output: Reg<Bits<32>>,
+    shift_out: Reg<Bits<32>>,
     load_word: Reg<Bit>,
     load_crc: Reg<Bit>,
     late: Reg<Bit>,
@@ -115,7 +115,10 @@ pub struct SpiFront {
     step_address: Signal<Local, Bit>,
     next_address: Signal<Local, Bits<12>>,
     last_word: Signal<Local, Bit>,
+    crc_sent: Signal<Local, Bits<16>>,
     polynomial: Constant<Bits<16>>,
+    accepted_word: Constant<Bits<32>>,
+    refused_word: Constant<Bits<32>>,
 }
 
 impl Default for SpiFront {
@@ -150,11 +153,11 @@ impl Default for SpiFront {
             mosi_1: Default::default(),
             state: Reg::new(SpiState::Command),
             bit_count: Default::default(),
-            byte: Default::default(),
+            byte_in: Default::default(),
             byte_end: Default::default(),
             byte_count: Default::default(),
             crc: Reg::new(0xffffu64.into()),
-            output: Default::default(),
+            shift_out: Default::default(),
             load_word: Default::default(),
             load_crc: Default::default(),
             late: Default::default(),
@@ -174,7 +177,10 @@ impl Default for SpiFront {
             step_address: Default::default(),
             next_address: Default::default(),
             last_word: Default::default(),
+            crc_sent: Default::default(),
             polynomial: Constant::new(0x1021u64.into()),
+            accepted_word: Constant::new(0xa000_0000u64.into()),
+            refused_word: Constant::new(0xa200_0000u64.into()),
         }
     }
 }
@@ -183,7 +189,7 @@ impl Logic for SpiFront {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, sck_0, sck_1, sck_2, cs_0, cs_1, mosi_0, mosi_1);
-        dff_setup!(self, clock, state, bit_count, byte, byte_end, byte_count, crc, output);
+        dff_setup!(self, clock, state, bit_count, byte_in, byte_end, byte_count, crc, shift_out);
         dff_setup!(
             self,
             clock,
@@ -205,11 +211,11 @@ impl Logic for SpiFront {
         self.mosi_1.reset.next = self.reset.val();
         self.state.reset.next = self.reset.val();
         self.bit_count.reset.next = self.reset.val();
-        self.byte.reset.next = self.reset.val();
+        self.byte_in.reset.next = self.reset.val();
         self.byte_end.reset.next = self.reset.val();
         self.byte_count.reset.next = self.reset.val();
         self.crc.reset.next = self.reset.val();
-        self.output.reset.next = self.reset.val();
+        self.shift_out.reset.next = self.reset.val();
         self.load_word.reset.next = self.reset.val();
         self.load_crc.reset.next = self.reset.val();
         self.late.reset.next = self.reset.val();
@@ -255,13 +261,13 @@ impl Logic for SpiFront {
             | ((self.state.q.val() == SpiState::Crc) & self.writing.q.val());
         self.crc_bit.next = self.mosi_1.q.val();
         if (self.state.q.val() == SpiState::Data) & !self.writing.q.val() {
-            self.crc_bit.next = self.output.q.val().get_bit(31);
+            self.crc_bit.next = self.shift_out.q.val().get_bit(31);
         }
         self.byte_end.d.next = self.rise.val() & self.bit_count.q.val().all();
         if self.rise.val() {
             self.bit_count.d.next = self.bit_count.q.val() + 1;
-            self.byte.d.next =
-                (self.byte.q.val() << 1) | bit_cast::<8, 1>(self.mosi_1.q.val().into());
+            self.byte_in.d.next =
+                (self.byte_in.q.val() << 1) | bit_cast::<8, 1>(self.mosi_1.q.val().into());
             if self.crc_runs.val() {
                 self.crc.d.next = self.crc.q.val() << 1;
                 if self.crc.q.val().get_bit(15) ^ self.crc_bit.val() {
@@ -278,32 +284,32 @@ impl Logic for SpiFront {
             match self.state.q.val() {
                 SpiState::Command => {
                     self.state.d.next = SpiState::Ignore;
-                    self.writing.d.next = self.byte.q.val() == 2;
-                    if (self.byte.q.val() == 2) | (self.byte.q.val() == 3) {
+                    self.writing.d.next = self.byte_in.q.val() == 2;
+                    if (self.byte_in.q.val() == 2) | (self.byte_in.q.val() == 3) {
                         self.state.d.next = SpiState::AddressHigh;
                     }
                 }
                 SpiState::AddressHigh => {
                     self.state.d.next = SpiState::AddressLow;
                     self.address.d.next =
-                        bit_cast::<11, 3>(self.byte.q.val().get_bits::<3>(0)) << 8;
-                    self.out_of_range.d.next = self.byte.q.val().get_bits::<5>(3).any();
+                        bit_cast::<11, 3>(self.byte_in.q.val().get_bits::<3>(0)) << 8;
+                    self.out_of_range.d.next = self.byte_in.q.val().get_bits::<5>(3).any();
                 }
                 SpiState::AddressLow => {
                     self.state.d.next = SpiState::Length;
                     self.address.d.next =
-                        self.address.q.val() | bit_cast::<11, 8>(self.byte.q.val());
+                        self.address.q.val() | bit_cast::<11, 8>(self.byte_in.q.val());
                     // The first word is there before the host can ask for it.
                     self.request.d.next = !self.writing.q.val() & !self.busy.q.val();
                 }
                 SpiState::Length => {
-                    self.words_left.d.next = self.byte.q.val();
+                    self.words_left.d.next = self.byte_in.q.val();
                     self.byte_count.d.next = 0.into();
                     self.state.d.next = SpiState::Turnaround;
                     if self.writing.q.val() {
                         self.state.d.next = SpiState::Data;
                     }
-                    if !self.byte.q.val().any() {
+                    if !self.byte_in.q.val().any() {
                         self.state.d.next = SpiState::Ignore;
                     }
                 }
@@ -315,7 +321,7 @@ impl Logic for SpiFront {
                     self.byte_count.d.next = self.byte_count.q.val() + 1;
                     if self.writing.q.val() {
                         self.data.d.next =
-                            (self.data.q.val() << 8) | bit_cast::<32, 8>(self.byte.q.val());
+                            (self.data.q.val() << 8) | bit_cast::<32, 8>(self.byte_in.q.val());
                     }
                     if self.byte_count.q.val().all() {
                         if self.writing.q.val() {
@@ -353,23 +359,24 @@ impl Logic for SpiFront {
             }
         }
 
+        // A clock that is too fast must not pass for an answer: the check sum goes out wrong.
+        self.crc_sent.next = self.crc.q.val();
+        if self.late.q.val() {
+            self.crc_sent.next = !self.crc.q.val();
+        }
         // What goes out changes with the falling edge.
         if self.fall.val() {
-            self.output.d.next = self.output.q.val() << 1;
+            self.shift_out.d.next = self.shift_out.q.val() << 1;
             self.load_word.d.next = false;
             self.load_crc.d.next = false;
             if self.load_word.q.val() {
-                self.output.d.next = self.words.read_data.val();
-                // A clock that is too fast must not pass for an answer: the check sum goes out wrong.
+                self.shift_out.d.next = self.words.read_data.val();
                 self.late.d.next = self.late.q.val() | self.busy.q.val();
                 self.step_address.next = !self.last_word.val();
                 self.request.d.next = !self.last_word.val() & !self.busy.q.val();
             }
             if self.load_crc.q.val() {
-                self.output.d.next = bit_cast::<32, 16>(self.crc.q.val()) << 16;
-                if self.late.q.val() {
-                    self.output.d.next = (bit_cast::<32, 16>(self.crc.q.val()) << 16) ^ 0xffff0000;
-                }
+                self.shift_out.d.next = bit_cast::<32, 16>(self.crc_sent.val()) << 16;
             }
         }
 
@@ -398,9 +405,9 @@ impl Logic for SpiFront {
             self.load_word.d.next = false;
             self.load_crc.d.next = false;
             self.late.d.next = false;
-            self.output.d.next = 0xa0000000.into();
+            self.shift_out.d.next = self.accepted_word.val();
             if self.refused.q.val() {
-                self.output.d.next = 0xa2000000.into();
+                self.shift_out.d.next = self.refused_word.val();
             }
         }
 
@@ -411,7 +418,7 @@ impl Logic for SpiFront {
         self.word_address.next = self.address.q.val();
         self.in_range.next = !self.out_of_range.q.val();
         self.bank_write.next = self.writing.q.val();
-        self.miso.next = self.output.q.val().get_bit(31);
+        self.miso.next = self.shift_out.q.val().get_bit(31);
         // No register: the line is free as soon as the frame ends.
         self.miso_enable.next = !self.cs_n.val();
     }

@@ -1,6 +1,7 @@
 //! What each key may be, whatever the other keys say.
 
 use super::*;
+use crate::bus::spi::SCK_CYCLES_MIN;
 use crate::protocol::POSITION_BITS;
 use crate::stream::buffer::BUFFER_BYTES;
 use crate::timing::*;
@@ -75,6 +76,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "baud" => 9_600..=fast / UART_BIT_CYCLES_MIN,
         "read_hz" => 1..=1_000_000,
         "fifo_bytes" => BUFFER_BYTES[0]..=BUFFER_BYTES[BUFFER_BYTES.len() - 1],
+        "sck_hz" => 1..=fast / SCK_CYCLES_MIN,
         _ => 0..=u64::MAX,
     };
     Limits {

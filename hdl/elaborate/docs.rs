@@ -12,6 +12,8 @@ pub const SOURCES: &[&str] = &[
     include_str!("../add_info.rs"),
     include_str!("../bus/apb.rs"),
     include_str!("../bus/axi_lite.rs"),
+    include_str!("../bus/parallel.rs"),
+    include_str!("../bus/spi.rs"),
     include_str!("../bus/wishbone.rs"),
     include_str!("../bus/word_access.rs"),
     include_str!("../card.rs"),

@@ -41,6 +41,11 @@ fn what_a_bus_has_no_use_for_is_refused_with_the_reason() {
             "[link]: host.bus = \"apb\" has no UART",
         ),
         (
+            HostBus::Spi,
+            "[board]\nname = \"papilio_pro\"\n",
+            "[board]: a board top is made for a card with a UART only",
+        ),
+        (
             HostBus::Wishbone,
             "[board]\nname = \"papilio_pro\"\n",
             "[board]: host.bus = \"wishbone\" stays inside the chip",
@@ -59,6 +64,14 @@ fn what_a_bus_has_no_use_for_is_refused_with_the_reason() {
             "{found}"
         );
     }
+    let fast = parse("card.toml", &text(HostBus::Spi, "sck_hz = 12_500_001\n")).unwrap_err();
+    assert!(
+        fast[0]
+            .to_string()
+            .contains("host.sck_hz = 12500001: outside 1..12500000"),
+        "{fast:?}"
+    );
+    assert!(parse("card.toml", &text(HostBus::Spi, "sck_hz = 12_500_000\n")).is_ok());
     let wrong = text(HostBus::Apb, "").replace("\"apb\"", "\"ahb\"");
     let all = parse("card.toml", &wrong).unwrap_err();
     assert!(

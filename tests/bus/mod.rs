@@ -4,6 +4,8 @@ mod claims;
 mod cocotb;
 mod configuration;
 mod handshake;
+mod parallel;
+mod spi;
 mod three_ways;
 
 use endat_gen::config::parse;

@@ -1,9 +1,12 @@
 //! Kernels, engines and emitted Verilog of each front's card agree on a random stimulus, with the bus asked all the time.
 
-use super::{text, WORD_BUSES};
+use super::text;
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::parse;
-use endat_hdl::bus::{apb::ApbCard, axi_lite::AxiLiteCard, wishbone::WishboneCard, HostBus};
+use endat_hdl::bus::{
+    apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
+    wishbone::WishboneCard, HostBus,
+};
 use endat_hdl::elaborate::Design;
 use endat_sim::engine::{Engine, KernelEngine};
 use endat_sim::kernel_engine;
@@ -50,6 +53,17 @@ fn kernels(bus: HostBus) -> (Box<dyn Engine>, Design) {
                 out wb_dat_o, wb_ack_o, wb_err_o, led_status_o);
             Box::new(with_channels!(engine))
         }
+        HostBus::Spi => {
+            let engine: KernelEngine<SpiCard> = kernel_engine!(connected(SpiCard::new(card)); clk_i;
+                in rst_i, trigger_i, spi_sck_i, spi_cs_n_i, spi_mosi_i; out spi_miso_o, spi_miso_oe, led_status_o);
+            Box::new(with_channels!(engine))
+        }
+        HostBus::Parallel => {
+            let engine: KernelEngine<ParallelCard> = kernel_engine!(connected(ParallelCard::new(card)); clk_i;
+                in rst_i, trigger_i, bus_cs_n_i, bus_rd_n_i, bus_wr_n_i, bus_address_i, bus_data_i;
+                out bus_data_o, bus_data_oe, led_status_o);
+            Box::new(with_channels!(engine))
+        }
         _ => {
             let engine: KernelEngine<AxiLiteCard> = kernel_engine!(connected(AxiLiteCard::new(card)); clk_i;
                 in rst_i, trigger_i, s_axi_awaddr, s_axi_awvalid, s_axi_wdata, s_axi_wstrb, s_axi_wvalid, s_axi_bready,
@@ -81,6 +95,10 @@ fn stimulus(kernel: &dyn Engine) -> Stimulus {
             let name = port.name.as_str();
             let stays = match name {
                 "rst_i" | "trigger_i" => 400,
+                _ if name.starts_with("bus_") => 6,
+                "spi_cs_n_i" => 500,
+                "spi_sck_i" => 4,
+                "spi_mosi_i" => 20,
                 _ if name.contains("ready") => 2,
                 _ if name.contains("data0_i") || name.contains("data1_i") => 60,
                 _ => 30,
@@ -91,9 +109,14 @@ fn stimulus(kernel: &dyn Engine) -> Stimulus {
             let shift = if port.width_bits == 13 { 2 } else { 0 };
             *value = match name {
                 "rst_i" => 0,
+                "bus_address_i" => rng.in_range(0, 7).into(),
                 _ if name.contains("adr") || name.contains("addr") => {
                     u128::from(addresses[rng.in_range(0, 11) as usize] << shift)
                 }
+                "spi_sck_i" => *value ^ 1,
+                "spi_cs_n_i" => (rng.in_range(0, 3) == 0).into(),
+                // Addresses of the window; anything elsewhere.
+                "bus_data_i" => u128::from(addresses[rng.in_range(0, 11) as usize]),
                 "wb_sel_i" | "s_axi_wstrb" => 15 - u128::from(rng.in_range(0, 9) / 9),
                 // Asked more often than not.
                 _ if port.width_bits == 1 && !name.starts_with("endat") => {
@@ -115,7 +138,7 @@ fn stimulus(kernel: &dyn Engine) -> Stimulus {
 
 #[test]
 fn every_front_agrees() {
-    for bus in WORD_BUSES {
+    for bus in HostBus::ALL.into_iter().filter(|bus| *bus != HostBus::Uart) {
         let (mut kernel, design) = kernels(bus);
         let stimulus = stimulus(kernel.as_ref());
         let seen = three_way(
@@ -128,9 +151,11 @@ fn every_front_agrees() {
         let answers = match bus {
             HostBus::Apb => seen.output("s_apb_pready"),
             HostBus::Wishbone => seen.output("wb_ack_o"),
+            HostBus::Spi => seen.output("spi_miso_o"),
+            HostBus::Parallel => seen.output("bus_data_o"),
             _ => seen.output("s_axi_rvalid"),
         };
-        let answers = answers.windows(2).filter(|w| w[0] < w[1]).count();
+        let answers = answers.windows(2).filter(|w| w[0] != w[1]).count();
         assert!(answers > 5, "{bus:?}: {answers} answers");
     }
 }

@@ -1,6 +1,7 @@
 """cocotbext-wishbone's master."""
 
 import cocotb
+from cocotb.triggers import ClockCycles
 from cocotbext.wishbone.driver import WBOp, WishboneMaster
 
 import card
@@ -20,6 +21,11 @@ SIGNALS = {
 
 async def master(dut):
     card.start(dut)
+    # The model deposits its first values at once, and what is deposited on a floating input does not get inside in iverilog.
+    for name in SIGNALS.values():
+        if name.endswith("_i"):
+            getattr(dut, name).value = 0
+    await ClockCycles(dut.clk_i, 2)
     bus = WishboneMaster(dut, None, dut.clk_i, width=32, timeout=500, signals_dict=SIGNALS)
     await card.release(dut)
 
