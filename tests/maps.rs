@@ -60,7 +60,11 @@ impl Word {
                 false => vec![None],
             };
             for channel in channels {
-                words.extend(block.registers.iter().map(|register| Self {
+                // A card without a stream does not have its words.
+                let has_stream = config.stream.fifo_bytes != 0;
+                let registers = block.registers.iter();
+                let registers = registers.filter(|r| has_stream || !r.name.starts_with("stream_"));
+                words.extend(registers.map(|register| Self {
                     block,
                     register,
                     channel,

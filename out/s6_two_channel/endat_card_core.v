@@ -36,6 +36,16 @@ module endat_card_core (
     output wire   [7:0] read_byte,
     // One-cycle strobe: the access has ended.
     output wire         done,
+    // Frames of the stream are to be pushed; low without a stream.
+    output wire         push,
+    // A frame is being pushed: its first byte has been taken, its last one has not.
+    output wire         in_frame,
+    // push_byte is the next byte to push.
+    output wire         push_valid,
+    // The next byte.
+    output wire   [7:0] push_byte,
+    // Strobe, with push_valid only: the byte is taken.
+    input  wire         push_take,
     // EnDat clock to the transceiver.
     output wire         endat_clk0_o,
     // EnDat clock to the transceiver.
@@ -95,6 +105,7 @@ module endat_card_core (
     wire   [7:0] bank_service_write;
     wire         bank_service_half;
     wire  [15:0] bank_service_data;
+    wire         bank_stream_selected;
     wire         bank_trigger_now;
     wire   [7:0] bank_calibrate;
     wire   [2:0] bank_sources;
@@ -181,7 +192,7 @@ module endat_card_core (
     wire         port_1_sample_strobe;
     wire         port_1_alarm;
     wire  [31:0] port_1_host_word;
-    wire         _unused_ok = &{1'b0, bank_channel_skip[7:2], bank_service_channels[7:2], bank_service_read[7:2], bank_service_write[7:2], bank_calibrate[7:2], port_0_request_runs, port_0_line_high, port_0_displaced, port_0_over, port_0_over_request, port_0_over_cause, port_0_over_flags, port_0_reply, port_0_reply_good, port_0_info_active, port_0_info_1, port_0_info_2, port_0_info_came, port_0_info_good, port_0_calibrated, port_0_sample_strobe, port_1_request_runs, port_1_line_high, port_1_displaced, port_1_over, port_1_over_request, port_1_over_cause, port_1_over_flags, port_1_reply, port_1_reply_good, port_1_info_active, port_1_info_1, port_1_info_2, port_1_info_came, port_1_info_good, port_1_calibrated, port_1_sample_strobe};
+    wire         _unused_ok = &{1'b0, push_take, bank_channel_skip[7:2], bank_service_channels[7:2], bank_service_read[7:2], bank_service_write[7:2], bank_stream_selected, bank_calibrate[7:2], port_0_request_runs, port_0_line_high, port_0_displaced, port_0_over, port_0_over_request, port_0_over_cause, port_0_over_flags, port_0_reply, port_0_reply_good, port_0_info_active, port_0_info_1, port_0_info_2, port_0_info_came, port_0_info_good, port_0_calibrated, port_0_sample_strobe, port_1_request_runs, port_1_line_high, port_1_displaced, port_1_over, port_1_over_request, port_1_over_cause, port_1_over_flags, port_1_reply, port_1_reply_good, port_1_info_active, port_1_info_1, port_1_info_2, port_1_info_came, port_1_info_good, port_1_calibrated, port_1_sample_strobe};
 
     endat_timebase u_timebase (
         .clock(clk_i),
@@ -230,6 +241,8 @@ module endat_card_core (
         .service_write(bank_service_write),
         .service_half(bank_service_half),
         .service_data(bank_service_data),
+        .stream_selected(bank_stream_selected),
+        .stream_byte(8'd0),
         .trigger_count(trigger_trigger_count),
         .trigger_now(bank_trigger_now),
         .calibrate(bank_calibrate),
@@ -463,6 +476,10 @@ module endat_card_core (
             led_status_o = timebase_timestamp[QUICK_BIT];
         end
     end
+    assign push = 1'b0;
+    assign in_frame = 1'b0;
+    assign push_valid = 1'b0;
+    assign push_byte = 8'd0;
 endmodule
 
 `default_nettype wire

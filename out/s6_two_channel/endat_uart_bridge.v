@@ -35,7 +35,17 @@ module endat_uart_bridge (
     // One-cycle strobe: the access has ended.
     input  wire         done,
     // A read command is being answered: results must not change.
-    output wire         reading
+    output wire         reading,
+    // Frames are being pushed: answers begin with 0xFF.
+    input  wire         push,
+    // A frame has begun and not yet ended.
+    input  wire         in_frame,
+    // push_byte can be sent.
+    input  wire         push_valid,
+    // Next byte to push.
+    input  wire   [7:0] push_byte,
+    // Strobe: push_byte is taken.
+    output wire         push_take
 );
     localparam  [16:0] TIMEOUT_US = 17'h186a0;
     // What the next byte means.
@@ -46,6 +56,8 @@ module endat_uart_bridge (
     localparam   [2:0] BRIDGE_STATE_READ = 3'd4; // Data to the host; bytes from it are dropped.
     localparam   [2:0] BRIDGE_STATE_DISCARD = 3'd5; // Nothing, until the time-out.
 
+    wire         from_stream;
+    wire         answer_sent;
     wire         last_lane;
     reg          next_lane;
     wire  [11:0] next_address;
@@ -53,6 +65,8 @@ module endat_uart_bridge (
     wire   [7:0] receiver_data;
     wire         receiver_strobe;
     wire         receiver_framing_error;
+    reg    [7:0] transmitter_data;
+    reg          transmitter_valid;
     wire         transmitter_accept;
     reg    [2:0] state = BRIDGE_STATE_COMMAND;
     reg    [2:0] state_next;
@@ -88,6 +102,10 @@ module endat_uart_bridge (
     reg          expired_next;
     reg          stop_timer = 1'b0;
     reg          stop_timer_next;
+    reg          marked = 1'b0;
+    reg          marked_next;
+    reg          marker = 1'b0;
+    reg          marker_next;
 
     endat_uart_receiver u_receiver (
         .clock(clock),
@@ -100,8 +118,8 @@ module endat_uart_bridge (
     endat_uart_transmitter u_transmitter (
         .clock(clock),
         .reset(reset),
-        .data(read_byte),
-        .valid(byte_ready),
+        .data(transmitter_data),
+        .valid(transmitter_valid),
         .accept(transmitter_accept),
         .tx(tx)
     );
@@ -110,16 +128,6 @@ module endat_uart_bridge (
         data_next = data;
         if ((receiver_strobe & (state == BRIDGE_STATE_WRITE)) | take_byte) begin
             data_next = (data << 4'd8) | {24'd0, receiver_data};
-        end
-    end
-
-    always @* begin
-        byte_ready_next = byte_ready;
-        if (done & (state == BRIDGE_STATE_READ)) begin
-            byte_ready_next = 1'b1;
-        end
-        if (transmitter_accept) begin
-            byte_ready_next = 1'b0;
         end
     end
 
@@ -134,6 +142,31 @@ module endat_uart_bridge (
             expired_next = 1'b0;
         end
     end
+    assign from_stream = in_frame | (state != BRIDGE_STATE_READ);
+
+    always @* begin
+        transmitter_data = read_byte;
+        transmitter_valid = byte_ready;
+        if (marker) begin
+            transmitter_data = 8'd255;
+        end
+        if (from_stream) begin
+            transmitter_data = push_byte;
+            transmitter_valid = push_valid;
+        end
+    end
+    assign push_take = transmitter_accept & from_stream;
+    assign answer_sent = transmitter_accept & !from_stream & !marker;
+
+    always @* begin
+        byte_ready_next = byte_ready;
+        if (done & (state == BRIDGE_STATE_READ)) begin
+            byte_ready_next = 1'b1;
+        end
+        if (answer_sent) begin
+            byte_ready_next = 1'b0;
+        end
+    end
     assign last_lane = &byte_lane;
     assign high_bits = |receiver_data;
     assign next_address = {1'b0, address} + 12'd1;
@@ -146,6 +179,14 @@ module endat_uart_bridge (
         address_next = address;
         out_of_range_next = out_of_range;
         byte_lane_next = byte_lane;
+        marked_next = marked;
+        marker_next = marker;
+        if (transmitter_accept & !from_stream) begin
+            marker_next = 1'b0;
+        end
+        if (push) begin
+            marked_next = 1'b1;
+        end
         word_end_next = 1'b0;
         step_address_next = 1'b0;
         access_next_next = 1'b0;
@@ -191,6 +232,7 @@ module endat_uart_bridge (
                     if (last_lane) begin
                         state_next = BRIDGE_STATE_READ;
                         access_next_next = !writing & !no_word;
+                        marker_next = marked;
                         if (writing) begin
                             state_next = BRIDGE_STATE_WRITE;
                         end
@@ -233,6 +275,9 @@ module endat_uart_bridge (
             words_left_next = words_left - 8'd1;
             if (last_word) begin
                 state_next = BRIDGE_STATE_COMMAND;
+                if (!writing & !push) begin
+                    marked_next = 1'b0;
+                end
             end
         end
         if (done & writing) begin
@@ -297,6 +342,8 @@ module endat_uart_bridge (
             idle_us <= 17'd0;
             expired <= 1'b0;
             stop_timer <= 1'b0;
+            marked <= 1'b0;
+            marker <= 1'b0;
         end else begin
             state <= state_next;
             fixed <= fixed_next;
@@ -306,7 +353,7 @@ module endat_uart_bridge (
             out_of_range <= out_of_range_next;
             byte_lane <= byte_lane_next;
             data <= data_next;
-            sent <= transmitter_accept;
+            sent <= answer_sent;
             word_end <= word_end_next;
             last_word <= words_left == 8'd1;
             no_word <= !(|words_left);
@@ -317,6 +364,8 @@ module endat_uart_bridge (
             idle_us <= idle_us_next;
             expired <= expired_next;
             stop_timer <= stop_timer_next;
+            marked <= marked_next;
+            marker <= marker_next;
         end
     end
 endmodule

@@ -92,6 +92,10 @@ module s6_two_channel (
     wire   [7:0] core_passing_byte;
     wire   [7:0] core_read_byte;
     wire         core_done;
+    wire         core_push;
+    wire         core_in_frame;
+    wire         core_push_valid;
+    wire   [7:0] core_push_byte;
     wire  [10:0] bridge_word_address;
     wire         bridge_in_range;
     wire   [1:0] bridge_lane;
@@ -99,6 +103,7 @@ module s6_two_channel (
     wire         bridge_write;
     wire  [31:0] bridge_write_data;
     wire         bridge_reading;
+    wire         bridge_push_take;
     wire         _unused_ok = &{1'b0, core_passing_byte};
 
     endat_card_core u_core (
@@ -117,6 +122,11 @@ module s6_two_channel (
         .passing_byte(core_passing_byte),
         .read_byte(core_read_byte),
         .done(core_done),
+        .push(core_push),
+        .in_frame(core_in_frame),
+        .push_valid(core_push_valid),
+        .push_byte(core_push_byte),
+        .push_take(bridge_push_take),
         .endat_clk0_o(endat_clk0_o),
         .endat_clk1_o(endat_clk1_o),
         .endat_data0_o(endat_data0_o),
@@ -144,7 +154,12 @@ module s6_two_channel (
         .take_byte(core_take_byte),
         .read_byte(core_read_byte),
         .done(core_done),
-        .reading(bridge_reading)
+        .reading(bridge_reading),
+        .push(core_push),
+        .in_frame(core_in_frame),
+        .push_valid(core_push_valid),
+        .push_byte(core_push_byte),
+        .push_take(bridge_push_take)
     );
 endmodule
 

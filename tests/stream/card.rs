@@ -1,25 +1,37 @@
 //! A whole card that streams: full rate, answers in between, switching, overflow.
 
 use super::line::{card, words_of, Item, Line};
-use super::rig::{Set, FRESH, TAKEN, VALID};
+use super::rig::{Set, FRESH, MISSING, TAKEN, VALID};
 use endat_hdl::config::StreamStart::{Collect, Off, Push};
 use endat_hdl::regs::{CARD, CARD_CONFIG};
 
-/// Sets of a run without loss: whole, consecutive, at the timer's distance, with the encoders' positions.
-fn check(line: &Line, sets: &[Set], period: u64) {
-    let first = usize::from(sets[0].sequence);
+/// Cause of a result whose channel has missed a trigger.
+const OVERRUN: u16 = endat_hdl::transaction::cause::TRIGGER_OVERRUN as u16;
+
+/// Sets of a run without loss: whole, consecutive from the first trigger on, at the timer's distance, with the encoders' positions.
+/// The first frame measures the delay, slowly: until then a channel may be missing, or busy. The number of sets after that.
+fn check(line: &Line, sets: &[Set], period: u64) -> usize {
+    let mut frames = [0; 2];
+    let mut good = 0;
     for (n, set) in sets.iter().enumerate() {
-        let number = first + n;
-        assert_eq!((usize::from(set.sequence), set.lost), (number, 0));
+        assert_eq!((usize::from(set.sequence), set.lost), (n + 1, 0));
         let since = set.timestamp.wrapping_sub(sets[0].timestamp);
         assert_eq!(u64::from(since), n as u64 * period);
         for (channel, part) in set.parts.iter().enumerate() {
-            assert_eq!(part.status, TAKEN | VALID | FRESH, "{number} {channel}");
-            // Each trigger makes one frame, from the first one on.
-            let frame = &line.bench.frames(channel)[number - 1];
-            assert_eq!(part.position, frame.position, "{number} {channel}");
+            let frame = line.bench.frames(channel).get(frames[channel]);
+            frames[channel] += usize::from(part.status & TAKEN != 0);
+            // Triggers that came meanwhile are told with the next good result.
+            let overrun = if n < 6 { OVERRUN } else { 0 };
+            if part.status & !overrun == TAKEN | VALID | FRESH {
+                assert_eq!(part.position, frame.unwrap().position, "{n} {channel}");
+            } else {
+                assert!(n < 6 && [0, TAKEN | MISSING].contains(&part.status));
+                assert_eq!(part.position, 0, "{n} {channel}");
+            }
         }
+        good += usize::from(set.parts.iter().all(|p| p.status & FRESH != 0));
     }
+    good
 }
 
 fn split(items: Vec<Item>) -> (Vec<Set>, Vec<Vec<u32>>) {
@@ -57,7 +69,7 @@ fn every_set_comes_at_full_rate_with_register_accesses_in_between() {
         let (sets, answers) = split(line.marked());
         assert!(sets.len() as u64 >= sets_wanted, "{} sets", sets.len());
         assert_eq!(usize::from(sets[0].sequence), 1);
-        check(&line, &sets, period);
+        assert!(check(&line, &sets, period) as u64 > sets_wanted - 6);
         assert_eq!(answers.len(), reads);
         for answer in answers.iter().filter(|a| a.len() == 2) {
             assert_eq!(answer[..], [0x456e_4474, 0x0005_0000]);
@@ -66,9 +78,14 @@ fn every_set_comes_at_full_rate_with_register_accesses_in_between() {
             assert_eq!(answer[3], answer[11], "both of one trigger");
         }
         // The falling edge comes a constant few cycles behind the set's moment.
-        let last = answers.iter().rfind(|a| a.len() == 14).unwrap();
-        let set = sets.iter().rfind(|s| s.timestamp <= last[3]).unwrap();
-        assert_eq!(last[3] - set.timestamp, 3);
+        let results = answers.iter().filter(|a| a.len() == 14 && a[3] != 0);
+        let behind = results.filter_map(|a| {
+            let set = sets.iter().rfind(|s| s.timestamp <= a[3])?;
+            Some(a[3] - set.timestamp)
+        });
+        let behind: Vec<u32> = behind.collect();
+        assert!(behind.len() > 2 && behind.iter().all(|b| *b == behind[0]));
+        assert!((1..10).contains(&behind[0]), "{behind:?}");
     }
 }
 
@@ -151,7 +168,7 @@ fn a_client_that_polls_gets_the_same_stream() {
     }
     let sets = Set::all(&bytes);
     assert!(sets.len() > 30, "{}", sets.len());
-    check(&line, &sets, config.sample_period_cycles);
+    assert!(check(&line, &sets, config.sample_period_cycles) > 30);
     // A stuck client: the buffer fills, then sets are lost and counted.
     line.run(100 * config.sample_period_cycles);
     line.heard.clear();
