@@ -168,6 +168,8 @@ impl Stream {
     }
 }
 
+// rust-hdl's macro drops match guards.
+#[allow(clippy::collapsible_match)]
 impl Logic for Stream {
     #[hdl_gen]
     fn update(&mut self) {

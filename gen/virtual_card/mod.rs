@@ -98,7 +98,7 @@ fn encoder(
         )));
     }
     let config = &project.card.channels[channel];
-    let bits = config.position_bits as u32;
+    let bits = config.position_bits;
     Ok(if config.command == ModeCommand::SendPosition {
         EncoderConfig::endat21(bits)
     } else {

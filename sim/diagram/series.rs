@@ -1,6 +1,7 @@
 //! Draws numbers over time, one panel for each series.
 
 use super::svg::{text_width, Anchor, Svg};
+use std::cmp::Ordering;
 
 /// Numbers over time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,13 +35,11 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
         (low.min(v), high.max(v))
     });
-    (low <= high).then(|| {
-        if low < high {
-            (low, high)
-        } else {
-            (low - 0.5, high + 0.5)
-        }
-    })
+    match low.total_cmp(&high) {
+        Ordering::Less => Some((low, high)),
+        Ordering::Equal => Some((low - 0.5, high + 0.5)),
+        Ordering::Greater => None,
+    }
 }
 
 /// Steps of 1, 2 or 5 times a power of ten, some five of them.
@@ -153,7 +152,7 @@ mod tests {
             unit: "deg".into(),
             points: (0..5).map(point).collect(),
         };
-        let svg = series_svg(&[one.clone()], "log", "");
+        let svg = series_svg(std::slice::from_ref(&one), "log", "");
         assert_eq!(svg.matches("class=\"series-0\"").count(), 2);
         let long = Series {
             points: (0..100_000).map(|n| (n as f64, Some(0.0))).collect(),
