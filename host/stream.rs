@@ -279,7 +279,7 @@ mod tests {
             timestamp: 0x00AB_CDEF,
             channels: vec![whole, missing],
         };
-        assert_eq!(sets, [expected.clone()]);
+        assert_eq!(sets, std::slice::from_ref(&expected));
         assert_eq!((counts.sets, counts.damaged), (1, 0));
         assert_eq!(encode(&expected), bytes(FRAME));
     }

@@ -57,7 +57,7 @@ impl Transport for Disturbed {
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         let most = (buffer.len() / 2).max(1);
         let count = self.card.receive(&mut buffer[..most], wait)?;
-        let bytes = self.pass(&buffer[..count].to_vec(), false);
+        let bytes = self.pass(&buffer[..count], false);
         buffer[..bytes.len()].copy_from_slice(&bytes);
         Ok(bytes.len())
     }

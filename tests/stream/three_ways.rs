@@ -67,7 +67,7 @@ fn stream_and_channel_agree_in_kernels_engines_and_verilog() {
     let recording = three_way("stream", &mut kernel, &design, &stream).unwrap();
     // Something has happened.
     let pushed = recording.output("push_byte");
-    assert!(pushed.iter().any(|b| *b == 0x11), "the head of a set");
+    assert!(pushed.contains(&0x11), "the head of a set");
     assert!(recording.output("take_set").iter().sum::<u128>() > 5);
 
     let mut block = SetChannel::new(0);
