@@ -260,6 +260,7 @@ mod tests {
 
     #[test]
     fn the_example_of_the_page() {
+        assert!(include_str!("../docs/stream.md").contains(FRAME));
         let (sets, counts) = decode(&bytes(FRAME));
         let whole = Sample {
             position: 0x0123_4567,

@@ -1,5 +1,6 @@
 //! Draws the histogram of the edges of DATA that a card has measured, and the margin that it leaves.
 
+use super::series::ticks;
 use super::svg::{text_width, Anchor, Svg};
 use std::fmt;
 
@@ -37,7 +38,7 @@ path{fill:none}.axis{stroke:#374151;stroke-width:1}.grid{stroke:#e5e7eb;stroke-w
 .expected{stroke:#111827;stroke-width:1;stroke-dasharray:4 3}.margin{stroke:#c2410c;stroke-width:1.2}";
 
 const LEFT: f64 = 64.0;
-const TOP: f64 = 92.0;
+const TOP: f64 = 112.0;
 const HEIGHT: f64 = 240.0;
 const BIN: f64 = 22.0;
 
@@ -125,10 +126,11 @@ pub fn edges_svg(edges: &Edges, title: &str) -> String {
         svg.rect(x(half), TOP, right - x(half), HEIGHT, "far");
     }
     let most = f64::from(edges.bins.iter().copied().max().unwrap_or(0).max(1));
-    for part in 1..=4 {
-        let y = bottom - HEIGHT * f64::from(part) / 4.0;
+    let (counts, _) = ticks(0.0, most);
+    for count in counts {
+        let y = bottom - HEIGHT * count / most;
         svg.line(&[(LEFT, y), (right, y)], "grid");
-        let label = format!("{:.0}", most * f64::from(part) / 4.0);
+        let label = format!("{count:.0}");
         let before = LEFT - 8.0 - text_width(&label, 11.0);
         svg.text(before, y + 4.0, Anchor::Start, "tick", &label);
     }

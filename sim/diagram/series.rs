@@ -43,7 +43,7 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 }
 
 /// Steps of 1, 2 or 5 times a power of ten, some five of them.
-fn ticks(low: f64, high: f64) -> (Vec<f64>, usize) {
+pub(super) fn ticks(low: f64, high: f64) -> (Vec<f64>, usize) {
     let rough = (high - low) / 5.0;
     let power = 10f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0]

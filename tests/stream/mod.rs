@@ -3,6 +3,7 @@
 mod buffer;
 mod card;
 mod line;
+mod refusals;
 mod rig;
 mod sets;
 mod three_ways;
