@@ -6,6 +6,7 @@ use crate::config::{Kind, Project};
 use crate::error::GenError;
 use crate::explain;
 use crate::template;
+use endat_hdl::bus::HostBus;
 use endat_sim::decimal;
 use minijinja::context;
 use minijinja::value::{Serde, Value};
@@ -103,6 +104,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
             hash => project.hash.as_str(),
             bus => project.bus.name(),
             internal => project.bus.is_internal(),
+            bare => project.bus == HostBus::Bare,
             system_hz => project.card.system_hz,
             channels => project.card.channels.len(),
             timing => explain::report(project).to_string(),

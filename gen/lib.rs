@@ -31,7 +31,7 @@ use endat_hdl::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard, HostBus,
 };
-use endat_hdl::card::Card;
+use endat_hdl::card::{bare_port, Card};
 use endat_hdl::elaborate::{elaborate, Design};
 use error::GenError;
 use rust_hdl::prelude::Block;
@@ -74,6 +74,7 @@ pub fn design(project: &Project) -> Result<Design, GenError> {
         HostBus::AxiLite => of(AxiLiteCard::new(card), name),
         HostBus::Spi => of(SpiCard::new(card), name),
         HostBus::Parallel => of(ParallelCard::new(card), name),
+        HostBus::Bare => of(bare_port(card), name),
     }
 }
 
@@ -86,11 +87,14 @@ fn artifacts_of(project: &Project, design: &Design) -> Result<Vec<Artifact>, Gen
     let report = explain::report(project).to_string();
     let channels = project.card.channels.len();
     let header = Header {
-        title: format!(
-            "{}: EnDat acquisition card, {channels} channel{}.",
-            project.name,
-            if channels == 1 { "" } else { "s" }
-        ),
+        title: match project.bus {
+            HostBus::Bare => format!("{}: EnDat encoder port.", project.name),
+            _ => format!(
+                "{}: EnDat acquisition card, {channels} channel{}.",
+                project.name,
+                if channels == 1 { "" } else { "s" }
+            ),
+        },
         version: env!("CARGO_PKG_VERSION").into(),
         configuration_hash: project.hash.clone(),
         timing: report.lines().map(str::to_owned).collect(),
@@ -100,6 +104,8 @@ fn artifacts_of(project: &Project, design: &Design) -> Result<Vec<Artifact>, Gen
         .into_iter()
         .map(|(path, text)| Artifact::new(path, text))
         .collect();
-    artifacts.extend(maps::artifacts(project)?);
+    if project.bus != HostBus::Bare {
+        artifacts.extend(maps::artifacts(project)?);
+    }
     Ok(artifacts)
 }

@@ -30,17 +30,20 @@ pub enum HostBus {
     Spi,
     /// Asynchronous bus with eight registers of 16 bits.
     Parallel,
+    /// Nothing: one encoder port with its signals, no registers.
+    Bare,
 }
 
 impl HostBus {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Uart,
         Self::Apb,
         Self::Wishbone,
         Self::AxiLite,
         Self::Spi,
         Self::Parallel,
+        Self::Bare,
     ];
 
     /// Name in a configuration.
@@ -52,6 +55,7 @@ impl HostBus {
             Self::AxiLite => "axi_lite",
             Self::Spi => "spi",
             Self::Parallel => "parallel",
+            Self::Bare => "none",
         }
     }
 
@@ -62,6 +66,9 @@ impl HostBus {
 
     /// Whether its signals stay inside the chip, so that no board has pins for them.
     pub const fn is_internal(self) -> bool {
-        matches!(self, Self::Apb | Self::Wishbone | Self::AxiLite)
+        matches!(
+            self,
+            Self::Apb | Self::Wishbone | Self::AxiLite | Self::Bare
+        )
     }
 }

@@ -147,6 +147,17 @@ pub fn service_times(config: &CardConfig) -> ServiceTimes {
     }
 }
 
+fn port(card: &CardConfig, channel: &ChannelConfig, service: &ServiceTimes) -> EncoderPort {
+    let wants_short = channel.wants_short_recovery();
+    let service = card.service.requests.then_some(service);
+    EncoderPort::with_line(times(card, channel), service, wants_short, line(card))
+}
+
+/// The first channel's port alone, for those who bring registers and triggers of their own.
+pub fn bare_port(card: &CardConfig) -> EncoderPort {
+    port(card, &card.channels[0], &service_times(card))
+}
+
 /// `n` signals or links.
 pub(crate) fn each<T: Default>(n: usize) -> Vec<T> {
     (0..n).map(|_| T::default()).collect()
@@ -199,15 +210,7 @@ impl CardCore {
             port: config
                 .channels
                 .iter()
-                .map(|c| {
-                    let service = config.service.requests.then_some(service);
-                    EncoderPort::with_line(
-                        times(config, c),
-                        service,
-                        c.wants_short_recovery(),
-                        line(config),
-                    )
-                })
+                .map(|c| port(config, c, service))
                 .collect(),
             stream: (0..streams)
                 .map(|_| {

@@ -77,6 +77,17 @@ impl<T: Transport> Bridge<T> {
         self.decoder.forget();
     }
 
+    /// Ends the pushing in order: the answer behind the last frame is the last one with a marker.
+    pub fn end_push(&mut self) -> Result<(), HostError> {
+        self.write(Place::at("card", "stream_control", 0).address(), &[0])?;
+        let last = self.read(0, 1);
+        match last {
+            Ok(_) => self.set_pushes(false),
+            Err(_) => self.calm()?,
+        }
+        Ok(())
+    }
+
     /// Brings the link into a known state, whoever used it before: nothing is half sent, and the card pushes nothing.
     pub fn calm(&mut self) -> Result<(), HostError> {
         self.set_pushes(false);

@@ -100,7 +100,7 @@ impl Feed {
     /// Ends: the link is as it was before.
     pub fn end<T: Transport>(self, card: &mut Card<T>) -> Result<(), HostError> {
         match self.streams {
-            true => card.bridge().calm(),
+            true => card.bridge().end_push(),
             false => Ok(()),
         }
     }

@@ -115,6 +115,13 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
             &[("link", &link), ("board", &board_table), ("pins", &pins)],
         );
     }
+    if bus == Some(HostBus::Bare) {
+        // Further channels would be the same module again.
+        if let Some(second) = tables.as_ref().and_then(|t| t.get(1)) {
+            let text = "[[channel]]: host.bus = \"none\" makes one encoder port; write one table, and instantiate the port as often as you like";
+            second.complain_plain(text.to_owned());
+        }
+    }
     for table in tables.iter().flatten().chain([
         &clock,
         &endat,

@@ -90,3 +90,34 @@ fn another_bus_is_another_hash() {
     hashes.dedup();
     assert_eq!(hashes.len(), WORD_BUSES.len());
 }
+
+/// One channel without any bus.
+fn bare(more: &str) -> String {
+    let both = text(HostBus::Bare, more);
+    let second = "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n";
+    assert!(both.contains(second));
+    both.replace(second, "")
+}
+
+#[test]
+fn without_a_bus_one_port_is_emitted_and_no_registers() {
+    let project = parse("port.toml", &bare("")).unwrap();
+    let files = endat_gen::emit(&project).unwrap();
+    let has = |end: &str| files.iter().any(|f| f.path.ends_with(end));
+    assert!(has("none_card.v") && has("_instance.vh") && has(".core") && has("README.md"));
+    assert!(!has("_registers.h") && !has(".svd") && !has("register_bank.v") && !has("_top.v"));
+    let top = files.iter().find(|f| f.path == "none_card.v").unwrap();
+    for port in [
+        "input  wire         trigger",
+        "output wire  [47:0] position",
+        "endat_clk",
+    ] {
+        assert!(top.text.contains(port), "{port}");
+    }
+    let two = parse("port.toml", &text(HostBus::Bare, "")).unwrap_err();
+    assert_eq!(two.len(), 1, "{two:?}");
+    assert!(
+        two[0].to_string().contains("makes one encoder port"),
+        "{two:?}"
+    );
+}

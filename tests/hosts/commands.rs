@@ -172,6 +172,38 @@ fn log_writes_a_file_and_does_not_replace_another() {
         .all(|l| serde_json::from_str::<serde_json::Value>(l).is_ok()));
 }
 
+/// Catches a stream that loses or doubles a set, and a link that is not as before when the log has ended.
+#[test]
+fn log_has_every_trigger_of_a_card_with_a_stream() {
+    use endat_host::feed::Feed;
+    let mut card = super::host("s6_two_channel_service");
+    for channel in [0, 1] {
+        card.wait_for_initialisation(channel).unwrap();
+    }
+    for _ in 0..2 {
+        let mut feed = Feed::begin(&mut card, false).unwrap();
+        assert!(feed.streams());
+        let mut rows = std::collections::VecDeque::new();
+        while rows.len() < 60 {
+            feed.fill(&mut card, &mut rows, std::time::Duration::from_millis(5))
+                .unwrap();
+            // Registers can be read meanwhile.
+            assert_eq!(card.bridge().read(0, 1).unwrap(), [0x456E_4474]);
+        }
+        assert_eq!(feed.lost_in_card(), 0);
+        feed.end(&mut card).unwrap();
+        for (before, row) in rows.iter().zip(rows.iter().skip(1)) {
+            assert_eq!((row.trigger - before.trigger, row.missing), (1, 0));
+            assert_eq!(row.cycles - before.cycles, 10_000);
+            assert!(row.cells.iter().all(|c| c.fresh && c.cause == "none"));
+        }
+        // Plain UARTBone again, without a wait.
+        let retries = card.bridge().retries();
+        assert_eq!(card.bridge().read(0, 1).unwrap(), [0x456E_4474]);
+        assert_eq!(card.bridge().retries(), retries);
+    }
+}
+
 fn csv_rows(text: &str) -> Vec<Vec<String>> {
     let row = |line: &str| line.split(',').map(str::to_owned).collect();
     text.lines().map(row).collect()

@@ -3,7 +3,7 @@
 use super::super::number::number;
 use super::super::pictures::{check_all, write_all, File};
 use super::super::Outcome;
-use super::{interrupted, scale, settled, told, AnyCard, PortArgs};
+use super::{interrupted, scales, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::{Args, ValueEnum};
 use endat_host::feed::{Feed, Row};
@@ -194,9 +194,7 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     };
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let scales = (0..card.identity().channels)
-        .map(|channel| scale(&mut card, channel))
-        .collect::<Result<Vec<_>, _>>()?;
+    let scales = scales(&mut card)?;
     let (out, name): (Box<dyn Write>, String) = match &arguments.out {
         None => (Box::new(io::stdout()), "stdout".into()),
         Some(path) => {

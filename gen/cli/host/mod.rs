@@ -89,7 +89,7 @@ pub fn channel(card: &AnyCard, text: Option<&str>) -> Result<usize, GenError> {
 }
 
 /// What a measuring step of a channel is: as the encoder says, else as if the position were one turn.
-pub fn scale(card: &mut AnyCard, channel: usize) -> Result<Scale, GenError> {
+fn scale(card: &mut AnyCard, channel: usize) -> Result<Scale, GenError> {
     if card.identity().has("initialise") {
         if let Some(scale) = card.name_plate(channel).map_err(told)?.scale() {
             return Ok(scale);
@@ -98,6 +98,12 @@ pub fn scale(card: &mut AnyCard, channel: usize) -> Result<Scale, GenError> {
     let place = card.place(&format!("config{channel}.frame.position_bits"));
     let bits = place.and_then(|place| card.read(&place)).map_err(told)?;
     Ok(Scale::singleturn(bits))
+}
+
+/// What a measuring step is, of every channel.
+pub fn scales(card: &mut AnyCard) -> Result<Vec<Scale>, GenError> {
+    let channels = 0..card.identity().channels;
+    channels.map(|channel| scale(card, channel)).collect()
 }
 
 /// Waits until no encoder is being initialised and every channel has had a first result, or has none after a second.

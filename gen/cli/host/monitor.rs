@@ -3,7 +3,7 @@
 use super::super::number::{decimal, number};
 use super::super::Outcome;
 use super::read::{shown, verdict};
-use super::{interrupted, scale, settled, told, AnyCard, PortArgs};
+use super::{interrupted, scales, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::registers::Place;
@@ -147,9 +147,7 @@ pub fn run(arguments: &MonitorArgs) -> Result<Outcome, GenError> {
     let every = Duration::from_secs_f64(every);
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let scales = (0..card.identity().channels)
-        .map(|channel| scale(&mut card, channel))
-        .collect::<Result<Vec<_>, _>>()?;
+    let scales = scales(&mut card)?;
     let places = Places::new(&card)?;
     let stop = interrupted();
     let mut stdout = std::io::stdout();

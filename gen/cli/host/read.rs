@@ -1,7 +1,7 @@
 //! `read`: the latest positions, once.
 
 use super::super::{to_json, Outcome};
-use super::{scale, settled, told, PortArgs};
+use super::{scales, settled, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::result::Reading;
@@ -46,9 +46,7 @@ pub fn verdict(reading: &Reading) -> String {
 pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let scales = (0..card.identity().channels)
-        .map(|channel| scale(&mut card, channel))
-        .collect::<Result<Vec<_>, _>>()?;
+    let scales = scales(&mut card)?;
     let results = card.results().map_err(told)?;
     let system_hz = f64::from(card.identity().system_hz);
     let is_good = results.channels.iter().all(|r| r.fresh);

@@ -2,7 +2,7 @@
 
 use super::super::number::number;
 use super::super::Outcome;
-use super::{interrupted, scale, settled, told, PortArgs};
+use super::{interrupted, scales, settled, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::panda::{Column, Ports, Server, CONTROL_PORT, DATA_PORT};
@@ -48,9 +48,7 @@ pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
     })?;
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let scales = (0..card.identity().channels)
-        .map(|channel| scale(&mut card, channel))
-        .collect::<Result<Vec<_>, _>>()?;
+    let scales = scales(&mut card)?;
     let columns = Column::all(card.identity().system_hz, &scales);
     let mut stdout = std::io::stdout();
     if let Ok([control, data]) = ports.addresses() {
