@@ -18,7 +18,7 @@ pub enum HostError {
         remedy: &'static str,
     },
     /// No answer, several times.
-    #[error("no answer from the card in {tries} tries of {wait_ms} ms; is it powered, is the baud rate the card's (--baud)?")]
+    #[error("no answer from the card in {tries} tries of {wait_ms} ms; is it powered, is the baud rate the card's (--baud), is another program connected to it?")]
     Silent {
         /// How often it was asked.
         tries: u32,

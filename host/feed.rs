@@ -6,7 +6,7 @@ use crate::registers::Place;
 use crate::transport::Transport;
 use crate::HostError;
 use std::collections::VecDeque;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A channel of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,7 +68,11 @@ pub struct Feed {
     streams: bool,
     clock: Clock,
     lost_in_card: u64,
+    heard: Instant,
 }
+
+/// Nothing for so long: perhaps the card has begun anew, and does not stream any more.
+const SILENCE: Duration = Duration::from_secs(1);
 
 impl Feed {
     /// Begins: from the stream if the card has one and `polls` does not forbid it.
@@ -84,6 +88,7 @@ impl Feed {
             streams,
             clock: Clock::default(),
             lost_in_card: 0,
+            heard: Instant::now(),
         })
     }
 
@@ -123,7 +128,15 @@ impl Feed {
         wait: Duration,
     ) -> Result<(), HostError> {
         if self.streams {
-            for set in card.bridge().pushed(wait)? {
+            let sets = card.bridge().pushed(wait)?;
+            if !sets.is_empty() {
+                self.heard = Instant::now();
+            } else if self.heard.elapsed() > SILENCE {
+                self.heard = Instant::now();
+                let control = Place::at("card", "stream_control", 0);
+                card.write(&control, COLLECT_AND_PUSH)?;
+            }
+            for set in sets {
                 self.lost_in_card += u64::from(set.lost);
                 let cells = set.channels.iter().map(|s| Cell {
                     position: s.valid.then_some(s.position),

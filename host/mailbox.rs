@@ -50,6 +50,17 @@ impl<T: Transport> Card<T> {
         let at = |register| Place::at("service", register, channel);
         self.wait_for_initialisation(channel)?;
         let finished = |state: u32| state >> 16;
+        // One that another program sent, or that was given up, is not ours.
+        let busy = Place::field_at("service", "request_state", "busy", channel);
+        let end = Instant::now() + self.patience();
+        while self.read(&busy)? == 1 {
+            if Instant::now() > end {
+                return Err(HostError::Refused(format!(
+                    "channel {channel}: an earlier request is still under way after {} s; try again later",
+                    self.patience().as_secs()
+                )));
+            }
+        }
         let before = self.read(&at("request_state"))?;
         let word = u32::from(request.command) << 24
             | u32::from(request.address) << 16
@@ -63,7 +74,7 @@ impl<T: Transport> Card<T> {
             }
             if Instant::now() > end {
                 return Err(HostError::Refused(format!(
-                    "request {:06b} of channel {channel}: not finished after {} s; are positions triggered (supplements ride on them), is the encoder plugged in?",
+                    "request {:06b} of channel {channel}: not finished after {} s; is the encoder plugged in, and for EnDat 2.2 commands, which ride on positions: is a trigger enabled?",
                     request.command,
                     self.patience().as_secs()
                 )));

@@ -178,7 +178,13 @@ impl Place {
         let mut parts = name.split('.');
         let block_name = parts.next().unwrap_or("");
         let stem = block_name.trim_end_matches(|c: char| c.is_ascii_digit());
-        let whole = |b: &&Block| !b.per_channel && b.name == block_name;
+        // The map for people calls the card's own one `config`, too.
+        let own_name = if block_name == "config" {
+            "card_config"
+        } else {
+            block_name
+        };
+        let whole = |b: &&Block| !b.per_channel && b.name == own_name;
         let one = |b: &&Block| b.per_channel && b.name == stem;
         let Some(block) = BLOCKS.iter().find(|b| whole(b) || one(b)) else {
             let names = BLOCKS.iter().map(|b| match b.per_channel {
@@ -317,6 +323,7 @@ mod tests {
             ("result0.status.caus", "it has sequence, cause"),
             ("result0.status.cause.x", "too many parts"),
             ("card0.id", "blocks are card"),
+            ("config.frame", "it has trigger_sources"),
         ] {
             let error = Place::named(name, 2).unwrap_err().to_string();
             assert!(error.contains(told), "{name}: {error}");

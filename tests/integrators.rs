@@ -228,7 +228,11 @@ fn decoded(scenario: &str, bits: u32) -> Option<(serde_json::Value, String)> {
 /// Catches a decoder that counts another edge, or turns bits round.
 #[test]
 fn sigrok_decodes_every_frame_to_the_encoders_position() {
-    for (scenario, bits) in [("paper", 29), ("real-1", 37)] {
+    for (scenario, bits) in [
+        ("paper", 29),
+        ("real-1", 37),
+        ("additional-information", 29),
+    ] {
         let Some((report, told)) = decoded(scenario, bits) else {
             return;
         };
@@ -248,5 +252,10 @@ fn sigrok_decodes_every_frame_to_the_encoders_position() {
                 || scenario != "paper"
         );
         assert!(!told.contains("wrong") && !told.contains("short"), "{told}");
+        if scenario == "additional-information" {
+            // The temperature, and the supplement that selected it.
+            assert_eq!(told.matches("0C 0B8A").count(), 3, "{told}");
+            assert!(told.contains("0x4C 0x0000"), "{told}");
+        }
     }
 }

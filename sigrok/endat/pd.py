@@ -26,6 +26,11 @@ MODES = {
     0b010010: ("receive communication command", True),
 }
 ENDAT22 = (0b111000, 0b001001, 0b011011, 0b100100, 0b101101, 0b110110)
+SUPPLEMENTS = ENDAT22[1:]
+# Rising edges behind the parked CLOCK that take address and data.
+SUPPLEMENT_EDGES = range(10, 34)
+# CLOCK LOW for so many times a usual LOW is parked.
+PARKED = 3
 POSITIONS = ENDAT22 + (0b000111,)
 
 
@@ -78,6 +83,7 @@ class Decoder(srd.Decoder):
 
     def reset(self):
         self.samplerate = None
+        self.low = self.fell = 0
 
     def metadata(self, key, value):
         if key == srd.SRD_CONF_SAMPLERATE:
@@ -107,10 +113,15 @@ class Decoder(srd.Decoder):
 
     def bit(self):
         """A bit of the encoder: launched at a rising edge, taken at the falling edge that follows."""
-        if self.edge("r", limit=False) is None:
-            return None
+        self.edge("r", limit=False)
+        self.low = self.samplenum - self.fell
+        return self.taken()
+
+    def taken(self):
+        """The bit that this rising edge has launched; None if CLOCK stays HIGH."""
         begin = self.samplenum
         pins = self.edge("f")
+        self.fell = self.samplenum
         return None if pins is None else (pins[1], begin, self.samplenum)
 
     def bits(self, count):
@@ -176,14 +187,32 @@ class Decoder(srd.Decoder):
         value = sum(b[0] << i for i, b in enumerate(position))
         self.put_text(position[0][1], position[-1][2], 4, ["Position {} (0x{:X})".format(value, value), "{}".format(value)])
         self.check([b[0] for b in flags + position], check)
-        # Additional information, if the clock goes on behind the HIGH cell.
+        # Additional information, if a LOW cell follows: behind the last block DATA is HIGH. Before a supplement CLOCK is parked LOW.
         while True:
-            first = self.bit()
-            if first is None or not first[0]:
+            self.edge("r", limit=False)
+            if command in SUPPLEMENTS and self.samplenum - self.fell > PARKED * self.low:
+                return self.supplement()
+            first = self.taken()
+            if first is None or first[0]:
                 return self.rest(idle=first is None)
             self.put_text(first[1], first[2], 2, ["Start", "S"])
             if not self.block("{:02X} {:04X}", first[1]):
                 return self.rest(idle=True)
+
+    def supplement(self):
+        """From the receiver: zeros, a start bit, address and data, each taken at a rising edge; this one is the first."""
+        begin, value = self.samplenum, 0
+        for edge in range(2, SUPPLEMENT_EDGES.stop):
+            if self.edge("f") is None:
+                self.put_text(begin, self.samplenum, 7, ["Supplement too short"])
+                return self.rest(idle=True)
+            pins = self.edge("r", limit=False)
+            if edge == SUPPLEMENT_EDGES.start:
+                begin = self.samplenum
+            if edge in SUPPLEMENT_EDGES:
+                value = value << 1 | pins[1]
+        self.put_text(begin, self.samplenum, 1, ["0x{:02X} 0x{:04X}".format(value >> 16, value & 0xFFFF)])
+        return self.rest()
 
     def block(self, form, begin):
         """24 bits, most significant first, and their CRC; whether it was whole."""

@@ -250,6 +250,7 @@ fn margin_is_what_the_card_has_measured() {
     let ns = told["margin_ns"].as_f64().unwrap();
     assert!((130.0..=160.0).contains(&ns), "{ns}");
     assert!(fs::read_to_string(svg).unwrap().contains("sample before"));
+    assert_eq!(outcome.messages.len(), 1, "{outcome:?}");
     let none = with(&["margin"], PORT);
     assert_eq!(none.exit_code, 2);
     assert!(none.messages[0].contains("no part `margin`"), "{none:?}");

@@ -32,6 +32,7 @@ pub fn text(name: &str) -> Result<String, GenError> {
     for block in BLOCKS {
         let block_matches = |part: &str| {
             part == block.name
+                || part == "config" && block.name == "card_config"
                 || block.per_channel
                     && part.trim_end_matches(|c: char| c.is_ascii_digit()) == block.name
         };

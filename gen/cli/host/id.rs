@@ -1,7 +1,7 @@
 //! `id`: who the card is, and the name plates of its encoders.
 
 use super::super::{to_json, Outcome};
-use super::{told, PortArgs};
+use super::{initialised, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::card::Identity;
@@ -9,10 +9,6 @@ use endat_host::map::STEPS;
 use endat_host::name_plate::NamePlate;
 use serde_json::{json, Value};
 use std::fmt::Write;
-use std::time::{Duration, Instant};
-
-/// Longest wait for an initialisation that is under way.
-const WAIT: Duration = Duration::from_secs(30);
 
 /// Arguments of `id`.
 #[derive(Args)]
@@ -30,12 +26,9 @@ pub fn run(arguments: &IdArgs) -> Result<Outcome, GenError> {
     let identity = *card.identity();
     let mut plates = Vec::new();
     if identity.has("initialise") {
-        let end = Instant::now() + WAIT;
+        initialised(&mut card)?;
         for channel in 0..identity.channels {
-            let mut plate = card.name_plate(channel).map_err(told)?;
-            while !plate.initialised && plate.failed.is_none() && Instant::now() < end {
-                plate = card.name_plate(channel).map_err(told)?;
-            }
+            let plate = card.name_plate(channel).map_err(told)?;
             plates.push(plate);
         }
     }

@@ -302,7 +302,7 @@ fn record<W: Write>(
     stop: &AtomicBool,
 ) -> Result<Totals, Failure> {
     let begin = Instant::now();
-    let (mut shown, mut heard) = (begin, begin);
+    let (mut shown, mut heard, mut flushed) = (begin, begin, begin);
     let mut totals = Totals::default();
     let mut rows = VecDeque::new();
     let shows = io::stderr().is_terminal() || end.samples.is_some();
@@ -333,6 +333,10 @@ fn record<W: Write>(
                 SILENCE.as_secs(),
                 totals.rows
             )])));
+        }
+        if flushed.elapsed() >= Duration::from_secs(1) {
+            flushed = Instant::now();
+            sheet.out.flush().map_err(Failure::Write)?;
         }
         if shows && shown.elapsed() >= PROGRESS {
             shown = Instant::now();

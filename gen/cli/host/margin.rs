@@ -123,6 +123,12 @@ pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
     } else {
         edges.to_string()
     });
+    if bad > 0 {
+        outcome.messages.push(format!(
+            "{bad} of {counted} frames were bad: where their edges are says nothing about the margin; `endat-gen monitor` shows the causes"
+        ));
+        outcome.exit_code = 1;
+    }
     if let Some(path) = &arguments.svg {
         let title = format!("Edges of DATA, channel {channel}");
         let file = File {

@@ -19,9 +19,11 @@ use endat_host::registers::Place;
 use endat_host::transport::Port;
 use endat_host::units::Scale;
 use endat_host::{Bridge, HostError, Transport};
+use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 /// Baud rate of the cards that come with the program.
 const BAUD: u32 = 2_000_000;
@@ -106,15 +108,37 @@ pub fn scales(card: &mut AnyCard) -> Result<Vec<Scale>, GenError> {
     channels.map(|channel| scale(card, channel)).collect()
 }
 
-/// Waits until no encoder is being initialised and every channel has had a first result, or has none after a second.
-pub fn settled(card: &mut AnyCard) -> Result<(), GenError> {
-    if card.identity().has("initialise") {
-        for channel in 0..card.identity().channels {
-            card.wait_for_initialisation(channel).map_err(told)?;
+/// Longest wait for encoders that are being initialised: a real card takes seconds, a simulated one is slower.
+const INITIALISATION: Duration = Duration::from_secs(60);
+
+/// Waits until no encoder is being initialised, or a minute; says so when it takes long.
+pub fn initialised(card: &mut AnyCard) -> Result<(), GenError> {
+    if !card.identity().has("initialise") {
+        return Ok(());
+    }
+    let begin = Instant::now();
+    let mut is_told = false;
+    for channel in 0..card.identity().channels {
+        let running = place(card, &format!("service{channel}.state.initialising"))?;
+        while card.read(&running).map_err(told)? == 1 && begin.elapsed() < INITIALISATION {
+            if !is_told && begin.elapsed() > Duration::from_secs(1) {
+                is_told = true;
+                let _ = writeln!(
+                    std::io::stderr(),
+                    "endat-gen: waiting for the initialisation of the encoders, up to {} s",
+                    INITIALISATION.as_secs()
+                );
+            }
         }
     }
-    let end = std::time::Instant::now() + std::time::Duration::from_secs(1);
-    while std::time::Instant::now() < end {
+    Ok(())
+}
+
+/// Waits until no encoder is being initialised and every channel has had a first result, or has none after a second.
+pub fn settled(card: &mut AnyCard) -> Result<(), GenError> {
+    initialised(card)?;
+    let end = Instant::now() + Duration::from_secs(1);
+    while Instant::now() < end {
         let results = card.results().map_err(told)?;
         // The first frame measures the delay; the second one is as all others.
         if results.channels.iter().all(|r| r.sequence > 1) {

@@ -123,7 +123,15 @@ fn screen(
         if let Some(worst) = &places.worst {
             let word = card.read(&of(worst, channel)).map_err(told)?;
             let [_, _, latest, earliest] = word.to_be_bytes().map(|b| b as i8);
-            let _ = writeln!(text, "           edges {earliest} to {latest} places from where they are expected, since cleared");
+            let has_edges = worst
+                .register
+                .field("valid")
+                .is_some_and(|f| f.of(word) == 1);
+            let edges = match has_edges {
+                true => format!("{earliest} to {latest} places from where they are expected,"),
+                false => "none".into(),
+            };
+            let _ = writeln!(text, "           edges: {edges} since cleared");
         }
     }
     let retries = card.bridge().retries();
@@ -156,7 +164,11 @@ pub fn run(arguments: &MonitorArgs) -> Result<Outcome, GenError> {
     let mut done = 0;
     while !stop.load(Ordering::Relaxed) && count != Some(done) {
         let begin = Instant::now();
-        let text = screen(&mut card, &places, &scales, &mut before)?;
+        let text = match screen(&mut card, &places, &scales, &mut before) {
+            // A card that is unplugged may come back.
+            Err(error @ GenError::CheckFailed(_)) => format!("{error}\n"),
+            other => other?,
+        };
         // From the top of the screen, and nothing left below: no flicker.
         let text = match is_live {
             true => format!("\x1b[H{}\x1b[J", text.replace('\n', "\x1b[K\n")),

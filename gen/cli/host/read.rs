@@ -49,6 +49,14 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     let scales = scales(&mut card)?;
     let results = card.results().map_err(told)?;
     let system_hz = f64::from(card.identity().system_hz);
+    let mut messages = Vec::new();
+    for (channel, r) in results.channels.iter().enumerate() {
+        if r.valid && r.age_us == u16::MAX {
+            messages.push(format!(
+                "channel {channel}: the position is older than 65 ms; is a trigger enabled (`endat-gen reg read card_config`)?"
+            ));
+        }
+    }
     let is_good = results.channels.iter().all(|r| r.fresh);
     let each = results.channels.iter().zip(&scales).enumerate();
     let stdout = if arguments.json {
@@ -91,6 +99,7 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
         text
     };
     Ok(Outcome {
+        messages,
         exit_code: u8::from(!is_good),
         ..Outcome::good(stdout)
     })

@@ -110,5 +110,6 @@ pub fn run(arguments: &CardArgs) -> Result<Outcome, GenError> {
             is_first = false;
         }
     });
+    let _ = writeln!(stderr, "endat-gen: virtual card ended");
     Ok(Outcome::default())
 }
