@@ -187,9 +187,10 @@ impl Decoder {
         self.counts.damaged
     }
 
-    /// Forgets the frame under way, and where the sequence stood: another stream begins.
+    /// Forgets the frame under way, sets that nobody took, and where the sequence stood: another stream begins.
     pub fn forget(&mut self) {
         self.frame.clear();
+        self.sets.clear();
         self.is_too_long = false;
         self.is_settled = false;
         self.last_sequence = None;
