@@ -108,7 +108,7 @@ pub const MUTATIONS: &[Mutation] = &[
     ),
     mutation(
         "channel 1 is not triggered",
-        "s6_two_channel.v",
+        "endat_card_core.v",
         ".trigger(trigger_trigger),\n        .calibrate(bank_calibrate[1]),",
         ".trigger(1'b0),\n        .calibrate(bank_calibrate[1]),",
     ),
