@@ -1,6 +1,6 @@
 //! `explain`: what a configuration really becomes, as text and as data.
 
-use crate::config::Project;
+use crate::config::{phase_name, Project};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::{read_bytes, CardConfig, ChannelConfig};
 use endat_hdl::timing::deviation_ppm;
@@ -135,6 +135,10 @@ pub struct Report {
     pub stream: Option<StreamReport>,
     /// What each channel does about its line delay besides following it.
     pub line: Vec<&'static str>,
+    /// Source of the phase after reset; none without alignment.
+    pub phase: Option<&'static str>,
+    /// Outputs to logic and to a processor in the same device.
+    pub outputs: Vec<&'static str>,
 }
 
 fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelReport {
@@ -225,6 +229,15 @@ pub fn report(project: &Project) -> Report {
             (card.line.alignment, "alignment"),
             (card.line.margin, "margin"),
             (card.line.double_edge, "double_edge"),
+        ]
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name)
+        .collect(),
+        phase: card.line.alignment.then(|| phase_name(card.line.phase)),
+        outputs: [
+            (card.outputs.position, "position"),
+            (card.outputs.interrupt, "interrupt"),
         ]
         .into_iter()
         .filter(|(on, _)| *on)
@@ -393,6 +406,9 @@ impl fmt::Display for Report {
             }
         }
         writeln!(f)?;
+        if !self.outputs.is_empty() {
+            writeln!(f, "outputs: {}", list(&self.outputs))?;
+        }
         if !self.service.is_empty() {
             writeln!(
                 f,
@@ -406,7 +422,8 @@ impl fmt::Display for Report {
         let first = match self.line.is_empty() {
             true => "frame, the first after reset, measures",
             false => {
-                writeln!(f, "line: {}", list(&self.line))?;
+                let phase = self.phase.unwrap_or_default();
+                writeln!(f, "line: {}; phase after reset: {phase}", list(&self.line))?;
                 "frames, the first four after reset, measure"
             }
         };

@@ -10,6 +10,7 @@
 //!               |             ^
 //!               +------- RegisterBank <-> the front: word_address, access, read_byte, done, ...
 //!               +--> Stream, if there is one: sets of results, by register or pushed through the front
+//!               +--> DirectOutput 0, 1, Interrupt, if there are any: to logic and a processor in the same device
 //! ```
 //!
 //! `led_status_o` blinks slowly while every channel is well, quickly while the last result of one is an error;
@@ -18,7 +19,9 @@
 use crate::channel::{Features, FixedTimes};
 use crate::channel_registers::ChannelRegisters;
 use crate::config::{CardConfig, ChannelConfig};
+use crate::direct::DirectOutput;
 use crate::encoder_port::EncoderPort;
+use crate::interrupt::Interrupt;
 use crate::register_bank::RegisterBank;
 use crate::service::program::ServiceTimes;
 use crate::stream::{channel::SetChannel, Stream};
@@ -71,6 +74,16 @@ pub struct CardCore {
     pub push_byte: Signal<Out, Bits<8>>,
     /// Strobe, with `push_valid` only: the byte is taken.
     pub push_take: Signal<In, Bit>,
+    /// Cropped position of the channel, for logic in the same device.
+    pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
+    /// The cropped position is that of the last result.
+    pub direct_valid_o: Vec<Signal<Out, Bit>>,
+    /// Strobe: the cropped position is new.
+    pub direct_fresh_o: Vec<Signal<Out, Bit>>,
+    /// The last result's cause is one of those selected, or the alarm.
+    pub direct_error_o: Vec<Signal<Out, Bit>>,
+    /// Interrupt; low without this part.
+    pub irq_o: Signal<Out, Bit>,
     /// EnDat clock to the transceiver.
     pub endat_clk_o: Vec<Signal<Out, Bit>>,
     /// EnDat data to the transceiver.
@@ -96,6 +109,11 @@ pub struct CardCore {
     set_taken: Vec<Signal<Local, Bit>>,
     set_block: Vec<Signal<Local, Bits<4>>>,
     set_byte_at: Vec<Signal<Local, Bits<3>>>,
+    direct: Vec<DirectOutput>,
+    interrupt: Vec<Interrupt>,
+    direct_byte: Vec<Signal<Local, Bits<8>>>,
+    part_byte: Vec<Signal<Local, Bits<8>>>,
+    part_write: Signal<Local, Bit>,
     ring_link: Vec<Signal<Local, Bits<8>>>,
     read_link: Vec<Signal<Local, Bits<8>>>,
     service_link: Vec<Signal<Local, Bits<32>>>,
@@ -109,6 +127,11 @@ pub struct CardCore {
     _streams: usize,
     _sets: usize,
     _set_links: usize,
+    _directs: usize,
+    _direct_links: usize,
+    _direct_ports: usize,
+    _interrupts: usize,
+    _interrupt_channels: usize,
 }
 
 /// Time stamp bit that toggles about `hz` times a second.
@@ -150,7 +173,14 @@ pub fn service_times(config: &CardConfig) -> ServiceTimes {
 fn port(card: &CardConfig, channel: &ChannelConfig, service: &ServiceTimes) -> EncoderPort {
     let wants_short = channel.wants_short_recovery();
     let service = card.service.requests.then_some(service);
-    EncoderPort::with_line(times(card, channel), service, wants_short, line(card))
+    let start = card.line.start(card.system_hz);
+    EncoderPort::with_line(
+        times(card, channel),
+        service,
+        wants_short,
+        line(card),
+        start,
+    )
 }
 
 /// The first channel's port alone, for those who bring registers and triggers of their own.
@@ -174,6 +204,9 @@ impl CardCore {
         let channels = config.channels.len();
         let streams = usize::from(config.stream.fifo_bytes != 0);
         let sets = channels * streams;
+        let directs = channels * usize::from(config.outputs.any());
+        let direct_ports = channels * usize::from(config.outputs.position);
+        let interrupts = usize::from(config.outputs.interrupt);
         Self {
             clk_i: Default::default(),
             rst_i: Default::default(),
@@ -195,6 +228,11 @@ impl CardCore {
             push_valid: Default::default(),
             push_byte: Default::default(),
             push_take: Default::default(),
+            direct_position_o: each(direct_ports),
+            direct_valid_o: each(direct_ports),
+            direct_fresh_o: each(direct_ports),
+            direct_error_o: each(direct_ports),
+            irq_o: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
@@ -226,6 +264,13 @@ impl CardCore {
             set_taken: each(streams),
             set_block: each(streams),
             set_byte_at: each(streams),
+            direct: (0..directs)
+                .map(|i| DirectOutput::new(i, config.channels[i].position_bits))
+                .collect(),
+            interrupt: (0..interrupts).map(|_| Interrupt::new(channels)).collect(),
+            direct_byte: each(directs + 1),
+            part_byte: each(2),
+            part_write: Default::default(),
             ring_link: each(channels + 1),
             read_link: each(channels + 1),
             service_link: each(channels + 1),
@@ -239,6 +284,11 @@ impl CardCore {
             _streams: streams,
             _sets: sets,
             _set_links: sets + streams,
+            _directs: directs,
+            _direct_links: directs + 1,
+            _direct_ports: direct_ports,
+            _interrupts: interrupts,
+            _interrupt_channels: channels * interrupts,
         }
     }
 }
@@ -368,7 +418,7 @@ impl Logic for CardCore {
         }
 
         // The stream, and each channel's place in a set.
-        self.bank.stream_byte.next = 0.into();
+        self.part_byte[0].next = 0.into();
         self.push.next = false;
         self.in_frame.next = false;
         self.push_valid.next = false;
@@ -391,7 +441,7 @@ impl Logic for CardCore {
             self.stream[i].access.next = self.access.val();
             self.stream[i].write.next = self.write.val();
             self.stream[i].write_data.next = self.write_data.val().get_bits::<2>(0);
-            self.bank.stream_byte.next = self.stream[i].read_byte.val();
+            self.part_byte[0].next = self.stream[i].read_byte.val();
             self.push.next = self.stream[i].push.val();
             self.in_frame.next = self.stream[i].in_frame.val();
             self.push_valid.next = self.stream[i].push_valid.val();
@@ -421,6 +471,56 @@ impl Logic for CardCore {
             self.set_owes[i].next = false;
             self.set_replaced[i].next = false;
         }
+
+        // Outputs within the device.
+        self.part_write.next = self.access.val() & self.write.val();
+        for i in 0..self._directs {
+            self.direct[i].clock.next = self.clk_i.val();
+            self.direct[i].reset.next = self.rst_i.val();
+            self.direct[i].result_strobe.next = self.port[i].result_strobe.val();
+            self.direct[i].position.next = self.port[i].position.val();
+            self.direct[i].fresh.next = self.port[i].fresh.val();
+            self.direct[i].cause.next = self.port[i].cause.val();
+            self.direct[i].alarm.next = self.port[i].alarm.val();
+            self.direct[i].word_address.next = self.word_address.val();
+            self.direct[i].in_range.next = self.in_range.val();
+            self.direct[i].lane.next = self.lane.val();
+            self.direct[i].write.next = self.part_write.val();
+            self.direct[i].write_data.next = self.write_data.val();
+            self.direct_byte[i].next =
+                self.direct_byte[i + 1].val() | self.direct[i].read_byte.val();
+        }
+        for i in self._directs..self._direct_links {
+            self.direct_byte[i].next = 0.into();
+        }
+        for i in 0..self._direct_ports {
+            self.direct_position_o[i].next = self.direct[i].direct_position.val();
+            self.direct_valid_o[i].next = self.direct[i].direct_valid.val();
+            self.direct_fresh_o[i].next = self.direct[i].direct_fresh.val();
+            self.direct_error_o[i].next = self.direct[i].direct_error.val();
+        }
+        self.part_byte[1].next = 0.into();
+        self.irq_o.next = false;
+        for i in 0..self._interrupts {
+            self.interrupt[i].clock.next = self.clk_i.val();
+            self.interrupt[i].reset.next = self.rst_i.val();
+            self.interrupt[i].word_address.next = self.word_address.val();
+            self.interrupt[i].in_range.next = self.in_range.val();
+            self.interrupt[i].lane.next = self.lane.val();
+            self.interrupt[i].write.next = self.part_write.val();
+            self.interrupt[i].write_data.next = self.write_data.val();
+            self.part_byte[1].next = self.interrupt[i].read_byte.val();
+            self.irq_o.next = self.interrupt[i].irq.val();
+        }
+        for i in 0..self._interrupt_channels {
+            self.interrupt[0].result[i].next = self.port[i].result_strobe.val();
+            self.interrupt[0].error[i].next = self.direct[i].direct_error.val();
+            self.interrupt[0].alarm[i].next = self.port[i].alarm.val();
+            self.interrupt[0].request[i].next =
+                self.port[i].over.val() & self.port[i].over_request.val();
+        }
+        self.bank.part_byte.next =
+            self.part_byte[0].val() | self.part_byte[1].val() | self.direct_byte[0].val();
     }
 }
 

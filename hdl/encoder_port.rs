@@ -144,15 +144,17 @@ impl EncoderPort {
     /// A port with these fixed times; with a service that initialises and takes requests if `service` is given.
     /// `wants_short`: the encoder is set to the short recovery time.
     pub fn new(times: FixedTimes, service: Option<&ServiceTimes>, wants_short: bool) -> Self {
-        Self::with_line(times, service, wants_short, Features::NONE)
+        let start = LineStart::default();
+        Self::with_line(times, service, wants_short, Features::NONE, start)
     }
 
-    /// The same with the features of `line` that have to do with the line delay.
+    /// The same with the features of `line` that have to do with the line delay, and their settings after reset.
     pub fn with_line(
         times: FixedTimes,
         service: Option<&ServiceTimes>,
         wants_short: bool,
         line: Features,
+        start: LineStart,
     ) -> Self {
         let features = Features {
             requests: service.is_some(),
@@ -223,7 +225,7 @@ impl EncoderPort {
                 .into_iter()
                 .collect(),
             monitor: (0..usize::from(line.alignment))
-                .map(|_| LineMonitor::new(line, LineStart::default()))
+                .map(|_| LineMonitor::new(line, start))
                 .collect(),
             trigger_overrun: Constant::new(cause::TRIGGER_OVERRUN.into()),
             info_missing: Constant::new(cause::INFO_MISSING.into()),

@@ -83,8 +83,8 @@ pub struct RegisterBank {
     pub service_data: Signal<Out, Bits<16>>,
     /// The word is one of the stream's four.
     pub stream_selected: Signal<Out, Bit>,
-    /// Byte that was read from it; 0 if it is none of them.
-    pub stream_byte: Signal<In, Bits<8>>,
+    /// Byte that was read from the words of stream, direct outputs and interrupt; 0 if it is none of them.
+    pub part_byte: Signal<In, Bits<8>>,
     /// Triggers since reset.
     pub trigger_count: Signal<In, Bits<32>>,
     /// Strobe: trigger now.
@@ -205,7 +205,7 @@ impl RegisterBank {
             service_half: Default::default(),
             service_data: Default::default(),
             stream_selected: Default::default(),
-            stream_byte: Default::default(),
+            part_byte: Default::default(),
             trigger_count: Default::default(),
             trigger_now: Default::default(),
             calibrate: Default::default(),
@@ -627,7 +627,7 @@ impl Logic for RegisterBank {
             | self.ring_byte.q.val()
             | self.channel_byte.val()
             | self.service_byte.q.val()
-            | self.stream_byte.val();
+            | self.part_byte.val();
         self.read_byte.next = self.byte.q.val();
     }
 }

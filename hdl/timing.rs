@@ -74,6 +74,11 @@ pub const fn cycles_at_most(ns: u64, system_hz: u64) -> u64 {
     (ns as u128 * system_hz as u128 / 1_000_000_000) as u64
 }
 
+/// Sixteenths of a system clock cycle that are nearest to `ns` nanoseconds.
+pub const fn sixteenths(ns: u64, system_hz: u64) -> u64 {
+    ((16 * ns as u128 * system_hz as u128 + 500_000_000) / 1_000_000_000) as u64
+}
+
 /// Cycles of a `system_hz` clock in one period of `hz`, to the nearest cycle.
 pub const fn period_cycles(hz: u64, system_hz: u64) -> u64 {
     (system_hz + hz / 2) / hz

@@ -111,6 +111,14 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("baud = 2_000_000", "baud = 115_200", "the link is too slow: reading 62 bytes 1000 times a second takes 620000 bit/s"),
         ("baud = 2_000_000", "baud = 4_000_000", "link.baud = 4000000: outside 9600..3000000"),
         ("read_hz = 1_000", "read_hz = 0", "link.read_hz = 0: outside 1..1000000"),
+        // line
+        ("[stream]", "samples = 3\n[stream]", "line.samples = 3: takes the part alignment; add it to line.parts"),
+        ("[stream]", "phase = \"frame\"\n[stream]", "line.phase = \"frame\": takes the part alignment"),
+        ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\nphase = \"mean\"\n# with", "line.phase = \"mean\": unknown; use tracked, frame, fixed"),
+        ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\nphase = \"fixed\"\n# with", "line.phase = \"fixed\": takes line.fixed_delay_ns"),
+        ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\nsamples = 2\n# with", "line.samples = 2: not a number of samples; use 1, or 3"),
+        ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\nfixed_delay_ns = 30_000\n# with", "line.fixed_delay_ns = 30000: outside 0..20470"),
+        ("parts = []                      # (default: none)\n# with", "parts = [\"alignment\"]\ndrift_limit_ns = 3_000\n# with", "line.drift_limit_ns = 3000: outside 0..2550"),
         // service
         ("parts = []", "parts = [\"all\"]", "service.parts = \"all\": unknown part; use requests"),
         ("parts = []", "parts = [\"continuous\"]", "every other part takes requests; add \"requests\""),

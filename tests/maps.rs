@@ -5,6 +5,7 @@
 use crate::tools::{self, require, require_python};
 use endat_gen::config::{load_preset, parse, preset, Project};
 use endat_hdl::config::CardConfig;
+use endat_hdl::config::{LineParts, OutputParts, PhaseSource};
 use endat_hdl::regs::values::{Named, Values};
 use endat_hdl::regs::{blocks, Access, Block, Field, Register, BLOCKS, VERSION};
 use std::collections::BTreeSet;
@@ -17,10 +18,18 @@ fn projects() -> Vec<Project> {
     let mut projects = ["s6_two_channel", "s6_two_channel_service"]
         .map(|name| load_preset(name).unwrap())
         .to_vec();
-    projects[1].card.line = endat_hdl::config::LineParts {
+    projects[1].card.line = LineParts {
         alignment: true,
         margin: true,
         double_edge: true,
+        phase: PhaseSource::Fixed,
+        fixed_delay_ns: 400,
+        drift_limit_ns: 25,
+        samples: 3,
+    };
+    projects[1].card.outputs = OutputParts {
+        position: true,
+        interrupt: true,
     };
     let text = preset("s6_two_channel").unwrap();
     // A good name, and a keyword of SystemRDL.

@@ -141,6 +141,18 @@ fn wrong_axes_are_told_with_their_limits() {
             vec!["--runs", "1000"],
             "--runs = 1000: 403000 channels in all cells together, at most 100000",
         ),
+        (
+            vec!["--at", "offset_percent=10"],
+            "--at = offset_percent=10: moves the sample, which only a phase from a register allows",
+        ),
+        (
+            vec!["--x", "offset_percent=0,10", "--phase", "frame"],
+            "--x = offset_percent=0,10: moves the sample",
+        ),
+        (
+            vec!["--phase", "step", "--majority"],
+            "--phase = step: a channel without alignment has no --majority",
+        ),
         (vec!["--bits", "49"], "--bits = 49: outside 1..48"),
         (
             vec!["--system-hz", "1"],
@@ -150,4 +162,47 @@ fn wrong_axes_are_told_with_their_limits() {
         let message = bad(&[&["shmoo"], &arguments[..]].concat(), 2);
         assert!(message.starts_with(wanted), "{message}\n{wanted}");
     }
+}
+
+#[test]
+fn eye_takes_no_phase_but_that_of_the_register() {
+    let message = bad(&["eye", "--phase", "tracked"], 2);
+    assert!(
+        message.starts_with("--phase = tracked: eye moves the sample"),
+        "{message}"
+    );
+}
+
+/// Catches an option that is read and then forgotten: each changes what one row of jitters comes to.
+#[test]
+fn phase_double_edge_and_majority_reach_the_receiver() {
+    let passed = |x: &str, y: &str, more: &[&str]| {
+        let map = ["shmoo", "--x", x, "--y", y, "--frames", "40", "--json"];
+        let map: Value = serde_json::from_str(&good(&[&map[..], more].concat())).unwrap();
+        map["passed"].as_u64().unwrap()
+    };
+    // Four to five cycles in a bit.
+    let coarse = |more: &[&str]| {
+        let coarse = ["--at", "cable_m=50", "--system-hz", "64000000"];
+        passed(
+            "jitter_ns=6:28:2",
+            "clock_mhz=12.8,16",
+            &[&coarse, more].concat(),
+        )
+    };
+    let tracked = coarse(&[]);
+    assert_eq!(coarse(&["--phase", "tracked"]), tracked);
+    // The start bit's own jitter comes on top of that of each bit.
+    assert!(coarse(&["--phase", "frame"]) < tracked);
+    assert!(coarse(&["--double-edge"]) > tracked);
+    // Single samples that a glitch has changed are outvoted.
+    let noisy = |more: &[&str]| {
+        let noise = ["--at", "noise_khz=3"];
+        passed(
+            "jitter_ns=0:10:0.25",
+            "clock_mhz=4,8",
+            &[&noise, more].concat(),
+        )
+    };
+    assert!(noisy(&["--majority"]) > noisy(&[]));
 }

@@ -11,9 +11,12 @@ use endat_hdl::bus::{
 use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, Features, FixedTimes};
 use endat_hdl::crc5::{Crc5Fixed, Crc5Parallel, Crc5Serial};
+use endat_hdl::direct::DirectOutput;
 use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::encoder_port::EncoderPort;
+use endat_hdl::interrupt::Interrupt;
 use endat_hdl::line_delay::LineDelay;
+use endat_hdl::line_monitor::LineStart;
 use endat_hdl::receiver::Receiver;
 use endat_hdl::service::program::ServiceTimes;
 use endat_hdl::snapshot::Snapshot;
@@ -156,6 +159,7 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
                 None,
                 false,
                 part(|f| (f.alignment, f.margin) = (true, true)),
+                LineStart::default(),
             ),
         )?,
         Subject::new(
@@ -179,6 +183,12 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             Stream::new(STREAM_BYTES, 2, false, false),
         )?,
         Subject::new("set_channel", "a channel's part of it", SetChannel::new(0))?,
+        Subject::new(
+            "direct_output",
+            "direct outputs of a channel: crop, error",
+            DirectOutput::new(0, 29),
+        )?,
+        Subject::new("interrupt", "interrupt of two channels", Interrupt::new(2))?,
         Subject::new("snapshot", "snapshot with time stamp", Snapshot::default())?,
         Subject::new(
             "crc5_parallel",

@@ -49,9 +49,9 @@ pub struct ShmooArgs {
     /// Mode command
     #[arg(long, value_enum, default_value = "111000")]
     command: Command,
-    /// Where the phase of the samples comes from
-    #[arg(long, value_enum, default_value = "tracked")]
-    phase: PhaseArg,
+    /// Where the phase of the samples comes from [default: tracked; of eye: fixed]
+    #[arg(long, value_enum)]
+    phase: Option<PhaseArg>,
     /// Look at DATA on both edges of the system clock
     #[arg(long)]
     double_edge: bool,
@@ -105,7 +105,7 @@ enum Command {
     SendPositionAddInfo,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum PhaseArg {
     /// The mean over many edges
     Tracked,
@@ -133,11 +133,18 @@ type Clocks = (u64, ReceiverKind);
 
 /// Runs `eye`: the sample is moved over the bit, and the jitter upwards.
 pub fn eye(arguments: ShmooArgs) -> Result<Outcome, GenError> {
+    if let Some(phase) = arguments.phase.filter(|p| *p != PhaseArg::Fixed) {
+        let name = phase.to_possible_value();
+        let name = name.as_ref().map_or("?", |n| n.get_name());
+        return Err(GenError::input(format!(
+            "--phase = {name}: eye moves the sample, which only a phase from a register allows; leave it out, or use shmoo"
+        )));
+    }
     let or = |given: Option<String>, usual: &str| Some(given.unwrap_or_else(|| usual.into()));
     run(&ShmooArgs {
         x: or(arguments.x, "offset_percent=-60:60:2.5"),
         y: or(arguments.y, "jitter_ns=0:60:2.5"),
-        phase: PhaseArg::Fixed,
+        phase: Some(PhaseArg::Fixed),
         ..arguments
     })
 }
@@ -208,7 +215,7 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
     };
     let mut conditions = Conditions::new(system_hz, command, bits);
     conditions.receiver = ReceiverKind {
-        phase: match arguments.phase {
+        phase: match arguments.phase.unwrap_or(PhaseArg::Tracked) {
             PhaseArg::Tracked => Phase::Tracked,
             PhaseArg::Frame => Phase::Frame,
             PhaseArg::Fixed => Phase::Fixed,
@@ -219,7 +226,7 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
     };
     if conditions.receiver.majority && conditions.receiver.phase == Phase::Step {
         return Err(GenError::input(
-            "--majority: goes with alignment; leave it out, or choose another --phase than step",
+            "--phase = step: a channel without alignment has no --majority; leave that out, or choose another --phase",
         ));
     }
     let clocks = (system_hz, conditions.receiver);
@@ -236,15 +243,19 @@ fn plan(arguments: &ShmooArgs) -> Result<Plan, GenError> {
         set.push(quantity);
         conditions.set(quantity, one("--at", text, quantity, value, clocks)?);
     }
-    let moves = |axis: &Option<String>| {
-        axis.as_ref()
-            .is_some_and(|a| a.starts_with(Quantity::Offset.name()))
-    };
-    let is_moved = set.contains(&Quantity::Offset) || moves(&arguments.x) || moves(&arguments.y);
-    if is_moved && conditions.receiver.phase != Phase::Fixed {
-        return Err(GenError::input(
-            "offset_percent: moves the sample, which only a phase from a register allows; add --phase fixed, or use eye",
-        ));
+    let offset = Quantity::Offset.name();
+    let given = arguments.at.iter().map(|text| ("--at", text));
+    let axes = [("--x", &arguments.x), ("--y", &arguments.y)];
+    let given = given.chain(
+        axes.iter()
+            .filter_map(|(flag, t)| Some((*flag, t.as_ref()?))),
+    );
+    let mut moved = given.filter(|(_, text)| text.starts_with(offset));
+    if let (Some((flag, text)), true) = (moved.next(), conditions.receiver.phase != Phase::Fixed) {
+        return Err(GenError::input(format!(
+            "{flag} = {}: moves the sample, which only a phase from a register allows; add --phase fixed, or use eye",
+            shown(text)
+        )));
     }
     let (_, fastest) = Quantity::Clock.range(system_hz, conditions.receiver);
     let usual = |axis: &str| match axis {

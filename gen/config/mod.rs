@@ -1,11 +1,14 @@
 //! Configuration files: TOML text in, a checked [`Project`] out, or every complaint with file, line and remedy.
 
+mod line;
 mod names;
+mod outputs;
 mod pins;
 mod reader;
 mod schema;
 mod stream;
 
+pub use line::phase_name;
 pub use names::{check_name, NAME_MAX};
 pub use stream::start_name;
 

@@ -2,7 +2,7 @@
 
 use super::pins::assign_pins;
 use super::reader::{At, Source, Table};
-use super::{check_name, stream, Project};
+use super::{check_name, line, outputs, stream, Project};
 use crate::board::{self, Assignment, Board};
 use crate::error::shorten;
 use endat_hdl::bus::HostBus;
@@ -79,7 +79,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let endat = root.table("endat", &empty);
     let defaults = read_line_keys(&endat, system_hz);
     let line_table = root.table("line", &empty);
-    let line_parts = read_line_parts(&line_table);
+    let line_parts = line::read(&line_table, system_hz);
     let is_aligned = line_parts.is_some_and(|parts| parts.alignment);
     let tables = root.tables("channel");
     let channels: Option<Vec<Option<Channel>>> = tables.as_ref().map(|tables| {
@@ -105,6 +105,8 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     };
     let service = root.table("service", &empty);
     let parts = read_service(&service);
+    let outputs_table = root.table("outputs", &empty);
+    let outputs = outputs::read(&outputs_table, bus);
     let stream_table = root.table("stream", &empty);
     let stream = stream::read(&stream_table);
     let pins = root.table("pins", &empty);
@@ -130,6 +132,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         &service,
         &line_table,
         &stream_table,
+        &outputs_table,
         &root,
     ]) {
         table.finish();
@@ -178,6 +181,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         service: parts.unwrap_or_default(),
         line: line_parts.unwrap_or_default(),
         stream: stream.parts,
+        outputs: outputs.unwrap_or_default(),
         without_uart: !has_uart,
     };
     let channels = channels.unwrap_or_default();
@@ -283,6 +287,20 @@ fn canonical(
         lines.push(format!(
             "line margin {} double_edge {}",
             card.line.margin, card.line.double_edge
+        ));
+        let start = card.line.start(card.system_hz);
+        if start != Default::default() {
+            lines.push(format!(
+                "line start {} {} {} {}",
+                start.phase_mode, start.fixed_delay, start.majority, start.drift_limit
+            ));
+        }
+    }
+    if card.outputs.any() {
+        let outputs = card.outputs;
+        lines.push(format!(
+            "outputs position {} interrupt {}",
+            outputs.position, outputs.interrupt
         ));
     }
     if card.stream.fifo_bytes != 0 {
@@ -517,28 +535,8 @@ fn read_sources(table: &Table<'_, '_>) -> Option<TriggerSources> {
     good.then_some(sources)
 }
 
-/// What each channel does besides positions; `None` for what could not be read.
-fn read_line_parts(table: &Table<'_, '_>) -> Option<LineParts> {
-    let mut parts = LineParts::default();
-    let last = read_parts(
-        table,
-        &["alignment", "margin", "double_edge"],
-        &mut [
-            &mut parts.alignment,
-            &mut parts.margin,
-            &mut parts.double_edge,
-        ],
-    )?;
-    if let (Some((line, shown)), false) = (last, parts.alignment) {
-        let text = "every other part takes alignment; add \"alignment\"";
-        table.complain(line, "parts", &shown, text);
-        return None;
-    }
-    Some(parts)
-}
-
 /// Marks the parts that a list names; the line and the text of the last one, `None` if something is wrong.
-fn read_parts(
+pub(super) fn read_parts(
     table: &Table<'_, '_>,
     names: &[&str],
     marks: &mut [&mut bool],

@@ -22,8 +22,8 @@ use endat_host::Transport;
 use endat_sim::bench::{Bench, Link, PinNames, Uart};
 use endat_sim::encoder::{EncoderConfig, PositionSource, DEVICES};
 use endat_sim::engine::Compiled;
-use endat_sim::line::LineConfig;
-use endat_sim::{Time, MS, US};
+use endat_sim::line::{Jitter, LineConfig};
+use endat_sim::{Time, MS, NS, US};
 use rust_hdl::prelude::Block;
 use std::io;
 use std::sync::Arc;
@@ -48,6 +48,8 @@ pub struct VirtualConfig {
     pub encoders: Vec<String>,
     /// Cable to each encoder in metres.
     pub cable_m: f64,
+    /// DATA edges come up to so much earlier or later, in nanoseconds.
+    pub jitter_ns: u64,
     /// How fast shafts turn, in turns per second (linear encoders: hundredths of a metre per second).
     pub speed: f64,
     /// Seed of everything random.
@@ -59,6 +61,7 @@ impl Default for VirtualConfig {
         Self {
             encoders: Vec::new(),
             cable_m: CABLE_M,
+            jitter_ns: 0,
             speed: 0.25,
             seed: 1,
         }
@@ -174,8 +177,11 @@ impl VirtualCard {
             if is_open {
                 encoder.unplugged.push(0..Time::MAX);
             }
-            let line =
+            let mut line =
                 LineConfig::cable(config.cable_m).seed(config.seed.wrapping_add(channel as u64));
+            if config.jitter_ns > 0 {
+                line.data_in.jitter = Jitter::Uniform(config.jitter_ns as Time * NS);
+            }
             links.push((PinNames::card(channel), Link::new(line, encoder)));
         }
         let mut bench = Bench::new(engine, card.system_hz, links);

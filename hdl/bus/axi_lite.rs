@@ -272,6 +272,16 @@ pub struct AxiLiteCard {
     pub s_axi_rvalid: Signal<Out, Bit>,
     /// The master takes it.
     pub s_axi_rready: Signal<In, Bit>,
+    /// Cropped position of the channel, for logic in the same device.
+    pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
+    /// The cropped position is that of the last result.
+    pub direct_valid_o: Vec<Signal<Out, Bit>>,
+    /// Strobe: the cropped position is new.
+    pub direct_fresh_o: Vec<Signal<Out, Bit>>,
+    /// The last result's cause is one of those selected, or the alarm.
+    pub direct_error_o: Vec<Signal<Out, Bit>>,
+    /// Interrupt; low without this part.
+    pub irq_o: Signal<Out, Bit>,
     /// EnDat clock to the transceiver.
     pub endat_clk_o: Vec<Signal<Out, Bit>>,
     /// EnDat data to the transceiver.
@@ -286,6 +296,7 @@ pub struct AxiLiteCard {
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     core: CardCore,
     front: AxiLiteFront,
+    _direct_ports: usize,
     _channels: usize,
 }
 
@@ -293,6 +304,7 @@ impl AxiLiteCard {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
         let channels = config.channels.len();
+        let direct_ports = channels * usize::from(config.outputs.position);
         Self {
             clk_i: Default::default(),
             rst_i: Default::default(),
@@ -314,6 +326,11 @@ impl AxiLiteCard {
             s_axi_rresp: Default::default(),
             s_axi_rvalid: Default::default(),
             s_axi_rready: Default::default(),
+            direct_position_o: each(direct_ports),
+            direct_valid_o: each(direct_ports),
+            direct_fresh_o: each(direct_ports),
+            direct_error_o: each(direct_ports),
+            irq_o: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
@@ -322,6 +339,7 @@ impl AxiLiteCard {
             led_channel_o: each(channels),
             core: CardCore::new(config),
             front: Default::default(),
+            _direct_ports: direct_ports,
             _channels: channels,
         }
     }
@@ -368,6 +386,13 @@ impl Logic for AxiLiteCard {
         self.core.push_take.next = false;
         self.core.reading.next = self.front.reading.val();
 
+        for i in 0..self._direct_ports {
+            self.direct_position_o[i].next = self.core.direct_position_o[i].val();
+            self.direct_valid_o[i].next = self.core.direct_valid_o[i].val();
+            self.direct_fresh_o[i].next = self.core.direct_fresh_o[i].val();
+            self.direct_error_o[i].next = self.core.direct_error_o[i].val();
+        }
+        self.irq_o.next = self.core.irq_o.val();
         for i in 0..self._channels {
             self.core.endat_data_i[i].next = self.endat_data_i[i].val();
             self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();

@@ -361,6 +361,16 @@ pub struct ParallelCard {
     pub bus_data_o: Signal<Out, Bits<16>>,
     /// The card drives the data lines, straight from the strobes.
     pub bus_data_oe: Signal<Out, Bit>,
+    /// Cropped position of the channel, for logic in the same device.
+    pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
+    /// The cropped position is that of the last result.
+    pub direct_valid_o: Vec<Signal<Out, Bit>>,
+    /// Strobe: the cropped position is new.
+    pub direct_fresh_o: Vec<Signal<Out, Bit>>,
+    /// The last result's cause is one of those selected, or the alarm.
+    pub direct_error_o: Vec<Signal<Out, Bit>>,
+    /// Interrupt; low without this part.
+    pub irq_o: Signal<Out, Bit>,
     /// EnDat clock to the transceiver.
     pub endat_clk_o: Vec<Signal<Out, Bit>>,
     /// EnDat data to the transceiver.
@@ -375,6 +385,7 @@ pub struct ParallelCard {
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     core: CardCore,
     front: ParallelFront,
+    _direct_ports: usize,
     _channels: usize,
 }
 
@@ -382,6 +393,7 @@ impl ParallelCard {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
         let channels = config.channels.len();
+        let direct_ports = channels * usize::from(config.outputs.position);
         Self {
             clk_i: Default::default(),
             rst_i: Default::default(),
@@ -393,6 +405,11 @@ impl ParallelCard {
             bus_data_i: Default::default(),
             bus_data_o: Default::default(),
             bus_data_oe: Default::default(),
+            direct_position_o: each(direct_ports),
+            direct_valid_o: each(direct_ports),
+            direct_fresh_o: each(direct_ports),
+            direct_error_o: each(direct_ports),
+            irq_o: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
@@ -401,6 +418,7 @@ impl ParallelCard {
             led_channel_o: each(channels),
             core: CardCore::new(config),
             front: Default::default(),
+            _direct_ports: direct_ports,
             _channels: channels,
         }
     }
@@ -437,6 +455,13 @@ impl Logic for ParallelCard {
         self.core.push_take.next = false;
         self.core.reading.next = self.front.reading.val();
 
+        for i in 0..self._direct_ports {
+            self.direct_position_o[i].next = self.core.direct_position_o[i].val();
+            self.direct_valid_o[i].next = self.core.direct_valid_o[i].val();
+            self.direct_fresh_o[i].next = self.core.direct_fresh_o[i].val();
+            self.direct_error_o[i].next = self.core.direct_error_o[i].val();
+        }
+        self.irq_o.next = self.core.irq_o.val();
         for i in 0..self._channels {
             self.core.endat_data_i[i].next = self.endat_data_i[i].val();
             self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();

@@ -443,6 +443,16 @@ pub struct SpiCard {
     pub spi_miso_o: Signal<Out, Bit>,
     /// The card drives `spi_miso_o`, straight from `spi_cs_n_i`.
     pub spi_miso_oe: Signal<Out, Bit>,
+    /// Cropped position of the channel, for logic in the same device.
+    pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
+    /// The cropped position is that of the last result.
+    pub direct_valid_o: Vec<Signal<Out, Bit>>,
+    /// Strobe: the cropped position is new.
+    pub direct_fresh_o: Vec<Signal<Out, Bit>>,
+    /// The last result's cause is one of those selected, or the alarm.
+    pub direct_error_o: Vec<Signal<Out, Bit>>,
+    /// Interrupt; low without this part.
+    pub irq_o: Signal<Out, Bit>,
     /// EnDat clock to the transceiver.
     pub endat_clk_o: Vec<Signal<Out, Bit>>,
     /// EnDat data to the transceiver.
@@ -457,6 +467,7 @@ pub struct SpiCard {
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     core: CardCore,
     front: SpiFront,
+    _direct_ports: usize,
     _channels: usize,
 }
 
@@ -464,6 +475,7 @@ impl SpiCard {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
         let channels = config.channels.len();
+        let direct_ports = channels * usize::from(config.outputs.position);
         Self {
             clk_i: Default::default(),
             rst_i: Default::default(),
@@ -473,6 +485,11 @@ impl SpiCard {
             spi_mosi_i: Default::default(),
             spi_miso_o: Default::default(),
             spi_miso_oe: Default::default(),
+            direct_position_o: each(direct_ports),
+            direct_valid_o: each(direct_ports),
+            direct_fresh_o: each(direct_ports),
+            direct_error_o: each(direct_ports),
+            irq_o: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
@@ -481,6 +498,7 @@ impl SpiCard {
             led_channel_o: each(channels),
             core: CardCore::new(config),
             front: Default::default(),
+            _direct_ports: direct_ports,
             _channels: channels,
         }
     }
@@ -515,6 +533,13 @@ impl Logic for SpiCard {
         self.core.push_take.next = false;
         self.core.reading.next = self.front.reading.val();
 
+        for i in 0..self._direct_ports {
+            self.direct_position_o[i].next = self.core.direct_position_o[i].val();
+            self.direct_valid_o[i].next = self.core.direct_valid_o[i].val();
+            self.direct_fresh_o[i].next = self.core.direct_fresh_o[i].val();
+            self.direct_error_o[i].next = self.core.direct_error_o[i].val();
+        }
+        self.irq_o.next = self.core.irq_o.val();
         for i in 0..self._channels {
             self.core.endat_data_i[i].next = self.endat_data_i[i].val();
             self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();

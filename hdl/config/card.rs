@@ -88,6 +88,7 @@ impl CardDraft {
                     service,
                     line,
                     stream,
+                    outputs,
                     ..
                 },
             ) if whole && problems.is_empty() => Ok(CardConfig {
@@ -102,6 +103,7 @@ impl CardDraft {
                 service,
                 line,
                 stream,
+                outputs,
                 hash: 0,
             }),
             _ => Err(problems),

@@ -76,6 +76,8 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "baud" => 9_600..=fast / UART_BIT_CYCLES_MIN,
         "read_hz" => 1..=1_000_000,
         "fifo_bytes" => BUFFER_BYTES[0]..=BUFFER_BYTES[BUFFER_BYTES.len() - 1],
+        "fixed_delay_ns" => 0..=cycles_at_most_ns(max_of(DELAY_BITS), slow),
+        "drift_limit_ns" => 0..=cycles_at_most_ns(max_of(DRIFT_LIMIT_BITS) >> 4, slow),
         "sck_hz" => 1..=fast / SCK_CYCLES_MIN,
         _ => 0..=u64::MAX,
     };

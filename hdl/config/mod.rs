@@ -14,9 +14,11 @@ mod limits;
 pub use card::{needed_baud, read_bytes, stream_baud, BAUD_NOTE};
 pub use limits::{limits, Limits};
 
+use crate::line_delay::mode;
+use crate::line_monitor::LineStart;
 use crate::protocol::ModeCommand;
 use crate::regs::CHANNELS_MAX;
-use crate::timing::{TST_FROM_HZ, TST_USUAL_NS};
+use crate::timing::{sixteenths, TST_FROM_HZ, TST_USUAL_NS};
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -26,6 +28,8 @@ pub const CHANNELS: RangeInclusive<usize> = 1..=CHANNELS_MAX;
 pub const LIST: usize = crate::service::map::word::LIST_MAX as usize;
 /// Bits of the EnDat period and of the first low phase, in the blocks.
 pub const PERIOD_BITS: u32 = 11;
+/// Bits of the drift that gives alarm, in sixteenths of a cycle, in the blocks.
+pub const DRIFT_LIMIT_BITS: u32 = 12;
 /// Bits of the input filter length, in the blocks.
 pub const FILTER_BITS: u32 = 4;
 /// Bits of the start window, in the blocks.
@@ -109,6 +113,8 @@ pub struct CardRequest {
     pub line: LineParts,
     /// The stream of sample sets.
     pub stream: StreamParts,
+    /// Outputs to logic in the same device.
+    pub outputs: OutputParts,
 }
 
 /// What a channel does about its line delay besides following it by a cycle for each frame; what is not asked for takes no logic.
@@ -120,6 +126,59 @@ pub struct LineParts {
     pub margin: bool,
     /// DATA is looked at on both edges of the system clock; takes alignment.
     pub double_edge: bool,
+    /// Source of the phase after reset; the host may change this and what follows.
+    pub phase: PhaseSource,
+    /// Delay with [`PhaseSource::Fixed`], synchroniser and filter included, in nanoseconds.
+    pub fixed_delay_ns: u64,
+    /// Drift of the tracked delay that gives alarm, in nanoseconds; 0 = none.
+    pub drift_limit_ns: u64,
+    /// Samples of each bit: 1, or 3 for their majority; 0 stands for 1.
+    pub samples: u64,
+}
+
+/// Where the phase of the samples comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PhaseSource {
+    /// The mean over many edges.
+    #[default]
+    Tracked,
+    /// The start bit of each frame.
+    Frame,
+    /// A register.
+    Fixed,
+}
+
+impl LineParts {
+    /// What the line's settings are after reset.
+    pub fn start(&self, system_hz: u64) -> LineStart {
+        LineStart {
+            phase_mode: match self.phase {
+                PhaseSource::Tracked => mode::TRACKED,
+                PhaseSource::Frame => mode::FRAME,
+                PhaseSource::Fixed => mode::FIXED,
+            },
+            fixed_delay: sixteenths(self.fixed_delay_ns, system_hz),
+            majority: self.samples == 3,
+            drift_limit: sixteenths(self.drift_limit_ns, system_hz),
+            offset_limit: 0,
+        }
+    }
+}
+
+/// Outputs to logic and to a processor in the same device (`docs/bus.md`); what is not asked for takes no logic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OutputParts {
+    /// Cropped position, its strobe, and an OR of selected causes, of each channel.
+    pub position: bool,
+    /// An interrupt with status and mask.
+    pub interrupt: bool,
+}
+
+impl OutputParts {
+    /// Whether there are any.
+    pub const fn any(self) -> bool {
+        self.position || self.interrupt
+    }
 }
 
 /// The stream of sample sets (`docs/stream.md`); without a buffer there is none, and no logic for it.
@@ -193,6 +252,8 @@ pub struct CardDraft {
     pub line: LineParts,
     /// The stream of sample sets.
     pub stream: StreamParts,
+    /// Outputs to logic in the same device.
+    pub outputs: OutputParts,
     /// The host has another bus than a UART; the numbers of the UART mean nothing.
     pub without_uart: bool,
 }
@@ -210,6 +271,7 @@ impl From<&CardRequest> for CardDraft {
             service: request.service,
             line: request.line,
             stream: request.stream,
+            outputs: request.outputs,
             without_uart: false,
         }
     }
@@ -239,6 +301,8 @@ pub enum Section {
     Link,
     /// `[stream]`
     Stream,
+    /// `[line]`
+    Line,
 }
 
 /// One thing that is wrong with a request.
@@ -312,6 +376,8 @@ pub struct CardConfig {
     pub line: LineParts,
     /// The stream of sample sets.
     pub stream: StreamParts,
+    /// Outputs to logic in the same device.
+    pub outputs: OutputParts,
     /// First 48 bits of the SHA-256 of the canonical configuration (0 until a generator sets it).
     pub hash: u64,
 }

@@ -33,6 +33,7 @@ fn card() -> CardRequest {
         service: Default::default(),
         line: Default::default(),
         stream: Default::default(),
+        outputs: Default::default(),
     }
 }
 

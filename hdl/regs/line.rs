@@ -2,7 +2,8 @@
 
 use super::values::PHASE_MODES;
 use super::{field, word, Access, Block, Field, Register, LINE_BASE, LINE_STRIDE};
-use crate::line_monitor::word as at;
+use crate::config::CardConfig;
+use crate::line_monitor::{word as at, LineStart};
 use Access::{ReadOnly, ReadWrite, Strobe};
 
 /// Whether a word is there without the part `margin`.
@@ -16,6 +17,15 @@ pub(super) fn is_setting(offset: u16) -> bool {
     ]
     .map(u16::from)
     .contains(&offset)
+}
+
+fn start(config: &CardConfig) -> LineStart {
+    config.line.start(config.system_hz)
+}
+
+/// The same field, with a value of its own after reset.
+const fn starts(field: Field, start: fn(&CardConfig, usize) -> u64) -> Field {
+    Field { start, ..field }
 }
 
 const EDGES: &[Field] = &[field("edges", 0, 32, "", "Edges since clear, wrapping")];
@@ -66,15 +76,15 @@ pub const LINE: Block = Block {
         bin("edges_30", 30, "Edges with offset 14."),
         bin("edges_31", 31, "Edges with offset 15 or more."),
         word("alignment", at::ALIGNMENT, ReadWrite, "Source of the phase; taken over between two frames.", &[
-            field("mode", 0, 2, "", "Where the phase of the samples comes from").codes(&PHASE_MODES),
-            field("majority", 4, 1, "", "Each sample is the majority of itself and its neighbours; measure the delay again after a change"),
+            starts(field("mode", 0, 2, "", "Where the phase of the samples comes from"), |c, _| start(c).phase_mode).codes(&PHASE_MODES),
+            starts(field("majority", 4, 1, "", "Each sample is the majority of itself and its neighbours; measure the delay again after a change"), |c, _| start(c).majority.into()),
             field("bin_shift", 8, 2, "", "Bins of the histogram are 2^bin_shift places wide; clear after a change"),
         ]),
         word("fixed_delay", at::FIXED_DELAY, ReadWrite, "Delay in mode fixed, synchroniser and filter included.", &[
-            field("value", 0, 15, "cycles/16", "As phase.tracked shows it"),
+            starts(field("value", 0, 15, "cycles/16", "As phase.tracked shows it"), |c, _| start(c).fixed_delay),
         ]),
         word("limits", at::LIMITS, ReadWrite, "Limits of the alarms; 0 = none.", &[
-            field("drift", 0, 12, "cycles/16", "Most that the tracked delay may be from its reference"),
+            starts(field("drift", 0, 12, "cycles/16", "Most that the tracked delay may be from its reference"), |c, _| start(c).drift_limit),
             field("offset", 16, 7, "places", "Most that an edge may be from its expected place"),
         ]),
         word("clear", at::CLEAR, Strobe, "Clears, or takes a new reference.", &[

@@ -85,6 +85,8 @@ pub const CARD: Block = Block {
                         | (s.line.margin as u64) << 9
                         | (s.line.double_edge as u64) << 10
                         | ((s.stream.fifo_bytes != 0) as u64) << 11
+                        | (s.outputs.any() as u64) << 12
+                        | (s.outputs.interrupt as u64) << 13
                 })
                 .bits(&FEATURES),
             ],

@@ -36,6 +36,7 @@ pub fn test_config() -> CardConfig {
         service: Default::default(),
         line: Default::default(),
         stream: Default::default(),
+        outputs: Default::default(),
     })
     .unwrap();
     config.hash = 0x0123_4567_89ab;
@@ -75,6 +76,13 @@ card_stream_control 00C rw
 card_stream_state 00D ro
 card_stream_data 00E ro
 card_stream_clear 00F strobe
+interrupt_status 010 ro
+interrupt_mask 011 rw
+interrupt_clear 012 strobe
+direct0_crop 080 rw
+direct0_error_causes 081 rw
+direct1_crop 088 rw
+direct1_error_causes 089 rw
 config_trigger_sources 100 rw
 config_trigger_period 101 rw
 config_hold 102 rw
@@ -362,6 +370,33 @@ stream_state bytes 15:0
 stream_state lost 31:16
 stream_data bytes 31:0
 stream_clear clear 0:0
+status channel_0 3:0
+status channel_1 7:4
+status channel_2 11:8
+status channel_3 15:12
+status channel_4 19:16
+status channel_5 23:20
+status channel_6 27:24
+status channel_7 31:28
+mask channel_0 3:0
+mask channel_1 7:4
+mask channel_2 11:8
+mask channel_3 15:12
+mask channel_4 19:16
+mask channel_5 23:20
+mask channel_6 27:24
+mask channel_7 31:28
+clear channel_0 3:0
+clear channel_1 7:4
+clear channel_2 11:8
+clear channel_3 15:12
+clear channel_4 19:16
+clear channel_5 23:20
+clear channel_6 27:24
+clear channel_7 31:28
+crop first_bit 5:0
+crop length_bits 13:8
+error_causes causes 31:0
 trigger_sources pin 0:0
 trigger_sources timer 1:1
 trigger_sources register 2:2

@@ -119,7 +119,7 @@ pub const PHASE_MODES: [Named; 3] = [
 ];
 
 /// What a card has.
-pub const FEATURES: [Named; 12] = [
+pub const FEATURES: [Named; 14] = [
     named("endat22", 0, "EnDat 2.2 position frames (111000)"),
     named("line_delay", 1, "line delay is measured"),
     named("trigger_pin", 2, "trigger pin"),
@@ -136,6 +136,20 @@ pub const FEATURES: [Named; 12] = [
     named("margin", 9, "margin of the samples"),
     named("double_edge", 10, "DATA on both edges of the system clock"),
     named("stream", 11, "stream of sample sets"),
+    named("direct", 12, "direct outputs"),
+    named("interrupt", 13, "interrupt"),
+];
+
+/// What sets a bit of a channel in the interrupt's status.
+pub const INTERRUPT_EVENTS: [Named; 4] = [
+    named("result", 0, "a new result"),
+    named(
+        "error",
+        1,
+        "a result whose cause is one of direct.error_causes",
+    ),
+    named("alarm", 2, "the alarm has come on"),
+    named("request", 3, "the frame of a request has ended"),
 ];
 
 const fn error(name: &'static str, code: u16) -> Named {
@@ -292,6 +306,6 @@ mod tests {
                 assert!(!listed[..index].iter().any(twin), "{}", value.name);
             }
         }
-        assert_eq!(lists, 8);
+        assert_eq!(lists, 32);
     }
 }

@@ -46,6 +46,8 @@ module endat_card_core (
     output wire   [7:0] push_byte,
     // Strobe, with push_valid only: the byte is taken.
     input  wire         push_take,
+    // Interrupt; low without this part.
+    output wire         irq_o,
     // EnDat clock to the transceiver.
     output wire         endat_clk0_o,
     // EnDat clock to the transceiver.
@@ -72,6 +74,9 @@ module endat_card_core (
     localparam   [4:0] SLOW_BIT = 5'd25;
     localparam   [4:0] QUICK_BIT = 5'd22;
 
+    wire   [7:0] direct_byte_0;
+    wire   [7:0] part_byte_0;
+    wire   [7:0] part_byte_1;
     wire   [7:0] ring_link_0;
     wire   [7:0] ring_link_1;
     wire   [7:0] ring_link_2;
@@ -106,6 +111,7 @@ module endat_card_core (
     wire         bank_service_half;
     wire  [15:0] bank_service_data;
     wire         bank_stream_selected;
+    wire   [7:0] bank_part_byte;
     wire         bank_trigger_now;
     wire   [7:0] bank_calibrate;
     wire   [2:0] bank_sources;
@@ -242,7 +248,7 @@ module endat_card_core (
         .service_half(bank_service_half),
         .service_data(bank_service_data),
         .stream_selected(bank_stream_selected),
-        .stream_byte(8'd0),
+        .part_byte(bank_part_byte),
         .trigger_count(trigger_trigger_count),
         .trigger_now(bank_trigger_now),
         .calibrate(bank_calibrate),
@@ -476,10 +482,15 @@ module endat_card_core (
             led_status_o = timebase_timestamp[QUICK_BIT];
         end
     end
+    assign part_byte_0 = 8'd0;
     assign push = 1'b0;
     assign in_frame = 1'b0;
     assign push_valid = 1'b0;
     assign push_byte = 8'd0;
+    assign direct_byte_0 = 8'd0;
+    assign part_byte_1 = 8'd0;
+    assign irq_o = 1'b0;
+    assign bank_part_byte = part_byte_0 | part_byte_1 | direct_byte_0;
 endmodule
 
 `default_nettype wire

@@ -68,8 +68,8 @@ module endat_register_bank (
     output reg   [15:0] service_data,
     // The word is one of the stream's four.
     output wire         stream_selected,
-    // Byte that was read from it; 0 if it is none of them.
-    input  wire   [7:0] stream_byte,
+    // Byte that was read from the words of stream, direct outputs and interrupt; 0 if it is none of them.
+    input  wire   [7:0] part_byte,
     // Triggers since reset.
     input  wire  [31:0] trigger_count,
     // Strobe: trigger now.
@@ -84,7 +84,7 @@ module endat_register_bank (
     localparam         HAS_SERVICE = 1'b0;
     localparam         HAS_LINE = 1'b0;
     localparam  [31:0] ID = 32'h456e4474;
-    localparam  [31:0] VERSION = 32'h50000;
+    localparam  [31:0] VERSION = 32'h60000;
     localparam  [31:0] CAPABILITIES = 32'hf3002;
     localparam  [31:0] SYSTEM_HZ = 32'h5f5e100;
     localparam  [31:0] CONFIGURATION_HASH = 32'hcff72a77;
@@ -498,7 +498,7 @@ module endat_register_bank (
             count_skip <= !low_page | (low_address != TRIGGER_COUNT_AT);
             count_held <= count_held_next;
             ring_byte <= ring_byte_next;
-            byte_value <= rom_byte | count_byte | ring_byte | channel_byte | service_byte | stream_byte;
+            byte_value <= rom_byte | count_byte | ring_byte | channel_byte | service_byte | part_byte;
             trigger_strobe <= strobe & (low_address == TRIGGER_NOW_AT) & write_data[0];
             calibrate_strobe <= calibrate_strobe_next;
             active_sources <= active_sources_next;

@@ -96,6 +96,7 @@ module s6_two_channel (
     wire         core_in_frame;
     wire         core_push_valid;
     wire   [7:0] core_push_byte;
+    wire         core_irq_o;
     wire  [10:0] bridge_word_address;
     wire         bridge_in_range;
     wire   [1:0] bridge_lane;
@@ -104,7 +105,7 @@ module s6_two_channel (
     wire  [31:0] bridge_write_data;
     wire         bridge_reading;
     wire         bridge_push_take;
-    wire         _unused_ok = &{1'b0, core_passing_byte};
+    wire         _unused_ok = &{1'b0, core_passing_byte, core_irq_o};
 
     endat_card_core u_core (
         .clk_i(clk_i),
@@ -127,6 +128,7 @@ module s6_two_channel (
         .push_valid(core_push_valid),
         .push_byte(core_push_byte),
         .push_take(bridge_push_take),
+        .irq_o(core_irq_o),
         .endat_clk0_o(endat_clk0_o),
         .endat_clk1_o(endat_clk1_o),
         .endat_data0_o(endat_data0_o),

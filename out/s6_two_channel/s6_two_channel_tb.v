@@ -642,7 +642,7 @@ module s6_two_channel_tb;
         #(CALIBRATION_NS);
         read_words(CARD_ID, 5);
         check("identification word 0", word(0), 32'h456E4474);
-        check("identification word 1", word(1), 32'h00050000);
+        check("identification word 1", word(1), 32'h00060000);
         check("identification word 2", word(2), 32'h000F3002);
         check("identification word 3", word(3), 32'h05F5E100);
         check("identification word 4", word(4), 32'hCFF72A77);

@@ -37,6 +37,7 @@ fn config() -> CardConfig {
         alignment: true,
         margin: true,
         double_edge: false,
+        ..LineParts::default()
     };
     let request = card.channels[0].request.clone();
     let channel = |(index, (clock_hz, position_bits, command, cable_m))| {

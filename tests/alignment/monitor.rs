@@ -24,6 +24,7 @@ impl Host {
             alignment: true,
             margin: true,
             double_edge: false,
+            ..LineParts::default()
         };
         for channel in &mut config.channels {
             (channel.filter_cycles, channel.start_window_cycles) = (0, 15);

@@ -4,6 +4,7 @@ mod claims;
 mod cocotb;
 mod configuration;
 mod handshake;
+mod outputs;
 mod parallel;
 mod spi;
 mod three_ways;

@@ -31,9 +31,17 @@ macro_rules! with_channels {
     };
 }
 
+/// What a bus's card has besides: the outputs within the device for one of them.
+fn more(bus: HostBus) -> &'static str {
+    match bus {
+        HostBus::Apb => "[outputs]\nparts = [\"position\", \"interrupt\"]\n",
+        _ => "",
+    }
+}
+
 /// The card of a bus as kernels.
 fn kernels(bus: HostBus) -> (Box<dyn Engine>, Design) {
-    let project = parse("card.toml", &text(bus, "")).unwrap();
+    let project = parse("card.toml", &text(bus, more(bus))).unwrap();
     let design = endat_gen::design(&project).unwrap();
     let card = &project.card;
     fn connected<B: rust_hdl::prelude::Block>(mut block: B) -> B {
@@ -44,24 +52,33 @@ fn kernels(bus: HostBus) -> (Box<dyn Engine>, Design) {
         HostBus::Apb => {
             let engine: KernelEngine<ApbCard> = kernel_engine!(connected(ApbCard::new(card)); clk_i;
                 in rst_i, trigger_i, s_apb_psel, s_apb_penable, s_apb_pwrite, s_apb_paddr, s_apb_pwdata;
-                out s_apb_prdata, s_apb_pready, s_apb_pslverr, led_status_o);
-            Box::new(with_channels!(engine))
+                out s_apb_prdata, s_apb_pready, s_apb_pslverr, led_status_o, irq_o);
+            let engine = with_channels!(engine)
+                .output("direct_position0_o", |b| &mut b.direct_position_o[0])
+                .output("direct_position1_o", |b| &mut b.direct_position_o[1])
+                .output("direct_valid0_o", |b| &mut b.direct_valid_o[0])
+                .output("direct_valid1_o", |b| &mut b.direct_valid_o[1])
+                .output("direct_fresh0_o", |b| &mut b.direct_fresh_o[0])
+                .output("direct_fresh1_o", |b| &mut b.direct_fresh_o[1])
+                .output("direct_error0_o", |b| &mut b.direct_error_o[0])
+                .output("direct_error1_o", |b| &mut b.direct_error_o[1]);
+            Box::new(engine)
         }
         HostBus::Wishbone => {
             let engine: KernelEngine<WishboneCard> = kernel_engine!(connected(WishboneCard::new(card)); clk_i;
                 in rst_i, trigger_i, wb_cyc_i, wb_stb_i, wb_we_i, wb_adr_i, wb_dat_i, wb_sel_i;
-                out wb_dat_o, wb_ack_o, wb_err_o, led_status_o);
+                out wb_dat_o, wb_ack_o, wb_err_o, led_status_o, irq_o);
             Box::new(with_channels!(engine))
         }
         HostBus::Spi => {
             let engine: KernelEngine<SpiCard> = kernel_engine!(connected(SpiCard::new(card)); clk_i;
-                in rst_i, trigger_i, spi_sck_i, spi_cs_n_i, spi_mosi_i; out spi_miso_o, spi_miso_oe, led_status_o);
+                in rst_i, trigger_i, spi_sck_i, spi_cs_n_i, spi_mosi_i; out spi_miso_o, spi_miso_oe, led_status_o, irq_o);
             Box::new(with_channels!(engine))
         }
         HostBus::Parallel => {
             let engine: KernelEngine<ParallelCard> = kernel_engine!(connected(ParallelCard::new(card)); clk_i;
                 in rst_i, trigger_i, bus_cs_n_i, bus_rd_n_i, bus_wr_n_i, bus_address_i, bus_data_i;
-                out bus_data_o, bus_data_oe, led_status_o);
+                out bus_data_o, bus_data_oe, led_status_o, irq_o);
             Box::new(with_channels!(engine))
         }
         _ => {
@@ -69,7 +86,7 @@ fn kernels(bus: HostBus) -> (Box<dyn Engine>, Design) {
                 in rst_i, trigger_i, s_axi_awaddr, s_axi_awvalid, s_axi_wdata, s_axi_wstrb, s_axi_wvalid, s_axi_bready,
                    s_axi_araddr, s_axi_arvalid, s_axi_rready;
                 out s_axi_awready, s_axi_wready, s_axi_bresp, s_axi_bvalid, s_axi_arready, s_axi_rdata, s_axi_rresp,
-                    s_axi_rvalid, led_status_o);
+                    s_axi_rvalid, led_status_o, irq_o);
             Box::new(with_channels!(engine))
         }
     };
@@ -86,7 +103,8 @@ fn stimulus(kernel: &dyn Engine) -> Stimulus {
         .cloned()
         .collect();
     let addresses = [
-        0u64, 1, 5, 6, 0x100, 0x102, 0x108, 0x109, 0x180, 0x181, 0x183, 0x7ff,
+        0u64, 1, 5, 6, 0x010, 0x011, 0x012, 0x080, 0x081, 0x089, 0x100, 0x102, 0x108, 0x109, 0x180,
+        0x181, 0x183, 0x7ff,
     ];
     let mut row = vec![0u128; ports.len()];
     let mut cycles = vec![];
@@ -110,13 +128,15 @@ fn stimulus(kernel: &dyn Engine) -> Stimulus {
             *value = match name {
                 "rst_i" => 0,
                 "bus_address_i" => rng.in_range(0, 7).into(),
-                _ if name.contains("adr") || name.contains("addr") => {
-                    u128::from(addresses[rng.in_range(0, 11) as usize] << shift)
-                }
+                _ if name.contains("adr") || name.contains("addr") => u128::from(
+                    addresses[rng.in_range(0, addresses.len() as u64 - 1) as usize] << shift,
+                ),
                 "spi_sck_i" => *value ^ 1,
                 "spi_cs_n_i" => (rng.in_range(0, 3) == 0).into(),
                 // Addresses of the window; anything elsewhere.
-                "bus_data_i" => u128::from(addresses[rng.in_range(0, 11) as usize]),
+                "bus_data_i" => {
+                    u128::from(addresses[rng.in_range(0, addresses.len() as u64 - 1) as usize])
+                }
                 "wb_sel_i" | "s_axi_wstrb" => 15 - u128::from(rng.in_range(0, 9) / 9),
                 // Asked more often than not.
                 _ if port.width_bits == 1 && !name.starts_with("endat") => {

@@ -8,8 +8,13 @@ use endat_gen::area;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::load_preset;
 use endat_gen::verilog::{print_files, Header};
+use endat_hdl::bus::{
+    apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
+    wishbone::WishboneCard,
+};
 use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, FixedTimes};
+use endat_hdl::config::OutputParts;
 use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::memory::Rom;
 use endat_hdl::reg::{Reg, SyncReg};
@@ -20,6 +25,11 @@ use std::fs;
 
 fn designs() -> Vec<Design> {
     let card = load_preset("s6_two_channel").unwrap().card;
+    let mut with_outputs = card.clone();
+    with_outputs.outputs = OutputParts {
+        position: true,
+        interrupt: true,
+    };
     let mut blocks: Vec<(Box<dyn Block>, &str)> = vec![
         (Box::new(Machine::new(5)), "machine"),
         (Box::new(Everything::new(3)), "everything"),
@@ -33,6 +43,11 @@ fn designs() -> Vec<Design> {
         ),
         (Box::new(Chain::default()), "chain"),
         (Box::new(Card::new(&card)), "card"),
+        (Box::new(ApbCard::new(&with_outputs)), "apb_card"),
+        (Box::new(WishboneCard::new(&card)), "wishbone_card"),
+        (Box::new(AxiLiteCard::new(&card)), "axi_lite_card"),
+        (Box::new(SpiCard::new(&card)), "spi_card"),
+        (Box::new(ParallelCard::new(&card)), "parallel_card"),
     ];
     blocks
         .iter_mut()

@@ -214,9 +214,9 @@ fn margin_is_what_the_card_has_measured() {
     let folder = tools::folder("host_margin");
     let toml = folder.join("margin.toml");
     let text = endat_gen::config::preset("s6_two_channel").unwrap();
-    let parts = "parts = []                      # (default: none)\n\n[stream]";
+    let parts = "parts = []                      # (default: none)\n# with";
     assert!(text.contains(parts));
-    let text = text.replace(parts, "parts = [\"alignment\", \"margin\"]\n\n[stream]");
+    let text = text.replace(parts, "parts = [\"alignment\", \"margin\"]\n# with");
     fs::write(&toml, text).unwrap();
     let port = format!("virtual:{}", toml.display());
     let svg = folder.join("edges.svg");

@@ -74,6 +74,7 @@ pub fn card(system_hz: u64, sample_hz: u64, baud: u64, start: StreamStart) -> Ca
             fifo_bytes: 2048,
             start,
         },
+        outputs: Default::default(),
     })
     .unwrap()
 }

@@ -4,6 +4,6 @@ mod buffer;
 mod card;
 mod line;
 mod refusals;
-mod rig;
+pub mod rig;
 mod sets;
 mod three_ways;

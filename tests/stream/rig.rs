@@ -98,7 +98,7 @@ pub struct Named {
 }
 
 impl Named {
-    fn new(mut block: impl Block, name: &str) -> Self {
+    pub fn new(mut block: impl Block, name: &str) -> Self {
         block.connect_all();
         let engine = Compiled::new(&elaborate(&block, name).unwrap()).unwrap();
         let names = engine.ports().iter().enumerate();
@@ -114,7 +114,7 @@ impl Named {
         self.engine.set(self.ids[name], value.into());
     }
 
-    fn tick(&mut self) {
+    pub fn tick(&mut self) {
         if let Some(record) = &mut self.record {
             let row = record
                 .inputs

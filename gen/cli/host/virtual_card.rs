@@ -26,6 +26,9 @@ pub struct CardArgs {
     /// Cable to each encoder in metres [default: 10]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     cable_m: Option<String>,
+    /// Jitter of the DATA edges, to both sides, in nanoseconds [default: 0]
+    #[arg(long, value_name = "NS", allow_negative_numbers = true)]
+    jitter_ns: Option<String>,
     /// Turns per second of the shafts [default: 0.25]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     speed: Option<String>,
@@ -36,6 +39,8 @@ pub struct CardArgs {
 
 /// Longest cable of a virtual card, in metres.
 const CABLE_M_MAX: f64 = 780.0;
+/// Most jitter of a virtual card, in nanoseconds.
+const JITTER_NS_MAX: f64 = 1_000.0;
 /// Fastest shaft.
 const SPEED_MAX: f64 = 1_000.0;
 
@@ -61,6 +66,7 @@ pub fn run(arguments: &CardArgs) -> Result<Outcome, GenError> {
     let config = VirtualConfig {
         encoders: arguments.encoder.clone(),
         cable_m: within("--cable-m", &arguments.cable_m, CABLE_M, CABLE_M_MAX)?,
+        jitter_ns: within("--jitter-ns", &arguments.jitter_ns, 0.0, JITTER_NS_MAX)?.round() as u64,
         speed: within(
             "--speed",
             &arguments.speed,

@@ -1,0 +1,227 @@
+//! Direct outputs: what logic in the same device takes of a channel without a bus, such as a current loop.
+//!
+//! ```text
+//! result's position --(one bit a cycle, from first_bit on)--> shift register --(32 cycles later)--> position, fresh
+//! result's cause, alarm --(error_causes)--> error
+//! ```
+//!
+//! The bits are taken one after the other because a shift by any number of bits takes as much logic as all the rest; a
+//! frame takes longer than 32 cycles, so none is overtaken by the next.
+
+use crate::reg::Reg;
+use crate::regs::DIRECT;
+use rust_hdl::prelude::*;
+
+/// Cycles from a result's strobe to its cropped position.
+pub const CROP_CYCLES: u64 = 33;
+/// Causes that are errors after reset: all but 0, which is the alarm's.
+pub const ERROR_CAUSES: u32 = !1;
+
+/// Direct outputs of one channel.
+#[derive(LogicBlock)]
+pub struct DirectOutput {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe: a new result is there.
+    pub result_strobe: Signal<In, Bit>,
+    /// Last good position.
+    pub position: Signal<In, Bits<48>>,
+    /// The last result brought the position.
+    pub fresh: Signal<In, Bit>,
+    /// Primary cause of the last result.
+    pub cause: Signal<In, Bits<5>>,
+    /// The channel's alarm.
+    pub alarm: Signal<In, Bit>,
+    /// Word address of an access.
+    pub word_address: Signal<In, Bits<11>>,
+    /// The front's address fits `word_address`.
+    pub in_range: Signal<In, Bit>,
+    /// Byte of the word, 0 = most significant.
+    pub lane: Signal<In, Bits<2>>,
+    /// One-cycle strobe: write the word.
+    pub write: Signal<In, Bit>,
+    /// Word to write.
+    pub write_data: Signal<In, Bits<32>>,
+    /// Byte of the word, a cycle after its address; 0 if it is none of this channel's.
+    pub read_byte: Signal<Out, Bits<8>>,
+    /// Cropped position, zeros above its length.
+    pub direct_position: Signal<Out, Bits<32>>,
+    /// `direct_position` is that of the last result; low from a result on until its own is there, and after a bad one.
+    pub direct_valid: Signal<Out, Bit>,
+    /// Strobe: `direct_position` is new.
+    pub direct_fresh: Signal<Out, Bit>,
+    /// The last result's cause is one of the selected ones, or the alarm is selected and on.
+    pub direct_error: Signal<Out, Bit>,
+    first_bit: Reg<Bits<6>>,
+    length_bits: Reg<Bits<6>>,
+    error_causes: Reg<Bits<32>>,
+    byte_read: Reg<Bits<8>>,
+    bits: Reg<Bits<32>>,
+    shown: Reg<Bits<32>>,
+    at: Reg<Bits<6>>,
+    taken: Reg<Bits<6>>,
+    running: Reg<Bit>,
+    cropped: Reg<Bit>,
+    strobe: Reg<Bit>,
+    error: Reg<Bit>,
+    wide: Signal<Local, Bits<64>>,
+    next_bit: Signal<Local, Bit>,
+    shifted: Signal<Local, Bits<32>>,
+    selected: Signal<Local, Bit>,
+    word: Signal<Local, Bits<32>>,
+    pair: Constant<Bits<10>>,
+}
+
+impl DirectOutput {
+    /// That of channel `channel`, whose positions have `position_bits` bits.
+    pub fn new(channel: usize, position_bits: u32) -> Self {
+        let first_word = DIRECT.base + DIRECT.stride * channel as u16;
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            result_strobe: Default::default(),
+            position: Default::default(),
+            fresh: Default::default(),
+            cause: Default::default(),
+            alarm: Default::default(),
+            word_address: Default::default(),
+            in_range: Default::default(),
+            lane: Default::default(),
+            write: Default::default(),
+            write_data: Default::default(),
+            read_byte: Default::default(),
+            direct_position: Default::default(),
+            direct_valid: Default::default(),
+            direct_fresh: Default::default(),
+            direct_error: Default::default(),
+            first_bit: Default::default(),
+            length_bits: Reg::new(u64::from(position_bits.min(32)).into()),
+            error_causes: Reg::new(u64::from(ERROR_CAUSES).into()),
+            byte_read: Default::default(),
+            bits: Default::default(),
+            shown: Default::default(),
+            at: Default::default(),
+            taken: Default::default(),
+            running: Default::default(),
+            cropped: Default::default(),
+            strobe: Default::default(),
+            error: Default::default(),
+            wide: Default::default(),
+            next_bit: Default::default(),
+            shifted: Default::default(),
+            selected: Default::default(),
+            word: Default::default(),
+            pair: Constant::new(u64::from(first_word >> 1).into()),
+        }
+    }
+}
+
+impl Logic for DirectOutput {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self,
+            clock,
+            first_bit,
+            length_bits,
+            error_causes,
+            byte_read,
+            bits,
+            shown,
+            at,
+            taken,
+            running,
+            cropped,
+            strobe,
+            error
+        );
+        self.first_bit.reset.next = self.reset.val();
+        self.length_bits.reset.next = self.reset.val();
+        self.error_causes.reset.next = self.reset.val();
+        self.bits.reset.next = self.reset.val();
+        self.shown.reset.next = self.reset.val();
+        self.at.reset.next = self.reset.val();
+        self.taken.reset.next = self.reset.val();
+        self.running.reset.next = self.reset.val();
+        self.cropped.reset.next = self.reset.val();
+        self.strobe.reset.next = self.reset.val();
+        self.error.reset.next = self.reset.val();
+
+        // Two words: where the position is cropped, and what is an error.
+        self.selected.next =
+            self.in_range.val() & (self.word_address.val().get_bits::<10>(1) == self.pair.val());
+        self.word.next = bit_cast::<32, 6>(self.first_bit.q.val())
+            | (bit_cast::<32, 6>(self.length_bits.q.val()) << 8);
+        if self.word_address.val().get_bit(0) {
+            self.word.next = self.error_causes.q.val();
+        }
+        if self.selected.val() & self.write.val() {
+            if self.word_address.val().get_bit(0) {
+                self.error_causes.d.next = self.write_data.val();
+            } else {
+                self.first_bit.d.next = self.write_data.val().get_bits::<6>(0);
+                self.length_bits.d.next = self.write_data.val().get_bits::<6>(8);
+            }
+        }
+        // A reset by deselection takes no logic.
+        self.byte_read.reset.next = !self.selected.val();
+        match self.lane.val().index() {
+            0 => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(24);
+            }
+            1 => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(16);
+            }
+            2 => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(8);
+            }
+            _ => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(0);
+            }
+        }
+        self.read_byte.next = self.byte_read.q.val();
+
+        // The lowest bit first: after 32 of them it is in its place.
+        self.wide.next = bit_cast::<64, 48>(self.position.val());
+        self.next_bit.next = self.wide.val().get_bit(self.at.q.val().index())
+            & (self.taken.q.val() < self.length_bits.q.val());
+        self.shifted.next =
+            (self.bits.q.val() >> 1) | (bit_cast::<32, 1>(self.next_bit.val().into()) << 31);
+        self.strobe.d.next = false;
+        if self.running.q.val() {
+            self.bits.d.next = self.shifted.val();
+            self.at.d.next = self.at.q.val() + 1;
+            self.taken.d.next = self.taken.q.val() + 1;
+            if self.at.q.val().all() {
+                // There is nothing above bit 63; the place does not begin anew.
+                self.at.d.next = self.at.q.val();
+            }
+            if self.taken.q.val() == 31 {
+                self.running.d.next = false;
+                self.cropped.d.next = true;
+                self.strobe.d.next = true;
+                self.shown.d.next = self.shifted.val();
+            }
+        }
+        if self.result_strobe.val() {
+            self.running.d.next = self.fresh.val();
+            self.cropped.d.next = false;
+            self.at.d.next = self.first_bit.q.val();
+            self.taken.d.next = 0.into();
+        }
+        self.direct_position.next = self.shown.q.val();
+        self.direct_valid.next = self.cropped.q.val() & self.fresh.val();
+        self.direct_fresh.next = self.strobe.q.val();
+
+        self.error.d.next = self.error_causes.q.val().get_bit(self.cause.val().index());
+        if !self.cause.val().any() {
+            self.error.d.next = false;
+        }
+        if self.alarm.val() & self.error_causes.q.val().get_bit(0) {
+            self.error.d.next = true;
+        }
+        self.direct_error.next = self.error.q.val();
+    }
+}

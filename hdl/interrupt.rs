@@ -1,0 +1,193 @@
+//! Interrupt: one line to a processor for what happens in all channels.
+//!
+//! ```text
+//! result, error, alarm, request of each channel --> status (stays until cleared) --(mask)--> irq
+//! ```
+//!
+//! An event that comes in the cycle of its clear is not lost.
+
+use crate::card::each;
+use crate::reg::Reg;
+use crate::regs::INTERRUPT;
+use rust_hdl::prelude::*;
+
+/// Status, mask and line.
+#[derive(LogicBlock)]
+pub struct Interrupt {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe, of each channel: a new result is there.
+    pub result: Vec<Signal<In, Bit>>,
+    /// Of each channel, from the cycle after `result` on: that result is an error.
+    pub error: Vec<Signal<In, Bit>>,
+    /// Of each channel: alarm.
+    pub alarm: Vec<Signal<In, Bit>>,
+    /// Strobe, of each channel: the frame of a request has ended.
+    pub request: Vec<Signal<In, Bit>>,
+    /// Word address of an access.
+    pub word_address: Signal<In, Bits<11>>,
+    /// The front's address fits `word_address`.
+    pub in_range: Signal<In, Bit>,
+    /// Byte of the word, 0 = most significant.
+    pub lane: Signal<In, Bits<2>>,
+    /// One-cycle strobe: write the word.
+    pub write: Signal<In, Bit>,
+    /// Word to write.
+    pub write_data: Signal<In, Bits<32>>,
+    /// Byte of the word, a cycle after its address; 0 if it is none of these.
+    pub read_byte: Signal<Out, Bits<8>>,
+    /// An event that the mask lets through has not been cleared.
+    pub irq: Signal<Out, Bit>,
+    status: Reg<Bits<32>>,
+    mask: Reg<Bits<32>>,
+    wants: Reg<Bit>,
+    byte_read: Reg<Bits<8>>,
+    had_result: Vec<Reg<Bit>>,
+    had_error: Vec<Reg<Bit>>,
+    had_alarm: Vec<Reg<Bit>>,
+    /// From the last channel down: 4 bits each, the lowest channel's lowest.
+    events: Vec<Signal<Local, Bits<32>>>,
+    one: Vec<Signal<Local, Bits<32>>>,
+    two: Vec<Signal<Local, Bits<32>>>,
+    four: Vec<Signal<Local, Bits<32>>>,
+    eight: Vec<Signal<Local, Bits<32>>>,
+    selected: Signal<Local, Bit>,
+    word: Signal<Local, Bits<32>>,
+    words: Constant<Bits<9>>,
+    _channels: usize,
+    _links: usize,
+}
+
+impl Interrupt {
+    /// That of a card with `channels` channels.
+    pub fn new(channels: usize) -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            result: each(channels),
+            error: each(channels),
+            alarm: each(channels),
+            request: each(channels),
+            word_address: Default::default(),
+            in_range: Default::default(),
+            lane: Default::default(),
+            write: Default::default(),
+            write_data: Default::default(),
+            read_byte: Default::default(),
+            irq: Default::default(),
+            status: Default::default(),
+            mask: Default::default(),
+            wants: Default::default(),
+            byte_read: Default::default(),
+            had_result: each(channels),
+            had_error: each(channels),
+            had_alarm: each(channels),
+            events: each(channels + 1),
+            one: each(channels),
+            two: each(channels),
+            four: each(channels),
+            eight: each(channels),
+            selected: Default::default(),
+            word: Default::default(),
+            words: Constant::new(u64::from(INTERRUPT.base >> 2).into()),
+            _channels: channels,
+            _links: channels + 1,
+        }
+    }
+}
+
+impl Logic for Interrupt {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, status, mask, wants, byte_read);
+        self.status.reset.next = self.reset.val();
+        self.mask.reset.next = self.reset.val();
+        self.wants.reset.next = self.reset.val();
+
+        for i in 0..self._channels {
+            self.had_result[i].clock.next = self.clock.val();
+            self.had_result[i].reset.next = self.reset.val();
+            self.had_result[i].d.next = self.result[i].val();
+            self.had_error[i].clock.next = self.clock.val();
+            self.had_error[i].reset.next = self.reset.val();
+            self.had_error[i].d.next = self.error[i].val();
+            self.had_alarm[i].clock.next = self.clock.val();
+            self.had_alarm[i].reset.next = self.reset.val();
+            self.had_alarm[i].d.next = self.alarm[i].val();
+            self.one[i].next = 0.into();
+            if self.result[i].val() {
+                self.one[i].next = 1.into();
+            }
+            // Each bad result, and a cause that comes after its result.
+            self.two[i].next = 0.into();
+            if self.error[i].val() & (self.had_result[i].q.val() | !self.had_error[i].q.val()) {
+                self.two[i].next = 2.into();
+            }
+            self.four[i].next = 0.into();
+            if self.alarm[i].val() & !self.had_alarm[i].q.val() {
+                self.four[i].next = 4.into();
+            }
+            self.eight[i].next = 0.into();
+            if self.request[i].val() {
+                self.eight[i].next = 8.into();
+            }
+            self.events[i].next = (self.events[i + 1].val() << 4)
+                | self.one[i].val()
+                | self.two[i].val()
+                | self.four[i].val()
+                | self.eight[i].val();
+        }
+        for i in self._channels..self._links {
+            self.events[i].next = 0.into();
+        }
+
+        // Status, mask, clear.
+        self.selected.next =
+            self.in_range.val() & (self.word_address.val().get_bits::<9>(2) == self.words.val());
+        self.status.d.next = self.status.q.val() | self.events[0].val();
+        if self.selected.val() & self.write.val() {
+            match self.word_address.val().get_bits::<2>(0).index() {
+                1 => {
+                    self.mask.d.next = self.write_data.val();
+                }
+                2 => {
+                    self.status.d.next =
+                        (self.status.q.val() & !self.write_data.val()) | self.events[0].val();
+                }
+                _ => {}
+            }
+        }
+        self.wants.d.next = (self.status.q.val() & self.mask.q.val()).any();
+        self.irq.next = self.wants.q.val();
+
+        self.word.next = 0.into();
+        match self.word_address.val().get_bits::<2>(0).index() {
+            0 => {
+                self.word.next = self.status.q.val();
+            }
+            1 => {
+                self.word.next = self.mask.q.val();
+            }
+            _ => {}
+        }
+        // A reset by deselection takes no logic.
+        self.byte_read.reset.next = !self.selected.val();
+        match self.lane.val().index() {
+            0 => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(24);
+            }
+            1 => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(16);
+            }
+            2 => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(8);
+            }
+            _ => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(0);
+            }
+        }
+        self.read_byte.next = self.byte_read.q.val();
+    }
+}
