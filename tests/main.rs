@@ -4,6 +4,7 @@ mod alignment;
 mod bus;
 mod campaign;
 mod cli;
+mod comparison;
 mod config;
 mod constraints;
 mod cycle_time;

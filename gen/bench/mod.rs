@@ -1,15 +1,18 @@
 //! Speed of the simulators: the card with its encoders, the same stimulus everywhere, results compared, all in one run. And the
 //! speed of the core itself, [`cycle_times`].
 
+mod comparison;
 mod cycle_time;
 mod design;
 mod frames;
 mod instructions;
 mod outside;
+mod preset_run;
 mod report;
 mod rust_engines;
 mod stimulus;
 
+pub use comparison::comparison;
 pub use cycle_time::{cycle_times, CycleTime, CycleTimeOptions, CycleTimes, Published};
 pub use report::{Report, Row};
 pub use rust_engines::card_kernels;

@@ -23,6 +23,8 @@ enum What {
     Engines(EnginesArgs),
     /// Time from one position to the next, measured in simulation, beside the protocol's limit and published systems
     CycleTime(CycleTimeArgs),
+    /// The presets' runs beside what others have published, as the page docs/comparison.md
+    Comparison,
 }
 
 #[derive(Args)]
@@ -96,6 +98,7 @@ pub fn run(arguments: &BenchArgs) -> Result<Outcome, GenError> {
     match &arguments.what {
         What::Engines(arguments) => engines(arguments),
         What::CycleTime(arguments) => cycle_time(arguments),
+        What::Comparison => Ok(Outcome::good(bench::comparison()?)),
     }
 }
 

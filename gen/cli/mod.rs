@@ -222,7 +222,7 @@ fn presets(json: bool) -> Result<Outcome, GenError> {
         return Ok(Outcome::good(to_json(&objects)?));
     }
     Ok(Outcome::good(
-        list.map(|(name, summary)| format!("{name:<20} {summary}\n"))
+        list.map(|(name, summary)| format!("{name:<24} {summary}\n"))
             .collect::<String>(),
     ))
 }

@@ -29,6 +29,15 @@ pub const PRESETS: &[(&str, &str)] = &[
         "s6_two_channel_service",
         include_str!("../presets/s6_two_channel_service.toml"),
     ),
+    ("clb_2mhz", include_str!("../presets/clb_2mhz.toml")),
+    (
+        "ti_three_channel",
+        include_str!("../presets/ti_three_channel.toml"),
+    ),
+    (
+        "artinchip_endat_if",
+        include_str!("../presets/artinchip_endat_if.toml"),
+    ),
 ];
 /// The preset that the program emits when nothing else is asked for.
 pub const DEFAULT_PRESET: &str = "s6_two_channel";

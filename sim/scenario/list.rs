@@ -27,6 +27,7 @@ pub fn named(name: &str) -> Option<Scenario> {
 pub fn all() -> Vec<Scenario> {
     vec![
         paper(),
+        paper_flow(),
         real_1(),
         lc416(),
         long_cable(),
@@ -85,6 +86,45 @@ fn paper() -> Scenario {
         initialisation: 0,
         causes: &[OK; 5],
         may_stop: false,
+    }
+}
+
+/// A position whose CRC, behind F1 F2 = 01, is 0x1D: that of the frame that the paper shows.
+const POSITION_WITH_CRC_1D: u64 = 0x0ABC_DE06;
+
+/// Liu et al., figure 4: wait for the trigger, clock and command, start bit, error bits, position, CRC; each way out of it.
+fn paper_flow() -> Scenario {
+    let bits = |f1, f2| Defect::ErrorBits { f1, f2 };
+    let encoder = EncoderConfig::endat22(29)
+        .position(PositionSource::Fixed(POSITION_WITH_CRC_1D))
+        .defect(2, Defect::NoStartBit)
+        .defect(
+            4,
+            Defect::Glitch {
+                after: 5_050 * NS,
+                width: 300 * NS,
+            },
+        )
+        .defect(6, bits(true, false))
+        .defect(7, Defect::CrcXor(0b1_0000));
+    Scenario {
+        name: "paper-flow",
+        summary: "the flow chart of the two-channel card: a good frame with CRC 0x1D, then no start bit, a wrong one, error bits, a wrong CRC; data is held",
+        trigger_period: MS,
+        triggers: 8,
+        causes: &[
+            OK,
+            OK,
+            cause::NO_START_BIT,
+            OK,
+            cause::START_WINDOW,
+            OK,
+            cause::F1,
+            cause::CRC,
+            OK,
+        ],
+        may_stop: true,
+        ..one_rcn8510(encoder)
     }
 }
 

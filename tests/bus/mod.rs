@@ -6,10 +6,11 @@ mod configuration;
 mod handshake;
 mod outputs;
 mod parallel;
+mod rates;
 mod spi;
 mod three_ways;
 
-use endat_gen::config::parse;
+use endat_gen::config::{parse, Project};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::CardConfig;
 use endat_sim::bench::{Bench, Link, PinNames};
@@ -59,7 +60,12 @@ impl Master {
     /// A card with this bus, reset, its encoders at the end of `cable_m` metres.
     pub fn new(bus: HostBus, more: &str) -> Self {
         let project = parse("card.toml", &text(bus, more)).unwrap();
-        let design = endat_gen::design(&project).unwrap();
+        Self::with_widths(&project, &[29, 25])
+    }
+
+    /// The card of a project, with encoders of these widths.
+    pub fn with_widths(project: &Project, widths: &[u32]) -> Self {
+        let design = endat_gen::design(project).unwrap();
         let engine = Compiled::new(&design).unwrap();
         let link = |n: usize, bits| {
             let mut encoder = EncoderConfig::endat22(bits).seed(n as u64);
@@ -67,13 +73,14 @@ impl Master {
             let port = PinNames::card(n);
             (port, Link::new(LineConfig::cable(20.0), encoder))
         };
-        let links = vec![link(0, 29), link(1, 25)];
+        let links = widths.iter().enumerate().map(|(n, bits)| link(n, *bits));
+        let links = links.collect();
         let mut bench = Bench::new(engine, project.card.system_hz, links);
         bench.reset();
         Self {
-            bus,
+            bus: project.bus,
             bench,
-            config: project.card,
+            config: project.card.clone(),
             rng: Rng::new(7),
         }
     }

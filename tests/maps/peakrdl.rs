@@ -67,7 +67,8 @@ fn the_c_header_of_peakrdl_has_every_word_at_its_place() {
         let mut program = "#include <stddef.h>\n#include \"map.h\"\n".to_owned();
         for word in Word::all(&project.card) {
             let (name, address) = (word.name(), word.address() * 4);
-            program += &format!("_Static_assert(offsetof({map}, {name}) == {address}, \"{name}\");\n");
+            program +=
+                &format!("_Static_assert(offsetof({map}, {name}) == {address}, \"{name}\");\n");
         }
         fs::write(folder.join("places.c"), program).unwrap();
         let (is_good, text) = tools::run("gcc", &folder, &["-std=c11", "-c", "places.c"]);

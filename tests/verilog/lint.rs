@@ -49,3 +49,32 @@ fn yosys_finds_neither_problems_nor_latches_in_the_cards() {
         }
     }
 }
+
+/// The three families of synthesis, with what keeps the hierarchy: equal channels are mapped once.
+const SYNTHESES: [&str; 3] = [
+    "synth_xilinx -family xc6s",
+    "synth_ecp5 -noflatten",
+    "synth_ice40 -noflatten",
+];
+
+#[test]
+fn yosys_maps_every_preset_to_three_families() {
+    if !tools::require("yosys", "synthesis of the presets") {
+        return;
+    }
+    let presets: Vec<_> = presets("synthesis").collect();
+    std::thread::scope(|scope| {
+        for synthesis in SYNTHESES {
+            let presets = &presets;
+            scope.spawn(move || {
+                for (name, folder, files) in presets {
+                    let files = files.join(" ");
+                    let script =
+                        format!("read_verilog {files}; {synthesis} -top {name}; check -assert");
+                    let (good, text) = tools::run("yosys", folder, &["-q", "-p", &script]);
+                    assert!(good, "{name}, {synthesis}: {text}");
+                }
+            });
+        }
+    });
+}

@@ -1,0 +1,436 @@
+//! `bench comparison`: the page that puts what others have published beside what the same work measures here.
+//!
+//! Sources: Kim et al., "Implementation of EnDat Interface Master Using Configurable Logic Block in MCU", Electronics 2024, 13, 1101; TI, "EnDat
+//! Protocol Design", AM243x motor control SDK 09.01; ArtInChip, manual of ENDAT-IF (M6800); Liu et al., "Angle encoder data acquisition system based
+//! on FPGA", 2024; Kang et al., "A FPGA implementation of a rotary machine receiver", 2004.
+
+use super::preset_run::{project, run, ChannelRun, Conditions};
+use super::{cycle_times, fault, CycleTime, CycleTimeOptions};
+use crate::config::Project;
+use crate::error::GenError;
+use endat_hdl::config::{ChannelConfig, ChannelRequest};
+use endat_hdl::direct::CROP_CYCLES;
+use endat_hdl::elaborate::elaborate;
+use endat_hdl::timing::{RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS};
+use endat_hdl::{channel::Channel, channel::FixedTimes};
+use endat_sim::engine::Compiled;
+use endat_sim::scenario::{self, RunOptions};
+use endat_sim::{decimal, Time, NS, US};
+use rust_hdl::prelude::Block;
+use std::fmt::Write as _;
+
+/// The budgets that a test compares with synthesis.
+const AREA: &str = include_str!("../../tests/data/area.toml");
+/// Cables, in metres, from short to long, that a preset is tried on.
+const CABLES_M: [u64; 4] = [20, 100, 150, 780];
+/// Triggers of a run.
+const TRIGGERS: usize = 8;
+
+/// A table of the page.
+struct Table {
+    heading: &'static str,
+    /// Who is in the second column.
+    theirs: &'static str,
+    rows: Vec<[String; 3]>,
+    notes: String,
+}
+
+impl Table {
+    fn new(heading: &'static str, theirs: &'static str) -> Self {
+        Self {
+            heading,
+            theirs,
+            rows: vec![],
+            notes: String::new(),
+        }
+    }
+
+    fn row(&mut self, what: &str, theirs: &str, ours: impl Into<String>) {
+        self.rows.push([what.into(), theirs.into(), ours.into()]);
+    }
+}
+
+fn us(time: Time) -> String {
+    format!("{} us", decimal(time as f64 / US as f64, 2))
+}
+
+/// Whether every trigger brought its position on every channel.
+fn is_good(channels: &[ChannelRun]) -> bool {
+    channels.iter().all(|c| c.good == TRIGGERS)
+}
+
+/// The run of a preset at these conditions, of which every position must be right.
+fn good(project: &Project, conditions: Conditions) -> Result<Vec<ChannelRun>, GenError> {
+    let channels = run(project, conditions)?;
+    match is_good(&channels) {
+        true => Ok(channels),
+        false => Err(fault(&format!("{}: {channels:?}", project.name))),
+    }
+}
+
+/// The longest of the cables with which every position is right, and with which shorter ones are, too; none = 0.
+fn longest(project: &Project, conditions: Conditions) -> Result<String, GenError> {
+    let mut longest_m = 0;
+    for cable_m in CABLES_M {
+        let project = changed(project, |request| request.cable_m = cable_m)?;
+        let conditions = Conditions {
+            cable_m: cable_m as f64,
+            ..conditions
+        };
+        if !is_good(&run(&project, conditions)?) {
+            break;
+        }
+        longest_m = cable_m;
+    }
+    Ok(match CABLES_M.last() == Some(&longest_m) {
+        true => format!("{longest_m} m, the longest tried"),
+        false => format!("{longest_m} m"),
+    })
+}
+
+/// The project with other requests of its channels.
+fn changed(project: &Project, change: impl Fn(&mut ChannelRequest)) -> Result<Project, GenError> {
+    let mut project = project.clone();
+    let system_hz = project.card.system_hz;
+    for (index, channel) in project.card.channels.iter_mut().enumerate() {
+        let mut request = channel.request.clone();
+        change(&mut request);
+        let resolved = ChannelConfig::resolve(&request, system_hz, index);
+        *channel = resolved.map_err(|problems| fault(&format!("{problems:?}")))?;
+    }
+    Ok(project)
+}
+
+/// Another EnDat clock, with the first low phase and the start window that go with it.
+fn at_clock(request: &mut ChannelRequest, clock_hz: u64) {
+    request.clock_hz = clock_hz;
+    request.tst_ns = if clock_hz >= TST_FROM_HZ {
+        TST_USUAL_NS
+    } else {
+        0
+    };
+    request.start_window_ns = (250_000_000 / clock_hz).min(300);
+    request.filter_ns = 0;
+}
+
+fn area(name: &str, family: &str) -> (u64, u64) {
+    let table: toml::Table = AREA.parse().unwrap_or_default();
+    let figure = |what: &str| table.get(name)?.get(family)?.get(what)?.as_integer();
+    let figure = |what| figure(what).unwrap_or_default() as u64;
+    (figure("lut"), figure("ff"))
+}
+
+/// What somebody's frames back to back come to here.
+fn back_to_back<'r>(rows: &'r [CycleTime], who: &str) -> Result<&'r CycleTime, GenError> {
+    let row = rows
+        .iter()
+        .find(|r| r.published.is_some_and(|p| p.who == who));
+    row.filter(|r| r.failure.is_none())
+        .ok_or_else(|| fault(&format!("no row of {who}")))
+}
+
+fn clb(rows: &[CycleTime]) -> Result<Table, GenError> {
+    let project = project("clb_2mhz")?;
+    let conditions = Conditions {
+        cable_m: 3.0,
+        short_tm: 10 * US,
+        period: 62_500 * NS,
+        triggers: TRIGGERS,
+    };
+    let channel = &good(&project, conditions)?[0];
+    let row = back_to_back(rows, "Kim et al.")?;
+    let mut table = Table::new(
+        "Controller with a logic block: `clb_2mhz`",
+        "Kim et al. 2024",
+    );
+    table.row(
+        "36 bits, 2 MHz, 000111: time of the frame",
+        "about 35 us",
+        {
+            let limit = decimal(row.frame_limit_us, 2);
+            format!("{}; the protocol needs {limit} us", us(channel.frame))
+        },
+    );
+    table.row(
+        "trigger to the position at the control loop, cable of 3 m",
+        "–",
+        us(channel.position),
+    );
+    table.row(
+        "left of the control cycle of 62.5 us",
+        "27.5 us",
+        us(62_500 * NS - channel.position),
+    );
+    let most = decimal(row.cycles_per_s, 0);
+    table.row(
+        "cycles per second",
+        "16 000",
+        format!("16 000; at most {most}"),
+    );
+    table.row(
+        "propagation delay compensation",
+        "none, 2 MHz is the end",
+        "measured, then followed in each frame",
+    );
+    let longest = longest(&project, conditions)?;
+    table.row(
+        "cable with every position right, at 2 MHz",
+        "short",
+        longest,
+    );
+    table.row("CRC", "in software", "two in hardware, compared");
+    table.notes = "A receiver without compensation samples half a period after its own clock edge: at 2 MHz that is 250 ns, or 20 m of cable there and back.".into();
+    Ok(table)
+}
+
+fn ti(rows: &[CycleTime]) -> Result<Table, GenError> {
+    let preset = project("ti_three_channel")?;
+    let conditions = Conditions {
+        cable_m: 100.0,
+        short_tm: 1_250 * NS,
+        period: 125 * US,
+        triggers: TRIGGERS,
+    };
+    let channels = good(&preset, conditions)?;
+    let each = |c: &ChannelRun| {
+        let (bits, mhz) = (c.position_bits, decimal(c.clock_hz / 1e6, 1));
+        format!("{bits} bits at {mhz} MHz in {}", us(c.frame))
+    };
+    let each: Vec<String> = channels.iter().map(each).collect();
+    let row = back_to_back(rows, "TI")?;
+    let mut table = Table::new("Three channels: `ti_three_channel`", "TI AM243x");
+    table.row("channels", "3", "3; 1 to 8 from the same description");
+    table.row(
+        "encoders of different make, each at its own rate, 100 m of cable",
+        "one clock for all",
+        each.join("; "),
+    );
+    table.row("encoders of same make, one trigger", "yes", same_make()?);
+    table.row("8 MHz", "100 m", longest_at(8_000_000)?);
+    table.row("16 MHz", "20 m", longest_at(16_000_000)?);
+    table.row(
+        "samples in a bit at 16 MHz",
+        "8",
+        "8; works from 4 on, from 2 with double edge",
+    );
+    table.row(
+        "delay",
+        "measured at the start, 200 kHz",
+        "the same, then the mean of many edges follows it",
+    );
+    let cycle = decimal(row.cycle_us, 2);
+    table.row(
+        "37 bits at 8 MHz, from position to position",
+        "62.5 us",
+        format!("{cycle} us"),
+    );
+    Ok(table)
+}
+
+/// One channel of the preset at this rate, on all cables.
+fn longest_at(clock_hz: u64) -> Result<String, GenError> {
+    let mut project = project("ti_three_channel")?;
+    project.card.channels.truncate(1);
+    let project = changed(&project, |request| at_clock(request, clock_hz))?;
+    let conditions = Conditions {
+        cable_m: 0.0,
+        short_tm: 1_250 * NS,
+        period: 125 * US,
+        triggers: TRIGGERS,
+    };
+    longest(&project, conditions)
+}
+
+/// Three equal channels: whether their clocks are the same, edge by edge.
+fn same_make() -> Result<String, GenError> {
+    let mut project = project("ti_three_channel")?;
+    let first = project.card.channels[0].clone();
+    project.card.channels = vec![first; 3];
+    let conditions = Conditions {
+        cable_m: 20.0,
+        short_tm: 1_250 * NS,
+        period: 62_500 * NS,
+        triggers: TRIGGERS,
+    };
+    let channels = good(&project, conditions)?;
+    let first = &channels[0];
+    let same = channels
+        .iter()
+        .all(|c| (c.frame, c.pulses) == (first.frame, first.pulses));
+    match same {
+        true => Ok(format!(
+            "yes: {} pulses in {} on each",
+            first.pulses,
+            us(first.frame)
+        )),
+        false => Err(fault(&format!("not the same: {channels:?}"))),
+    }
+}
+
+fn artinchip() -> Result<Table, GenError> {
+    let preset = project("artinchip_endat_if")?;
+    let mut rates = vec![];
+    for clock_hz in [16, 8, 4, 2, 1]
+        .map(|mhz| mhz * 1_000_000)
+        .into_iter()
+        .chain([200_000, 100_000])
+    {
+        let project = changed(&preset, |request| {
+            at_clock(request, clock_hz);
+            request.recovery_min_ns = RECOVERY_MIN_NS;
+        })?;
+        let conditions = Conditions {
+            cable_m: 10.0,
+            short_tm: 10 * US,
+            period: 600 * US,
+            triggers: TRIGGERS,
+        };
+        let channel = &good(&project, conditions)?[0];
+        rates.push(decimal(channel.clock_hz / 1e6, 1));
+    }
+    let step_ns = 1e9 / preset.card.system_hz as f64;
+    let crop_ns = CROP_CYCLES as f64 * step_ns;
+    let mut table = Table::new(
+        "Peripheral of a servo processor: `artinchip_endat_if`",
+        "ArtInChip ENDAT-IF",
+    );
+    table.row(
+        "rates at run time, MHz",
+        "16, 8, 4, 2, 1, 0.2, 0.1",
+        format!(
+            "{}, and every other whole number of system clocks",
+            rates.join(", ")
+        ),
+    );
+    table.row("ports", "2, one each", "2; 1 to 8");
+    table.row("mode commands", "10", "14");
+    table.row(
+        "step of the input filter",
+        "4.1 ns",
+        format!("{} ns, 0 to 15 steps", decimal(step_ns, 1)),
+    );
+    table.row(
+        "cropped position to the current loop",
+        "up to 16 bits",
+        format!("up to 32 bits, {} ns after the result", decimal(crop_ns, 0)),
+    );
+    table.row(
+        "errors to the current loop",
+        "OR of selected ones",
+        "OR of selected causes, alarm too",
+    );
+    table.row(
+        "watchdog",
+        "driver off, 30 ms, then DATA LOW for tR",
+        "the same",
+    );
+    table.row(
+        "status bits",
+        "15",
+        "all of them: [artinchip-status.md](artinchip-status.md)",
+    );
+    table.notes = "The filter's step is the system clock: 192 MHz here, since 100 kHz must be at most 2047 clocks; theirs is 240 MHz.".into();
+    Ok(table)
+}
+
+fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
+    let flow = scenario::named("paper-flow").ok_or_else(|| fault(&"no scenario"))?;
+    let mut channel = Channel::new(FixedTimes {
+        abort_us: flow.channels[0].settings.abort_us,
+        ..FixedTimes::at(flow.system_hz)
+    });
+    channel.connect_all();
+    let design = elaborate(&channel, "channel").map_err(|e| fault(&e))?;
+    let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
+    let (bench, report) = flow.run_channel(0, engine, RunOptions::default());
+    if let Some(complaint) = report.complaints().first() {
+        return Err(fault(&format!("{}: {complaint}", flow.name)));
+    }
+    let result = bench.results().get(1).ok_or_else(|| fault(&"no result"))?;
+    let row = back_to_back(rows, "Liu et al.")?;
+    let (lut, ff) = area("card", "xc6s");
+    let mut table = Table::new("Acquisition card: `s6_two_channel`", "Liu et al. 2024");
+    table.row("sampling of two RCN 8510, 3.125 MHz", "10 kHz", {
+        let most = decimal(row.cycles_per_s / 1e3, 1);
+        format!("10 kHz; at most {most} kHz with the same settings")
+    });
+    table.row(
+        "one frame from position to position",
+        "100 us",
+        format!("{} us", decimal(row.cycle_us, 2)),
+    );
+    table.row("captured frame: F1 F2, CRC", "01, 1D", {
+        let frame = bench.frames(0).get(1).ok_or_else(|| fault(&"no frame"))?;
+        let bit = |on| if on { '1' } else { '0' };
+        let (f1, f2) = (bit(frame.errors.0), frame.errors.1.map_or('-', bit));
+        format!(
+            "{f1}{f2}, {:02X} received, {:02X} computed, position {:#010X}",
+            result.crc_received, result.crc_computed, result.position
+        )
+    });
+    table.row(
+        "ways out of the flow chart",
+        "start time-out, wrong start bit, error bits, CRC",
+        {
+            let causes: Vec<String> = bench
+                .results()
+                .iter()
+                .map(|r| r.cause.to_string())
+                .collect();
+            format!(
+                "causes {} in scenario `paper-flow`; the last position is held",
+                causes.join(" ")
+            )
+        },
+    );
+    table.row(
+        "signal `link`",
+        "frame ended well, position taken",
+        "`result_strobe` with `fresh`",
+    );
+    table.row(
+        "signal `check`",
+        "CRC is right",
+        "`crc_received` = `crc_computed`, cause not 4",
+    );
+    table.row("signal `err`", "F1 F2", "flags F1 and F2, causes 5 and 6");
+    table.row(
+        "signal `dir`",
+        "direction of the transceiver",
+        "`endat_data_oe`",
+    );
+    table.row(
+        "area",
+        "device of 9152 logic cells",
+        format!("{lut} LUT6, {ff} FF"),
+    );
+    Ok(table)
+}
+
+/// The page.
+pub fn comparison() -> Result<String, GenError> {
+    let times = cycle_times(CycleTimeOptions {
+        position_bits: None,
+        cable_m: 1,
+        tcal_ns: 5_000,
+        tm_ns: 10_000,
+    })?;
+    let rows = &times.rows;
+    let mut page = "# Comparison\n\nWhat the systems that this project learns from have published, beside what the same work measures here. The right column comes from runs of the presets as \
+        they are emitted, with encoder models on lines that have the delay of a cable, not its attenuation (EnDat allows 150 m); `cargo run --release -- bench comparison > docs/comparison.md` writes this page, and a test compares it. A dash: not told.\n"
+        .to_owned();
+    for table in [clb(rows)?, ti(rows)?, artinchip()?, card(rows)?] {
+        let _ = write!(
+            page,
+            "\n## {}\n\n| | {} | here |\n|---|---|---|\n",
+            table.heading, table.theirs
+        );
+        for [what, theirs, ours] in &table.rows {
+            let _ = writeln!(page, "| {what} | {theirs} | {ours} |");
+        }
+        if !table.notes.is_empty() {
+            let _ = writeln!(page, "\n{}", table.notes);
+        }
+    }
+    Ok(page)
+}

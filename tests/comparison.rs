@@ -1,0 +1,93 @@
+//! The page that compares, and the tables that translate for users of other systems.
+
+use crate::program::good;
+use endat_gen::config::{load_preset, PRESETS};
+use endat_hdl::regs::blocks;
+use endat_hdl::regs::values::{
+    CAUSES, EVIDENCE_FLAGS, INTERRUPT_EVENTS, LINE_FLAGS, REQUEST_ERRORS,
+};
+
+/// Catches a figure that was typed, and one that has changed since.
+#[test]
+fn the_page_is_what_the_command_writes() {
+    let page = include_str!("../docs/comparison.md");
+    let now = good(&["bench", "comparison"]);
+    for (line, (page, now)) in page.lines().zip(now.lines()).enumerate() {
+        assert_eq!(
+            page,
+            now,
+            "docs/comparison.md:{}: bench comparison > docs/comparison.md",
+            line + 1
+        );
+    }
+    assert_eq!(page.trim_end(), now.trim_end());
+}
+
+/// Catches a status bit that is left out, and a register, field, cause or flag that does not exist on that card.
+#[test]
+fn every_status_bit_of_the_peripheral_has_a_place_in_our_map() {
+    let page = include_str!("../docs/artinchip-status.md");
+    let card = load_preset("artinchip_endat_if").unwrap().card;
+    let blocks: Vec<_> = blocks(&card).collect();
+    let words = [
+        &CAUSES[..],
+        &EVIDENCE_FLAGS,
+        &LINE_FLAGS,
+        &REQUEST_ERRORS,
+        &INTERRUPT_EVENTS,
+    ]
+    .concat();
+    let known = |name: &str| match name.split('.').collect::<Vec<_>>()[..] {
+        [word] => words.iter().any(|w| w.name == word),
+        [block, register] => blocks
+            .iter()
+            .any(|b| b.name == block && b.register(register).is_some()),
+        [block, register, field] => blocks
+            .iter()
+            .filter(|b| b.name == block)
+            .filter_map(|b| b.present(&card).find(|r| r.name == register))
+            .any(|r| r.field(field).is_some()),
+        _ => false,
+    };
+    let mut bits = vec![];
+    for row in page.lines().filter(|l| l.starts_with("| ")).skip(1) {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        bits.push(cells[1]);
+        let names = cells[3].split('`').skip(1).step_by(2);
+        for name in names.clone() {
+            assert!(known(name), "{}: {name}", cells[1]);
+        }
+        assert!(
+            names.count() > 0 || cells[3] == "the same" || cells[3].starts_with("the same:"),
+            "{row}"
+        );
+    }
+    let theirs = [
+        "RX1", "RX2", "RX3", "F1", "F2", "CRC1", "CRC2", "CRC3", "MRSADR", "BUSY", "RM", "WRN",
+        "WDG", "RXEND", "MBERR",
+    ];
+    assert_eq!(bits, theirs);
+    let (_, rest) = page.rsplit_once("| MBERR").unwrap();
+    let rest = rest.split_once('\n').unwrap().1;
+    for name in rest.split('`').skip(1).step_by(2) {
+        assert!(
+            known(name) || ["service", "error", "result"].contains(&name),
+            "{name}"
+        );
+    }
+}
+
+/// Catches a preset that the list forgets, and one whose first lines do not say what it is.
+#[test]
+fn presets_are_listed_with_a_line_each_and_explain_themselves() {
+    let list = good(&["presets"]);
+    for (name, text) in PRESETS {
+        let line = list.lines().find(|l| l.starts_with(name));
+        assert!(
+            line.is_some_and(|l| l.len() > name.len() + 20),
+            "{name}: {list}"
+        );
+        assert!(text.starts_with("# "), "{name}");
+        good(&["explain", "--preset", name]);
+    }
+}
