@@ -38,6 +38,7 @@ pub fn verdict(reading: &Reading) -> String {
         (true, _, 0) => "good".into(),
         (true, ..) => format!("good, {}", reading.cause_name()),
         (_, true, _) => format!("held: {}", reading.cause_name()),
+        _ if reading.sequence == 0 => "none yet".into(),
         _ => format!("none: {}", reading.cause_name()),
     }
 }
@@ -50,6 +51,11 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     let results = card.results().map_err(told)?;
     let system_hz = f64::from(card.identity().system_hz);
     let mut messages = Vec::new();
+    if results.channels.iter().all(|r| r.sequence == 0) {
+        messages.push(
+            "no channel has a result since reset; trigger one with `endat-gen reg write card.trigger_now 1`, or enable the timer (`endat-gen reg read card_config`)".into(),
+        );
+    }
     for (channel, r) in results.channels.iter().enumerate() {
         if r.valid && r.age_us == u16::MAX {
             messages.push(format!(

@@ -6,6 +6,7 @@ use super::interrupted;
 use crate::error::GenError;
 use crate::virtual_card::{serve, Door, VirtualCard, VirtualConfig, CABLE_M};
 use clap::Args;
+use endat_hdl::bus::HostBus;
 use std::io::Write;
 use std::time::Duration;
 
@@ -99,6 +100,13 @@ pub fn run(arguments: &CardArgs) -> Result<Outcome, GenError> {
         project.name,
         door.name()
     );
+    if project.bus != HostBus::Uart {
+        let _ = writeln!(
+            stderr,
+            "endat-gen: host.bus = \"{}\": the virtual card has a UART in its place, the registers are the same",
+            project.bus.name()
+        );
+    }
     let stop = interrupted();
     let mut is_first = true;
     serve(&mut card, &mut door, &stop, seconds, |pace| {
