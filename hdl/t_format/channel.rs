@@ -154,7 +154,7 @@ impl Logic for TFormatChannel {
         self.driver.next = self.exchange.driver.val();
         self.busy.next = self.exchange.busy.val();
 
-        self.reply.begin.next = self.exchange.begin.val();
+        self.reply.begins.next = self.exchange.begins.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
         self.reply.is_status.next = self.exchange.is_status.val();
@@ -171,7 +171,7 @@ impl Logic for TFormatChannel {
         self.outcome.status_in.next = self.reply.status.val();
         self.outcome.single_turn_in.next = self.reply.single_turn.val();
         self.outcome.multi_turn_in.next = self.reply.multi_turn.val();
-        self.outcome.byte_in.next = self.reply.byte.val();
+        self.outcome.byte_in.next = self.reply.byte_field.val();
         self.outcome.alarm_in.next = self.reply.alarm.val();
         self.outcome.has_single.next = self.exchange.has_single.val();
         self.outcome.has_multi.next = self.exchange.has_multi.val();

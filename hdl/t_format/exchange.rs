@@ -71,7 +71,7 @@ pub struct Exchange {
     /// An exchange is under way.
     pub busy: Signal<Out, Bit>,
     /// Strobe: an exchange begins.
-    pub begin: Signal<Out, Bit>,
+    pub begins: Signal<Out, Bit>,
     /// Strobe: `level` is a data bit of the reply.
     pub take: Signal<Out, Bit>,
     /// It belongs to the status field.
@@ -167,7 +167,7 @@ impl Default for Exchange {
             tx: Default::default(),
             driver: Default::default(),
             busy: Default::default(),
-            begin: Default::default(),
+            begins: Default::default(),
             take: Default::default(),
             is_status: Default::default(),
             is_single: Default::default(),
@@ -292,12 +292,12 @@ impl Logic for Exchange {
         // What is sent runs through the check sum as what is received does.
         self.wire_bit.next = self.level.val();
         if self.phase.q.val() == Phase::Send {
-            self.wire_bit.next = self.bits.bit.val();
+            self.wire_bit.next = self.bits.bit_out.val();
         }
         self.summed.next =
             self.wire_bit.val() ^ (self.check.q.val().get_bit(0) & !self.order.is_crc.val());
         self.sampled.next = self.grid.strobe.val() & (self.phase.q.val() == Phase::Field);
-        self.differs.next = self.level.val() ^ self.bits.bit.val();
+        self.differs.next = self.level.val() ^ self.bits.bit_out.val();
         self.take.next = self.sampled.val() & self.is_bit.val();
         if self.grid.strobe.val()
             & self.is_bit.val()
@@ -310,7 +310,7 @@ impl Logic for Exchange {
             self.index.d.next = self.index.q.val() + 1;
         }
 
-        self.begin.next = false;
+        self.begins.next = false;
         self.publish.next = false;
         match self.phase.q.val() {
             Phase::Rest => {
@@ -323,7 +323,7 @@ impl Logic for Exchange {
                 self.order.first.next = true;
                 self.index.d.next = self.first_index.val();
                 if self.trigger.val() {
-                    self.begin.next = true;
+                    self.begins.next = true;
                     self.refused.d.next = false;
                     self.heard.d.next = false;
                     self.timed_out.d.next = false;
@@ -345,7 +345,7 @@ impl Logic for Exchange {
             }
             Phase::Send => {
                 if self.grid.strobe.val() {
-                    self.line.d.next = self.bits.bit.val();
+                    self.line.d.next = self.bits.bit_out.val();
                     if self.is_start.val() {
                         self.line.d.next = false;
                     } else {

@@ -11,7 +11,7 @@ pub struct Reply {
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
     /// Strobe: a new exchange begins.
-    pub begin: Signal<In, Bit>,
+    pub begins: Signal<In, Bit>,
     /// Strobe: `level` is a data bit.
     pub take: Signal<In, Bit>,
     /// The bit.
@@ -33,7 +33,7 @@ pub struct Reply {
     /// Multi-turn position.
     pub multi_turn: Signal<Out, Bits<24>>,
     /// Kind of encoder, or EEPROM data.
-    pub byte: Signal<Out, Bits<8>>,
+    pub byte_field: Signal<Out, Bits<8>>,
     /// Alarm field.
     pub alarm: Signal<Out, Bits<8>>,
     status_bits: Reg<Bits<8>>,
@@ -55,7 +55,7 @@ impl Logic for Reply {
             byte_bits,
             alarm_bits
         );
-        self.status_bits.reset.next = self.reset.val() | self.begin.val();
+        self.status_bits.reset.next = self.reset.val() | self.begins.val();
         // What a frame has not filled is not taken, so these need no reset.
         self.single_bits.reset.next = false;
         self.multi_bits.reset.next = false;
@@ -85,7 +85,7 @@ impl Logic for Reply {
         self.status.next = self.status_bits.q.val();
         self.single_turn.next = self.single_bits.q.val();
         self.multi_turn.next = self.multi_bits.q.val();
-        self.byte.next = self.byte_bits.q.val();
+        self.byte_field.next = self.byte_bits.q.val();
         self.alarm.next = self.alarm_bits.q.val();
     }
 }

@@ -22,7 +22,7 @@ pub struct RequestBits {
     /// The field is the CRC; otherwise it is the data.
     pub is_crc: Signal<In, Bit>,
     /// The bit.
-    pub bit: Signal<Out, Bit>,
+    pub bit_out: Signal<Out, Bit>,
     parity: Signal<Local, Bit>,
     control_byte: Signal<Local, Bits<8>>,
     address_byte: Signal<Local, Bits<8>>,
@@ -39,15 +39,15 @@ impl Logic for RequestBits {
             | (bit_cast::<8, 1>(self.parity.val().into()) << 7)
             | 2;
         self.address_byte.next = bit_cast::<8, 7>(self.address.val());
-        self.bit.next = self.data.val().get_bit(self.index.val().index());
+        self.bit_out.next = self.data.val().get_bit(self.index.val().index());
         if self.is_control.val() {
-            self.bit.next = self.control_byte.val().get_bit(self.index.val().index());
+            self.bit_out.next = self.control_byte.val().get_bit(self.index.val().index());
         }
         if self.is_address.val() {
-            self.bit.next = self.address_byte.val().get_bit(self.index.val().index());
+            self.bit_out.next = self.address_byte.val().get_bit(self.index.val().index());
         }
         if self.is_crc.val() {
-            self.bit.next = self.crc_bit.val();
+            self.bit_out.next = self.crc_bit.val();
         }
     }
 }
@@ -69,7 +69,7 @@ mod tests {
                 uut.request_id.next = u64::from(id).into();
                 uut.index.next = index.into();
                 settle(&mut uut);
-                byte |= u8::from(uut.bit.val()) << index;
+                byte |= u8::from(uut.bit_out.val()) << index;
             }
             assert_eq!(byte, control(id));
         }

@@ -1,0 +1,10 @@
+//! The asynchronous receiver and its encoder.
+
+mod area;
+mod dsp;
+mod faults;
+mod header;
+mod lanes;
+mod rig;
+mod three_ways;
+mod vectors;
