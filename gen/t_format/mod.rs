@@ -47,7 +47,10 @@ pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
     let design = design(receiver)?;
     let report = report(receiver).to_string();
     let header = Header {
-        title: format!("{}: T-format receiver with a bus for a signal processor.", receiver.name),
+        title: format!(
+            "{}: T-format receiver with a bus for a signal processor.",
+            receiver.name
+        ),
         version: env!("CARGO_PKG_VERSION").into(),
         configuration_hash: receiver.hash.clone(),
         timing: report.lines().map(str::to_owned).collect(),

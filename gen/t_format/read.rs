@@ -59,13 +59,17 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
         table.finish();
     }
     let (encoder, start) = channel?;
-    let canonical = format!("t_format settings {} request {}", start.word(), start.request_id);
-    let hash = Sha256::digest(canonical)[..6].iter();
+    let canonical = format!(
+        "t_format settings {} request {}",
+        start.word(),
+        start.request_id
+    );
+    let digest = Sha256::digest(canonical);
     Some(Receiver {
         name: name?.value,
         encoder,
         start,
-        hash: hash.map(|b| format!("{b:02x}")).collect(),
+        hash: digest[..6].iter().map(|b| format!("{b:02x}")).collect(),
     })
 }
 
@@ -74,7 +78,12 @@ fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
     let protocol = table.required_string("protocol", "\"t_format\"");
     if let Some(protocol) = protocol.filter(|p| p.value != PROTOCOL) {
         let text = "the bus \"dsp\" is that of a T-format receiver; use \"t_format\", or another host.bus for EnDat";
-        table.complain(protocol.line, "protocol", &format!("{:?}", protocol.value), text);
+        table.complain(
+            protocol.line,
+            "protocol",
+            &format!("{:?}", protocol.value),
+            text,
+        );
     }
     let encoder = read_encoder(table);
     let bit = table.integer("bit_hz", &limits("bit_hz", None));
@@ -93,8 +102,9 @@ fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
     }
     let number = |key: &'static str, usual: u64| {
         let limits = match (key, fast) {
-            ("filter_cycles", true) => limits(key, None)
-                .at_most(FAST_FILTER_CYCLES_MAX, "a bit has four clocks of 20 MHz"),
+            ("filter_cycles", true) => {
+                limits(key, None).at_most(FAST_FILTER_CYCLES_MAX, "a bit has four clocks of 20 MHz")
+            }
             _ => limits(key, None),
         };
         let Some(at) = table.integer(key, &limits) else {

@@ -101,13 +101,21 @@ pub fn report(receiver: &Receiver) -> Report {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: T-format receiver, configuration {}", self.name, self.config_hash)?;
+        writeln!(
+            f,
+            "{}: T-format receiver, configuration {}",
+            self.name, self.config_hash
+        )?;
         if !self.encoder.is_empty() {
             writeln!(f, "encoder        {}", self.encoder)?;
         }
         let field_us = FIELD_BITS as f64 * 1e6 / self.bit_hz as f64;
         let field_us = decimal(field_us, 1);
-        writeln!(f, "line           {} bit/s, a field of 10 bits takes {field_us} us", self.bit_hz)?;
+        writeln!(
+            f,
+            "line           {} bit/s, a field of 10 bits takes {field_us} us",
+            self.bit_hz
+        )?;
         for clock in &self.clocks {
             writeln!(
                 f,
@@ -125,8 +133,15 @@ impl fmt::Display for Report {
             self.reply_gap_us + WAIT_GRACE_US
         )?;
         writeln!(f, "fields         apart by up to {} us", self.field_gap_us)?;
-        writeln!(f, "trigger pin    sends request {:X} until another is written", self.request)?;
-        writeln!(f, "\nrequest  fields out, in  on the line  exchanges a second, longest pauses")?;
+        writeln!(
+            f,
+            "trigger pin    sends request {:X} until another is written",
+            self.request
+        )?;
+        writeln!(
+            f,
+            "\nrequest  fields out, in  on the line  exchanges a second, longest pauses"
+        )?;
         for r in &self.requests {
             writeln!(
                 f,

@@ -3,12 +3,11 @@
 //! ```text
 //! trigger -> Exchange -> tx, driver
 //!              ^  |
-//! rx -> InputFilter -> Reply -> Outcome -> single_turn, multi_turn, cause, ...
+//! rx -> InputFilter -> Reply -> Outcome -> single_turn, multi_turn, flags, ...
 //! ```
 
 use super::exchange::Exchange;
 use super::outcome::Outcome;
-use super::primary::LowestCause;
 use super::reply::Reply;
 use crate::channel::Features;
 use crate::input_filter::InputFilter;
@@ -75,13 +74,10 @@ pub struct TFormatChannel {
     pub reply_id: Signal<Out, Bits<4>>,
     /// Raw flags of the last exchange, see [`super::cause`].
     pub flags: Signal<Out, Bits<15>>,
-    /// Primary cause of the last exchange.
-    pub cause: Signal<Out, Bits<4>>,
     filter: InputFilter,
     exchange: Exchange,
     reply: Reply,
     outcome: Outcome,
-    primary: LowestCause,
 }
 
 impl Default for TFormatChannel {
@@ -116,12 +112,10 @@ impl Default for TFormatChannel {
             crc: Default::default(),
             reply_id: Default::default(),
             flags: Default::default(),
-            cause: Default::default(),
             filter: InputFilter::new(Features::NONE),
             exchange: Default::default(),
             reply: Default::default(),
             outcome: Default::default(),
-            primary: Default::default(),
         }
     }
 }
@@ -154,7 +148,7 @@ impl Logic for TFormatChannel {
         self.driver.next = self.exchange.driver.val();
         self.busy.next = self.exchange.busy.val();
 
-        self.reply.begins.next = self.exchange.begins.val();
+        self.reply.idle.next = self.exchange.idle.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
         self.reply.is_status.next = self.exchange.is_status.val();
@@ -192,7 +186,5 @@ impl Logic for TFormatChannel {
         self.crc.next = self.outcome.crc.val();
         self.reply_id.next = self.outcome.reply_id.val();
         self.flags.next = self.outcome.flags.val();
-        self.primary.flags.next = self.outcome.flags.val();
-        self.cause.next = self.primary.cause.val();
     }
 }

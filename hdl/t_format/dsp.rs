@@ -23,6 +23,7 @@
 //! addresses 1 to 7 show, bit 15 of address 7 excepted. While that bit is set writes are ignored, but a request counts as trigger.
 
 use super::channel::TFormatChannel;
+use super::primary::LowestCause;
 use super::protocol::{BIT_HZ, FAST_BIT_HZ, SYSTEM_HZ};
 use crate::bus::strobes::BusStrobes;
 use crate::reg::{Reg, SyncReg};
@@ -100,6 +101,7 @@ pub struct AsyncDsp {
     pub led_o: Signal<Out, Bit>,
     strobes: BusStrobes,
     channel: TFormatChannel,
+    primary: LowestCause,
     select_0: SyncReg<Bit>,
     select_1: SyncReg<Bit>,
     trigger_0: SyncReg<Bit>,
@@ -116,7 +118,6 @@ pub struct AsyncDsp {
     seen_valid: Reg<Bits<2>>,
     seen_id: Reg<Bits<4>>,
     seen_flags: Reg<Bits<15>>,
-    seen_cause: Reg<Bits<4>>,
     seen_single: Reg<Bits<24>>,
     seen_multi: Reg<Bits<24>>,
     seen_identity: Reg<Bits<8>>,
@@ -161,6 +162,7 @@ impl AsyncDsp {
             led_o: Default::default(),
             strobes: Default::default(),
             channel: Default::default(),
+            primary: Default::default(),
             select_0: Default::default(),
             select_1: Default::default(),
             // HIGH, so that a pin that is high at power-up is not an edge.
@@ -178,7 +180,6 @@ impl AsyncDsp {
             seen_valid: Default::default(),
             seen_id: Default::default(),
             seen_flags: Default::default(),
-            seen_cause: Default::default(),
             seen_single: Default::default(),
             seen_multi: Default::default(),
             seen_identity: Default::default(),
@@ -213,7 +214,7 @@ impl Logic for AsyncDsp {
         self.channel.reset.next = self.rst_i.val();
         dff_setup!(self, clk_i, select_0, select_1, trigger_0, trigger_1, trigger_2);
         dff_setup!(self, clk_i, us_count, us_tick, start, request_id, settings, memory, was_first);
-        dff_setup!(self, clk_i, seen_fresh, seen_valid, seen_id, seen_flags, seen_cause);
+        dff_setup!(self, clk_i, seen_fresh, seen_valid, seen_id, seen_flags);
         dff_setup!(
             self,
             clk_i,
@@ -240,7 +241,6 @@ impl Logic for AsyncDsp {
         self.seen_valid.reset.next = self.rst_i.val();
         self.seen_id.reset.next = self.rst_i.val();
         self.seen_flags.reset.next = self.rst_i.val();
-        self.seen_cause.reset.next = self.rst_i.val();
         self.seen_single.reset.next = self.rst_i.val();
         self.seen_multi.reset.next = self.rst_i.val();
         self.seen_identity.reset.next = self.rst_i.val();
@@ -327,7 +327,6 @@ impl Logic for AsyncDsp {
                 | (bit_cast::<2, 1>(self.channel.multi_valid.val().into()) << 1);
             self.seen_id.d.next = self.channel.reply_id.val();
             self.seen_flags.d.next = self.channel.flags.val();
-            self.seen_cause.d.next = self.channel.cause.val();
             self.seen_single.d.next = self.channel.single_turn.val();
             self.seen_multi.d.next = self.channel.multi_turn.val();
             self.seen_identity.d.next = self.channel.encoder_id.val();
@@ -337,6 +336,7 @@ impl Logic for AsyncDsp {
             self.seen_memory.d.next = self.channel.memory_data.val();
         }
 
+        self.primary.flags.next = self.seen_flags.q.val();
         self.complains.next = self.seen_flags.q.val().get_bits::<2>(9).any();
         self.communication.next = bit_cast::<8, 2>(self.seen_flags.q.val().get_bits::<2>(2))
             | (bit_cast::<8, 1>(self.seen_flags.q.val().get_bits::<1>(7)) << 2)
@@ -379,7 +379,7 @@ impl Logic for AsyncDsp {
             }
             _ => {
                 self.chosen.d.next = bit_cast::<16, 8>(self.seen_memory.q.val())
-                    | (bit_cast::<16, 4>(self.seen_cause.q.val()) << 8)
+                    | (bit_cast::<16, 4>(self.primary.cause.val()) << 8)
                     | (bit_cast::<16, 2>(self.seen_valid.q.val()) << 12)
                     | (bit_cast::<16, 1>(self.overrun.val().into()) << 14)
                     | (bit_cast::<16, 1>(self.channel.busy.val().into()) << 15);

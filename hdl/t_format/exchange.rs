@@ -70,8 +70,8 @@ pub struct Exchange {
     pub driver: Signal<Out, Bit>,
     /// An exchange is under way.
     pub busy: Signal<Out, Bit>,
-    /// Strobe: an exchange begins.
-    pub begins: Signal<Out, Bit>,
+    /// No exchange is under way: what is left of the last one can go.
+    pub idle: Signal<Out, Bit>,
     /// Strobe: `level` is a data bit of the reply.
     pub take: Signal<Out, Bit>,
     /// It belongs to the status field.
@@ -127,10 +127,12 @@ pub struct Exchange {
     overrun: Reg<Bit>,
     falling: Signal<Local, Bit>,
     rising: Signal<Local, Bit>,
+    forget: Signal<Local, Bit>,
     expired: Signal<Local, Bit>,
     is_start: Signal<Local, Bit>,
     is_bit: Signal<Local, Bit>,
     in_sync: Signal<Local, Bit>,
+    retimed: Signal<Local, Bit>,
     sampled: Signal<Local, Bit>,
     differs: Signal<Local, Bit>,
     wire_bit: Signal<Local, Bit>,
@@ -167,7 +169,7 @@ impl Default for Exchange {
             tx: Default::default(),
             driver: Default::default(),
             busy: Default::default(),
-            begins: Default::default(),
+            idle: Default::default(),
             take: Default::default(),
             is_status: Default::default(),
             is_single: Default::default(),
@@ -207,10 +209,12 @@ impl Default for Exchange {
             overrun: Default::default(),
             falling: Default::default(),
             rising: Default::default(),
+            forget: Default::default(),
             expired: Default::default(),
             is_start: Default::default(),
             is_bit: Default::default(),
             in_sync: Default::default(),
+            retimed: Default::default(),
             sampled: Default::default(),
             differs: Default::default(),
             wire_bit: Default::default(),
@@ -235,6 +239,8 @@ impl Logic for Exchange {
         dff_setup!(self, clock, echo, refused, heard, timed_out, bad_parity, bad_echo);
         dff_setup!(self, clock, bad_delimiter, bad_crc, memory_busy, overrun);
         clock!(self, clock, grid, order);
+        // What was noted of an exchange goes when its result has been published.
+        self.forget.next = self.reset.val() | (self.phase.q.val() == Phase::Rest);
         self.grid.reset.next = self.reset.val();
         self.order.reset.next = self.reset.val();
         self.phase.reset.next = self.reset.val();
@@ -244,16 +250,18 @@ impl Logic for Exchange {
         self.line.reset.next = self.reset.val();
         self.drives.reset.next = self.reset.val();
         self.unsettled.reset.next = self.reset.val();
-        self.check.reset.next = self.reset.val();
-        self.echo.reset.next = self.reset.val();
+        // Between exchanges, and before the reply.
+        self.check.reset.next =
+            self.forget.val() | ((self.phase.q.val() == Phase::Wait) & self.order.is_control.val());
+        self.echo.reset.next = self.forget.val();
         self.refused.reset.next = self.reset.val();
-        self.heard.reset.next = self.reset.val();
-        self.timed_out.reset.next = self.reset.val();
-        self.bad_parity.reset.next = self.reset.val();
-        self.bad_echo.reset.next = self.reset.val();
-        self.bad_delimiter.reset.next = self.reset.val();
-        self.bad_crc.reset.next = self.reset.val();
-        self.memory_busy.reset.next = self.reset.val();
+        self.heard.reset.next = self.forget.val();
+        self.timed_out.reset.next = self.forget.val();
+        self.bad_parity.reset.next = self.forget.val();
+        self.bad_echo.reset.next = self.forget.val();
+        self.bad_delimiter.reset.next = self.forget.val();
+        self.bad_crc.reset.next = self.forget.val();
+        self.memory_busy.reset.next = self.forget.val();
         self.overrun.reset.next = self.reset.val();
 
         self.grid.bit_cycles.next = self.bit_cycles.val();
@@ -296,7 +304,13 @@ impl Logic for Exchange {
         }
         self.summed.next =
             self.wire_bit.val() ^ (self.check.q.val().get_bit(0) & !self.order.is_crc.val());
-        self.sampled.next = self.grid.strobe.val() & (self.phase.q.val() == Phase::Field);
+        // The edge into the second cell of the sync code times what follows.
+        self.retimed.next = self.rising.val()
+            & self.in_sync.val()
+            & self.index.q.val().get_bit(0)
+            & (self.phase.q.val() == Phase::Field);
+        self.sampled.next =
+            self.grid.strobe.val() & (self.phase.q.val() == Phase::Field) & !self.retimed.val();
         self.differs.next = self.level.val() ^ self.bits.bit_out.val();
         self.take.next = self.sampled.val() & self.is_bit.val();
         if self.grid.strobe.val()
@@ -306,11 +320,10 @@ impl Logic for Exchange {
             self.check.d.next = bit_cast::<8, 7>(self.check.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.summed.val().into()) << 7);
         }
-        if self.grid.strobe.val() {
+        if self.grid.strobe.val() & !self.retimed.val() {
             self.index.d.next = self.index.q.val() + 1;
         }
 
-        self.begins.next = false;
         self.publish.next = false;
         match self.phase.q.val() {
             Phase::Rest => {
@@ -322,17 +335,8 @@ impl Logic for Exchange {
                 }
                 self.order.first.next = true;
                 self.index.d.next = self.first_index.val();
+                self.refused.d.next = false;
                 if self.trigger.val() {
-                    self.begins.next = true;
-                    self.refused.d.next = false;
-                    self.heard.d.next = false;
-                    self.timed_out.d.next = false;
-                    self.bad_parity.d.next = false;
-                    self.bad_echo.d.next = false;
-                    self.bad_delimiter.d.next = false;
-                    self.bad_crc.d.next = false;
-                    self.memory_busy.d.next = false;
-                    self.check.d.next = 0.into();
                     if !self.order.is_known.val() | !self.level.val() | self.unsettled.q.val() {
                         self.refused.d.next = true;
                         self.phase.d.next = Phase::Judge;
@@ -370,9 +374,6 @@ impl Logic for Exchange {
             }
             Phase::Wait => {
                 self.index.d.next = self.first_index.val();
-                if self.order.is_control.val() {
-                    self.check.d.next = 0.into();
-                }
                 if self.expired.val() {
                     self.timed_out.d.next = true;
                     self.timer.d.next = self.rest_us.val();
@@ -435,14 +436,13 @@ impl Logic for Exchange {
                         }
                     }
                 }
-                // The edge into the second cell of the sync code times what follows; one that comes sooner is not the header's.
-                if self.rising.val() & self.order.is_control.val() {
-                    if self.in_sync.val() & self.index.q.val().get_bit(0) {
-                        self.grid.restart.next = true;
-                    }
-                    if self.is_start.val() | !self.index.q.val().get_bits::<3>(0).any() {
-                        self.phase.d.next = Phase::Wait;
-                    }
+                self.grid.restart.next = self.retimed.val();
+                // An edge that comes sooner is not that of a header.
+                if self.rising.val()
+                    & self.order.is_control.val()
+                    & (self.is_start.val() | !self.index.q.val().any())
+                {
+                    self.phase.d.next = Phase::Wait;
                 }
             }
             _ => {
@@ -487,6 +487,7 @@ impl Logic for Exchange {
         self.tx.next = self.line.q.val();
         self.driver.next = self.drives.q.val();
         self.busy.next = self.phase.q.val() != Phase::Rest;
+        self.idle.next = self.phase.q.val() == Phase::Rest;
         self.is_status.next = self.order.is_status.val();
         self.is_single.next = self.order.is_single.val();
         self.is_multi.next = self.order.is_multi.val();

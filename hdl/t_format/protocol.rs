@@ -19,6 +19,8 @@ pub const BIT_CYCLES: std::ops::RangeInclusive<u64> = 4..=31;
 pub const REPLY_GAP_US_MAX: u64 = 63;
 /// Longest pause between two fields that can be set, in microseconds.
 pub const FIELD_GAP_US_MAX: u64 = 7;
+/// Longest filter at 2.5 Mbit/s and a clock of 20 MHz, in system clock cycles: less than half a bit.
+pub const FILTER_CYCLES_MAX: u64 = 3;
 /// A wait ends this many microseconds after its setting at the latest, and one microsecond sooner at the earliest.
 pub const WAIT_GRACE_US: u64 = 3;
 /// Address of the EEPROM that is the page register.

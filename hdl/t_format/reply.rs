@@ -10,8 +10,8 @@ pub struct Reply {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Strobe: a new exchange begins.
-    pub begins: Signal<In, Bit>,
+    /// No exchange is under way.
+    pub idle: Signal<In, Bit>,
     /// Strobe: `level` is a data bit.
     pub take: Signal<In, Bit>,
     /// The bit.
@@ -55,7 +55,7 @@ impl Logic for Reply {
             byte_bits,
             alarm_bits
         );
-        self.status_bits.reset.next = self.reset.val() | self.begins.val();
+        self.status_bits.reset.next = self.reset.val() | self.idle.val();
         // What a frame has not filled is not taken, so these need no reset.
         self.single_bits.reset.next = false;
         self.multi_bits.reset.next = false;

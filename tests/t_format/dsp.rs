@@ -23,7 +23,7 @@ fn seven_addresses_say_what_the_map_says() {
     // Request ID | control data, ABS | ABS, ABS | ENID, ABM | ABM | ALMC, SF | CRC, communication alarm.
     assert_eq!(
         words,
-        [0x0003, 0x2C93, 0x0A1B, 0x5E11, 0x004D, 0x20C8, 0x00DD]
+        [0x0003, 0x2C93, 0x0A1B, 0x5E11, 0x004D, 0x20C8, 0x00CD]
     );
 }
 

@@ -41,7 +41,7 @@ fn none_is_lost(conditions: Conditions) {
 
 #[test]
 fn no_frame_is_lost_at_20_mhz() {
-    for (rate_error_ppm, jitter) in [(0, 0), (0, 60_000), (30_000, 15_000), (-30_000, 15_000)] {
+    for (rate_error_ppm, jitter) in [(0, 0), (0, 45_000), (30_000, 15_000), (-30_000, 15_000)] {
         none_is_lost(Conditions {
             system_mhz: 20,
             rate_error_ppm,
@@ -52,7 +52,7 @@ fn no_frame_is_lost_at_20_mhz() {
 
 #[test]
 fn no_frame_is_lost_at_60_mhz() {
-    for (rate_error_ppm, jitter) in [(0, 0), (0, 80_000), (30_000, 40_000), (-30_000, 40_000)] {
+    for (rate_error_ppm, jitter) in [(0, 0), (0, 75_000), (30_000, 30_000), (-30_000, 30_000)] {
         none_is_lost(Conditions {
             system_mhz: 60,
             rate_error_ppm,

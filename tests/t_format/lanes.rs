@@ -72,7 +72,7 @@ impl Many {
             tick: lanes.port("tick_us"),
             trigger: lanes.port("trigger"),
             driver: lanes.port("driver"),
-            said: ["fresh", "cause", "status", "encoder_id", "sequence"].map(|n| lanes.port(n)),
+            said: ["fresh", "flags", "status", "encoder_id", "sequence"].map(|n| lanes.port(n)),
             lanes,
             conditions,
             rng: Rng::new(seed),
@@ -140,11 +140,14 @@ impl Many {
     }
 
     fn said(&mut self, lane: usize) -> Said {
-        let [fresh, cause, status, encoder_id, sequence] =
+        let [fresh, flags, status, encoder_id, sequence] =
             self.said.map(|port| self.lanes.get(port, lane));
         Said {
             fresh: fresh == 1,
-            cause: cause as u64,
+            cause: match flags {
+                0 => 0,
+                _ => u64::from(flags.trailing_zeros()) + 1,
+            },
             status: status as u8,
             encoder_id: encoder_id as u8,
             sequence: sequence as u8,
