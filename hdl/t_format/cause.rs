@@ -10,7 +10,7 @@ pub const UNKNOWN_REQUEST: u64 = 1;
 pub const LINE_NOT_IDLE: u64 = 2;
 /// Nothing came within the reply gap.
 pub const NO_ANSWER: u64 = 3;
-/// Something came within the reply gap, but no start and sync code.
+/// Something came within the reply gap, but it did not begin with start bit and sync code.
 pub const HEADER: u64 = 4;
 /// The parity of the ID in the reply is wrong.
 pub const CONTROL_PARITY: u64 = 5;

@@ -9,8 +9,8 @@
 //!             ^ Field         ^ bits are timed from here
 //! ```
 //!
-//! A rising edge is the header if the two cells before it were LOW, its own is HIGH and the next one LOW. Whatever else comes is
-//! passed over until the reply gap has ended. Later fields are timed from their start bits.
+//! A rising edge is the header if the two cells before it were LOW, its own is HIGH and the next one LOW. LOW pulses of less than a
+//! bit and a half are passed over until the reply gap has ended. Later fields are timed from their start bits.
 //!
 //! After a reply that was not good the next request waits until the line has been HIGH for longer than any field lasts.
 
@@ -118,7 +118,7 @@ pub struct Exchange {
     echo: Reg<Bits<4>>,
     refused: Reg<Bit>,
     heard: Reg<Bit>,
-    timed_out: Reg<Bit>,
+    missed: Reg<Bit>,
     bad_parity: Reg<Bit>,
     bad_echo: Reg<Bit>,
     bad_delimiter: Reg<Bit>,
@@ -133,6 +133,7 @@ pub struct Exchange {
     is_bit: Signal<Local, Bit>,
     in_sync: Signal<Local, Bit>,
     retimed: Signal<Local, Bit>,
+    strobe: Signal<Local, Bit>,
     sampled: Signal<Local, Bit>,
     differs: Signal<Local, Bit>,
     wire_bit: Signal<Local, Bit>,
@@ -200,7 +201,7 @@ impl Default for Exchange {
             echo: Default::default(),
             refused: Default::default(),
             heard: Default::default(),
-            timed_out: Default::default(),
+            missed: Default::default(),
             bad_parity: Default::default(),
             bad_echo: Default::default(),
             bad_delimiter: Default::default(),
@@ -215,6 +216,7 @@ impl Default for Exchange {
             is_bit: Default::default(),
             in_sync: Default::default(),
             retimed: Default::default(),
+            strobe: Default::default(),
             sampled: Default::default(),
             differs: Default::default(),
             wire_bit: Default::default(),
@@ -236,7 +238,7 @@ impl Logic for Exchange {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, phase, index, timer, previous, line, drives, unsettled, check);
-        dff_setup!(self, clock, echo, refused, heard, timed_out, bad_parity, bad_echo);
+        dff_setup!(self, clock, echo, refused, heard, missed, bad_parity, bad_echo);
         dff_setup!(self, clock, bad_delimiter, bad_crc, memory_busy, overrun);
         clock!(self, clock, grid, order);
         // What was noted of an exchange goes when its result has been published.
@@ -256,7 +258,7 @@ impl Logic for Exchange {
         self.echo.reset.next = self.forget.val();
         self.refused.reset.next = self.reset.val();
         self.heard.reset.next = self.forget.val();
-        self.timed_out.reset.next = self.forget.val();
+        self.missed.reset.next = self.forget.val();
         self.bad_parity.reset.next = self.forget.val();
         self.bad_echo.reset.next = self.forget.val();
         self.bad_delimiter.reset.next = self.forget.val();
@@ -297,6 +299,13 @@ impl Logic for Exchange {
             & !self.index.q.val().get_bit(2)
             & !(self.index.q.val().get_bit(1) & self.index.q.val().get_bit(0));
 
+        // The edge into the second cell of the sync code times what follows, even if the old grid has a strobe right now.
+        self.retimed.next = self.rising.val()
+            & self.in_sync.val()
+            & self.index.q.val().get_bit(0)
+            & (self.phase.q.val() == Phase::Field);
+        self.strobe.next = self.grid.strobe.val() & !self.retimed.val();
+        self.sampled.next = self.strobe.val() & (self.phase.q.val() == Phase::Field);
         // What is sent runs through the check sum as what is received does.
         self.wire_bit.next = self.level.val();
         if self.phase.q.val() == Phase::Send {
@@ -304,23 +313,16 @@ impl Logic for Exchange {
         }
         self.summed.next =
             self.wire_bit.val() ^ (self.check.q.val().get_bit(0) & !self.order.is_crc.val());
-        // The edge into the second cell of the sync code times what follows.
-        self.retimed.next = self.rising.val()
-            & self.in_sync.val()
-            & self.index.q.val().get_bit(0)
-            & (self.phase.q.val() == Phase::Field);
-        self.sampled.next =
-            self.grid.strobe.val() & (self.phase.q.val() == Phase::Field) & !self.retimed.val();
         self.differs.next = self.level.val() ^ self.bits.bit_out.val();
         self.take.next = self.sampled.val() & self.is_bit.val();
-        if self.grid.strobe.val()
+        if self.strobe.val()
             & self.is_bit.val()
             & ((self.phase.q.val() == Phase::Send) | (self.phase.q.val() == Phase::Field))
         {
             self.check.d.next = bit_cast::<8, 7>(self.check.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.summed.val().into()) << 7);
         }
-        if self.grid.strobe.val() & !self.retimed.val() {
+        if self.strobe.val() {
             self.index.d.next = self.index.q.val() + 1;
         }
 
@@ -348,7 +350,7 @@ impl Logic for Exchange {
                 }
             }
             Phase::Send => {
-                if self.grid.strobe.val() {
+                if self.strobe.val() {
                     self.line.d.next = self.bits.bit_out.val();
                     if self.is_start.val() {
                         self.line.d.next = false;
@@ -366,7 +368,7 @@ impl Logic for Exchange {
                 }
             }
             Phase::Release => {
-                if self.grid.strobe.val() {
+                if self.strobe.val() {
                     self.drives.d.next = false;
                     self.timer.d.next = bit_cast::<7, 6>(self.reply_gap_us.val());
                     self.phase.d.next = Phase::Wait;
@@ -375,7 +377,7 @@ impl Logic for Exchange {
             Phase::Wait => {
                 self.index.d.next = self.first_index.val();
                 if self.expired.val() {
-                    self.timed_out.d.next = true;
+                    self.missed.d.next = true;
                     self.timer.d.next = self.rest_us.val();
                     self.phase.d.next = Phase::Judge;
                 } else {
@@ -398,6 +400,12 @@ impl Logic for Exchange {
                             if self.in_sync.val() {
                                 if self.differs.val() {
                                     self.phase.d.next = Phase::Wait;
+                                    // Shorter than a bit and a half is noise; what is longer spoils the header.
+                                    if self.index.q.val().any() {
+                                        self.missed.d.next = true;
+                                        self.timer.d.next = self.rest_us.val();
+                                        self.phase.d.next = Phase::Judge;
+                                    }
                                 }
                             } else {
                                 if self.order.is_control.val() {
@@ -462,10 +470,10 @@ impl Logic for Exchange {
         self.is_unknown.next = self.refused.q.val() & !self.order.is_known.val();
         self.is_not_idle.next = self.refused.q.val() & self.order.is_known.val();
         self.is_silent.next =
-            self.timed_out.q.val() & self.order.is_control.val() & !self.heard.q.val();
+            self.missed.q.val() & self.order.is_control.val() & !self.heard.q.val();
         self.is_headless.next =
-            self.timed_out.q.val() & self.order.is_control.val() & self.heard.q.val();
-        self.is_short.next = self.timed_out.q.val() & !self.order.is_control.val();
+            self.missed.q.val() & self.order.is_control.val() & self.heard.q.val();
+        self.is_short.next = self.missed.q.val() & !self.order.is_control.val();
         self.raised.next = bit_cast::<15, 1>(self.is_unknown.val().into())
             | (bit_cast::<15, 1>(self.is_not_idle.val().into()) << 1)
             | (bit_cast::<15, 1>(self.is_silent.val().into()) << 2)

@@ -188,10 +188,6 @@ impl Rig {
         self.engine.get(self.outputs[index])
     }
 
-    pub fn driver(&mut self) -> bool {
-        self.output(1) == 1
-    }
-
     pub fn bus(&mut self) -> (u16, bool) {
         (self.output(2) as u16, self.output(3) == 1)
     }
