@@ -148,7 +148,7 @@ impl Logic for TFormatChannel {
         self.driver.next = self.exchange.driver.val();
         self.busy.next = self.exchange.busy.val();
 
-        self.reply.idle.next = self.exchange.idle.val();
+        self.reply.idle.next = !self.exchange.busy.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
         self.reply.is_status.next = self.exchange.is_status.val();

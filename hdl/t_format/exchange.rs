@@ -70,8 +70,6 @@ pub struct Exchange {
     pub driver: Signal<Out, Bit>,
     /// An exchange is under way.
     pub busy: Signal<Out, Bit>,
-    /// No exchange is under way: what is left of the last one can go.
-    pub idle: Signal<Out, Bit>,
     /// Strobe: `level` is a data bit of the reply.
     pub take: Signal<Out, Bit>,
     /// It belongs to the status field.
@@ -125,7 +123,6 @@ pub struct Exchange {
     bad_crc: Reg<Bit>,
     memory_busy: Reg<Bit>,
     overrun: Reg<Bit>,
-    falling: Signal<Local, Bit>,
     rising: Signal<Local, Bit>,
     forget: Signal<Local, Bit>,
     expired: Signal<Local, Bit>,
@@ -146,11 +143,7 @@ pub struct Exchange {
     rest_us: Signal<Local, Bits<7>>,
     raised: Signal<Local, Bits<15>>,
     is_good: Signal<Local, Bit>,
-    first_index: Constant<Bits<4>>,
 }
-
-/// Count of a start bit: data bits are 0 to 7, the delimiter is 8.
-const START_INDEX: u64 = 15;
 
 impl Default for Exchange {
     fn default() -> Self {
@@ -170,7 +163,6 @@ impl Default for Exchange {
             tx: Default::default(),
             driver: Default::default(),
             busy: Default::default(),
-            idle: Default::default(),
             take: Default::default(),
             is_status: Default::default(),
             is_single: Default::default(),
@@ -208,7 +200,6 @@ impl Default for Exchange {
             bad_crc: Default::default(),
             memory_busy: Default::default(),
             overrun: Default::default(),
-            falling: Default::default(),
             rising: Default::default(),
             forget: Default::default(),
             expired: Default::default(),
@@ -229,7 +220,6 @@ impl Default for Exchange {
             rest_us: Default::default(),
             raised: Default::default(),
             is_good: Default::default(),
-            first_index: Constant::new(START_INDEX.into()),
         }
     }
 }
@@ -282,7 +272,6 @@ impl Logic for Exchange {
         self.bits.is_crc.next = self.order.is_crc.val();
 
         self.previous.d.next = self.level.val();
-        self.falling.next = self.previous.q.val() & !self.level.val();
         self.rising.next = !self.previous.q.val() & self.level.val();
 
         // Counts below zero, to -3: a wait is longer than its setting whenever it began between two strobes.
@@ -292,6 +281,7 @@ impl Logic for Exchange {
         }
         self.rest_us.next = bit_cast::<7, 3>(self.field_gap_us.val()) | 8;
 
+        // The start bit is 15, data bits are 0 to 7, the delimiter is 8.
         self.is_start.next = self.index.q.val().get_bit(3) & self.index.q.val().get_bit(0);
         self.is_bit.next = !self.index.q.val().get_bit(3);
         self.in_sync.next = self.order.is_control.val()
@@ -336,7 +326,7 @@ impl Logic for Exchange {
                     self.timer.d.next = self.rest_us.val();
                 }
                 self.order.first.next = true;
-                self.index.d.next = self.first_index.val();
+                self.index.d.next = 15.into();
                 self.refused.d.next = false;
                 if self.trigger.val() {
                     if !self.order.is_known.val() | !self.level.val() | self.unsettled.q.val() {
@@ -357,7 +347,7 @@ impl Logic for Exchange {
                     } else {
                         if !self.is_bit.val() {
                             self.line.d.next = true;
-                            self.index.d.next = self.first_index.val();
+                            self.index.d.next = 15.into();
                             self.order.step.next = true;
                             if self.order.is_last.val() {
                                 self.order.first.next = true;
@@ -375,13 +365,13 @@ impl Logic for Exchange {
                 }
             }
             Phase::Wait => {
-                self.index.d.next = self.first_index.val();
+                self.index.d.next = 15.into();
                 if self.expired.val() {
                     self.missed.d.next = true;
                     self.timer.d.next = self.rest_us.val();
                     self.phase.d.next = Phase::Judge;
                 } else {
-                    if self.falling.val() {
+                    if self.previous.q.val() & !self.level.val() {
                         self.heard.d.next = true;
                         self.grid.restart.next = true;
                         self.phase.d.next = Phase::Field;
@@ -495,7 +485,6 @@ impl Logic for Exchange {
         self.tx.next = self.line.q.val();
         self.driver.next = self.drives.q.val();
         self.busy.next = self.phase.q.val() != Phase::Rest;
-        self.idle.next = self.phase.q.val() == Phase::Rest;
         self.is_status.next = self.order.is_status.val();
         self.is_single.next = self.order.is_single.val();
         self.is_multi.next = self.order.is_multi.val();
