@@ -284,23 +284,19 @@ impl Logic for AsyncDsp {
         self.trigger_2.d.next = self.trigger_1.q.val();
         self.start.d.next = self.trigger_1.q.val() & !self.trigger_2.q.val();
         self.can_write.next = !self.channel.busy.val() & !self.start.q.val();
-        if self.strobes.written.val() {
+        if self.strobes.written.val() & !self.strobes.written_register.val().any() {
+            self.start.d.next = true;
+        }
+        if self.strobes.written.val() & self.can_write.val() {
             match self.strobes.written_register.val().index() {
                 0 => {
-                    self.start.d.next = true;
-                    if self.can_write.val() {
-                        self.request_id.d.next = self.strobes.written_data.val().get_bits::<4>(0);
-                    }
+                    self.request_id.d.next = self.strobes.written_data.val().get_bits::<4>(0);
                 }
                 6 => {
-                    if self.can_write.val() {
-                        self.settings.d.next = self.strobes.written_data.val();
-                    }
+                    self.settings.d.next = self.strobes.written_data.val();
                 }
                 7 => {
-                    if self.can_write.val() {
-                        self.memory.d.next = self.strobes.written_data.val();
-                    }
+                    self.memory.d.next = self.strobes.written_data.val();
                 }
                 _ => {}
             }
