@@ -145,7 +145,7 @@ fn it_complains_about_each_fault_of_the_receiver() {
         wrong(&none, &[0xEA, 0x01]),
         (vec![Violation::Incomplete], None)
     );
-    let cut = |levels: &mut Vec<bool>| drop(levels.pop());
+    let cut = |levels: &mut Vec<bool>| levels.truncate(levels.len() - 1);
     assert_eq!(wrong(&cut, &[0x02]).0, [Violation::ReleasedEarly]);
 
     // The driver goes off within the delimiter, or stays on, or comes too soon.

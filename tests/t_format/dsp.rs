@@ -42,14 +42,10 @@ fn data_are_valid_four_clocks_after_the_address_and_held_for_five() {
             rig.step();
         }
     }
-    for address in 1..6 {
-        let from = 5 * (address - 1);
-        assert_eq!(
-            seen[from + 4..from + 9],
-            [expected[address]; 5],
-            "{address}"
-        );
-        assert_ne!(seen[from + 3], expected[address], "not sooner");
+    for (index, word) in expected[1..6].iter().enumerate() {
+        let from = 5 * index;
+        assert_eq!(seen[from + 4..from + 9], [*word; 5], "{index}");
+        assert_ne!(seen[from + 3], *word, "not sooner");
     }
 }
 

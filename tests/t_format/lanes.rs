@@ -101,7 +101,7 @@ impl Many {
 
     fn step(&mut self) {
         self.cycle += 1;
-        let tick = self.cycle % self.conditions.system_mhz == 0;
+        let tick = self.cycle.is_multiple_of(self.conditions.system_mhz);
         self.lanes.set_all(self.tick, tick.into());
         self.lanes.tick();
     }
