@@ -20,6 +20,7 @@ pub mod explain;
 pub mod integration;
 pub mod maps;
 mod scratch;
+pub mod t_format;
 pub mod template;
 pub mod testbench;
 pub mod verilog;

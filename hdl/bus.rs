@@ -11,6 +11,7 @@ pub mod apb;
 pub mod axi_lite;
 pub mod parallel;
 pub mod spi;
+pub mod strobes;
 pub mod wishbone;
 pub mod word_access;
 

@@ -43,6 +43,7 @@ pub mod sequencer;
 pub mod service;
 pub mod snapshot;
 pub mod stream;
+pub mod t_format;
 #[cfg(test)]
 mod testing;
 pub mod timebase;

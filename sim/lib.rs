@@ -15,6 +15,7 @@ pub mod rng;
 pub mod scenario;
 pub mod segments;
 pub mod shmoo;
+pub mod t_format;
 #[cfg(test)]
 mod test_receiver;
 pub mod wave;

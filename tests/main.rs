@@ -23,6 +23,7 @@ mod service;
 mod shmoo;
 mod sim;
 mod stream;
+mod t_format;
 mod three_way;
 mod tools;
 mod verilog;

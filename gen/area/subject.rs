@@ -21,6 +21,10 @@ use endat_hdl::receiver::Receiver;
 use endat_hdl::service::program::ServiceTimes;
 use endat_hdl::snapshot::Snapshot;
 use endat_hdl::stream::{channel::SetChannel, Stream};
+use endat_hdl::t_format::{
+    channel::TFormatChannel,
+    dsp::{AsyncDsp, TFormatStart},
+};
 use endat_hdl::transaction::Transaction;
 use rust_hdl::prelude::Block;
 
@@ -114,6 +118,12 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             "the same behind the parallel bus",
             ParallelCard::new(&card),
         )?,
+        Subject::new(
+            "async_dsp",
+            "T-format receiver behind the bus of a signal processor",
+            AsyncDsp::new(&TFormatStart::default()),
+        )?,
+        Subject::new("t_format", "T-format receiver", TFormatChannel::default())?,
         Subject::new("channel", "one position channel", Channel::new(times))?,
         Subject::new("port_all", "one port with everything", service(true))?,
         Subject::new(

@@ -2,7 +2,7 @@
 
 use super::{Outcome, SourceArgs};
 use crate::artifact;
-use crate::config::{check_name, Project};
+use crate::config::{check_name, Configuration};
 use crate::error::GenError;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -28,17 +28,25 @@ pub struct EmitArgs {
 
 /// Runs the command.
 pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
-    let mut project: Project = arguments.source.load()?;
-    if let Some(name) = &arguments.name {
-        check_name(name).map_err(|text| GenError::input(format!("--name = {name:?}: {text}")))?;
-        project.name.clone_from(name);
+    let mut configuration = arguments.source.load_any()?;
+    let name = match &mut configuration {
+        Configuration::Card(card) => &mut card.name,
+        Configuration::Receiver(receiver) => &mut receiver.name,
+    };
+    if let Some(other) = &arguments.name {
+        check_name(other).map_err(|text| GenError::input(format!("--name = {other:?}: {text}")))?;
+        name.clone_from(other);
     }
+    let name = name.clone();
     let out = arguments.out.as_deref().unwrap_or(Path::new(OUT));
     if out.as_os_str().is_empty() {
         return Err(GenError::input("--out = \"\": is empty; give a folder"));
     }
-    let folder = out.join(&project.name);
-    let artifacts = crate::emit(&project)?;
+    let folder = out.join(&name);
+    let artifacts = match &configuration {
+        Configuration::Card(card) => crate::emit(card)?,
+        Configuration::Receiver(receiver) => crate::t_format::emit(receiver)?,
+    };
     if arguments.check {
         let mut found = artifact::differences(&folder, &artifacts);
         if found.is_empty() {

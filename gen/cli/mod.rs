@@ -12,7 +12,7 @@ mod shmoo;
 mod sim;
 mod work;
 
-use crate::config::{self, Project};
+use crate::config::{self, Configuration, Project};
 use crate::error::GenError;
 use crate::explain;
 use clap::{Args, Parser, Subcommand};
@@ -121,6 +121,16 @@ struct SourceArgs {
 }
 
 impl SourceArgs {
+    /// Either kind.
+    fn load_any(&self) -> Result<Configuration, GenError> {
+        match (&self.config, &self.preset) {
+            (Some(file), _) => config::load_any_file(file),
+            (None, preset) => {
+                config::load_any_preset(preset.as_deref().unwrap_or(config::DEFAULT_PRESET))
+            }
+        }
+    }
+
     fn load(&self) -> Result<Project, GenError> {
         match (&self.config, &self.preset) {
             (Some(file), _) => config::load_file(file),
@@ -178,12 +188,11 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
             name: Some(name), ..
         }) => host::explain_name::text(&name).map(Outcome::good),
         Some(Command::Explain { source, json, .. }) => {
-            let report = explain::report(&source.load()?);
-            Ok(Outcome::good(if json {
-                to_json(&report)?
-            } else {
-                report.to_string()
-            }))
+            let shown = |report: &dyn Shown| report.shown(json).map(Outcome::good);
+            match source.load_any()? {
+                Configuration::Card(card) => shown(&explain::report(&card)),
+                Configuration::Receiver(receiver) => shown(&crate::t_format::report(&receiver)),
+            }
         }
         Some(Command::Sim(arguments)) => sim::run(&arguments).map(with_engine),
         Some(Command::Crc(arguments)) => crc_command::run(&arguments),
@@ -212,8 +221,8 @@ fn presets(json: bool) -> Result<Outcome, GenError> {
             .unwrap_or("")
             .trim_start_matches(['#', ' '])
     };
-    let list = config::PRESETS
-        .iter()
+    let list = (config::PRESETS.iter())
+        .chain(config::RECEIVER_PRESETS)
         .map(|(name, text)| (*name, summary(text)));
     if json {
         let objects: Vec<_> = list
@@ -225,6 +234,20 @@ fn presets(json: bool) -> Result<Outcome, GenError> {
         list.map(|(name, summary)| format!("{name:<24} {summary}\n"))
             .collect::<String>(),
     ))
+}
+
+/// A report that can be shown as text and as JSON.
+trait Shown {
+    fn shown(&self, json: bool) -> Result<String, GenError>;
+}
+
+impl<T: serde::Serialize + ToString> Shown for T {
+    fn shown(&self, json: bool) -> Result<String, GenError> {
+        match json {
+            true => to_json(self),
+            false => Ok(self.to_string()),
+        }
+    }
 }
 
 /// Indented JSON with a newline at the end.

@@ -4,8 +4,8 @@ mod line;
 mod names;
 mod outputs;
 mod pins;
-mod reader;
-mod schema;
+pub(crate) mod reader;
+pub(crate) mod schema;
 mod stream;
 
 pub use line::phase_name;
@@ -15,6 +15,7 @@ pub use stream::start_name;
 use crate::artifact::read_regular;
 use crate::board::{Assignment, Board, Pll};
 use crate::error::{shown, Diagnostic, GenError};
+use crate::t_format::{self, Receiver};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::CardConfig;
 use std::path::Path;
@@ -39,6 +40,9 @@ pub const PRESETS: &[(&str, &str)] = &[
         include_str!("../presets/artinchip_endat_if.toml"),
     ),
 ];
+/// The presets of T-format receivers.
+pub const RECEIVER_PRESETS: &[(&str, &str)] =
+    &[("async_dsp", include_str!("../presets/async_dsp.toml"))];
 /// The preset that the program emits when nothing else is asked for.
 pub const DEFAULT_PRESET: &str = "s6_two_channel";
 /// Largest configuration file; a larger one is not a configuration.
@@ -113,9 +117,10 @@ pub fn preset(name: &str) -> Result<&'static str, GenError> {
 
 /// The text of the preset that an option asked for.
 pub fn preset_of(option: &str, name: &str) -> Result<&'static str, GenError> {
-    let found = PRESETS.iter().find(|(n, _)| *n == name);
+    let all = || PRESETS.iter().chain(RECEIVER_PRESETS);
+    let found = all().find(|(n, _)| *n == name);
     found.map(|(_, text)| *text).ok_or_else(|| {
-        let known: Vec<&str> = PRESETS.iter().map(|(n, _)| *n).collect();
+        let known: Vec<&str> = all().map(|(n, _)| *n).collect();
         GenError::input(format!(
             "{option} = {}: unknown preset; known presets: {}",
             shown(name),
@@ -129,13 +134,39 @@ pub fn load_preset(name: &str) -> Result<Project, GenError> {
     Ok(parse(&format!("{name}.toml"), preset(name)?)?)
 }
 
+/// A configuration of either kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Configuration {
+    /// A card.
+    Card(Box<Project>),
+    /// A T-format receiver.
+    Receiver(Receiver),
+}
+
+/// A preset of either kind, checked.
+pub fn load_any_preset(name: &str) -> Result<Configuration, GenError> {
+    Ok(parse_any(&format!("{name}.toml"), preset(name)?)?)
+}
+
+/// A configuration file of either kind, read and checked.
+pub fn load_any_file(path: &Path) -> Result<Configuration, GenError> {
+    with_text(path, |file, text| Ok(parse_any(file, text)?))
+}
+
 /// A configuration file, read and checked.
 pub fn load_file(path: &Path) -> Result<Project, GenError> {
+    with_text(path, |file, text| Ok(parse(file, text)?))
+}
+
+fn with_text<T>(
+    path: &Path,
+    parse: impl Fn(&str, &str) -> Result<T, GenError>,
+) -> Result<T, GenError> {
     let remedy = "give a TOML file; `endat-gen presets --show NAME` prints one to start from";
     let bytes =
         read_regular(path, FILE_BYTES_MAX).map_err(|e| GenError::io("read", path, &e, remedy))?;
     let file = path.display().to_string();
-    Ok(parse(&file, text_of(&file, &bytes)?)?)
+    parse(&file, text_of(&file, &bytes)?)
 }
 
 /// The text in the bytes of a configuration file.
@@ -167,10 +198,30 @@ fn text_of<'b>(file: &str, bytes: &'b [u8]) -> Result<&'b str, Vec<Diagnostic>> 
     }
 }
 
-/// Checks the text of a configuration; `file` names it in the messages.
+/// Checks the text of a configuration of either kind; `file` names it in the messages.
+pub fn parse_any(file: &str, text: &str) -> Result<Configuration, Vec<Diagnostic>> {
+    if !t_format::is_receiver(text) {
+        return parse(file, text).map(|card| Configuration::Card(card.into()));
+    }
+    let source = reader::Source::new(file, text);
+    match t_format::read(&source) {
+        Some(receiver) if source.is_good() => Ok(Configuration::Receiver(receiver)),
+        _ => Err(source.into_diagnostics()),
+    }
+}
+
+/// Checks the text of a card's configuration; `file` names it in the messages.
 pub fn parse(file: &str, text: &str) -> Result<Project, Vec<Diagnostic>> {
     if text.trim().is_empty() {
         let text = "is empty; `endat-gen presets --show s6_two_channel` prints a configuration to start from".into();
+        return Err(vec![Diagnostic {
+            file: file.into(),
+            line: 0,
+            text,
+        }]);
+    }
+    if t_format::is_receiver(text) {
+        let text = "host.bus = \"dsp\": is a T-format receiver, and this command works on cards; use emit or explain".into();
         return Err(vec![Diagnostic {
             file: file.into(),
             line: 0,
@@ -194,6 +245,12 @@ mod tests {
             assert_eq!(load_preset(name).unwrap().name, *name);
         }
         assert!(PRESETS.iter().any(|(n, _)| *n == DEFAULT_PRESET));
+        for (name, _) in RECEIVER_PRESETS {
+            match load_any_preset(name).unwrap() {
+                Configuration::Receiver(receiver) => assert_eq!(receiver.name, *name),
+                Configuration::Card(_) => panic!("{name} is a card"),
+            }
+        }
     }
 
     #[test]

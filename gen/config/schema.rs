@@ -241,7 +241,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
 }
 
 /// What the parser says about a line, and what to do about the usual mistakes.
-fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String {
+pub(crate) fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String {
     let message = error.message().replace('\n', ", ");
     let written = source.text().lines().nth(line.saturating_sub(1));
     let (key, value) = written.and_then(|l| l.split_once('=')).unwrap_or_default();
@@ -430,7 +430,7 @@ fn read_channel(
 }
 
 /// The encoder's name, which goes into reports and comments; empty when none is given.
-fn read_encoder(table: &Table<'_, '_>) -> Option<String> {
+pub(crate) fn read_encoder(table: &Table<'_, '_>) -> Option<String> {
     let Some(encoder) = table.string("encoder") else {
         return (!table.has("encoder")).then(String::new);
     };
@@ -620,7 +620,10 @@ fn read_bus(table: &Table<'_, '_>) -> Option<HostBus> {
     let bus = HostBus::from_name(&name.value);
     if bus.is_none() {
         let known: Vec<&str> = HostBus::ALL.map(HostBus::name).to_vec();
-        let text = format!("unknown bus; use {}", known.join(", "));
+        let text = format!(
+            "unknown bus; use {}, or dsp for a T-format receiver",
+            known.join(", ")
+        );
         table.complain(name.line, "bus", &format!("{:?}", name.value), &text);
     }
     bus

@@ -16,10 +16,11 @@
 //! A register's data stands at the pins 4 clocks after the register has been selected. While bit 15 of register 5 is set, writes
 //! are ignored. The direct registers follow a result after 130 clocks at most.
 
+use super::strobes::BusStrobes;
 use super::word_access::WordAccess;
 use crate::card::{each, CardCore};
 use crate::config::CardConfig;
-use crate::reg::{Reg, SyncReg};
+use crate::reg::Reg;
 use rust_hdl::prelude::*;
 
 /// Eight registers of 16 bits in front of the register bank.
@@ -66,21 +67,9 @@ pub struct ParallelFront {
     /// From the bank: the access has ended.
     pub done: Signal<In, Bit>,
     words: WordAccess,
-    cs_0: SyncReg<Bit>,
-    cs_1: SyncReg<Bit>,
-    rd_0: SyncReg<Bit>,
-    rd_1: SyncReg<Bit>,
-    wr_0: SyncReg<Bit>,
-    wr_1: SyncReg<Bit>,
-    register_0: SyncReg<Bits<3>>,
-    register_1: SyncReg<Bits<3>>,
-    data_0: SyncReg<Bits<16>>,
-    data_1: SyncReg<Bits<16>>,
+    strobes: BusStrobes,
     out_data: Reg<Bits<16>>,
     was_first: Reg<Bit>,
-    was_writing: Reg<Bit>,
-    written_register: Reg<Bits<3>>,
-    written: Reg<Bits<16>>,
     next_status: Reg<Bits<32>>,
     next_low: Reg<Bits<32>>,
     live_status: Reg<Bits<32>>,
@@ -103,28 +92,16 @@ pub struct ParallelFront {
     polled: Reg<Bits<3>>,
     is_first: Signal<Local, Bit>,
     is_busy: Signal<Local, Bit>,
-    is_writing: Signal<Local, Bit>,
 }
 
 impl Logic for ParallelFront {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, cs_0, cs_1, rd_0, rd_1, wr_0, wr_1, register_0);
         dff_setup!(
             self,
             clock,
-            register_1,
-            data_0,
-            data_1,
             out_data,
             was_first,
-            was_writing,
-            written_register
-        );
-        dff_setup!(
-            self,
-            clock,
-            written,
             next_status,
             next_low,
             live_status,
@@ -144,21 +121,8 @@ impl Logic for ParallelFront {
             settling
         );
         dff_setup!(self, clock, busy, request, address, writing, is_window, step, polled);
-        self.cs_0.reset.next = self.reset.val();
-        self.cs_1.reset.next = self.reset.val();
-        self.rd_0.reset.next = self.reset.val();
-        self.rd_1.reset.next = self.reset.val();
-        self.wr_0.reset.next = self.reset.val();
-        self.wr_1.reset.next = self.reset.val();
-        self.register_0.reset.next = self.reset.val();
-        self.register_1.reset.next = self.reset.val();
-        self.data_0.reset.next = self.reset.val();
-        self.data_1.reset.next = self.reset.val();
         self.out_data.reset.next = self.reset.val();
         self.was_first.reset.next = self.reset.val();
-        self.was_writing.reset.next = self.reset.val();
-        self.written_register.reset.next = self.reset.val();
-        self.written.reset.next = self.reset.val();
         self.next_status.reset.next = self.reset.val();
         self.next_low.reset.next = self.reset.val();
         self.live_status.reset.next = self.reset.val();
@@ -193,19 +157,16 @@ impl Logic for ParallelFront {
         self.bank_data.next = self.words.bank_data.val();
         self.reading.next = self.words.reading.val();
 
-        self.cs_0.d.next = !self.cs_n.val();
-        self.cs_1.d.next = self.cs_0.q.val();
-        self.rd_0.d.next = !self.rd_n.val();
-        self.rd_1.d.next = self.rd_0.q.val();
-        self.wr_0.d.next = !self.wr_n.val();
-        self.wr_1.d.next = self.wr_0.q.val();
-        self.register_0.d.next = self.register_at.val();
-        self.register_1.d.next = self.register_0.q.val();
-        self.data_0.d.next = self.data_in.val();
-        self.data_1.d.next = self.data_0.q.val();
+        self.strobes.clock.next = self.clock.val();
+        self.strobes.reset.next = self.reset.val();
+        self.strobes.cs_n.next = self.cs_n.val();
+        self.strobes.rd_n.next = self.rd_n.val();
+        self.strobes.wr_n.next = self.wr_n.val();
+        self.strobes.register_at.next = self.register_at.val();
+        self.strobes.data_in.next = self.data_in.val();
 
         // Reading register 0 takes the moment that registers 0 to 4 show.
-        self.is_first.next = self.cs_1.q.val() & self.rd_1.q.val() & !self.register_1.q.val().any();
+        self.is_first.next = self.strobes.reading.val() & !self.strobes.register.val().any();
         self.was_first.d.next = self.is_first.val();
         if self.is_first.val() & !self.was_first.q.val() {
             self.seen_status.d.next = self.live_status.q.val();
@@ -213,7 +174,7 @@ impl Logic for ParallelFront {
         }
         self.is_busy.next =
             self.wants_read.q.val() | self.wants_write.q.val() | self.settling.q.val();
-        match self.register_1.q.val().index() {
+        match self.strobes.register.val().index() {
             0 => {
                 self.out_data.d.next = self.seen_position.q.val().get_bits::<16>(0);
             }
@@ -245,31 +206,20 @@ impl Logic for ParallelFront {
         // No register: the lines are free as soon as the strobe ends.
         self.data_enable.next = !self.cs_n.val() & !self.rd_n.val();
 
-        // What is written is what stood there last before the strobe ended.
-        self.is_writing.next = self.cs_1.q.val() & self.wr_1.q.val();
-        self.was_writing.d.next = self.is_writing.val();
-        if self.is_writing.val() {
-            self.written_register.d.next = self.register_1.q.val();
-            self.written.d.next = self.data_1.q.val();
-        }
-        if self.was_writing.q.val()
-            & !self.is_writing.val()
-            & !self.wants_read.q.val()
-            & !self.wants_write.q.val()
-        {
-            match self.written_register.q.val().index() {
+        if self.strobes.written.val() & !self.wants_read.q.val() & !self.wants_write.q.val() {
+            match self.strobes.written_register.val().index() {
                 5 => {
-                    self.window_address.d.next = self.written.q.val().get_bits::<11>(0);
-                    self.channel.d.next = self.written.q.val().get_bits::<3>(11);
+                    self.window_address.d.next = self.strobes.written_data.val().get_bits::<11>(0);
+                    self.channel.d.next = self.strobes.written_data.val().get_bits::<3>(11);
                     self.settling.d.next =
-                        self.written.q.val().get_bits::<3>(11) != self.channel.q.val();
-                    self.wants_read.d.next = !self.written.q.val().get_bit(14);
+                        self.strobes.written_data.val().get_bits::<3>(11) != self.channel.q.val();
+                    self.wants_read.d.next = !self.strobes.written_data.val().get_bit(14);
                 }
                 6 => {
-                    self.window_low.d.next = self.written.q.val();
+                    self.window_low.d.next = self.strobes.written_data.val();
                 }
                 7 => {
-                    self.window_high.d.next = self.written.q.val();
+                    self.window_high.d.next = self.strobes.written_data.val();
                     self.wants_write.d.next = true;
                 }
                 _ => {}

@@ -4,6 +4,9 @@ use super::*;
 use crate::bus::spi::SCK_CYCLES_MIN;
 use crate::protocol::POSITION_BITS;
 use crate::stream::buffer::BUFFER_BYTES;
+use crate::t_format::protocol::{
+    BIT_HZ, FAST_BIT_HZ, FIELD_GAP_US_MAX, FILTER_CYCLES_MAX, REPLY_GAP_US_MAX,
+};
 use crate::timing::*;
 
 /// The values that one key may have.
@@ -79,6 +82,11 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "fixed_delay_ns" => 0..=cycles_at_most_ns(max_of(DELAY_BITS), slow),
         "drift_limit_ns" => 0..=cycles_at_most_ns(max_of(DRIFT_LIMIT_BITS) >> 4, slow),
         "sck_hz" => 1..=fast / SCK_CYCLES_MIN,
+        "bit_hz" => BIT_HZ..=FAST_BIT_HZ,
+        "request" => 0..=15,
+        "reply_gap_us" => 1..=REPLY_GAP_US_MAX,
+        "field_gap_us" => 0..=FIELD_GAP_US_MAX,
+        "filter_cycles" => 0..=FILTER_CYCLES_MAX,
         _ => 0..=u64::MAX,
     };
     Limits {

@@ -19,6 +19,7 @@ use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::memory::Rom;
 use endat_hdl::reg::{Reg, SyncReg};
 use endat_hdl::sequencer::Sequencer;
+use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
 use endat_sim::rng::Rng;
 use rust_hdl::prelude::*;
 use std::fs;
@@ -40,6 +41,10 @@ fn designs() -> Vec<Design> {
         (
             Box::new(Channel::new(FixedTimes::at(100_000_000))),
             "channel",
+        ),
+        (
+            Box::new(AsyncDsp::new(&TFormatStart::default())),
+            "async_dsp",
         ),
         (Box::new(Chain::default()), "chain"),
         (Box::new(Card::new(&card)), "card"),

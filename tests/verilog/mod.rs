@@ -1,6 +1,6 @@
 //! Outside tools over the emitted card: simulators, linters, synthesis, formal equivalence, gate level.
 
-mod area;
+pub mod area;
 mod formal;
 mod lint;
 mod mutations;

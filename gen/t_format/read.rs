@@ -1,0 +1,126 @@
+//! The keys of a receiver's configuration.
+
+use super::Receiver;
+use crate::config::check_name;
+use crate::config::reader::{At, Source, Table};
+use crate::config::schema::{not_toml, read_encoder};
+use endat_hdl::config::limits;
+use endat_hdl::t_format::dsp::TFormatStart;
+use endat_hdl::t_format::protocol::{Request, BIT_HZ, FAST_BIT_HZ};
+use sha2::{Digest, Sha256};
+use toml::de::DeTable;
+
+/// Bus that makes a configuration one of a receiver.
+pub const BUS: &str = "dsp";
+/// Protocol of its channel.
+pub const PROTOCOL: &str = "t_format";
+/// Longest filter at the fast rate and a clock of 20 MHz, where a bit has four clocks.
+const FAST_FILTER_CYCLES_MAX: u64 = 1;
+
+/// Whether a text is the configuration of a receiver.
+pub fn is_receiver(text: &str) -> bool {
+    let (document, _) = DeTable::parse_recoverable(text);
+    let host = document.get_ref().get("host");
+    let bus = host.and_then(|host| host.get_ref().as_table()?.get("bus")?.get_ref().as_str());
+    bus == Some(BUS)
+}
+
+/// Reads a whole file; complaints go to `source`, and `None` means that there was at least one.
+pub fn read(source: &Source<'_>) -> Option<Receiver> {
+    let (document, errors) = DeTable::parse_recoverable(source.text());
+    for error in &errors {
+        let line = error.span().map_or(0, |span| source.line(span.start));
+        source.complain_line(line, not_toml(source, error, line));
+    }
+    if !errors.is_empty() {
+        return None;
+    }
+    let empty = DeTable::new();
+    let root = Table::root(source, document.get_ref());
+    let name = root.required_string("name", "\"my_receiver\"");
+    if let Some(name) = &name {
+        if let Err(text) = check_name(&name.value) {
+            root.complain(name.line, "name", &format!("{:?}", name.value), &text);
+        }
+    }
+    let host = root.table("host", &empty);
+    host.string("bus");
+    let channels = root.tables("channel").unwrap_or_default();
+    if channels.is_empty() && source.is_good() {
+        let text = "[[channel]]: is missing; add one table with protocol = \"t_format\"";
+        root.complain_plain(text.into());
+    }
+    if let Some(second) = channels.get(1) {
+        let text = "[[channel]]: a receiver has one encoder; write one table, and instantiate the receiver as often as you like";
+        second.complain_plain(text.into());
+    }
+    let channel = channels.first().and_then(read_channel);
+    for table in channels.iter().chain([&host, &root]) {
+        table.finish();
+    }
+    let (encoder, start) = channel?;
+    let canonical = format!(
+        "t_format settings {} request {}",
+        start.word(),
+        start.request_id
+    );
+    let digest = Sha256::digest(canonical);
+    Some(Receiver {
+        name: name?.value,
+        encoder,
+        start,
+        hash: digest[..6].iter().map(|b| format!("{b:02x}")).collect(),
+    })
+}
+
+fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
+    let usual = TFormatStart::default();
+    let protocol = table.required_string("protocol", "\"t_format\"");
+    if let Some(protocol) = protocol.filter(|p| p.value != PROTOCOL) {
+        let text = "the bus \"dsp\" is that of a T-format receiver; use \"t_format\", or another host.bus for EnDat";
+        table.complain(
+            protocol.line,
+            "protocol",
+            &format!("{:?}", protocol.value),
+            text,
+        );
+    }
+    let encoder = read_encoder(table);
+    let bit = table.integer("bit_hz", &limits("bit_hz", None));
+    let is_bad = |bit: &&At<u64>| ![BIT_HZ, FAST_BIT_HZ].contains(&bit.value);
+    if let Some(bit) = bit.as_ref().filter(is_bad) {
+        let text = format!("is no rate of T-format encoders; use {BIT_HZ} or {FAST_BIT_HZ}");
+        table.complain(bit.line, "bit_hz", &bit.value.to_string(), &text);
+    }
+    let fast = bit.is_some_and(|bit| bit.value == FAST_BIT_HZ);
+    let request = table.integer("request", &limits("request", None));
+    let known = |id: u64| u8::try_from(id).ok().and_then(Request::from_id);
+    if let Some(request) = request.as_ref().filter(|r| known(r.value).is_none()) {
+        let ids: Vec<String> = Request::ALL.iter().map(|r| r.id().to_string()).collect();
+        let text = format!("is no request ID; use one of {}", ids.join(", "));
+        table.complain(request.line, "request", &request.value.to_string(), &text);
+    }
+    let number = |key: &'static str, usual: u64| {
+        let limits = match (key, fast) {
+            ("filter_cycles", true) => {
+                limits(key, None).at_most(FAST_FILTER_CYCLES_MAX, "a bit has four clocks of 20 MHz")
+            }
+            _ => limits(key, None),
+        };
+        let Some(at) = table.integer(key, &limits) else {
+            return usual;
+        };
+        if !limits.contains(at.value) {
+            table.complain(at.line, key, &at.value.to_string(), &limits.to_string());
+        }
+        at.value
+    };
+    let start = TFormatStart {
+        fast,
+        reply_gap_us: number("reply_gap_us", usual.reply_gap_us),
+        field_gap_us: number("field_gap_us", usual.field_gap_us),
+        filter_cycles: number("filter_cycles", usual.filter_cycles),
+        request_id: request.map_or(usual.request_id, |r| r.value as u8 & 15),
+    };
+    Some((encoder?, start))
+}

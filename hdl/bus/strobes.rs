@@ -1,0 +1,105 @@
+//! Strobes of an asynchronous bus, brought into the system clock domain.
+//!
+//! ```text
+//! cs_n, rd_n, wr_n, register_at, data_in --SyncReg x2--> reading, register | written, written_register, written_data
+//! ```
+
+use crate::reg::{Reg, SyncReg};
+use rust_hdl::prelude::*;
+
+/// Bus with chip select, read and write strobe, eight registers of 16 bits.
+#[derive(LogicBlock, Default)]
+pub struct BusStrobes {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Chip select, active low, asynchronous.
+    pub cs_n: Signal<In, Bit>,
+    /// Read strobe, active low, asynchronous.
+    pub rd_n: Signal<In, Bit>,
+    /// Write strobe, active low, asynchronous; its rising edge writes.
+    pub wr_n: Signal<In, Bit>,
+    /// Register that is read or written, asynchronous.
+    pub register_at: Signal<In, Bits<3>>,
+    /// Data from the processor, asynchronous.
+    pub data_in: Signal<In, Bits<16>>,
+    /// The register that is selected, two clocks late.
+    pub register: Signal<Out, Bits<3>>,
+    /// It is being read.
+    pub reading: Signal<Out, Bit>,
+    /// Strobe: a write has ended.
+    pub written: Signal<Out, Bit>,
+    /// The register that was written.
+    pub written_register: Signal<Out, Bits<3>>,
+    /// What was written.
+    pub written_data: Signal<Out, Bits<16>>,
+    cs_0: SyncReg<Bit>,
+    cs_1: SyncReg<Bit>,
+    rd_0: SyncReg<Bit>,
+    rd_1: SyncReg<Bit>,
+    wr_0: SyncReg<Bit>,
+    wr_1: SyncReg<Bit>,
+    register_0: SyncReg<Bits<3>>,
+    register_1: SyncReg<Bits<3>>,
+    data_0: SyncReg<Bits<16>>,
+    data_1: SyncReg<Bits<16>>,
+    was_writing: Reg<Bit>,
+    last_register: Reg<Bits<3>>,
+    last_data: Reg<Bits<16>>,
+    is_writing: Signal<Local, Bit>,
+}
+
+impl Logic for BusStrobes {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, cs_0, cs_1, rd_0, rd_1, wr_0, wr_1, register_0);
+        dff_setup!(
+            self,
+            clock,
+            register_1,
+            data_0,
+            data_1,
+            was_writing,
+            last_register,
+            last_data
+        );
+        self.cs_0.reset.next = self.reset.val();
+        self.cs_1.reset.next = self.reset.val();
+        self.rd_0.reset.next = self.reset.val();
+        self.rd_1.reset.next = self.reset.val();
+        self.wr_0.reset.next = self.reset.val();
+        self.wr_1.reset.next = self.reset.val();
+        self.register_0.reset.next = self.reset.val();
+        self.register_1.reset.next = self.reset.val();
+        self.data_0.reset.next = self.reset.val();
+        self.data_1.reset.next = self.reset.val();
+        self.was_writing.reset.next = self.reset.val();
+        self.last_register.reset.next = self.reset.val();
+        self.last_data.reset.next = self.reset.val();
+
+        self.cs_0.d.next = !self.cs_n.val();
+        self.cs_1.d.next = self.cs_0.q.val();
+        self.rd_0.d.next = !self.rd_n.val();
+        self.rd_1.d.next = self.rd_0.q.val();
+        self.wr_0.d.next = !self.wr_n.val();
+        self.wr_1.d.next = self.wr_0.q.val();
+        self.register_0.d.next = self.register_at.val();
+        self.register_1.d.next = self.register_0.q.val();
+        self.data_0.d.next = self.data_in.val();
+        self.data_1.d.next = self.data_0.q.val();
+
+        self.register.next = self.register_1.q.val();
+        self.reading.next = self.cs_1.q.val() & self.rd_1.q.val();
+        // What is written is what stood there last before the strobe ended.
+        self.is_writing.next = self.cs_1.q.val() & self.wr_1.q.val();
+        self.was_writing.d.next = self.is_writing.val();
+        if self.is_writing.val() {
+            self.last_register.d.next = self.register_1.q.val();
+            self.last_data.d.next = self.data_1.q.val();
+        }
+        self.written.next = self.was_writing.q.val() & !self.is_writing.val();
+        self.written_register.next = self.last_register.q.val();
+        self.written_data.next = self.last_data.q.val();
+    }
+}

@@ -1,0 +1,22 @@
+//! Receiver for encoders with the asynchronous protocol known as T-format (Tamagawa).
+//!
+//! ```text
+//! trigger, request -> Exchange -> tx, driver
+//!                      ^   |
+//! rx -> InputFilter ---+-> Reply -> Outcome -> registers -> DSP bus
+//! ```
+//!
+//! Reading order: [`protocol`] and [`cause`] (facts), [`bit_grid`], [`field_order`], [`request_bits`] (parts), [`exchange`] (order
+//! and checks), [`channel`], [`dsp`].
+
+pub mod bit_grid;
+pub mod cause;
+pub mod channel;
+pub mod dsp;
+pub mod exchange;
+pub mod field_order;
+pub mod outcome;
+pub mod primary;
+pub mod protocol;
+pub mod reply;
+pub mod request_bits;

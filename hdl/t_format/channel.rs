@@ -1,0 +1,190 @@
+//! One T-format port: input filter, exchange, reply and result registers.
+//!
+//! ```text
+//! trigger -> Exchange -> tx, driver
+//!              ^  |
+//! rx -> InputFilter -> Reply -> Outcome -> single_turn, multi_turn, flags, ...
+//! ```
+
+use super::exchange::Exchange;
+use super::outcome::Outcome;
+use super::reply::Reply;
+use crate::channel::Features;
+use crate::input_filter::InputFilter;
+use rust_hdl::prelude::*;
+
+/// Receiver of one T-format encoder.
+#[derive(LogicBlock)]
+pub struct TFormatChannel {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// Strobe: send the request.
+    pub trigger: Signal<In, Bit>,
+    /// Request ID; constant while `busy`, as all settings.
+    pub request_id: Signal<In, Bits<4>>,
+    /// EEPROM address of requests 6 and D.
+    pub address: Signal<In, Bits<7>>,
+    /// EEPROM data of request 6.
+    pub data: Signal<In, Bits<8>>,
+    /// System clock cycles in a bit, 4 to 31.
+    pub bit_cycles: Signal<In, Bits<5>>,
+    /// Longest pause before the reply, in microseconds.
+    pub reply_gap_us: Signal<In, Bits<6>>,
+    /// Longest pause between two fields, in microseconds.
+    pub field_gap_us: Signal<In, Bits<3>>,
+    /// Pulses of at most this many system clock cycles are ignored; less than half a bit.
+    pub filter_cycles: Signal<In, Bits<4>>,
+    /// Line from the transceiver, asynchronous, idle HIGH.
+    pub rx: Signal<In, Bit>,
+    /// Line to the transceiver.
+    pub tx: Signal<Out, Bit>,
+    /// Driver enable of the transceiver.
+    pub driver: Signal<Out, Bit>,
+    /// An exchange is under way.
+    pub busy: Signal<Out, Bit>,
+    /// A new result can be read from this cycle on.
+    pub result_strobe: Signal<Out, Bit>,
+    /// The last reply was good; low = what stands here is of an earlier one.
+    pub fresh: Signal<Out, Bit>,
+    /// Number of results, wrapping.
+    pub sequence: Signal<Out, Bits<8>>,
+    /// Last good single-turn position.
+    pub single_turn: Signal<Out, Bits<24>>,
+    /// There is one.
+    pub single_valid: Signal<Out, Bit>,
+    /// Last good multi-turn position.
+    pub multi_turn: Signal<Out, Bits<24>>,
+    /// There is one.
+    pub multi_valid: Signal<Out, Bit>,
+    /// Kind of encoder, as it came last.
+    pub encoder_id: Signal<Out, Bits<8>>,
+    /// EEPROM data as they came last.
+    pub memory_data: Signal<Out, Bits<8>>,
+    /// Alarm field as it came last.
+    pub alarm: Signal<Out, Bits<8>>,
+    /// Status field of the last reply; 0 if none came.
+    pub status: Signal<Out, Bits<8>>,
+    /// CRC of the last reply.
+    pub crc: Signal<Out, Bits<8>>,
+    /// ID that the last reply repeats.
+    pub reply_id: Signal<Out, Bits<4>>,
+    /// Raw flags of the last exchange, see [`super::cause`].
+    pub flags: Signal<Out, Bits<15>>,
+    filter: InputFilter,
+    exchange: Exchange,
+    reply: Reply,
+    outcome: Outcome,
+}
+
+impl Default for TFormatChannel {
+    fn default() -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            tick_us: Default::default(),
+            trigger: Default::default(),
+            request_id: Default::default(),
+            address: Default::default(),
+            data: Default::default(),
+            bit_cycles: Default::default(),
+            reply_gap_us: Default::default(),
+            field_gap_us: Default::default(),
+            filter_cycles: Default::default(),
+            rx: Default::default(),
+            tx: Default::default(),
+            driver: Default::default(),
+            busy: Default::default(),
+            result_strobe: Default::default(),
+            fresh: Default::default(),
+            sequence: Default::default(),
+            single_turn: Default::default(),
+            single_valid: Default::default(),
+            multi_turn: Default::default(),
+            multi_valid: Default::default(),
+            encoder_id: Default::default(),
+            memory_data: Default::default(),
+            alarm: Default::default(),
+            status: Default::default(),
+            crc: Default::default(),
+            reply_id: Default::default(),
+            flags: Default::default(),
+            filter: InputFilter::new(Features::NONE),
+            exchange: Default::default(),
+            reply: Default::default(),
+            outcome: Default::default(),
+        }
+    }
+}
+
+impl Logic for TFormatChannel {
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, filter, exchange, reply, outcome);
+        self.filter.reset.next = self.reset.val();
+        self.exchange.reset.next = self.reset.val();
+        self.reply.reset.next = self.reset.val();
+        self.outcome.reset.next = self.reset.val();
+
+        self.filter.pin.next = self.rx.val();
+        self.filter.filter_cycles.next = self.filter_cycles.val();
+        self.filter.majority.next = false;
+        self.filter.both_edges.next = false;
+
+        self.exchange.tick_us.next = self.tick_us.val();
+        self.exchange.trigger.next = self.trigger.val();
+        self.exchange.request_id.next = self.request_id.val();
+        self.exchange.address.next = self.address.val();
+        self.exchange.data.next = self.data.val();
+        self.exchange.bit_cycles.next = self.bit_cycles.val();
+        self.exchange.reply_gap_us.next = self.reply_gap_us.val();
+        self.exchange.field_gap_us.next = self.field_gap_us.val();
+        self.exchange.level.next = self.filter.level.val();
+        self.exchange.status.next = self.reply.status.val();
+        self.tx.next = self.exchange.tx.val();
+        self.driver.next = self.exchange.driver.val();
+        self.busy.next = self.exchange.busy.val();
+
+        self.reply.idle.next = !self.exchange.busy.val();
+        self.reply.take.next = self.exchange.take.val();
+        self.reply.level.next = self.filter.level.val();
+        self.reply.is_status.next = self.exchange.is_status.val();
+        self.reply.is_single.next = self.exchange.is_single.val();
+        self.reply.is_multi.next = self.exchange.is_multi.val();
+        self.reply.is_byte.next = self.exchange.is_byte.val();
+        self.reply.is_alarm.next = self.exchange.is_alarm.val();
+
+        self.outcome.publish.next = self.exchange.publish.val();
+        self.outcome.good.next = self.exchange.good.val();
+        self.outcome.flags_in.next = self.exchange.flags.val();
+        self.outcome.reply_id_in.next = self.exchange.reply_id.val();
+        self.outcome.crc_in.next = self.exchange.crc.val();
+        self.outcome.status_in.next = self.reply.status.val();
+        self.outcome.single_turn_in.next = self.reply.single_turn.val();
+        self.outcome.multi_turn_in.next = self.reply.multi_turn.val();
+        self.outcome.byte_in.next = self.reply.byte_field.val();
+        self.outcome.alarm_in.next = self.reply.alarm.val();
+        self.outcome.has_single.next = self.exchange.has_single.val();
+        self.outcome.has_multi.next = self.exchange.has_multi.val();
+        self.outcome.has_identity.next = self.exchange.has_identity.val();
+        self.outcome.has_alarm.next = self.exchange.has_alarm.val();
+        self.outcome.is_memory.next = self.exchange.is_memory.val();
+        self.result_strobe.next = self.outcome.result_strobe.val();
+        self.fresh.next = self.outcome.fresh.val();
+        self.sequence.next = self.outcome.sequence.val();
+        self.single_turn.next = self.outcome.single_turn.val();
+        self.single_valid.next = self.outcome.single_valid.val();
+        self.multi_turn.next = self.outcome.multi_turn.val();
+        self.multi_valid.next = self.outcome.multi_valid.val();
+        self.encoder_id.next = self.outcome.encoder_id.val();
+        self.memory_data.next = self.outcome.memory_data.val();
+        self.alarm.next = self.outcome.alarm.val();
+        self.status.next = self.outcome.status.val();
+        self.crc.next = self.outcome.crc.val();
+        self.reply_id.next = self.outcome.reply_id.val();
+        self.flags.next = self.outcome.flags.val();
+    }
+}

@@ -1,0 +1,499 @@
+//! Exchange: one request and its reply, from the trigger to the verdict.
+//!
+//! ```text
+//! trigger --> Send --> Release --> Wait <--> Field --> Judge --> Rest
+//!  (refused: --> Judge)             \-- time-out --------^
+//!
+//! line    ~~~~\______________/~~~~~~~\_______X  ID ..
+//!         idle| start | sync0 | sync1 | sync2
+//!             ^ Field         ^ bits are timed from here
+//! ```
+//!
+//! A rising edge is the header if the two cells before it were LOW, its own is HIGH and the next one LOW. LOW pulses of less than a
+//! bit and a half are passed over until the reply gap has ended. Later fields are timed from their start bits.
+//!
+//! After a reply that was not good the next request waits until the line has been HIGH for longer than any field lasts.
+
+use super::bit_grid::BitGrid;
+use super::field_order::FieldOrder;
+use super::request_bits::RequestBits;
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Where the exchange is.
+#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+pub enum Phase {
+    /// Nothing to do.
+    Rest,
+    /// A field of the request is sent.
+    Send,
+    /// The last delimiter of the request is on the line.
+    Release,
+    /// Waiting for a field to begin.
+    Wait,
+    /// A field of the reply is taken.
+    Field,
+    /// The result is published.
+    Judge,
+}
+
+/// Order, timing and checks of an exchange.
+#[derive(LogicBlock)]
+pub struct Exchange {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// Strobe: begin an exchange.
+    pub trigger: Signal<In, Bit>,
+    /// Request ID; constant while `busy`, as all settings.
+    pub request_id: Signal<In, Bits<4>>,
+    /// EEPROM address of requests 6 and D.
+    pub address: Signal<In, Bits<7>>,
+    /// EEPROM data of request 6.
+    pub data: Signal<In, Bits<8>>,
+    /// System clock cycles in a bit, 4 to 31.
+    pub bit_cycles: Signal<In, Bits<5>>,
+    /// Longest pause before the reply, in microseconds.
+    pub reply_gap_us: Signal<In, Bits<6>>,
+    /// Longest pause between two fields, in microseconds.
+    pub field_gap_us: Signal<In, Bits<3>>,
+    /// The line after synchroniser and filter.
+    pub level: Signal<In, Bit>,
+    /// Status field of the reply, 0 before it has come.
+    pub status: Signal<In, Bits<8>>,
+    /// Line to the encoder, from a register.
+    pub tx: Signal<Out, Bit>,
+    /// Driver enable, from a register: the request only.
+    pub driver: Signal<Out, Bit>,
+    /// An exchange is under way.
+    pub busy: Signal<Out, Bit>,
+    /// Strobe: `level` is a data bit of the reply.
+    pub take: Signal<Out, Bit>,
+    /// It belongs to the status field.
+    pub is_status: Signal<Out, Bit>,
+    /// It belongs to the single-turn position.
+    pub is_single: Signal<Out, Bit>,
+    /// It belongs to the multi-turn position.
+    pub is_multi: Signal<Out, Bit>,
+    /// It belongs to the kind of encoder or to EEPROM data.
+    pub is_byte: Signal<Out, Bit>,
+    /// It belongs to the alarm field.
+    pub is_alarm: Signal<Out, Bit>,
+    /// Strobe: the exchange has ended; what follows belongs to it.
+    pub publish: Signal<Out, Bit>,
+    /// The reply is good.
+    pub good: Signal<Out, Bit>,
+    /// Raw flags, see [`super::cause`].
+    pub flags: Signal<Out, Bits<15>>,
+    /// The ID that the reply repeats.
+    pub reply_id: Signal<Out, Bits<4>>,
+    /// CRC of the reply as received.
+    pub crc: Signal<Out, Bits<8>>,
+    /// Replies to this request bring a single-turn position.
+    pub has_single: Signal<Out, Bit>,
+    /// They bring a multi-turn position.
+    pub has_multi: Signal<Out, Bit>,
+    /// They bring the kind of encoder.
+    pub has_identity: Signal<Out, Bit>,
+    /// They bring alarms.
+    pub has_alarm: Signal<Out, Bit>,
+    /// They bring EEPROM data.
+    pub is_memory: Signal<Out, Bit>,
+    grid: BitGrid,
+    order: FieldOrder,
+    bits: RequestBits,
+    phase: Reg<Phase>,
+    index: Reg<Bits<4>>,
+    timer: Reg<Bits<7>>,
+    previous: Reg<Bit>,
+    line: Reg<Bit>,
+    drives: Reg<Bit>,
+    unsettled: Reg<Bit>,
+    check: Reg<Bits<8>>,
+    echo: Reg<Bits<4>>,
+    refused: Reg<Bit>,
+    heard: Reg<Bit>,
+    missed: Reg<Bit>,
+    bad_parity: Reg<Bit>,
+    bad_echo: Reg<Bit>,
+    bad_delimiter: Reg<Bit>,
+    bad_crc: Reg<Bit>,
+    memory_busy: Reg<Bit>,
+    overrun: Reg<Bit>,
+    rising: Signal<Local, Bit>,
+    forget: Signal<Local, Bit>,
+    expired: Signal<Local, Bit>,
+    is_start: Signal<Local, Bit>,
+    is_bit: Signal<Local, Bit>,
+    in_sync: Signal<Local, Bit>,
+    retimed: Signal<Local, Bit>,
+    strobe: Signal<Local, Bit>,
+    sampled: Signal<Local, Bit>,
+    differs: Signal<Local, Bit>,
+    wire_bit: Signal<Local, Bit>,
+    summed: Signal<Local, Bit>,
+    is_unknown: Signal<Local, Bit>,
+    is_not_idle: Signal<Local, Bit>,
+    is_silent: Signal<Local, Bit>,
+    is_headless: Signal<Local, Bit>,
+    is_short: Signal<Local, Bit>,
+    rest_us: Signal<Local, Bits<7>>,
+    raised: Signal<Local, Bits<15>>,
+    is_good: Signal<Local, Bit>,
+}
+
+impl Default for Exchange {
+    fn default() -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            tick_us: Default::default(),
+            trigger: Default::default(),
+            request_id: Default::default(),
+            address: Default::default(),
+            data: Default::default(),
+            bit_cycles: Default::default(),
+            reply_gap_us: Default::default(),
+            field_gap_us: Default::default(),
+            level: Default::default(),
+            status: Default::default(),
+            tx: Default::default(),
+            driver: Default::default(),
+            busy: Default::default(),
+            take: Default::default(),
+            is_status: Default::default(),
+            is_single: Default::default(),
+            is_multi: Default::default(),
+            is_byte: Default::default(),
+            is_alarm: Default::default(),
+            publish: Default::default(),
+            good: Default::default(),
+            flags: Default::default(),
+            reply_id: Default::default(),
+            crc: Default::default(),
+            has_single: Default::default(),
+            has_multi: Default::default(),
+            has_identity: Default::default(),
+            has_alarm: Default::default(),
+            is_memory: Default::default(),
+            grid: Default::default(),
+            order: Default::default(),
+            bits: Default::default(),
+            phase: Default::default(),
+            index: Default::default(),
+            timer: Default::default(),
+            previous: Default::default(),
+            line: Reg::new(true),
+            drives: Default::default(),
+            unsettled: Default::default(),
+            check: Default::default(),
+            echo: Default::default(),
+            refused: Default::default(),
+            heard: Default::default(),
+            missed: Default::default(),
+            bad_parity: Default::default(),
+            bad_echo: Default::default(),
+            bad_delimiter: Default::default(),
+            bad_crc: Default::default(),
+            memory_busy: Default::default(),
+            overrun: Default::default(),
+            rising: Default::default(),
+            forget: Default::default(),
+            expired: Default::default(),
+            is_start: Default::default(),
+            is_bit: Default::default(),
+            in_sync: Default::default(),
+            retimed: Default::default(),
+            strobe: Default::default(),
+            sampled: Default::default(),
+            differs: Default::default(),
+            wire_bit: Default::default(),
+            summed: Default::default(),
+            is_unknown: Default::default(),
+            is_not_idle: Default::default(),
+            is_silent: Default::default(),
+            is_headless: Default::default(),
+            is_short: Default::default(),
+            rest_us: Default::default(),
+            raised: Default::default(),
+            is_good: Default::default(),
+        }
+    }
+}
+
+impl Logic for Exchange {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, phase, index, timer, previous, line, drives, unsettled, check);
+        dff_setup!(self, clock, echo, refused, heard, missed, bad_parity, bad_echo);
+        dff_setup!(self, clock, bad_delimiter, bad_crc, memory_busy, overrun);
+        clock!(self, clock, grid, order);
+        // What was noted of an exchange goes when its result has been published.
+        self.forget.next = self.reset.val() | (self.phase.q.val() == Phase::Rest);
+        self.grid.reset.next = self.reset.val();
+        self.order.reset.next = self.reset.val();
+        self.phase.reset.next = self.reset.val();
+        self.index.reset.next = self.reset.val();
+        self.timer.reset.next = self.reset.val();
+        self.previous.reset.next = self.reset.val();
+        self.line.reset.next = self.reset.val();
+        self.drives.reset.next = self.reset.val();
+        self.unsettled.reset.next = self.reset.val();
+        // Between exchanges, and before the reply.
+        self.check.reset.next =
+            self.forget.val() | ((self.phase.q.val() == Phase::Wait) & self.order.is_control.val());
+        self.echo.reset.next = self.forget.val();
+        self.refused.reset.next = self.reset.val();
+        self.heard.reset.next = self.forget.val();
+        self.missed.reset.next = self.forget.val();
+        self.bad_parity.reset.next = self.forget.val();
+        self.bad_echo.reset.next = self.forget.val();
+        self.bad_delimiter.reset.next = self.forget.val();
+        self.bad_crc.reset.next = self.forget.val();
+        self.memory_busy.reset.next = self.forget.val();
+        self.overrun.reset.next = self.reset.val();
+
+        self.grid.bit_cycles.next = self.bit_cycles.val();
+        self.grid.restart.next = false;
+        self.order.request_id.next = self.request_id.val();
+        self.order.sending.next = self.phase.q.val() == Phase::Send;
+        self.order.first.next = false;
+        self.order.step.next = false;
+        self.bits.request_id.next = self.request_id.val();
+        self.bits.address.next = self.address.val();
+        self.bits.data.next = self.data.val();
+        self.bits.crc_bit.next = self.check.q.val().get_bit(0);
+        self.bits.index.next = self.index.q.val().get_bits::<3>(0);
+        self.bits.is_control.next = self.order.is_control.val();
+        self.bits.is_address.next = self.order.is_address.val();
+        self.bits.is_crc.next = self.order.is_crc.val();
+
+        self.previous.d.next = self.level.val();
+        self.rising.next = !self.previous.q.val() & self.level.val();
+
+        // Counts below zero, to -3: a wait is longer than its setting whenever it began between two strobes.
+        self.expired.next = self.timer.q.val().get_bit(6) & !self.timer.q.val().get_bit(1);
+        if self.tick_us.val() & !self.expired.val() {
+            self.timer.d.next = self.timer.q.val() - 1;
+        }
+        self.rest_us.next = bit_cast::<7, 3>(self.field_gap_us.val()) | 8;
+
+        // The start bit is 15, data bits are 0 to 7, the delimiter is 8.
+        self.is_start.next = self.index.q.val().get_bit(3) & self.index.q.val().get_bit(0);
+        self.is_bit.next = !self.index.q.val().get_bit(3);
+        self.in_sync.next = self.order.is_control.val()
+            & self.is_bit.val()
+            & !self.index.q.val().get_bit(2)
+            & !(self.index.q.val().get_bit(1) & self.index.q.val().get_bit(0));
+
+        // The edge into the second cell of the sync code times what follows, even if the old grid has a strobe right now.
+        self.retimed.next = self.rising.val()
+            & self.in_sync.val()
+            & self.index.q.val().get_bit(0)
+            & (self.phase.q.val() == Phase::Field);
+        self.strobe.next = self.grid.strobe.val() & !self.retimed.val();
+        self.sampled.next = self.strobe.val() & (self.phase.q.val() == Phase::Field);
+        // What is sent runs through the check sum as what is received does.
+        self.wire_bit.next = self.level.val();
+        if self.phase.q.val() == Phase::Send {
+            self.wire_bit.next = self.bits.bit_out.val();
+        }
+        self.summed.next =
+            self.wire_bit.val() ^ (self.check.q.val().get_bit(0) & !self.order.is_crc.val());
+        self.differs.next = self.level.val() ^ self.bits.bit_out.val();
+        self.take.next = self.sampled.val() & self.is_bit.val();
+        if self.strobe.val()
+            & self.is_bit.val()
+            & ((self.phase.q.val() == Phase::Send) | (self.phase.q.val() == Phase::Field))
+        {
+            self.check.d.next = bit_cast::<8, 7>(self.check.q.val().get_bits::<7>(1))
+                | (bit_cast::<8, 1>(self.summed.val().into()) << 7);
+        }
+        if self.strobe.val() {
+            self.index.d.next = self.index.q.val() + 1;
+        }
+
+        self.publish.next = false;
+        match self.phase.q.val() {
+            Phase::Rest => {
+                if self.expired.val() {
+                    self.unsettled.d.next = false;
+                }
+                if !self.level.val() {
+                    self.timer.d.next = self.rest_us.val();
+                }
+                self.order.first.next = true;
+                self.index.d.next = 15.into();
+                self.refused.d.next = false;
+                if self.trigger.val() {
+                    if !self.order.is_known.val() | !self.level.val() | self.unsettled.q.val() {
+                        self.refused.d.next = true;
+                        self.phase.d.next = Phase::Judge;
+                    } else {
+                        self.drives.d.next = true;
+                        self.grid.restart.next = true;
+                        self.phase.d.next = Phase::Send;
+                    }
+                }
+            }
+            Phase::Send => {
+                if self.strobe.val() {
+                    self.line.d.next = self.bits.bit_out.val();
+                    if self.is_start.val() {
+                        self.line.d.next = false;
+                    } else {
+                        if !self.is_bit.val() {
+                            self.line.d.next = true;
+                            self.index.d.next = 15.into();
+                            self.order.step.next = true;
+                            if self.order.is_last.val() {
+                                self.order.first.next = true;
+                                self.phase.d.next = Phase::Release;
+                            }
+                        }
+                    }
+                }
+            }
+            Phase::Release => {
+                if self.strobe.val() {
+                    self.drives.d.next = false;
+                    self.timer.d.next = bit_cast::<7, 6>(self.reply_gap_us.val());
+                    self.phase.d.next = Phase::Wait;
+                }
+            }
+            Phase::Wait => {
+                self.index.d.next = 15.into();
+                if self.expired.val() {
+                    self.missed.d.next = true;
+                    self.timer.d.next = self.rest_us.val();
+                    self.phase.d.next = Phase::Judge;
+                } else {
+                    if self.previous.q.val() & !self.level.val() {
+                        self.heard.d.next = true;
+                        self.grid.restart.next = true;
+                        self.phase.d.next = Phase::Field;
+                    }
+                }
+            }
+            Phase::Field => {
+                if self.sampled.val() {
+                    if self.is_start.val() {
+                        // Gone at its middle: no start bit.
+                        if self.level.val() {
+                            self.phase.d.next = Phase::Wait;
+                        }
+                    } else {
+                        if self.is_bit.val() {
+                            if self.in_sync.val() {
+                                if self.differs.val() {
+                                    self.phase.d.next = Phase::Wait;
+                                    // Shorter than a bit and a half is noise; what is longer spoils the header.
+                                    if self.index.q.val().any() {
+                                        self.missed.d.next = true;
+                                        self.timer.d.next = self.rest_us.val();
+                                        self.phase.d.next = Phase::Judge;
+                                    }
+                                }
+                            } else {
+                                if self.order.is_control.val() {
+                                    self.bad_parity.d.next =
+                                        self.bad_parity.q.val() ^ self.level.val();
+                                    if !self.index.q.val().get_bits::<3>(0).all() {
+                                        self.echo.d.next =
+                                            bit_cast::<4, 3>(self.echo.q.val().get_bits::<3>(1))
+                                                | (bit_cast::<4, 1>(self.level.val().into()) << 3);
+                                        self.bad_echo.d.next =
+                                            self.bad_echo.q.val() | self.differs.val();
+                                    }
+                                }
+                            }
+                            if self.order.is_address.val() {
+                                if self.index.q.val().get_bits::<3>(0).all() {
+                                    self.memory_busy.d.next = self.level.val();
+                                } else {
+                                    self.bad_echo.d.next =
+                                        self.bad_echo.q.val() | self.differs.val();
+                                }
+                            }
+                            if self.order.is_crc.val() {
+                                self.bad_crc.d.next = self.bad_crc.q.val() | self.differs.val();
+                            }
+                        } else {
+                            self.phase.d.next = Phase::Wait;
+                            self.timer.d.next = bit_cast::<7, 3>(self.field_gap_us.val());
+                            self.order.step.next = true;
+                            if !self.level.val() | self.order.is_last.val() {
+                                self.bad_delimiter.d.next = !self.level.val();
+                                self.timer.d.next = self.rest_us.val();
+                                self.order.step.next = false;
+                                self.phase.d.next = Phase::Judge;
+                            }
+                        }
+                    }
+                }
+                self.grid.restart.next = self.retimed.val();
+                // An edge that comes sooner is not that of a header.
+                if self.rising.val()
+                    & self.order.is_control.val()
+                    & (self.is_start.val() | !self.index.q.val().any())
+                {
+                    self.phase.d.next = Phase::Wait;
+                }
+            }
+            _ => {
+                self.publish.next = self.phase.q.val() == Phase::Judge;
+                self.phase.d.next = Phase::Rest;
+                self.overrun.d.next = false;
+                self.drives.d.next = false;
+                if !self.is_good.val() & !self.refused.q.val() {
+                    self.unsettled.d.next = true;
+                }
+            }
+        }
+        if self.trigger.val() & (self.phase.q.val() != Phase::Rest) {
+            self.overrun.d.next = true;
+        }
+
+        self.is_unknown.next = self.refused.q.val() & !self.order.is_known.val();
+        self.is_not_idle.next = self.refused.q.val() & self.order.is_known.val();
+        self.is_silent.next =
+            self.missed.q.val() & self.order.is_control.val() & !self.heard.q.val();
+        self.is_headless.next =
+            self.missed.q.val() & self.order.is_control.val() & self.heard.q.val();
+        self.is_short.next = self.missed.q.val() & !self.order.is_control.val();
+        self.raised.next = bit_cast::<15, 1>(self.is_unknown.val().into())
+            | (bit_cast::<15, 1>(self.is_not_idle.val().into()) << 1)
+            | (bit_cast::<15, 1>(self.is_silent.val().into()) << 2)
+            | (bit_cast::<15, 1>(self.is_headless.val().into()) << 3)
+            | (bit_cast::<15, 1>(self.bad_parity.q.val().into()) << 4)
+            | (bit_cast::<15, 1>(self.bad_echo.q.val().into()) << 5)
+            | (bit_cast::<15, 1>(self.bad_delimiter.q.val().into()) << 6)
+            | (bit_cast::<15, 1>(self.is_short.val().into()) << 7)
+            | (bit_cast::<15, 1>(self.bad_crc.q.val().into()) << 8)
+            | (bit_cast::<15, 2>(self.status.val().get_bits::<2>(6)) << 9)
+            | (bit_cast::<15, 1>(self.memory_busy.q.val().into()) << 11)
+            | (bit_cast::<15, 2>(self.status.val().get_bits::<2>(4)) << 12)
+            | (bit_cast::<15, 1>(self.overrun.q.val().into()) << 14);
+        self.is_good.next = !self.raised.val().get_bits::<12>(0).any();
+        self.flags.next = self.raised.val();
+        self.good.next = self.is_good.val();
+        self.reply_id.next = self.echo.q.val();
+        self.crc.next = self.check.q.val();
+        self.tx.next = self.line.q.val();
+        self.driver.next = self.drives.q.val();
+        self.busy.next = self.phase.q.val() != Phase::Rest;
+        self.is_status.next = self.order.is_status.val();
+        self.is_single.next = self.order.is_single.val();
+        self.is_multi.next = self.order.is_multi.val();
+        self.is_byte.next = self.order.is_identity.val() | self.order.is_data.val();
+        self.is_alarm.next = self.order.is_alarm.val();
+        self.has_single.next = self.order.has_single.val();
+        self.has_multi.next = self.order.has_multi.val();
+        self.has_identity.next = self.order.has_identity.val();
+        self.has_alarm.next = self.order.has_alarm.val();
+        self.is_memory.next = self.order.is_memory.val();
+    }
+}

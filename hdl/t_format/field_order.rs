@@ -1,0 +1,284 @@
+//! Field order: which field is under way, and which one follows it.
+//!
+//! ```text
+//! sent    Control -> end                  6: -> Address -> Data -> Crc    D: -> Address -> Crc
+//! reply   Control -> Status -> Single 0..2 -> Identity -> Multi 0..2 -> Alarm -> Crc      ID 3
+//!                           \-> ...        \-> Crc                                        0, 7, 8, C
+//!                           \-> Multi 0..2 -> Crc                                         1
+//!                           \-> Identity -> Crc                                           2
+//!         Control -> Address -> Data -> Crc                                               6, D
+//! ```
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// The field under way.
+#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+pub enum FieldKind {
+    /// Control field.
+    Control,
+    /// Status field.
+    Status,
+    /// Single-turn position, bits 7..0.
+    Single0,
+    /// Single-turn position, bits 15..8.
+    Single1,
+    /// Single-turn position, bits 23..16.
+    Single2,
+    /// Kind of encoder.
+    Identity,
+    /// Multi-turn position, bits 7..0.
+    Multi0,
+    /// Multi-turn position, bits 15..8.
+    Multi1,
+    /// Multi-turn position, bits 23..16.
+    Multi2,
+    /// Alarms.
+    Alarm,
+    /// EEPROM address.
+    Address,
+    /// EEPROM data.
+    Data,
+    /// CRC.
+    Crc,
+}
+
+/// Field under way.
+#[derive(LogicBlock, Default)]
+pub struct FieldOrder {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Request ID.
+    pub request_id: Signal<In, Bits<4>>,
+    /// The fields are those of the request.
+    pub sending: Signal<In, Bit>,
+    /// Strobe: begin with the control field.
+    pub first: Signal<In, Bit>,
+    /// Strobe: go on to the next field.
+    pub step: Signal<In, Bit>,
+    /// There is such a request.
+    pub is_known: Signal<Out, Bit>,
+    /// The last field is under way.
+    pub is_last: Signal<Out, Bit>,
+    /// It is the control field.
+    pub is_control: Signal<Out, Bit>,
+    /// It is the status field.
+    pub is_status: Signal<Out, Bit>,
+    /// It belongs to the single-turn position.
+    pub is_single: Signal<Out, Bit>,
+    /// It is the kind of encoder.
+    pub is_identity: Signal<Out, Bit>,
+    /// It belongs to the multi-turn position.
+    pub is_multi: Signal<Out, Bit>,
+    /// It is the alarm field.
+    pub is_alarm: Signal<Out, Bit>,
+    /// It is an EEPROM address.
+    pub is_address: Signal<Out, Bit>,
+    /// It is EEPROM data.
+    pub is_data: Signal<Out, Bit>,
+    /// It is the CRC.
+    pub is_crc: Signal<Out, Bit>,
+    /// The reply brings a single-turn position.
+    pub has_single: Signal<Out, Bit>,
+    /// The reply brings a multi-turn position.
+    pub has_multi: Signal<Out, Bit>,
+    /// The reply brings the kind of encoder.
+    pub has_identity: Signal<Out, Bit>,
+    /// The reply brings alarms.
+    pub has_alarm: Signal<Out, Bit>,
+    /// The request is one to the EEPROM.
+    pub is_memory: Signal<Out, Bit>,
+    kind: Reg<FieldKind>,
+    is_write: Signal<Local, Bit>,
+    is_everything: Signal<Local, Bit>,
+    is_turns: Signal<Local, Bit>,
+    is_kind: Signal<Local, Bit>,
+    memory: Signal<Local, Bit>,
+}
+
+impl Logic for FieldOrder {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, kind);
+        self.kind.reset.next = self.reset.val();
+
+        self.is_known.next = true;
+        self.is_write.next = false;
+        self.memory.next = false;
+        self.is_everything.next = false;
+        self.is_turns.next = false;
+        self.is_kind.next = false;
+        self.has_single.next = true;
+        match self.request_id.val().index() {
+            0 => {}
+            1 => {
+                self.is_turns.next = true;
+                self.has_single.next = false;
+            }
+            2 => {
+                self.is_kind.next = true;
+                self.has_single.next = false;
+            }
+            3 => {
+                self.is_everything.next = true;
+            }
+            6 => {
+                self.is_write.next = true;
+                self.memory.next = true;
+                self.has_single.next = false;
+            }
+            7 => {}
+            8 => {}
+            12 => {}
+            13 => {
+                self.memory.next = true;
+                self.has_single.next = false;
+            }
+            _ => {
+                self.is_known.next = false;
+            }
+        }
+        self.is_memory.next = self.memory.val();
+        self.has_multi.next = self.is_turns.val() | self.is_everything.val();
+        self.has_identity.next = self.is_kind.val() | self.is_everything.val();
+        self.has_alarm.next = self.is_everything.val();
+
+        self.is_control.next = self.kind.q.val() == FieldKind::Control;
+        self.is_status.next = self.kind.q.val() == FieldKind::Status;
+        self.is_single.next = (self.kind.q.val() == FieldKind::Single0)
+            | (self.kind.q.val() == FieldKind::Single1)
+            | (self.kind.q.val() == FieldKind::Single2);
+        self.is_identity.next = self.kind.q.val() == FieldKind::Identity;
+        self.is_multi.next = (self.kind.q.val() == FieldKind::Multi0)
+            | (self.kind.q.val() == FieldKind::Multi1)
+            | (self.kind.q.val() == FieldKind::Multi2);
+        self.is_alarm.next = self.kind.q.val() == FieldKind::Alarm;
+        self.is_address.next = self.kind.q.val() == FieldKind::Address;
+        self.is_data.next = self.kind.q.val() == FieldKind::Data;
+        self.is_crc.next = self.kind.q.val() == FieldKind::Crc;
+        self.is_last.next = (self.kind.q.val() == FieldKind::Crc)
+            | (self.sending.val() & !self.memory.val() & (self.kind.q.val() == FieldKind::Control));
+
+        if self.step.val() {
+            match self.kind.q.val() {
+                FieldKind::Control => {
+                    self.kind.d.next = FieldKind::Status;
+                    if self.memory.val() {
+                        self.kind.d.next = FieldKind::Address;
+                    }
+                }
+                FieldKind::Status => {
+                    self.kind.d.next = FieldKind::Single0;
+                    if self.is_turns.val() {
+                        self.kind.d.next = FieldKind::Multi0;
+                    }
+                    if self.is_kind.val() {
+                        self.kind.d.next = FieldKind::Identity;
+                    }
+                }
+                FieldKind::Single0 => {
+                    self.kind.d.next = FieldKind::Single1;
+                }
+                FieldKind::Single1 => {
+                    self.kind.d.next = FieldKind::Single2;
+                }
+                FieldKind::Single2 => {
+                    self.kind.d.next = FieldKind::Crc;
+                    if self.is_everything.val() {
+                        self.kind.d.next = FieldKind::Identity;
+                    }
+                }
+                FieldKind::Identity => {
+                    self.kind.d.next = FieldKind::Crc;
+                    if self.is_everything.val() {
+                        self.kind.d.next = FieldKind::Multi0;
+                    }
+                }
+                FieldKind::Multi0 => {
+                    self.kind.d.next = FieldKind::Multi1;
+                }
+                FieldKind::Multi1 => {
+                    self.kind.d.next = FieldKind::Multi2;
+                }
+                FieldKind::Multi2 => {
+                    self.kind.d.next = FieldKind::Crc;
+                    if self.is_everything.val() {
+                        self.kind.d.next = FieldKind::Alarm;
+                    }
+                }
+                FieldKind::Address => {
+                    self.kind.d.next = FieldKind::Data;
+                    if self.sending.val() & !self.is_write.val() {
+                        self.kind.d.next = FieldKind::Crc;
+                    }
+                }
+                // A code that is none ends the frame.
+                _ => {
+                    self.kind.d.next = FieldKind::Crc;
+                }
+            }
+        }
+        if self.first.val() {
+            self.kind.d.next = FieldKind::Control;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::protocol::{Content, Request};
+    use super::*;
+    use crate::testing::{settle, tick};
+
+    fn content(uut: &FieldOrder) -> Content {
+        let is = [
+            (uut.is_control.val(), Content::Control),
+            (uut.is_status.val(), Content::Status),
+            (uut.is_single.val(), Content::SingleTurn),
+            (uut.is_identity.val(), Content::EncoderId),
+            (uut.is_multi.val(), Content::MultiTurn),
+            (uut.is_alarm.val(), Content::Alarm),
+            (uut.is_address.val(), Content::Address),
+            (uut.is_data.val(), Content::Data),
+            (uut.is_crc.val(), Content::Crc),
+        ];
+        let found: Vec<_> = is.iter().filter(|(set, _)| *set).collect();
+        assert_eq!(found.len(), 1);
+        found[0].1
+    }
+
+    #[test]
+    fn fields_come_in_the_order_of_the_protocol() {
+        let mut uut = FieldOrder::default();
+        uut.connect_all();
+        let step = |uut: &mut FieldOrder| tick(uut, |u, level| u.clock.next = level.into());
+        for id in 0..16u8 {
+            let request = Request::from_id(id);
+            uut.request_id.next = u64::from(id).into();
+            settle(&mut uut);
+            assert_eq!(uut.is_known.val(), request.is_some(), "{id}");
+            let Some(request) = request else { continue };
+            for sending in [true, false] {
+                let fields = if sending {
+                    request.sent()
+                } else {
+                    request.reply()
+                };
+                uut.sending.next = sending;
+                uut.first.next = true;
+                step(&mut uut);
+                uut.first.next = false;
+                uut.step.next = true;
+                for (index, field) in fields.iter().enumerate() {
+                    settle(&mut uut);
+                    assert_eq!(content(&uut), *field, "{id} {index}");
+                    assert_eq!(uut.is_last.val(), index + 1 == fields.len(), "{id} {index}");
+                    step(&mut uut);
+                }
+                uut.step.next = false;
+            }
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Reply: the fields of a reply while they come, each in a shift register of its own.
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Fields of the reply under way.
+#[derive(LogicBlock, Default)]
+pub struct Reply {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// No exchange is under way.
+    pub idle: Signal<In, Bit>,
+    /// Strobe: `level` is a data bit.
+    pub take: Signal<In, Bit>,
+    /// The bit.
+    pub level: Signal<In, Bit>,
+    /// It belongs to the status field.
+    pub is_status: Signal<In, Bit>,
+    /// It belongs to the single-turn position.
+    pub is_single: Signal<In, Bit>,
+    /// It belongs to the multi-turn position.
+    pub is_multi: Signal<In, Bit>,
+    /// It belongs to the kind of encoder or to EEPROM data.
+    pub is_byte: Signal<In, Bit>,
+    /// It belongs to the alarm field.
+    pub is_alarm: Signal<In, Bit>,
+    /// Status field; 0 before it has come.
+    pub status: Signal<Out, Bits<8>>,
+    /// Single-turn position.
+    pub single_turn: Signal<Out, Bits<24>>,
+    /// Multi-turn position.
+    pub multi_turn: Signal<Out, Bits<24>>,
+    /// Kind of encoder, or EEPROM data.
+    pub byte_field: Signal<Out, Bits<8>>,
+    /// Alarm field.
+    pub alarm: Signal<Out, Bits<8>>,
+    status_bits: Reg<Bits<8>>,
+    single_bits: Reg<Bits<24>>,
+    multi_bits: Reg<Bits<24>>,
+    byte_bits: Reg<Bits<8>>,
+    alarm_bits: Reg<Bits<8>>,
+}
+
+impl Logic for Reply {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self,
+            clock,
+            status_bits,
+            single_bits,
+            multi_bits,
+            byte_bits,
+            alarm_bits
+        );
+        self.status_bits.reset.next = self.reset.val() | self.idle.val();
+        // What a frame has not filled is not taken, so these need no reset.
+        self.single_bits.reset.next = false;
+        self.multi_bits.reset.next = false;
+        self.byte_bits.reset.next = false;
+        self.alarm_bits.reset.next = false;
+        if self.take.val() & self.is_status.val() {
+            self.status_bits.d.next = bit_cast::<8, 7>(self.status_bits.q.val().get_bits::<7>(1))
+                | (bit_cast::<8, 1>(self.level.val().into()) << 7);
+        }
+        if self.take.val() & self.is_single.val() {
+            self.single_bits.d.next =
+                bit_cast::<24, 23>(self.single_bits.q.val().get_bits::<23>(1))
+                    | (bit_cast::<24, 1>(self.level.val().into()) << 23);
+        }
+        if self.take.val() & self.is_multi.val() {
+            self.multi_bits.d.next = bit_cast::<24, 23>(self.multi_bits.q.val().get_bits::<23>(1))
+                | (bit_cast::<24, 1>(self.level.val().into()) << 23);
+        }
+        if self.take.val() & self.is_byte.val() {
+            self.byte_bits.d.next = bit_cast::<8, 7>(self.byte_bits.q.val().get_bits::<7>(1))
+                | (bit_cast::<8, 1>(self.level.val().into()) << 7);
+        }
+        if self.take.val() & self.is_alarm.val() {
+            self.alarm_bits.d.next = bit_cast::<8, 7>(self.alarm_bits.q.val().get_bits::<7>(1))
+                | (bit_cast::<8, 1>(self.level.val().into()) << 7);
+        }
+        self.status.next = self.status_bits.q.val();
+        self.single_turn.next = self.single_bits.q.val();
+        self.multi_turn.next = self.multi_bits.q.val();
+        self.byte_field.next = self.byte_bits.q.val();
+        self.alarm.next = self.alarm_bits.q.val();
+    }
+}

@@ -1,0 +1,72 @@
+//! The receiver is smaller than the published one of the same function.
+
+use crate::tools;
+use crate::verilog::area::require;
+use endat_gen::area::{subjects, synthesise, ECP5, ICE40, XC6S};
+use endat_gen::artifact::Artifact;
+use endat_gen::config::{load_any_preset, Configuration};
+use endat_gen::t_format::emit;
+use std::fs;
+
+/// LUTs of four inputs and flip-flops of Microchip's T-Format interface.
+const PEER: (u64, u64) = (248, 256);
+
+#[test]
+fn the_receiver_is_smaller_than_the_published_one() {
+    if !require("area of the T-format receiver") {
+        return;
+    }
+    let subjects = subjects().unwrap();
+    let receiver = subjects.iter().find(|s| s.name == "t_format").unwrap();
+    for family in [ICE40, ECP5] {
+        let folder = tools::folder(&format!("t_format-{}", family.name));
+        let found = synthesise(&folder, &receiver.files(), receiver.name, &family).unwrap();
+        let usage = found.usage;
+        assert!(
+            usage.lut < PEER.0 && usage.ff < PEER.1,
+            "{}: {usage:?}, {:?}",
+            family.name,
+            found.cells
+        );
+    }
+}
+
+/// The files of the preset, the top module first.
+fn preset() -> Vec<Artifact> {
+    let Configuration::Receiver(receiver) = load_any_preset("async_dsp").unwrap() else {
+        panic!("a card");
+    };
+    let files = emit(&receiver).unwrap().into_iter();
+    files.filter(|f| f.path.ends_with(".v")).collect()
+}
+
+#[test]
+fn the_preset_is_synthesised_for_three_families() {
+    if !require("synthesis of the T-format preset") {
+        return;
+    }
+    for family in [XC6S, ECP5, ICE40] {
+        let folder = tools::folder(&format!("async_dsp-{}", family.name));
+        let found = synthesise(&folder, &preset(), "async_dsp", &family).unwrap();
+        assert!((300..700).contains(&found.usage.ff), "{:?}", found.usage);
+    }
+}
+
+#[test]
+fn the_preset_is_clean_under_verilator_and_iverilog() {
+    let folder = tools::folder("async_dsp-lint");
+    let files = preset();
+    for file in &files {
+        fs::write(folder.join(&file.path), &file.text).unwrap();
+    }
+    let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
+    for (tool, flags) in [
+        ("verilator", &["--lint-only", "-Wall"][..]),
+        ("iverilog", &["-g2005", "-Wall", "-o", "lint.vvp"]),
+    ] {
+        if tools::require(tool, "lint of the T-format preset") {
+            let (good, text) = tools::run(tool, &folder, &[flags, &names].concat());
+            assert!(good && text.is_empty(), "{tool}: {text}");
+        }
+    }
+}

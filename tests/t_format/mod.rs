@@ -1,0 +1,11 @@
+//! The asynchronous receiver and its encoder.
+
+mod area;
+mod config;
+mod dsp;
+mod faults;
+mod header;
+mod lanes;
+mod rig;
+mod three_ways;
+mod vectors;
