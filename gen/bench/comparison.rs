@@ -407,6 +407,32 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
     Ok(table)
 }
 
+fn asynchronous() -> Table {
+    let [(all, all_ff), (receiver, receiver_ff)] =
+        ["async_dsp", "t_format"].map(|n| area(n, "ice40"));
+    let mut table = Table::new("Asynchronous receiver: `async_dsp`", "Kang et al. 2004");
+    table.row(
+        "receiver with the bus of a signal processor",
+        "707 logic cells (FLEX10K)",
+        format!("{all} LUT4, {all_ff} FF (iCE40)"),
+    );
+    table.row(
+        "receiver alone",
+        "236 to 248 LUT, 256 FF (Microchip's core for the same protocol)",
+        format!("{receiver} LUT4, {receiver_ff} FF (iCE40)"),
+    );
+    table.row("rate", "2.5 Mbit/s", "2.5 and 5 Mbit/s");
+    table.row("clock", "20 or 60 MHz by a pin", "the same");
+    table.row("requests", "0, 1, 3", "0, 1, 2, 3, 6, 7, 8, C, D");
+    table.row(
+        "bus",
+        "data 4 clocks after the address, held for 5",
+        "the same",
+    );
+    table.notes = "What is read after which disturbance, and how many frames that was tried with: [t-format.md](t-format.md).".into();
+    table
+}
+
 /// The page.
 pub fn comparison() -> Result<String, GenError> {
     let times = cycle_times(CycleTimeOptions {
@@ -419,7 +445,13 @@ pub fn comparison() -> Result<String, GenError> {
     let mut page = "# Comparison\n\nWhat the systems that this project learns from have published, beside what the same work measures here. The right column comes from runs of the presets as \
         they are emitted, with encoder models on lines that have the delay of a cable, not its attenuation (EnDat allows 150 m); `cargo run --release -- bench comparison > docs/comparison.md` writes this page, and a test compares it. A dash: not told.\n"
         .to_owned();
-    for table in [clb(rows)?, ti(rows)?, artinchip()?, card(rows)?] {
+    for table in [
+        clb(rows)?,
+        ti(rows)?,
+        artinchip()?,
+        card(rows)?,
+        asynchronous(),
+    ] {
         let _ = write!(
             page,
             "\n## {}\n\n| | {} | here |\n|---|---|---|\n",
