@@ -17,7 +17,7 @@ pub mod command {
 }
 
 /// Longest wait for an initialisation that is under way; simulated cards are slow.
-const INITIALISATION: Duration = Duration::from_secs(60);
+pub const INITIALISATION: Duration = Duration::from_secs(60);
 /// Data of 001110 for areas without blocks.
 const NO_BLOCK: u16 = 0;
 

@@ -44,3 +44,25 @@ pub fn decimal(flag: &str, text: &str, range: RangeInclusive<f64>) -> Result<f64
         ))),
     }
 }
+
+/// The same for an option that may be left out.
+pub fn number_if(
+    flag: &str,
+    text: &Option<String>,
+    range: RangeInclusive<u64>,
+) -> Result<Option<u64>, GenError> {
+    text.as_deref()
+        .map(|text| number(flag, text, range))
+        .transpose()
+}
+
+/// The same for an option that may be left out.
+pub fn decimal_if(
+    flag: &str,
+    text: &Option<String>,
+    range: RangeInclusive<f64>,
+) -> Result<Option<f64>, GenError> {
+    text.as_deref()
+        .map(|text| decimal(flag, text, range))
+        .transpose()
+}

@@ -1,6 +1,6 @@
 //! `log`: sample sets into a file, as CSV or JSON lines.
 
-use super::super::number::number;
+use super::super::number::number_if;
 use super::super::pictures::{check_all, write_all, File};
 use super::super::Outcome;
 use super::{interrupted, scales, settled, told, AnyCard, PortArgs};
@@ -182,12 +182,7 @@ struct End {
 
 /// Runs the command.
 pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
-    let most = 1..=u64::from(u32::MAX);
-    let limit = |flag, text: &Option<String>| {
-        text.as_ref()
-            .map(|text| number(flag, text, most.clone()))
-            .transpose()
-    };
+    let limit = |flag, text| number_if(flag, text, 1..=u64::from(u32::MAX));
     let end = End {
         samples: limit("--samples", &arguments.samples)?,
         seconds: limit("--seconds", &arguments.seconds)?,

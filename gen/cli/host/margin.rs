@@ -1,5 +1,6 @@
 //! `margin`: where the edges of DATA are, as the card itself has measured it.
 
+use super::super::number::number_if;
 use super::super::pictures::{write_all, File};
 use super::super::{to_json, Outcome};
 use super::{channel, told, PortArgs};
@@ -38,12 +39,8 @@ const WAIT: Duration = Duration::from_secs(600);
 
 /// Runs the command.
 pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
-    let frames = match &arguments.frames {
-        None => None,
-        Some(text) => {
-            Some(super::super::number::number("--frames", text, 1..=u64::from(u32::MAX))? as u32)
-        }
-    };
+    let frames = number_if("--frames", &arguments.frames, 1..=u64::from(u32::MAX))?;
+    let frames = frames.map(|n| n as u32);
     let mut card = arguments.port.open()?;
     let channel = channel(&card, arguments.channel.as_deref())?;
     if !card.identity().has("margin") {

@@ -11,10 +11,12 @@ pub mod reg;
 pub mod serve;
 pub mod virtual_card;
 
+use super::number::{number, number_if};
 use crate::config::{load_file, load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
 use crate::virtual_card::{VirtualCard, VirtualConfig};
 use clap::Args;
+use endat_host::mailbox::INITIALISATION;
 use endat_host::registers::Place;
 use endat_host::transport::Port;
 use endat_host::units::Scale;
@@ -59,10 +61,8 @@ impl PortArgs {
 
     /// Opens the link and finds out who answers.
     pub fn open(&self) -> Result<AnyCard, GenError> {
-        let baud = match &self.baud {
-            None => BAUD,
-            Some(text) => super::number::number("--baud", text, 300..=12_000_000)? as u32,
-        };
+        let baud = number_if("--baud", &self.baud, 300..=12_000_000)?;
+        let baud = baud.map_or(BAUD, |n| n as u32);
         let transport: Box<dyn Transport> = match self.port.strip_prefix("virtual") {
             Some("") => virtual_card(DEFAULT_PRESET)?,
             Some(rest) if rest.starts_with(':') => virtual_card(&rest[1..])?,
@@ -87,7 +87,7 @@ fn virtual_card(name: &str) -> Result<Box<dyn Transport>, GenError> {
 pub fn channel(card: &AnyCard, text: Option<&str>) -> Result<usize, GenError> {
     let last = card.identity().channels as u64 - 1;
     let text = text.unwrap_or("0");
-    super::number::number("--channel", text, 0..=last).map(|n| n as usize)
+    number("--channel", text, 0..=last).map(|n| n as usize)
 }
 
 /// What a measuring step of a channel is: as the encoder says, else as if the position were one turn.
@@ -107,9 +107,6 @@ pub fn scales(card: &mut AnyCard) -> Result<Vec<Scale>, GenError> {
     let channels = 0..card.identity().channels;
     channels.map(|channel| scale(card, channel)).collect()
 }
-
-/// Longest wait for encoders that are being initialised: a real card takes seconds, a simulated one is slower.
-const INITIALISATION: Duration = Duration::from_secs(60);
 
 /// Waits until no encoder is being initialised, or a minute; says so when it takes long.
 pub fn initialised(card: &mut AnyCard) -> Result<(), GenError> {

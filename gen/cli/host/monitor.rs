@@ -1,6 +1,6 @@
 //! `monitor`: positions, rate, health and margin, live.
 
-use super::super::number::{decimal, number};
+use super::super::number::{decimal_if, number_if};
 use super::super::Outcome;
 use super::read::{shown, verdict};
 use super::{interrupted, scales, settled, told, AnyCard, PortArgs};
@@ -144,15 +144,9 @@ fn screen(
 
 /// Runs the command.
 pub fn run(arguments: &MonitorArgs) -> Result<Outcome, GenError> {
-    let count = match &arguments.count {
-        None => None,
-        Some(text) => Some(number("--count", text, 1..=u64::from(u32::MAX))?),
-    };
-    let every = match &arguments.every {
-        None => 0.2,
-        Some(text) => decimal("--every", text, 0.0..=3_600.0)?,
-    };
-    let every = Duration::from_secs_f64(every);
+    let count = number_if("--count", &arguments.count, 1..=u64::from(u32::MAX))?;
+    let every = decimal_if("--every", &arguments.every, 0.0..=3_600.0)?;
+    let every = Duration::from_secs_f64(every.unwrap_or(0.2));
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
     let scales = scales(&mut card)?;

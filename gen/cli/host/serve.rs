@@ -1,6 +1,6 @@
 //! `serve`: a card for PandABlocks clients.
 
-use super::super::number::number;
+use super::super::number::number_if;
 use super::super::Outcome;
 use super::{interrupted, scales, settled, told, PortArgs};
 use crate::error::GenError;
@@ -30,16 +30,13 @@ pub struct ServeArgs {
 
 /// Runs the command.
 pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
-    let port = |flag, text: &Option<String>, usual: u16| match text {
-        None => Ok(usual),
-        Some(text) => number(flag, text, 0..=u16::MAX.into()).map(|n| n as u16),
+    let port = |flag, text, usual: u16| -> Result<u16, GenError> {
+        let port = number_if(flag, text, 0..=u16::MAX.into())?;
+        Ok(port.map_or(usual, |n| n as u16))
     };
     let control = port("--control-port", &arguments.control_port, CONTROL_PORT)?;
     let data = port("--data-port", &arguments.data_port, DATA_PORT)?;
-    let limit = match &arguments.samples {
-        None => None,
-        Some(text) => Some(number("--samples", text, 1..=u64::from(u32::MAX))?),
-    };
+    let limit = number_if("--samples", &arguments.samples, 1..=u64::from(u32::MAX))?;
     let host = arguments.host.as_deref().unwrap_or("127.0.0.1");
     let ports = Ports::open(host, control, data).map_err(|e| {
         GenError::input(format!(

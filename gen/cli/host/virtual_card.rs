@@ -1,6 +1,6 @@
 //! `card`: a card without hardware, for other programs.
 
-use super::super::number::decimal;
+use super::super::number::decimal_if;
 use super::super::{Outcome, SourceArgs};
 use super::interrupted;
 use crate::error::GenError;
@@ -60,9 +60,8 @@ fn usual_door() -> Result<Door, GenError> {
 /// Runs the command.
 pub fn run(arguments: &CardArgs) -> Result<Outcome, GenError> {
     let project = arguments.source.load()?;
-    let within = |flag, text: &Option<String>, usual: f64, most: f64| match text {
-        None => Ok(usual),
-        Some(text) => decimal(flag, text, 0.0..=most),
+    let within = |flag, text, usual, most| -> Result<f64, GenError> {
+        Ok(decimal_if(flag, text, 0.0..=most)?.unwrap_or(usual))
     };
     let config = VirtualConfig {
         encoders: arguments.encoder.clone(),
@@ -76,14 +75,8 @@ pub fn run(arguments: &CardArgs) -> Result<Outcome, GenError> {
         )?,
         ..VirtualConfig::default()
     };
-    let seconds = match &arguments.seconds {
-        None => None,
-        Some(text) => Some(Duration::from_secs_f64(decimal(
-            "--seconds",
-            text,
-            0.0..=1e9,
-        )?)),
-    };
+    let seconds = decimal_if("--seconds", &arguments.seconds, 0.0..=1e9)?;
+    let seconds = seconds.map(Duration::from_secs_f64);
     let mut door = match &arguments.tcp {
         Some(address) => Door::tcp(address)?,
         None => usual_door()?,
