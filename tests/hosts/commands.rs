@@ -85,6 +85,35 @@ fn param_write_changes_the_encoder_and_what_it_refuses_is_told() {
 }
 
 #[test]
+fn param_send_sends_any_mode_command_and_tells_what_came_back() {
+    let area = ["param", "send", "001110", "0xA1", "--json"];
+    let answer = json(&with(&area, SERVICE));
+    assert_eq!(answer["command"], "001110");
+    assert_eq!(answer["address"], 0xA1, "echo of the MRS code");
+    // With EnDat 2.2 it rides on a position.
+    let ridden = with(&["param", "send", "101101"], SERVICE);
+    assert_eq!(ridden.exit_code, 0, "{ridden:?}");
+    assert!(ridden.stdout.starts_with("channel 0, 101101: "));
+    for (command, wanted) in [
+        (
+            "1010",
+            "command = 1010: a mode command is six binary digits",
+        ),
+        ("101012", "command = 101012: a mode command"),
+    ] {
+        let bad = with(&["param", "send", command], SERVICE);
+        assert_eq!(bad.exit_code, 2);
+        assert!(bad.messages[0].starts_with(wanted), "{bad:?}");
+    }
+    let unknown = with(&["param", "send", "111111"], SERVICE);
+    assert_eq!(unknown.exit_code, 1);
+    assert!(
+        unknown.messages[0].contains("unknown mode command"),
+        "{unknown:?}"
+    );
+}
+
+#[test]
 fn registers_are_read_and_written_by_name() {
     let read = with(&["reg", "read", "card.id", "config1.frame", "--json"], PORT);
     let words = json(&read);

@@ -1,11 +1,11 @@
-//! `param`: words of the encoder's memory.
+//! `param`: words of the encoder's memory, and any other mode command.
 
-use super::super::number::number;
+use super::super::number::{number, number_if};
 use super::super::{to_json, Outcome};
 use super::{channel, told, PortArgs};
-use crate::error::GenError;
+use crate::error::{shown, GenError};
 use clap::{Args, Subcommand};
-use endat_host::mailbox::Answer;
+use endat_host::mailbox::{Answer, Request};
 use serde_json::json;
 
 /// Arguments of `param`.
@@ -46,11 +46,45 @@ enum Action {
         #[arg(allow_negative_numbers = true)]
         value: String,
     },
+    /// Send any of the fourteen mode commands, and show what comes back
+    Send {
+        #[command(flatten)]
+        port: PortArgs,
+        /// Channel [default: 0]
+        #[arg(long, value_name = "N", allow_negative_numbers = true)]
+        channel: Option<String>,
+        /// As JSON
+        #[arg(long)]
+        json: bool,
+        /// Mode command, six binary digits, for example 101010
+        command: String,
+        /// MRS code, address or port [default: 0]
+        #[arg(allow_negative_numbers = true)]
+        address: Option<String>,
+        /// Data, 0 to 0xFFFF [default: 0]
+        #[arg(allow_negative_numbers = true)]
+        data: Option<String>,
+    },
 }
 
 /// Runs the command.
 pub fn run(arguments: &ParamArgs) -> Result<Outcome, GenError> {
     let (word, value) = match &arguments.action {
+        Action::Send {
+            port,
+            channel,
+            json,
+            command,
+            address,
+            data,
+        } => {
+            let request = Request {
+                command: mode_command(command)?,
+                address: number_if("address", address, 0..=0xFF)?.unwrap_or(0) as u8,
+                data: number_if("data", data, 0..=0xFFFF)?.unwrap_or(0) as u16,
+            };
+            return send(port, channel.as_deref(), request, *json);
+        }
         Action::Read(word) => (word, None),
         Action::Write { word, value } => (word, Some(number("value", value, 0..=0xFFFF)? as u16)),
     };
@@ -70,5 +104,42 @@ pub fn run(arguments: &ParamArgs) -> Result<Outcome, GenError> {
         )?
     } else {
         format!("channel {channel}, area 0x{area:02X}, address 0x{address:02X}: 0x{data:04X} = {data} ({us} us)\n")
+    }))
+}
+
+/// Six binary digits.
+fn mode_command(text: &str) -> Result<u8, GenError> {
+    let is_binary = text.len() == 6 && text.bytes().all(|b| matches!(b, b'0' | b'1'));
+    is_binary
+        .then(|| u8::from_str_radix(text, 2).unwrap_or_default())
+        .ok_or_else(|| {
+            GenError::input(format!(
+                "command = {}: a mode command is six binary digits; write 101010, for example",
+                shown(text)
+            ))
+        })
+}
+
+fn send(
+    port: &PortArgs,
+    wanted: Option<&str>,
+    request: Request,
+    as_json: bool,
+) -> Result<Outcome, GenError> {
+    let mut card = port.open()?;
+    let channel = channel(&card, wanted)?;
+    let Answer {
+        address,
+        data,
+        duration,
+    } = card.request(channel, request).map_err(told)?;
+    let us = duration.as_micros() as u64;
+    let command = format!("{:06b}", request.command);
+    Ok(Outcome::good(if as_json {
+        to_json(
+            &json!({"channel": channel, "command": command, "address": address, "data": data, "duration_us": us}),
+        )?
+    } else {
+        format!("channel {channel}, {command}: 8 bits 0x{address:02X}, 16 bits 0x{data:04X} ({us} us)\n")
     }))
 }
