@@ -83,8 +83,8 @@ fn longest(project: &Project, conditions: Conditions) -> Result<String, GenError
         longest_m = cable_m;
     }
     Ok(match CABLES_M.last() == Some(&longest_m) {
-        true => format!("{longest_m} m, the longest tried"),
-        false => format!("{longest_m} m"),
+        true => format!("the delay of {longest_m} m, the longest tried"),
+        false => format!("the delay of {longest_m} m"),
     })
 }
 
@@ -221,7 +221,7 @@ fn ti(rows: &[CycleTime]) -> Result<Table, GenError> {
     let cycle = decimal(row.cycle_us, 2);
     table.row(
         "37 bits at 8 MHz, from position to position",
-        "62.5 us",
+        "control cycle of 62.5 us",
         format!("{cycle} us"),
     );
     Ok(table)
@@ -356,7 +356,7 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
     });
     table.row(
         "one frame from position to position",
-        "100 us",
+        "cycle of 100 us",
         format!("{} us", decimal(row.cycle_us, 2)),
     );
     table.row("captured frame: F1 F2, CRC", "01, 1D", {
@@ -443,7 +443,7 @@ pub fn comparison() -> Result<String, GenError> {
     })?;
     let rows = &times.rows;
     let mut page = "# Comparison\n\nWhat the systems that this project learns from have published, beside what the same work measures here. The right column comes from runs of the presets as \
-        they are emitted, with encoder models on lines that have the delay of a cable, not its attenuation (EnDat allows 150 m); `cargo run --release -- bench comparison > docs/comparison.md` writes this page, and a test compares it. A dash: not told.\n"
+        they are emitted (but for the sampling rate and the initialisation), with encoder models on lines that have the delay of a cable, not its attenuation (EnDat allows 150 m); `cargo run --release -- bench comparison > docs/comparison.md` writes this page, and a test compares it. A dash: not told.\n"
         .to_owned();
     for table in [
         clb(rows)?,

@@ -93,7 +93,9 @@ fn param_send_sends_any_mode_command_and_tells_what_came_back() {
     // With EnDat 2.2 it rides on a position.
     let ridden = with(&["param", "send", "101101"], SERVICE);
     assert_eq!(ridden.exit_code, 0, "{ridden:?}");
-    assert!(ridden.stdout.starts_with("channel 0, 101101: "));
+    assert!(ridden
+        .stdout
+        .starts_with("channel 0, 101101: sent with a position"));
     for (command, wanted) in [
         (
             "1010",

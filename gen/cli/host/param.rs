@@ -120,6 +120,11 @@ fn mode_command(text: &str) -> Result<u8, GenError> {
         })
 }
 
+/// Whether a mode command goes out with a position, and has no answer of its own: EnDat 2.2, where both triplets are the same, or 111000.
+fn rides(command: u8) -> bool {
+    command >> 3 == command & 7 || command == 0b111000
+}
+
 fn send(
     port: &PortArgs,
     wanted: Option<&str>,
@@ -135,11 +140,20 @@ fn send(
     } = card.request(channel, request).map_err(told)?;
     let us = duration.as_micros() as u64;
     let command = format!("{:06b}", request.command);
+    let answer = (!rides(request.command)).then_some((address, data));
     Ok(Outcome::good(if as_json {
+        let (address, data) = answer.unzip();
         to_json(
             &json!({"channel": channel, "command": command, "address": address, "data": data, "duration_us": us}),
         )?
     } else {
-        format!("channel {channel}, {command}: 8 bits 0x{address:02X}, 16 bits 0x{data:04X} ({us} us)\n")
+        let said = match answer {
+            Some((address, data)) => format!("8 bits 0x{address:02X}, 16 bits 0x{data:04X}"),
+            None => {
+                "sent with a position; what the encoder answers comes as additional information"
+                    .into()
+            }
+        };
+        format!("channel {channel}, {command}: {said} ({us} us)\n")
     }))
 }

@@ -53,7 +53,7 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     let mut messages = Vec::new();
     if results.channels.iter().all(|r| r.sequence == 0) {
         messages.push(
-            "no channel has a result since reset; trigger one with `endat-gen reg write card.trigger_now 1`, or enable the timer (`endat-gen reg read card_config`)".into(),
+            "no channel has a result since reset; trigger one with `endat-gen reg write card.trigger_now 1 --port PORT`, or enable the timer (`endat-gen reg write card_config.trigger_sources.timer 1 --port PORT`); a card behind `virtual` is a new one each time, start one with `card`".into(),
         );
     }
     for (channel, r) in results.channels.iter().enumerate() {
