@@ -314,7 +314,10 @@ mod tests {
     #[test]
     fn a_wrong_name_is_answered_with_the_right_ones() {
         for (name, told) in [
-            ("", "blocks are card, card_config, config0"),
+            (
+                "",
+                "blocks are card, interrupt, direct0, card_config, config0",
+            ),
             ("nothing.id", "blocks are card"),
             ("result.status", "result0 to result1"),
             ("result2.status", "result0 to result1"),
