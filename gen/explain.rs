@@ -141,6 +141,12 @@ pub struct Report {
     pub outputs: Vec<&'static str>,
 }
 
+/// The names of what is on.
+fn present(parts: &[(bool, &'static str)]) -> Vec<&'static str> {
+    let on = parts.iter().filter(|(on, _)| *on);
+    on.map(|(_, name)| *name).collect()
+}
+
 fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelReport {
     let system_hz = card.system_hz;
     let longest = || us_of(config.longest_frame_cycles(system_hz), system_hz);
@@ -215,34 +221,22 @@ pub fn report(project: &Project) -> Report {
             .filter(|(on, _)| *on)
             .map(|(_, name)| name)
             .collect(),
-        service: [
+        service: present(&[
             (card.service.requests, "requests"),
             (card.service.diagnosis, "diagnosis"),
             (card.service.continuous, "continuous"),
             (card.service.initialise, "initialise"),
-        ]
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| name)
-        .collect(),
-        line: [
+        ]),
+        line: present(&[
             (card.line.alignment, "alignment"),
             (card.line.margin, "margin"),
             (card.line.double_edge, "double_edge"),
-        ]
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| name)
-        .collect(),
+        ]),
         phase: card.line.alignment.then(|| phase_name(card.line.phase)),
-        outputs: [
+        outputs: present(&[
             (card.outputs.position, "position"),
             (card.outputs.interrupt, "interrupt"),
-        ]
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| name)
-        .collect(),
+        ]),
         bus: project.bus.name(),
         stream: StreamReport::of(card, project.bus == HostBus::Uart),
         link: (project.bus == HostBus::Uart).then(|| LinkReport {
