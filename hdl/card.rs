@@ -23,7 +23,7 @@ use crate::direct::DirectOutput;
 use crate::encoder_port::EncoderPort;
 use crate::interrupt::Interrupt;
 use crate::register_bank::RegisterBank;
-use crate::service::program::ServiceTimes;
+use crate::service::{program::ServiceTimes, Service, CHANNELS_SERVED};
 use crate::stream::{channel::SetChannel, Stream};
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
@@ -101,6 +101,7 @@ pub struct CardCore {
     bank: RegisterBank,
     registers: Vec<ChannelRegisters>,
     port: Vec<EncoderPort>,
+    service: Vec<Service>,
     stream: Vec<Stream>,
     set: Vec<SetChannel>,
     set_byte: Vec<Signal<Local, Bits<8>>>,
@@ -118,6 +119,14 @@ pub struct CardCore {
     read_link: Vec<Signal<Local, Bits<8>>>,
     service_link: Vec<Signal<Local, Bits<32>>>,
     selected: Vec<Signal<Local, Bits<32>>>,
+    io_address: Vec<Signal<Local, Bits<5>>>,
+    io_read: Vec<Signal<Local, Bit>>,
+    io_in: Vec<Signal<Local, Bits<16>>>,
+    io_out: Vec<Signal<Local, Bits<16>>>,
+    io_write: Vec<Signal<Local, Bit>>,
+    word_link: Vec<Signal<Local, Bits<32>>>,
+    service_reads: Signal<Local, Bits<8>>,
+    service_writes: Signal<Local, Bits<8>>,
     pending: Vec<Signal<Local, Bit>>,
     faulty: Vec<Signal<Local, Bit>>,
     slow_bit: Constant<Bits<5>>,
@@ -131,6 +140,10 @@ pub struct CardCore {
     _direct_links: usize,
     _direct_ports: usize,
     _interrupts: usize,
+    _served: usize,
+    _services: usize,
+    _pairs: usize,
+    _service_links: usize,
     _interrupt_channels: usize,
 }
 
@@ -171,21 +184,26 @@ pub fn service_times(config: &CardConfig) -> ServiceTimes {
 }
 
 fn port(card: &CardConfig, channel: &ChannelConfig, service: &ServiceTimes) -> EncoderPort {
-    let wants_short = channel.wants_short_recovery();
     let service = card.service.requests.then_some(service);
-    let start = card.line.start(card.system_hz);
-    EncoderPort::with_line(
+    EncoderPort::served(
         times(card, channel),
         service,
-        wants_short,
+        channel.wants_short_recovery(),
         line(card),
-        start,
+        card.line.start(card.system_hz),
     )
 }
 
 /// The first channel's port alone, for those who bring registers and triggers of their own.
 pub fn bare_port(card: &CardConfig) -> EncoderPort {
-    port(card, &card.channels[0], &service_times(card))
+    let (channel, service) = (&card.channels[0], service_times(card));
+    EncoderPort::with_line(
+        times(card, channel),
+        card.service.requests.then_some(&service),
+        channel.wants_short_recovery(),
+        line(card),
+        card.line.start(card.system_hz),
+    )
 }
 
 /// `n` signals or links.
@@ -207,6 +225,9 @@ impl CardCore {
         let directs = channels * usize::from(config.outputs.any());
         let direct_ports = channels * usize::from(config.outputs.position);
         let interrupts = usize::from(config.outputs.interrupt);
+        let served = channels * usize::from(config.service.requests);
+        let services = served.div_ceil(CHANNELS_SERVED);
+        let places = services * CHANNELS_SERVED;
         Self {
             clk_i: Default::default(),
             rst_i: Default::default(),
@@ -250,6 +271,9 @@ impl CardCore {
                 .iter()
                 .map(|c| port(config, c, service))
                 .collect(),
+            service: (0..services)
+                .map(|i| Service::new(service, served - i * CHANNELS_SERVED))
+                .collect(),
             stream: (0..streams)
                 .map(|_| {
                     let start = config.stream.start;
@@ -275,6 +299,14 @@ impl CardCore {
             read_link: each(channels + 1),
             service_link: each(channels + 1),
             selected: each(channels),
+            io_address: each(places),
+            io_read: each(served),
+            io_in: each(served),
+            io_out: each(places),
+            io_write: each(served),
+            word_link: each(services + 1),
+            service_reads: Default::default(),
+            service_writes: Default::default(),
             pending: each(channels + 1),
             faulty: each(channels + 1),
             slow_bit: Constant::new(blink_bit(config.system_hz, 1).into()),
@@ -288,6 +320,10 @@ impl CardCore {
             _direct_links: directs + 1,
             _direct_ports: direct_ports,
             _interrupts: interrupts,
+            _served: served,
+            _services: services,
+            _pairs: served / CHANNELS_SERVED,
+            _service_links: services + 1,
             _interrupt_channels: channels * interrupts,
         }
     }
@@ -406,7 +442,7 @@ impl Logic for CardCore {
         for i in self._channels..self._links {
             self.ring_link[i].next = self.bank.ring_out.val();
             self.bank.channel_byte.next = self.read_link[i].val();
-            self.bank.service_word.next = self.service_link[i].val();
+            self.word_link[0].next = self.service_link[i].val();
             self.bank.pending.next = self.pending[i].val();
             if self.faulty[i].val() {
                 self.led_status_o.next = self
@@ -415,6 +451,51 @@ impl Logic for CardCore {
                     .val()
                     .get_bit(self.quick_bit.val().index());
             }
+        }
+
+        // Services, each for two channels; the last one may have one only. A word that was not asked for is 0.
+        self.service_reads.next = 0.into();
+        self.service_writes.next = 0.into();
+        if !self.bank.service_line.val() {
+            self.service_reads.next = self.bank.service_read.val();
+            self.service_writes.next = self.bank.service_write.val();
+        }
+        for i in 0..self._served {
+            self.port[i].io_address[0].next = self.io_address[i].val();
+            self.port[i].io_out[0].next = self.io_out[i].val();
+            self.port[i].io_write[0].next = self.io_write[i].val();
+            self.port[i].io_read[0].next = self.io_read[i].val();
+            self.io_in[i].next = self.port[i].io_in[0].val();
+        }
+        for i in 0..self._services {
+            self.service[i].clock.next = self.clk_i.val();
+            self.service[i].reset.next = self.rst_i.val();
+            self.service[i].tick_us.next = self.timebase.tick_us.val();
+            self.io_address[2 * i].next = self.service[i].io_address.val();
+            self.io_address[2 * i + 1].next = self.service[i].io_address.val();
+            self.io_out[2 * i].next = self.service[i].io_out.val();
+            self.io_out[2 * i + 1].next = self.service[i].io_out.val();
+            self.service[i].io_in[0].next = self.io_in[2 * i].val();
+            self.io_read[2 * i].next = self.service[i].io_read[0].val();
+            self.io_write[2 * i].next = self.service[i].io_write[0].val();
+            self.service[i].host_address.next = self.bank.service_address.val();
+            self.service[i].host_second.next = self.bank.service_channels.val().get_bit(2 * i + 1);
+            self.service[i].host_read.next = self.service_reads.val().get_bit(2 * i)
+                | self.service_reads.val().get_bit(2 * i + 1);
+            self.service[i].host_clear.next = self.bank.service_read.val().any();
+            self.service[i].host_write.next = self.service_writes.val().get_bit(2 * i)
+                | self.service_writes.val().get_bit(2 * i + 1);
+            self.service[i].host_half.next = self.bank.service_half.val();
+            self.service[i].host_data.next = self.bank.service_data.val();
+            self.word_link[i + 1].next = self.word_link[i].val() | self.service[i].host_word.val();
+        }
+        for i in self._services..self._service_links {
+            self.bank.service_word.next = self.word_link[i].val();
+        }
+        for i in 0..self._pairs {
+            self.service[i].io_in[1].next = self.io_in[2 * i + 1].val();
+            self.io_read[2 * i + 1].next = self.service[i].io_read[1].val();
+            self.io_write[2 * i + 1].next = self.service[i].io_write[1].val();
         }
 
         // The stream, and each channel's place in a set.

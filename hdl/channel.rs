@@ -162,6 +162,8 @@ pub struct Channel {
     pub over_flags: Signal<Out, Bits<19>>,
     /// Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
     pub reply: Signal<Out, Bits<48>>,
+    /// The same as it came, bit 0 first: what comes MSB first stands the other way round.
+    pub answer: Signal<Out, Bits<48>>,
     /// Its CRC is right.
     pub reply_good: Signal<Out, Bit>,
     /// The encoder sends after each EnDat 2.2 position: bit 0 additional information 1, bit 1 additional information 2.
@@ -201,6 +203,7 @@ pub struct Channel {
     reply_taken: Reg<Bit>,
     reply_word: Reg<Bits<48>>,
     reply_right: Reg<Bit>,
+    reply_has_parameter: Reg<Bit>,
     has_requests: Constant<Bit>,
     has_double: Constant<Bit>,
     fixed_mode: Constant<Bits<2>>,
@@ -209,6 +212,7 @@ pub struct Channel {
     command_now: Signal<Local, Bits<6>>,
     payload_bits: Signal<Local, Bits<6>>,
     word: Signal<Local, Bits<24>>,
+    turned: Signal<Local, Bits<24>>,
     crc_ok: Signal<Local, Bit>,
     period: Signal<Local, Bits<11>>,
     calibration_period_cycles: Constant<Bits<11>>,
@@ -362,6 +366,7 @@ impl Channel {
             over_cause: Default::default(),
             over_flags: Default::default(),
             reply: Default::default(),
+            answer: Default::default(),
             reply_good: Default::default(),
             info_active: Default::default(),
             info_1: Default::default(),
@@ -392,6 +397,7 @@ impl Channel {
             reply_taken: Default::default(),
             reply_word: Default::default(),
             reply_right: Default::default(),
+            reply_has_parameter: Default::default(),
             has_requests: Constant::new(features.requests),
             has_double: Constant::new(features.double_edge),
             fixed_mode: Constant::new(line_delay::mode::FIXED.into()),
@@ -400,6 +406,7 @@ impl Channel {
             command_now: Default::default(),
             payload_bits: Default::default(),
             word: Default::default(),
+            turned: Default::default(),
             crc_ok: Default::default(),
             period: Default::default(),
             calibration_period_cycles: Constant::new(times.calibration_period_cycles.into()),
@@ -434,7 +441,8 @@ impl Logic for Channel {
             info_taken,
             reply_taken,
             reply_word,
-            reply_right
+            reply_right,
+            reply_has_parameter
         );
         self.own_wanted.reset.next = self.reset.val();
         self.ride_wanted.reset.next = self.reset.val();
@@ -445,6 +453,7 @@ impl Logic for Channel {
         self.reply_taken.reset.next = self.reset.val();
         self.reply_word.reset.next = self.reset.val();
         self.reply_right.reset.next = self.reset.val();
+        self.reply_has_parameter.reset.next = self.reset.val();
         self.add_info.reset.next = self.reset.val();
         self.clk_pin.reset.next = self.reset.val();
         self.data_pin.reset.next = self.reset.val();
@@ -636,9 +645,7 @@ impl Logic for Channel {
         self.reply_taken.d.next = self.receiver.done.val() & self.frame_own.q.val();
         if self.reply_taken.q.val() {
             self.reply_word.d.next = self.receiver.payload.val();
-            if self.shape.has_parameter.val() {
-                self.reply_word.d.next = bit_cast::<48, 24>(self.word.val());
-            }
+            self.reply_has_parameter.d.next = self.shape.has_parameter.val();
             self.reply_right.d.next = self.crc_ok.val();
         }
         if self.transaction.start.val() {
@@ -697,7 +704,18 @@ impl Logic for Channel {
         self.over_request.next = self.frame_own.q.val() | self.frame_ride.q.val();
         self.over_cause.next = self.transaction.cause.val();
         self.over_flags.next = self.transaction.flags.val();
+        self.answer.next = self.reply_word.q.val();
         self.reply.next = self.reply_word.q.val();
+        self.turned.next = 0.into();
+        for i in 0..24 {
+            self.turned.next = self
+                .turned
+                .val()
+                .replace_bit(23 - i, self.reply_word.q.val().get_bit(i));
+        }
+        if self.reply_has_parameter.q.val() {
+            self.reply.next = bit_cast::<48, 24>(self.turned.val());
+        }
         self.reply_good.next = self.reply_right.q.val();
         self.info_active.next = self.add_info.active.val();
         self.info_1.next = self.add_info.info_1.val();

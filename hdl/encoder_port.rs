@@ -1,17 +1,18 @@
 //! Encoder port: a channel, and its service where the configuration has one.
 //!
 //! ```text
-//! trigger, configuration --> Service --> Channel --> EnDat
-//!                               ^           |
-//! host --- RAM ------------------           +--> results
+//! trigger, configuration --> ServiceChannel --> Channel --> EnDat
+//!                               ^   |             |
+//! host --- Service, RAM <-- io -+---+             +--> results
 //! ```
 //!
 //! For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
 
+use crate::card::each;
 use crate::channel::{Channel, Features, FixedTimes};
 use crate::line_monitor::{LineMonitor, LineStart};
 use crate::service::program::ServiceTimes;
-use crate::service::Service;
+use crate::service::{channel::ServiceChannel, Service};
 use crate::transaction::cause;
 use rust_hdl::prelude::*;
 
@@ -122,7 +123,7 @@ pub struct EncoderPort {
     pub host_line: Signal<In, Bit>,
     /// Strobe: read it.
     pub host_read: Signal<In, Bit>,
-    /// The word read; 0 without service.
+    /// The word read; 0 without service, or where it stands elsewhere.
     pub host_word: Signal<Out, Bits<32>>,
     /// Strobe: write one half of it.
     pub host_write: Signal<In, Bit>,
@@ -130,13 +131,26 @@ pub struct EncoderPort {
     pub host_half: Signal<In, Bit>,
     /// What to write.
     pub host_data: Signal<In, Bits<16>>,
+    /// Port of the service that the program reads or writes; only where the service stands elsewhere, as the next four.
+    pub io_address: Vec<Signal<In, Bits<5>>>,
+    /// Strobe: it is read.
+    pub io_read: Vec<Signal<In, Bit>>,
+    /// In the next cycle what the port had to say, otherwise 0.
+    pub io_in: Vec<Signal<Out, Bits<16>>>,
+    /// What is written.
+    pub io_out: Vec<Signal<In, Bits<16>>>,
+    /// Strobe: it is written to the port.
+    pub io_write: Vec<Signal<In, Bit>>,
     channel: Channel,
+    served: Vec<ServiceChannel>,
     service: Vec<Service>,
     monitor: Vec<LineMonitor>,
     trigger_overrun: Constant<Bits<5>>,
     info_missing: Constant<Bits<5>>,
     recovery_too_short: Constant<Bits<5>>,
+    _served: usize,
     _services: usize,
+    _ios: usize,
     _monitors: usize,
 }
 
@@ -156,6 +170,30 @@ impl EncoderPort {
         line: Features,
         start: LineStart,
     ) -> Self {
+        let served = Self::served(times, service, wants_short, line, start);
+        Self {
+            // Its own service has no use for them.
+            io_address: vec![],
+            io_read: vec![],
+            io_in: vec![],
+            io_out: vec![],
+            io_write: vec![],
+            service: (service.into_iter().map(|s| Service::new(s, 1))).collect(),
+            _services: service.iter().count(),
+            _ios: 0,
+            ..served
+        }
+    }
+
+    /// The same for a service that stands elsewhere, at the `io_` ports.
+    pub fn served(
+        times: FixedTimes,
+        service: Option<&ServiceTimes>,
+        wants_short: bool,
+        line: Features,
+        start: LineStart,
+    ) -> Self {
+        let ios = service.iter().count();
         let features = Features {
             requests: service.is_some(),
             diagnosis: service.is_some_and(|s| s.diagnosis),
@@ -220,17 +258,24 @@ impl EncoderPort {
             host_half: Default::default(),
             host_data: Default::default(),
             channel: Channel::with(times, features),
-            service: service
-                .map(|times| Service::new(times, wants_short))
-                .into_iter()
+            io_address: each(ios),
+            io_read: each(ios),
+            io_in: each(ios),
+            io_out: each(ios),
+            io_write: each(ios),
+            served: (service.into_iter())
+                .map(|s| ServiceChannel::new(wants_short, s.initialise))
                 .collect(),
+            service: vec![],
             monitor: (0..usize::from(line.alignment))
                 .map(|_| LineMonitor::new(line, start))
                 .collect(),
             trigger_overrun: Constant::new(cause::TRIGGER_OVERRUN.into()),
             info_missing: Constant::new(cause::INFO_MISSING.into()),
             recovery_too_short: Constant::new(cause::RECOVERY_TOO_SHORT.into()),
-            _services: service.iter().count(),
+            _served: ios,
+            _services: 0,
+            _ios: ios,
             _monitors: usize::from(line.alignment),
         }
     }
@@ -304,51 +349,72 @@ impl Logic for EncoderPort {
         self.sample_strobe.next = self.channel.sample_strobe.val();
         self.alarm.next = false;
         self.host_word.next = 0.into();
+        for i in 0..self._served {
+            self.served[i].clock.next = self.clock.val();
+            self.served[i].reset.next = self.reset.val();
+            self.served[i].over.next = self.channel.over.val();
+            self.served[i].over_request.next = self.channel.over_request.val();
+            self.served[i].over_cause.next = self.channel.over_cause.val();
+            self.served[i].reply.next = self.channel.answer.val();
+            self.served[i].reply_good.next = self.channel.reply_good.val();
+            self.served[i].info_active.next = self.channel.info_active.val();
+            self.served[i].info_1.next = self.channel.info_1.val();
+            self.served[i].info_2.next = self.channel.info_2.val();
+            self.served[i].info_good.next = self.channel.info_good.val();
+            self.served[i].request_runs.next = self.channel.request_runs.val();
+            self.served[i].line_high.next = self.channel.line_high.val();
+            self.served[i].displaced.next = self.channel.displaced.val();
+            self.served[i].sequence.next = self.channel.sequence.val();
+            self.served[i].position.next = self.channel.position.val();
+            self.served[i].fresh.next = self.channel.fresh.val();
+            self.served[i].delay_cycles.next = self.channel.delay_cycles.val();
+            self.served[i].period_cycles.next = self.period_cycles.val();
+            self.served[i].command.next = self.command.val();
+            self.served[i].position_bits.next = self.position_bits.val();
+            self.served[i].host_address.next = self.host_address.val();
+            self.served[i].host_write.next = self.host_write.val() & !self.host_line.val();
+            self.served[i].host_half.next = self.host_half.val();
+            self.channel.period_cycles.next = self.served[i].period_now_cycles.val();
+            self.channel.command.next = self.served[i].command_now.val();
+            self.channel.position_bits.next = self.served[i].position_bits_now.val();
+            self.channel.calibrate.next = self.calibrate.val() | self.served[i].calibrate.val();
+            self.channel.request_command.next = self.served[i].request_command.val();
+            self.channel.request_parameter.next = self.served[i].request_parameter.val();
+            self.channel.request_ride.next = self.served[i].request_ride.val();
+            self.channel.request_own.next = self.served[i].request_own.val();
+            self.channel.request_cancel.next = self.served[i].request_cancel.val();
+            self.channel.hold_off.next = self.served[i].hold_off.val();
+            self.channel.clock_low.next = self.served[i].clock_low.val();
+            self.channel.forced.next = self.served[i].forced.val();
+            self.channel.watchdog_us.next = self.served[i].watchdog_us.val();
+            self.channel.recovery_min_cycles.next = self.served[i].recovery_min_cycles.val();
+            self.channel.continuous.next = self.served[i].continuous.val();
+            self.channel.stop_at_error.next = self.served[i].stop_at_error.val();
+            self.alarm.next = self.served[i].alarm.val();
+        }
+        for i in 0..self._ios {
+            self.served[i].io_address.next = self.io_address[i].val();
+            self.served[i].io_out.next = self.io_out[i].val();
+            self.served[i].io_write.next = self.io_write[i].val();
+            self.served[i].io_read.next = self.io_read[i].val();
+            self.io_in[i].next = self.served[i].io_in.val();
+        }
         for i in 0..self._services {
             self.service[i].clock.next = self.clock.val();
             self.service[i].reset.next = self.reset.val();
             self.service[i].tick_us.next = self.tick_us.val();
-            self.service[i].over.next = self.channel.over.val();
-            self.service[i].over_request.next = self.channel.over_request.val();
-            self.service[i].over_cause.next = self.channel.over_cause.val();
-            self.service[i].reply.next = self.channel.reply.val();
-            self.service[i].reply_good.next = self.channel.reply_good.val();
-            self.service[i].info_active.next = self.channel.info_active.val();
-            self.service[i].info_1.next = self.channel.info_1.val();
-            self.service[i].info_2.next = self.channel.info_2.val();
-            self.service[i].info_good.next = self.channel.info_good.val();
-            self.service[i].request_runs.next = self.channel.request_runs.val();
-            self.service[i].line_high.next = self.channel.line_high.val();
-            self.service[i].displaced.next = self.channel.displaced.val();
-            self.service[i].sequence.next = self.channel.sequence.val();
-            self.service[i].position.next = self.channel.position.val();
-            self.service[i].fresh.next = self.channel.fresh.val();
-            self.service[i].delay_cycles.next = self.channel.delay_cycles.val();
-            self.service[i].period_cycles.next = self.period_cycles.val();
-            self.service[i].command.next = self.command.val();
-            self.service[i].position_bits.next = self.position_bits.val();
+            self.service[i].io_in[0].next = self.served[i].io_in.val();
+            self.served[i].io_address.next = self.service[i].io_address.val();
+            self.served[i].io_out.next = self.service[i].io_out.val();
+            self.served[i].io_read.next = self.service[i].io_read[0].val();
+            self.served[i].io_write.next = self.service[i].io_write[0].val();
             self.service[i].host_address.next = self.host_address.val();
+            self.service[i].host_second.next = false;
             self.service[i].host_read.next = self.host_read.val() & !self.host_line.val();
+            self.service[i].host_clear.next = false;
             self.service[i].host_write.next = self.host_write.val() & !self.host_line.val();
             self.service[i].host_half.next = self.host_half.val();
             self.service[i].host_data.next = self.host_data.val();
-            self.channel.period_cycles.next = self.service[i].period_now_cycles.val();
-            self.channel.command.next = self.service[i].command_now.val();
-            self.channel.position_bits.next = self.service[i].position_bits_now.val();
-            self.channel.calibrate.next = self.calibrate.val() | self.service[i].calibrate.val();
-            self.channel.request_command.next = self.service[i].request_command.val();
-            self.channel.request_parameter.next = self.service[i].request_parameter.val();
-            self.channel.request_ride.next = self.service[i].request_ride.val();
-            self.channel.request_own.next = self.service[i].request_own.val();
-            self.channel.request_cancel.next = self.service[i].request_cancel.val();
-            self.channel.hold_off.next = self.service[i].hold_off.val();
-            self.channel.clock_low.next = self.service[i].clock_low.val();
-            self.channel.forced.next = self.service[i].forced.val();
-            self.channel.watchdog_us.next = self.service[i].watchdog_us.val();
-            self.channel.recovery_min_cycles.next = self.service[i].recovery_min_cycles.val();
-            self.channel.continuous.next = self.service[i].continuous.val();
-            self.channel.stop_at_error.next = self.service[i].stop_at_error.val();
-            self.alarm.next = self.service[i].alarm.val();
             self.host_word.next = self.service[i].host_word.val();
         }
         for i in 0..self._monitors {

@@ -1,7 +1,7 @@
-//! Sequencer: a small 16-bit accumulator machine that runs a program from block RAM, and shares its data with a host.
+//! Sequencer: a small 16-bit accumulator machine that runs a program from block RAM, once or twice, and shares its data with a host.
 //!
 //! ```text
-//!            +------ counter <- next, target, link, A           port_in -----\
+//!            +------ counter <- next, target, link, A           port_in ---------------\
 //!            v                                                  imm, A, link --> value --\
 //!         program --- imm + X --> low, high (RAM) ----------------------------------> (+) -> A -> port_out
 //!                                  ^         |                                        ^   |
@@ -11,11 +11,19 @@
 //! program      counter-> word held
 //! RAM, read      host     operand    host      host
 //! RAM, write     host      host    ST only     host
+//!
+//! shared      |  Fetch  | Operand | Execute | Operand | Execute | Operand | ...
+//! runs           first     first     first    second    second     first
+//! program       first-> word held   second-> word held   first-> word held
 //! ```
 //!
 //! **Each instruction takes three cycles.** In the first the program memory is read, in the second the operand, at the end of the third
 //! all that the instruction does is done. Whatever needs no operand from RAM is decided and computed in the second cycle already (`value`), so the third is one
 //! addition: of A or 0 (`base`), and of the RAM's word or `value`.
+//!
+//! **Shared**, the program runs twice, with A, X, C, link, counter and RAM for each of the two. They take turns, an instruction each, and one's Execute is
+//! the other's Fetch: four cycles for an instruction. What runs stands in the registers of the first, the other one in those called `other_`; at the end of
+//! Execute they change places, so nothing has to be chosen between them.
 //!
 //! **The host** reads and writes in cycles in which the machine does not use that side of the RAM, so neither ever waits for the other. RAM
 //! is 128 words of 32 bits for the host, 256 of 16 bits for the machine: word 2n is the low half, word 2n + 1 the high half of word n.
@@ -39,7 +47,7 @@
 //! | 14 | CALL | link = address of the next one, to `imm[9:0]` |
 //! | 15 | `imm[3:0]` | 0 RET: to link; 1 TAX: X = `A[7:0]`; 2 LINK: A = link; 3 JMPA: to `A[9:0]`; 4 SHR: A = A / 2, C = `A[0]`; 5 SWAP: the bytes of A change places |
 //!
-//! Everything else goes to 0 and does nothing more, so a program that runs astray starts again. After `0x3ff` comes 0.
+//! Everything else goes to 0 and does nothing more, so a program that runs astray starts again. After `0x7ff` comes 0.
 
 pub mod assembler;
 #[cfg(test)]
@@ -60,6 +68,8 @@ pub const RAM_WORDS: usize = 256;
 pub const PORTS: usize = 32;
 /// Cycles of an instruction.
 pub const INSTRUCTION_CYCLES: u64 = 3;
+/// Cycles from one instruction of a program to its next where two take turns.
+pub const SHARED_CYCLES: u64 = 4;
 
 /// What the machine is doing.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState)]
@@ -77,23 +87,31 @@ pub enum Cycle {
 pub struct Sequencer {
     /// System clock.
     pub clock: Signal<In, Clock>,
-    /// Synchronous reset: A, X, C and link become 0, the program begins at 0. RAM stays as it is.
+    /// Synchronous reset: A, X, C and link become 0, the programs begin at 0. RAM stays as it is.
     pub reset: Signal<In, Bit>,
-    /// Strobe: the instruction at 0 begins in the next cycle. One that is in its third cycle is still done, an earlier one is
+    /// Strobe: the instruction at 0 begins in the next cycle, in both programs. One that is in its third cycle is still done, an earlier one is
     /// not. A, X, C and link stay as they are.
     pub restart: Signal<In, Bit>,
     /// Port of an IN or OUT, throughout its second and third cycle.
     pub port_address: Signal<Out, Bits<5>>,
-    /// What the port at `port_address` has to say, in the same cycle; an IN takes it in its second cycle.
+    /// High for one cycle, the second of an IN: the port at `port_address` is read.
+    pub port_read: Signal<Out, Bit>,
+    /// In the cycle after `port_read` what the port had to say then, otherwise 0.
     pub port_in: Signal<In, Bits<16>>,
+    /// The port is one of the second program, in the same cycles as `port_address`; low where there is only one.
+    pub port_second: Signal<Out, Bit>,
     /// A: what an OUT writes.
     pub port_out: Signal<Out, Bits<16>>,
     /// High for one cycle: `port_out` is for the port at `port_address`.
     pub port_write: Signal<Out, Bit>,
     /// Word of 32 bits that the host reads or writes; stays put from one strobe to the next, 8 cycles at least.
     pub host_address: Signal<In, Bits<7>>,
+    /// It is one of the second program. Stays put like `host_address`.
+    pub host_second: Signal<In, Bit>,
     /// Strobe: read the word into `host_word`.
     pub host_read: Signal<In, Bit>,
+    /// Strobe: `host_word` becomes 0; with `host_read`, until the word is here.
+    pub host_clear: Signal<In, Bit>,
     /// The word as it was at one moment from `host_read` on; it is here from the third cycle after that strobe at the latest, until
     /// the next one.
     pub host_word: Signal<Out, Bits<32>>,
@@ -105,10 +123,10 @@ pub struct Sequencer {
     pub host_data: Signal<In, Bits<16>>,
     /// The program.
     program: Rom<20, 11>,
-    /// Even words of RAM.
-    low: Memory<16, 7>,
+    /// Even words of RAM; those of the second program in its upper half.
+    low: Memory<16, 8>,
     /// Odd words of RAM.
-    high: Memory<16, 7>,
+    high: Memory<16, 8>,
     cycle: Reg<Cycle>,
     counter: Reg<Bits<11>>,
     link: Reg<Bits<11>>,
@@ -116,6 +134,13 @@ pub struct Sequencer {
     is_zero: Reg<Bit>,
     carry: Reg<Bit>,
     index: Reg<Bits<8>>,
+    /// The second program runs.
+    is_second: Reg<Bit>,
+    other_counter: Reg<Bits<11>>,
+    other_link: Reg<Bits<11>>,
+    other_accumulator: Reg<Bits<16>>,
+    other_carry: Reg<Bit>,
+    other_index: Reg<Bits<8>>,
     /// RAM word of the operand.
     address: Reg<Bits<8>>,
     /// What is added if no word of RAM is.
@@ -126,7 +151,6 @@ pub struct Sequencer {
     inverts: Reg<Bit>,
     carry_in: Reg<Bit>,
     shifted_out: Reg<Bit>,
-    loads: Reg<Bit>,
     loads_carry: Reg<Bit>,
     stores: Reg<Bit>,
     writes_port: Reg<Bit>,
@@ -145,18 +169,27 @@ pub struct Sequencer {
     is_execute: Signal<Local, Bit>,
     offset: Signal<Local, Bits<8>>,
     operand_address: Signal<Local, Bits<8>>,
-    read_word: Signal<Local, Bits<7>>,
-    write_word: Signal<Local, Bits<7>>,
+    host_place: Signal<Local, Bits<8>>,
+    read_word: Signal<Local, Bits<8>>,
+    write_word: Signal<Local, Bits<8>>,
     write_half: Signal<Local, Bit>,
     is_written: Signal<Local, Bit>,
     written: Signal<Local, Bits<16>>,
     logic: Signal<Local, Bits<16>>,
     takes_carry: Signal<Local, Bit>,
+    loads: Signal<Local, Bit>,
+    takes_port: Signal<Local, Bit>,
     adds: Signal<Local, Bit>,
     operand: Signal<Local, Bits<16>>,
     sum: Signal<Local, Bits<18>>,
     following: Signal<Local, Bits<11>>,
     is_taken: Signal<Local, Bit>,
+    goes_astray: Signal<Local, Bit>,
+    next_counter: Signal<Local, Bits<11>>,
+    next_link: Signal<Local, Bits<11>>,
+    next_carry: Signal<Local, Bit>,
+    next_index: Signal<Local, Bits<8>>,
+    is_shared: Constant<Bit>,
 }
 
 impl Logic for Sequencer {
@@ -179,7 +212,6 @@ impl Logic for Sequencer {
             inverts,
             carry_in,
             shifted_out,
-            loads,
             loads_carry,
             stores,
             writes_port,
@@ -190,12 +222,30 @@ impl Logic for Sequencer {
             is_for_host,
             word
         );
+        dff_setup!(
+            self,
+            clock,
+            is_second,
+            other_counter,
+            other_link,
+            other_accumulator,
+            other_carry,
+            other_index
+        );
         clock!(self, clock, program, low, high);
         self.is_execute.next = self.cycle.q.val() == Cycle::Execute;
         self.cycle.reset.next = self.reset.val() | self.restart.val();
+        self.goes_astray.next = self.is_astray.q.val() & self.is_execute.val();
         self.counter.reset.next = self.reset.val()
             | self.restart.val()
-            | (self.is_astray.q.val() & self.is_execute.val());
+            | (self.goes_astray.val() & !self.is_shared.val());
+        self.other_counter.reset.next =
+            self.reset.val() | self.restart.val() | self.goes_astray.val();
+        self.is_second.reset.next = self.reset.val();
+        self.other_link.reset.next = self.reset.val();
+        self.other_accumulator.reset.next = self.reset.val();
+        self.other_carry.reset.next = self.reset.val();
+        self.other_index.reset.next = self.reset.val();
         self.way.reset.next = self.reset.val();
         self.is_astray.reset.next = self.reset.val();
         self.link.reset.next = self.reset.val();
@@ -204,22 +254,20 @@ impl Logic for Sequencer {
         self.carry.reset.next = self.reset.val();
         self.index.reset.next = self.reset.val();
         self.address.reset.next = self.reset.val();
-        self.value.reset.next = self.reset.val();
         self.takes_memory.reset.next = self.reset.val();
         self.inverts.reset.next = self.reset.val();
         self.carry_in.reset.next = self.reset.val();
         self.shifted_out.reset.next = self.reset.val();
-        self.loads.reset.next = self.reset.val();
         self.loads_carry.reset.next = self.reset.val();
         self.stores.reset.next = self.reset.val();
         self.writes_port.reset.next = self.reset.val();
         self.read_pending.reset.next = self.reset.val();
         self.write_pending.reset.next = self.reset.val();
         self.is_for_host.reset.next = self.reset.val();
-        self.word.reset.next = self.reset.val();
+        self.word.reset.next = self.reset.val() | self.host_clear.val();
 
         self.cycle.d.next = Cycle::Fetch;
-        if self.cycle.q.val() == Cycle::Fetch {
+        if (self.cycle.q.val() == Cycle::Fetch) | (self.is_execute.val() & self.is_shared.val()) {
             self.cycle.d.next = Cycle::Operand;
         }
         if self.cycle.q.val() == Cycle::Operand {
@@ -227,11 +275,15 @@ impl Logic for Sequencer {
         }
         // The counter moves at the end of the third cycle only, so the word stands throughout the second and third.
         self.program.read_address.next = self.counter.q.val();
+        if self.is_execute.val() & self.is_shared.val() {
+            self.program.read_address.next = self.other_counter.q.val();
+        }
         self.op.next = self.program.read_data.val().get_bits::<4>(16);
         self.choice.next = self.program.read_data.val().get_bits::<2>(16);
         self.special.next = self.program.read_data.val().get_bits::<4>(0);
         self.immediate.next = self.program.read_data.val().get_bits::<16>(0);
         self.port_address.next = self.program.read_data.val().get_bits::<5>(0);
+        self.port_second.next = self.is_second.q.val();
 
         // Second cycle: what is computed here counts in the third.
         self.offset.next = 0.into();
@@ -254,27 +306,28 @@ impl Logic for Sequencer {
         self.inverts.d.next = false;
         self.carry_in.d.next = false;
         self.shifted_out.d.next = false;
-        self.loads.d.next = false;
+        self.loads.next = false;
+        self.takes_port.next = false;
         self.loads_carry.d.next = false;
         self.stores.d.next = false;
         self.writes_port.d.next = false;
         self.takes_carry.next = self.immediate.val().get_bit(9) & self.carry.q.val();
         match self.op.val().index() {
-            0 => self.loads.d.next = true,
+            0 => self.loads.next = true,
             1 => {
-                self.loads.d.next = true;
+                self.loads.next = true;
                 self.takes_memory.d.next = true;
             }
             2 => self.stores.d.next = true,
             3 => {
-                self.loads.d.next = true;
+                self.loads.next = true;
                 self.loads_carry.d.next = true;
                 self.takes_memory.d.next = true;
                 self.adds.next = true;
                 self.carry_in.d.next = self.takes_carry.val();
             }
             4 => {
-                self.loads.d.next = true;
+                self.loads.next = true;
                 self.loads_carry.d.next = true;
                 self.takes_memory.d.next = true;
                 self.adds.next = true;
@@ -282,30 +335,29 @@ impl Logic for Sequencer {
                 self.carry_in.d.next = !self.takes_carry.val();
             }
             8 => {
-                self.loads.d.next = true;
+                self.loads.next = true;
                 self.loads_carry.d.next = true;
                 self.adds.next = true;
             }
-            9 => self.loads.d.next = true,
-            10 => self.loads.d.next = true,
+            9 => self.loads.next = true,
+            10 => self.loads.next = true,
             11 => {
-                self.loads.d.next = true;
-                self.value.d.next = self.port_in.val();
+                self.loads.next = true;
+                self.takes_port.next = true;
             }
             12 => self.writes_port.d.next = true,
             15 => {
                 if self.special.val() == 2 {
-                    self.loads.d.next = true;
+                    self.loads.next = true;
                 }
                 if self.special.val() == 4 {
-                    self.loads.d.next = true;
+                    self.loads.next = true;
                     self.loads_carry.d.next = true;
                     self.shifted_out.d.next = self.accumulator.q.val().get_bit(0);
                 }
                 if self.special.val() == 5 {
-                    self.loads.d.next = true;
+                    self.loads.next = true;
                 }
-                // What does not load A may have any value.
                 if self.special.val().get_bit(2) {
                     self.value.d.next = self.accumulator.q.val() >> 1;
                     if self.special.val().get_bit(0) {
@@ -347,9 +399,14 @@ impl Logic for Sequencer {
             _ => {}
         }
         self.is_zero.d.next = !self.accumulator.q.val().any();
-        // The reset of the flip-flops makes the 0, which costs no look-up tables.
+        if self.is_execute.val() & self.is_shared.val() {
+            self.is_zero.d.next = !self.other_accumulator.q.val().any();
+        }
+        // What does not load A adds 0 to it. The reset of the flip-flops makes a 0, which costs no look-up tables.
         self.base.d.next = self.accumulator.q.val();
-        self.base.reset.next = self.reset.val() | !self.adds.val();
+        self.base.reset.next = self.reset.val() | (self.loads.val() & !self.adds.val());
+        self.value.reset.next = self.reset.val() | !self.loads.val() | self.takes_port.val();
+        self.port_read.next = self.takes_port.val() & (self.cycle.q.val() == Cycle::Operand);
 
         // Third cycle: the sum. Below its lowest bit stands a place where the carry comes in.
         self.operand.next = self.value.q.val();
@@ -362,39 +419,61 @@ impl Logic for Sequencer {
         if self.inverts.q.val() {
             self.operand.next = !self.operand.val();
         }
-        self.sum.next = ((bit_cast::<18, 16>(self.operand.val()) << 1)
+        self.sum.next = ((bit_cast::<18, 16>(self.operand.val() | self.port_in.val()) << 1)
             | bit_cast::<18, 1>(self.carry_in.q.val().into()))
             + ((bit_cast::<18, 16>(self.base.q.val()) << 1) | 1);
         self.following.next = self.counter.q.val() + 1;
+        self.next_carry.next = self.carry.q.val();
+        if self.loads_carry.q.val() {
+            self.next_carry.next =
+                (self.sum.val().get_bit(17) ^ self.inverts.q.val()) | self.shifted_out.q.val();
+        }
+        match self.way.q.val().index() {
+            1 => self.next_counter.next = self.program.read_data.val().get_bits::<11>(0),
+            2 => self.next_counter.next = self.link.q.val(),
+            3 => self.next_counter.next = self.accumulator.q.val().get_bits::<11>(0),
+            _ => self.next_counter.next = self.following.val(),
+        }
+        self.next_link.next = self.link.q.val();
+        if self.op.val() == 14 {
+            self.next_link.next = self.following.val();
+        }
+        self.next_index.next = self.index.q.val();
+        if (self.op.val() == 15) & (self.special.val() == 1) {
+            self.next_index.next = self.accumulator.q.val().get_bits::<8>(0);
+        }
         if self.is_execute.val() {
-            if self.loads.q.val() {
+            self.other_counter.d.next = self.next_counter.val();
+            self.other_link.d.next = self.next_link.val();
+            self.other_accumulator.d.next = self.sum.val().get_bits::<16>(1);
+            self.other_carry.d.next = self.next_carry.val();
+            self.other_index.d.next = self.next_index.val();
+            if self.is_shared.val() {
+                self.is_second.d.next = !self.is_second.q.val();
+                self.counter.d.next = self.other_counter.q.val();
+                self.link.d.next = self.other_link.q.val();
+                self.accumulator.d.next = self.other_accumulator.q.val();
+                self.carry.d.next = self.other_carry.q.val();
+                self.index.d.next = self.other_index.q.val();
+            } else {
+                self.counter.d.next = self.next_counter.val();
+                self.link.d.next = self.next_link.val();
                 self.accumulator.d.next = self.sum.val().get_bits::<16>(1);
-            }
-            if self.loads_carry.q.val() {
-                self.carry.d.next =
-                    (self.sum.val().get_bit(17) ^ self.inverts.q.val()) | self.shifted_out.q.val();
-            }
-            match self.way.q.val().index() {
-                1 => self.counter.d.next = self.program.read_data.val().get_bits::<11>(0),
-                2 => self.counter.d.next = self.link.q.val(),
-                3 => self.counter.d.next = self.accumulator.q.val().get_bits::<11>(0),
-                _ => self.counter.d.next = self.following.val(),
-            }
-            if self.op.val() == 14 {
-                self.link.d.next = self.following.val();
-            }
-            if (self.op.val() == 15) & (self.special.val() == 1) {
-                self.index.d.next = self.accumulator.q.val().get_bits::<8>(0);
+                self.carry.d.next = self.next_carry.val();
+                self.index.d.next = self.next_index.val();
             }
         }
         self.port_out.next = self.accumulator.q.val();
         self.port_write.next = self.is_execute.val() & self.writes_port.q.val();
 
         // The RAM is read for the machine in its second cycle and written for it in its third, otherwise for the host.
-        self.read_word.next = self.host_address.val();
+        self.host_place.next = bit_cast::<8, 7>(self.host_address.val())
+            | (bit_cast::<8, 1>(self.host_second.val().into()) << 7);
+        self.read_word.next = self.host_place.val();
         self.is_for_host.d.next = true;
         if self.cycle.q.val() == Cycle::Operand {
-            self.read_word.next = self.operand_address.val().get_bits::<7>(1);
+            self.read_word.next = bit_cast::<8, 7>(self.operand_address.val().get_bits::<7>(1))
+                | (bit_cast::<8, 1>(self.is_second.q.val().into()) << 7);
             self.is_for_host.d.next = false;
         }
         self.low.read_address.next = self.read_word.val();
@@ -409,12 +488,13 @@ impl Logic for Sequencer {
         }
         self.host_word.next = self.word.q.val();
 
-        self.write_word.next = self.host_address.val();
+        self.write_word.next = self.host_place.val();
         self.write_half.next = self.host_half.val();
         self.written.next = self.host_data.val();
         self.is_written.next = self.write_pending.q.val();
         if self.is_execute.val() {
-            self.write_word.next = self.address.q.val().get_bits::<7>(1);
+            self.write_word.next = bit_cast::<8, 7>(self.address.q.val().get_bits::<7>(1))
+                | (bit_cast::<8, 1>(self.is_second.q.val().into()) << 7);
             self.write_half.next = self.address.q.val().get_bit(0);
             self.written.next = self.accumulator.q.val();
             self.is_written.next = self.stores.q.val();

@@ -1,17 +1,20 @@
-//! Service: requests, additional information, health and initialisation of one channel, as a program of the [`Sequencer`].
+//! Service: requests, additional information, health and initialisation of one channel or two, as a program of the [`Sequencer`].
 //!
 //! ```text
 //!               +--> requests, hold-off ------> Channel
-//!  Sequencer ---+<-- ends of frames, infos ----    |
+//! ServiceChannel+<-- ends of frames, infos ----    |
 //!      |        +--> width, command, clock -----> (+) <-- configuration
-//!     RAM
+//!   Service --- Sequencer, RAM
 //!      |
 //!     host: mailbox, name plate, slots, counters
 //! ```
 //!
 //! Positions do not wait for it: a trigger goes to the channel directly, and a request that the program has prepared goes with it.
-//! Where things stand is in [`map`], what is done in [`program`].
+//! Where things stand is in [`map`], what is done in [`program`], what a channel has of it in [`channel`].
+//!
+//! Two channels share a machine: each has its own run of the program, its own RAM and ports, and an instruction takes four cycles instead of three.
 
+pub mod channel;
 pub mod map;
 pub mod program;
 
@@ -20,7 +23,10 @@ use crate::sequencer::Sequencer;
 use program::ServiceTimes;
 use rust_hdl::prelude::*;
 
-/// Service of one channel.
+/// Channels that a service has room for.
+pub const CHANNELS_SERVED: usize = 2;
+
+/// Service of one channel or two.
 #[derive(LogicBlock)]
 pub struct Service {
     /// System clock.
@@ -29,192 +35,74 @@ pub struct Service {
     pub reset: Signal<In, Bit>,
     /// One-cycle strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
-    /// Strobe: a frame has ended.
-    pub over: Signal<In, Bit>,
-    /// It had the request.
-    pub over_request: Signal<In, Bit>,
-    /// Its primary cause.
-    pub over_cause: Signal<In, Bits<5>>,
-    /// Answer of a request with a frame of its own.
-    pub reply: Signal<In, Bits<48>>,
-    /// Its CRC is right.
-    pub reply_good: Signal<In, Bit>,
-    /// Additional informations that the encoder sends.
-    pub info_active: Signal<In, Bits<2>>,
-    /// Additional information 1.
-    pub info_1: Signal<In, Bits<24>>,
-    /// Additional information 2.
-    pub info_2: Signal<In, Bits<24>>,
-    /// Additional informations whose CRC is right, in the last frame.
-    pub info_good: Signal<In, Bits<2>>,
-    /// The frame under way has the request.
-    pub request_runs: Signal<In, Bit>,
-    /// DATA is HIGH, and no frame is on the wire.
-    pub line_high: Signal<In, Bit>,
-    /// Strobe: a trigger has been lost.
-    pub displaced: Signal<In, Bit>,
-    /// Number of results.
-    pub sequence: Signal<In, Bits<16>>,
-    /// Last good position.
-    pub position: Signal<In, Bits<48>>,
-    /// The last result brought the position.
-    pub fresh: Signal<In, Bit>,
-    /// Tracked line delay, in system clock cycles.
-    pub delay_cycles: Signal<In, Bits<11>>,
-    /// Configured EnDat clock period, in system clock cycles.
-    pub period_cycles: Signal<In, Bits<11>>,
-    /// Configured mode command.
-    pub command: Signal<In, Bits<6>>,
-    /// Configured position width.
-    pub position_bits: Signal<In, Bits<6>>,
-    /// EnDat clock period for the channel.
-    pub period_now_cycles: Signal<Out, Bits<11>>,
-    /// Mode command for the channel.
-    pub command_now: Signal<Out, Bits<6>>,
-    /// Position width for the channel.
-    pub position_bits_now: Signal<Out, Bits<6>>,
-    /// Mode command of the request.
-    pub request_command: Signal<Out, Bits<6>>,
-    /// 24 bits of the request.
-    pub request_parameter: Signal<Out, Bits<24>>,
-    /// Strobe: the request rides on the next triggered frame.
-    pub request_ride: Signal<Out, Bit>,
-    /// Strobe: the request gets a frame of its own.
-    pub request_own: Signal<Out, Bit>,
-    /// Strobe: a request that has not begun is forgotten.
-    pub request_cancel: Signal<Out, Bit>,
-    /// Strobe: the next frame measures the line delay.
-    pub calibrate: Signal<Out, Bit>,
-    /// Triggers are lost.
-    pub hold_off: Signal<Out, Bit>,
-    /// The EnDat clock is LOW.
-    pub clock_low: Signal<Out, Bit>,
-    /// The channel's alarm.
-    pub alarm: Signal<Out, Bit>,
-    /// Forced errors: bit 0 F1, bit 1 F2, bit 2 CRC.
-    pub forced: Signal<Out, Bits<3>>,
-    /// Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
-    pub watchdog_us: Signal<Out, Bits<12>>,
-    /// Shortest recovery time, in system clock cycles; 0 = not checked.
-    pub recovery_min_cycles: Signal<Out, Bits<13>>,
-    /// The clock goes on after each position.
-    pub continuous: Signal<Out, Bit>,
-    /// It stops after an error.
-    pub stop_at_error: Signal<Out, Bit>,
+    /// Port that the program reads or writes, of all channels.
+    pub io_address: Signal<Out, Bits<5>>,
+    /// Strobe of each channel: its port is read.
+    pub io_read: Vec<Signal<Out, Bit>>,
+    /// In the next cycle what each channel's port had to say, otherwise 0.
+    pub io_in: Vec<Signal<In, Bits<16>>>,
+    /// What is written.
+    pub io_out: Signal<Out, Bits<16>>,
+    /// Strobe of each channel: it is written to its port.
+    pub io_write: Vec<Signal<Out, Bit>>,
     /// Word of RAM that the host accesses; stays put from one strobe to the next, 8 cycles at least.
     pub host_address: Signal<In, Bits<7>>,
-    /// Strobe: read it.
+    /// It is one of the second channel.
+    pub host_second: Signal<In, Bit>,
+    /// Strobe: the host reads it.
     pub host_read: Signal<In, Bit>,
-    /// The word read.
+    /// Strobe: the host reads something, here or elsewhere.
+    pub host_clear: Signal<In, Bit>,
+    /// The word read, from the third cycle after its strobe; 0 if the host has read something else since.
     pub host_word: Signal<Out, Bits<32>>,
-    /// Strobe: write one half of it.
+    /// Strobe: the host writes one half of it.
     pub host_write: Signal<In, Bit>,
-    /// The half: 1 = high. Write the low one last: it acts.
+    /// The half: 1 = high. Written last, the low one acts.
     pub host_half: Signal<In, Bit>,
     /// What to write.
     pub host_data: Signal<In, Bits<16>>,
     sequencer: Sequencer,
-    has_event: Reg<Bit>,
-    missed: Reg<Bit>,
-    event_request: Reg<Bit>,
-    event_cause: Reg<Bits<5>>,
-    request_written: Reg<Bit>,
-    control_written: Reg<Bit>,
     time_us: Reg<Bits<16>>,
     us_in_ms: Reg<Bits<10>>,
     time_ms: Reg<Bits<16>>,
-    lost_count: Reg<Bits<16>>,
-    out_command: Reg<Bits<6>>,
-    out_address: Reg<Bits<8>>,
-    out_data: Reg<Bits<16>>,
-    out_go: Reg<Bits<4>>,
-    out_control: Reg<Bits<3>>,
-    out_force: Reg<Bits<3>>,
-    out_found: Reg<Bits<7>>,
-    out_period: Reg<Bits<11>>,
-    out_watchdog: Reg<Bits<12>>,
-    out_recovery: Reg<Bits<13>>,
-    out_continuous: Reg<Bits<2>>,
-    status: Signal<Local, Bits<16>>,
-    written: Signal<Local, Bits<16>>,
-    wants_short: Constant<Bit>,
+    seen_us: Reg<Bits<16>>,
+    seen_ms: Reg<Bits<16>>,
+    is_time: Signal<Local, Bit>,
+    second_in: Signal<Local, Bits<16>>,
+    _seconds: usize,
 }
 
 impl Service {
-    /// A service that runs the program for these times. `wants_short`: the encoder is set to the short recovery time.
-    pub fn new(times: &ServiceTimes, wants_short: bool) -> Self {
+    /// A service that runs the program for these times, for this many channels: one, or [`CHANNELS_SERVED`].
+    pub fn new(times: &ServiceTimes, channels: usize) -> Self {
+        let is_shared = channels > 1;
+        let each = 1 + usize::from(is_shared);
         Self {
             clock: Default::default(),
             reset: Default::default(),
             tick_us: Default::default(),
-            over: Default::default(),
-            over_request: Default::default(),
-            over_cause: Default::default(),
-            reply: Default::default(),
-            reply_good: Default::default(),
-            info_active: Default::default(),
-            info_1: Default::default(),
-            info_2: Default::default(),
-            info_good: Default::default(),
-            request_runs: Default::default(),
-            line_high: Default::default(),
-            displaced: Default::default(),
-            sequence: Default::default(),
-            position: Default::default(),
-            fresh: Default::default(),
-            delay_cycles: Default::default(),
-            period_cycles: Default::default(),
-            command: Default::default(),
-            position_bits: Default::default(),
-            period_now_cycles: Default::default(),
-            command_now: Default::default(),
-            position_bits_now: Default::default(),
-            request_command: Default::default(),
-            request_parameter: Default::default(),
-            request_ride: Default::default(),
-            request_own: Default::default(),
-            request_cancel: Default::default(),
-            calibrate: Default::default(),
-            hold_off: Default::default(),
-            clock_low: Default::default(),
-            alarm: Default::default(),
-            forced: Default::default(),
-            watchdog_us: Default::default(),
-            recovery_min_cycles: Default::default(),
-            continuous: Default::default(),
-            stop_at_error: Default::default(),
+            io_address: Default::default(),
+            io_read: (0..each).map(|_| Default::default()).collect(),
+            io_in: (0..each).map(|_| Default::default()).collect(),
+            io_out: Default::default(),
+            io_write: (0..each).map(|_| Default::default()).collect(),
             host_address: Default::default(),
+            host_second: Default::default(),
             host_read: Default::default(),
+            host_clear: Default::default(),
             host_word: Default::default(),
             host_write: Default::default(),
             host_half: Default::default(),
             host_data: Default::default(),
-            sequencer: Sequencer::new(&program::program(times)),
-            has_event: Default::default(),
-            missed: Default::default(),
-            event_request: Default::default(),
-            event_cause: Default::default(),
-            request_written: Default::default(),
-            control_written: Default::default(),
+            sequencer: Sequencer::new(&program::program(times), is_shared),
             time_us: Default::default(),
             us_in_ms: Default::default(),
             time_ms: Default::default(),
-            lost_count: Default::default(),
-            out_command: Default::default(),
-            out_address: Default::default(),
-            out_data: Default::default(),
-            out_go: Default::default(),
-            // Until the program has begun, no trigger may get in its way.
-            out_control: Reg::new(u64::from(times.initialise).into()),
-            out_force: Default::default(),
-            out_found: Default::default(),
-            out_period: Default::default(),
-            out_watchdog: Default::default(),
-            out_recovery: Default::default(),
-            out_continuous: Default::default(),
-            status: Default::default(),
-            written: Default::default(),
-            wants_short: Constant::new(wants_short),
+            is_time: Default::default(),
+            seen_us: Default::default(),
+            seen_ms: Default::default(),
+            second_in: Default::default(),
+            _seconds: usize::from(is_shared),
         }
     }
 }
@@ -222,57 +110,11 @@ impl Service {
 impl Logic for Service {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            has_event,
-            missed,
-            event_request,
-            event_cause,
-            request_written,
-            control_written,
-            time_us,
-            us_in_ms,
-            time_ms,
-            lost_count
-        );
-        dff_setup!(
-            self,
-            clock,
-            out_command,
-            out_address,
-            out_data,
-            out_go,
-            out_control,
-            out_force,
-            out_found,
-            out_period,
-            out_watchdog,
-            out_recovery,
-            out_continuous
-        );
+        dff_setup!(self, clock, time_us, us_in_ms, time_ms, seen_us, seen_ms);
         clock!(self, clock, sequencer);
-        self.has_event.reset.next = self.reset.val();
-        self.missed.reset.next = self.reset.val();
-        self.event_request.reset.next = self.reset.val();
-        self.event_cause.reset.next = self.reset.val();
-        self.request_written.reset.next = self.reset.val();
-        self.control_written.reset.next = self.reset.val();
         self.time_us.reset.next = self.reset.val();
         self.us_in_ms.reset.next = self.reset.val();
         self.time_ms.reset.next = self.reset.val();
-        self.lost_count.reset.next = self.reset.val();
-        self.out_command.reset.next = self.reset.val();
-        self.out_address.reset.next = self.reset.val();
-        self.out_data.reset.next = self.reset.val();
-        self.out_go.reset.next = self.reset.val();
-        self.out_control.reset.next = self.reset.val();
-        self.out_force.reset.next = self.reset.val();
-        self.out_found.reset.next = self.reset.val();
-        self.out_period.reset.next = self.reset.val();
-        self.out_watchdog.reset.next = self.reset.val();
-        self.out_recovery.reset.next = self.reset.val();
-        self.out_continuous.reset.next = self.reset.val();
         self.sequencer.reset.next = self.reset.val();
         self.sequencer.restart.next = false;
 
@@ -284,189 +126,42 @@ impl Logic for Service {
                 self.time_ms.d.next = self.time_ms.q.val() + 1;
             }
         }
-        if self.displaced.val() {
-            self.lost_count.d.next = self.lost_count.q.val() + 1;
+
+        // Ports 24 and above are the same for all channels: the times.
+        self.is_time.next = self.sequencer.port_read.val()
+            & self.sequencer.port_address.val().get_bits::<2>(3).all();
+        self.seen_us.d.next = self.time_us.q.val();
+        self.seen_us.reset.next =
+            !(self.is_time.val() & !self.sequencer.port_address.val().get_bit(0));
+        self.seen_ms.d.next = self.time_ms.q.val();
+        self.seen_ms.reset.next =
+            !(self.is_time.val() & self.sequencer.port_address.val().get_bit(0));
+        self.sequencer.port_in.next = self.io_in[0].val()
+            | self.second_in.val()
+            | self.seen_us.q.val()
+            | self.seen_ms.q.val();
+        self.second_in.next = 0.into();
+        self.io_read[0].next = self.sequencer.port_read.val() & !self.sequencer.port_second.val();
+        for i in 0..self._seconds {
+            self.second_in.next = self.io_in[i + 1].val();
+            self.io_read[i + 1].next =
+                self.sequencer.port_read.val() & self.sequencer.port_second.val();
+        }
+        self.io_address.next = self.sequencer.port_address.val();
+        self.io_out.next = self.sequencer.port_out.val();
+        self.io_write[0].next = self.sequencer.port_write.val() & !self.sequencer.port_second.val();
+        for i in 0..self._seconds {
+            self.io_write[i + 1].next =
+                self.sequencer.port_write.val() & self.sequencer.port_second.val();
         }
 
-        // What the program reads.
-        self.status.next = bit_cast::<16, 1>(self.has_event.q.val().into())
-            | (bit_cast::<16, 1>(self.event_request.q.val().into()) << 1)
-            | (bit_cast::<16, 1>(self.request_written.q.val().into()) << 2)
-            | (bit_cast::<16, 1>(self.control_written.q.val().into()) << 3)
-            | (bit_cast::<16, 1>(self.line_high.val().into()) << 4)
-            | (bit_cast::<16, 1>(self.reply_good.val().into()) << 5)
-            | (bit_cast::<16, 2>(self.info_good.val()) << 6)
-            | (bit_cast::<16, 1>(self.info_active.val().get_bits::<1>(0)) << 8)
-            | (bit_cast::<16, 1>(self.missed.q.val().into()) << 9)
-            | (bit_cast::<16, 1>(self.fresh.val().into()) << 10)
-            | (bit_cast::<16, 1>(self.request_runs.val().into()) << 11);
-        match self.sequencer.port_address.val().index() {
-            0 => {
-                self.sequencer.port_in.next = self.status.val();
-            }
-            1 => {
-                self.sequencer.port_in.next = bit_cast::<16, 5>(self.event_cause.q.val());
-            }
-            2 => {
-                self.sequencer.port_in.next = self.info_1.val().get_bits::<16>(0);
-            }
-            3 => {
-                self.sequencer.port_in.next =
-                    bit_cast::<16, 8>(self.info_1.val().get_bits::<8>(16));
-            }
-            4 => {
-                self.sequencer.port_in.next = self.info_2.val().get_bits::<16>(0);
-            }
-            5 => {
-                self.sequencer.port_in.next =
-                    bit_cast::<16, 8>(self.info_2.val().get_bits::<8>(16));
-            }
-            6 => {
-                self.sequencer.port_in.next = self.reply.val().get_bits::<16>(0);
-            }
-            7 => {
-                self.sequencer.port_in.next = self.reply.val().get_bits::<16>(16);
-            }
-            8 => {
-                self.sequencer.port_in.next = self.reply.val().get_bits::<16>(32);
-            }
-            9 => {
-                self.sequencer.port_in.next = self.time_us.q.val();
-            }
-            10 => {
-                self.sequencer.port_in.next = self.time_ms.q.val();
-            }
-            11 => {
-                self.sequencer.port_in.next = self.lost_count.q.val();
-            }
-            12 => {
-                self.sequencer.port_in.next = self.sequence.val();
-            }
-            13 => {
-                self.sequencer.port_in.next = self.position.val().get_bits::<16>(0);
-            }
-            14 => {
-                self.sequencer.port_in.next = self.position.val().get_bits::<16>(16);
-            }
-            15 => {
-                self.sequencer.port_in.next = self.position.val().get_bits::<16>(32);
-            }
-            16 => {
-                self.sequencer.port_in.next = bit_cast::<16, 6>(self.position_bits.val())
-                    | (bit_cast::<16, 1>(self.command.val().get_bits::<1>(5)) << 6)
-                    | (bit_cast::<16, 1>(self.wants_short.val().into()) << 7);
-            }
-            17 => {
-                self.sequencer.port_in.next = bit_cast::<16, 11>(self.period_cycles.val());
-            }
-            18 => {
-                self.sequencer.port_in.next = bit_cast::<16, 11>(self.delay_cycles.val());
-            }
-            _ => {
-                self.sequencer.port_in.next = 0.into();
-            }
-        }
-
-        // What it writes.
-        self.written.next = self.sequencer.port_out.val();
-        self.out_go.d.next = 0.into();
-        if self.sequencer.port_write.val() {
-            match self.sequencer.port_address.val().index() {
-                0 => {
-                    if self.written.val().get_bit(0) {
-                        self.has_event.d.next = false;
-                        self.missed.d.next = false;
-                    }
-                    if self.written.val().get_bit(1) {
-                        self.request_written.d.next = false;
-                    }
-                    if self.written.val().get_bit(2) {
-                        self.control_written.d.next = false;
-                    }
-                }
-                1 => {
-                    self.out_command.d.next = self.written.val().get_bits::<6>(0);
-                }
-                2 => {
-                    self.out_address.d.next = self.written.val().get_bits::<8>(0);
-                }
-                3 => {
-                    self.out_data.d.next = self.written.val();
-                }
-                4 => {
-                    self.out_go.d.next = self.written.val().get_bits::<4>(0);
-                }
-                5 => {
-                    self.out_control.d.next = self.written.val().get_bits::<3>(0);
-                }
-                6 => {
-                    self.out_force.d.next = self.written.val().get_bits::<3>(0);
-                }
-                7 => {
-                    self.out_found.d.next = self.written.val().get_bits::<7>(0);
-                }
-                8 => {
-                    self.out_period.d.next = self.written.val().get_bits::<11>(0);
-                }
-                9 => {
-                    self.out_watchdog.d.next = self.written.val().get_bits::<12>(0);
-                }
-                10 => {
-                    self.out_recovery.d.next = self.written.val().get_bits::<13>(0);
-                }
-                11 => {
-                    self.out_continuous.d.next = self.written.val().get_bits::<2>(0);
-                }
-                _ => {}
-            }
-        }
-        if self.over.val() {
-            self.has_event.d.next = true;
-            self.missed.d.next = self.has_event.q.val();
-            self.event_request.d.next = self.over_request.val();
-            self.event_cause.d.next = self.over_cause.val();
-        }
         self.sequencer.host_address.next = self.host_address.val();
+        self.sequencer.host_second.next = self.host_second.val();
         self.sequencer.host_read.next = self.host_read.val();
+        self.sequencer.host_clear.next = self.host_clear.val();
         self.sequencer.host_write.next = self.host_write.val();
         self.sequencer.host_half.next = self.host_half.val();
         self.sequencer.host_data.next = self.host_data.val();
         self.host_word.next = self.sequencer.host_word.val();
-        if self.host_write.val() & !self.host_half.val() {
-            if self.host_address.val() == 0 {
-                self.request_written.d.next = true;
-            }
-            if self.host_address.val() == 5 {
-                self.control_written.d.next = true;
-            }
-        }
-
-        self.request_command.next = self.out_command.q.val();
-        self.request_parameter.next = bit_cast::<24, 16>(self.out_data.q.val())
-            | (bit_cast::<24, 8>(self.out_address.q.val()) << 16);
-        self.request_ride.next = self.out_go.q.val().get_bit(0);
-        self.request_own.next = self.out_go.q.val().get_bit(1);
-        self.request_cancel.next = self.out_go.q.val().get_bit(2);
-        self.calibrate.next = self.out_go.q.val().get_bit(3);
-        self.hold_off.next = self.out_control.q.val().get_bit(0);
-        self.clock_low.next = self.out_control.q.val().get_bit(1);
-        self.alarm.next = self.out_control.q.val().get_bit(2);
-        self.forced.next = self.out_force.q.val();
-        self.watchdog_us.next = self.out_watchdog.q.val();
-        self.recovery_min_cycles.next = self.out_recovery.q.val();
-        self.continuous.next = self.out_continuous.q.val().get_bit(0);
-        self.stop_at_error.next = self.out_continuous.q.val().get_bit(1);
-        self.period_now_cycles.next = self.period_cycles.val();
-        if self.out_period.q.val().any() {
-            self.period_now_cycles.next = self.out_period.q.val();
-        }
-        self.position_bits_now.next = self.position_bits.val();
-        self.command_now.next = self.command.val();
-        if self.out_found.q.val().get_bits::<6>(0).any() {
-            self.position_bits_now.next = self.out_found.q.val().get_bits::<6>(0);
-            if self.out_found.q.val().get_bit(6) {
-                self.command_now.next = 7.into();
-            }
-        }
     }
 }

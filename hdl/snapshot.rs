@@ -74,6 +74,7 @@ pub struct Snapshot {
     received: Reg<Bits<5>>,
     computed: Reg<Bits<5>>,
     take_good: Signal<Local, Bit>,
+    ago: Signal<Local, Bits<11>>,
 }
 
 impl Logic for Snapshot {
@@ -96,11 +97,12 @@ impl Logic for Snapshot {
         self.computed.reset.next = self.reset.val();
 
         self.take_good.next = self.publish.val() & self.good.val();
-        if self.first_fall.val() {
-            self.moment.d.next = self.timestamp.val();
-        }
+        self.ago.next = 0.into();
         if self.latched.val() {
-            self.moment.d.next = self.timestamp.val() - bit_cast::<32, 11>(self.delay_cycles.val());
+            self.ago.next = self.delay_cycles.val();
+        }
+        if self.first_fall.val() | self.latched.val() {
+            self.moment.d.next = self.timestamp.val() - bit_cast::<32, 11>(self.ago.val());
         }
         self.age_full.d.next = self.age.q.val().all();
         if self.tick_us.val() & !self.age_full.q.val() {

@@ -40,6 +40,7 @@ pub const SOURCES: &[&str] = &[
     include_str!("../register_bank.rs"),
     include_str!("../sequencer.rs"),
     include_str!("../service.rs"),
+    include_str!("../service/channel.rs"),
     include_str!("../snapshot.rs"),
     include_str!("../stream.rs"),
     include_str!("../stream/buffer.rs"),

@@ -4,10 +4,12 @@ use super::*;
 use crate::testing::{settle, tick};
 use proptest::prelude::*;
 
-/// The block beside its model, cycle by cycle, and a host that reads and writes.
+/// The block beside its models, one for each run of the program, cycle by cycle, and a host that reads and writes.
 struct Rig {
     uut: Sequencer,
-    model: Model,
+    models: Vec<Model>,
+    /// Whose turn it is.
+    running: usize,
     /// 0 fetch, 1 operand, 2 execute.
     cycle: u32,
     /// Cycles since the start.
@@ -19,8 +21,14 @@ struct Rig {
     writing: Option<(usize, usize, u16)>,
     /// Host word being read, and its values in each cycle from the strobe on.
     reading: Option<(usize, Vec<u32>)>,
-    outputs: Vec<(u8, u16)>,
+    /// What the first run has written, and the second one.
+    outputs: [Vec<(u8, u16)>; 2],
 }
+
+/// Words of RAM as the host sees them; those of the second run follow those of the first.
+const HOST_WORDS: usize = RAM_WORDS / 2;
+/// Op of IN.
+const IN: u32 = 11;
 
 /// What a port answers in a cycle.
 fn port_value(port: u8, now: u64) -> u16 {
@@ -29,70 +37,103 @@ fn port_value(port: u8, now: u64) -> u16 {
 
 impl Rig {
     fn new(program: &[u32]) -> Self {
-        let mut uut = Sequencer::new(program);
+        Self::with_runs(program, 1)
+    }
+
+    fn with_runs(program: &[u32], runs: usize) -> Self {
+        let mut uut = Sequencer::new(program, runs > 1);
         uut.connect_all();
         Self {
             uut,
-            model: Model::new(program),
+            models: vec![Model::new(program); runs],
+            running: 0,
             cycle: 0,
             now: 0,
             m: 0,
             input: 0,
             writing: None,
             reading: None,
-            outputs: vec![],
+            outputs: [vec![], vec![]],
         }
     }
 
-    fn host_word(&self, address: usize) -> u32 {
-        u32::from(self.model.ram[2 * address]) | u32::from(self.model.ram[2 * address + 1]) << 16
+    fn ram(&mut self, address: usize) -> &mut [u16] {
+        let (run, word) = (address / HOST_WORDS, address % HOST_WORDS);
+        &mut self.models[run].ram[2 * word..2 * word + 2]
+    }
+
+    fn host_word(&mut self, address: usize) -> u32 {
+        let halves = self.ram(address);
+        u32::from(halves[0]) | u32::from(halves[1]) << 16
+    }
+
+    fn point(&mut self, address: usize) {
+        self.uut.host_address.next = ((address % HOST_WORDS) as u64).into();
+        self.uut.host_second.next = address >= HOST_WORDS;
     }
 
     fn read(&mut self, address: usize) {
-        self.uut.host_address.next = (address as u64).into();
+        self.point(address);
         self.uut.host_read.next = true;
         self.reading = Some((address, vec![self.host_word(address)]));
     }
 
     fn write(&mut self, address: usize, half: usize, data: u16) {
-        self.uut.host_address.next = (address as u64).into();
+        self.point(address);
         self.uut.host_half.next = half == 1;
         self.uut.host_data.next = u64::from(data).into();
         self.uut.host_write.next = true;
         self.writing = Some((address, half, data));
     }
 
-    /// One cycle of block and model.
+    /// One cycle of block and models.
     fn step(&mut self) -> Result<(), String> {
         self.uut.clock.next = false.into();
+        let is_in = self.models[self.running].instruction() >> 16 == IN;
+        let given = if self.cycle == 2 && is_in {
+            self.input
+        } else {
+            0
+        };
+        self.uut.port_in.next = u64::from(given).into();
         settle(&mut self.uut);
         let port = self.uut.port_address.val().to_u64() as u8;
-        self.uut.port_in.next = u64::from(port_value(port, self.now)).into();
-        settle(&mut self.uut);
         let written = (self.uut.port_write.val()).then(|| (port, self.a()));
+        let strobes = (self.uut.port_read.val(), self.uut.port_second.val());
         let (is_reset, is_restart) = (self.uut.reset.val(), self.uut.restart.val());
         // A write of the host waits for the strobe to be over, and for the machine's own write.
         let is_written = !self.uut.host_write.val() && self.cycle != 2;
         let mut expected = None;
+        let expected_strobes = (self.cycle == 1 && is_in, self.running == 1);
+        let model = &mut self.models[self.running];
         match self.cycle {
             0 => {}
             1 => {
-                self.m = self.model.ram[self.model.address()];
-                self.input = port_value(self.model.port(), self.now);
+                self.m = model.ram[model.address()];
+                self.input = port_value(model.port(), self.now);
             }
-            _ => expected = self.model.step(self.m, self.input),
+            _ => expected = model.step(self.m, self.input),
         }
         if let Some((address, half, data)) = self.writing.filter(|_| is_written) {
-            self.model.ram[2 * address + half] = data;
+            self.ram(address)[half] = data;
             self.writing = None;
         }
-        self.cycle = (self.cycle + 1) % 3;
+        self.outputs[self.running].extend(expected);
+        let is_shared = self.models.len() > 1;
+        self.cycle = match self.cycle {
+            2 if is_shared => {
+                self.running = 1 - self.running;
+                1
+            }
+            cycle => (cycle + 1) % 3,
+        };
         if is_restart || is_reset {
             self.cycle = 0;
-            self.model.counter = 0;
+            self.models.iter_mut().for_each(|m| m.counter = 0);
         }
         if is_reset {
-            self.model.reset();
+            self.models.iter_mut().for_each(Model::reset);
+            self.running = 0;
             self.writing = None;
         }
         if let Some((address, mut values)) = self.reading.take() {
@@ -103,24 +144,47 @@ impl Rig {
         self.uut.reset.next = false;
         self.uut.restart.next = false;
         self.uut.host_read.next = false;
+        self.uut.host_clear.next = false;
         self.uut.host_write.next = false;
         self.now += 1;
-        self.outputs.extend(expected);
-        let m = &self.model;
-        let want = (m.a, m.x, m.carry, m.link, m.counter, expected);
-        let got = (
-            self.a(),
-            self.uut.index.q.val().to_u64() as u8,
-            self.uut.carry.q.val(),
-            self.uut.link.q.val().to_u64() as u16,
-            self.uut.counter.q.val().to_u64() as u16,
-            written,
-        );
-        if got != want {
+        if (written, strobes) != (expected, expected_strobes) {
             return Err(format!(
-                "cycle {}: A, X, C, link, counter, port = {got:x?}, not {want:x?}",
+                "cycle {}: written {written:x?}, read and second {strobes:?}, not {expected:x?}, {expected_strobes:?}",
                 self.now
             ));
+        }
+        self.compare()
+    }
+
+    /// The registers of the run whose turn it is, and of the other one.
+    fn compare(&self) -> Result<(), String> {
+        let u = &self.uut;
+        let of = |m: &Model| (m.a, m.x, m.carry, m.link, m.counter);
+        let running = (
+            self.a(),
+            u.index.q.val().to_u64() as u8,
+            u.carry.q.val(),
+            u.link.q.val().to_u64() as u16,
+            u.counter.q.val().to_u64() as u16,
+        );
+        let other = (
+            u.other_accumulator.q.val().to_u64() as u16,
+            u.other_index.q.val().to_u64() as u8,
+            u.other_carry.q.val(),
+            u.other_link.q.val().to_u64() as u16,
+            u.other_counter.q.val().to_u64() as u16,
+        );
+        let mut pairs = vec![(running, of(&self.models[self.running]))];
+        if let [first, second] = &self.models[..] {
+            pairs.push((other, of([second, first][self.running])));
+        }
+        for (got, want) in pairs {
+            if got != want {
+                return Err(format!(
+                    "cycle {}: A, X, C, link, counter = {got:x?}, not {want:x?}",
+                    self.now
+                ));
+            }
         }
         Ok(())
     }
@@ -160,12 +224,12 @@ impl Rig {
 fn outputs(assembler: &Assembler, count: usize) -> Vec<(u8, u16)> {
     let mut rig = Rig::new(&assembler.finish().unwrap());
     for _ in 0..10_000 {
-        if rig.outputs.len() == count {
-            return rig.outputs;
+        if rig.outputs[0].len() == count {
+            return rig.outputs[0].clone();
         }
         rig.step().unwrap();
     }
-    panic!("only {:x?}", rig.outputs);
+    panic!("only {:x?}", rig.outputs[0]);
 }
 
 /// What a program leaves in A.
@@ -314,11 +378,11 @@ fn what_is_no_instruction_starts_again() {
     for word in [0x5ffff, 0x60001, 0x70002].into_iter().chain(special) {
         let mut rig = Rig::new(&[0x80001, 0xc0000, word, 0xc0001]);
         rig.run(18);
-        assert_eq!(rig.outputs, [(0, 1), (0, 2)], "{word:#x}");
+        assert_eq!(rig.outputs[0], [(0, 1), (0, 2)], "{word:#x}");
     }
     let mut rig = Rig::new(&[0x80001, 0xc0000]);
     rig.run(18);
-    assert_eq!(rig.outputs, [(0, 1), (0, 2)]);
+    assert_eq!(rig.outputs[0], [(0, 1), (0, 2)]);
     let full: Vec<u32> = (0..PROGRAM_WORDS)
         .map(|n| {
             if n == PROGRAM_WORDS - 1 {
@@ -330,7 +394,7 @@ fn what_is_no_instruction_starts_again() {
         .collect();
     let mut rig = Rig::new(&full);
     rig.run(2 * PROGRAM_WORDS as u64 * 3);
-    assert_eq!(rig.outputs, [(0, 2047), (0, 4094)]);
+    assert_eq!(rig.outputs[0], [(0, 2047), (0, 4094)]);
 }
 
 #[test]
@@ -344,8 +408,11 @@ fn restart_begins_at_zero_and_keeps_what_was_computed() {
         rig.uut.restart.next = true;
         rig.step().unwrap();
         rig.run(3);
-        assert_eq!(rig.outputs, [(1, 0), (1, 5)], "{at}");
-        assert_eq!((rig.model.x, rig.model.carry, rig.model.link), (1, true, 5));
+        assert_eq!(rig.outputs[0], [(1, 0), (1, 5)], "{at}");
+        assert_eq!(
+            (rig.models[0].x, rig.models[0].carry, rig.models[0].link),
+            (1, true, 5)
+        );
     }
 }
 
@@ -363,7 +430,7 @@ fn reset_clears_the_machine_but_not_the_ram() {
     rig.run(30);
     rig.uut.reset.next = true;
     rig.step().unwrap();
-    assert_eq!((rig.a(), rig.model.x, rig.model.link), (0, 0, 0));
+    assert_eq!((rig.a(), rig.models[0].x, rig.models[0].link), (0, 0, 0));
     assert!(!rig.uut.carry.q.val());
     assert_eq!(rig.fetch(3), 1);
 }
@@ -383,6 +450,56 @@ fn the_host_writes_halves_and_reads_words() {
     rig.write(64, 1, 6);
     rig.run(20);
     assert_eq!(rig.uut.host_word.val().to_u64(), 0x50000);
+    rig.uut.host_clear.next = true;
+    rig.run(1);
+    assert_eq!(rig.uut.host_word.val().to_u64(), 0);
+    rig.uut.host_clear.next = true;
+    assert_eq!(rig.fetch(64), 0x60000);
+}
+
+#[test]
+fn two_runs_take_turns_and_share_nothing_but_the_program() {
+    // Each counts in its own RAM, from what its port says at first.
+    let mut a = Assembler::new();
+    a.inp(5).st(9).place("again").ld(9).addi(1).st(9).out(2);
+    a.jmp("again");
+    let mut rig = Rig::with_runs(&a.finish().unwrap(), 2);
+    rig.run(200);
+    let from = |run: usize, cycle| {
+        let outputs = &rig.outputs[run];
+        assert!(outputs.len() > 8, "{outputs:x?}");
+        for (i, output) in outputs.iter().enumerate() {
+            assert_eq!(
+                *output,
+                (2, port_value(5, cycle).wrapping_add(1 + i as u16))
+            );
+        }
+        outputs.len()
+    };
+    // The second one's first IN is two cycles after the first one's.
+    let (first, second) = (from(0, 1), from(1, 3));
+    assert!(first.abs_diff(second) <= 1, "{first} {second}");
+    assert_ne!(rig.fetch(9 / 2), rig.fetch(HOST_WORDS + 9 / 2));
+    for (address, half, data) in [(20, 0, 0x12), (HOST_WORDS + 20, 1, 0x34)] {
+        rig.write(address, half, data);
+        rig.run(8);
+    }
+    assert_eq!(rig.fetch(20), 0x12);
+    assert_eq!(rig.fetch(HOST_WORDS + 20), 0x34_0000);
+}
+
+/// The cycles that the documentation tells.
+#[test]
+fn an_instruction_takes_three_cycles_alone_and_four_shared() {
+    for (runs, cycles) in [(1, INSTRUCTION_CYCLES), (2, SHARED_CYCLES)] {
+        let mut a = Assembler::new();
+        a.place("again").addi(1).out(0).jmp("again");
+        let mut rig = Rig::with_runs(&a.finish().unwrap(), runs);
+        rig.run(3 * cycles * 50 + 1);
+        for outputs in &rig.outputs[..runs] {
+            assert!((49..=50).contains(&outputs.len()), "{runs} {outputs:?}");
+        }
+    }
 }
 
 /// A source of random numbers (splitmix64).
@@ -418,15 +535,20 @@ impl Random {
 }
 
 /// A random program with a host that reads and writes, and restarts, at random moments.
-fn check(seed: u64, cycles: u64) -> Result<(), String> {
+fn check(seed: u64, cycles: u64, runs: usize) -> Result<(), String> {
     let mut random = Random(seed);
     let program: Vec<u32> = (0..PROGRAM_WORDS).map(|_| random.instruction()).collect();
-    let mut rig = Rig::new(&program);
+    let mut rig = Rig::with_runs(&program, runs);
     let mut quiet = 0;
     for _ in 0..cycles {
         if quiet == 0 && random.below(3) == 0 {
-            let all = if random.below(2) == 0 { 4 } else { 128 };
-            let address = random.below(all) as usize;
+            let all = if random.below(2) == 0 {
+                4
+            } else {
+                HOST_WORDS as u64
+            };
+            let run = random.below(runs as u64) as usize;
+            let address = random.below(all) as usize + run * HOST_WORDS;
             rig.reading = None;
             if random.below(2) == 0 {
                 rig.read(address);
@@ -446,7 +568,7 @@ fn check(seed: u64, cycles: u64) -> Result<(), String> {
             rig.check_host_word()?;
         }
     }
-    for address in 0..128 {
+    for address in 0..runs * HOST_WORDS {
         for _ in 0..8 {
             rig.step()?;
         }
@@ -461,6 +583,11 @@ proptest! {
 
     #[test]
     fn random_programs_do_what_the_model_does(seed: u64) {
-        check(seed, 3000).map_err(TestCaseError::fail)?;
+        check(seed, 3000, 1).map_err(TestCaseError::fail)?;
+    }
+
+    #[test]
+    fn two_runs_of_random_programs_do_what_two_models_do(seed: u64) {
+        check(seed, 3000, 2).map_err(TestCaseError::fail)?;
     }
 }

@@ -43,12 +43,10 @@ pub mod input {
     pub const INFO_2: u8 = 4;
     /// WRN, RM, Busy, I4..I0 of additional information 2.
     pub const INFO_2_STATUS: u8 = 5;
-    /// Answer of a request, bits 15..0; then 31..16 and 47..32.
+    /// Position or test values that answer a request, bits 15..0; then 31..16 and 47..32.
     pub const REPLY: [u8; 3] = [6, 7, 8];
-    /// Microseconds, wrapping.
-    pub const TIME_US: u8 = 9;
-    /// Milliseconds, wrapping.
-    pub const TIME_MS: u8 = 10;
+    /// Answer to a command with a parameter: its 16 bits; then the echo of MRS code, address or port.
+    pub const PARAMETER: [u8; 2] = [9, 10];
     /// Triggers lost, wrapping.
     pub const DISPLACED: u8 = 11;
     /// Number of results, wrapping.
@@ -61,6 +59,12 @@ pub mod input {
     pub const PERIOD: u8 = 17;
     /// Tracked line delay, in system clock cycles.
     pub const DELAY: u8 = 18;
+    /// Number of these.
+    pub const WORDS: u8 = DELAY + 1;
+    /// Microseconds, wrapping. From 24 on ports are the same for all channels.
+    pub const TIME_US: u8 = 30;
+    /// Milliseconds, wrapping.
+    pub const TIME_MS: u8 = 31;
 }
 
 /// Ports that the program writes.

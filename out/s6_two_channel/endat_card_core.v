@@ -88,6 +88,7 @@ module endat_card_core (
     wire  [31:0] service_link_2;
     reg   [31:0] selected_0;
     reg   [31:0] selected_1;
+    wire  [31:0] word_link_0;
     wire         pending_0;
     wire         pending_1;
     wire         pending_2;
@@ -243,7 +244,7 @@ module endat_card_core (
         .service_address(bank_service_address),
         .service_channels(bank_service_channels),
         .service_read(bank_service_read),
-        .service_word(service_link_2),
+        .service_word(word_link_0),
         .service_write(bank_service_write),
         .service_half(bank_service_half),
         .service_data(bank_service_data),
@@ -482,6 +483,7 @@ module endat_card_core (
             led_status_o = timebase_timestamp[QUICK_BIT];
         end
     end
+    assign word_link_0 = service_link_2;
     assign part_byte_0 = 8'd0;
     assign push = 1'b0;
     assign in_frame = 1'b0;

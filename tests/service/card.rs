@@ -1,10 +1,10 @@
 //! The service behind the host link of a card.
 
 use super::rig::{quick, times};
-use endat_hdl::{card::Card, regs::SERVICE};
+use endat_hdl::{card::Card, config::CardConfig, regs::SERVICE};
 use endat_sim::{
     bench::Link,
-    encoder::{RCN_8510, ROQ_437},
+    encoder::{Device, RCN_8510, ROQ_437},
     line::LineConfig,
 };
 
@@ -14,13 +14,17 @@ struct Host(crate::host::Host);
 impl Host {
     fn new() -> Self {
         let config = crate::host::card("s6_two_channel_service");
+        Self::with(&config, &[RCN_8510, ROQ_437])
+    }
+
+    fn with(config: &CardConfig, encoders: &[Device]) -> Self {
         let times = endat_hdl::service::program::ServiceTimes {
             system_khz: (config.system_hz / 1_000) as u32,
             ..times(true)
         };
-        let card = Card::with_times(&config, 100, &times);
-        let link = |encoder| Link::new(LineConfig::cable(10.0), quick(encoder));
-        let links = vec![link(RCN_8510.encoder()), link(ROQ_437.encoder())];
+        let card = Card::with_times(config, 100, &times);
+        let link = |encoder: &Device| Link::new(LineConfig::cable(10.0), quick(encoder.encoder()));
+        let links = encoders.iter().map(link).collect();
         Self(crate::host::Host::new(card, config.system_hz, links))
     }
 
@@ -76,4 +80,66 @@ fn both_channels_are_initialised_and_take_requests_over_the_host_link() {
     assert_eq!(host.read("answer", 1), 0x0D_8025);
     assert_eq!(host.0.bench.conflicts(0), []);
     assert_eq!(host.0.bench.conflicts(1), []);
+}
+
+/// The first service has two channels, the second one only one.
+#[test]
+fn a_third_channel_has_a_service_of_its_own() {
+    let mut config = crate::host::card("s6_two_channel_service");
+    config.channels.push(config.channels[1].clone());
+    let mut host = Host::with(&config, &[RCN_8510, ROQ_437, RCN_8510]);
+    for (channel, width) in [(2, 29), (1, 37), (0, 29)] {
+        host.wait_for("state", channel, |s| s & 1 == 1);
+        assert_eq!(host.read("position_bits", channel) & 0x3F, width);
+    }
+    // All at once, each with another word.
+    for (channel, area) in [(0, 0xA1), (1, 0xA1), (2, 0xA3)] {
+        host.write("request", channel, 0x0E << 24 | area << 16);
+        host.wait_for("request_state", channel, |s| s & 1 == 0 && s >> 16 == 1);
+    }
+    for (channel, address) in [(0, 0x0D), (1, 0x0D), (2, 0x0C)] {
+        host.write("request", channel, 0x23 << 24 | address << 16);
+    }
+    let serial = host.read("serial_1", 2) & 0xFFFF;
+    assert!(serial != 0);
+    for (channel, answer) in [(0, 0x0D_801D), (1, 0x0D_8025), (2, 0x0C_0000 | serial)] {
+        host.wait_for("request_state", channel, |s| s & 1 == 0 && s >> 16 == 2);
+        assert_eq!(host.read("answer", channel), answer, "channel {channel}");
+    }
+    // What no channel has reads as 0, whatever was read before.
+    assert_eq!(host.read("answer", 3), 0);
+    host.write("offset_low", 3, 0x55AA);
+    for channel in 0..3 {
+        assert_eq!(host.read("offset_low", channel), 0);
+    }
+}
+
+/// Two channels that share a service, each with two informations in turn, a threshold and requests: no end of a frame is missed.
+#[test]
+fn no_frame_is_missed_while_both_channels_are_busy() {
+    let mut host = Host::new();
+    for channel in [0, 1] {
+        host.wait_for("state", channel, |s| s & 1 == 1);
+        host.write("list_0", channel, 0x4C);
+        host.write("list_1", channel, 0x4D);
+        host.write("list_length", channel, 2);
+        host.write("threshold", channel, 3 | 16 << 16);
+        host.write("control", channel, 2);
+    }
+    for request in 1..=4 {
+        for channel in [0, 1] {
+            host.write("request", channel, 0x09 << 24 | 0x4C << 16);
+        }
+        for channel in [0, 1] {
+            host.wait_for("request_state", channel, |s| {
+                s & 1 == 0 && s >> 16 == request
+            });
+        }
+        host.0.bench.run_cycles(300_000);
+    }
+    for channel in [0, 1] {
+        assert_eq!(host.read("lost", channel) >> 16, 0, "channel {channel}");
+        assert!(host.read("slot_1", channel) != 0);
+        assert!(host.read("frames_good", channel) > 100);
+    }
 }

@@ -20,7 +20,7 @@ fn masks() -> Vec<(String, u128)> {
     let mut masks: Vec<_> = flags.iter().map(|name| (*name, 1)).collect();
     masks.extend((1..16).map(|mask| ("out_go", mask)));
     masks.extend((0..5).map(|bit| ("event_cause", 1 << bit)));
-    let full = |(name, mask): (&str, u128)| (format!("service_0.{name}"), mask);
+    let full = |(name, mask): (&str, u128)| (format!("served_0.{name}"), mask);
     masks.into_iter().map(full).collect()
 }
 

@@ -215,7 +215,7 @@ fn exchange(a: &mut Assembler) {
     a.ld(own::MODE);
     a.xori(code(ModeCommand::SendParameter)).jnz(done);
     a.ld(own::STEP).swap().tax();
-    a.inp(input::REPLY[0]).st_x(0);
+    a.inp(input::PARAMETER[0]).st_x(0);
     a.ldi(1).st_x(1);
     a.place(done).call("pause");
     a.ld(own::STEP_RETURN).jmpa();

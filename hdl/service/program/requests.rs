@@ -36,6 +36,9 @@ pub(super) const ANSWERED: [u64; 5] = [
     cause::RECOVERY_TOO_SHORT,
 ];
 
+/// Commands with a frame of their own and an answer without parameter.
+const BARE: [ModeCommand; 2] = [ModeCommand::SendPosition, ModeCommand::SendTestValues];
+
 /// Code of a command, as a number of the program.
 pub(super) fn code(command: ModeCommand) -> u16 {
     command.code().into()
@@ -78,10 +81,19 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(mailbox::OWN).st(own::MAILBOX);
     a.ldi(go::OWN).st(own::GO);
     a.call("own_frame");
+    let (bare, kept) = (a.label(), a.label());
+    for command in BARE {
+        a.ld(own::MODE).xori(code(command)).jz(bare);
+    }
+    a.ldi(0).st(low(word::ANSWER_MORE));
+    a.inp(input::PARAMETER[0]).st(low(word::ANSWER));
+    a.inp(input::PARAMETER[1]).st(high(word::ANSWER));
+    a.jmp(kept);
+    a.place(bare);
     a.inp(input::REPLY[0]).st(low(word::ANSWER));
     a.inp(input::REPLY[1]).st(high(word::ANSWER));
     a.inp(input::REPLY[2]).st(low(word::ANSWER_MORE));
-    a.call("judge");
+    a.place(kept).call("judge");
     a.st(own::ERROR);
     a.call("pause");
     a.ld(own::ERROR).call("finish");
@@ -163,14 +175,14 @@ pub(super) fn judge(a: &mut Assembler) {
     a.place(unknown).ldi(request_state::UNKNOWN).ret();
 
     a.place(answered);
-    for bare in [ModeCommand::SendPosition, ModeCommand::SendTestValues] {
-        a.ld(own::MODE).xori(code(bare)).jz(ok);
+    for command in BARE {
+        a.ld(own::MODE).xori(code(command)).jz(ok);
     }
-    a.inp(input::REPLY[1]).andi(0xFF).sub(own::ADDRESS);
+    a.inp(input::PARAMETER[1]).sub(own::ADDRESS);
     a.jnz(address);
     a.ld(own::MODE);
     a.xori(code(ModeCommand::SendParameter)).jz(ok);
-    a.inp(input::REPLY[0]).sub(own::DATA).jnz(data);
+    a.inp(input::PARAMETER[0]).sub(own::DATA).jnz(data);
     a.place(ok).ldi(request_state::OK).ret();
     a.place(address).ldi(request_state::ADDRESS_ECHO).ret();
     a.place(data).ldi(request_state::DATA_ECHO).ret();
