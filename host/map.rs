@@ -7,44 +7,6 @@ use crate::registers::{Access, Block, Field, Named, Register, Values};
 /// Major, minor and patch version of the map.
 pub const VERSION: [u8; 3] = [0, 6, 0];
 
-/// Steps of the initialisation; `progress` counts from 1.
-pub const STEPS: &[&str] = &[
-    "reset",
-    "select memory area 0xB9",
-    "read alarms",
-    "read warnings",
-    "write 0 to word 0",
-    "write 0 to word 1",
-    "select memory area 0xA1",
-    "read position_bits",
-    "take over the position width",
-    "read encoder_type",
-    "read signal_periods_low",
-    "select memory area 0xA3",
-    "read signal_periods_high",
-    "read revolutions",
-    "read steps_low",
-    "read steps_high",
-    "read id_0",
-    "read id_1",
-    "read id_2",
-    "read serial_0",
-    "read serial_1",
-    "read serial_2",
-    "select memory area 0xA5",
-    "read commands",
-    "read tcal",
-    "find out whether it knows EnDat 2.2",
-    "select memory area 0xBD",
-    "read infos_1",
-    "read infos_2",
-    "read clock_max_khz",
-    "choose the clock",
-    "select memory area 0xB9",
-    "read recovery",
-    "set the recovery time",
-];
-
 /// All blocks, lowest base first.
 pub const BLOCKS: &[Block] = &[
     Block { name: "card", base: 0x000, stride: 8, per_channel: false, meaning: "Identification, capabilities, counters and strobes.", registers: &[
@@ -360,8 +322,8 @@ pub const BLOCKS: &[Block] = &[
             Field { name: "crc", lsb: 2, width: 1, unit: "", meaning: "Spoils the CRC", values: Values::Plain },
         ] },
         Register { name: "progress", offset: 7, access: Access::ReadOnly, meaning: "Initialisation.", fields: &[
-            Field { name: "step", lsb: 0, width: 16, unit: "", meaning: "Step under way; 0 = none", values: Values::Plain },
-            Field { name: "failed", lsb: 16, width: 16, unit: "", meaning: "Step that failed; 0 = none", values: Values::Plain },
+            Field { name: "step", lsb: 0, width: 16, unit: "", meaning: "Step under way", values: Values::Codes(&[Named { name: "none", number: 0, meaning: "none" }, Named { name: "reset", number: 1, meaning: "reset" }, Named { name: "select_b9", number: 2, meaning: "select memory area 0xB9" }, Named { name: "read_alarms", number: 3, meaning: "read alarms" }, Named { name: "read_warnings", number: 4, meaning: "read warnings" }, Named { name: "clear_alarms", number: 5, meaning: "write 0 to word 0" }, Named { name: "clear_warnings", number: 6, meaning: "write 0 to word 1" }, Named { name: "select_a1", number: 7, meaning: "select memory area 0xA1" }, Named { name: "read_position_bits", number: 8, meaning: "read position_bits" }, Named { name: "take_width", number: 9, meaning: "take over the position width" }, Named { name: "read_encoder_type", number: 10, meaning: "read encoder_type" }, Named { name: "read_signal_periods_low", number: 11, meaning: "read signal_periods_low" }, Named { name: "select_a3", number: 12, meaning: "select memory area 0xA3" }, Named { name: "read_signal_periods_high", number: 13, meaning: "read signal_periods_high" }, Named { name: "read_revolutions", number: 14, meaning: "read revolutions" }, Named { name: "read_steps_low", number: 15, meaning: "read steps_low" }, Named { name: "read_steps_high", number: 16, meaning: "read steps_high" }, Named { name: "read_id_0", number: 17, meaning: "read id_0" }, Named { name: "read_id_1", number: 18, meaning: "read id_1" }, Named { name: "read_id_2", number: 19, meaning: "read id_2" }, Named { name: "read_serial_0", number: 20, meaning: "read serial_0" }, Named { name: "read_serial_1", number: 21, meaning: "read serial_1" }, Named { name: "read_serial_2", number: 22, meaning: "read serial_2" }, Named { name: "select_a5", number: 23, meaning: "select memory area 0xA5" }, Named { name: "read_commands", number: 24, meaning: "read commands" }, Named { name: "read_tcal", number: 25, meaning: "read tcal" }, Named { name: "find_endat22", number: 26, meaning: "find out whether it knows EnDat 2.2" }, Named { name: "select_bd", number: 27, meaning: "select memory area 0xBD" }, Named { name: "read_infos_1", number: 28, meaning: "read infos_1" }, Named { name: "read_infos_2", number: 29, meaning: "read infos_2" }, Named { name: "read_clock_max_khz", number: 30, meaning: "read clock_max_khz" }, Named { name: "choose_clock", number: 31, meaning: "choose the clock" }, Named { name: "select_b9_again", number: 32, meaning: "select memory area 0xB9" }, Named { name: "read_recovery", number: 33, meaning: "read recovery" }, Named { name: "set_recovery", number: 34, meaning: "set the recovery time" }]) },
+            Field { name: "failed", lsb: 16, width: 16, unit: "", meaning: "Step that failed", values: Values::Codes(&[Named { name: "none", number: 0, meaning: "none" }, Named { name: "reset", number: 1, meaning: "reset" }, Named { name: "select_b9", number: 2, meaning: "select memory area 0xB9" }, Named { name: "read_alarms", number: 3, meaning: "read alarms" }, Named { name: "read_warnings", number: 4, meaning: "read warnings" }, Named { name: "clear_alarms", number: 5, meaning: "write 0 to word 0" }, Named { name: "clear_warnings", number: 6, meaning: "write 0 to word 1" }, Named { name: "select_a1", number: 7, meaning: "select memory area 0xA1" }, Named { name: "read_position_bits", number: 8, meaning: "read position_bits" }, Named { name: "take_width", number: 9, meaning: "take over the position width" }, Named { name: "read_encoder_type", number: 10, meaning: "read encoder_type" }, Named { name: "read_signal_periods_low", number: 11, meaning: "read signal_periods_low" }, Named { name: "select_a3", number: 12, meaning: "select memory area 0xA3" }, Named { name: "read_signal_periods_high", number: 13, meaning: "read signal_periods_high" }, Named { name: "read_revolutions", number: 14, meaning: "read revolutions" }, Named { name: "read_steps_low", number: 15, meaning: "read steps_low" }, Named { name: "read_steps_high", number: 16, meaning: "read steps_high" }, Named { name: "read_id_0", number: 17, meaning: "read id_0" }, Named { name: "read_id_1", number: 18, meaning: "read id_1" }, Named { name: "read_id_2", number: 19, meaning: "read id_2" }, Named { name: "read_serial_0", number: 20, meaning: "read serial_0" }, Named { name: "read_serial_1", number: 21, meaning: "read serial_1" }, Named { name: "read_serial_2", number: 22, meaning: "read serial_2" }, Named { name: "select_a5", number: 23, meaning: "select memory area 0xA5" }, Named { name: "read_commands", number: 24, meaning: "read commands" }, Named { name: "read_tcal", number: 25, meaning: "read tcal" }, Named { name: "find_endat22", number: 26, meaning: "find out whether it knows EnDat 2.2" }, Named { name: "select_bd", number: 27, meaning: "select memory area 0xBD" }, Named { name: "read_infos_1", number: 28, meaning: "read infos_1" }, Named { name: "read_infos_2", number: 29, meaning: "read infos_2" }, Named { name: "read_clock_max_khz", number: 30, meaning: "read clock_max_khz" }, Named { name: "choose_clock", number: 31, meaning: "choose the clock" }, Named { name: "select_b9_again", number: 32, meaning: "select memory area 0xB9" }, Named { name: "read_recovery", number: 33, meaning: "read recovery" }, Named { name: "set_recovery", number: 34, meaning: "set the recovery time" }]) },
         ] },
         Register { name: "state", offset: 8, access: Access::ReadOnly, meaning: "What is known and what is wrong.", fields: &[
             Field { name: "initialised", lsb: 0, width: 1, unit: "", meaning: "The name plate is valid", values: Values::Plain },

@@ -1,6 +1,14 @@
 //! What the encoder says about itself, as the card read it at initialisation.
 
+use crate::registers::Place;
 use crate::units::Scale;
+
+/// What a step of the initialisation does.
+pub fn step_name(step: u16) -> String {
+    let field = Place::field_at("service", "progress", "step", 0).field;
+    let told = field.and_then(|f| f.told(step.into()));
+    told.unwrap_or_else(|| "unknown".to_owned())
+}
 
 /// Name plate of an encoder. What the card has not read is `None`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

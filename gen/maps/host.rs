@@ -3,7 +3,6 @@
 use super::map_id;
 use endat_hdl::regs::values::{Named, Values};
 use endat_hdl::regs::{Access, Block, Field, Register, BLOCKS, VERSION};
-use endat_hdl::service::program::{step_name, steps};
 use std::fmt::Write;
 
 /// The whole map, with every part that a card may have.
@@ -15,13 +14,9 @@ pub fn write() -> String {
          use crate::registers::{{Access, Block, Field, Named, Register, Values}};\n\n\
          /// Major, minor and patch version of the map.\n\
          pub const VERSION: [u8; 3] = {VERSION:?};\n\n\
-         /// Steps of the initialisation; `progress` counts from 1.\n\
-         pub const STEPS: &[&str] = &[\n"
+         /// All blocks, lowest base first.\n\
+         pub const BLOCKS: &[Block] = &[\n"
     );
-    for step in steps() {
-        let _ = writeln!(text, "    {:?},", step_name(step));
-    }
-    text.push_str("];\n\n/// All blocks, lowest base first.\npub const BLOCKS: &[Block] = &[\n");
     for each in &BLOCKS {
         block(&mut text, each);
     }

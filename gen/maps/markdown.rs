@@ -1,6 +1,7 @@
 //! The register map as a Markdown page.
 
 use super::{listed, number, Map, MapBlock, UNLISTED};
+use endat_hdl::regs::values::{Named, Values};
 use endat_hdl::regs::Field;
 use std::fmt::Write;
 
@@ -13,14 +14,47 @@ pub fn write(map: &Map) -> String {
     for block in &map.blocks {
         write_block(&mut text, block);
     }
-    if !map.steps.is_empty() {
-        text.push_str("\n## Steps of the initialisation\n\n| step | |\n|---|---|\n");
-        for (index, step) in map.steps.iter().enumerate() {
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "| {} | {step} |", index + 1);
+    text
+}
+
+/// Codes that a field lists itself; more of them get a table of their own.
+const INLINE: usize = 20;
+
+/// The codes of a field that get a table of their own.
+fn long_list(field: &Field) -> Option<&'static [Named]> {
+    match field.values {
+        Values::Codes(codes) if codes.len() > INLINE => Some(codes),
+        _ => None,
+    }
+}
+
+/// A table for each long list of codes in the block; fields that have the same share it.
+fn write_long_lists(text: &mut String, block: &MapBlock) {
+    let fields = block.registers.iter().flat_map(|r| r.register.fields);
+    let mut lists: Vec<(&[Named], Vec<&str>)> = Vec::new();
+    for field in fields {
+        let Some(codes) = long_list(field) else {
+            continue;
+        };
+        match lists.iter_mut().find(|(known, _)| *known == codes) {
+            Some((_, names)) => names.push(field.name),
+            None => lists.push((codes, vec![field.name])),
         }
     }
-    text
+    for (codes, names) in lists {
+        let _ = writeln!(
+            text,
+            "\n| `{}` | name | |\n|---|---|---|",
+            names.join("`, `")
+        );
+        for code in codes {
+            let _ = writeln!(
+                text,
+                "| {} | `{}` | {} |",
+                code.number, code.name, code.meaning
+            );
+        }
+    }
 }
 
 fn write_block(text: &mut String, block: &MapBlock) {
@@ -73,9 +107,13 @@ fn write_block(text: &mut String, block: &MapBlock) {
             );
         }
     }
+    write_long_lists(text, block);
 }
 
 fn meaning(field: &Field) -> String {
+    if long_list(field).is_some() {
+        return format!("{}: see the table below", field.meaning);
+    }
     match listed(field.values).as_str() {
         "" => field.meaning.to_owned(),
         list => format!("{}: {list}", field.meaning),

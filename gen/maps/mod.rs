@@ -22,7 +22,6 @@ use crate::config::Project;
 use crate::error::GenError;
 use endat_hdl::regs::values::{Named, Values};
 use endat_hdl::regs::{self, Block, Field, Register};
-use endat_hdl::service::program::{step_name, steps};
 
 /// Bytes of a word.
 pub const WORD_BYTES: u32 = 4;
@@ -40,8 +39,6 @@ pub struct Map {
     pub channels: u32,
     /// Blocks, lowest base first.
     pub blocks: Vec<MapBlock>,
-    /// Names of the steps of the initialisation; empty when the card has none.
-    pub steps: Vec<String>,
 }
 
 /// A block of the card, or one that each channel has.
@@ -101,11 +98,6 @@ impl Map {
             version: regs::VERSION,
             channels: config.channels.len() as u32,
             blocks: blocks.iter().map(map_block).collect(),
-            steps: if config.service.initialise {
-                steps().into_iter().map(step_name).collect()
-            } else {
-                Vec::new()
-            },
         }
     }
 

@@ -1,6 +1,6 @@
 //! The words of a service; their places come from [`crate::service::map`].
 
-use super::values::{MODE_COMMANDS, REQUEST_ERRORS};
+use super::values::{MODE_COMMANDS, REQUEST_ERRORS, STEPS};
 use super::{field, word, Access, Block, Field, Register, SERVICE_BASE};
 use crate::service::map::{word as at, COUNTER_POSITION_2, NAME_PLATE};
 use Access::{ReadOnly, ReadWrite};
@@ -97,8 +97,8 @@ pub const SERVICE: Block = Block {
             field("crc", 2, 1, "", "Spoils the CRC"),
         ]),
         word("progress", at::PROGRESS, ReadOnly, "Initialisation.", &[
-            field("step", 0, 16, "", "Step under way; 0 = none"),
-            field("failed", 16, 16, "", "Step that failed; 0 = none"),
+            field("step", 0, 16, "", "Step under way").codes(&STEPS),
+            field("failed", 16, 16, "", "Step that failed").codes(&STEPS),
         ]),
         word("state", at::STATE, ReadOnly, "What is known and what is wrong.", &[
             field("initialised", 0, 1, "", "The name plate is valid"),

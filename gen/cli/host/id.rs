@@ -5,8 +5,7 @@ use super::{initialised, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::card::Identity;
-use endat_host::map::STEPS;
-use endat_host::name_plate::NamePlate;
+use endat_host::name_plate::{step_name, NamePlate};
 use serde_json::{json, Value};
 use std::fmt::Write;
 
@@ -77,8 +76,7 @@ fn as_text(identity: &Identity, plates: &[NamePlate]) -> String {
 
 /// Name of a step.
 fn step(number: u16) -> String {
-    let name = STEPS.get(usize::from(number).wrapping_sub(1));
-    format!("step {number} ({})", name.unwrap_or(&"unknown"))
+    format!("step {number} ({})", step_name(number))
 }
 
 fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
