@@ -4,6 +4,7 @@ mod clients;
 mod commands;
 mod disturbed;
 mod ports;
+mod slow;
 
 pub use ports::{slow_card, Served};
 

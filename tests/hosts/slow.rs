@@ -1,0 +1,152 @@
+//! A host that is slower than the card: what is lost is lost as whole sets, and counted.
+
+use super::{card_of, host};
+use endat_gen::config::load_preset;
+use endat_gen::virtual_card::VirtualCard;
+use endat_host::feed::{Feed, Row};
+use endat_host::registers::Place;
+use endat_host::stream::Decoder;
+use endat_host::{Bridge, Card, Transport};
+use std::collections::{BTreeSet, VecDeque};
+use std::io;
+use std::time::Duration;
+
+const PRESET: &str = "s6_two_channel_service";
+/// Bytes that the operating system keeps for a program that does not read: a hundred sets and a part of one.
+const ROOM: usize = 100 * 28 + 11;
+
+/// A link whose other end is sometimes busy with something else.
+struct Sluggish {
+    card: VirtualCard,
+    kept: VecDeque<u8>,
+    thrown_away: usize,
+}
+
+impl Sluggish {
+    fn away(&mut self, cycles: u64) {
+        self.card.run(cycles);
+        for byte in self.card.take_bytes() {
+            match self.kept.len() < ROOM {
+                true => self.kept.push_back(byte),
+                false => self.thrown_away += 1,
+            }
+        }
+    }
+}
+
+impl Transport for Sluggish {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.card.send(bytes)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        if self.kept.is_empty() {
+            return self.card.receive(buffer, wait);
+        }
+        let count = buffer.len().min(self.kept.len());
+        for (to, byte) in buffer.iter_mut().zip(self.kept.drain(..count)) {
+            *to = byte;
+        }
+        Ok(count)
+    }
+}
+
+fn positions_sent(card: &mut VirtualCard) -> [BTreeSet<u64>; 2] {
+    [0, 1].map(|channel| {
+        let frames = card.bench().frames(channel);
+        frames.iter().map(|f| f.position).collect()
+    })
+}
+
+fn assert_rows(rows: &VecDeque<Row>, sent: &[BTreeSet<u64>; 2]) {
+    for (before, row) in rows.iter().zip(rows.iter().skip(1)) {
+        assert_eq!(row.trigger, before.trigger + 1 + row.missing);
+        // The time stamps are those of the triggers: the preset's ten thousand a second at 100 MHz.
+        let triggers = row.trigger - before.trigger;
+        assert_eq!(row.cycles - before.cycles, triggers * 10_000);
+    }
+    for row in rows {
+        for (cell, sent) in row.cells.iter().zip(sent) {
+            assert!(
+                cell.fresh && sent.contains(&cell.position.unwrap()),
+                "{row:?}"
+            );
+        }
+    }
+}
+
+/// Catches a torn frame that is taken for a whole one, and sets that vanish without a number.
+#[test]
+fn a_host_that_is_away_for_long_knows_what_it_has_missed() {
+    let link = Sluggish {
+        card: card_of(&load_preset(PRESET).unwrap()),
+        kept: VecDeque::new(),
+        thrown_away: 0,
+    };
+    let mut card = Card::find(Bridge::new(link)).unwrap();
+    for channel in [0, 1] {
+        card.wait_for_initialisation(channel).unwrap();
+    }
+    let mut feed = Feed::begin(&mut card, false).unwrap();
+    let mut rows = VecDeque::new();
+    let wait = Duration::from_millis(2);
+    for pause_ms in [0, 3, 30, 1, 50, 0] {
+        card.bridge().transport().away(pause_ms * 100_000);
+        let until = rows.len() + 150;
+        while rows.len() < until {
+            feed.fill(&mut card, &mut rows, wait).unwrap();
+        }
+    }
+    assert!(card.bridge().transport().thrown_away > 4_000);
+    // Nothing was lost in the card: it never waits for the host.
+    assert_eq!(feed.lost_in_card(), 0);
+    let missing: Vec<u64> = rows.iter().map(|r| r.missing).filter(|m| *m > 0).collect();
+    assert_eq!(missing.len(), 2, "{missing:?}");
+    assert!(missing[0] > 150 && missing[1] > 350, "{missing:?}");
+    let sent = positions_sent(&mut card.bridge().transport().card);
+    assert_rows(&rows, &sent);
+    feed.end(&mut card).unwrap();
+    assert_eq!(card.bridge().read(0, 1).unwrap(), [0x456E_4474]);
+}
+
+/// Catches a buffer that overwrites, a count of lost sets that is not that of the gaps, and half a set.
+#[test]
+fn a_host_that_drains_too_slowly_gets_whole_sets_and_the_number_of_the_others() {
+    let mut card = host(PRESET);
+    for channel in [0, 1] {
+        card.wait_for_initialisation(channel).unwrap();
+    }
+    let at = |register: &str| Place::named(&format!("card.{register}"), 2).unwrap();
+    card.write(&at("stream_clear"), 1).unwrap();
+    card.write(&at("stream_control"), 1).unwrap();
+    let mut decoder = Decoder::default();
+    // The first byte from a cleared buffer begins a frame.
+    decoder.push(0);
+    let drain = |card: &mut Card<VirtualCard>, decoder: &mut Decoder, words| {
+        let address = at("stream_data").address();
+        for word in card.bridge().read_fixed(address, words).unwrap() {
+            word.to_be_bytes().into_iter().for_each(|b| decoder.push(b));
+        }
+    };
+    // 112 bytes in 2 ms are four sets; twenty come.
+    for _ in 0..40 {
+        card.bridge().transport().run(200_000);
+        drain(&mut card, &mut decoder, 28);
+    }
+    card.write(&at("stream_control"), 0).unwrap();
+    (0..30).for_each(|_| drain(&mut card, &mut decoder, 28));
+    let sets = decoder.take();
+    let counts = decoder.counts();
+    assert!(sets.len() > 150 && counts.missing > 400, "{counts:?}");
+    assert_eq!((counts.damaged, counts.lost_in_card), (0, counts.missing));
+    let state = card.read(&at("stream_state")).unwrap();
+    // The sets after the last one that fitted are lost, too, and nobody has told of them yet.
+    let untold = u64::from(state >> 16) - counts.missing;
+    assert!(untold < 30 && state & 0xFFFF == 0, "{state:#x} {untold}");
+    for set in &sets {
+        assert!(
+            set.channels.iter().all(|c| c.fresh && c.cause == 0),
+            "{set:?}"
+        );
+    }
+}
