@@ -20,7 +20,7 @@ use endat_hdl::protocol::ModeCommand;
 use endat_hdl::service::program::ServiceTimes;
 use endat_host::Transport;
 use endat_sim::bench::{Bench, Link, PinNames, Uart};
-use endat_sim::encoder::{EncoderConfig, PositionSource, DEVICES};
+use endat_sim::encoder::{EncoderConfig, LatchEdge, PositionSource, DEVICES};
 use endat_sim::engine::Compiled;
 use endat_sim::line::{Jitter, LineConfig};
 use endat_sim::{Time, MS, NS, US};
@@ -174,6 +174,8 @@ impl VirtualCard {
             encoder.reset_time = encoder.reset_time.min(Time::from(RESET_MS) * MS);
             encoder.write_time = MS..=MS;
             encoder.tac = 50 * US..=100 * US;
+            // They know the continuous clock, as the host may ask for it.
+            encoder.continuous = Some(LatchEdge::AfterLow);
             if is_open {
                 encoder.unplugged.push(0..Time::MAX);
             }

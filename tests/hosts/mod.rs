@@ -5,6 +5,7 @@ mod commands;
 mod disturbed;
 mod ports;
 mod slow;
+mod ti_menu;
 
 pub use ports::{slow_card, Served};
 
