@@ -1,48 +1,18 @@
-//! Each line of the menu of TI's diagnostic example, on the preset with its three channels, by the host library. The card stands behind
-//! the UART instead of the preset's bus, for that is where the library is.
+//! Each line of the menu of TI's diagnostic example, on the preset with its three channels, by the host library. The virtual
+//! card has a UART in the place of the preset's bus.
 
-use super::{card_of, changed};
-use endat_gen::config::{preset, Project};
+use super::host;
 use endat_gen::virtual_card::VirtualCard;
 use endat_host::mailbox::Request;
-use endat_host::{Bridge, Card};
+use endat_host::Card;
 use std::time::Duration;
-
-const PRESET: &str = "ti_three_channel";
-
-fn project() -> Project {
-    let text = preset(PRESET).unwrap();
-    let outputs = &text[text.find("[outputs]").unwrap()..];
-    changed(
-        PRESET,
-        &[
-            (outputs, OTHER_END),
-            (
-                "[host]\nbus = \"axi_lite\"",
-                "[link]\nbaud = 2_000_000\nread_hz = 500",
-            ),
-        ],
-    )
-}
-
-const OTHER_END: &str = r#"
-[board]
-name = "papilio_pro"
-
-[pins]
-endat_clk2_o = "A0"
-endat_data2_o = "A1"
-endat_data2_oe = "A2"
-endat_data2_i = "A3"
-led_channel2_o = "A4"
-"#;
 
 /// A card whose encoders have been initialised.
 struct Menu(Card<VirtualCard>);
 
 impl Menu {
     fn new() -> Self {
-        let mut card = Card::find(Bridge::new(card_of(&project()))).unwrap();
+        let mut card = host("ti_three_channel");
         for channel in 0..3 {
             card.wait_for_initialisation(channel).unwrap();
         }
