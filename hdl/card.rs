@@ -1,4 +1,4 @@
-//! Card: encoder ports, triggers and registers. A front connects the registers to a host: [`Card`] with a UART, the tops in
+//! Card: encoder ports, each for EnDat or T-format, triggers and registers. A front connects the registers to a host: [`Card`] with a UART, the tops in
 //! [`crate::bus`] with another bus.
 //!
 //! ```text
@@ -84,13 +84,13 @@ pub struct CardCore {
     pub direct_error_o: Vec<Signal<Out, Bit>>,
     /// Interrupt; low without this part.
     pub irq_o: Signal<Out, Bit>,
-    /// EnDat clock to the transceiver.
+    /// EnDat clock to the transceiver; HIGH if the channel speaks T-format.
     pub endat_clk_o: Vec<Signal<Out, Bit>>,
-    /// EnDat data to the transceiver.
+    /// Data to the transceiver.
     pub endat_data_o: Vec<Signal<Out, Bit>>,
-    /// Driver enable of the EnDat data line.
+    /// Driver enable of the data line.
     pub endat_data_oe: Vec<Signal<Out, Bit>>,
-    /// EnDat data from the transceiver, asynchronous.
+    /// Data from the transceiver, asynchronous.
     pub endat_data_i: Vec<Signal<In, Bit>>,
     /// Blinks: slowly = well, quickly = the last result of a channel is an error.
     pub led_status_o: Signal<Out, Bit>,
@@ -171,6 +171,9 @@ pub fn service_times(config: &CardConfig) -> ServiceTimes {
 }
 
 fn port(card: &CardConfig, channel: &ChannelConfig, service: &ServiceTimes) -> EncoderPort {
+    if channel.t_format.is_some() {
+        return EncoderPort::t_format();
+    }
     let wants_short = channel.wants_short_recovery();
     let service = card.service.requests.then_some(service);
     let start = card.line.start(card.system_hz);
@@ -348,6 +351,8 @@ impl Logic for CardCore {
             self.port[i].start_window_cycles.next = self.registers[i].start_window_cycles.val();
             self.port[i].start_timeout_us.next = self.registers[i].start_timeout_us.val();
             self.port[i].recovery_limit_cycles.next = self.registers[i].recovery_limit_cycles.val();
+            self.port[i].request_id.next = self.registers[i].request_id.val();
+            self.port[i].field_gap_us.next = self.registers[i].field_gap_us.val();
 
             self.port[i].host_address.next = self.bank.service_address.val();
             self.port[i].host_line.next = self.bank.service_line.val();

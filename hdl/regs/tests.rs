@@ -15,6 +15,7 @@ pub fn test_config() -> CardConfig {
         recovery_min_ns: 10_000,
         recovery_max_ns: 30_000,
         cable_m: 20,
+        t_format: None,
     };
     let second = ChannelRequest {
         clock_hz: 2_000_000,

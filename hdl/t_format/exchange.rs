@@ -54,8 +54,8 @@ pub struct Exchange {
     pub address: Signal<In, Bits<7>>,
     /// EEPROM data of request 6.
     pub data: Signal<In, Bits<8>>,
-    /// System clock cycles in a bit, 4 to 31.
-    pub bit_cycles: Signal<In, Bits<5>>,
+    /// System clock cycles in a bit, 4 to 127.
+    pub bit_cycles: Signal<In, Bits<7>>,
     /// Longest pause before the reply, in microseconds.
     pub reply_gap_us: Signal<In, Bits<6>>,
     /// Longest pause between two fields, in microseconds.
