@@ -4,6 +4,7 @@ mod line;
 mod names;
 mod outputs;
 mod pins;
+pub(crate) mod protocol;
 pub(crate) mod reader;
 pub(crate) mod schema;
 mod stream;
@@ -38,6 +39,10 @@ pub const PRESETS: &[(&str, &str)] = &[
     (
         "artinchip_endat_if",
         include_str!("../presets/artinchip_endat_if.toml"),
+    ),
+    (
+        "mixed_protocols",
+        include_str!("../presets/mixed_protocols.toml"),
     ),
 ];
 /// The presets of T-format receivers.

@@ -59,7 +59,13 @@ impl ChannelConfig {
                 } else {
                     0
                 },
-                filter_cycles: check_filter(&mut check, request, half, system_hz, "an EnDat period"),
+                filter_cycles: check_filter(
+                    &mut check,
+                    request,
+                    half,
+                    system_hz,
+                    "an EnDat period",
+                ),
                 start_window_cycles: check_window(&mut check, request, period_cycles, system_hz),
                 start_timeout_us: request
                     .tcal_max_ns

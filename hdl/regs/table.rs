@@ -401,7 +401,7 @@ pub const RESULT: Block = Block {
             field("cause", 16, 5, "", "Primary cause; 8, 10, 17, 29 and 30 come with a good position: fresh tells", zero).codes(&CAUSES),
             field("valid", 22, 1, "", "There is a good position", zero),
             field("fresh", 23, 1, "", "The last result brought the position; 0 = held from an earlier one", zero),
-            field("line", 24, 7, "", "Raw flags: bit k stands for cause k + 11; T-format: bits 2..0 for causes 29, 30 and 8", zero).bits(&LINE_FLAGS),
+            field("line", 24, 7, "", "Raw flags: bit k stands for cause k + 11; T-format: bits 0, 1 and 2 for causes 29, 30 and 8", zero).bits(&LINE_FLAGS),
         ]),
         word("position_low", 1, ReadOnly, "Last good position, bits 31..0.", &[
             field("value", 0, 32, "", "Bit 0 is the LSB", zero),

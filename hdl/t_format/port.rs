@@ -218,9 +218,28 @@ impl Logic for TFormatPort {
     #[hdl_gen]
     fn update(&mut self) {
         clock!(self, clock, filter, exchange, reply, snapshot);
-        dff_setup!(self, clock, rest, started, lost, own, armed, pending, send_id, send_address);
+        dff_setup!(
+            self,
+            clock,
+            rest,
+            started,
+            lost,
+            own,
+            armed,
+            pending,
+            send_id,
+            send_address
+        );
         dff_setup!(self, clock, send_data, memory, echo, own_cause, done, status, identity);
-        dff_setup!(self, clock, alarms, crc, has_had_single, has_had_multi, shown);
+        dff_setup!(
+            self,
+            clock,
+            alarms,
+            crc,
+            has_had_single,
+            has_had_multi,
+            shown
+        );
         self.filter.reset.next = self.reset.val();
         self.exchange.reset.next = self.reset.val();
         self.reply.reset.next = self.reset.val();
@@ -369,8 +388,8 @@ impl Logic for TFormatPort {
         self.snapshot.publish.next = self.exchange.publish.val() & !self.own.q.val();
         self.snapshot.good.next = self.takes.val();
         self.snapshot.late_fault.next = false;
-        self.snapshot.position_in.next = bit_cast::<48, 24>(self.single.val())
-            | (bit_cast::<48, 24>(self.multi.val()) << 24);
+        self.snapshot.position_in.next =
+            bit_cast::<48, 24>(self.single.val()) | (bit_cast::<48, 24>(self.multi.val()) << 24);
         self.snapshot.crc_received_in.next = 0.into();
         self.snapshot.crc_computed_in.next = 0.into();
         self.snapshot.cause_in.next = self.card_cause.val();
@@ -442,3 +461,6 @@ impl Logic for TFormatPort {
         self.host_word.next = self.shown.q.val();
     }
 }
+
+#[cfg(test)]
+mod tests;
