@@ -430,6 +430,7 @@ impl fmt::Display for Report {
         }
         for (index, channel) in self.channels.iter().enumerate() {
             if let AnyChannelReport::TFormat(channel) = channel {
+                writeln!(f)?;
                 channel.write(f, index)?;
             }
         }

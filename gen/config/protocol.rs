@@ -25,17 +25,26 @@ const ENDAT_KEYS: [&str; 9] = [
 /// Input filter when none is given, in ns: a clock of the slower receiver.
 pub const FILTER_NS: u64 = 50;
 
+/// Keys of a channel of either protocol.
+fn all_keys() -> Vec<&'static str> {
+    [&ENDAT_KEYS[..], &T_FORMAT_KEYS, &["encoder", "filter_ns"]].concat()
+}
+
 /// Whether a channel of a card speaks T-format; `None` for what is no protocol. Keys of the other protocol are refused.
 pub fn is_t_format(table: &Table<'_, '_>) -> Option<bool> {
     let protocol = table.string("protocol");
     let is_t_format = match &protocol {
-        None if table.has("protocol") => return None,
+        None if table.has("protocol") => {
+            table.know(&all_keys());
+            return None;
+        }
         None => false,
         Some(word) if word.value == ENDAT => false,
         Some(word) if word.value == T_FORMAT => true,
         Some(word) => {
             let text = format!("unknown protocol; use \"{ENDAT}\" (default) or \"{T_FORMAT}\"");
             table.complain(word.line, "protocol", &format!("{:?}", word.value), &text);
+            table.know(&all_keys());
             return None;
         }
     };

@@ -316,6 +316,11 @@ impl<'s, 't> Table<'s, 't> {
         self.table.get(key).is_some()
     }
 
+    /// Takes these keys as asked for.
+    pub fn know(&self, keys: &[&'static str]) {
+        self.known.borrow_mut().extend(keys);
+    }
+
     /// Complains about a key that must not stand here, if it does.
     pub fn refuse(&self, key: &'static str, text: &str) {
         if !self.has(key) {

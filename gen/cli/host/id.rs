@@ -7,7 +7,6 @@ use clap::Args;
 use endat_host::card::Identity;
 use endat_host::map::STEPS;
 use endat_host::name_plate::NamePlate;
-use endat_host::registers::Place;
 use serde_json::{json, Value};
 use std::fmt::Write;
 
@@ -75,9 +74,9 @@ struct TFormatState {
 }
 
 fn t_format(card: &mut AnyCard, channel: usize) -> Result<TFormatState, GenError> {
-    let fields = Place::at("t_format", "fields", channel);
+    let fields = super::place(card, &format!("t_format{channel}.fields"))?;
     let word = card.read(&fields).map_err(told)?;
-    let field = |name: &str| Place::field_at("t_format", "fields", name, channel).of(word);
+    let field = |name: &str| fields.register.field(name).map_or(0, |f| f.of(word));
     Ok(TFormatState {
         encoder_id: field("encoder_id"),
         status: field("status"),
