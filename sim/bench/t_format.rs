@@ -79,6 +79,8 @@ impl TFormatLink {
     /// Lets everything happen that is due by `time`; gives DATA at the receiver's pin.
     fn advance_to(&mut self, time: Time) -> bool {
         let at = |event: Option<Time>| event.unwrap_or(Time::MAX);
+        // What was changed from outside acts at once.
+        self.listen(time);
         loop {
             let heard = at(self.to_encoder.front().map(|(t, _)| *t));
             let acts = at(self.encoder.next_event());
@@ -98,11 +100,16 @@ impl TFormatLink {
             } else {
                 self.encoder.advance(next);
             }
-            let level = self.encoder.output() != Drive::Low;
-            if level != self.sent {
-                self.sent = level;
-                self.to_receiver.push_back((next + self.delay, level));
-            }
+            self.listen(next);
+        }
+    }
+
+    /// What the encoder does to the line goes on its way.
+    fn listen(&mut self, time: Time) {
+        let level = self.encoder.output() != Drive::Low;
+        if level != self.sent {
+            self.sent = level;
+            self.to_receiver.push_back((time + self.delay, level));
         }
     }
 
