@@ -13,7 +13,7 @@ fn bytes_are_written_and_read_back_while_triggers_run() {
         write_time: 300 * US,
         ..EncoderConfig::default()
     };
-    let mut rig = Rig::with(false, "\"timer\"", T, config);
+    let mut rig = Rig::with(false, "\"timer\"", "", config);
     let mut rng = Rng::new(3);
     rig.us(450);
     let (mut results, mut overruns, mut busy, mut last) = (0, 0, 0, rig.result(1).sequence);
@@ -73,7 +73,7 @@ fn the_fields_of_a_request_can_be_read_and_give_no_result() {
         alarm: 0xC8,
         ..EncoderConfig::default()
     };
-    let mut rig = Rig::with(true, "\"register\"", T, config);
+    let mut rig = Rig::with(true, "\"register\"", "", config);
     let fields = at(&T_FORMAT, "fields", 0);
     assert_eq!(rig.master.read(fields), 0);
     rig.us(30);

@@ -4,7 +4,7 @@ use super::*;
 
 /// The pins of EnDat channel `endat` in every cycle of a run with triggers at the pin.
 fn pins(channels: &[&str], endat: usize) -> Vec<[u128; 5]> {
-    let project = project(channels, "\"pin\"");
+    let project = project(channels, "\"pin\"", "");
     let mut master = Master::at_channels(&project, &[(endat, 29)]);
     for (n, _) in channels.iter().enumerate().filter(|(_, c)| **c == T) {
         let link = TFormatLink::new(EncoderConfig::default(), US / 20);

@@ -11,7 +11,7 @@ use std::time::Duration;
 const PORT: [&str; 2] = ["--port", "virtual:mixed_protocols"];
 
 fn run(command: &[&str]) -> cli::Outcome {
-    cli::run([&["endat-gen"], command, &PORT].concat().into_iter())
+    cli::run([&["endat-gen"], command, &PORT].concat())
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn the_host_commands_know_what_a_t_format_channel_is() {
     }
     let words = run(&["reg", "read", "t_format1"]);
     assert_eq!(words.exit_code, 0, "{words:?}");
-    let told = cli::run(["endat-gen", "explain", "no_header"].into_iter());
+    let told = cli::run(["endat-gen", "explain", "no_header"]);
     assert!(told.stdout.starts_with("cause 20 (no_header)"), "{told:?}");
     assert!(!told.stdout.contains("counted in"));
 }
