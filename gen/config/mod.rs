@@ -115,6 +115,18 @@ pub struct Project {
     pub hash: String,
 }
 
+impl Project {
+    /// What its channels speak, for titles.
+    pub fn protocols(&self) -> &'static str {
+        let t_format = self.card.t_format_channels().count_ones() as usize;
+        match t_format {
+            0 => "EnDat",
+            n if n == self.card.channels.len() => "T-format",
+            _ => "EnDat and T-format",
+        }
+    }
+}
+
 /// Text of the preset with this name.
 pub fn preset(name: &str) -> Result<&'static str, GenError> {
     preset_of("--preset", name)
