@@ -8,8 +8,10 @@ use endat_sim::decimal;
 use serde::Serialize;
 use std::fmt;
 use stream::StreamReport;
+use t_format::TFormatReport;
 
 mod stream;
+mod t_format;
 
 /// A rate that was asked for and the one the card makes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -87,6 +89,16 @@ pub struct ChannelReport {
     pub start_timeout_us: u64,
 }
 
+/// A channel of either protocol.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum AnyChannelReport {
+    /// EnDat.
+    Endat(Box<ChannelReport>),
+    /// T-format.
+    TFormat(TFormatReport),
+}
+
 /// The host link.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LinkReport {
@@ -120,7 +132,7 @@ pub struct Report {
     /// System clock, in hertz.
     pub system_hz: u64,
     /// The channels.
-    pub channels: Vec<ChannelReport>,
+    pub channels: Vec<AnyChannelReport>,
     /// Timer trigger.
     pub sampling: Rate,
     /// Triggers enabled after reset.
@@ -139,6 +151,17 @@ pub struct Report {
     pub phase: Option<&'static str>,
     /// Outputs to logic and to a processor in the same device.
     pub outputs: Vec<&'static str>,
+}
+
+impl Report {
+    /// The channels that speak EnDat, with their numbers.
+    pub fn endat_channels(&self) -> impl Iterator<Item = (usize, &ChannelReport)> {
+        let channels = self.channels.iter().enumerate();
+        channels.filter_map(|(n, channel)| match channel {
+            AnyChannelReport::Endat(channel) => Some((n, channel.as_ref())),
+            AnyChannelReport::TFormat(_) => None,
+        })
+    }
 }
 
 /// The names of what is on.
@@ -196,7 +219,10 @@ pub fn report(project: &Project) -> Report {
         .channels
         .iter()
         .zip(&project.encoders)
-        .map(|(c, encoder)| channel(card, c, encoder))
+        .map(|(c, encoder)| match &c.t_format {
+            Some(t) => AnyChannelReport::TFormat(TFormatReport::new(card, c, t, encoder)),
+            None => AnyChannelReport::Endat(channel(card, c, encoder).into()),
+        })
         .collect();
     let sources = [
         (card.sources.pin, "pin"),
@@ -384,19 +410,28 @@ impl fmt::Display for Report {
             write!(f, "{stream}")?;
         }
         writeln!(f)?;
-        let heads: Vec<String> = (0..self.channels.len())
-            .map(|n| format!("channel {n}"))
+        let heads: Vec<String> = self
+            .endat_channels()
+            .map(|(n, _)| format!("channel {n}"))
             .collect();
         let cells: Vec<Vec<String>> = ROWS
             .iter()
-            .map(|(_, cell)| self.channels.iter().map(cell).collect())
+            .map(|(_, cell)| self.endat_channels().map(|(_, c)| cell(c)).collect())
             .collect();
         let widest = cells.iter().flatten().map(|cell| cell.chars().count());
         let width = widest.max().unwrap_or(0).max(COLUMN_MIN);
-        line(f, "", &heads, width)?;
+        if !heads.is_empty() {
+            line(f, "", &heads, width)?;
+        }
         for ((head, _), cells) in ROWS.iter().zip(&cells) {
             if cells.iter().any(|cell| !cell.is_empty()) {
                 line(f, head, cells, width)?;
+            }
+        }
+        for (index, channel) in self.channels.iter().enumerate() {
+            if let AnyChannelReport::TFormat(channel) = channel {
+                writeln!(f)?;
+                channel.write(f, index)?;
             }
         }
         writeln!(f)?;
@@ -412,6 +447,9 @@ impl fmt::Display for Report {
             if self.service.contains(&"initialise") {
                 writeln!(f, "initialisation: triggers are lost until about 2 s after reset, and after a plug; it measures the delay, too.")?;
             }
+        }
+        if heads.is_empty() {
+            return Ok(());
         }
         let first = match self.line.is_empty() {
             true => "frame, the first after reset, measures",
@@ -455,7 +493,8 @@ mod tests {
     #[test]
     fn the_preset_is_explained_with_the_figures_of_the_timing_table() {
         let report = report(&load_preset("s6_two_channel").unwrap());
-        for channel in &report.channels {
+        assert_eq!(report.endat_channels().count(), 2);
+        for (_, channel) in report.endat_channels() {
             assert_eq!(
                 (channel.pulses, channel.lead_pulses, channel.answer_bits),
                 (48, 10, 37)

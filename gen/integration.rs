@@ -92,6 +92,7 @@ pub fn artifacts(
         hash => project.hash.clone(),
         system_hz => project.card.system_hz,
         channels => project.card.channels.len(),
+        protocols => project.protocols(),
         sources => Value::from(Serde(sources)),
         has_bench => has_bench,
         clock => clock.unwrap_or_default(),

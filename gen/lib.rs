@@ -89,10 +89,11 @@ fn artifacts_of(project: &Project, design: &Design) -> Result<Vec<Artifact>, Gen
     let channels = project.card.channels.len();
     let header = Header {
         title: match project.bus {
-            HostBus::Bare => format!("{}: EnDat encoder port.", project.name),
+            HostBus::Bare => format!("{}: {} encoder port.", project.name, project.protocols()),
             _ => format!(
-                "{}: EnDat acquisition card, {channels} channel{}.",
+                "{}: {} acquisition card, {channels} channel{}.",
                 project.name,
+                project.protocols(),
                 if channels == 1 { "" } else { "s" }
             ),
         },

@@ -1,4 +1,5 @@
 //! The Verilog test bench that is emitted with a card: everything in it follows from the configuration and the register table.
+//! A T-format channel has no encoder there: its line is idle, and the bench checks that this is told.
 //! Of an initialisation it looks at the beginning only: the whole of it is longer than anybody simulates in Verilog.
 
 use crate::artifact::Artifact;
@@ -9,6 +10,7 @@ use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, RESULT};
 use endat_hdl::service::program::{program, ServiceTimes};
+use endat_hdl::t_format;
 use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
 use endat_hdl::transaction::cause;
 use minijinja::context;
@@ -19,6 +21,8 @@ use serde::Serialize;
 const MARGIN_NS: u64 = 3_000;
 /// After a clock that stopped, the bench's encoder waits this long before it takes the frame for ended, in ns.
 const ENCODER_GIVES_UP_NS: u64 = 15_000;
+/// A T-format line that has been silent is idle after this: longer than any field and its pause, in ns.
+const T_FORMAT_IDLE_NS: u64 = 20_000;
 /// Delay that the bench's encoder adds between a clock edge and its data, in ns.
 const LAUNCH_NS: u64 = 12;
 /// The trigger pin's way through synchroniser, edge detection and transaction, and one cycle for its phase.
@@ -111,10 +115,10 @@ fn fields(block: &Block) -> impl Iterator<Item = Bits> + '_ {
     })
 }
 
-/// The longest of a time over all channels, in cycles, as ns.
+/// The longest of a time over all EnDat channels, in cycles, as ns.
 fn longest_ns(card: &CardConfig, cycles: impl Fn(&ChannelConfig) -> u64) -> u64 {
-    let most = card.channels.iter().map(cycles).max().unwrap_or(0);
-    cycles_to_ns(most, card.system_hz)
+    let most = card.endat_channels().map(|(_, c)| cycles(c)).max();
+    cycles_to_ns(most.unwrap_or(0), card.system_hz)
 }
 
 /// What the bench of a card that initialises its encoders does first.
@@ -128,9 +132,8 @@ fn power_up(card: &CardConfig, ports: &[Port]) -> Result<String, GenError> {
         .into_iter()
         .map(|w| format!("20'h{w:05x}"));
     let period = card
-        .channels
-        .iter()
-        .map(|c| c.calibration_period_cycles(card.system_hz));
+        .endat_channels()
+        .map(|(_, c)| c.calibration_period_cycles(card.system_hz));
     template::render(
         "power_up",
         include_str!("templates/power_up.v.jinja"),
@@ -148,20 +151,29 @@ fn power_up(card: &CardConfig, ports: &[Port]) -> Result<String, GenError> {
 pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
     let card = &project.card;
     let hz = card.system_hz;
-    let cycle_ns = longest_ns(card, |c| c.cycle_max_cycles(hz)) + MARGIN_NS;
+    let is_t_format = |n: &usize| card.channels[*n].t_format.is_some();
+    let t_format: Vec<usize> = (0..card.channels.len()).filter(is_t_format).collect();
+    let exchange = |c: &ChannelConfig| cycles_to_ns(c.cycle_max_cycles(hz), hz);
+    let exchange_ns = card.channels.iter().map(exchange).max().unwrap_or(0);
+    // A T-format line has to be idle for a while after an exchange without a reply.
+    let cycle_ns = exchange_ns
+        + MARGIN_NS
+        + if t_format.is_empty() {
+            0
+        } else {
+            T_FORMAT_IDLE_NS
+        };
     let after_frame = |c: &ChannelConfig| c.cycle_max_cycles(hz) - c.frame_time(hz).frame_cycles;
     let calibration_ns =
         longest_ns(card, |c| c.calibration_cycles(hz) + after_frame(c)) + MARGIN_NS;
+    let calibration_ns = calibration_ns.max(cycle_ns);
     let timeout = |c: &ChannelConfig| {
         c.recovery_limit_cycles + cycles_at_least(1_000 * c.start_timeout_us, hz)
     };
-    let shortest_frame = card
-        .channels
-        .iter()
-        .map(|c| c.frame_time(hz).frame_cycles)
-        .min();
-    let abort_ns = card.channels.iter().map(|c| 1_000 * c.abort_us).max();
-    let ports = card.channels.iter().enumerate();
+    let frames = card.endat_channels().map(|(_, c)| c.frame_time(hz));
+    let shortest_frame = frames.map(|f| f.frame_cycles).min();
+    let abort_us = card.endat_channels().map(|(_, c)| c.abort_us).max();
+    let ports = card.endat_channels();
     let ports: Vec<Port> = ports.map(|(i, c)| Port::new(card, i, c)).collect();
     let causes = [
         ("NO_START_BIT", cause::NO_START_BIT),
@@ -170,6 +182,10 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         ("F2", cause::F2),
         ("DATA_NOT_FALLING", cause::DATA_NOT_FALLING),
         ("TRIGGER_OVERRUN", cause::TRIGGER_OVERRUN),
+        (
+            "NO_ANSWER",
+            t_format::cause::of_card(t_format::cause::NO_ANSWER),
+        ),
     ];
     let causes: Vec<Value> = causes
         .into_iter()
@@ -197,6 +213,10 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
         encoder,
+        first => ports.first().map_or(0, |p| p.index),
+        last => ports.last().map_or(0, |p| p.index),
+        count => card.channels.len(),
+        t_format,
         channels => Serde(ports),
         clk_ns => real(1e9 / hz as f64),
         uart_bit_ns => real(1e9 / card.baud as f64),
@@ -204,7 +224,7 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         calibration_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
         cycle_ns => whole(cycle_ns),
         fault_ns => whole(cycle_ns + longest_ns(card, timeout) + ENCODER_GIVES_UP_NS),
-        abort_ns => whole(abort_ns.unwrap_or(0) + MARGIN_NS),
+        abort_ns => whole(1_000 * abort_us.unwrap_or(0) + MARGIN_NS),
         overrun_ns => whole(cycles_to_ns(shortest_frame.unwrap_or(0) / 2, hz)),
         trigger_cycles_max => TRIGGER_CYCLES_MAX,
         words => Serde([CARD, CARD_CONFIG, RESULT].iter().flat_map(words).collect::<Vec<_>>()),

@@ -1,4 +1,4 @@
-//! Card: encoder ports, triggers and registers. A front connects the registers to a host: [`Card`] with a UART, the tops in
+//! Card: encoder ports, each for EnDat or T-format, triggers and registers. A front connects the registers to a host: [`Card`] with a UART, the tops in
 //! [`crate::bus`] with another bus.
 //!
 //! ```text
@@ -84,13 +84,13 @@ pub struct CardCore {
     pub direct_error_o: Vec<Signal<Out, Bit>>,
     /// Interrupt; low without this part.
     pub irq_o: Signal<Out, Bit>,
-    /// EnDat clock to the transceiver.
+    /// EnDat clock to the transceiver; HIGH if the channel speaks T-format.
     pub endat_clk_o: Vec<Signal<Out, Bit>>,
-    /// EnDat data to the transceiver.
+    /// Data to the transceiver.
     pub endat_data_o: Vec<Signal<Out, Bit>>,
-    /// Driver enable of the EnDat data line.
+    /// Driver enable of the data line.
     pub endat_data_oe: Vec<Signal<Out, Bit>>,
-    /// EnDat data from the transceiver, asynchronous.
+    /// Data from the transceiver, asynchronous.
     pub endat_data_i: Vec<Signal<In, Bit>>,
     /// Blinks: slowly = well, quickly = the last result of a channel is an error.
     pub led_status_o: Signal<Out, Bit>,
@@ -127,6 +127,7 @@ pub struct CardCore {
     word_link: Vec<Signal<Local, Bits<32>>>,
     service_reads: Signal<Local, Bits<8>>,
     service_writes: Signal<Local, Bits<8>>,
+    endat_channels: Constant<Bits<8>>,
     pending: Vec<Signal<Local, Bit>>,
     faulty: Vec<Signal<Local, Bit>>,
     slow_bit: Constant<Bits<5>>,
@@ -183,7 +184,17 @@ pub fn service_times(config: &CardConfig) -> ServiceTimes {
     }
 }
 
-fn port(card: &CardConfig, channel: &ChannelConfig, service: &ServiceTimes) -> EncoderPort {
+/// Channels from the first one on that have a place at a service: to the last one that speaks EnDat.
+fn served_channels(card: &CardConfig) -> usize {
+    let last = card.channels.iter().rposition(|c| c.t_format.is_none());
+    last.filter(|_| card.service.requests).map_or(0, |i| i + 1)
+}
+
+fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort {
+    let channel = &card.channels[index];
+    if channel.t_format.is_some() {
+        return EncoderPort::t_format(index < served_channels(card));
+    }
     let service = card.service.requests.then_some(service);
     EncoderPort::served(
         times(card, channel),
@@ -197,6 +208,9 @@ fn port(card: &CardConfig, channel: &ChannelConfig, service: &ServiceTimes) -> E
 /// The first channel's port alone, for those who bring registers and triggers of their own.
 pub fn bare_port(card: &CardConfig) -> EncoderPort {
     let (channel, service) = (&card.channels[0], service_times(card));
+    if channel.t_format.is_some() {
+        return EncoderPort::t_format(false);
+    }
     EncoderPort::with_line(
         times(card, channel),
         card.service.requests.then_some(&service),
@@ -225,7 +239,7 @@ impl CardCore {
         let directs = channels * usize::from(config.outputs.any());
         let direct_ports = channels * usize::from(config.outputs.position);
         let interrupts = usize::from(config.outputs.interrupt);
-        let served = channels * usize::from(config.service.requests);
+        let served = served_channels(config);
         let services = served.div_ceil(CHANNELS_SERVED);
         let places = services * CHANNELS_SERVED;
         Self {
@@ -266,11 +280,7 @@ impl CardCore {
             registers: (0..channels)
                 .map(|i| ChannelRegisters::new(config, i))
                 .collect(),
-            port: config
-                .channels
-                .iter()
-                .map(|c| port(config, c, service))
-                .collect(),
+            port: (0..channels).map(|i| port(config, i, service)).collect(),
             service: (0..services)
                 .map(|i| Service::new(service, served - i * CHANNELS_SERVED))
                 .collect(),
@@ -307,6 +317,7 @@ impl CardCore {
             word_link: each(services + 1),
             service_reads: Default::default(),
             service_writes: Default::default(),
+            endat_channels: Constant::new((!config.t_format_channels() & 0xff).into()),
             pending: each(channels + 1),
             faulty: each(channels + 1),
             slow_bit: Constant::new(blink_bit(config.system_hz, 1).into()),
@@ -384,6 +395,8 @@ impl Logic for CardCore {
             self.port[i].start_window_cycles.next = self.registers[i].start_window_cycles.val();
             self.port[i].start_timeout_us.next = self.registers[i].start_timeout_us.val();
             self.port[i].recovery_limit_cycles.next = self.registers[i].recovery_limit_cycles.val();
+            self.port[i].request_id.next = self.registers[i].request_id.val();
+            self.port[i].field_gap_us.next = self.registers[i].field_gap_us.val();
 
             self.port[i].host_address.next = self.bank.service_address.val();
             self.port[i].host_line.next = self.bank.service_line.val();
@@ -457,8 +470,8 @@ impl Logic for CardCore {
         self.service_reads.next = 0.into();
         self.service_writes.next = 0.into();
         if !self.bank.service_line.val() {
-            self.service_reads.next = self.bank.service_read.val();
-            self.service_writes.next = self.bank.service_write.val();
+            self.service_reads.next = self.bank.service_read.val() & self.endat_channels.val();
+            self.service_writes.next = self.bank.service_write.val() & self.endat_channels.val();
         }
         for i in 0..self._served {
             self.port[i].io_address[0].next = self.io_address[i].val();

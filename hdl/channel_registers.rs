@@ -76,7 +76,7 @@ pub struct ChannelRegisters {
     pub ring_in: Signal<In, Bits<8>>,
     /// Byte to the ring block in front.
     pub ring_out: Signal<Out, Bits<8>>,
-    /// EnDat clock period, in system clock cycles.
+    /// EnDat clock period, or a bit of T-format, in system clock cycles.
     pub period_cycles: Signal<Out, Bits<11>>,
     /// First low phase minus half a period, in system clock cycles.
     pub first_low_extra_cycles: Signal<Out, Bits<11>>,
@@ -88,7 +88,11 @@ pub struct ChannelRegisters {
     pub filter_cycles: Signal<Out, Bits<4>>,
     /// Half width of the start window, in system clock cycles.
     pub start_window_cycles: Signal<Out, Bits<6>>,
-    /// Longest wait for the start bit, in microseconds.
+    /// T-format: request ID of a trigger.
+    pub request_id: Signal<Out, Bits<4>>,
+    /// T-format: longest pause between two fields, in microseconds.
+    pub field_gap_us: Signal<Out, Bits<3>>,
+    /// Longest wait for the start bit, or for a reply of T-format, in microseconds.
     pub start_timeout_us: Signal<Out, Bits<12>>,
     /// Longest recovery time, in system clock cycles.
     pub recovery_limit_cycles: Signal<Out, Bits<13>>,
@@ -143,6 +147,8 @@ impl ChannelRegisters {
             command: Default::default(),
             position_bits: Default::default(),
             filter_cycles: Default::default(),
+            request_id: Default::default(),
+            field_gap_us: Default::default(),
             start_window_cycles: Default::default(),
             start_timeout_us: Default::default(),
             recovery_limit_cycles: Default::default(),
@@ -243,6 +249,8 @@ impl Logic for ChannelRegisters {
         self.first_low_extra_cycles.next = self.config1.q.val().get_bits::<11>(0);
         self.start_window_cycles.next = self.config1.q.val().get_bits::<6>(16);
         self.filter_cycles.next = self.config1.q.val().get_bits::<4>(24);
+        self.request_id.next = self.config1.q.val().get_bits::<4>(28);
+        self.field_gap_us.next = self.config2.q.val().get_bits::<3>(29);
         self.start_timeout_us.next = self.config2.q.val().get_bits::<12>(0);
         self.recovery_limit_cycles.next = self.config2.q.val().get_bits::<13>(16);
     }

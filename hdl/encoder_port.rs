@@ -1,10 +1,12 @@
-//! Encoder port: a channel, and its service where the configuration has one.
+//! Encoder port: a channel, and its service where the configuration has one; or a T-format port in their place.
 //!
 //! ```text
-//! trigger, configuration --> ServiceChannel --> Channel --> EnDat
-//!                               ^   |             |
-//! host --- Service, RAM <-- io -+---+             +--> results
+//! trigger, configuration --> ServiceChannel --> Channel --> EnDat     trigger, configuration --> TFormatPort --> T-format
+//!                               ^   |             |                                                 ^  |
+//! host --- Service, RAM <-- io -+---+             +--> results        host --- words ---------------+  +--> results
 //! ```
+//!
+//! What only the other protocol has reads 0; EnDat's clock rests HIGH.
 //!
 //! For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
 
@@ -13,6 +15,7 @@ use crate::channel::{Channel, Features, FixedTimes};
 use crate::line_monitor::{LineMonitor, LineStart};
 use crate::service::program::ServiceTimes;
 use crate::service::{channel::ServiceChannel, Service};
+use crate::t_format::port::TFormatPort;
 use crate::transaction::cause;
 use rust_hdl::prelude::*;
 
@@ -33,7 +36,7 @@ pub struct EncoderPort {
     pub calibrate: Signal<In, Bit>,
     /// Data line from the transceiver, asynchronous.
     pub data_i: Signal<In, Bit>,
-    /// EnDat clock period, in system clock cycles; an odd one has the longer high phase.
+    /// EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
     pub period_cycles: Signal<In, Bits<11>>,
     /// How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     pub first_low_extra_cycles: Signal<In, Bits<11>>,
@@ -45,10 +48,14 @@ pub struct EncoderPort {
     pub filter_cycles: Signal<In, Bits<4>>,
     /// Largest distance of the start edge from its expected place, in system clock cycles.
     pub start_window_cycles: Signal<In, Bits<6>>,
-    /// Longest wait for the start bit after the turnaround, in microseconds.
+    /// Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
     pub start_timeout_us: Signal<In, Bits<12>>,
     /// Data must fall within this many system clock cycles after the frame.
     pub recovery_limit_cycles: Signal<In, Bits<13>>,
+    /// T-format: request ID of a trigger.
+    pub request_id: Signal<In, Bits<4>>,
+    /// T-format: longest pause between two fields, in microseconds.
+    pub field_gap_us: Signal<In, Bits<3>>,
     /// EnDat clock to the transceiver, from a register.
     pub endat_clk: Signal<Out, Bit>,
     /// Data line to the transceiver, from a register.
@@ -57,7 +64,7 @@ pub struct EncoderPort {
     pub data_oe: Signal<Out, Bit>,
     /// Strobe: a new result can be read from this cycle on.
     pub result_strobe: Signal<Out, Bit>,
-    /// Last good position, bit 0 = LSB, zeros above its width.
+    /// Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     pub position: Signal<Out, Bits<48>>,
     /// There is a good position.
     pub position_valid: Signal<Out, Bit>,
@@ -69,7 +76,7 @@ pub struct EncoderPort {
     pub first_fall_timestamp: Signal<Out, Bits<32>>,
     /// Age of the position in microseconds; stops at 65535.
     pub age_us: Signal<Out, Bits<16>>,
-    /// Primary cause of the last result, see [`crate::transaction::cause`].
+    /// Primary cause of the last result, see [`crate::transaction::cause`]; its flags mean something else in T-format.
     pub cause: Signal<Out, Bits<5>>,
     /// Raw flags of the last result.
     pub flags: Signal<Out, Bits<19>>,
@@ -117,7 +124,7 @@ pub struct EncoderPort {
     pub sample_strobe: Signal<Out, Bit>,
     /// The service's alarm: too many bad frames, or positions 1 and 2 apart; or that of the line: drift or edges beyond their limits.
     pub alarm: Signal<Out, Bit>,
-    /// Word of the service's RAM that the host accesses; stays put from one strobe to the next, 8 cycles at least.
+    /// Word of the service's RAM, or of the T-format port, that the host accesses; stays put from one strobe to the next, 8 cycles at least.
     pub host_address: Signal<In, Bits<7>>,
     /// The word is one of the line monitor, not of the service.
     pub host_line: Signal<In, Bit>,
@@ -141,16 +148,20 @@ pub struct EncoderPort {
     pub io_out: Vec<Signal<In, Bits<16>>>,
     /// Strobe: it is written to the port.
     pub io_write: Vec<Signal<In, Bit>>,
-    channel: Channel,
+    channel: Vec<Channel>,
+    t_format: Vec<TFormatPort>,
     served: Vec<ServiceChannel>,
     service: Vec<Service>,
     monitor: Vec<LineMonitor>,
     trigger_overrun: Constant<Bits<5>>,
     info_missing: Constant<Bits<5>>,
     recovery_too_short: Constant<Bits<5>>,
+    _channels: usize,
+    _t_formats: usize,
     _served: usize,
     _services: usize,
     _ios: usize,
+    _idle_ios: usize,
     _monitors: usize,
 }
 
@@ -193,13 +204,36 @@ impl EncoderPort {
         line: Features,
         start: LineStart,
     ) -> Self {
-        let ios = service.iter().count();
         let features = Features {
             requests: service.is_some(),
             diagnosis: service.is_some_and(|s| s.diagnosis),
             continuous: service.is_some_and(|s| s.continuous),
             ..line
         };
+        let served = service.map(|s| ServiceChannel::new(wants_short, s.initialise));
+        let monitor = (line.alignment).then(|| LineMonitor::new(line, start));
+        Self::of(
+            vec![Channel::with(times, features)],
+            vec![],
+            served.into_iter().collect(),
+            monitor.into_iter().collect(),
+            service.is_some(),
+        )
+    }
+
+    /// A port for a T-format encoder. `has_io`: beside it is a service, of which it has nothing.
+    pub fn t_format(has_io: bool) -> Self {
+        Self::of(vec![], vec![TFormatPort::default()], vec![], vec![], has_io)
+    }
+
+    fn of(
+        channel: Vec<Channel>,
+        t_format: Vec<TFormatPort>,
+        served: Vec<ServiceChannel>,
+        monitor: Vec<LineMonitor>,
+        has_io: bool,
+    ) -> Self {
+        let ios = usize::from(has_io);
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -216,6 +250,8 @@ impl EncoderPort {
             start_window_cycles: Default::default(),
             start_timeout_us: Default::default(),
             recovery_limit_cycles: Default::default(),
+            request_id: Default::default(),
+            field_gap_us: Default::default(),
             endat_clk: Default::default(),
             data_o: Default::default(),
             data_oe: Default::default(),
@@ -257,26 +293,26 @@ impl EncoderPort {
             host_write: Default::default(),
             host_half: Default::default(),
             host_data: Default::default(),
-            channel: Channel::with(times, features),
             io_address: each(ios),
             io_read: each(ios),
             io_in: each(ios),
             io_out: each(ios),
             io_write: each(ios),
-            served: (service.into_iter())
-                .map(|s| ServiceChannel::new(wants_short, s.initialise))
-                .collect(),
+            _channels: channel.len(),
+            _t_formats: t_format.len(),
+            _served: served.len(),
+            _services: 0,
+            _ios: ios.min(served.len()),
+            _idle_ios: ios.saturating_sub(served.len()),
+            _monitors: monitor.len(),
+            channel,
+            t_format,
+            served,
             service: vec![],
-            monitor: (0..usize::from(line.alignment))
-                .map(|_| LineMonitor::new(line, start))
-                .collect(),
+            monitor,
             trigger_overrun: Constant::new(cause::TRIGGER_OVERRUN.into()),
             info_missing: Constant::new(cause::INFO_MISSING.into()),
             recovery_too_short: Constant::new(cause::RECOVERY_TOO_SHORT.into()),
-            _served: ios,
-            _services: 0,
-            _ios: ios,
-            _monitors: usize::from(line.alignment),
         }
     }
 }
@@ -284,112 +320,166 @@ impl EncoderPort {
 impl Logic for EncoderPort {
     #[hdl_gen]
     fn update(&mut self) {
-        clock!(self, clock, channel);
-        self.channel.reset.next = self.reset.val();
-        self.channel.tick_us.next = self.tick_us.val();
-        self.channel.timestamp.next = self.timestamp.val();
-        self.channel.trigger.next = self.trigger.val();
-        self.channel.calibrate.next = self.calibrate.val();
-        self.channel.data_i.next = self.data_i.val();
-        self.channel.period_cycles.next = self.period_cycles.val();
-        self.channel.first_low_extra_cycles.next = self.first_low_extra_cycles.val();
-        self.channel.command.next = self.command.val();
-        self.channel.position_bits.next = self.position_bits.val();
-        self.channel.filter_cycles.next = self.filter_cycles.val();
-        self.channel.start_window_cycles.next = self.start_window_cycles.val();
-        self.channel.start_timeout_us.next = self.start_timeout_us.val();
-        self.channel.recovery_limit_cycles.next = self.recovery_limit_cycles.val();
-        self.channel.phase_mode.next = 0.into();
-        self.channel.fixed_delay.next = 0.into();
-        self.channel.majority.next = false;
-        self.channel.request_command.next = 0.into();
-        self.channel.request_parameter.next = 0.into();
-        self.channel.request_ride.next = false;
-        self.channel.request_own.next = false;
-        self.channel.request_cancel.next = false;
-        self.channel.hold_off.next = false;
-        self.channel.clock_low.next = false;
-        self.channel.forced.next = 0.into();
-        self.channel.watchdog_us.next = 0.into();
-        self.channel.recovery_min_cycles.next = 0.into();
-        self.channel.continuous.next = false;
-        self.channel.stop_at_error.next = false;
-        self.endat_clk.next = self.channel.endat_clk.val();
-        self.data_o.next = self.channel.data_o.val();
-        self.data_oe.next = self.channel.data_oe.val();
-        self.result_strobe.next = self.channel.result_strobe.val();
-        self.position.next = self.channel.position.val();
-        self.position_valid.next = self.channel.position_valid.val();
-        self.fresh.next = self.channel.fresh.val();
-        self.sequence.next = self.channel.sequence.val();
-        self.first_fall_timestamp.next = self.channel.first_fall_timestamp.val();
-        self.age_us.next = self.channel.age_us.val();
-        self.cause.next = self.channel.cause.val();
-        self.flags.next = self.channel.flags.val();
-        self.crc_received.next = self.channel.crc_received.val();
-        self.crc_computed.next = self.channel.crc_computed.val();
-        self.recovery_cycles.next = self.channel.recovery_cycles.val();
-        self.delay_cycles.next = self.channel.delay_cycles.val();
-        self.busy.next = self.channel.busy.val();
-        self.request_runs.next = self.channel.request_runs.val();
-        self.line_high.next = self.channel.line_high.val();
-        self.displaced.next = self.channel.displaced.val();
-        self.over.next = self.channel.over.val();
-        self.over_request.next = self.channel.over_request.val();
-        self.over_cause.next = self.channel.over_cause.val();
-        self.over_flags.next = self.channel.over_flags.val();
-        self.reply.next = self.channel.reply.val();
-        self.reply_good.next = self.channel.reply_good.val();
-        self.info_active.next = self.channel.info_active.val();
-        self.info_1.next = self.channel.info_1.val();
-        self.info_2.next = self.channel.info_2.val();
-        self.info_came.next = self.channel.info_came.val();
-        self.info_good.next = self.channel.info_good.val();
-        self.calibrated.next = self.channel.calibrated.val();
-        self.sample_strobe.next = self.channel.sample_strobe.val();
+        for i in 0..self._channels {
+            self.channel[i].clock.next = self.clock.val();
+            self.channel[i].reset.next = self.reset.val();
+            self.channel[i].tick_us.next = self.tick_us.val();
+            self.channel[i].timestamp.next = self.timestamp.val();
+            self.channel[i].trigger.next = self.trigger.val();
+            self.channel[i].calibrate.next = self.calibrate.val();
+            self.channel[i].data_i.next = self.data_i.val();
+            self.channel[i].period_cycles.next = self.period_cycles.val();
+            self.channel[i].first_low_extra_cycles.next = self.first_low_extra_cycles.val();
+            self.channel[i].command.next = self.command.val();
+            self.channel[i].position_bits.next = self.position_bits.val();
+            self.channel[i].filter_cycles.next = self.filter_cycles.val();
+            self.channel[i].start_window_cycles.next = self.start_window_cycles.val();
+            self.channel[i].start_timeout_us.next = self.start_timeout_us.val();
+            self.channel[i].recovery_limit_cycles.next = self.recovery_limit_cycles.val();
+            self.channel[i].phase_mode.next = 0.into();
+            self.channel[i].fixed_delay.next = 0.into();
+            self.channel[i].majority.next = false;
+            self.channel[i].request_command.next = 0.into();
+            self.channel[i].request_parameter.next = 0.into();
+            self.channel[i].request_ride.next = false;
+            self.channel[i].request_own.next = false;
+            self.channel[i].request_cancel.next = false;
+            self.channel[i].hold_off.next = false;
+            self.channel[i].clock_low.next = false;
+            self.channel[i].forced.next = 0.into();
+            self.channel[i].watchdog_us.next = 0.into();
+            self.channel[i].recovery_min_cycles.next = 0.into();
+            self.channel[i].continuous.next = false;
+            self.channel[i].stop_at_error.next = false;
+            self.endat_clk.next = self.channel[i].endat_clk.val();
+            self.data_o.next = self.channel[i].data_o.val();
+            self.data_oe.next = self.channel[i].data_oe.val();
+            self.result_strobe.next = self.channel[i].result_strobe.val();
+            self.position.next = self.channel[i].position.val();
+            self.position_valid.next = self.channel[i].position_valid.val();
+            self.fresh.next = self.channel[i].fresh.val();
+            self.sequence.next = self.channel[i].sequence.val();
+            self.first_fall_timestamp.next = self.channel[i].first_fall_timestamp.val();
+            self.age_us.next = self.channel[i].age_us.val();
+            self.cause.next = self.channel[i].cause.val();
+            self.flags.next = self.channel[i].flags.val();
+            self.crc_received.next = self.channel[i].crc_received.val();
+            self.crc_computed.next = self.channel[i].crc_computed.val();
+            self.recovery_cycles.next = self.channel[i].recovery_cycles.val();
+            self.delay_cycles.next = self.channel[i].delay_cycles.val();
+            self.busy.next = self.channel[i].busy.val();
+            self.request_runs.next = self.channel[i].request_runs.val();
+            self.line_high.next = self.channel[i].line_high.val();
+            self.displaced.next = self.channel[i].displaced.val();
+            self.over.next = self.channel[i].over.val();
+            self.over_request.next = self.channel[i].over_request.val();
+            self.over_cause.next = self.channel[i].over_cause.val();
+            self.over_flags.next = self.channel[i].over_flags.val();
+            self.reply.next = self.channel[i].reply.val();
+            self.reply_good.next = self.channel[i].reply_good.val();
+            self.info_active.next = self.channel[i].info_active.val();
+            self.info_1.next = self.channel[i].info_1.val();
+            self.info_2.next = self.channel[i].info_2.val();
+            self.info_came.next = self.channel[i].info_came.val();
+            self.info_good.next = self.channel[i].info_good.val();
+            self.calibrated.next = self.channel[i].calibrated.val();
+            self.sample_strobe.next = self.channel[i].sample_strobe.val();
+        }
         self.alarm.next = false;
         self.host_word.next = 0.into();
+        for i in 0..self._t_formats {
+            self.t_format[i].clock.next = self.clock.val();
+            self.t_format[i].reset.next = self.reset.val();
+            self.t_format[i].tick_us.next = self.tick_us.val();
+            self.t_format[i].timestamp.next = self.timestamp.val();
+            self.t_format[i].trigger.next = self.trigger.val();
+            self.t_format[i].data_i.next = self.data_i.val();
+            self.t_format[i].request_id.next = self.request_id.val();
+            self.t_format[i].bit_cycles.next = self.period_cycles.val().get_bits::<7>(0);
+            self.t_format[i].reply_gap_us.next = self.start_timeout_us.val().get_bits::<6>(0);
+            self.t_format[i].field_gap_us.next = self.field_gap_us.val();
+            self.t_format[i].filter_cycles.next = self.filter_cycles.val();
+            self.t_format[i].host_address.next = self.host_address.val().get_bits::<3>(0);
+            self.t_format[i].host_read.next = self.host_read.val();
+            self.t_format[i].host_write.next = self.host_write.val();
+            self.t_format[i].host_half.next = self.host_half.val();
+            self.t_format[i].host_data.next = self.host_data.val();
+            self.endat_clk.next = true;
+            self.crc_received.next = 0.into();
+            self.crc_computed.next = 0.into();
+            self.recovery_cycles.next = 0.into();
+            self.delay_cycles.next = 0.into();
+            self.request_runs.next = false;
+            self.line_high.next = false;
+            self.displaced.next = false;
+            self.over_cause.next = 0.into();
+            self.over_flags.next = 0.into();
+            self.reply.next = 0.into();
+            self.reply_good.next = false;
+            self.info_active.next = 0.into();
+            self.info_1.next = 0.into();
+            self.info_2.next = 0.into();
+            self.info_came.next = 0.into();
+            self.info_good.next = 0.into();
+            self.calibrated.next = false;
+            self.sample_strobe.next = false;
+            self.data_o.next = self.t_format[i].data_o.val();
+            self.data_oe.next = self.t_format[i].data_oe.val();
+            self.result_strobe.next = self.t_format[i].result_strobe.val();
+            self.position.next = self.t_format[i].position.val();
+            self.position_valid.next = self.t_format[i].position_valid.val();
+            self.fresh.next = self.t_format[i].fresh.val();
+            self.sequence.next = self.t_format[i].sequence.val();
+            self.first_fall_timestamp.next = self.t_format[i].first_fall_timestamp.val();
+            self.age_us.next = self.t_format[i].age_us.val();
+            self.cause.next = self.t_format[i].cause.val();
+            self.flags.next = self.t_format[i].flags.val();
+            self.busy.next = self.t_format[i].busy.val();
+            self.over.next = self.t_format[i].over.val();
+            self.over_request.next = self.t_format[i].over_request.val();
+            self.host_word.next = self.t_format[i].host_word.val();
+        }
         for i in 0..self._served {
             self.served[i].clock.next = self.clock.val();
             self.served[i].reset.next = self.reset.val();
-            self.served[i].over.next = self.channel.over.val();
-            self.served[i].over_request.next = self.channel.over_request.val();
-            self.served[i].over_cause.next = self.channel.over_cause.val();
-            self.served[i].reply.next = self.channel.answer.val();
-            self.served[i].reply_good.next = self.channel.reply_good.val();
-            self.served[i].info_active.next = self.channel.info_active.val();
-            self.served[i].info_1.next = self.channel.info_1.val();
-            self.served[i].info_2.next = self.channel.info_2.val();
-            self.served[i].info_good.next = self.channel.info_good.val();
-            self.served[i].request_runs.next = self.channel.request_runs.val();
-            self.served[i].line_high.next = self.channel.line_high.val();
-            self.served[i].displaced.next = self.channel.displaced.val();
-            self.served[i].sequence.next = self.channel.sequence.val();
-            self.served[i].position.next = self.channel.position.val();
-            self.served[i].fresh.next = self.channel.fresh.val();
-            self.served[i].delay_cycles.next = self.channel.delay_cycles.val();
+            self.served[i].over.next = self.channel[i].over.val();
+            self.served[i].over_request.next = self.channel[i].over_request.val();
+            self.served[i].over_cause.next = self.channel[i].over_cause.val();
+            self.served[i].reply.next = self.channel[i].answer.val();
+            self.served[i].reply_good.next = self.channel[i].reply_good.val();
+            self.served[i].info_active.next = self.channel[i].info_active.val();
+            self.served[i].info_1.next = self.channel[i].info_1.val();
+            self.served[i].info_2.next = self.channel[i].info_2.val();
+            self.served[i].info_good.next = self.channel[i].info_good.val();
+            self.served[i].request_runs.next = self.channel[i].request_runs.val();
+            self.served[i].line_high.next = self.channel[i].line_high.val();
+            self.served[i].displaced.next = self.channel[i].displaced.val();
+            self.served[i].sequence.next = self.channel[i].sequence.val();
+            self.served[i].position.next = self.channel[i].position.val();
+            self.served[i].fresh.next = self.channel[i].fresh.val();
+            self.served[i].delay_cycles.next = self.channel[i].delay_cycles.val();
             self.served[i].period_cycles.next = self.period_cycles.val();
             self.served[i].command.next = self.command.val();
             self.served[i].position_bits.next = self.position_bits.val();
             self.served[i].host_address.next = self.host_address.val();
             self.served[i].host_write.next = self.host_write.val() & !self.host_line.val();
             self.served[i].host_half.next = self.host_half.val();
-            self.channel.period_cycles.next = self.served[i].period_now_cycles.val();
-            self.channel.command.next = self.served[i].command_now.val();
-            self.channel.position_bits.next = self.served[i].position_bits_now.val();
-            self.channel.calibrate.next = self.calibrate.val() | self.served[i].calibrate.val();
-            self.channel.request_command.next = self.served[i].request_command.val();
-            self.channel.request_parameter.next = self.served[i].request_parameter.val();
-            self.channel.request_ride.next = self.served[i].request_ride.val();
-            self.channel.request_own.next = self.served[i].request_own.val();
-            self.channel.request_cancel.next = self.served[i].request_cancel.val();
-            self.channel.hold_off.next = self.served[i].hold_off.val();
-            self.channel.clock_low.next = self.served[i].clock_low.val();
-            self.channel.forced.next = self.served[i].forced.val();
-            self.channel.watchdog_us.next = self.served[i].watchdog_us.val();
-            self.channel.recovery_min_cycles.next = self.served[i].recovery_min_cycles.val();
-            self.channel.continuous.next = self.served[i].continuous.val();
-            self.channel.stop_at_error.next = self.served[i].stop_at_error.val();
+            self.channel[i].period_cycles.next = self.served[i].period_now_cycles.val();
+            self.channel[i].command.next = self.served[i].command_now.val();
+            self.channel[i].position_bits.next = self.served[i].position_bits_now.val();
+            self.channel[i].calibrate.next = self.calibrate.val() | self.served[i].calibrate.val();
+            self.channel[i].request_command.next = self.served[i].request_command.val();
+            self.channel[i].request_parameter.next = self.served[i].request_parameter.val();
+            self.channel[i].request_ride.next = self.served[i].request_ride.val();
+            self.channel[i].request_own.next = self.served[i].request_own.val();
+            self.channel[i].request_cancel.next = self.served[i].request_cancel.val();
+            self.channel[i].hold_off.next = self.served[i].hold_off.val();
+            self.channel[i].clock_low.next = self.served[i].clock_low.val();
+            self.channel[i].forced.next = self.served[i].forced.val();
+            self.channel[i].watchdog_us.next = self.served[i].watchdog_us.val();
+            self.channel[i].recovery_min_cycles.next = self.served[i].recovery_min_cycles.val();
+            self.channel[i].continuous.next = self.served[i].continuous.val();
+            self.channel[i].stop_at_error.next = self.served[i].stop_at_error.val();
             self.alarm.next = self.served[i].alarm.val();
         }
         for i in 0..self._ios {
@@ -398,6 +488,9 @@ impl Logic for EncoderPort {
             self.served[i].io_write.next = self.io_write[i].val();
             self.served[i].io_read.next = self.io_read[i].val();
             self.io_in[i].next = self.served[i].io_in.val();
+        }
+        for i in 0..self._idle_ios {
+            self.io_in[i].next = 0.into();
         }
         for i in 0..self._services {
             self.service[i].clock.next = self.clock.val();
@@ -420,26 +513,26 @@ impl Logic for EncoderPort {
         for i in 0..self._monitors {
             self.monitor[i].clock.next = self.clock.val();
             self.monitor[i].reset.next = self.reset.val();
-            self.monitor[i].busy.next = self.channel.busy.val();
-            self.monitor[i].edge_measured.next = self.channel.edge_measured.val();
-            self.monitor[i].edge_offset.next = self.channel.edge_offset.val();
-            self.monitor[i].over.next = self.channel.over.val();
+            self.monitor[i].busy.next = self.channel[i].busy.val();
+            self.monitor[i].edge_measured.next = self.channel[i].edge_measured.val();
+            self.monitor[i].edge_offset.next = self.channel[i].edge_offset.val();
+            self.monitor[i].over.next = self.channel[i].over.val();
             // These come with a good position.
-            self.monitor[i].over_bad.next = self.channel.over_cause.val().any()
-                & (self.channel.over_cause.val() != self.trigger_overrun.val())
-                & (self.channel.over_cause.val() != self.info_missing.val())
-                & (self.channel.over_cause.val() != self.recovery_too_short.val());
-            self.monitor[i].glitch.next = self.channel.glitch.val();
-            self.monitor[i].phase.next = self.channel.phase.val();
-            self.monitor[i].calibrated.next = self.channel.calibrated.val();
+            self.monitor[i].over_bad.next = self.channel[i].over_cause.val().any()
+                & (self.channel[i].over_cause.val() != self.trigger_overrun.val())
+                & (self.channel[i].over_cause.val() != self.info_missing.val())
+                & (self.channel[i].over_cause.val() != self.recovery_too_short.val());
+            self.monitor[i].glitch.next = self.channel[i].glitch.val();
+            self.monitor[i].phase.next = self.channel[i].phase.val();
+            self.monitor[i].calibrated.next = self.channel[i].calibrated.val();
             self.monitor[i].host_address.next = self.host_address.val().get_bits::<6>(0);
             self.monitor[i].host_read.next = self.host_read.val() & self.host_line.val();
             self.monitor[i].host_write.next = self.host_write.val() & self.host_line.val();
             self.monitor[i].host_half.next = self.host_half.val();
             self.monitor[i].host_data.next = self.host_data.val();
-            self.channel.phase_mode.next = self.monitor[i].phase_mode.val();
-            self.channel.fixed_delay.next = self.monitor[i].fixed_delay.val();
-            self.channel.majority.next = self.monitor[i].majority.val();
+            self.channel[i].phase_mode.next = self.monitor[i].phase_mode.val();
+            self.channel[i].fixed_delay.next = self.monitor[i].fixed_delay.val();
+            self.channel[i].majority.next = self.monitor[i].majority.val();
             if self.monitor[i].alarm.val() {
                 self.alarm.next = true;
             }

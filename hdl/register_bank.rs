@@ -65,9 +65,9 @@ pub struct RegisterBank {
     pub ring_in: Signal<In, Bits<8>>,
     /// Byte to the last channel's ring block.
     pub ring_out: Signal<Out, Bits<8>>,
-    /// The word is one of a line monitor, not of a service.
+    /// The word is one of a line monitor, not of a service or a T-format port.
     pub service_line: Signal<Out, Bit>,
-    /// Word of a service's RAM.
+    /// Word of a service's RAM, a line monitor or a T-format port.
     pub service_address: Signal<Out, Bits<7>>,
     /// The channel that it belongs to, one bit per channel.
     pub service_channels: Signal<Out, Bits<8>>,
@@ -139,7 +139,14 @@ pub struct RegisterBank {
     rom_word: Signal<Local, Bits<32>>,
     has_service: Constant<Bit>,
     has_line: Constant<Bit>,
+    has_t_format: Constant<Bit>,
+    t_format_channels: Constant<Bits<8>>,
+    endat_channels: Constant<Bits<8>>,
     line_page: Signal<Local, Bit>,
+    t_format_page: Signal<Local, Bit>,
+    word_page: Signal<Local, Bit>,
+    selected: Signal<Local, Bits<8>>,
+    protocols: Constant<Bits<32>>,
     service_channel: Signal<Local, Bits<3>>,
     id: Constant<Bits<32>>,
     version: Constant<Bits<32>>,
@@ -173,6 +180,7 @@ impl RegisterBank {
     /// The bank of a card.
     pub fn new(config: &CardConfig) -> Self {
         let words = config_words(config, None);
+        let t_format_channels = config.t_format_channels();
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -255,7 +263,14 @@ impl RegisterBank {
             rom_word: Default::default(),
             has_service: Constant::new(config.service.requests),
             has_line: Constant::new(config.line.alignment),
+            has_t_format: Constant::new(t_format_channels != 0),
+            t_format_channels: Constant::new(t_format_channels.into()),
+            endat_channels: Constant::new((!t_format_channels & 0xff).into()),
             line_page: Default::default(),
+            t_format_page: Default::default(),
+            word_page: Default::default(),
+            selected: Default::default(),
+            protocols: card_word(config, "protocols"),
             service_channel: Default::default(),
             id: card_word(config, "id"),
             version: card_word(config, "version"),
@@ -439,6 +454,9 @@ impl Logic for RegisterBank {
             4 => {
                 self.rom_word.next = self.configuration_hash.val();
             }
+            5 => {
+                self.rom_word.next = self.protocols.val();
+            }
             _ => {}
         }
         match self.lane.val().index() {
@@ -553,39 +571,54 @@ impl Logic for RegisterBank {
             & self.in_range.val()
             & !self.word_address.val().get_bit(10)
             & self.word_address.val().get_bit(9);
+        // T-format ports: 8 words each, from 0x0C0 on, in the same way.
+        self.t_format_page.next = self.has_t_format.val()
+            & self.low_page.val()
+            & !self.word_address.val().get_bit(8)
+            & self.word_address.val().get_bits::<2>(6).all();
+        self.word_page.next =
+            self.service_page.val() | self.line_page.val() | self.t_format_page.val();
         self.service_line.next = self.line_page.val();
         self.service_channel.next = self.word_address.val().get_bits::<3>(7);
         if self.line_page.val() {
             self.service_channel.next = self.word_address.val().get_bits::<3>(6);
         }
-        self.service_selected.d.next = 0.into();
-        if self.service_page.val() | self.line_page.val() {
+        if self.t_format_page.val() {
+            self.service_channel.next = self.word_address.val().get_bits::<3>(3);
+        }
+        self.selected.next = 0.into();
+        if self.word_page.val() {
             match self.service_channel.val().index() {
                 0 => {
-                    self.service_selected.d.next = 1.into();
+                    self.selected.next = 1.into();
                 }
                 1 => {
-                    self.service_selected.d.next = 2.into();
+                    self.selected.next = 2.into();
                 }
                 2 => {
-                    self.service_selected.d.next = 4.into();
+                    self.selected.next = 4.into();
                 }
                 3 => {
-                    self.service_selected.d.next = 8.into();
+                    self.selected.next = 8.into();
                 }
                 4 => {
-                    self.service_selected.d.next = 16.into();
+                    self.selected.next = 16.into();
                 }
                 5 => {
-                    self.service_selected.d.next = 32.into();
+                    self.selected.next = 32.into();
                 }
                 6 => {
-                    self.service_selected.d.next = 64.into();
+                    self.selected.next = 64.into();
                 }
                 _ => {
-                    self.service_selected.d.next = 128.into();
+                    self.selected.next = 128.into();
                 }
             }
+        }
+        // A channel has the words of its own protocol only.
+        self.service_selected.d.next = self.selected.val() & self.endat_channels.val();
+        if self.t_format_page.val() {
+            self.service_selected.d.next = self.selected.val() & self.t_format_channels.val();
         }
         self.service_first.d.next = self.access.val();
         self.service_address.next = self.word_address.val().get_bits::<7>(0);
@@ -606,7 +639,7 @@ impl Logic for RegisterBank {
         if self.service_half.val() {
             self.service_data.next = self.write_data.val().get_bits::<16>(16);
         }
-        self.service_skip.d.next = !(self.service_page.val() | self.line_page.val());
+        self.service_skip.d.next = !self.word_page.val();
         match self.lane.val().index() {
             0 => {
                 self.service_byte.d.next = self.service_word.val().get_bits::<8>(24);

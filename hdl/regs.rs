@@ -4,6 +4,7 @@
 //! 0x000  card: identification, capabilities, counters, strobes
 //! 0x010  interrupt: status, mask, clear
 //! 0x080  direct: 2 words of channel n at 0x080 + 8 n
+//! 0x0C0  t_format: 4 words of channel n at 0x0C0 + 8 n
 //! 0x100  configuration: 3 words of the card, then 3 words of channel n at 0x108 + 8 n
 //! 0x180  results: 6 words of channel n at 0x180 + 8 n
 //! 0x200  line: 64 words of channel n at 0x200 + 64 n
@@ -16,12 +17,14 @@
 mod line;
 mod outputs;
 mod service;
+mod t_format;
 mod table;
 pub mod values;
 
 pub use line::LINE;
 pub use outputs::{DIRECT, INTERRUPT};
 pub use service::SERVICE;
+pub use t_format::T_FORMAT;
 pub use table::{CARD, CARD_CONFIG, CHANNEL_CONFIG, RESULT};
 
 use crate::config::CardConfig;
@@ -31,13 +34,15 @@ use crate::transaction::cause;
 use values::Values;
 
 /// Major, minor and patch version of the register map.
-pub const VERSION: [u8; 3] = [0, 6, 0];
+pub const VERSION: [u8; 3] = [0, 7, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the interrupt.
 pub const INTERRUPT_BASE: u16 = 0x010;
 /// First word of the direct outputs; block n is that of channel n.
 pub const DIRECT_BASE: u16 = 0x080;
+/// First word of the T-format ports; block n is that of channel n.
+pub const T_FORMAT_BASE: u16 = 0x0C0;
 /// First word of the configuration blocks; block 0 is the card's, block n + 1 that of channel n.
 pub const CONFIG_BASE: u16 = 0x100;
 /// First word of the result blocks; block n is that of channel n.
@@ -252,10 +257,11 @@ impl Block {
 }
 
 /// All blocks, lowest base first.
-pub const BLOCKS: [Block; 8] = [
+pub const BLOCKS: [Block; 9] = [
     CARD,
     INTERRUPT,
     DIRECT,
+    T_FORMAT,
     CARD_CONFIG,
     CHANNEL_CONFIG,
     RESULT,
@@ -267,11 +273,13 @@ pub const BLOCKS: [Block; 8] = [
 pub fn blocks(config: &CardConfig) -> impl Iterator<Item = Block> {
     let (line, service) = (config.line.alignment, config.service.requests);
     let outputs = config.outputs;
+    let t_format = config.t_format_channels() != 0;
     BLOCKS.into_iter().filter(move |block| match block.base {
         LINE_BASE => line,
         SERVICE_BASE => service,
         INTERRUPT_BASE => outputs.interrupt,
         DIRECT_BASE => outputs.any(),
+        T_FORMAT_BASE => t_format,
         _ => true,
     })
 }

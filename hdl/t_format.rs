@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Reading order: [`protocol`] and [`cause`] (facts), [`bit_grid`], [`field_order`], [`request_bits`] (parts), [`exchange`] (order
-//! and checks), [`channel`], [`dsp`].
+//! and checks), [`channel`], [`dsp`]; [`port`] is the same encoder as a channel of a card.
 
 pub mod bit_grid;
 pub mod cause;
@@ -16,6 +16,7 @@ pub mod dsp;
 pub mod exchange;
 pub mod field_order;
 pub mod outcome;
+pub mod port;
 pub mod primary;
 pub mod protocol;
 pub mod reply;

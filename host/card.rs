@@ -11,6 +11,8 @@ use std::time::Duration;
 
 /// The ASCII letters EnDt.
 const ID: u32 = 0x456E_4474;
+/// Words that say who a card is.
+const IDENTITY_WORDS: usize = 6;
 /// How long a request may take, unless told otherwise: milliseconds on a real card, many seconds on a simulated one.
 const PATIENCE: Duration = Duration::from_secs(20);
 
@@ -29,6 +31,8 @@ pub struct Identity {
     pub system_hz: u32,
     /// Which configuration it was made from.
     pub configuration_hash: u32,
+    /// Channels that speak T-format: bit n for channel n.
+    pub t_format_channels: u32,
 }
 
 impl Identity {
@@ -50,11 +54,17 @@ impl Identity {
         self.parts().any(|(name, _)| name == part)
     }
 
+    /// Whether a channel speaks T-format.
+    pub fn is_t_format(&self, channel: usize) -> bool {
+        self.t_format_channels >> channel & 1 == 1
+    }
+
     /// Whether it has a block of the map, and the channel.
     pub fn has_block(&self, block: &str) -> bool {
         match block {
             "service" => self.has("requests"),
             "line" => self.has("alignment"),
+            "t_format" => self.has("t_format"),
             _ => true,
         }
     }
@@ -77,10 +87,10 @@ pub struct Card<T> {
 impl<T: Transport> Card<T> {
     /// Finds out who answers.
     pub fn find(mut bridge: Bridge<T>) -> Result<Self, HostError> {
-        let mut words = bridge.read(0, 5).unwrap_or_default();
+        let mut words = bridge.read(0, IDENTITY_WORDS).unwrap_or_default();
         if words.first() != Some(&ID) {
             bridge.calm()?;
-            words = bridge.read(0, 5)?;
+            words = bridge.read(0, IDENTITY_WORDS)?;
         }
         if words[0] != ID {
             return Err(HostError::NoCard(format!(
@@ -110,6 +120,8 @@ impl<T: Transport> Card<T> {
             features: u16::from_be_bytes([high, low]).into(),
             system_hz: words[3],
             configuration_hash: words[4],
+            // 0 on cards with an older map: absent words read 0.
+            t_format_channels: words[5] & 0xFF,
         };
         Ok(Self {
             bridge,
@@ -145,11 +157,22 @@ impl<T: Transport> Card<T> {
             return Err(HostError::Name(format!(
                 "register = {name:?}: this card has no block {}; emit one that has the part ({})",
                 place.block.name,
-                if place.block.name == "line" {
-                    "[line] parts"
-                } else {
-                    "[service] parts"
+                match place.block.name {
+                    "line" => "[line] parts",
+                    "t_format" => "[[channel]] protocol = \"t_format\"",
+                    _ => "[service] parts",
                 }
+            )));
+        }
+        let of_t_format = ["service", "line"].contains(&place.block.name);
+        let of_endat = place.block.name == "t_format";
+        let is_t_format = self.identity.is_t_format(place.channel);
+        if is_t_format && of_t_format || !is_t_format && of_endat {
+            return Err(HostError::Name(format!(
+                "register = {name:?}: channel {} speaks {}, which has no block {}; `endat-gen id` shows the channels",
+                place.channel,
+                if is_t_format { "T-format" } else { "EnDat" },
+                place.block.name
             )));
         }
         Ok(place)
@@ -203,6 +226,7 @@ impl<T: Transport> Card<T> {
 
     /// The name plate of a channel's encoder.
     pub fn name_plate(&mut self, channel: usize) -> Result<NamePlate, HostError> {
+        self.needs_endat("name plate", channel)?;
         self.needs_requests("name plate")?;
         if !self.identity.has("initialise") {
             return Err(HostError::Part {
@@ -232,6 +256,15 @@ impl<T: Transport> Card<T> {
             delay_cycles: word("delay"),
             ..NamePlate::new(word)
         })
+    }
+
+    pub(crate) fn needs_endat(&self, what: &str, channel: usize) -> Result<(), HostError> {
+        if !self.identity.is_t_format(channel) {
+            return Ok(());
+        }
+        Err(HostError::Name(format!(
+            "channel {channel}: {what}: the channel speaks T-format, which has none; its requests go through t_format{channel}.send and .answer (`endat-gen explain t_format`)"
+        )))
     }
 
     pub(crate) fn needs_requests(&self, what: &'static str) -> Result<(), HostError> {

@@ -50,12 +50,12 @@ pub fn advice(name: &str) -> Option<[&'static str; 2]> {
             "Compare position_bits and recovery_max_ns with the data sheet.",
         ],
         "trigger_overrun" => [
-            "A trigger came while a frame was under way; the position of that frame is good.",
+            "A trigger came while a frame or a T-format exchange was under way; its position is good.",
             "Trigger more slowly: `explain` shows the highest rate.",
         ],
         "unknown_command" => [
-            "The configured command is none of the mode commands; nothing was sent.",
-            "Write 7 (000111) or 56 (111000) to config0.frame.command.",
+            "The configured command is none of the mode commands, or the T-format request is none that a trigger sends; nothing was sent.",
+            "Write 7 (000111) or 56 (111000) to config<n>.frame.command; on a T-format channel 3 to config<n>.timing.request_id.",
         ],
         "info_missing" => [
             "An additional information that was expected did not come; the position is good.",
@@ -89,6 +89,58 @@ pub fn advice(name: &str) -> Option<[&'static str; 2]> {
             "DATA fell before limits.recovery_min_cycles: the encoder has another recovery time than the card; the position is good.",
             "Set recovery_min_ns to what the encoder is set to.",
         ],
+        "line_not_idle" => [
+            "The T-format line was LOW, or had not been idle for long enough after a bad reply, when a request was to go out; nothing was sent.",
+            "Trigger more slowly after faults; look for a short circuit, and for an encoder that still sends.",
+        ],
+        "no_answer" => [
+            "The T-format encoder did not answer within the reply gap.",
+            "Look at plug, supply and the pair; compare bit_hz with the data sheet; raise reply_gap_us.",
+        ],
+        "no_header" => [
+            "Something came from the T-format encoder, but no control field with start bit and sync code.",
+            "Compare bit_hz with the data sheet; look at termination and shield; raise filter_ns against short pulses.",
+        ],
+        "control_parity" => [
+            "The parity of the ID in the reply is wrong: a bit was disturbed.",
+            "Look at termination and shield.",
+        ],
+        "reply_echo" => [
+            "The reply repeats another request ID or EEPROM address than was sent.",
+            "Look for a second encoder on the pair, or for a disturbed line.",
+        ],
+        "delimiter" => [
+            "A field of the reply ends with a LOW bit: it was disturbed, or the rate is another one.",
+            "Compare bit_hz with the data sheet; look at termination and shield.",
+        ],
+        "field_missing" => [
+            "A field of the reply did not begin in time.",
+            "Raise field_gap_us; does the encoder know this request?",
+        ],
+        "reply_crc" => [
+            "The CRC of the T-format reply is wrong: a bit was disturbed.",
+            "Look at termination and shield; t_format<n>.fields shows what came.",
+        ],
+        "request_parity" => [
+            "The encoder says that the parity of the request was wrong: the way to the encoder is disturbed.",
+            "Look at termination and shield, and that the driver stays enabled while sending.",
+        ],
+        "request_delimiter" => [
+            "The encoder says that the delimiter of the request was wrong: the way to the encoder is disturbed.",
+            "As for request_parity; compare bit_hz with the data sheet.",
+        ],
+        "eeprom_busy" => [
+            "The encoder's EEPROM is busy with the last byte; the data mean nothing.",
+            "Send the request again some milliseconds later.",
+        ],
+        "counting_error" => [
+            "The encoder reports a counting error; the position is taken.",
+            "Turn the power off and on, or send request 7 ten times in a row.",
+        ],
+        "multi_turn_alarm" => [
+            "The encoder reports a multi-turn, overflow or battery alarm; the position is taken, and its turns may be wrong.",
+            "Look at t_format<n>.fields.alarm and at the battery; then send request 7 or 12 ten times in a row.",
+        ],
         _ => return None,
     })
 }
@@ -99,7 +151,7 @@ mod tests {
 
     #[test]
     fn every_cause_has_advice() {
-        assert_eq!(all().len(), 18);
+        assert_eq!(all().len(), 31);
         for cause in all() {
             assert!(advice(cause.name).is_some(), "{}", cause.name);
             assert_eq!(name(cause.number as u8), cause.name);

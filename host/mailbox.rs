@@ -46,6 +46,7 @@ pub struct Answer {
 impl<T: Transport> Card<T> {
     /// Sends a request through channel `channel`, and waits for the answer.
     pub fn request(&mut self, channel: usize, request: Request) -> Result<Answer, HostError> {
+        self.needs_endat("mode commands", channel)?;
         self.needs_requests("requests to the encoder")?;
         let at = |register| Place::at("service", register, channel);
         self.wait_for_initialisation(channel)?;

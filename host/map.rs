@@ -5,7 +5,7 @@
 use crate::registers::{Access, Block, Field, Named, Register, Values};
 
 /// Major, minor and patch version of the map.
-pub const VERSION: [u8; 3] = [0, 6, 0];
+pub const VERSION: [u8; 3] = [0, 7, 0];
 
 /// All blocks, lowest base first.
 pub const BLOCKS: &[Block] = &[
@@ -21,13 +21,16 @@ pub const BLOCKS: &[Block] = &[
         Register { name: "capabilities", offset: 2, access: Access::ReadOnly, meaning: "What this card has.", fields: &[
             Field { name: "channels", lsb: 0, width: 8, unit: "", meaning: "Encoder ports", values: Values::Plain },
             Field { name: "max_position_bits", lsb: 8, width: 8, unit: "bits", meaning: "Widest position", values: Values::Plain },
-            Field { name: "features", lsb: 16, width: 16, unit: "", meaning: "Parts", values: Values::Bits(&[Named { name: "endat22", number: 0, meaning: "EnDat 2.2 position frames (111000)" }, Named { name: "line_delay", number: 1, meaning: "line delay is measured" }, Named { name: "trigger_pin", number: 2, meaning: "trigger pin" }, Named { name: "trigger_timer", number: 3, meaning: "trigger timer" }, Named { name: "requests", number: 4, meaning: "requests" }, Named { name: "initialise", number: 5, meaning: "initialisation" }, Named { name: "diagnosis", number: 6, meaning: "diagnosis of the line" }, Named { name: "continuous", number: 7, meaning: "continuous clock" }, Named { name: "alignment", number: 8, meaning: "phase at the host's choice, mean over many edges" }, Named { name: "margin", number: 9, meaning: "margin of the samples" }, Named { name: "double_edge", number: 10, meaning: "DATA on both edges of the system clock" }, Named { name: "stream", number: 11, meaning: "stream of sample sets" }, Named { name: "direct", number: 12, meaning: "direct outputs" }, Named { name: "interrupt", number: 13, meaning: "interrupt" }]) },
+            Field { name: "features", lsb: 16, width: 16, unit: "", meaning: "Parts", values: Values::Bits(&[Named { name: "endat22", number: 0, meaning: "EnDat 2.2 position frames (111000)" }, Named { name: "line_delay", number: 1, meaning: "line delay is measured" }, Named { name: "trigger_pin", number: 2, meaning: "trigger pin" }, Named { name: "trigger_timer", number: 3, meaning: "trigger timer" }, Named { name: "requests", number: 4, meaning: "requests" }, Named { name: "initialise", number: 5, meaning: "initialisation" }, Named { name: "diagnosis", number: 6, meaning: "diagnosis of the line" }, Named { name: "continuous", number: 7, meaning: "continuous clock" }, Named { name: "alignment", number: 8, meaning: "phase at the host's choice, mean over many edges" }, Named { name: "margin", number: 9, meaning: "margin of the samples" }, Named { name: "double_edge", number: 10, meaning: "DATA on both edges of the system clock" }, Named { name: "stream", number: 11, meaning: "stream of sample sets" }, Named { name: "direct", number: 12, meaning: "direct outputs" }, Named { name: "interrupt", number: 13, meaning: "interrupt" }, Named { name: "t_format", number: 14, meaning: "T-format channels" }]) },
         ] },
         Register { name: "system_hz", offset: 3, access: Access::ReadOnly, meaning: "System clock: the unit of every number of cycles.", fields: &[
             Field { name: "value", lsb: 0, width: 32, unit: "Hz", meaning: "Frequency", values: Values::Plain },
         ] },
         Register { name: "configuration_hash", offset: 4, access: Access::ReadOnly, meaning: "Tells which configuration the card was generated from.", fields: &[
             Field { name: "value", lsb: 0, width: 32, unit: "", meaning: "First 8 digits of the hash that stands in the generated files", values: Values::Plain },
+        ] },
+        Register { name: "protocols", offset: 5, access: Access::ReadOnly, meaning: "Which channels speak another protocol than EnDat.", fields: &[
+            Field { name: "t_format", lsb: 0, width: 8, unit: "", meaning: "T-format: bit n for channel n", values: Values::Plain },
         ] },
         Register { name: "trigger_count", offset: 8, access: Access::ReadOnly, meaning: "Triggers since reset; stands still with the results (see hold).", fields: &[
             Field { name: "value", lsb: 0, width: 32, unit: "", meaning: "Wraps", values: Values::Plain },
@@ -94,6 +97,30 @@ pub const BLOCKS: &[Block] = &[
             Field { name: "causes", lsb: 0, width: 32, unit: "", meaning: "Selected causes of the last result", values: Values::Plain },
         ] },
     ] },
+    Block { name: "t_format", base: 0x0C0, stride: 8, per_channel: true, meaning: "Requests to a T-format encoder beside its triggers, and the fields of its replies; 0 on a channel that speaks EnDat.", registers: &[
+        Register { name: "send", offset: 0, access: Access::Strobe, meaning: "Sends one request, now or as soon as the exchange under way has ended; not taken while answer.busy.", fields: &[
+            Field { name: "data", lsb: 0, width: 8, unit: "", meaning: "EEPROM data, of request 6", values: Values::Plain },
+            Field { name: "address", lsb: 8, width: 7, unit: "", meaning: "EEPROM address, of requests 6 and 13; 127 is the page register", values: Values::Plain },
+            Field { name: "id", lsb: 16, width: 4, unit: "", meaning: "Request ID", values: Values::Plain },
+        ] },
+        Register { name: "answer", offset: 1, access: Access::ReadOnly, meaning: "What became of the request in send.", fields: &[
+            Field { name: "data", lsb: 0, width: 8, unit: "", meaning: "EEPROM data as they came last", values: Values::Plain },
+            Field { name: "id", lsb: 8, width: 4, unit: "", meaning: "ID that the reply repeats", values: Values::Plain },
+            Field { name: "cause", lsb: 12, width: 4, unit: "", meaning: "T-format cause of the exchange", values: Values::Codes(&[Named { name: "none", number: 0, meaning: "none" }, Named { name: "unknown_command", number: 1, meaning: "unknown request" }, Named { name: "line_not_idle", number: 2, meaning: "line not idle" }, Named { name: "no_answer", number: 3, meaning: "no answer" }, Named { name: "no_header", number: 4, meaning: "no header" }, Named { name: "control_parity", number: 5, meaning: "parity of the control field" }, Named { name: "reply_echo", number: 6, meaning: "another ID or address in the reply" }, Named { name: "delimiter", number: 7, meaning: "delimiter" }, Named { name: "field_missing", number: 8, meaning: "field missing" }, Named { name: "reply_crc", number: 9, meaning: "CRC" }, Named { name: "request_parity", number: 10, meaning: "encoder saw a parity error" }, Named { name: "request_delimiter", number: 11, meaning: "encoder saw a delimiter error" }, Named { name: "eeprom_busy", number: 12, meaning: "EEPROM busy" }, Named { name: "counting_error", number: 13, meaning: "counting error" }, Named { name: "multi_turn_alarm", number: 14, meaning: "multi-turn or battery alarm" }, Named { name: "trigger_overrun", number: 15, meaning: "trigger overrun" }]) },
+            Field { name: "done", lsb: 16, width: 1, unit: "", meaning: "The exchange has ended; 0 from send on", values: Values::Plain },
+            Field { name: "busy", lsb: 17, width: 1, unit: "", meaning: "The exchange is under way, or waits for its turn", values: Values::Plain },
+        ] },
+        Register { name: "fields", offset: 2, access: Access::ReadOnly, meaning: "Fields of the last reply, of a trigger or of send.", fields: &[
+            Field { name: "status", lsb: 0, width: 8, unit: "", meaning: "Status field (SF); 0 if none came", values: Values::Plain },
+            Field { name: "encoder_id", lsb: 8, width: 8, unit: "", meaning: "Kind of encoder (ENID) as it came last", values: Values::Plain },
+            Field { name: "alarm", lsb: 16, width: 8, unit: "", meaning: "Alarm field (ALMC) as it came last", values: Values::Plain },
+            Field { name: "crc", lsb: 24, width: 8, unit: "", meaning: "CRC as received", values: Values::Plain },
+        ] },
+        Register { name: "parts", offset: 3, access: Access::ReadOnly, meaning: "Which parts of the position have come since reset.", fields: &[
+            Field { name: "single_valid", lsb: 0, width: 1, unit: "", meaning: "There is a single-turn position, bits 23..0", values: Values::Plain },
+            Field { name: "multi_valid", lsb: 1, width: 1, unit: "", meaning: "There is a multi-turn position, bits 47..24", values: Values::Plain },
+        ] },
+    ] },
     Block { name: "card_config", base: 0x100, stride: 8, per_channel: false, meaning: "Configuration of the card.", registers: &[
         Register { name: "trigger_sources", offset: 0, access: Access::ReadWrite, meaning: "Enabled trigger sources; one trigger starts all channels in the same clock cycle.", fields: &[
             Field { name: "pin", lsb: 0, width: 1, unit: "", meaning: "Rising edge of the trigger pin", values: Values::Plain },
@@ -110,42 +137,44 @@ pub const BLOCKS: &[Block] = &[
     ] },
     Block { name: "config", base: 0x108, stride: 8, per_channel: true, meaning: "Configuration of a channel; taken over between two frames.", registers: &[
         Register { name: "frame", offset: 0, access: Access::ReadWrite, meaning: "What is asked of the encoder, and how fast.", fields: &[
-            Field { name: "period_cycles", lsb: 0, width: 11, unit: "cycles", meaning: "EnDat clock period; the high phase is the longer one when odd", values: Values::Plain },
-            Field { name: "position_bits", lsb: 16, width: 6, unit: "bits", meaning: "Position width, 1..48", values: Values::Plain },
+            Field { name: "period_cycles", lsb: 0, width: 11, unit: "cycles", meaning: "EnDat clock period; the high phase is the longer one when odd; T-format: a bit, 8..127", values: Values::Plain },
+            Field { name: "position_bits", lsb: 16, width: 6, unit: "bits", meaning: "Position width, 1..48; T-format: no meaning, as command", values: Values::Plain },
             Field { name: "command", lsb: 24, width: 6, unit: "", meaning: "Mode command, sent most significant bit first", values: Values::Codes(&[Named { name: "send_position", number: 7, meaning: "000111 send position (EnDat 2.1)" }, Named { name: "send_position_add_info", number: 56, meaning: "111000 send position with additional information (EnDat 2.2)" }]) },
         ] },
         Register { name: "timing", offset: 1, access: Access::ReadWrite, meaning: "First low phase and tolerance of the start bit.", fields: &[
             Field { name: "first_low_extra_cycles", lsb: 0, width: 11, unit: "cycles", meaning: "First low phase minus half a period (tST)", values: Values::Plain },
             Field { name: "start_window_cycles", lsb: 16, width: 6, unit: "cycles", meaning: "The start edge must come within plus or minus this of its expected phase", values: Values::Plain },
             Field { name: "filter_cycles", lsb: 24, width: 4, unit: "cycles", meaning: "Pulses on DATA up to this length are ignored; 0 = off", values: Values::Plain },
+            Field { name: "request_id", lsb: 28, width: 4, unit: "", meaning: "T-format: request ID of a trigger; 6 and 13 are not sent", values: Values::Plain },
         ] },
         Register { name: "limits", offset: 2, access: Access::ReadWrite, meaning: "Longest waits.", fields: &[
-            Field { name: "start_timeout_us", lsb: 0, width: 12, unit: "us", meaning: "Longest wait for the start bit after the turnaround", values: Values::Plain },
+            Field { name: "start_timeout_us", lsb: 0, width: 12, unit: "us", meaning: "Longest wait for the start bit after the turnaround; T-format: longest pause before the reply, 1..63", values: Values::Plain },
             Field { name: "recovery_limit_cycles", lsb: 16, width: 13, unit: "cycles", meaning: "DATA must fall within this after the frame (tm)", values: Values::Plain },
+            Field { name: "field_gap_us", lsb: 29, width: 3, unit: "us", meaning: "T-format: longest pause between two fields", values: Values::Plain },
         ] },
     ] },
     Block { name: "result", base: 0x180, stride: 8, per_channel: true, meaning: "Result of a channel; all words of all channels change together and never within a read command.", registers: &[
         Register { name: "status", offset: 0, access: Access::ReadOnly, meaning: "What became of the last trigger.", fields: &[
             Field { name: "sequence", lsb: 0, width: 16, unit: "", meaning: "Number of results, wrapping", values: Values::Plain },
-            Field { name: "cause", lsb: 16, width: 5, unit: "", meaning: "Primary cause; 8, 10 and 17 come with a good position: fresh tells", values: Values::Codes(&[Named { name: "none", number: 0, meaning: "none" }, Named { name: "data_not_low", number: 1, meaning: "data not low before start" }, Named { name: "no_start_bit", number: 2, meaning: "no start bit" }, Named { name: "start_window", number: 3, meaning: "start bit outside its window" }, Named { name: "crc", number: 4, meaning: "CRC" }, Named { name: "f1", number: 5, meaning: "F1" }, Named { name: "f2", number: 6, meaning: "F2" }, Named { name: "data_not_falling", number: 7, meaning: "data not falling after the frame" }, Named { name: "trigger_overrun", number: 8, meaning: "trigger overrun" }, Named { name: "unknown_command", number: 9, meaning: "unknown mode command" }, Named { name: "info_missing", number: 10, meaning: "additional information missing" }, Named { name: "no_encoder", number: 11, meaning: "no encoder" }, Named { name: "stuck_high", number: 12, meaning: "data stuck high" }, Named { name: "stuck_low", number: 13, meaning: "data stuck low" }, Named { name: "late_start", number: 14, meaning: "late start bit" }, Named { name: "watchdog", number: 15, meaning: "watchdog" }, Named { name: "own_echo", number: 16, meaning: "echo of the own command" }, Named { name: "recovery_too_short", number: 17, meaning: "recovery time too short" }]) },
+            Field { name: "cause", lsb: 16, width: 5, unit: "", meaning: "Primary cause; 8, 10, 17, 29 and 30 come with a good position: fresh tells", values: Values::Codes(&[Named { name: "none", number: 0, meaning: "none" }, Named { name: "data_not_low", number: 1, meaning: "data not low before start" }, Named { name: "no_start_bit", number: 2, meaning: "no start bit" }, Named { name: "start_window", number: 3, meaning: "start bit outside its window" }, Named { name: "crc", number: 4, meaning: "CRC" }, Named { name: "f1", number: 5, meaning: "F1" }, Named { name: "f2", number: 6, meaning: "F2" }, Named { name: "data_not_falling", number: 7, meaning: "data not falling after the frame" }, Named { name: "trigger_overrun", number: 8, meaning: "trigger overrun" }, Named { name: "unknown_command", number: 9, meaning: "unknown mode command" }, Named { name: "info_missing", number: 10, meaning: "additional information missing" }, Named { name: "no_encoder", number: 11, meaning: "no encoder" }, Named { name: "stuck_high", number: 12, meaning: "data stuck high" }, Named { name: "stuck_low", number: 13, meaning: "data stuck low" }, Named { name: "late_start", number: 14, meaning: "late start bit" }, Named { name: "watchdog", number: 15, meaning: "watchdog" }, Named { name: "own_echo", number: 16, meaning: "echo of the own command" }, Named { name: "recovery_too_short", number: 17, meaning: "recovery time too short" }, Named { name: "line_not_idle", number: 18, meaning: "line not idle" }, Named { name: "no_answer", number: 19, meaning: "no answer" }, Named { name: "no_header", number: 20, meaning: "no header" }, Named { name: "control_parity", number: 21, meaning: "parity of the control field" }, Named { name: "reply_echo", number: 22, meaning: "another ID or address in the reply" }, Named { name: "delimiter", number: 23, meaning: "delimiter" }, Named { name: "field_missing", number: 24, meaning: "field missing" }, Named { name: "reply_crc", number: 25, meaning: "CRC" }, Named { name: "request_parity", number: 26, meaning: "encoder saw a parity error" }, Named { name: "request_delimiter", number: 27, meaning: "encoder saw a delimiter error" }, Named { name: "eeprom_busy", number: 28, meaning: "EEPROM busy" }, Named { name: "counting_error", number: 29, meaning: "counting error" }, Named { name: "multi_turn_alarm", number: 30, meaning: "multi-turn or battery alarm" }]) },
             Field { name: "valid", lsb: 22, width: 1, unit: "", meaning: "There is a good position", values: Values::Plain },
             Field { name: "fresh", lsb: 23, width: 1, unit: "", meaning: "The last result brought the position; 0 = held from an earlier one", values: Values::Plain },
-            Field { name: "line", lsb: 24, width: 7, unit: "", meaning: "Raw flags: bit k stands for cause k + 11", values: Values::Bits(&[Named { name: "no_encoder", number: 0, meaning: "no encoder" }, Named { name: "stuck_high", number: 1, meaning: "data stuck high" }, Named { name: "stuck_low", number: 2, meaning: "data stuck low" }, Named { name: "late_start", number: 3, meaning: "late start bit" }, Named { name: "watchdog", number: 4, meaning: "watchdog" }, Named { name: "own_echo", number: 5, meaning: "echo of the own command" }, Named { name: "recovery_too_short", number: 6, meaning: "recovery time too short" }]) },
+            Field { name: "line", lsb: 24, width: 7, unit: "", meaning: "Raw flags: bit k stands for cause k + 11; T-format: bits 0, 1 and 2 for causes 29, 30 and 8", values: Values::Bits(&[Named { name: "no_encoder", number: 0, meaning: "no encoder" }, Named { name: "stuck_high", number: 1, meaning: "data stuck high" }, Named { name: "stuck_low", number: 2, meaning: "data stuck low" }, Named { name: "late_start", number: 3, meaning: "late start bit" }, Named { name: "watchdog", number: 4, meaning: "watchdog" }, Named { name: "own_echo", number: 5, meaning: "echo of the own command" }, Named { name: "recovery_too_short", number: 6, meaning: "recovery time too short" }]) },
         ] },
         Register { name: "position_low", offset: 1, access: Access::ReadOnly, meaning: "Last good position, bits 31..0.", fields: &[
             Field { name: "value", lsb: 0, width: 32, unit: "", meaning: "Bit 0 is the LSB", values: Values::Plain },
         ] },
         Register { name: "position_high", offset: 2, access: Access::ReadOnly, meaning: "Last good position, bits 47..32.", fields: &[
-            Field { name: "value", lsb: 0, width: 16, unit: "", meaning: "0 above the position's width", values: Values::Plain },
+            Field { name: "value", lsb: 0, width: 16, unit: "", meaning: "0 above the position's width; T-format: multi-turn in bits 47..24, single-turn in 23..0", values: Values::Plain },
         ] },
-        Register { name: "timestamp", offset: 3, access: Access::ReadOnly, meaning: "First falling clock edge of the frame that brought the position; equal in two channels = same trigger.", fields: &[
+        Register { name: "timestamp", offset: 3, access: Access::ReadOnly, meaning: "First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format: start bit of the request.", fields: &[
             Field { name: "value", lsb: 0, width: 32, unit: "cycles", meaning: "Since reset, wrapping", values: Values::Plain },
         ] },
         Register { name: "evidence", offset: 4, access: Access::ReadOnly, meaning: "How good the last frame was.", fields: &[
             Field { name: "crc_received", lsb: 0, width: 5, unit: "", meaning: "CRC as received", values: Values::Plain },
             Field { name: "crc_computed", lsb: 5, width: 5, unit: "", meaning: "CRC as computed", values: Values::Plain },
             Field { name: "delay_cycles", lsb: 10, width: 10, unit: "cycles", meaning: "Tracked line delay tD, synchroniser and filter included", values: Values::Plain },
-            Field { name: "flags", lsb: 20, width: 12, unit: "", meaning: "Raw flags", values: Values::Bits(&[Named { name: "data_not_low", number: 0, meaning: "data not low before start" }, Named { name: "no_start_bit", number: 1, meaning: "no start bit" }, Named { name: "start_window", number: 2, meaning: "start bit outside its window" }, Named { name: "crc", number: 3, meaning: "CRC" }, Named { name: "f1", number: 4, meaning: "F1" }, Named { name: "f2", number: 5, meaning: "F2" }, Named { name: "data_not_falling", number: 6, meaning: "data not falling after the frame" }, Named { name: "trigger_overrun", number: 7, meaning: "trigger overrun" }, Named { name: "parallel_crc", number: 8, meaning: "parallel CRC" }, Named { name: "tail_low", number: 9, meaning: "data not high after the frame" }, Named { name: "unknown_command", number: 10, meaning: "unknown mode command" }, Named { name: "info_missing", number: 11, meaning: "additional information missing" }]) },
+            Field { name: "flags", lsb: 20, width: 12, unit: "", meaning: "Raw flags; T-format: bit 0 for cause 9, bit k for cause k + 17", values: Values::Bits(&[Named { name: "data_not_low", number: 0, meaning: "data not low before start" }, Named { name: "no_start_bit", number: 1, meaning: "no start bit" }, Named { name: "start_window", number: 2, meaning: "start bit outside its window" }, Named { name: "crc", number: 3, meaning: "CRC" }, Named { name: "f1", number: 4, meaning: "F1" }, Named { name: "f2", number: 5, meaning: "F2" }, Named { name: "data_not_falling", number: 6, meaning: "data not falling after the frame" }, Named { name: "trigger_overrun", number: 7, meaning: "trigger overrun" }, Named { name: "parallel_crc", number: 8, meaning: "parallel CRC" }, Named { name: "tail_low", number: 9, meaning: "data not high after the frame" }, Named { name: "unknown_command", number: 10, meaning: "unknown mode command" }, Named { name: "info_missing", number: 11, meaning: "additional information missing" }]) },
         ] },
         Register { name: "age_recovery", offset: 5, access: Access::ReadOnly, meaning: "Age and recovery time.", fields: &[
             Field { name: "age_us", lsb: 0, width: 16, unit: "us", meaning: "Age of the position; stops at 65535", values: Values::Plain },

@@ -15,14 +15,19 @@ pub enum Scale {
         /// Measuring step in nanometres.
         step_nm: f64,
     },
+    /// Counts of a T-format encoder: single-turn in bits 23..0, turns above. How many of them are a turn, it does not tell.
+    TFormat,
 }
+
+/// Bits of the single-turn part.
+const T_FORMAT_SINGLE_BITS: u32 = 24;
 
 /// A position in units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InUnits {
-    /// Degrees within the turn, or millimetres.
+    /// Degrees within the turn, millimetres, or counts within the turn.
     pub value: f64,
-    /// `deg` or `mm`.
+    /// `deg`, `mm` or `counts`.
     pub unit: &'static str,
     /// Whole turns, of a rotary encoder.
     pub turns: Option<u64>,
@@ -52,15 +57,21 @@ impl Scale {
                 unit: "mm",
                 turns: None,
             },
+            Self::TFormat => InUnits {
+                value: (position & ((1 << T_FORMAT_SINGLE_BITS) - 1)) as f64,
+                unit: "counts",
+                turns: Some(position >> T_FORMAT_SINGLE_BITS),
+            },
         }
     }
 
-    /// The same in radians, or metres.
+    /// The same in radians, metres, or counts.
     pub fn si(&self, position: u64) -> f64 {
         let units = self.convert(position);
         match self {
             Self::Rotary { .. } => units.value / 360.0 * TAU,
             Self::Linear { .. } => units.value * 1e-3,
+            Self::TFormat => units.value,
         }
     }
 
@@ -69,6 +80,7 @@ impl Scale {
         let step = match *self {
             Self::Rotary { steps_per_turn } => 360.0 / steps_per_turn.max(1) as f64,
             Self::Linear { step_nm } => step_nm * 1e-6,
+            Self::TFormat => 1.0,
         };
         (-step.log10()).ceil().clamp(0.0, 12.0) as usize
     }
@@ -95,6 +107,17 @@ mod tests {
         assert_eq!(linear.convert(123_456).turns, None);
         assert_eq!(linear.digits(), 5);
         assert!((multiturn.si(1 << 24) - std::f64::consts::PI).abs() < 1e-12);
+    }
+
+    #[test]
+    fn counts_of_t_format_are_taken_apart_and_not_turned_into_an_angle() {
+        let units = Scale::TFormat.convert(7 << 24 | 0x01_FFFF);
+        assert_eq!(
+            (units.value, units.turns, units.unit),
+            (131_071.0, Some(7), "counts")
+        );
+        assert_eq!(Scale::TFormat.digits(), 0);
+        assert_eq!(Scale::TFormat.si(5), 5.0);
     }
 
     #[test]

@@ -24,6 +24,7 @@ use endat_hdl::stream::{channel::SetChannel, Stream};
 use endat_hdl::t_format::{
     channel::TFormatChannel,
     dsp::{AsyncDsp, TFormatStart},
+    port::TFormatPort,
 };
 use endat_hdl::transaction::Transaction;
 use rust_hdl::prelude::Block;
@@ -91,11 +92,17 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
         EncoderPort::new(FixedTimes::at(card.system_hz), Some(&times), false)
     };
     let full = load_preset("s6_two_channel_service")?.card;
+    let mixed = load_preset("mixed_protocols")?.card;
     let mut streaming = card.clone();
     streaming.stream.fifo_bytes = STREAM_BYTES;
     Ok(vec![
         Subject::new("card_service", "the card with everything", Card::new(&full))?,
         Subject::new("card", "two-channel card s6_two_channel", Card::new(&card))?,
+        Subject::new(
+            "card_mixed",
+            "the same with T-format on its second channel (mixed_protocols)",
+            Card::new(&mixed),
+        )?,
         Subject::new(
             "card_stream",
             "the same with a stream of 2048 bytes",
@@ -124,6 +131,11 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             AsyncDsp::new(&TFormatStart::default()),
         )?,
         Subject::new("t_format", "T-format receiver", TFormatChannel::default())?,
+        Subject::new(
+            "t_format_port",
+            "one T-format port of a card",
+            TFormatPort::default(),
+        )?,
         Subject::new("channel", "one position channel", Channel::new(times))?,
         Subject::new("port_all", "one port with everything", service(true))?,
         Subject::new(

@@ -4,6 +4,7 @@ mod line;
 mod names;
 mod outputs;
 mod pins;
+pub(crate) mod protocol;
 pub(crate) mod reader;
 pub(crate) mod schema;
 mod stream;
@@ -38,6 +39,10 @@ pub const PRESETS: &[(&str, &str)] = &[
     (
         "artinchip_endat_if",
         include_str!("../presets/artinchip_endat_if.toml"),
+    ),
+    (
+        "mixed_protocols",
+        include_str!("../presets/mixed_protocols.toml"),
     ),
 ];
 /// The presets of T-format receivers.
@@ -108,6 +113,18 @@ pub struct Project {
     pub pins: Vec<Assignment>,
     /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
     pub hash: String,
+}
+
+impl Project {
+    /// What its channels speak, for titles.
+    pub fn protocols(&self) -> &'static str {
+        let t_format = self.card.t_format_channels().count_ones() as usize;
+        match t_format {
+            0 => "EnDat",
+            n if n == self.card.channels.len() => "T-format",
+            _ => "EnDat and T-format",
+        }
+    }
 }
 
 /// Text of the preset with this name.

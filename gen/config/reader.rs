@@ -316,6 +316,22 @@ impl<'s, 't> Table<'s, 't> {
         self.table.get(key).is_some()
     }
 
+    /// Takes these keys as asked for.
+    pub fn know(&self, keys: &[&'static str]) {
+        self.known.borrow_mut().extend(keys);
+    }
+
+    /// Complains about a key that must not stand here, if it does.
+    pub fn refuse(&self, key: &'static str, text: &str) {
+        if !self.has(key) {
+            return;
+        }
+        if let Some(spanned) = self.get(key) {
+            let line = self.source.line(spanned.span().start);
+            self.complain(line, key, &self.excerpt(&spanned.span()), text);
+        }
+    }
+
     /// Notes a complaint about the table itself.
     pub fn complain_plain(&self, text: String) {
         self.source.complain_line(self.line, text);

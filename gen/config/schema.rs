@@ -2,7 +2,7 @@
 
 use super::pins::assign_pins;
 use super::reader::{At, Source, Table};
-use super::{check_name, line, outputs, stream, Project};
+use super::{check_name, line, outputs, protocol, stream, Project};
 use crate::board::{self, Assignment, Board};
 use crate::error::shorten;
 use endat_hdl::bus::HostBus;
@@ -85,7 +85,10 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let channels: Option<Vec<Option<Channel>>> = tables.as_ref().map(|tables| {
         let channels = tables.iter();
         channels
-            .map(|t| read_channel(t, &defaults, system_hz, is_aligned))
+            .map(|t| match protocol::is_t_format(t)? {
+                true => read_t_format(t, system_hz),
+                false => read_channel(t, &defaults, system_hz, is_aligned),
+            })
             .collect()
     });
     let trigger = root.table("trigger", &empty);
@@ -116,6 +119,14 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
             bus,
             &[("link", &link), ("board", &board_table), ("pins", &pins)],
         );
+    }
+    let is_t_format =
+        |c: &Option<Channel>| c.as_ref().is_some_and(|c| c.request.t_format.is_some());
+    if channels
+        .as_ref()
+        .is_some_and(|channels| !channels.is_empty() && channels.iter().all(is_t_format))
+    {
+        refuse_endat(&root, &service, &line_table);
     }
     if bus == Some(HostBus::Bare) {
         // Further channels would be the same module again.
@@ -318,7 +329,7 @@ fn canonical(
         if parts.infos != [0; LIST] {
             lines.push(format!("service infos {:?}", parts.infos));
         }
-        for (n, c) in card.channels.iter().enumerate() {
+        for (n, c) in card.endat_channels() {
             lines.push(format!(
                 "channel {n} wants_short {}",
                 c.wants_short_recovery()
@@ -326,6 +337,17 @@ fn canonical(
         }
     }
     for (n, c) in card.channels.iter().enumerate() {
+        if let Some(t_format) = &c.t_format {
+            lines.push(format!(
+                "channel {n} t_format bit_cycles {} filter_cycles {} request {} gaps {} {}",
+                c.period_cycles,
+                c.filter_cycles,
+                t_format.request.id(),
+                t_format.reply_gap_us,
+                t_format.field_gap_us
+            ));
+            continue;
+        }
         let numbers = [
             ("period_cycles", c.period_cycles),
             ("first_low_extra_cycles", c.first_low_extra_cycles),
@@ -421,12 +443,57 @@ fn read_channel(
         recovery_min_ns: value("recovery_min_ns").unwrap_or(RECOVERY_MIN_NS),
         recovery_max_ns: value("recovery_max_ns").unwrap_or(RECOVERY_MAX_NS),
         cable_m: value("cable_m").unwrap_or(CABLE_M),
+        t_format: None,
     };
     Some(Channel {
         request,
         encoder,
         places,
     })
+}
+
+/// A channel that speaks T-format; the numbers of EnDat in it mean nothing.
+fn read_t_format(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Channel> {
+    let encoder = read_encoder(table)?;
+    let (wanted, filter_ns, lines) = protocol::read(table, system_hz);
+    let mut places = Places::new();
+    for (key, line) in lines {
+        places.insert(key, (table.name(key), line));
+    }
+    places.insert("channel", (table.name("protocol"), table.line));
+    let request = ChannelRequest {
+        clock_hz: wanted.bit_hz,
+        tst_ns: 0,
+        command: ModeCommand::SendPosition,
+        position_bits: 0,
+        filter_ns,
+        start_window_ns: 0,
+        tcal_max_ns: 0,
+        recovery_min_ns: RECOVERY_MIN_NS,
+        recovery_max_ns: RECOVERY_MAX_NS,
+        cable_m: 0,
+        t_format: Some(wanted),
+    };
+    Some(Channel {
+        request,
+        encoder,
+        places,
+    })
+}
+
+/// Complains about what only EnDat channels have, on a card without any.
+fn refuse_endat(root: &Table<'_, '_>, service: &Table<'_, '_>, line: &Table<'_, '_>) {
+    let text = "takes a channel that speaks EnDat, and this card has none; leave the list empty";
+    for table in [service, line] {
+        if let Some(part) = table.strings("parts").unwrap_or_default().first() {
+            table.complain(part.line, "parts", &format!("{:?}", part.value), text);
+        }
+    }
+    if root.has("endat") {
+        root.complain_plain(
+            "[endat]: no channel of this card speaks EnDat; remove the table".into(),
+        );
+    }
 }
 
 /// The encoder's name, which goes into reports and comments; empty when none is given.

@@ -35,6 +35,8 @@ pub struct Map {
     pub origin: String,
     /// Major, minor and patch version of the register map.
     pub version: [u8; 3],
+    /// What its channels speak.
+    pub protocols: &'static str,
     /// Encoder ports.
     pub channels: u32,
     /// Blocks, lowest base first.
@@ -96,6 +98,7 @@ impl Map {
                 project.hash
             ),
             version: regs::VERSION,
+            protocols: project.protocols(),
             channels: config.channels.len() as u32,
             blocks: blocks.iter().map(map_block).collect(),
         }
@@ -113,8 +116,9 @@ impl Map {
             n => format!("{n} channels"),
         };
         format!(
-            "{}: EnDat acquisition card, {channels}, register map {}.",
+            "{}: {} acquisition card, {channels}, register map {}.",
             self.name,
+            self.protocols,
             self.version()
         )
     }

@@ -2,18 +2,17 @@
 
 use super::Receiver;
 use crate::config::check_name;
-use crate::config::reader::{At, Source, Table};
+use crate::config::protocol::{read_bit_hz, read_request, T_FORMAT};
+use crate::config::reader::{Source, Table};
 use crate::config::schema::{not_toml, read_encoder};
 use endat_hdl::config::limits;
 use endat_hdl::t_format::dsp::TFormatStart;
-use endat_hdl::t_format::protocol::{Request, BIT_HZ, FAST_BIT_HZ};
+use endat_hdl::t_format::protocol::FAST_BIT_HZ;
 use sha2::{Digest, Sha256};
 use toml::de::DeTable;
 
 /// Bus that makes a configuration one of a receiver.
 pub const BUS: &str = "dsp";
-/// Protocol of its channel.
-pub const PROTOCOL: &str = "t_format";
 /// Longest filter at the fast rate and a clock of 20 MHz, where a bit has four clocks.
 const FAST_FILTER_CYCLES_MAX: u64 = 1;
 
@@ -76,7 +75,7 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
 fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
     let usual = TFormatStart::default();
     let protocol = table.required_string("protocol", "\"t_format\"");
-    if let Some(protocol) = protocol.filter(|p| p.value != PROTOCOL) {
+    if let Some(protocol) = protocol.filter(|p| p.value != T_FORMAT) {
         let text = "the bus \"dsp\" is that of a T-format receiver; use \"t_format\", or another host.bus for EnDat";
         table.complain(
             protocol.line,
@@ -86,20 +85,8 @@ fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
         );
     }
     let encoder = read_encoder(table);
-    let bit = table.integer("bit_hz", &limits("bit_hz", None));
-    let is_bad = |bit: &&At<u64>| ![BIT_HZ, FAST_BIT_HZ].contains(&bit.value);
-    if let Some(bit) = bit.as_ref().filter(is_bad) {
-        let text = format!("is no rate of T-format encoders; use {BIT_HZ} or {FAST_BIT_HZ}");
-        table.complain(bit.line, "bit_hz", &bit.value.to_string(), &text);
-    }
-    let fast = bit.is_some_and(|bit| bit.value == FAST_BIT_HZ);
-    let request = table.integer("request", &limits("request", None));
-    let known = |id: u64| u8::try_from(id).ok().and_then(Request::from_id);
-    if let Some(request) = request.as_ref().filter(|r| known(r.value).is_none()) {
-        let ids: Vec<String> = Request::ALL.iter().map(|r| r.id().to_string()).collect();
-        let text = format!("is no request ID; use one of {}", ids.join(", "));
-        table.complain(request.line, "request", &request.value.to_string(), &text);
-    }
+    let fast = read_bit_hz(table).is_some_and(|bit| bit.value == FAST_BIT_HZ);
+    let request = read_request(table);
     let number = |key: &'static str, usual: u64| {
         let limits = match (key, fast) {
             ("filter_cycles", true) => {
@@ -120,7 +107,7 @@ fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
         reply_gap_us: number("reply_gap_us", usual.reply_gap_us),
         field_gap_us: number("field_gap_us", usual.field_gap_us),
         filter_cycles: number("filter_cycles", usual.filter_cycles),
-        request_id: request.map_or(usual.request_id, |r| r.value as u8 & 15),
+        request_id: request.map_or(usual.request_id, |r| r.value.id()),
     };
     Some((encoder?, start))
 }

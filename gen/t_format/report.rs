@@ -1,6 +1,7 @@
 //! What a receiver's configuration becomes, as text and as data.
 
 use super::Receiver;
+use crate::config::protocol::T_FORMAT;
 use endat_hdl::t_format::protocol::{
     Request, BIT_HZ, FAST_BIT_HZ, FIELD_BITS, SYSTEM_HZ, WAIT_GRACE_US,
 };
@@ -87,7 +88,7 @@ pub fn report(receiver: &Receiver) -> Report {
     Report {
         name: receiver.name.clone(),
         config_hash: receiver.hash.clone(),
-        protocol: super::read::PROTOCOL,
+        protocol: T_FORMAT,
         bus: super::read::BUS,
         encoder: receiver.encoder.clone(),
         bit_hz,

@@ -19,10 +19,11 @@ use endat_hdl::elaborate::elaborate;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::service::program::ServiceTimes;
 use endat_host::Transport;
-use endat_sim::bench::{Bench, Link, PinNames, Uart};
+use endat_sim::bench::{Bench, Link, PinNames, TFormatLink, Uart};
 use endat_sim::encoder::{EncoderConfig, LatchEdge, PositionSource, DEVICES};
 use endat_sim::engine::Compiled;
 use endat_sim::line::{Jitter, LineConfig};
+use endat_sim::t_format;
 use endat_sim::{Time, MS, NS, US};
 use rust_hdl::prelude::Block;
 use std::io;
@@ -37,6 +38,12 @@ const LINK_TIMEOUT_US: u64 = 5_000;
 const POWER_UP_MS: u16 = 2;
 const RESET_MS: u16 = 3;
 const WRITE_MS: u16 = 2;
+
+/// The T-format encoder: single-turn position of 17 bits, multi-turn of 16.
+const T_FORMAT_DEVICE: &str = "TS5700N8401";
+const T_FORMAT_SINGLE_BITS: u32 = 17;
+/// Delay of a metre of cable, in nanoseconds.
+const NS_PER_M: f64 = 5.0;
 
 /// A second of simulated time.
 const SECOND: f64 = 1_000.0 * MS as f64;
@@ -132,6 +139,45 @@ fn motion(encoder: &EncoderConfig, channel: usize, speed: f64) -> PositionSource
     }))
 }
 
+/// A T-format encoder on its line, turning as others do. `none` is an open plug; there is one device only.
+fn t_format_link(
+    project: &Project,
+    channel: usize,
+    wanted: Option<&str>,
+    config: &VirtualConfig,
+) -> Result<TFormatLink, GenError> {
+    if let Some(name) = wanted.filter(|n| *n != "none" && plain(n) != plain(T_FORMAT_DEVICE)) {
+        return Err(GenError::input(format!(
+            "--encoder = {}: channel {channel} speaks T-format; the devices there are {T_FORMAT_DEVICE} and none; give --encoder once for each channel",
+            shown(name)
+        )));
+    }
+    let request = project.card.channels[channel].t_format.unwrap_or_default();
+    let encoder = t_format::EncoderConfig {
+        bit_hz: request.bit_hz,
+        // A battery that is full: otherwise every result would have that alarm.
+        status: 0,
+        alarm: 0,
+        jitter: config.jitter_ns as Time * NS,
+        write_time: MS,
+        seed: config.seed.wrapping_add(channel as u64),
+        ..t_format::EncoderConfig::default()
+    };
+    let mut link = TFormatLink::new(encoder, (config.cable_m * NS_PER_M * NS as f64) as Time);
+    let speed = config.speed * (1.0 + 0.5 * channel as f64);
+    let start = 100.1 * (channel + 1) as f64;
+    link.set_motion(Arc::new(move |time: Time| {
+        let turns = start + speed * time as f64 / SECOND;
+        let steps = (turns * f64::from(1 << T_FORMAT_SINGLE_BITS)).max(0.0) as u64;
+        let single = steps & ((1 << T_FORMAT_SINGLE_BITS) - 1);
+        (single as u32, (steps >> T_FORMAT_SINGLE_BITS) as u16 as u32)
+    }));
+    if wanted == Some("none") {
+        link.unplug();
+    }
+    Ok(link)
+}
+
 impl VirtualCard {
     /// The card of a configuration.
     pub fn new(project: &Project, config: &VirtualConfig) -> Result<Self, GenError> {
@@ -160,8 +206,15 @@ impl VirtualCard {
         let design = elaborate(&block, "card").map_err(|e| fault(&e))?;
         let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
         let mut links = Vec::new();
+        let mut t_format = Vec::new();
         for channel in 0..card.channels.len() {
             let wanted = config.encoders.get(channel).or(config.encoders.first());
+            if card.channels[channel].t_format.is_some() {
+                let wanted = wanted.map(String::as_str);
+                let link = t_format_link(project, channel, wanted, config)?;
+                t_format.push((PinNames::card(channel), link));
+                continue;
+            }
             let is_open = wanted.is_some_and(|name| name == "none");
             let mut encoder = encoder(
                 project,
@@ -187,6 +240,9 @@ impl VirtualCard {
             links.push((PinNames::card(channel), Link::new(line, encoder)));
         }
         let mut bench = Bench::new(engine, card.system_hz, links);
+        for (names, link) in t_format {
+            bench.add_t_format(&names, link);
+        }
         if card.line.double_edge {
             bench.set_double_edge();
         }

@@ -1,6 +1,8 @@
 use super::*;
-use crate::regs::tests::test_config;
-use crate::regs::{blocks, Access, Block as RegisterBlock, CARD, CARD_CONFIG, RESULT};
+use crate::config::CardConfig;
+use crate::regs::tests::{mixed_config, test_config};
+use crate::regs::{blocks, Access, Block as RegisterBlock, CARD, CARD_CONFIG, RESULT, T_FORMAT};
+use crate::t_format::cause;
 use crate::testing::tick;
 use rust_hdl::prelude::Block;
 
@@ -28,6 +30,11 @@ impl Host {
     fn with_channels(data: bool, sources: u8, channels: usize) -> Self {
         let mut config = test_config();
         config.channels = config.channels.into_iter().cycle().take(channels).collect();
+        Self::of(data, sources, config)
+    }
+
+    fn of(data: bool, sources: u8, mut config: CardConfig) -> Self {
+        let channels = config.channels.len();
         config.sources.pin = sources & 1 != 0;
         config.sources.timer = sources & 2 != 0;
         config.sources.register = sources & 4 != 0;
@@ -361,4 +368,43 @@ fn cards_of_one_and_of_four_channels_reach_every_channel() {
             (1, 1)
         );
     }
+}
+
+#[test]
+fn a_t_format_channel_has_its_words_and_an_endat_channel_none_of_them() {
+    let mut host = Host::of(true, 0, mixed_config());
+    host.idle(3_000);
+    let at = |register, channel| address(T_FORMAT, register, channel);
+    assert_eq!(host.read(at("send", 0), 64), [0; 64]);
+    // An ID that there is not: refused at once, so nobody has to be on the line.
+    let id = 4 << 16;
+    host.write(at("send", 0), &[id]);
+    host.write(at("parts", 1) + 1, &[id]);
+    assert_eq!(host.read(at("answer", 0), 16), [0; 16], "no such word");
+    host.write(at("send", 1), &[id]);
+    let answer = host.read(at("answer", 1), 1)[0];
+    assert_eq!(answer >> 12, 1 << 4 | cause::UNKNOWN_REQUEST as u32);
+    assert_eq!(host.read(at("send", 0), 9), [0; 9]);
+    // The words of other pages with the same low address are absent.
+    for page in [0x040, 0x200, 0x2c0, 0x400, 0x480, 0x4c0] {
+        assert_eq!(host.read(page + at("answer", 1) % 64, 1), [0], "{page:x}");
+    }
+}
+
+#[test]
+fn a_trigger_starts_both_protocols() {
+    let mut host = Host::of(false, 4, mixed_config());
+    host.card.endat_data_i[1].next = true;
+    host.idle(3_000);
+    host.write(address(CARD, "trigger_now", 0), &[1]);
+    let clock = &host.card.endat_clk_o[1];
+    assert!(clock.val(), "T-format has no clock");
+    // Nobody answers: in the T-format channel that is known soonest, and the host sees both results together.
+    host.idle(4_000);
+    let port = &host.card.core.port[1];
+    assert_eq!(port.sequence.val().to_u64(), 1);
+    assert_eq!(port.cause.val().to_u64(), cause::of_card(cause::NO_ANSWER));
+    assert_eq!(host.read(address(RESULT, "status", 1), 1), [0]);
+    assert!(host.falls[1].is_empty(), "no clock");
+    assert!(!host.falls[0].is_empty());
 }

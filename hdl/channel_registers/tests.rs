@@ -114,6 +114,8 @@ fn output(uut: &ChannelRegisters, field: &str) -> u64 {
         "first_low_extra_cycles" => uut.first_low_extra_cycles.val().to_u64(),
         "start_window_cycles" => uut.start_window_cycles.val().to_u64(),
         "filter_cycles" => uut.filter_cycles.val().to_u64(),
+        "request_id" => uut.request_id.val().to_u64(),
+        "field_gap_us" => uut.field_gap_us.val().to_u64(),
         "start_timeout_us" => uut.start_timeout_us.val().to_u64(),
         "recovery_limit_cycles" => uut.recovery_limit_cycles.val().to_u64(),
         other => panic!("the table has a field that the test does not know: {other}"),

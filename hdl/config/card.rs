@@ -63,7 +63,11 @@ impl CardDraft {
                 .map(|c| ChannelConfig::resolve(c, system_hz, index))
             {
                 Some(Ok(channel)) => {
-                    if self.service.continuous && channel.period_cycles < CONTINUOUS_PERIOD_MIN {
+                    let is_endat = channel.t_format.is_none();
+                    if is_endat
+                        && self.service.continuous
+                        && channel.period_cycles < CONTINUOUS_PERIOD_MIN
+                    {
                         problems.push(too_fast_for_continuous(index, &channel, system_hz));
                     }
                     channels.push((index, channel));
@@ -257,6 +261,15 @@ impl CardDraft {
 
 /// Why a trigger would come before a channel is ready, with the shares that can be shortened, the longest first.
 fn too_long(index: usize, channel: &ChannelConfig, cycles: u64, system_hz: u64) -> String {
+    if let Some(t_format) = &channel.t_format {
+        return format!(
+            "an exchange of T-format channel {index} takes up to {} us with its pauses, so at most {} Hz; lower it, or lower reply_gap_us = {} and field_gap_us = {}, or ask for less with request = 0",
+            microseconds(cycles, system_hz),
+            system_hz / cycles,
+            t_format.reply_gap_us,
+            t_format.field_gap_us
+        );
+    }
     let frame = channel.frame_time(system_hz);
     let waiting = (frame.lead_pulses - u64::from(LEAD_PULSES)) * channel.period_cycles;
     let request = &channel.request;

@@ -19,6 +19,13 @@ impl ChannelConfig {
             section: Section::Channel(index),
             problems: &mut problems,
         };
+        if let Some(wanted) = &request.t_format {
+            let resolved = Self::resolve_t_format(&mut check, request, wanted, system_hz);
+            return match resolved {
+                Some(config) if problems.is_empty() => Ok(config),
+                _ => Err(problems),
+            };
+        }
         let system = Some(system_hz);
         let mut check_one = |key, value| check.within(key, value, &limits(key, system));
         let position_good = check_one("position_bits", request.position_bits);
@@ -52,7 +59,13 @@ impl ChannelConfig {
                 } else {
                     0
                 },
-                filter_cycles: check_filter(&mut check, request, half, system_hz),
+                filter_cycles: check_filter(
+                    &mut check,
+                    request,
+                    half,
+                    system_hz,
+                    "an EnDat period",
+                ),
                 start_window_cycles: check_window(&mut check, request, period_cycles, system_hz),
                 start_timeout_us: request
                     .tcal_max_ns
@@ -66,6 +79,7 @@ impl ChannelConfig {
                 // DATA must be low for longer than tR.
                 ready_low_cycles: cycles_at_least(READY_LOW_NS, system_hz) + 1,
                 abort_us: ABORT_US,
+                t_format: None,
                 request: request.clone(),
             }
         });
@@ -145,8 +159,8 @@ impl ChannelConfig {
         first_low + (lead + u64::from(self.command.answer_bits(self.position_bits))) * period
     }
 
-    /// Shortest time between two triggers in the worst case: frame, line delay, longest recovery time, tR.
-    pub fn cycle_max_cycles(&self, system_hz: u64) -> u64 {
+    /// Shortest time between two frames in the worst case: frame, line delay, longest recovery time, tR.
+    pub(super) fn frame_cycle_max_cycles(&self, system_hz: u64) -> u64 {
         self.frame_time(system_hz).frame_cycles
             + cycles_at_least(
                 self.request.delay_max_ns() + self.request.recovery_max_ns,
@@ -253,7 +267,13 @@ fn check_tst(check: &mut Check<'_>, request: &ChannelRequest, half: u64, system_
     extra
 }
 
-fn check_filter(check: &mut Check<'_>, request: &ChannelRequest, half: u64, system_hz: u64) -> u64 {
+pub(super) fn check_filter(
+    check: &mut Check<'_>,
+    request: &ChannelRequest,
+    half: u64,
+    system_hz: u64,
+    whole: &str,
+) -> u64 {
     let cycles = cycles_at_least(request.filter_ns, system_hz);
     let most = half.min(max_of(FILTER_BITS));
     if cycles > most {
@@ -261,7 +281,7 @@ fn check_filter(check: &mut Check<'_>, request: &ChannelRequest, half: u64, syst
             "filter_ns",
             request.filter_ns,
             format!(
-                "is {cycles} cycles, more than {most} (half an EnDat period, and {} at most); use {} ns or less",
+                "is {cycles} cycles, more than {most} (half {whole}, and {} at most); use {} ns or less",
                 max_of(FILTER_BITS),
                 cycles_at_most_ns(most, system_hz)
             ),

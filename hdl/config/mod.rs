@@ -10,9 +10,11 @@
 mod card;
 mod channel;
 mod limits;
+mod t_format;
 
 pub use card::{needed_baud, read_bytes, stream_baud, BAUD_NOTE};
 pub use limits::{limits, Limits};
+pub use t_format::{is_rate, is_triggered, TFormatRequest};
 
 use crate::line_delay::mode;
 use crate::line_monitor::LineStart;
@@ -90,6 +92,8 @@ pub struct ChannelRequest {
     pub recovery_max_ns: u64,
     /// Longest cable, in metres.
     pub cable_m: u64,
+    /// The channel speaks T-format: of the other numbers only `filter_ns` counts.
+    pub t_format: Option<TFormatRequest>,
 }
 
 /// What is asked of a card.
@@ -347,6 +351,9 @@ pub struct ChannelConfig {
     pub ready_low_cycles: u64,
     /// Quiet time after an aborted transfer, in microseconds.
     pub abort_us: u64,
+    /// The channel speaks T-format: `period_cycles` is a bit, `start_timeout_us` the longest pause before the reply, and of the other
+    /// numbers only `filter_cycles` counts.
+    pub t_format: Option<TFormatRequest>,
     /// What was asked for, for reports.
     pub request: ChannelRequest,
 }

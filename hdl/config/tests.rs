@@ -15,6 +15,7 @@ fn rcn_8510() -> ChannelRequest {
         recovery_min_ns: RECOVERY_MIN_NS,
         recovery_max_ns: RECOVERY_MAX_NS,
         cable_m: 100,
+        t_format: None,
     }
 }
 

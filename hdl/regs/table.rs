@@ -87,6 +87,7 @@ pub const CARD: Block = Block {
                         | ((s.stream.fifo_bytes != 0) as u64) << 11
                         | (s.outputs.any() as u64) << 12
                         | (s.outputs.interrupt as u64) << 13
+                        | ((s.t_format_channels() != 0) as u64) << 14
                 })
                 .bits(&FEATURES),
             ],
@@ -110,6 +111,20 @@ pub const CARD: Block = Block {
                 "",
                 "First 8 digits of the hash that stands in the generated files",
                 |s, _| s.hash >> 16,
+            )],
+        ),
+        word(
+            "protocols",
+            5,
+            ReadOnly,
+            "Which channels speak another protocol than EnDat.",
+            &[field(
+                "t_format",
+                0,
+                8,
+                "",
+                "T-format: bit n for channel n",
+                |s, _| s.t_format_channels(),
             )],
         ),
         word(
@@ -270,7 +285,7 @@ pub const CHANNEL_CONFIG: Block = Block {
                     0,
                     11,
                     "cycles",
-                    "EnDat clock period; the high phase is the longer one when odd",
+                    "EnDat clock period; the high phase is the longer one when odd; T-format: a bit, 8..127",
                     |s, c| of(s, c, |v| v.period_cycles),
                 ),
                 field(
@@ -278,7 +293,7 @@ pub const CHANNEL_CONFIG: Block = Block {
                     16,
                     6,
                     "bits",
-                    "Position width, 1..48",
+                    "Position width, 1..48; T-format: no meaning, as command",
                     |s, c| of(s, c, |v| v.position_bits as u64),
                 ),
                 field(
@@ -287,7 +302,12 @@ pub const CHANNEL_CONFIG: Block = Block {
                     6,
                     "",
                     "Mode command, sent most significant bit first",
-                    |s, c| of(s, c, |v| v.command.code() as u64),
+                    |s, c| {
+                        of(s, c, |v| match v.t_format {
+                            Some(_) => 0,
+                            None => v.command.code() as u64,
+                        })
+                    },
                 )
                 .codes(&POSITION_COMMANDS),
             ],
@@ -322,6 +342,14 @@ pub const CHANNEL_CONFIG: Block = Block {
                     "Pulses on DATA up to this length are ignored; 0 = off",
                     |s, c| of(s, c, |v| v.filter_cycles),
                 ),
+                field(
+                    "request_id",
+                    28,
+                    4,
+                    "",
+                    "T-format: request ID of a trigger; 6 and 13 are not sent",
+                    |s, c| of(s, c, |v| v.t_format.map_or(0, |t| t.request.id().into())),
+                ),
             ],
         ),
         word(
@@ -335,7 +363,7 @@ pub const CHANNEL_CONFIG: Block = Block {
                     0,
                     12,
                     "us",
-                    "Longest wait for the start bit after the turnaround",
+                    "Longest wait for the start bit after the turnaround; T-format: longest pause before the reply, 1..63",
                     |s, c| of(s, c, |v| v.start_timeout_us),
                 ),
                 field(
@@ -345,6 +373,14 @@ pub const CHANNEL_CONFIG: Block = Block {
                     "cycles",
                     "DATA must fall within this after the frame (tm)",
                     |s, c| of(s, c, |v| v.recovery_limit_cycles),
+                ),
+                field(
+                    "field_gap_us",
+                    29,
+                    3,
+                    "us",
+                    "T-format: longest pause between two fields",
+                    |s, c| of(s, c, |v| v.t_format.map_or(0, |t| t.field_gap_us)),
                 ),
             ],
         ),
@@ -362,25 +398,25 @@ pub const RESULT: Block = Block {
     registers: &[
         word("status", 0, ReadOnly, "What became of the last trigger.", &[
             field("sequence", 0, 16, "", "Number of results, wrapping", zero),
-            field("cause", 16, 5, "", "Primary cause; 8, 10 and 17 come with a good position: fresh tells", zero).codes(&CAUSES),
+            field("cause", 16, 5, "", "Primary cause; 8, 10, 17, 29 and 30 come with a good position: fresh tells", zero).codes(&CAUSES),
             field("valid", 22, 1, "", "There is a good position", zero),
             field("fresh", 23, 1, "", "The last result brought the position; 0 = held from an earlier one", zero),
-            field("line", 24, 7, "", "Raw flags: bit k stands for cause k + 11", zero).bits(&LINE_FLAGS),
+            field("line", 24, 7, "", "Raw flags: bit k stands for cause k + 11; T-format: bits 0, 1 and 2 for causes 29, 30 and 8", zero).bits(&LINE_FLAGS),
         ]),
         word("position_low", 1, ReadOnly, "Last good position, bits 31..0.", &[
             field("value", 0, 32, "", "Bit 0 is the LSB", zero),
         ]),
         word("position_high", 2, ReadOnly, "Last good position, bits 47..32.", &[
-            field("value", 0, 16, "", "0 above the position's width", zero),
+            field("value", 0, 16, "", "0 above the position's width; T-format: multi-turn in bits 47..24, single-turn in 23..0", zero),
         ]),
-        word("timestamp", 3, ReadOnly, "First falling clock edge of the frame that brought the position; equal in two channels = same trigger.", &[
+        word("timestamp", 3, ReadOnly, "First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format: start bit of the request.", &[
             field("value", 0, 32, "cycles", "Since reset, wrapping", zero),
         ]),
         word("evidence", 4, ReadOnly, "How good the last frame was.", &[
             field("crc_received", 0, 5, "", "CRC as received", zero),
             field("crc_computed", 5, 5, "", "CRC as computed", zero),
             field("delay_cycles", 10, 10, "cycles", "Tracked line delay tD, synchroniser and filter included", zero),
-            field("flags", 20, 12, "", "Raw flags", zero).bits(&EVIDENCE_FLAGS),
+            field("flags", 20, 12, "", "Raw flags; T-format: bit 0 for cause 9, bit k for cause k + 17", zero).bits(&EVIDENCE_FLAGS),
         ]),
         word("age_recovery", 5, ReadOnly, "Age and recovery time.", &[
             field("age_us", 0, 16, "us", "Age of the position; stops at 65535", zero),

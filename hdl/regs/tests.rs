@@ -1,5 +1,6 @@
 use super::*;
-use crate::config::{CardRequest, ChannelRequest, TriggerSources};
+use crate::config::TFormatRequest;
+use crate::config::{CardRequest, ChannelConfig, ChannelRequest, TriggerSources};
 use crate::protocol::ModeCommand;
 
 /// The card of the tests: two unlike channels, a UART of 8 cycles per bit.
@@ -15,6 +16,7 @@ pub fn test_config() -> CardConfig {
         recovery_min_ns: 10_000,
         recovery_max_ns: 30_000,
         cable_m: 20,
+        t_format: None,
     };
     let second = ChannelRequest {
         clock_hz: 2_000_000,
@@ -40,6 +42,17 @@ pub fn test_config() -> CardConfig {
     })
     .unwrap();
     config.hash = 0x0123_4567_89ab;
+    config
+}
+
+/// The same card with a T-format encoder on its second channel.
+pub fn mixed_config() -> CardConfig {
+    let mut config = test_config();
+    let request = ChannelRequest {
+        t_format: Some(TFormatRequest::default()),
+        ..config.channels[1].request.clone()
+    };
+    config.channels[1] = ChannelConfig::resolve(&request, config.system_hz, 1).unwrap();
     config
 }
 
@@ -69,6 +82,7 @@ card_version 001 ro
 card_capabilities 002 ro
 card_system_hz 003 ro
 card_configuration_hash 004 ro
+card_protocols 005 ro
 card_trigger_count 008 ro
 card_trigger_now 009 strobe
 card_calibrate 00A strobe
@@ -83,6 +97,14 @@ direct0_crop 080 rw
 direct0_error_causes 081 rw
 direct1_crop 088 rw
 direct1_error_causes 089 rw
+t_format0_send 0C0 strobe
+t_format0_answer 0C1 ro
+t_format0_fields 0C2 ro
+t_format0_parts 0C3 ro
+t_format1_send 0C8 strobe
+t_format1_answer 0C9 ro
+t_format1_fields 0CA ro
+t_format1_parts 0CB ro
 config_trigger_sources 100 rw
 config_trigger_period 101 rw
 config_hold 102 rw
@@ -361,6 +383,7 @@ capabilities max_position_bits 15:8
 capabilities features 31:16
 system_hz value 31:0
 configuration_hash value 31:0
+protocols t_format 7:0
 trigger_count value 31:0
 trigger_now trigger 0:0
 calibrate channels 7:0
@@ -397,6 +420,20 @@ clear channel_7 31:28
 crop first_bit 5:0
 crop length_bits 13:8
 error_causes causes 31:0
+send data 7:0
+send address 14:8
+send id 19:16
+answer data 7:0
+answer id 11:8
+answer cause 15:12
+answer done 16:16
+answer busy 17:17
+fields status 7:0
+fields encoder_id 15:8
+fields alarm 23:16
+fields crc 31:24
+parts single_valid 0:0
+parts multi_valid 1:1
 trigger_sources pin 0:0
 trigger_sources timer 1:1
 trigger_sources register 2:2
@@ -409,8 +446,10 @@ frame command 29:24
 timing first_low_extra_cycles 10:0
 timing start_window_cycles 21:16
 timing filter_cycles 27:24
+timing request_id 31:28
 limits start_timeout_us 11:0
 limits recovery_limit_cycles 28:16
+limits field_gap_us 31:29
 status sequence 15:0
 status cause 20:16
 status valid 22:22
@@ -675,4 +714,17 @@ fn start_values_are_those_of_the_configuration() {
         assert_eq!(u64::from(words[2] & 0xffff), channel.start_timeout_us);
         assert_eq!(u64::from(words[2] >> 16), channel.recovery_limit_cycles);
     }
+}
+
+#[test]
+fn a_t_format_channel_starts_with_its_own_numbers() {
+    let config = mixed_config();
+    let words = config_words(&config, Some(1));
+    // 40 cycles in a bit, filter of 2, request 3; no mode command, no window, no recovery time.
+    assert_eq!(words, [40 | 48 << 16, 2 << 24 | 3 << 28, 20 | 2 << 29]);
+    assert_eq!(CARD.register("protocols").unwrap().start(&config, 0), 2);
+    let features = CARD.register("capabilities").unwrap().start(&config, 0) >> 16;
+    assert_eq!(features >> 14 & 1, 1);
+    assert!(blocks(&config).any(|b| b.name == "t_format"));
+    assert!(blocks(&test_config()).all(|b| b.name != "t_format"));
 }

@@ -3,6 +3,7 @@
 use crate::line_delay::mode;
 use crate::protocol::ModeCommand;
 use crate::service::map::request_state;
+use crate::t_format::cause as t_format;
 use crate::transaction::cause;
 
 /// A number, or a bit, with a name.
@@ -35,7 +36,7 @@ const fn named(name: &'static str, number: u32, meaning: &'static str) -> Named 
     }
 }
 
-/// Names of the causes; `frames_<name>` counts them.
+/// Names of EnDat's causes; `frames_<name>` counts them.
 const CAUSE_NAMES: [&str; cause::COUNT as usize] = [
     "none",
     "data_not_low",
@@ -57,12 +58,53 @@ const CAUSE_NAMES: [&str; cause::COUNT as usize] = [
     "recovery_too_short",
 ];
 
-/// Primary causes.
-pub const CAUSES: [Named; cause::COUNT as usize] = {
-    let mut all = [named("", 0, ""); cause::COUNT as usize];
+/// Names of T-format's causes; a result has those that EnDat has too under EnDat's number.
+const T_FORMAT_NAMES: [&str; t_format::COUNT as usize] = [
+    "none",
+    "unknown_command",
+    "line_not_idle",
+    "no_answer",
+    "no_header",
+    "control_parity",
+    "reply_echo",
+    "delimiter",
+    "field_missing",
+    "reply_crc",
+    "request_parity",
+    "request_delimiter",
+    "eeprom_busy",
+    "counting_error",
+    "multi_turn_alarm",
+    "trigger_overrun",
+];
+
+/// T-format's causes, as an exchange of the host has them.
+pub const T_FORMAT_CAUSES: [Named; t_format::COUNT as usize] = {
+    let mut all = [named("", 0, ""); t_format::COUNT as usize];
     let mut code = 0;
     while code < all.len() {
+        let meaning = t_format::name(code as u64);
+        all[code] = named(T_FORMAT_NAMES[code], code as u32, meaning);
+        code += 1;
+    }
+    all
+};
+
+/// Primary causes of both protocols.
+pub const CAUSES: [Named; cause::ALL_COUNT as usize] = {
+    let mut all = [named("", 0, ""); cause::ALL_COUNT as usize];
+    let mut code = 0;
+    while code < CAUSE_NAMES.len() {
         all[code] = named(CAUSE_NAMES[code], code as u32, cause::name(code as u64));
+        code += 1;
+    }
+    code = 0;
+    while code < T_FORMAT_NAMES.len() {
+        let at = t_format::of_card(code as u64) as usize;
+        if at >= CAUSE_NAMES.len() {
+            let meaning = t_format::name(code as u64);
+            all[at] = named(T_FORMAT_NAMES[code], at as u32, meaning);
+        }
         code += 1;
     }
     all
@@ -119,7 +161,7 @@ pub const PHASE_MODES: [Named; 3] = [
 ];
 
 /// What a card has.
-pub const FEATURES: [Named; 14] = [
+pub const FEATURES: [Named; 15] = [
     named("endat22", 0, "EnDat 2.2 position frames (111000)"),
     named("line_delay", 1, "line delay is measured"),
     named("trigger_pin", 2, "trigger pin"),
@@ -138,6 +180,7 @@ pub const FEATURES: [Named; 14] = [
     named("stream", 11, "stream of sample sets"),
     named("direct", 12, "direct outputs"),
     named("interrupt", 13, "interrupt"),
+    named("t_format", 14, "T-format channels"),
 ];
 
 /// Steps of the initialisation, in their order.
@@ -301,7 +344,7 @@ mod tests {
     /// Catches a cause that is inserted in one list and not in the other.
     #[test]
     fn each_cause_has_the_name_of_its_counter() {
-        for cause in CAUSES {
+        for cause in &CAUSES[..CAUSE_NAMES.len()] {
             let name = match cause.name {
                 "none" => "frames_good".to_owned(),
                 name => format!("frames_{name}"),
@@ -355,6 +398,6 @@ mod tests {
                 assert!(!listed[..index].iter().any(twin), "{}", value.name);
             }
         }
-        assert_eq!(lists, 34);
+        assert_eq!(lists, 35);
     }
 }

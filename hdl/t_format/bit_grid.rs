@@ -16,13 +16,13 @@ pub struct BitGrid {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// System clock cycles in a bit, 4 to 31.
-    pub bit_cycles: Signal<In, Bits<5>>,
+    /// System clock cycles in a bit, 4 to 127.
+    pub bit_cycles: Signal<In, Bits<7>>,
     /// This cycle is the first one of a bit.
     pub restart: Signal<In, Bit>,
     /// High for one cycle in the middle of each bit.
     pub strobe: Signal<Out, Bit>,
-    left: Reg<Bits<5>>,
+    left: Reg<Bits<7>>,
 }
 
 impl Logic for BitGrid {
@@ -50,12 +50,12 @@ mod tests {
 
     #[test]
     fn strobes_are_a_bit_apart_and_the_first_is_half_a_bit_after_the_edge() {
-        for bit_cycles in [4, 8, 12, 24, 31] {
+        for bit_cycles in [4, 8, 12, 24, 31, 40, 127] {
             let mut uut = BitGrid::default();
             uut.bit_cycles.next = (bit_cycles as u64).into();
             uut.connect_all();
             let step = |uut: &mut BitGrid| tick(uut, |u, level| u.clock.next = level.into());
-            (0..100).for_each(|_| step(&mut uut));
+            (0..300).for_each(|_| step(&mut uut));
             uut.restart.next = true;
             step(&mut uut);
             uut.restart.next = false;

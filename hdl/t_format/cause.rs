@@ -2,6 +2,8 @@
 //!
 //! The code of a flag is its number plus one, and the lowest flag is the primary cause: it explains those above it.
 
+use crate::transaction::cause as card;
+
 /// All is well.
 pub const NONE: u64 = 0;
 /// The ID is none that the receiver knows; nothing went out.
@@ -48,6 +50,21 @@ pub const fn flag(cause: u64) -> u64 {
 
 /// Flags with which the position is taken.
 pub const HARMLESS: u64 = flag(COUNTING_ERROR) | flag(MULTI_TURN_ALARM) | flag(TRIGGER_OVERRUN);
+
+/// The same cause in the result of a card, see [`crate::transaction::cause`]: what EnDat has too keeps its number there.
+pub const fn of_card(code: u64) -> u64 {
+    match code {
+        NONE => card::NONE,
+        UNKNOWN_REQUEST => card::UNKNOWN_COMMAND,
+        TRIGGER_OVERRUN => card::TRIGGER_OVERRUN,
+        _ => CARD_FIRST - LINE_NOT_IDLE + code,
+    }
+}
+
+/// Cause of a card that stands for [`LINE_NOT_IDLE`]; the others follow it.
+pub const CARD_FIRST: u64 = card::COUNT;
+
+const _: () = assert!(of_card(MULTI_TURN_ALARM) + 1 == card::ALL_COUNT);
 
 /// Name of a code.
 pub const fn name(code: u64) -> &'static str {

@@ -139,7 +139,7 @@ impl Logic for TFormatChannel {
         self.exchange.request_id.next = self.request_id.val();
         self.exchange.address.next = self.address.val();
         self.exchange.data.next = self.data.val();
-        self.exchange.bit_cycles.next = self.bit_cycles.val();
+        self.exchange.bit_cycles.next = bit_cast::<7, 5>(self.bit_cycles.val());
         self.exchange.reply_gap_us.next = self.reply_gap_us.val();
         self.exchange.field_gap_us.next = self.field_gap_us.val();
         self.exchange.level.next = self.filter.level.val();

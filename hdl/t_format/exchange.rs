@@ -12,7 +12,7 @@
 //! A rising edge is the header if the two cells before it were LOW, its own is HIGH and the next one LOW. LOW pulses of less than a
 //! bit and a half are passed over until the reply gap has ended. Later fields are timed from their start bits.
 //!
-//! After a reply that was not good the next request waits until the line has been HIGH for longer than any field lasts.
+//! After a reply that did not come whole the next request waits until the line has been HIGH for longer than any field lasts.
 
 use super::bit_grid::BitGrid;
 use super::field_order::FieldOrder;
@@ -54,8 +54,8 @@ pub struct Exchange {
     pub address: Signal<In, Bits<7>>,
     /// EEPROM data of request 6.
     pub data: Signal<In, Bits<8>>,
-    /// System clock cycles in a bit, 4 to 31.
-    pub bit_cycles: Signal<In, Bits<5>>,
+    /// System clock cycles in a bit, 4 to 127.
+    pub bit_cycles: Signal<In, Bits<7>>,
     /// Longest pause before the reply, in microseconds.
     pub reply_gap_us: Signal<In, Bits<6>>,
     /// Longest pause between two fields, in microseconds.
@@ -142,6 +142,7 @@ pub struct Exchange {
     is_short: Signal<Local, Bit>,
     rest_us: Signal<Local, Bits<7>>,
     raised: Signal<Local, Bits<15>>,
+    is_whole: Signal<Local, Bit>,
     is_good: Signal<Local, Bit>,
 }
 
@@ -219,6 +220,7 @@ impl Default for Exchange {
             is_short: Default::default(),
             rest_us: Default::default(),
             raised: Default::default(),
+            is_whole: Default::default(),
             is_good: Default::default(),
         }
     }
@@ -448,7 +450,8 @@ impl Logic for Exchange {
                 self.phase.d.next = Phase::Rest;
                 self.overrun.d.next = false;
                 self.drives.d.next = false;
-                if !self.is_good.val() & !self.refused.q.val() {
+                // Of a reply that came whole nothing is left on the line, whatever it says.
+                if !self.is_whole.val() & !self.refused.q.val() {
                     self.unsettled.d.next = true;
                 }
             }
@@ -477,7 +480,8 @@ impl Logic for Exchange {
             | (bit_cast::<15, 1>(self.memory_busy.q.val().into()) << 11)
             | (bit_cast::<15, 2>(self.status.val().get_bits::<2>(4)) << 12)
             | (bit_cast::<15, 1>(self.overrun.q.val().into()) << 14);
-        self.is_good.next = !self.raised.val().get_bits::<12>(0).any();
+        self.is_whole.next = !self.raised.val().get_bits::<9>(0).any();
+        self.is_good.next = self.is_whole.val() & !self.raised.val().get_bits::<3>(9).any();
         self.flags.next = self.raised.val();
         self.good.next = self.is_good.val();
         self.reply_id.next = self.echo.q.val();

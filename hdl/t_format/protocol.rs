@@ -14,7 +14,14 @@ pub const FIELD_BITS: u64 = 10;
 /// System clocks that the `clk_select` pin chooses from, in hertz: LOW, HIGH.
 pub const SYSTEM_HZ: [u64; 2] = [20_000_000, 60_000_000];
 /// System clock cycles in a bit that the receiver takes.
-pub const BIT_CYCLES: std::ops::RangeInclusive<u64> = 4..=31;
+pub const BIT_CYCLES: std::ops::RangeInclusive<u64> = 4..=127;
+/// Fewest of them on a card, whose system clock is free: an edge is timed to an eighth of a bit.
+pub const CARD_BIT_CYCLES_MIN: u64 = 8;
+/// Largest deviation of the bit rate that a card makes from the nominal one, in parts per million: a field is timed anew by its start bit,
+/// so its last bit is off by a tenth of a bit at most.
+pub const RATE_TOLERANCE_PPM: u64 = 10_000;
+/// Rest between two exchanges of a port, in microseconds; it begins within the last delimiter. One microsecond sooner at the earliest.
+pub const REST_US: u64 = 2;
 /// Longest pause before a reply that can be set, in microseconds.
 pub const REPLY_GAP_US_MAX: u64 = 63;
 /// Longest pause between two fields that can be set, in microseconds.

@@ -1,4 +1,5 @@
-//! Why a frame gave no position: the codes of the status register, and the raw flags.
+//! Why a frame gave no position: the codes of the status register, and the raw flags. Codes from [`COUNT`] on are those of T-format
+//! channels, see [`crate::t_format::cause::of_card`].
 
 /// The frame is good.
 pub const NONE: u64 = 0;
@@ -36,8 +37,10 @@ pub const WATCHDOG: u64 = 15;
 pub const OWN_ECHO: u64 = 16;
 /// Data fell too early after the frame; the position is good.
 pub const RECOVERY_TOO_SHORT: u64 = 17;
-/// Codes there are.
+/// Codes there are of EnDat frames.
 pub const COUNT: u64 = 18;
+/// Codes there are of both protocols.
+pub const ALL_COUNT: u64 = 31;
 
 /// Raw flag of a cause.
 pub const fn flag(cause: u64) -> u64 {

@@ -48,21 +48,21 @@ module endat_card_core (
     input  wire         push_take,
     // Interrupt; low without this part.
     output wire         irq_o,
-    // EnDat clock to the transceiver.
+    // EnDat clock to the transceiver; HIGH if the channel speaks T-format.
     output wire         endat_clk0_o,
-    // EnDat clock to the transceiver.
+    // EnDat clock to the transceiver; HIGH if the channel speaks T-format.
     output wire         endat_clk1_o,
-    // EnDat data to the transceiver.
+    // Data to the transceiver.
     output wire         endat_data0_o,
-    // EnDat data to the transceiver.
+    // Data to the transceiver.
     output wire         endat_data1_o,
-    // Driver enable of the EnDat data line.
+    // Driver enable of the data line.
     output wire         endat_data0_oe,
-    // Driver enable of the EnDat data line.
+    // Driver enable of the data line.
     output wire         endat_data1_oe,
-    // EnDat data from the transceiver, asynchronous.
+    // Data from the transceiver, asynchronous.
     input  wire         endat_data0_i,
-    // EnDat data from the transceiver, asynchronous.
+    // Data from the transceiver, asynchronous.
     input  wire         endat_data1_i,
     // Blinks: slowly = well, quickly = the last result of a channel is an error.
     output reg          led_status_o,
@@ -125,6 +125,8 @@ module endat_card_core (
     wire   [5:0] registers_0_position_bits;
     wire   [3:0] registers_0_filter_cycles;
     wire   [5:0] registers_0_start_window_cycles;
+    wire   [3:0] registers_0_request_id;
+    wire   [2:0] registers_0_field_gap_us;
     wire  [11:0] registers_0_start_timeout_us;
     wire  [12:0] registers_0_recovery_limit_cycles;
     wire         registers_1_pending;
@@ -135,6 +137,8 @@ module endat_card_core (
     wire   [5:0] registers_1_position_bits;
     wire   [3:0] registers_1_filter_cycles;
     wire   [5:0] registers_1_start_window_cycles;
+    wire   [3:0] registers_1_request_id;
+    wire   [2:0] registers_1_field_gap_us;
     wire  [11:0] registers_1_start_timeout_us;
     wire  [12:0] registers_1_recovery_limit_cycles;
     wire         port_0_result_strobe;
@@ -291,6 +295,8 @@ module endat_card_core (
         .position_bits(registers_0_position_bits),
         .filter_cycles(registers_0_filter_cycles),
         .start_window_cycles(registers_0_start_window_cycles),
+        .request_id(registers_0_request_id),
+        .field_gap_us(registers_0_field_gap_us),
         .start_timeout_us(registers_0_start_timeout_us),
         .recovery_limit_cycles(registers_0_recovery_limit_cycles)
     );
@@ -329,6 +335,8 @@ module endat_card_core (
         .position_bits(registers_1_position_bits),
         .filter_cycles(registers_1_filter_cycles),
         .start_window_cycles(registers_1_start_window_cycles),
+        .request_id(registers_1_request_id),
+        .field_gap_us(registers_1_field_gap_us),
         .start_timeout_us(registers_1_start_timeout_us),
         .recovery_limit_cycles(registers_1_recovery_limit_cycles)
     );
@@ -348,6 +356,8 @@ module endat_card_core (
         .start_window_cycles(registers_0_start_window_cycles),
         .start_timeout_us(registers_0_start_timeout_us),
         .recovery_limit_cycles(registers_0_recovery_limit_cycles),
+        .request_id(registers_0_request_id),
+        .field_gap_us(registers_0_field_gap_us),
         .endat_clk(endat_clk0_o),
         .data_o(endat_data0_o),
         .data_oe(endat_data0_oe),
@@ -406,6 +416,8 @@ module endat_card_core (
         .start_window_cycles(registers_1_start_window_cycles),
         .start_timeout_us(registers_1_start_timeout_us),
         .recovery_limit_cycles(registers_1_recovery_limit_cycles),
+        .request_id(registers_1_request_id),
+        .field_gap_us(registers_1_field_gap_us),
         .endat_clk(endat_clk1_o),
         .data_o(endat_data1_o),
         .data_oe(endat_data1_oe),

@@ -62,7 +62,7 @@ module endat_channel_registers (
     input  wire   [7:0] ring_in,
     // Byte to the ring block in front.
     output wire   [7:0] ring_out,
-    // EnDat clock period, in system clock cycles.
+    // EnDat clock period, or a bit of T-format, in system clock cycles.
     output wire  [10:0] period_cycles,
     // First low phase minus half a period, in system clock cycles.
     output wire  [10:0] first_low_extra_cycles,
@@ -74,7 +74,11 @@ module endat_channel_registers (
     output wire   [3:0] filter_cycles,
     // Half width of the start window, in system clock cycles.
     output wire   [5:0] start_window_cycles,
-    // Longest wait for the start bit, in microseconds.
+    // T-format: request ID of a trigger.
+    output wire   [3:0] request_id,
+    // T-format: longest pause between two fields, in microseconds.
+    output wire   [2:0] field_gap_us,
+    // Longest wait for the start bit, or for a reply of T-format, in microseconds.
     output wire  [11:0] start_timeout_us,
     // Longest recovery time, in system clock cycles.
     output wire  [12:0] recovery_limit_cycles
@@ -317,6 +321,8 @@ module endat_channel_registers (
     assign first_low_extra_cycles = config1[10:0];
     assign start_window_cycles = config1[21:16];
     assign filter_cycles = config1[27:24];
+    assign request_id = config1[31:28];
+    assign field_gap_us = config2[31:29];
     assign start_timeout_us = config2[11:0];
     assign recovery_limit_cycles = config2[28:16];
     assign byte_0_reset = word_skip[0];

@@ -20,7 +20,7 @@ module endat_encoder_port (
     input  wire         calibrate,
     // Data line from the transceiver, asynchronous.
     input  wire         data_i,
-    // EnDat clock period, in system clock cycles; an odd one has the longer high phase.
+    // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
     input  wire  [10:0] period_cycles,
     // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     input  wire  [10:0] first_low_extra_cycles,
@@ -32,10 +32,14 @@ module endat_encoder_port (
     input  wire   [3:0] filter_cycles,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
-    // Longest wait for the start bit after the turnaround, in microseconds.
+    // Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
     input  wire  [11:0] start_timeout_us,
     // Data must fall within this many system clock cycles after the frame.
     input  wire  [12:0] recovery_limit_cycles,
+    // T-format: request ID of a trigger.
+    input  wire   [3:0] request_id,
+    // T-format: longest pause between two fields, in microseconds.
+    input  wire   [2:0] field_gap_us,
     // EnDat clock to the transceiver, from a register.
     output wire         endat_clk,
     // Data line to the transceiver, from a register.
@@ -44,7 +48,7 @@ module endat_encoder_port (
     output wire         data_oe,
     // Strobe: a new result can be read from this cycle on.
     output wire         result_strobe,
-    // Last good position, bit 0 = LSB, zeros above its width.
+    // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     output wire  [47:0] position,
     // There is a good position.
     output wire         position_valid,
@@ -56,7 +60,7 @@ module endat_encoder_port (
     output wire  [31:0] first_fall_timestamp,
     // Age of the position in microseconds; stops at 65535.
     output wire  [15:0] age_us,
-    // Primary cause of the last result, see cause.
+    // Primary cause of the last result, see cause; its flags mean something else in T-format.
     output wire   [4:0] cause,
     // Raw flags of the last result.
     output wire  [18:0] flags,
@@ -104,7 +108,7 @@ module endat_encoder_port (
     output wire         sample_strobe,
     // The service's alarm: too many bad frames, or positions 1 and 2 apart; or that of the line: drift or edges beyond their limits.
     output wire         alarm,
-    // Word of the service's RAM that the host accesses; stays put from one strobe to the next, 8 cycles at least.
+    // Word of the service's RAM, or of the T-format port, that the host accesses; stays put from one strobe to the next, 8 cycles at least.
     input  wire   [6:0] host_address,
     // The word is one of the line monitor, not of the service.
     input  wire         host_line,
@@ -119,15 +123,15 @@ module endat_encoder_port (
     // What to write.
     input  wire  [15:0] host_data
 );
-    wire  [14:0] channel_phase;
-    wire         channel_edge_measured;
-    wire   [7:0] channel_edge_offset;
-    wire         channel_glitch;
-    wire  [47:0] channel_answer;
-    wire         channel_sample_second;
-    wire         _unused_ok = &{1'b0, host_address, host_line, host_read, host_write, host_half, host_data, channel_phase, channel_edge_measured, channel_edge_offset, channel_glitch, channel_answer, channel_sample_second};
+    wire  [14:0] channel_0_phase;
+    wire         channel_0_edge_measured;
+    wire   [7:0] channel_0_edge_offset;
+    wire         channel_0_glitch;
+    wire  [47:0] channel_0_answer;
+    wire         channel_0_sample_second;
+    wire         _unused_ok = &{1'b0, request_id, field_gap_us, host_address, host_line, host_read, host_write, host_half, host_data, channel_0_phase, channel_0_edge_measured, channel_0_edge_offset, channel_0_glitch, channel_0_answer, channel_0_sample_second};
 
-    endat_channel u_channel (
+    endat_channel u_channel_0 (
         .clock(clock),
         .reset(reset),
         .tick_us(tick_us),
@@ -174,10 +178,10 @@ module endat_encoder_port (
         .crc_computed(crc_computed),
         .recovery_cycles(recovery_cycles),
         .delay_cycles(delay_cycles),
-        .phase(channel_phase),
-        .edge_measured(channel_edge_measured),
-        .edge_offset(channel_edge_offset),
-        .glitch(channel_glitch),
+        .phase(channel_0_phase),
+        .edge_measured(channel_0_edge_measured),
+        .edge_offset(channel_0_edge_offset),
+        .glitch(channel_0_glitch),
         .busy(busy),
         .request_runs(request_runs),
         .line_high(line_high),
@@ -187,7 +191,7 @@ module endat_encoder_port (
         .over_cause(over_cause),
         .over_flags(over_flags),
         .reply(reply),
-        .answer(channel_answer),
+        .answer(channel_0_answer),
         .reply_good(reply_good),
         .info_active(info_active),
         .info_1(info_1),
@@ -196,7 +200,7 @@ module endat_encoder_port (
         .info_good(info_good),
         .calibrated(calibrated),
         .sample_strobe(sample_strobe),
-        .sample_second(channel_sample_second)
+        .sample_second(channel_0_sample_second)
     );
 
     assign alarm = 1'b0;

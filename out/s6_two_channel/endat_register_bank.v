@@ -50,9 +50,9 @@ module endat_register_bank (
     input  wire   [7:0] ring_in,
     // Byte to the last channel's ring block.
     output wire   [7:0] ring_out,
-    // The word is one of a line monitor, not of a service.
+    // The word is one of a line monitor, not of a service or a T-format port.
     output wire         service_line,
-    // Word of a service's RAM.
+    // Word of a service's RAM, a line monitor or a T-format port.
     output wire   [6:0] service_address,
     // The channel that it belongs to, one bit per channel.
     output wire   [7:0] service_channels,
@@ -83,8 +83,12 @@ module endat_register_bank (
 );
     localparam         HAS_SERVICE = 1'b0;
     localparam         HAS_LINE = 1'b0;
+    localparam         HAS_T_FORMAT = 1'b0;
+    localparam   [7:0] T_FORMAT_CHANNELS = 8'd0;
+    localparam   [7:0] ENDAT_CHANNELS = 8'd255;
+    localparam  [31:0] PROTOCOLS = 32'd0;
     localparam  [31:0] ID = 32'h456e4474;
-    localparam  [31:0] VERSION = 32'h60000;
+    localparam  [31:0] VERSION = 32'h70000;
     localparam  [31:0] CAPABILITIES = 32'hf3002;
     localparam  [31:0] SYSTEM_HZ = 32'h5f5e100;
     localparam  [31:0] CONFIGURATION_HASH = 32'hcff72a77;
@@ -106,6 +110,9 @@ module endat_register_bank (
     reg    [7:0] head;
     reg   [31:0] rom_word;
     wire         line_page;
+    wire         t_format_page;
+    wire         word_page;
+    reg    [7:0] selected;
     reg    [2:0] service_channel;
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
@@ -282,6 +289,9 @@ module endat_register_bank (
             3'd4: begin
                 rom_word = CONFIGURATION_HASH;
             end
+            3'd5: begin
+                rom_word = PROTOCOLS;
+            end
             default: begin
             end
         endcase
@@ -387,6 +397,8 @@ module endat_register_bank (
     assign channel_skip = skipped_channels;
     assign service_page = HAS_SERVICE & in_range & word_address[10];
     assign line_page = HAS_LINE & in_range & !word_address[10] & word_address[9];
+    assign t_format_page = HAS_T_FORMAT & low_page & !word_address[8] & (&word_address[7:6]);
+    assign word_page = service_page | line_page | t_format_page;
     assign service_line = line_page;
 
     always @* begin
@@ -394,37 +406,47 @@ module endat_register_bank (
         if (line_page) begin
             service_channel = word_address[8:6];
         end
+        if (t_format_page) begin
+            service_channel = word_address[5:3];
+        end
     end
 
     always @* begin
-        service_selected_next = 8'd0;
-        if (service_page | line_page) begin
+        selected = 8'd0;
+        if (word_page) begin
             case (service_channel)
                 3'd0: begin
-                    service_selected_next = 8'd1;
+                    selected = 8'd1;
                 end
                 3'd1: begin
-                    service_selected_next = 8'd2;
+                    selected = 8'd2;
                 end
                 3'd2: begin
-                    service_selected_next = 8'd4;
+                    selected = 8'd4;
                 end
                 3'd3: begin
-                    service_selected_next = 8'd8;
+                    selected = 8'd8;
                 end
                 3'd4: begin
-                    service_selected_next = 8'd16;
+                    selected = 8'd16;
                 end
                 3'd5: begin
-                    service_selected_next = 8'd32;
+                    selected = 8'd32;
                 end
                 3'd6: begin
-                    service_selected_next = 8'd64;
+                    selected = 8'd64;
                 end
                 default: begin
-                    service_selected_next = 8'd128;
+                    selected = 8'd128;
                 end
             endcase
+        end
+    end
+
+    always @* begin
+        service_selected_next = selected & ENDAT_CHANNELS;
+        if (t_format_page) begin
+            service_selected_next = selected & T_FORMAT_CHANNELS;
         end
     end
     assign service_address = word_address[6:0];
@@ -505,7 +527,7 @@ module endat_register_bank (
             active_period <= active_period_next;
             hold <= hold_next;
             follow <= !(pending | reading | hold);
-            service_skip <= !(service_page | line_page);
+            service_skip <= !word_page;
             service_selected <= service_selected_next;
             service_first <= access;
         end

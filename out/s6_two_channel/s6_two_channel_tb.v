@@ -182,6 +182,9 @@ endmodule
 
 module s6_two_channel_tb;
     localparam integer CHANNELS = 2;
+    // Channels that have an EnDat encoder here, the first and the last of them.
+    localparam [CHANNELS-1:0] ENDAT = 2'b11;
+    localparam integer FIRST = 0, LAST = 1;
     localparam real CLK_NS = 10.0;
     localparam real UART_BIT_NS = 500.0;
     // From a trigger to the end of everything: measuring frame, and frame at the configured clock.
@@ -198,6 +201,7 @@ module s6_two_channel_tb;
     localparam [31:0] CARD_CAPABILITIES = 32'h002;
     localparam [31:0] CARD_SYSTEM_HZ = 32'h003;
     localparam [31:0] CARD_CONFIGURATION_HASH = 32'h004;
+    localparam [31:0] CARD_PROTOCOLS = 32'h005;
     localparam [31:0] CARD_TRIGGER_COUNT = 32'h008;
     localparam [31:0] CARD_TRIGGER_NOW = 32'h009;
     localparam [31:0] CARD_CALIBRATE = 32'h00A;
@@ -238,12 +242,13 @@ module s6_two_channel_tb;
     localparam integer AGE_RECOVERY_RECOVERY_CYCLES_LSB = 16, AGE_RECOVERY_RECOVERY_CYCLES_BITS = 13;
     localparam integer AGE_RECOVERY_DELAY_HIGH_LSB = 29, AGE_RECOVERY_DELAY_HIGH_BITS = 1;
     // Causes.
-    localparam [3:0] NO_START_BIT = 4'd2;
-    localparam [3:0] CRC = 4'd4;
-    localparam [3:0] F1 = 4'd5;
-    localparam [3:0] F2 = 4'd6;
-    localparam [3:0] DATA_NOT_FALLING = 4'd7;
-    localparam [3:0] TRIGGER_OVERRUN = 4'd8;
+    localparam [4:0] NO_START_BIT = 5'd2;
+    localparam [4:0] CRC = 5'd4;
+    localparam [4:0] F1 = 5'd5;
+    localparam [4:0] F2 = 5'd6;
+    localparam [4:0] DATA_NOT_FALLING = 5'd7;
+    localparam [4:0] TRIGGER_OVERRUN = 5'd8;
+    localparam [4:0] NO_ANSWER = 5'd19;
 
     reg clk;
     reg rst;
@@ -455,7 +460,7 @@ module s6_two_channel_tb;
     // What every channel has to show.
     reg [48*CHANNELS-1:0] want_position;
     reg [16*CHANNELS-1:0] want_sequence;
-    reg [4*CHANNELS-1:0] want_cause;
+    reg [5*CHANNELS-1:0] want_cause;
     reg [CHANNELS-1:0] want_fresh;
     reg [32*CHANNELS-1:0] want_frames;
     reg [32*CHANNELS-1:0] stamp, stamp_before;
@@ -508,14 +513,22 @@ module s6_two_channel_tb;
             spoil_crc = {CHANNELS{1'b0}};
             no_start = {CHANNELS{1'b0}};
             stay_high = {CHANNELS{1'b0}};
-            want_cause = {CHANNELS{4'd0}};
-            want_fresh = {CHANNELS{1'b1}};
+            want_cause = {CHANNELS{5'd0}};
+            want_fresh = ENDAT;
+            expect_silence;
         end
     endtask
 
-    task expect_fault(input integer channel, input [3:0] cause);
+    // Of the channels without an encoder.
+    task expect_silence;
+        for (ch = 0; ch < CHANNELS; ch = ch + 1)
+            if (!ENDAT[ch])
+                want_cause[5*ch +: 5] = NO_ANSWER;
+    endtask
+
+    task expect_fault(input integer channel, input [4:0] cause);
         begin
-            want_cause[4*channel +: 4] = cause;
+            want_cause[5*channel +: 5] = cause;
             want_fresh[channel] = 1'b0;
         end
     endtask
@@ -535,11 +548,11 @@ module s6_two_channel_tb;
 
     task check_start;
         begin
-            check("channels that started", fallen, {CHANNELS{1'b1}});
+            check("channels that started", fallen, ENDAT);
             fall_time_before = fall_time;
-            fall_time = first_fall[0];
-            for (ch = 1; ch < CHANNELS; ch = ch + 1)
-                if (first_fall[ch] != fall_time)
+            fall_time = first_fall[FIRST];
+            for (ch = FIRST + 1; ch < CHANNELS; ch = ch + 1)
+                if (ENDAT[ch] && first_fall[ch] != fall_time)
                     complain("first edges not in one instant, ns", $rtoi(first_fall[ch]), $rtoi(fall_time));
             check_range("cycles from trigger to first edge", $rtoi((fall_time - trigger_time) / CLK_NS), 1, TRIGGER_CYCLES_MAX);
         end
@@ -551,7 +564,7 @@ module s6_two_channel_tb;
         begin
             for (ch = 0; ch < CHANNELS; ch = ch + 1) begin
                 want_sequence[16*ch +: 16] = want_sequence[16*ch +: 16] + 16'd1;
-                want_frames[32*ch +: 32] = want_frames[32*ch +: 32] + !no_start[ch];
+                want_frames[32*ch +: 32] = want_frames[32*ch +: 32] + (ENDAT[ch] && !no_start[ch]);
                 if (want_fresh[ch])
                     want_position[48*ch +: 48] = position[48*ch +: 48];
                 check("frames at the encoder", encoder_frames[32*ch +: 32], want_frames[32*ch +: 32]);
@@ -571,16 +584,16 @@ module s6_two_channel_tb;
                 base = BLOCK_STRIDE * ch;
                 status = word(base);
                 check("sequence", field(status, STATUS_SEQUENCE_LSB, STATUS_SEQUENCE_BITS), want_sequence[16*ch +: 16]);
-                check("cause", field(status, STATUS_CAUSE_LSB, STATUS_CAUSE_BITS), want_cause[4*ch +: 4]);
-                check("valid", field(status, STATUS_VALID_LSB, STATUS_VALID_BITS), 1);
+                check("cause", field(status, STATUS_CAUSE_LSB, STATUS_CAUSE_BITS), want_cause[5*ch +: 5]);
+                check("valid", field(status, STATUS_VALID_LSB, STATUS_VALID_BITS), ENDAT[ch]);
                 check("fresh", field(status, STATUS_FRESH_LSB, STATUS_FRESH_BITS), want_fresh[ch]);
                 check("position", {word(base + RESULT_POSITION_HIGH - RESULT_STATUS), word(base + RESULT_POSITION_LOW - RESULT_STATUS)},
                       want_position[48*ch +: 48]);
                 if (want_fresh[ch]) begin
                     stamp_before[32*ch +: 32] = stamp[32*ch +: 32];
                     stamp[32*ch +: 32] = word(base + RESULT_TIMESTAMP - RESULT_STATUS);
-                    if (ch > 0 && want_fresh[0])
-                        check("time stamps of channel 0 and this", stamp[32*ch +: 32], stamp[31:0]);
+                    if (ch > FIRST && want_fresh[FIRST])
+                        check("time stamps of the first channel and this", stamp[32*ch +: 32], stamp[32*FIRST +: 32]);
                 end
             end
         end
@@ -590,7 +603,7 @@ module s6_two_channel_tb;
     task check_evidence;
         reg [31:0] evidence;
         begin
-            for (ch = 0; ch < CHANNELS; ch = ch + 1) begin
+            for (ch = 0; ch < CHANNELS; ch = ch + 1) if (ENDAT[ch]) begin
                 evidence = word(BLOCK_STRIDE * ch + RESULT_EVIDENCE - RESULT_STATUS);
                 check("CRC received", field(evidence, EVIDENCE_CRC_RECEIVED_LSB, EVIDENCE_CRC_RECEIVED_BITS), encoder_crc[5*ch +: 5]);
                 check("CRC computed", field(evidence, EVIDENCE_CRC_COMPUTED_LSB, EVIDENCE_CRC_COMPUTED_BITS),
@@ -625,7 +638,8 @@ module s6_two_channel_tb;
         clk_far = {CHANNELS{1'b1}};
         oe_far = {CHANNELS{1'b0}};
         data_far = {CHANNELS{1'b0}};
-        line_near = {CHANNELS{1'b0}};
+        line_near = ~ENDAT;
+        want_position = 0;
         errors = 0;
         received = 0;
         trigger_count = 0;
@@ -640,12 +654,13 @@ module s6_two_channel_tb;
         // Only the pin triggers from here on; frames that the timer has begun end.
         write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
         #(CALIBRATION_NS);
-        read_words(CARD_ID, 5);
+        read_words(CARD_ID, 6);
         check("identification word 0", word(0), 32'h456E4474);
-        check("identification word 1", word(1), 32'h00060000);
+        check("identification word 1", word(1), 32'h00070000);
         check("identification word 2", word(2), 32'h000F3002);
         check("identification word 3", word(3), 32'h05F5E100);
         check("identification word 4", word(4), 32'hCFF72A77);
+        check("identification word 5", word(5), 32'h00000000);
         read_words(CARD_TRIGGER_COUNT, 1);
         trigger_count = word(0);
         read_words(RESULT_STATUS, BLOCK_STRIDE * (CHANNELS - 1) + 1);
@@ -662,31 +677,31 @@ module s6_two_channel_tb;
         new_positions;
         frame(CYCLE_NS);
         check_evidence;
-        for (ch = 0; ch < CHANNELS; ch = ch + 1)
+        for (ch = 0; ch < CHANNELS; ch = ch + 1) if (ENDAT[ch])
             check("cycles between two frames", stamp[32*ch +: 32] - stamp_before[32*ch +: 32],
                   $rtoi((fall_time - fall_time_before) / CLK_NS + 0.5));
 
-        // A wrong CRC on channel 0 only: its last good position stays.
+        // A wrong CRC on the first channel only: its last good position stays.
         new_positions;
-        spoil_crc[0] = 1'b1;
-        expect_fault(0, CRC);
+        spoil_crc[FIRST] = 1'b1;
+        expect_fault(FIRST, CRC);
         frame(CYCLE_NS);
         check_evidence;
 
-        // F1 on channel 0, F2 on the last channel that has one.
+        // F1 on the first channel, F2 on the last channel that has one.
         new_positions;
-        f1[0] = 1'b1;
-        expect_fault(0, F1);
-        for (ch = CHANNELS - 1; ch > 0 && f2 == {CHANNELS{1'b1}}; ch = ch - 1)
+        f1[FIRST] = 1'b1;
+        expect_fault(FIRST, F1);
+        for (ch = CHANNELS - 1; ch > FIRST && f2 == {CHANNELS{1'b1}}; ch = ch - 1)
             if (has_f2(ch)) begin
                 f2[ch] = 1'b0;
                 expect_fault(ch, F2);
             end
         frame(CYCLE_NS);
         new_positions;
-        if (has_f2(0)) begin
-            f2[0] = 1'b0;
-            expect_fault(0, F2);
+        if (has_f2(FIRST)) begin
+            f2[FIRST] = 1'b0;
+            expect_fault(FIRST, F2);
         end
         frame(CYCLE_NS);
 
@@ -707,6 +722,7 @@ module s6_two_channel_tb;
         // A second trigger within the frame: counted, told, and the frame is good.
         new_positions;
         want_cause = {CHANNELS{TRIGGER_OVERRUN}};
+        expect_silence;
         pulse_trigger;
         #(8520.0);
         trigger = 1'b1;
@@ -728,18 +744,18 @@ module s6_two_channel_tb;
         check("channels that started without leave", fallen, {CHANNELS{1'b0}});
         write_word(CARD_TRIGGER_NOW, 32'd1);
         #(CYCLE_NS);
-        check("channels that the host started", fallen, {CHANNELS{1'b1}});
+        check("channels that the host started", fallen, ENDAT);
         check_results;
         write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
         #(UART_BIT_NS * 20.0);
 
-        // No start bit on channel 0; data of the last other channel stay high after its frame, which is good.
+        // No start bit on the first channel; data of the last other channel stay high after its frame, which is good.
         new_positions;
-        no_start[0] = 1'b1;
-        expect_fault(0, NO_START_BIT);
-        if (CHANNELS > 1) begin
-            stay_high[CHANNELS-1] = 1'b1;
-            want_cause[4*(CHANNELS-1) +: 4] = DATA_NOT_FALLING;
+        no_start[FIRST] = 1'b1;
+        expect_fault(FIRST, NO_START_BIT);
+        if (LAST != FIRST) begin
+            stay_high[LAST] = 1'b1;
+            want_cause[5*LAST +: 5] = DATA_NOT_FALLING;
         end
         frame(FAULT_NS);
         if ($test$plusargs("abort")) begin
@@ -750,6 +766,7 @@ module s6_two_channel_tb;
             frame(CALIBRATION_NS);
             check_evidence;
         end
+
 
         finish;
     end

@@ -12,6 +12,7 @@ mod pins;
 mod record;
 mod sampler;
 mod settings;
+mod t_format;
 #[cfg(test)]
 mod tests;
 mod uart;
@@ -21,6 +22,7 @@ pub use link::{Link, LinkTrace};
 pub use pins::PinNames;
 pub use record::{ChannelResult, Cycles, Watched};
 pub use settings::ChannelSettings;
+pub use t_format::{TFormatLink, TFormatMotion};
 pub use uart::Uart;
 
 use crate::{
@@ -32,6 +34,7 @@ use crate::{
 use pins::{Pins, TimeBase};
 use record::ResultPorts;
 use sampler::Sampler;
+use t_format::TFormatPort;
 
 struct Port {
     link: Link,
@@ -74,6 +77,7 @@ pub struct Bench<E> {
     system_hz: u64,
     cycle: u64,
     ports: Vec<Port>,
+    t_format: Vec<TFormatPort>,
     base: TimeBase,
     trigger_until: u64,
     trigger_level: bool,
@@ -105,6 +109,7 @@ impl<E: Engine> Bench<E> {
             system_hz,
             cycle: 0,
             ports,
+            t_format: Vec::new(),
             base,
             trigger_until: 0,
             trigger_level: false,
@@ -114,6 +119,23 @@ impl<E: Engine> Bench<E> {
             cycles: None,
             is_double: false,
         }
+    }
+
+    /// Puts a T-format encoder on a set of pins; gives its number among those.
+    pub fn add_t_format(&mut self, names: &PinNames, link: TFormatLink) -> usize {
+        let ids = Pins::find(names, self.engine.ports());
+        self.t_format.push(TFormatPort::new(link, ids));
+        self.t_format.len() - 1
+    }
+
+    /// T-format encoder `index`.
+    pub fn t_format(&self, index: usize) -> &TFormatLink {
+        &self.t_format[index].link
+    }
+
+    /// The same, to make something wrong with it.
+    pub fn t_format_mut(&mut self, index: usize) -> &mut TFormatLink {
+        &mut self.t_format[index].link
     }
 
     /// The design looks at DATA on both edges of its clock.
@@ -315,11 +337,17 @@ impl<E: Engine> Bench<E> {
                 port.due = port.link.next_event();
             }
         }
+        for port in &mut self.t_format {
+            port.take_pins(&mut self.engine, now);
+        }
         self.note_outputs(now);
     }
 
     /// Lets everything on the links happen up to now, and drives DATA into the design.
     fn drive_data(&mut self, now: Time) {
+        for port in &mut self.t_format {
+            port.drive_data(&mut self.engine, now);
+        }
         for port in &mut self.ports {
             if port.due <= now {
                 port.link.advance_to(now);

@@ -65,15 +65,22 @@ impl Master {
 
     /// The card of a project, with encoders of these widths.
     pub fn with_widths(project: &Project, widths: &[u32]) -> Self {
+        let channels = widths.iter().copied().enumerate();
+        Self::at_channels(project, &channels.collect::<Vec<_>>())
+    }
+
+    /// The same with EnDat encoders at some channels only: number and width.
+    pub fn at_channels(project: &Project, widths: &[(usize, u32)]) -> Self {
         let design = endat_gen::design(project).unwrap();
         let engine = Compiled::new(&design).unwrap();
-        let link = |n: usize, bits| {
-            let mut encoder = EncoderConfig::endat22(bits).seed(n as u64);
+        let link = |index: usize, n: usize, bits| {
+            let mut encoder = EncoderConfig::endat22(bits).seed(index as u64);
             encoder.tm = 10 * US..=12 * US;
             let port = PinNames::card(n);
             (port, Link::new(LineConfig::cable(20.0), encoder))
         };
-        let links = widths.iter().enumerate().map(|(n, bits)| link(n, *bits));
+        let links = widths.iter().enumerate();
+        let links = links.map(|(index, (n, bits))| link(index, *n, *bits));
         let links = links.collect();
         let mut bench = Bench::new(engine, project.card.system_hz, links);
         bench.reset();

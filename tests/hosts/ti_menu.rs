@@ -60,7 +60,7 @@ impl Menu {
 
     fn last_period_ns(&mut self, channel: usize) -> u64 {
         let bench = self.0.bridge().transport().bench();
-        (bench.frames(channel).last().unwrap().period / endat_sim::NS) as u64
+        bench.frames(channel).last().unwrap().period / endat_sim::NS
     }
 
     /// All channels give the position that their encoder has sent.

@@ -15,7 +15,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// Both presets, a card whose channels are not alike (its start values differ), and one of a single channel.
+/// Both presets, a card whose channels are not alike (its start values differ), one of a single channel, and one of both protocols.
 fn projects() -> Vec<Project> {
     let mut projects = ["s6_two_channel", "s6_two_channel_service"]
         .map(|name| load_preset(name).unwrap())
@@ -44,6 +44,10 @@ fn projects() -> Vec<Project> {
     single.name = "single".into();
     single.card.channels.truncate(1);
     projects.push(single);
+    let mut mixed = projects[1].clone();
+    mixed.name = "mixed".into();
+    mixed.card.channels[1] = load_preset("mixed_protocols").unwrap().card.channels[1].clone();
+    projects.push(mixed);
     projects
 }
 
@@ -503,7 +507,7 @@ fn maps_list_every_word_and_field_that_the_card_has() {
     let unlike = &projects()[2];
     let page = text_of(unlike, "_registers.md");
     assert!(page.contains("| 21:16 | `position_bits` | bits | 29, 25 |"));
-    let page = text_of(&projects()[1], "_registers.md");
+    let page = text_of(&projects()[4], "_registers.md");
     assert!(page.contains("| 1 | reset |") && page.contains("0x456E4474"));
     assert!(page.contains("0 = none, 1 = data not low before start, 2 = no start bit"));
     for register in BLOCKS.iter().flat_map(|b| b.registers) {

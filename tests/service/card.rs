@@ -97,12 +97,12 @@ fn a_third_channel_has_a_service_of_its_own() {
         host.write("request", channel, 0x0E << 24 | area << 16);
         host.wait_for("request_state", channel, |s| s & 1 == 0 && s >> 16 == 1);
     }
-    for (channel, address) in [(0, 0x0D), (1, 0x0D), (2, 0x0C)] {
+    for (channel, address) in [(0, 0x0D), (1, 0x0D), (2, 0x09)] {
         host.write("request", channel, 0x23 << 24 | address << 16);
     }
-    let serial = host.read("serial_1", 2) & 0xFFFF;
-    assert!(serial != 0);
-    for (channel, answer) in [(0, 0x0D_801D), (1, 0x0D_8025), (2, 0x0C_0000 | serial)] {
+    let id = host.read("id_1", 2) & 0xFFFF;
+    assert!(id != 0);
+    for (channel, answer) in [(0, 0x0D_801D), (1, 0x0D_8025), (2, 0x09_0000 | id)] {
         host.wait_for("request_state", channel, |s| s & 1 == 0 && s >> 16 == 2);
         assert_eq!(host.read("answer", channel), answer, "channel {channel}");
     }

@@ -52,6 +52,7 @@ pub fn card(system_hz: u64, sample_hz: u64, baud: u64, start: StreamStart) -> Ca
         recovery_min_ns: 10_000,
         recovery_max_ns: 30_000,
         cable_m: 20,
+        t_format: None,
     };
     let second = ChannelRequest {
         position_bits: 37,

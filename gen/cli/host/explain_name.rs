@@ -6,6 +6,9 @@ use endat_host::map::BLOCKS;
 use endat_host::registers::{Access, Block, Field, Register, Values};
 use std::fmt::Write;
 
+/// Causes of EnDat frames, which the services count; those behind them are T-format's.
+const SERVICE_CAUSES: std::ops::Range<u32> = 0..endat_hdl::transaction::cause::COUNT as u32;
+
 /// Everything called `name`: causes, registers, fields, values, with or without block and channel in front.
 pub fn text(name: &str) -> Result<String, GenError> {
     let mut text = String::new();
@@ -19,14 +22,17 @@ pub fn text(name: &str) -> Result<String, GenError> {
             "cause {} ({}): {}\n  {means}\n  {then}",
             cause.number, cause.name, cause.meaning
         );
+        let is_counted = SERVICE_CAUSES.contains(&cause.number);
         let counter = match cause.name {
             "none" => "frames_good".to_owned(),
             name => format!("frames_{name}"),
         };
-        let _ = writeln!(
-            text,
-            "  counted in service<n>.{counter}, on cards with the part requests"
-        );
+        if is_counted {
+            let _ = writeln!(
+                text,
+                "  counted in service<n>.{counter}, on cards with the part requests"
+            );
+        }
     }
     let parts: Vec<&str> = name.split('.').collect();
     for block in BLOCKS {

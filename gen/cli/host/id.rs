@@ -1,7 +1,7 @@
 //! `id`: who the card is, and the name plates of its encoders.
 
 use super::super::{to_json, Outcome};
-use super::{initialised, told, PortArgs};
+use super::{initialised, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::card::Identity;
@@ -23,19 +23,29 @@ pub struct IdArgs {
 pub fn run(arguments: &IdArgs) -> Result<Outcome, GenError> {
     let mut card = arguments.port.open()?;
     let identity = *card.identity();
-    let mut plates = Vec::new();
-    if identity.has("initialise") {
+    let reads_plates = identity.has("initialise");
+    if reads_plates {
         initialised(&mut card)?;
-        for channel in 0..identity.channels {
-            let plate = card.name_plate(channel).map_err(told)?;
-            plates.push(plate);
-        }
     }
-    let is_good = plates.iter().all(|p| p.initialised);
+    let mut encoders = Vec::new();
+    for channel in 0..identity.channels {
+        encoders.push(match identity.is_t_format(channel) {
+            true => Encoder::TFormat(t_format(&mut card, channel)?),
+            false if reads_plates => {
+                let plate = card.name_plate(channel).map_err(told)?;
+                Encoder::Endat(plate.into())
+            }
+            false => Encoder::NotRead,
+        });
+    }
+    let is_good = encoders.iter().all(|encoder| match encoder {
+        Encoder::Endat(plate) => plate.initialised,
+        _ => true,
+    });
     let stdout = if arguments.json {
-        to_json(&as_json(&identity, &plates))?
+        to_json(&as_json(&identity, &encoders))?
     } else {
-        as_text(&identity, &plates)
+        as_text(&identity, &encoders)
     };
     Ok(Outcome {
         exit_code: u8::from(!is_good),
@@ -43,11 +53,41 @@ pub fn run(arguments: &IdArgs) -> Result<Outcome, GenError> {
     })
 }
 
+/// What is known about the encoder of a channel.
+enum Encoder {
+    /// An EnDat encoder on a card that does not initialise it.
+    NotRead,
+    /// An EnDat encoder.
+    Endat(Box<NamePlate>),
+    /// A T-format encoder, which has no name plate.
+    TFormat(TFormatState),
+}
+
+/// What a T-format encoder has told.
+struct TFormatState {
+    /// Kind of encoder, 0 = it has not been asked.
+    encoder_id: u32,
+    /// Status and alarm field.
+    status: u32,
+    alarm: u32,
+}
+
+fn t_format(card: &mut AnyCard, channel: usize) -> Result<TFormatState, GenError> {
+    let fields = super::place(card, &format!("t_format{channel}.fields"))?;
+    let word = card.read(&fields).map_err(told)?;
+    let field = |name: &str| fields.register.field(name).map_or(0, |f| f.of(word));
+    Ok(TFormatState {
+        encoder_id: field("encoder_id"),
+        status: field("status"),
+        alarm: field("alarm"),
+    })
+}
+
 fn version(identity: &Identity) -> String {
     identity.version.map(|n| n.to_string()).join(".")
 }
 
-fn as_text(identity: &Identity, plates: &[NamePlate]) -> String {
+fn as_text(identity: &Identity, encoders: &[Encoder]) -> String {
     let mut text = format!(
         "card                {} channel{}, positions to {} bits, system clock {} Hz\n\
          register map        {}\nconfiguration       {:08x}\n",
@@ -61,15 +101,30 @@ fn as_text(identity: &Identity, plates: &[NamePlate]) -> String {
     for (name, meaning) in identity.parts() {
         let _ = writeln!(text, "part                {name}: {meaning}");
     }
-    if plates.is_empty() {
+    if encoders.iter().any(|e| matches!(e, Encoder::NotRead)) {
         text.push_str("encoders            not read: the card has no part initialise\n");
     }
-    for (channel, plate) in plates.iter().enumerate() {
-        let _ = write!(
-            text,
-            "\nencoder {channel}\n{}",
-            plate_text(plate, identity.system_hz)
-        );
+    for (channel, encoder) in encoders.iter().enumerate() {
+        match encoder {
+            Encoder::NotRead => {}
+            Encoder::Endat(plate) => {
+                let plate = plate_text(plate, identity.system_hz);
+                let _ = write!(text, "\nencoder {channel}\n{plate}");
+            }
+            Encoder::TFormat(state) => {
+                let kind = match state.encoder_id {
+                    0 => format!(
+                        "not told yet (`endat-gen reg write t_format{channel}.send.id 2` asks for it)"
+                    ),
+                    id => format!("0x{id:02X} (ENID)"),
+                };
+                let _ = writeln!(
+                    text,
+                    "\nencoder {channel}\n  type              T-format, which has no name plate\n  kind              {kind}\n  status, alarm     0x{:02X}, 0x{:02X}",
+                    state.status, state.alarm
+                );
+            }
+        }
     }
     text
 }
@@ -191,7 +246,7 @@ fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
     text
 }
 
-fn as_json(identity: &Identity, plates: &[NamePlate]) -> Value {
+fn as_json(identity: &Identity, encoders: &[Encoder]) -> Value {
     let plate = |p: &NamePlate| {
         json!({
             "initialised": p.initialised,
@@ -215,6 +270,16 @@ fn as_json(identity: &Identity, plates: &[NamePlate]) -> Value {
             "delay_cycles": p.delay_cycles,
         })
     };
+    let encoder = |encoder: &Encoder| match encoder {
+        Encoder::NotRead => None,
+        Encoder::Endat(p) => Some(plate(p)),
+        Encoder::TFormat(state) => Some(json!({
+            "protocol": "t_format",
+            "encoder_id": state.encoder_id,
+            "status": state.status,
+            "alarm": state.alarm,
+        })),
+    };
     json!({
         "channels": identity.channels,
         "max_position_bits": identity.max_position_bits,
@@ -222,6 +287,6 @@ fn as_json(identity: &Identity, plates: &[NamePlate]) -> Value {
         "register_map": version(identity),
         "configuration": format!("{:08x}", identity.configuration_hash),
         "parts": identity.parts().map(|(name, _)| name).collect::<Vec<_>>(),
-        "encoders": plates.iter().map(plate).collect::<Vec<_>>(),
+        "encoders": encoders.iter().filter_map(encoder).collect::<Vec<_>>(),
     })
 }

@@ -50,6 +50,7 @@ pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
             remedy: "[line] parts = [\"alignment\", \"margin\"]",
         }));
     }
+    card.place(&format!("line{channel}.frames")).map_err(told)?;
     let at = |register: &str| {
         Place::named(&format!("line{channel}.{register}"), channel + 1).map_err(told)
     };

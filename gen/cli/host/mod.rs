@@ -92,6 +92,9 @@ pub fn channel(card: &AnyCard, text: Option<&str>) -> Result<usize, GenError> {
 
 /// What a measuring step of a channel is: as the encoder says, else as if the position were one turn.
 fn scale(card: &mut AnyCard, channel: usize) -> Result<Scale, GenError> {
+    if card.identity().is_t_format(channel) {
+        return Ok(Scale::TFormat);
+    }
     if card.identity().has("initialise") {
         if let Some(scale) = card.name_plate(channel).map_err(told)?.scale() {
             return Ok(scale);
@@ -115,7 +118,8 @@ pub fn initialised(card: &mut AnyCard) -> Result<(), GenError> {
     }
     let begin = Instant::now();
     let mut is_told = false;
-    for channel in 0..card.identity().channels {
+    let identity = *card.identity();
+    for channel in (0..identity.channels).filter(|n| !identity.is_t_format(*n)) {
         let running = place(card, &format!("service{channel}.state.initialising"))?;
         while card.read(&running).map_err(told)? == 1 && begin.elapsed() < INITIALISATION {
             if !is_told && begin.elapsed() > Duration::from_secs(1) {

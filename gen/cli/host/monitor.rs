@@ -28,9 +28,10 @@ pub struct MonitorArgs {
 }
 
 /// What is looked up once.
+#[derive(Default)]
 struct Places {
     /// Counters of frames, good ones first.
-    frames: Option<(u16, usize)>,
+    frames: Option<(Place, usize)>,
     state: Option<Place>,
     worst: Option<Place>,
 }
@@ -40,17 +41,23 @@ impl Places {
         let named =
             |is_there: bool, name: &str| is_there.then(|| super::place(card, name)).transpose();
         let identity = card.identity();
-        let frames = named(identity.has("requests"), "service0.frames_good")?;
-        let last = named(identity.has("requests"), "service0.frames_position_2")?;
+        // Of the first EnDat channel; the others have the same words.
+        let first = (0..identity.channels).find(|n| !identity.is_t_format(*n));
+        let Some(n) = first else {
+            return Ok(Self::default());
+        };
+        let frames = named(identity.has("requests"), &format!("service{n}.frames_good"))?;
+        let last = named(
+            identity.has("requests"),
+            &format!("service{n}.frames_position_2"),
+        )?;
         Ok(Self {
             frames: frames.zip(last).map(|(first, last)| {
-                (
-                    first.address(),
-                    usize::from(last.address() - first.address()),
-                )
+                let causes = usize::from(last.address() - first.address());
+                (first, causes)
             }),
-            state: named(identity.has("requests"), "service0.state")?,
-            worst: named(identity.has("margin"), "line0.worst")?,
+            state: named(identity.has("requests"), &format!("service{n}.state"))?,
+            worst: named(identity.has("margin"), &format!("line{n}.worst"))?,
         })
     }
 }
@@ -86,18 +93,21 @@ fn screen(
         let rate = before.get(channel).and_then(|b| rate(b, r, system_hz));
         let rate = rate.map_or("-".into(), |hz| format!("{hz:.0}"));
         let ns = |cycles: u16| f64::from(cycles) * 1e9 / system_hz;
+        let _ = write!(text, "           {rate} results/s, age {} us", r.age_us);
+        if card.identity().is_t_format(channel) {
+            text.push('\n');
+            continue;
+        }
         let _ = writeln!(
             text,
-            "           {rate} results/s, age {} us, line delay {:.0} ns, recovery time {:.2} us",
-            r.age_us,
+            ", line delay {:.0} ns, recovery time {:.2} us",
             ns(r.delay_cycles),
             ns(r.recovery_cycles) / 1e3
         );
         if let Some((first, causes)) = places.frames {
-            let stride = places.state.map_or(0, |p| p.block.stride);
             let counts = card
                 .bridge()
-                .read(first + stride * channel as u16, causes)
+                .read(of(&first, channel).address(), causes)
                 .map_err(told)?;
             let all: u64 = counts.iter().map(|c| u64::from(*c)).sum();
             let _ = write!(text, "           frames {all}, good {}", counts[0]);

@@ -1,0 +1,466 @@
+//! T-format port: one encoder as a channel of a card, with the result registers that EnDat channels have.
+//!
+//! ```text
+//! trigger ------+--> Exchange -> data_o, data_oe
+//! host -> send -+     ^  |
+//! data_i -> InputFilter -+-> Reply -+-> Snapshot (triggers)    -> position, cause, ...
+//!                                   +-> answer, fields (all)   -> host_word
+//! ```
+//!
+//! An exchange is one of a trigger, or one that the host has asked for; only the first gives a result. The position of a result is
+//! multi-turn (bits 47..24) and single-turn (23..0); a part that the reply does not bring stays as it was.
+
+use super::exchange::Exchange;
+use super::primary::LowestCause;
+use super::reply::Reply;
+use crate::channel::Features;
+use crate::input_filter::InputFilter;
+use crate::reg::Reg;
+use crate::snapshot::Snapshot;
+use rust_hdl::prelude::*;
+
+/// Words that the host reaches, as `host_address` counts them.
+pub mod word {
+    /// A request with an exchange of its own.
+    pub const SEND: u8 = 0;
+    /// What became of it.
+    pub const ANSWER: u8 = 1;
+    /// Fields of the last reply.
+    pub const FIELDS: u8 = 2;
+    /// Which parts of the position there are.
+    pub const PARTS: u8 = 3;
+}
+
+/// Port of one T-format encoder.
+#[derive(LogicBlock)]
+pub struct TFormatPort {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// Free-running time in system clock cycles.
+    pub timestamp: Signal<In, Bits<32>>,
+    /// One-cycle strobe: take a position.
+    pub trigger: Signal<In, Bit>,
+    /// Line from the transceiver, asynchronous, idle HIGH.
+    pub data_i: Signal<In, Bit>,
+    /// Request ID of a triggered exchange, those of the EEPROM excepted; constant while `busy`, as all settings.
+    pub request_id: Signal<In, Bits<4>>,
+    /// System clock cycles in a bit, 8 to 127; fewer count as 8 more.
+    pub bit_cycles: Signal<In, Bits<7>>,
+    /// Longest pause before the reply, in microseconds.
+    pub reply_gap_us: Signal<In, Bits<6>>,
+    /// Longest pause between two fields, in microseconds.
+    pub field_gap_us: Signal<In, Bits<3>>,
+    /// Pulses of at most this many system clock cycles are ignored; less than half a bit.
+    pub filter_cycles: Signal<In, Bits<4>>,
+    /// Line to the transceiver, from a register.
+    pub data_o: Signal<Out, Bit>,
+    /// Driver enable of the transceiver, from a register.
+    pub data_oe: Signal<Out, Bit>,
+    /// A trigger would not be taken.
+    pub busy: Signal<Out, Bit>,
+    /// Strobe: an exchange has ended.
+    pub over: Signal<Out, Bit>,
+    /// It was the host's.
+    pub over_request: Signal<Out, Bit>,
+    /// Strobe: a new result can be read from this cycle on.
+    pub result_strobe: Signal<Out, Bit>,
+    /// Last good position: multi-turn in bits 47..24, single-turn in bits 23..0.
+    pub position: Signal<Out, Bits<48>>,
+    /// There is a good position.
+    pub position_valid: Signal<Out, Bit>,
+    /// The last result brought the position, or a part of it.
+    pub fresh: Signal<Out, Bit>,
+    /// Number of results, wrapping.
+    pub sequence: Signal<Out, Bits<16>>,
+    /// Time of the start bit of the request that brought the position, in system clock cycles.
+    pub first_fall_timestamp: Signal<Out, Bits<32>>,
+    /// Age of the position in microseconds; stops at 65535.
+    pub age_us: Signal<Out, Bits<16>>,
+    /// Primary cause of the last result, see [`super::cause::of_card`].
+    pub cause: Signal<Out, Bits<5>>,
+    /// Raw flags of the last result, see [`super::cause`].
+    pub flags: Signal<Out, Bits<19>>,
+    /// Word that the host accesses, see [`word`].
+    pub host_address: Signal<In, Bits<3>>,
+    /// Strobe: read it.
+    pub host_read: Signal<In, Bit>,
+    /// The word read.
+    pub host_word: Signal<Out, Bits<32>>,
+    /// Strobe: write one half of it.
+    pub host_write: Signal<In, Bit>,
+    /// The half: 1 = high. Write the low one last: it acts.
+    pub host_half: Signal<In, Bit>,
+    /// What to write.
+    pub host_data: Signal<In, Bits<16>>,
+    filter: InputFilter,
+    exchange: Exchange,
+    reply: Reply,
+    primary: LowestCause,
+    snapshot: Snapshot,
+    rest: Reg<Bits<2>>,
+    started: Reg<Bit>,
+    lost: Reg<Bit>,
+    own: Reg<Bit>,
+    armed: Reg<Bit>,
+    pending: Reg<Bit>,
+    send_id: Reg<Bits<4>>,
+    send_address: Reg<Bits<7>>,
+    send_data: Reg<Bits<8>>,
+    memory: Reg<Bits<8>>,
+    echo: Reg<Bits<4>>,
+    own_cause: Reg<Bits<4>>,
+    done: Reg<Bit>,
+    status: Reg<Bits<8>>,
+    identity: Reg<Bits<8>>,
+    alarms: Reg<Bits<8>>,
+    crc: Reg<Bits<8>>,
+    has_had_single: Reg<Bit>,
+    has_had_multi: Reg<Bit>,
+    shown: Reg<Bits<32>>,
+    is_busy: Signal<Local, Bit>,
+    own_busy: Signal<Local, Bit>,
+    own_start: Signal<Local, Bit>,
+    own_now: Signal<Local, Bit>,
+    begins: Signal<Local, Bit>,
+    sends: Signal<Local, Bit>,
+    takes: Signal<Local, Bit>,
+    overrun: Signal<Local, Bit>,
+    sum_flags: Signal<Local, Bits<15>>,
+    code: Signal<Local, Bits<4>>,
+    card_cause: Signal<Local, Bits<5>>,
+    single: Signal<Local, Bits<24>>,
+    multi: Signal<Local, Bits<24>>,
+    chosen: Signal<Local, Bits<32>>,
+}
+
+impl Default for TFormatPort {
+    fn default() -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            tick_us: Default::default(),
+            timestamp: Default::default(),
+            trigger: Default::default(),
+            data_i: Default::default(),
+            request_id: Default::default(),
+            bit_cycles: Default::default(),
+            reply_gap_us: Default::default(),
+            field_gap_us: Default::default(),
+            filter_cycles: Default::default(),
+            data_o: Default::default(),
+            data_oe: Default::default(),
+            busy: Default::default(),
+            over: Default::default(),
+            over_request: Default::default(),
+            result_strobe: Default::default(),
+            position: Default::default(),
+            position_valid: Default::default(),
+            fresh: Default::default(),
+            sequence: Default::default(),
+            first_fall_timestamp: Default::default(),
+            age_us: Default::default(),
+            cause: Default::default(),
+            flags: Default::default(),
+            host_address: Default::default(),
+            host_read: Default::default(),
+            host_word: Default::default(),
+            host_write: Default::default(),
+            host_half: Default::default(),
+            host_data: Default::default(),
+            filter: InputFilter::new(Features::NONE),
+            exchange: Default::default(),
+            reply: Default::default(),
+            primary: Default::default(),
+            snapshot: Default::default(),
+            rest: Default::default(),
+            started: Default::default(),
+            lost: Default::default(),
+            own: Default::default(),
+            armed: Default::default(),
+            pending: Default::default(),
+            send_id: Default::default(),
+            send_address: Default::default(),
+            send_data: Default::default(),
+            memory: Default::default(),
+            echo: Default::default(),
+            own_cause: Default::default(),
+            done: Default::default(),
+            status: Default::default(),
+            identity: Default::default(),
+            alarms: Default::default(),
+            crc: Default::default(),
+            has_had_single: Default::default(),
+            has_had_multi: Default::default(),
+            shown: Default::default(),
+            is_busy: Default::default(),
+            own_busy: Default::default(),
+            own_start: Default::default(),
+            own_now: Default::default(),
+            begins: Default::default(),
+            sends: Default::default(),
+            takes: Default::default(),
+            overrun: Default::default(),
+            sum_flags: Default::default(),
+            code: Default::default(),
+            card_cause: Default::default(),
+            single: Default::default(),
+            multi: Default::default(),
+            chosen: Default::default(),
+        }
+    }
+}
+
+impl Logic for TFormatPort {
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, filter, exchange, reply, snapshot);
+        dff_setup!(
+            self,
+            clock,
+            rest,
+            started,
+            lost,
+            own,
+            armed,
+            pending,
+            send_id,
+            send_address
+        );
+        dff_setup!(self, clock, send_data, memory, echo, own_cause, done, status, identity);
+        dff_setup!(
+            self,
+            clock,
+            alarms,
+            crc,
+            has_had_single,
+            has_had_multi,
+            shown
+        );
+        self.filter.reset.next = self.reset.val();
+        self.exchange.reset.next = self.reset.val();
+        self.reply.reset.next = self.reset.val();
+        self.snapshot.reset.next = self.reset.val();
+        self.rest.reset.next = self.reset.val();
+        self.started.reset.next = self.reset.val() | !self.exchange.busy.val();
+        self.lost.reset.next = self.reset.val();
+        self.own.reset.next = self.reset.val();
+        self.armed.reset.next = self.reset.val();
+        self.pending.reset.next = self.reset.val();
+        self.send_id.reset.next = self.reset.val();
+        self.send_address.reset.next = self.reset.val();
+        self.send_data.reset.next = self.reset.val();
+        self.memory.reset.next = self.reset.val();
+        self.echo.reset.next = self.reset.val();
+        self.own_cause.reset.next = self.reset.val();
+        self.done.reset.next = self.reset.val();
+        self.status.reset.next = self.reset.val();
+        self.identity.reset.next = self.reset.val();
+        self.alarms.reset.next = self.reset.val();
+        self.crc.reset.next = self.reset.val();
+        self.has_had_single.reset.next = self.reset.val();
+        self.has_had_multi.reset.next = self.reset.val();
+        self.shown.reset.next = self.reset.val();
+
+        // Whose turn it is: a trigger's, or else the host's. Between two exchanges the encoder gets a rest.
+        self.is_busy.next = self.exchange.busy.val() | self.rest.q.val().any();
+        self.own_start.next = self.pending.q.val() & !self.is_busy.val() & !self.trigger.val();
+        self.begins.next = !self.is_busy.val() & (self.trigger.val() | self.pending.q.val());
+        self.own_now.next = self.own_start.val();
+        if self.is_busy.val() {
+            self.own_now.next = self.own.q.val();
+        }
+        self.own.d.next = self.own_now.val();
+        self.own_busy.next = self.pending.q.val() | (self.own.q.val() & self.exchange.busy.val());
+        if self.tick_us.val() & self.rest.q.val().any() {
+            self.rest.d.next = self.rest.q.val() - 1;
+        }
+        if self.exchange.publish.val() {
+            self.rest.d.next = 2.into();
+        }
+
+        // The host's request: not taken while there is one.
+        self.sends.next = self.host_write.val() & !self.host_address.val().any();
+        if self.sends.val() {
+            if self.host_half.val() {
+                self.armed.d.next = !self.own_busy.val();
+                if !self.own_busy.val() {
+                    self.send_id.d.next = self.host_data.val().get_bits::<4>(0);
+                }
+            } else {
+                self.armed.d.next = false;
+                if self.armed.q.val() {
+                    self.send_data.d.next = self.host_data.val().get_bits::<8>(0);
+                    self.send_address.d.next = self.host_data.val().get_bits::<7>(8);
+                    self.pending.d.next = true;
+                    self.done.d.next = false;
+                }
+            }
+        }
+        if self.own_start.val() {
+            self.pending.d.next = false;
+        }
+
+        self.filter.pin.next = self.data_i.val();
+        self.filter.filter_cycles.next = self.filter_cycles.val();
+        self.filter.majority.next = false;
+        self.filter.both_edges.next = false;
+
+        self.exchange.tick_us.next = self.tick_us.val();
+        self.exchange.trigger.next = self.begins.val();
+        // A trigger never goes to the EEPROM: its address and data are the host's, and may change at any time.
+        self.exchange.request_id.next = self.request_id.val();
+        if (self.request_id.val() == 6) | (self.request_id.val() == 13) {
+            self.exchange.request_id.next = 15.into();
+        }
+        if self.own_now.val() {
+            self.exchange.request_id.next = self.send_id.q.val();
+        }
+        self.exchange.address.next = self.send_address.q.val();
+        self.exchange.data.next = self.send_data.q.val();
+        // A bit of one cycle would have no middle.
+        self.exchange.bit_cycles.next = self.bit_cycles.val();
+        if !self.bit_cycles.val().get_bits::<4>(3).any() {
+            self.exchange.bit_cycles.next = self.bit_cycles.val() | 8;
+        }
+        self.exchange.reply_gap_us.next = self.reply_gap_us.val();
+        self.exchange.field_gap_us.next = self.field_gap_us.val();
+        self.exchange.level.next = self.filter.level.val();
+        self.exchange.status.next = self.reply.status.val();
+        self.data_o.next = self.exchange.tx.val();
+        self.data_oe.next = self.exchange.driver.val();
+        self.busy.next = self.is_busy.val();
+
+        self.reply.idle.next = !self.exchange.busy.val();
+        self.reply.take.next = self.exchange.take.val();
+        self.reply.level.next = self.filter.level.val();
+        self.reply.is_status.next = self.exchange.is_status.val();
+        self.reply.is_single.next = self.exchange.is_single.val();
+        self.reply.is_multi.next = self.exchange.is_multi.val();
+        self.reply.is_byte.next = self.exchange.is_byte.val();
+        self.reply.is_alarm.next = self.exchange.is_alarm.val();
+
+        // A trigger that was not taken is told by the result of the exchange under way, or of the next one.
+        self.overrun.next = self.lost.q.val() & !self.own.q.val();
+        if self.exchange.publish.val() & !self.own.q.val() {
+            self.lost.d.next = false;
+        }
+        if self.trigger.val() & self.is_busy.val() {
+            self.lost.d.next = true;
+        }
+        self.sum_flags.next = bit_cast::<15, 14>(self.exchange.flags.val().get_bits::<14>(0))
+            | (bit_cast::<15, 1>(self.overrun.val().into()) << 14);
+        self.primary.flags.next = self.sum_flags.val();
+        self.code.next = self.primary.cause.val();
+        self.card_cause.next = bit_cast::<5, 4>(self.code.val()) | 16;
+        if self.code.val() == 0 {
+            self.card_cause.next = 0.into();
+        }
+        if self.code.val() == 1 {
+            self.card_cause.next = 9.into();
+        }
+        if self.code.val() == 15 {
+            self.card_cause.next = 8.into();
+        }
+
+        // A part that does not come stays as it was.
+        self.single.next = self.snapshot.position.val().get_bits::<24>(0);
+        if self.exchange.has_single.val() {
+            self.single.next = self.reply.single_turn.val();
+        }
+        self.multi.next = self.snapshot.position.val().get_bits::<24>(24);
+        if self.exchange.has_multi.val() {
+            self.multi.next = self.reply.multi_turn.val();
+        }
+        self.started.d.next = self.started.q.val() | !self.exchange.tx.val();
+        self.takes.next = self.exchange.publish.val()
+            & self.exchange.good.val()
+            & !self.own.q.val()
+            & (self.exchange.has_single.val() | self.exchange.has_multi.val());
+        self.snapshot.tick_us.next = self.tick_us.val();
+        self.snapshot.timestamp.next = self.timestamp.val();
+        self.snapshot.first_fall.next = !self.exchange.tx.val() & !self.started.q.val();
+        self.snapshot.latched.next = false;
+        self.snapshot.delay_cycles.next = 0.into();
+        self.snapshot.publish.next = self.exchange.publish.val() & !self.own.q.val();
+        self.snapshot.good.next = self.takes.val();
+        self.snapshot.late_fault.next = false;
+        self.snapshot.position_in.next =
+            bit_cast::<48, 24>(self.single.val()) | (bit_cast::<48, 24>(self.multi.val()) << 24);
+        self.snapshot.crc_received_in.next = 0.into();
+        self.snapshot.crc_computed_in.next = 0.into();
+        self.snapshot.cause_in.next = self.card_cause.val();
+        self.snapshot.flags_in.next = bit_cast::<19, 15>(self.sum_flags.val());
+        self.over.next = self.exchange.publish.val();
+        self.over_request.next = self.own.q.val();
+        self.result_strobe.next = self.snapshot.result_strobe.val();
+        self.position.next = self.snapshot.position.val();
+        self.position_valid.next = self.snapshot.position_valid.val();
+        self.fresh.next = self.snapshot.fresh.val();
+        self.sequence.next = self.snapshot.sequence.val();
+        self.first_fall_timestamp.next = self.snapshot.first_fall_timestamp.val();
+        self.age_us.next = self.snapshot.age_us.val();
+        self.cause.next = self.snapshot.cause.val();
+        self.flags.next = self.snapshot.flags.val();
+
+        // What the words of the host show.
+        if self.takes.val() & self.exchange.has_single.val() {
+            self.has_had_single.d.next = true;
+        }
+        if self.takes.val() & self.exchange.has_multi.val() {
+            self.has_had_multi.d.next = true;
+        }
+        if self.exchange.publish.val() {
+            self.status.d.next = self.reply.status.val();
+            self.crc.d.next = self.exchange.crc.val();
+            if self.own.q.val() {
+                self.echo.d.next = self.exchange.reply_id.val();
+                self.own_cause.d.next = self.code.val();
+                self.done.d.next = true;
+            }
+            if self.exchange.good.val() {
+                if self.exchange.has_identity.val() {
+                    self.identity.d.next = self.reply.byte_field.val();
+                }
+                if self.exchange.has_alarm.val() {
+                    self.alarms.d.next = self.reply.alarm.val();
+                }
+                if self.exchange.is_memory.val() {
+                    self.memory.d.next = self.reply.byte_field.val();
+                }
+            }
+        }
+        self.chosen.next = 0.into();
+        match self.host_address.val().index() {
+            1 => {
+                self.chosen.next = bit_cast::<32, 8>(self.memory.q.val())
+                    | (bit_cast::<32, 4>(self.echo.q.val()) << 8)
+                    | (bit_cast::<32, 4>(self.own_cause.q.val()) << 12)
+                    | (bit_cast::<32, 1>(self.done.q.val().into()) << 16)
+                    | (bit_cast::<32, 1>(self.own_busy.val().into()) << 17);
+            }
+            2 => {
+                self.chosen.next = bit_cast::<32, 8>(self.status.q.val())
+                    | (bit_cast::<32, 8>(self.identity.q.val()) << 8)
+                    | (bit_cast::<32, 8>(self.alarms.q.val()) << 16)
+                    | (bit_cast::<32, 8>(self.crc.q.val()) << 24);
+            }
+            3 => {
+                self.chosen.next = bit_cast::<32, 1>(self.has_had_single.q.val().into())
+                    | (bit_cast::<32, 1>(self.has_had_multi.q.val().into()) << 1);
+            }
+            _ => {}
+        }
+        // A word is one moment, however slowly its bytes are fetched.
+        if self.host_read.val() {
+            self.shown.d.next = self.chosen.val();
+        }
+        self.host_word.next = self.shown.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,105 @@
+//! The program's commands at a virtual card that mixes protocols, and its stream.
+
+use endat_gen::cli;
+use endat_gen::config::{parse, preset};
+use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
+use endat_host::feed::Feed;
+use endat_host::{Bridge, Card};
+use std::collections::VecDeque;
+use std::time::Duration;
+
+const PORT: [&str; 2] = ["--port", "virtual:mixed_protocols"];
+
+fn run(command: &[&str]) -> cli::Outcome {
+    cli::run([&["endat-gen"], command, &PORT].concat())
+}
+
+#[test]
+fn the_host_commands_know_what_a_t_format_channel_is() {
+    let read = run(&["read"]);
+    assert_eq!(read.exit_code, 0, "{read:?}");
+    assert!(read.stdout.contains(" deg "), "{read:?}");
+    // Its shaft begins at 200.2 turns.
+    assert!(read.stdout.contains(" counts, multi 200 "), "{read:?}");
+    assert!(!read.stdout.lines().nth(2).unwrap().contains("deg"));
+    let json: serde_json::Value = serde_json::from_str(&run(&["read", "--json"]).stdout).unwrap();
+    assert_eq!(
+        (&json[1]["unit"], &json[1]["turns"]),
+        (&"counts".into(), &200.into())
+    );
+    let raw = json[1]["position"].as_u64().unwrap();
+    assert_eq!(raw >> 24, 200);
+    assert_eq!(json[1]["value"].as_f64(), Some((raw & 0xFF_FFFF) as f64));
+
+    let id = run(&["id"]);
+    assert_eq!(id.exit_code, 0);
+    assert!(id.stdout.contains("t_format: T-format channels"), "{id:?}");
+    assert!(id.stdout.contains("encoder 1\n  type              T-format, which has no name plate\n  kind              0x17 (ENID)\n"), "{id:?}");
+    let monitor = run(&["monitor", "--count", "1"]);
+    assert_eq!(monitor.exit_code, 0, "{monitor:?}");
+
+    let param = run(&["param", "read", "0xA1", "0x0D", "--channel", "1"]);
+    assert_eq!(param.exit_code, 2);
+    assert!(param.messages[0].contains("channel 1: mode commands: the channel speaks T-format, which has none; its requests go through t_format1.send and .answer"), "{param:?}");
+    for (name, text) in [
+        (
+            "t_format0",
+            "channel 0 speaks EnDat, which has no block t_format",
+        ),
+        ("service1.state", "this card has no block service"),
+    ] {
+        let refused = run(&["reg", "read", name]);
+        assert_eq!(refused.exit_code, 2);
+        assert!(refused.messages[0].contains(text), "{refused:?}");
+    }
+    let words = run(&["reg", "read", "t_format1"]);
+    assert_eq!(words.exit_code, 0, "{words:?}");
+    let told = cli::run(["endat-gen", "explain", "no_header"]);
+    assert!(told.stdout.starts_with("cause 20 (no_header)"), "{told:?}");
+    assert!(!told.stdout.contains("counted in"));
+}
+
+#[test]
+fn the_stream_of_a_mixed_card_has_both_positions() {
+    let mut text = preset("mixed_protocols").unwrap().to_owned();
+    for (from, to) in [
+        ("fifo_bytes = 0", "fifo_bytes = 2048"),
+        ("sample_hz = 10_000", "sample_hz = 5_000"),
+    ] {
+        assert!(text.contains(from));
+        text = text.replacen(from, to, 1);
+    }
+    let project = parse("mixed.toml", &text).unwrap();
+    let virtual_card = VirtualCard::new(&project, &VirtualConfig::default()).unwrap();
+    let mut card = Card::find(Bridge::new(virtual_card)).unwrap();
+    assert!(card.identity().is_t_format(1) && !card.identity().is_t_format(0));
+    let mut feed = Feed::begin(&mut card, false).unwrap();
+    let mut rows = VecDeque::new();
+    while rows.len() < 300 {
+        feed.fill(&mut card, &mut rows, Duration::from_millis(1))
+            .unwrap();
+    }
+    let rows: Vec<_> = rows.into_iter().skip(5).collect();
+    let at = |n: usize, channel: usize| rows[n].cells[channel].position.unwrap();
+    for (n, row) in rows.iter().enumerate() {
+        assert_eq!(row.missing, 0, "{n}");
+        for cell in &row.cells {
+            assert!(cell.fresh && cell.cause == "none", "{n} {cell:?}");
+        }
+        assert_eq!(at(n, 1) >> 24, 200);
+    }
+    // Both shafts turn as they should, the second one half as fast again.
+    let last = rows.len() - 1;
+    let seconds = (rows[last].cycles - rows[0].cycles) as f64 / 100e6;
+    let turns = (at(last, 1) - at(0, 1)) as f64 / f64::from(1 << 17);
+    assert!(
+        (turns / seconds - 0.375).abs() < 0.002,
+        "{turns} in {seconds}"
+    );
+    let turns = (at(last, 0) - at(0, 0)) as f64 / f64::from(1 << 29);
+    // The swing on top has at most 0.004 turns a second.
+    assert!(
+        (turns / seconds - 0.25).abs() < 0.006,
+        "{turns} in {seconds}"
+    );
+}
