@@ -65,7 +65,7 @@ pub struct RegisterBank {
     pub ring_in: Signal<In, Bits<8>>,
     /// Byte to the last channel's ring block.
     pub ring_out: Signal<Out, Bits<8>>,
-    /// The word is one of a line monitor, not of a service or a T-format port.
+    /// The word is one of a line monitor or a T-format port, not of a service.
     pub service_line: Signal<Out, Bit>,
     /// Word of a service's RAM, a line monitor or a T-format port.
     pub service_address: Signal<Out, Bits<7>>,
@@ -578,7 +578,7 @@ impl Logic for RegisterBank {
             & self.word_address.val().get_bits::<2>(6).all();
         self.word_page.next =
             self.service_page.val() | self.line_page.val() | self.t_format_page.val();
-        self.service_line.next = self.line_page.val();
+        self.service_line.next = self.line_page.val() | self.t_format_page.val();
         self.service_channel.next = self.word_address.val().get_bits::<3>(7);
         if self.line_page.val() {
             self.service_channel.next = self.word_address.val().get_bits::<3>(6);
