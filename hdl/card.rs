@@ -127,7 +127,6 @@ pub struct CardCore {
     word_link: Vec<Signal<Local, Bits<32>>>,
     service_reads: Signal<Local, Bits<8>>,
     service_writes: Signal<Local, Bits<8>>,
-    endat_channels: Constant<Bits<8>>,
     pending: Vec<Signal<Local, Bit>>,
     faulty: Vec<Signal<Local, Bit>>,
     slow_bit: Constant<Bits<5>>,
@@ -317,7 +316,6 @@ impl CardCore {
             word_link: each(services + 1),
             service_reads: Default::default(),
             service_writes: Default::default(),
-            endat_channels: Constant::new((!config.t_format_channels() & 0xff).into()),
             pending: each(channels + 1),
             faulty: each(channels + 1),
             slow_bit: Constant::new(blink_bit(config.system_hz, 1).into()),
@@ -470,8 +468,8 @@ impl Logic for CardCore {
         self.service_reads.next = 0.into();
         self.service_writes.next = 0.into();
         if !self.bank.service_line.val() {
-            self.service_reads.next = self.bank.service_read.val() & self.endat_channels.val();
-            self.service_writes.next = self.bank.service_write.val() & self.endat_channels.val();
+            self.service_reads.next = self.bank.service_read.val();
+            self.service_writes.next = self.bank.service_write.val();
         }
         for i in 0..self._served {
             self.port[i].io_address[0].next = self.io_address[i].val();
@@ -495,7 +493,7 @@ impl Logic for CardCore {
             self.service[i].host_second.next = self.bank.service_channels.val().get_bit(2 * i + 1);
             self.service[i].host_read.next = self.service_reads.val().get_bit(2 * i)
                 | self.service_reads.val().get_bit(2 * i + 1);
-            self.service[i].host_clear.next = self.bank.service_read.val().any();
+            self.service[i].host_clear.next = self.bank.service_clear.val();
             self.service[i].host_write.next = self.service_writes.val().get_bit(2 * i)
                 | self.service_writes.val().get_bit(2 * i + 1);
             self.service[i].host_half.next = self.bank.service_half.val();

@@ -71,6 +71,8 @@ pub struct RegisterBank {
     pub service_address: Signal<Out, Bits<7>>,
     /// The channel that it belongs to, one bit per channel.
     pub service_channels: Signal<Out, Bits<8>>,
+    /// Strobe: an access begins; the word that was read before is not asked for any more.
+    pub service_clear: Signal<Out, Bit>,
     /// Strobe, one bit per channel: read it.
     pub service_read: Signal<Out, Bits<8>>,
     /// The word read.
@@ -207,6 +209,7 @@ impl RegisterBank {
             service_line: Default::default(),
             service_address: Default::default(),
             service_channels: Default::default(),
+            service_clear: Default::default(),
             service_read: Default::default(),
             service_word: Default::default(),
             service_write: Default::default(),
@@ -623,6 +626,7 @@ impl Logic for RegisterBank {
         self.service_first.d.next = self.access.val();
         self.service_address.next = self.word_address.val().get_bits::<7>(0);
         self.service_channels.next = self.service_selected.q.val();
+        self.service_clear.next = self.service_first.q.val() & !self.lane.val().any();
         self.service_read.next = 0.into();
         if self.service_first.q.val() & !self.write_now.q.val() & !self.lane.val().any() {
             self.service_read.next = self.service_selected.q.val();

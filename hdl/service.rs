@@ -51,7 +51,7 @@ pub struct Service {
     pub host_second: Signal<In, Bit>,
     /// Strobe: the host reads it.
     pub host_read: Signal<In, Bit>,
-    /// Strobe: the host reads something, here or elsewhere.
+    /// Strobe: the host begins to read something, here or elsewhere.
     pub host_clear: Signal<In, Bit>,
     /// The word read, from the third cycle after its strobe; 0 if the host has read something else since.
     pub host_word: Signal<Out, Bits<32>>,

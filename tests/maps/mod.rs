@@ -508,8 +508,8 @@ fn maps_list_every_word_and_field_that_the_card_has() {
     let page = text_of(unlike, "_registers.md");
     assert!(page.contains("| 21:16 | `position_bits` | bits | 29, 25 |"));
     let page = text_of(&projects()[4], "_registers.md");
-    assert!(page.contains("| 1 | reset |") && page.contains("0x456E4474"));
-    assert!(page.contains("0 = none, 1 = data not low before start, 2 = no start bit"));
+    assert!(page.contains("| 1 | `reset` | reset |") && page.contains("0x456E4474"));
+    assert!(page.contains("| 2 | `no_start_bit` | no start bit |"));
     for register in BLOCKS.iter().flat_map(|b| b.registers) {
         assert!(page.contains(&format!("`{}`", register.name)));
         for field in register.fields {
