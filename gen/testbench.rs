@@ -6,6 +6,7 @@ use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
 use crate::template;
+use endat_hdl::card::services;
 use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, RESULT};
@@ -139,6 +140,7 @@ fn power_up(card: &CardConfig, ports: &[Port]) -> Result<String, GenError> {
         include_str!("templates/power_up.v.jinja"),
         &context! {
             channels => Serde(ports),
+            services => services(card),
             power_up_ms => times.power_up_ms,
             after_pulse_ms => times.after_pulse_ms,
             period_ns => real(period.max().unwrap_or(0) as f64 * 1e9 / card.system_hz as f64),

@@ -189,6 +189,11 @@ fn served_channels(card: &CardConfig) -> usize {
     last.filter(|_| card.service.requests).map_or(0, |i| i + 1)
 }
 
+/// Services of a card; each has room for [`CHANNELS_SERVED`] channels that follow each other.
+pub fn services(card: &CardConfig) -> usize {
+    served_channels(card).div_ceil(CHANNELS_SERVED)
+}
+
 fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort {
     let channel = &card.channels[index];
     if channel.t_format.is_some() {
@@ -239,7 +244,7 @@ impl CardCore {
         let direct_ports = channels * usize::from(config.outputs.position);
         let interrupts = usize::from(config.outputs.interrupt);
         let served = served_channels(config);
-        let services = served.div_ceil(CHANNELS_SERVED);
+        let services = services(config);
         let places = services * CHANNELS_SERVED;
         Self {
             clk_i: Default::default(),
