@@ -200,7 +200,7 @@ fn channel(card: &CardConfig, config: &ChannelConfig, encoder: &str) -> ChannelR
         calibration_hz: 1e6 / us(config.calibration_period_cycles(system_hz)),
         calibration_us: us(config.calibration_cycles(system_hz)),
         delay_max_ns: request.delay_max_ns(),
-        filter_ns: us(config.filter_cycles) * 1e3,
+        filter_ns: us(2 * config.filter_cycles + u64::from(config.filter_half)) * 1e3 / 2.0,
         filter_recommended_ns: us(config.filter_recommended_cycles()) * 1e3,
         start_window_ns: us(config.start_window_cycles) * 1e3,
         start_timeout_us: config.start_timeout_us,

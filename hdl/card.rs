@@ -395,6 +395,7 @@ impl Logic for CardCore {
             self.port[i].command.next = self.registers[i].command.val();
             self.port[i].position_bits.next = self.registers[i].position_bits.val();
             self.port[i].filter_cycles.next = self.registers[i].filter_cycles.val();
+            self.port[i].filter_half.next = self.registers[i].filter_half.val();
             self.port[i].start_window_cycles.next = self.registers[i].start_window_cycles.val();
             self.port[i].start_timeout_us.next = self.registers[i].start_timeout_us.val();
             self.port[i].recovery_limit_cycles.next = self.registers[i].recovery_limit_cycles.val();

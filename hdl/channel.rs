@@ -84,6 +84,8 @@ pub struct Channel {
     pub position_bits: Signal<In, Bits<6>>,
     /// Pulses on the data line of at most this many system clock cycles are ignored.
     pub filter_cycles: Signal<In, Bits<4>>,
+    /// And half a system clock cycle more, where DATA is looked at on both edges.
+    pub filter_half: Signal<In, Bit>,
     /// Where the phase comes from, see [`crate::line_delay::mode`].
     pub phase_mode: Signal<In, Bits<2>>,
     /// Delay in mode `fixed`, in sixteenths of a system clock cycle.
@@ -327,6 +329,7 @@ impl Channel {
             forced: Default::default(),
             position_bits: Default::default(),
             filter_cycles: Default::default(),
+            filter_half: Default::default(),
             phase_mode: Default::default(),
             fixed_delay: Default::default(),
             majority: Default::default(),
@@ -518,6 +521,7 @@ impl Logic for Channel {
 
         self.filter.pin.next = self.data_i.val();
         self.filter.filter_cycles.next = self.filter_cycles.val();
+        self.filter.filter_half.next = self.filter_half.val();
         self.filter.majority.next = self.majority.val();
         self.filter.both_edges.next = self.receiver.started.val();
 

@@ -86,6 +86,8 @@ pub struct ChannelRegisters {
     pub position_bits: Signal<Out, Bits<6>>,
     /// Input filter, in system clock cycles.
     pub filter_cycles: Signal<Out, Bits<4>>,
+    /// And half a cycle more.
+    pub filter_half: Signal<Out, Bit>,
     /// Half width of the start window, in system clock cycles.
     pub start_window_cycles: Signal<Out, Bits<6>>,
     /// T-format: request ID of a trigger.
@@ -147,6 +149,7 @@ impl ChannelRegisters {
             command: Default::default(),
             position_bits: Default::default(),
             filter_cycles: Default::default(),
+            filter_half: Default::default(),
             request_id: Default::default(),
             field_gap_us: Default::default(),
             start_window_cycles: Default::default(),
@@ -249,6 +252,7 @@ impl Logic for ChannelRegisters {
         self.first_low_extra_cycles.next = self.config1.q.val().get_bits::<11>(0);
         self.start_window_cycles.next = self.config1.q.val().get_bits::<6>(16);
         self.filter_cycles.next = self.config1.q.val().get_bits::<4>(24);
+        self.filter_half.next = self.config1.q.val().get_bit(23);
         self.request_id.next = self.config1.q.val().get_bits::<4>(28);
         self.field_gap_us.next = self.config2.q.val().get_bits::<3>(29);
         self.start_timeout_us.next = self.config2.q.val().get_bits::<12>(0);

@@ -46,6 +46,8 @@ pub struct EncoderPort {
     pub position_bits: Signal<In, Bits<6>>,
     /// Pulses on the data line of at most this many system clock cycles are ignored.
     pub filter_cycles: Signal<In, Bits<4>>,
+    /// And half a system clock cycle more, where DATA is looked at on both edges.
+    pub filter_half: Signal<In, Bit>,
     /// Largest distance of the start edge from its expected place, in system clock cycles.
     pub start_window_cycles: Signal<In, Bits<6>>,
     /// Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
@@ -247,6 +249,7 @@ impl EncoderPort {
             command: Default::default(),
             position_bits: Default::default(),
             filter_cycles: Default::default(),
+            filter_half: Default::default(),
             start_window_cycles: Default::default(),
             start_timeout_us: Default::default(),
             recovery_limit_cycles: Default::default(),
@@ -333,6 +336,7 @@ impl Logic for EncoderPort {
             self.channel[i].command.next = self.command.val();
             self.channel[i].position_bits.next = self.position_bits.val();
             self.channel[i].filter_cycles.next = self.filter_cycles.val();
+            self.channel[i].filter_half.next = self.filter_half.val();
             self.channel[i].start_window_cycles.next = self.start_window_cycles.val();
             self.channel[i].start_timeout_us.next = self.start_timeout_us.val();
             self.channel[i].recovery_limit_cycles.next = self.recovery_limit_cycles.val();

@@ -22,6 +22,8 @@ pub struct InputFilter {
     pub pin: Signal<In, Bit>,
     /// A pulse of at most this many system clock cycles is ignored; 0 switches the filter off.
     pub filter_cycles: Signal<In, Bits<4>>,
+    /// And half a cycle more; where there are two samples in each cycle.
+    pub filter_half: Signal<In, Bit>,
     /// Each sample counts as what most of it and its two neighbours are.
     pub majority: Signal<In, Bit>,
     /// Falling edges count, too.
@@ -74,6 +76,7 @@ impl InputFilter {
             reset: Default::default(),
             pin: Default::default(),
             filter_cycles: Default::default(),
+            filter_half: Default::default(),
             majority: Default::default(),
             both_edges: Default::default(),
             level: Default::default(),
@@ -177,7 +180,8 @@ impl Logic for InputFilter {
         self.middle_different.next = self.different.q.val();
         self.removed.d.next = false;
         if self.has_double.val() {
-            self.limit.next = bit_cast::<5, 4>(self.filter_cycles.val()) << 1;
+            self.limit.next = (bit_cast::<5, 4>(self.filter_cycles.val()) << 1)
+                | bit_cast::<5, 1>(self.filter_half.val().into());
             self.middle_different.next = 0.into();
             if self.sample_first.val() != self.level_now.q.val() {
                 if self.different.q.val() == self.limit.val() {

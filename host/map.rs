@@ -144,6 +144,7 @@ pub const BLOCKS: &[Block] = &[
         Register { name: "timing", offset: 1, access: Access::ReadWrite, meaning: "First low phase and tolerance of the start bit.", fields: &[
             Field { name: "first_low_extra_cycles", lsb: 0, width: 11, unit: "cycles", meaning: "First low phase minus half a period (tST)", values: Values::Plain },
             Field { name: "start_window_cycles", lsb: 16, width: 6, unit: "cycles", meaning: "The start edge must come within plus or minus this of its expected phase", values: Values::Plain },
+            Field { name: "filter_half", lsb: 23, width: 1, unit: "", meaning: "1: half a cycle more; with part double_edge only", values: Values::Plain },
             Field { name: "filter_cycles", lsb: 24, width: 4, unit: "cycles", meaning: "Pulses on DATA up to this length are ignored; 0 = off", values: Values::Plain },
             Field { name: "request_id", lsb: 28, width: 4, unit: "", meaning: "T-format: request ID of a trigger; 6 and 13 are not sent", values: Values::Plain },
         ] },

@@ -8,7 +8,7 @@ use super::preset_run::{project, run, ChannelRun, Conditions};
 use super::{cycle_times, fault, CycleTime, CycleTimeOptions};
 use crate::config::Project;
 use crate::error::GenError;
-use endat_hdl::config::{ChannelConfig, ChannelRequest};
+use endat_hdl::config::{filter_longest, ChannelConfig, ChannelRequest};
 use endat_hdl::direct::CROP_CYCLES;
 use endat_hdl::elaborate::elaborate;
 use endat_hdl::timing::{RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS};
@@ -91,11 +91,11 @@ fn longest(project: &Project, conditions: Conditions) -> Result<String, GenError
 /// The project with other requests of its channels.
 fn changed(project: &Project, change: impl Fn(&mut ChannelRequest)) -> Result<Project, GenError> {
     let mut project = project.clone();
-    let system_hz = project.card.system_hz;
+    let (system_hz, double_edge) = (project.card.system_hz, project.card.line.double_edge);
     for (index, channel) in project.card.channels.iter_mut().enumerate() {
         let mut request = channel.request.clone();
         change(&mut request);
-        let resolved = ChannelConfig::resolve(&request, system_hz, index);
+        let resolved = ChannelConfig::resolve(&request, system_hz, double_edge, index);
         *channel = resolved.map_err(|problems| fault(&format!("{problems:?}")))?;
     }
     Ok(project)
@@ -288,8 +288,11 @@ fn artinchip() -> Result<Table, GenError> {
         let channel = &good(&project, conditions)?[0];
         rates.push(decimal(channel.clock_hz / 1e6, 1));
     }
-    let step_ns = 1e9 / preset.card.system_hz as f64;
-    let crop_ns = CROP_CYCLES as f64 * step_ns;
+    let cycle_ns = 1e9 / preset.card.system_hz as f64;
+    let places = 1 + u64::from(preset.card.line.double_edge);
+    let step_ns = cycle_ns / places as f64;
+    let steps = filter_longest(places);
+    let crop_ns = CROP_CYCLES as f64 * cycle_ns;
     let mut table = Table::new(
         "Peripheral of a servo processor: `artinchip_endat_if`",
         "ArtInChip ENDAT-IF",
@@ -307,7 +310,7 @@ fn artinchip() -> Result<Table, GenError> {
     table.row(
         "step of the input filter",
         "4.1 ns",
-        format!("{} ns, 0 to 15 steps", decimal(step_ns, 1)),
+        format!("{} ns, 0 to {steps} steps", decimal(step_ns, 1)),
     );
     table.row(
         "cropped position to the current loop",
@@ -329,7 +332,7 @@ fn artinchip() -> Result<Table, GenError> {
         "15",
         "all of them: [artinchip-status.md](artinchip-status.md)",
     );
-    table.notes = "The filter's step is the system clock: 192 MHz here, since 100 kHz must be at most 2047 clocks; theirs is 240 MHz.".into();
+    table.notes = "The filter's step is half a system clock of 128 MHz here, for DATA is looked at on both edges; theirs is a clock of 240 MHz.".into();
     Ok(table)
 }
 

@@ -360,6 +360,9 @@ fn canonical(
             ("ready_low_cycles", c.ready_low_cycles),
             ("abort_us", c.abort_us),
         ];
+        if c.filter_half {
+            lines.push(format!("channel {n} filter_half"));
+        }
         lines.extend(
             numbers
                 .iter()

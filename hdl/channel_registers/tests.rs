@@ -114,6 +114,7 @@ fn output(uut: &ChannelRegisters, field: &str) -> u64 {
         "first_low_extra_cycles" => uut.first_low_extra_cycles.val().to_u64(),
         "start_window_cycles" => uut.start_window_cycles.val().to_u64(),
         "filter_cycles" => uut.filter_cycles.val().to_u64(),
+        "filter_half" => uut.filter_half.val().into(),
         "request_id" => uut.request_id.val().to_u64(),
         "field_gap_us" => uut.field_gap_us.val().to_u64(),
         "start_timeout_us" => uut.start_timeout_us.val().to_u64(),

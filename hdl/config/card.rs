@@ -60,7 +60,7 @@ impl CardDraft {
         for (index, channel) in self.channels.iter().flatten().enumerate() {
             match channel
                 .as_ref()
-                .map(|c| ChannelConfig::resolve(c, system_hz, index))
+                .map(|c| ChannelConfig::resolve(c, system_hz, self.line.double_edge, index))
             {
                 Some(Ok(channel)) => {
                     let is_endat = channel.t_format.is_none();

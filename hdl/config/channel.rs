@@ -12,6 +12,7 @@ impl ChannelConfig {
     pub fn resolve(
         request: &ChannelRequest,
         system_hz: u64,
+        double_edge: bool,
         index: usize,
     ) -> Result<Self, Vec<Problem>> {
         let mut problems = Vec::new();
@@ -50,6 +51,15 @@ impl ChannelConfig {
             .flatten();
         let resolved = period.map(|period_cycles| {
             let half = period_cycles / 2;
+            let places = 1 + u64::from(double_edge);
+            let filter_places = check_filter(
+                &mut check,
+                request,
+                half,
+                places,
+                system_hz,
+                "an EnDat period",
+            );
             Self {
                 period_cycles,
                 first_low_extra_cycles: check_tst(&mut check, request, half, system_hz),
@@ -59,13 +69,8 @@ impl ChannelConfig {
                 } else {
                     0
                 },
-                filter_cycles: check_filter(
-                    &mut check,
-                    request,
-                    half,
-                    system_hz,
-                    "an EnDat period",
-                ),
+                filter_cycles: filter_places / places,
+                filter_half: filter_places % places == 1,
                 start_window_cycles: check_window(&mut check, request, period_cycles, system_hz),
                 start_timeout_us: request
                     .tcal_max_ns
@@ -271,19 +276,23 @@ pub(super) fn check_filter(
     check: &mut Check<'_>,
     request: &ChannelRequest,
     half: u64,
+    places: u64,
     system_hz: u64,
     whole: &str,
 ) -> u64 {
-    let cycles = cycles_at_least(request.filter_ns, system_hz);
-    let most = half.min(max_of(FILTER_BITS));
+    // Looks at DATA in a second.
+    let place_hz = places * system_hz;
+    let cycles = cycles_at_least(request.filter_ns, place_hz);
+    let longest = filter_longest(places);
+    let most = (places * half).min(longest);
     if cycles > most {
+        let unit = if places == 1 { "cycles" } else { "half cycles" };
         check.fail(
             "filter_ns",
             request.filter_ns,
             format!(
-                "is {cycles} cycles, more than {most} (half {whole}, and {} at most); use {} ns or less",
-                max_of(FILTER_BITS),
-                cycles_at_most_ns(most, system_hz)
+                "is {cycles} {unit}, more than {most} (half {whole}, and {longest} at most); use {} ns or less",
+                cycles_at_most_ns(most, place_hz)
             ),
         );
     }

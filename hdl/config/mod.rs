@@ -341,6 +341,8 @@ pub struct ChannelConfig {
     pub position_bits: u32,
     /// Input filter; 0 = off.
     pub filter_cycles: u64,
+    /// And half a cycle more; with `double_edge`.
+    pub filter_half: bool,
     /// Half width of the start window.
     pub start_window_cycles: u64,
     /// Longest wait for the start bit from the end of the turnaround, also at the calibration clock, in microseconds.
@@ -423,6 +425,11 @@ impl ChannelRequest {
 /// Longest propagation delay tD of a cable, in ns (PWM 20).
 const fn delay_max_ns(cable_m: u64) -> u64 {
     DELAY_BASE_NS + DELAY_NS_PER_M * cable_m
+}
+
+/// Longest input filter where DATA is looked at so many times in a cycle, in these looks.
+pub const fn filter_longest(places: u64) -> u64 {
+    places * (max_of(FILTER_BITS) + 1) - 1
 }
 
 /// Largest number in `bits` bits.

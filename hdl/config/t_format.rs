@@ -86,13 +86,15 @@ impl ChannelConfig {
         }
         let bit_cycles = check_rate(check, wanted.bit_hz, system_hz)?;
         // Less than half a bit.
-        let filter_cycles = check_filter(check, request, (bit_cycles - 1) / 2, system_hz, "a bit");
+        let filter_cycles =
+            check_filter(check, request, (bit_cycles - 1) / 2, 1, system_hz, "a bit");
         (gaps_good == [true, true]).then(|| Self {
             period_cycles: bit_cycles,
             first_low_extra_cycles: 0,
             command: request.command,
             position_bits: POSITION_BITS,
             filter_cycles,
+            filter_half: false,
             start_window_cycles: 0,
             start_timeout_us: wanted.reply_gap_us,
             recovery_limit_cycles: 0,

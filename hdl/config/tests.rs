@@ -57,7 +57,7 @@ fn frame(clock_hz: u64, command: ModeCommand, bits: u64, tst_ns: u64) -> (u64, f
         start_window_ns: 1_000_000_000u64.div_ceil(system_hz),
         ..rcn_8510()
     };
-    let config = ChannelConfig::resolve(&request, system_hz, 0).expect("a good request");
+    let config = ChannelConfig::resolve(&request, system_hz, false, 0).expect("a good request");
     let time = config.frame_time(system_hz);
     (
         time.pulses,
@@ -208,7 +208,7 @@ fn an_odd_period_keeps_the_first_low_phase_at_least_tst() {
         clock_hz: 4_000_000,
         ..rcn_8510()
     };
-    let config = ChannelConfig::resolve(&request, 100_000_000, 0).unwrap();
+    let config = ChannelConfig::resolve(&request, 100_000_000, false, 0).unwrap();
     assert_eq!(
         (config.period_cycles, config.first_low_extra_cycles),
         (25, 188)
@@ -315,7 +315,7 @@ proptest::proptest! {
             clock_hz, tst_ns, position_bits: bits, filter_ns, start_window_ns: window, tcal_max_ns: tcal,
             recovery_max_ns: tm, cable_m: cable, ..rcn_8510()
         };
-        if let Ok(c) = ChannelConfig::resolve(&request, system_hz, 0) {
+        if let Ok(c) = ChannelConfig::resolve(&request, system_hz, false, 0) {
             proptest::prop_assert!((PERIOD_CYCLES_MIN..=max_of(PERIOD_BITS)).contains(&c.period_cycles));
             proptest::prop_assert!(c.first_low_extra_cycles != 1 && c.first_low_extra_cycles <= max_of(PERIOD_BITS));
             proptest::prop_assert!((1..=48).contains(&c.position_bits));

@@ -335,6 +335,14 @@ pub const CHANNEL_CONFIG: Block = Block {
                     |s, c| of(s, c, |v| v.start_window_cycles),
                 ),
                 field(
+                    "filter_half",
+                    23,
+                    1,
+                    "",
+                    "1: half a cycle more; with part double_edge only",
+                    |s, c| of(s, c, |v| v.filter_half.into()),
+                ),
+                field(
                     "filter_cycles",
                     24,
                     4,

@@ -52,7 +52,7 @@ pub fn mixed_config() -> CardConfig {
         t_format: Some(TFormatRequest::default()),
         ..config.channels[1].request.clone()
     };
-    config.channels[1] = ChannelConfig::resolve(&request, config.system_hz, 1).unwrap();
+    config.channels[1] = ChannelConfig::resolve(&request, config.system_hz, false, 1).unwrap();
     config
 }
 
@@ -445,6 +445,7 @@ frame position_bits 21:16
 frame command 29:24
 timing first_low_extra_cycles 10:0
 timing start_window_cycles 21:16
+timing filter_half 23:23
 timing filter_cycles 27:24
 timing request_id 31:28
 limits start_timeout_us 11:0

@@ -131,6 +131,7 @@ impl Logic for TFormatChannel {
 
         self.filter.pin.next = self.rx.val();
         self.filter.filter_cycles.next = self.filter_cycles.val();
+        self.filter.filter_half.next = false;
         self.filter.majority.next = false;
         self.filter.both_edges.next = false;
 

@@ -306,6 +306,7 @@ impl Logic for TFormatPort {
 
         self.filter.pin.next = self.data_i.val();
         self.filter.filter_cycles.next = self.filter_cycles.val();
+        self.filter.filter_half.next = false;
         self.filter.majority.next = false;
         self.filter.both_edges.next = false;
 

@@ -107,6 +107,7 @@ module endat_card_core (
     wire         bank_service_line;
     wire   [6:0] bank_service_address;
     wire   [7:0] bank_service_channels;
+    wire         bank_service_clear;
     wire   [7:0] bank_service_read;
     wire   [7:0] bank_service_write;
     wire         bank_service_half;
@@ -124,6 +125,7 @@ module endat_card_core (
     wire   [5:0] registers_0_command;
     wire   [5:0] registers_0_position_bits;
     wire   [3:0] registers_0_filter_cycles;
+    wire         registers_0_filter_half;
     wire   [5:0] registers_0_start_window_cycles;
     wire   [3:0] registers_0_request_id;
     wire   [2:0] registers_0_field_gap_us;
@@ -136,6 +138,7 @@ module endat_card_core (
     wire   [5:0] registers_1_command;
     wire   [5:0] registers_1_position_bits;
     wire   [3:0] registers_1_filter_cycles;
+    wire         registers_1_filter_half;
     wire   [5:0] registers_1_start_window_cycles;
     wire   [3:0] registers_1_request_id;
     wire   [2:0] registers_1_field_gap_us;
@@ -203,7 +206,7 @@ module endat_card_core (
     wire         port_1_sample_strobe;
     wire         port_1_alarm;
     wire  [31:0] port_1_host_word;
-    wire         _unused_ok = &{1'b0, push_take, bank_channel_skip[7:2], bank_service_channels[7:2], bank_service_read[7:2], bank_service_write[7:2], bank_stream_selected, bank_calibrate[7:2], port_0_request_runs, port_0_line_high, port_0_displaced, port_0_over, port_0_over_request, port_0_over_cause, port_0_over_flags, port_0_reply, port_0_reply_good, port_0_info_active, port_0_info_1, port_0_info_2, port_0_info_came, port_0_info_good, port_0_calibrated, port_0_sample_strobe, port_1_request_runs, port_1_line_high, port_1_displaced, port_1_over, port_1_over_request, port_1_over_cause, port_1_over_flags, port_1_reply, port_1_reply_good, port_1_info_active, port_1_info_1, port_1_info_2, port_1_info_came, port_1_info_good, port_1_calibrated, port_1_sample_strobe};
+    wire         _unused_ok = &{1'b0, push_take, bank_channel_skip[7:2], bank_service_channels[7:2], bank_service_clear, bank_service_read[7:2], bank_service_write[7:2], bank_stream_selected, bank_calibrate[7:2], port_0_request_runs, port_0_line_high, port_0_displaced, port_0_over, port_0_over_request, port_0_over_cause, port_0_over_flags, port_0_reply, port_0_reply_good, port_0_info_active, port_0_info_1, port_0_info_2, port_0_info_came, port_0_info_good, port_0_calibrated, port_0_sample_strobe, port_1_request_runs, port_1_line_high, port_1_displaced, port_1_over, port_1_over_request, port_1_over_cause, port_1_over_flags, port_1_reply, port_1_reply_good, port_1_info_active, port_1_info_1, port_1_info_2, port_1_info_came, port_1_info_good, port_1_calibrated, port_1_sample_strobe};
 
     endat_timebase u_timebase (
         .clock(clk_i),
@@ -247,6 +250,7 @@ module endat_card_core (
         .service_line(bank_service_line),
         .service_address(bank_service_address),
         .service_channels(bank_service_channels),
+        .service_clear(bank_service_clear),
         .service_read(bank_service_read),
         .service_word(word_link_0),
         .service_write(bank_service_write),
@@ -294,6 +298,7 @@ module endat_card_core (
         .command(registers_0_command),
         .position_bits(registers_0_position_bits),
         .filter_cycles(registers_0_filter_cycles),
+        .filter_half(registers_0_filter_half),
         .start_window_cycles(registers_0_start_window_cycles),
         .request_id(registers_0_request_id),
         .field_gap_us(registers_0_field_gap_us),
@@ -334,6 +339,7 @@ module endat_card_core (
         .command(registers_1_command),
         .position_bits(registers_1_position_bits),
         .filter_cycles(registers_1_filter_cycles),
+        .filter_half(registers_1_filter_half),
         .start_window_cycles(registers_1_start_window_cycles),
         .request_id(registers_1_request_id),
         .field_gap_us(registers_1_field_gap_us),
@@ -353,6 +359,7 @@ module endat_card_core (
         .command(registers_0_command),
         .position_bits(registers_0_position_bits),
         .filter_cycles(registers_0_filter_cycles),
+        .filter_half(registers_0_filter_half),
         .start_window_cycles(registers_0_start_window_cycles),
         .start_timeout_us(registers_0_start_timeout_us),
         .recovery_limit_cycles(registers_0_recovery_limit_cycles),
@@ -413,6 +420,7 @@ module endat_card_core (
         .command(registers_1_command),
         .position_bits(registers_1_position_bits),
         .filter_cycles(registers_1_filter_cycles),
+        .filter_half(registers_1_filter_half),
         .start_window_cycles(registers_1_start_window_cycles),
         .start_timeout_us(registers_1_start_timeout_us),
         .recovery_limit_cycles(registers_1_recovery_limit_cycles),

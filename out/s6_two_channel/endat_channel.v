@@ -46,6 +46,8 @@ module endat_channel (
     input  wire   [5:0] position_bits,
     // Pulses on the data line of at most this many system clock cycles are ignored.
     input  wire   [3:0] filter_cycles,
+    // And half a system clock cycle more, where DATA is looked at on both edges.
+    input  wire         filter_half,
     // Where the phase comes from, see mode.
     input  wire   [1:0] phase_mode,
     // Delay in mode fixed, in sixteenths of a system clock cycle.
@@ -259,6 +261,7 @@ module endat_channel (
         .reset(reset),
         .pin(data_i),
         .filter_cycles(filter_cycles),
+        .filter_half(filter_half),
         .majority(majority),
         .both_edges(receiver_started),
         .level(filter_level),

@@ -72,6 +72,8 @@ module endat_channel_registers (
     output wire   [5:0] position_bits,
     // Input filter, in system clock cycles.
     output wire   [3:0] filter_cycles,
+    // And half a cycle more.
+    output wire         filter_half,
     // Half width of the start window, in system clock cycles.
     output wire   [5:0] start_window_cycles,
     // T-format: request ID of a trigger.
@@ -321,6 +323,7 @@ module endat_channel_registers (
     assign first_low_extra_cycles = config1[10:0];
     assign start_window_cycles = config1[21:16];
     assign filter_cycles = config1[27:24];
+    assign filter_half = config1[23];
     assign request_id = config1[31:28];
     assign field_gap_us = config2[31:29];
     assign start_timeout_us = config2[11:0];

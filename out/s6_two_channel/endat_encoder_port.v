@@ -30,6 +30,8 @@ module endat_encoder_port (
     input  wire   [5:0] position_bits,
     // Pulses on the data line of at most this many system clock cycles are ignored.
     input  wire   [3:0] filter_cycles,
+    // And half a system clock cycle more, where DATA is looked at on both edges.
+    input  wire         filter_half,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
     // Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
@@ -152,6 +154,7 @@ module endat_encoder_port (
         .forced(3'd0),
         .position_bits(position_bits),
         .filter_cycles(filter_cycles),
+        .filter_half(filter_half),
         .phase_mode(2'd0),
         .fixed_delay(15'd0),
         .majority(1'b0),

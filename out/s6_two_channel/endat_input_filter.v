@@ -14,6 +14,8 @@ module endat_input_filter (
     input  wire         pin,
     // A pulse of at most this many system clock cycles is ignored; 0 switches the filter off.
     input  wire   [3:0] filter_cycles,
+    // And half a cycle more; where there are two samples in each cycle.
+    input  wire         filter_half,
     // Each sample counts as what most of it and its two neighbours are.
     input  wire         majority,
     // Falling edges count, too.
@@ -86,7 +88,7 @@ module endat_input_filter (
         middle_different = different;
         removed_next = 1'b0;
         if (HAS_DOUBLE) begin
-            limit = {1'b0, filter_cycles} << 1'b1;
+            limit = ({1'b0, filter_cycles} << 1'b1) | {4'd0, filter_half};
             middle_different = 5'd0;
             if (sample_first != level_now) begin
                 if (different == limit) begin

@@ -50,12 +50,14 @@ module endat_register_bank (
     input  wire   [7:0] ring_in,
     // Byte to the last channel's ring block.
     output wire   [7:0] ring_out,
-    // The word is one of a line monitor, not of a service or a T-format port.
+    // The word is one of a line monitor or a T-format port, not of a service.
     output wire         service_line,
     // Word of a service's RAM, a line monitor or a T-format port.
     output wire   [6:0] service_address,
     // The channel that it belongs to, one bit per channel.
     output wire   [7:0] service_channels,
+    // Strobe: an access begins; the word that was read before is not asked for any more.
+    output wire         service_clear,
     // Strobe, one bit per channel: read it.
     output reg    [7:0] service_read,
     // The word read.
@@ -399,7 +401,7 @@ module endat_register_bank (
     assign line_page = HAS_LINE & in_range & !word_address[10] & word_address[9];
     assign t_format_page = HAS_T_FORMAT & low_page & !word_address[8] & (&word_address[7:6]);
     assign word_page = service_page | line_page | t_format_page;
-    assign service_line = line_page;
+    assign service_line = line_page | t_format_page;
 
     always @* begin
         service_channel = word_address[9:7];
@@ -451,6 +453,7 @@ module endat_register_bank (
     end
     assign service_address = word_address[6:0];
     assign service_channels = service_selected;
+    assign service_clear = service_first & !(|lane);
 
     always @* begin
         service_read = 8'd0;

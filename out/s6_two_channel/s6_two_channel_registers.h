@@ -200,6 +200,9 @@
 /* start_window_cycles: The start edge must come within plus or minus this of its expected phase (cycles) */
 #define S6_TWO_CHANNEL_CONFIG_TIMING_START_WINDOW_CYCLES_SHIFT 16u
 #define S6_TWO_CHANNEL_CONFIG_TIMING_START_WINDOW_CYCLES_MASK 0x003F0000u
+/* filter_half: 1: half a cycle more; with part double_edge only */
+#define S6_TWO_CHANNEL_CONFIG_TIMING_FILTER_HALF_SHIFT 23u
+#define S6_TWO_CHANNEL_CONFIG_TIMING_FILTER_HALF_MASK 0x00800000u
 /* filter_cycles: Pulses on DATA up to this length are ignored; 0 = off (cycles) */
 #define S6_TWO_CHANNEL_CONFIG_TIMING_FILTER_CYCLES_SHIFT 24u
 #define S6_TWO_CHANNEL_CONFIG_TIMING_FILTER_CYCLES_MASK 0x0F000000u

@@ -18,6 +18,8 @@ pub struct ChannelSettings {
     pub position_bits: u32,
     /// DATA must keep its level this long to be believed; 0 = no filter.
     pub filter_cycles: u64,
+    /// And half a cycle more; with `double_edge`.
+    pub filter_half: bool,
     /// Where the phase comes from, see [`endat_hdl::line_delay::mode`].
     pub phase_mode: u64,
     /// The delay in mode `fixed`, in sixteenths of a cycle.
@@ -53,6 +55,7 @@ impl ChannelSettings {
             command: command.code(),
             position_bits,
             filter_cycles: 0,
+            filter_half: false,
             phase_mode: 0,
             fixed_delay: 0,
             majority: false,
@@ -75,13 +78,14 @@ impl ChannelSettings {
     }
 
     /// Every configuration port with its value.
-    pub fn ports(&self) -> [(&'static str, u128); 13] {
+    pub fn ports(&self) -> [(&'static str, u128); 14] {
         [
             ("period_cycles", self.period_cycles),
             ("first_low_extra_cycles", self.first_low_extra_cycles),
             ("command", u64::from(self.command)),
             ("position_bits", u64::from(self.position_bits)),
             ("filter_cycles", self.filter_cycles),
+            ("filter_half", u64::from(self.filter_half)),
             ("phase_mode", self.phase_mode),
             ("fixed_delay", self.fixed_delay),
             ("majority", u64::from(self.majority)),

@@ -131,7 +131,8 @@ impl Case {
             (true, false) => 2,
             (true, true) => 1,
         };
-        2 * (SAMPLE_LATENCY_CYCLES + self.settings.filter_cycles) + majority
+        let filter = 2 * self.settings.filter_cycles + u64::from(self.settings.filter_half);
+        2 * SAMPLE_LATENCY_CYCLES + filter + majority
     }
 
     /// Frames at the calibration clock, with which a channel begins.

@@ -1,6 +1,6 @@
 //! Pulses on DATA that are shorter than the filter: nowhere in a frame do they change anything.
 
-use super::{count, run, Kind};
+use super::{count, run, Count, Kind};
 use endat_sim::{
     campaign::{Case, Traces},
     engine::Compiled,
@@ -59,6 +59,20 @@ fn pulses_below_the_filter_have_no_effect_at_any_phase() {
             }
         }
     }
+}
+
+/// Catches a filter that counts whole cycles only: 3.4 cycles are 6 or 7 looks.
+#[test]
+fn half_a_cycle_of_the_filter_counts() {
+    let mut cases = with_glitches(Kind::double(16), 3.4);
+    let is_harmed = |c: &Count| (c.good, c.wrong) != (c.frames, 0);
+    let harmed = run(&cases, 0).iter().filter(|c| is_harmed(c)).count();
+    assert!(harmed > cases.len() / 100, "{harmed} of {}", cases.len());
+    for case in &mut cases {
+        case.settings.filter_half = true;
+    }
+    let harmed = run(&cases, 0).iter().filter(|c| is_harmed(c)).count();
+    assert_eq!(harmed, 0);
 }
 
 /// Longer ones do harm, so the sweep above means something; they are told, but for what CRC5 cannot see.

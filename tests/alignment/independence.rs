@@ -45,7 +45,7 @@ fn config() -> CardConfig {
         (request.clock_hz, request.position_bits) = (clock_hz, position_bits);
         (request.command, request.cable_m) = (command, cable_m);
         request.start_window_ns = 16;
-        ChannelConfig::resolve(&request, card.system_hz, index).unwrap()
+        ChannelConfig::resolve(&request, card.system_hz, false, index).unwrap()
     };
     card.channels = CHANNELS.into_iter().enumerate().map(channel).collect();
     card

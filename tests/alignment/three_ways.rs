@@ -52,7 +52,7 @@ fn double_edge_agrees_on_a_line_with_jitter() {
             .any(|(a, b)| a != b));
         let mut kernel = kernel_engine!(block; clock;
             in reset, tick_us, timestamp, trigger, calibrate, data_i, period_cycles, first_low_extra_cycles, command,
-            position_bits, filter_cycles, phase_mode, fixed_delay, majority, start_window_cycles, start_timeout_us, recovery_limit_cycles,
+            position_bits, filter_cycles, filter_half, phase_mode, fixed_delay, majority, start_window_cycles, start_timeout_us, recovery_limit_cycles,
             recovery_min_cycles, watchdog_us, continuous, stop_at_error, request_command, request_parameter, request_ride, request_own, request_cancel, hold_off, clock_low, forced;
             out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
             first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles, phase, edge_measured, edge_offset, glitch, busy,

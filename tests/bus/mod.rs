@@ -83,6 +83,9 @@ impl Master {
         let links = links.map(|(index, (n, bits))| link(index, *n, *bits));
         let links = links.collect();
         let mut bench = Bench::new(engine, project.card.system_hz, links);
+        if project.card.line.double_edge {
+            bench.set_double_edge();
+        }
         bench.reset();
         Self {
             bus: project.bus,

@@ -2,6 +2,7 @@
 
 use super::Master;
 use endat_gen::config::load_preset;
+use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::regs::{Block, CARD, CHANNEL_CONFIG, RESULT};
 use endat_sim::US;
 
@@ -11,11 +12,11 @@ fn at(block: &Block, name: &str, channel: usize) -> u16 {
 
 /// Rates in hertz, and the start window in cycles that is a quarter of their period, as far as its field goes.
 const RATES: [(u64, u32); 7] = [
-    (16_000_000, 3),
-    (8_000_000, 6),
-    (4_000_000, 12),
-    (2_000_000, 24),
-    (1_000_000, 48),
+    (16_000_000, 2),
+    (8_000_000, 4),
+    (4_000_000, 8),
+    (2_000_000, 16),
+    (1_000_000, 32),
     (200_000, 63),
     (100_000, 63),
 ];
@@ -40,8 +41,8 @@ fn seven_rates_at_run_time_and_two_of_them_at_once() {
             let word = master.read(limits) & !0xfff;
             master.write(limits, word | 100);
         }
-        // Twice: the very first frame measures the delay.
-        for _ in 0..2 {
+        // The first frames measure the delay.
+        for _ in 0..=CALIBRATION_FRAMES {
             master.write(at(&CARD, "trigger_now", 0), 1);
             master.bench.run_cycles(700 * system_hz / 1_000_000);
         }

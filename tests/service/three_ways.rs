@@ -92,7 +92,7 @@ fn kernels_engines_and_verilog_agree_on_requests() {
     let design = elaborate(&block(), "encoder_port").unwrap();
     let mut kernel = kernel_engine!(block(); clock;
         in reset, tick_us, timestamp, trigger, calibrate, data_i, period_cycles, first_low_extra_cycles, command,
-        position_bits, filter_cycles, start_window_cycles, start_timeout_us, recovery_limit_cycles,
+        position_bits, filter_cycles, filter_half, start_window_cycles, start_timeout_us, recovery_limit_cycles,
         request_id, field_gap_us, host_address, host_line, host_read, host_write, host_half, host_data;
         out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
         first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles, busy,
