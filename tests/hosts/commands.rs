@@ -318,6 +318,13 @@ fn every_name_of_the_map_is_explained() {
             }
         }
     }
+    // Values of a field, too.
+    for (name, told) in [
+        ("busy_timeout", "request_state.error"),
+        ("double_edge", "bit 10"),
+    ] {
+        assert!(run(&["explain", name]).stdout.contains(told), "{name}");
+    }
     let unknown = run(&["explain", "crx"]);
     assert_eq!(unknown.exit_code, 2);
     assert!(

@@ -69,18 +69,37 @@ pub fn text(name: &str) -> Result<String, GenError> {
                     let _ = writeln!(text, "field of {}", full(block, register));
                     field_text(&mut text, field);
                 }
+                if parts.len() == 1 && field.name != "cause" {
+                    value_text(&mut text, name, &full(block, register), field);
+                }
             }
         }
     }
     if text.is_empty() {
         let causes: Vec<&str> = causes::all().iter().map(|c| c.name).collect();
         return Err(GenError::input(format!(
-            "name = {}: is no cause, block, register or field; causes are {}; registers: `endat-gen reg list`",
+            "name = {}: is no cause, block, register, field or value of one; causes are {}; registers: `endat-gen reg list`",
             shown(name),
             causes.join(", ")
         )));
     }
     Ok(text)
+}
+
+/// What `name` stands for in a field: a number, or a bit.
+fn value_text(text: &mut String, name: &str, register: &str, field: &Field) {
+    let (kind, values) = match field.values {
+        Values::Plain => return,
+        Values::Codes(values) => ("value", values),
+        Values::Bits(values) => ("bit", values),
+    };
+    for value in values.iter().filter(|v| v.name == name) {
+        let _ = writeln!(
+            text,
+            "{kind} {} of {register}.{}: {}",
+            value.number, field.name, value.meaning
+        );
+    }
 }
 
 fn full(block: &Block, register: &Register) -> String {
