@@ -30,8 +30,10 @@ impl Rig {
 #[test]
 fn an_endat_channel_has_its_service_before_and_behind_a_t_format_channel() {
     for is_swapped in [false, true] {
-        let mut config = EncoderConfig::default();
-        config.status = 0;
+        let config = EncoderConfig {
+            status: 0,
+            ..EncoderConfig::default()
+        };
         let mut rig = Rig::with(is_swapped, "\"timer\"", REQUESTS, config);
         rig.us(450);
         // Memory area, then the word that tells the width.
