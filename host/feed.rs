@@ -154,7 +154,8 @@ impl Feed {
         }
         let results = card.results()?.channels;
         let first = results[0];
-        if self.clock.last.map(|(sequence, _)| sequence) != Some(first.sequence) {
+        let has_begun = results.iter().any(|r| r.has_come());
+        if has_begun && self.clock.last.map(|(sequence, _)| sequence) != Some(first.sequence) {
             let cells = results.iter().map(|r| Cell {
                 position: r.valid.then_some(r.position),
                 fresh: r.fresh,

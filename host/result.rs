@@ -59,6 +59,11 @@ impl Reading {
         }
     }
 
+    /// There has been a result since reset.
+    pub fn has_come(&self) -> bool {
+        self.sequence != 0 || self.valid || self.cause != 0
+    }
+
     /// Name of the primary cause.
     pub fn cause_name(&self) -> &'static str {
         causes::name(self.cause)

@@ -1,7 +1,7 @@
 //! The keys of a `[[channel]]` that speaks T-format, of a card or of a receiver.
 
 use super::reader::{At, Table};
-use endat_hdl::config::{is_rate, limits, TFormatRequest};
+use endat_hdl::config::{is_rate, is_triggered, limits, TFormatRequest};
 use endat_hdl::t_format::protocol::{Request, BIT_HZ, FAST_BIT_HZ};
 
 /// Word of the key `protocol` for T-format.
@@ -68,12 +68,13 @@ pub fn read_bit_hz(table: &Table<'_, '_>) -> Option<At<u64>> {
     bit.filter(|bit| is_rate(bit.value))
 }
 
-/// The request of a trigger, if there is such a one, with the line it stands on.
-pub fn read_request(table: &Table<'_, '_>) -> Option<At<Request>> {
+/// A request, if there is such a one, with the line it stands on; a wrong one is answered with those that `may` be.
+pub fn read_request(table: &Table<'_, '_>, may: fn(Request) -> bool) -> Option<At<Request>> {
     let request = table.integer("request", &limits("request", None))?;
     let known = u8::try_from(request.value).ok().and_then(Request::from_id);
     if known.is_none() {
-        let ids: Vec<String> = Request::ALL.iter().map(|r| r.id().to_string()).collect();
+        let usual = Request::ALL.iter().filter(|r| may(**r));
+        let ids: Vec<String> = usual.map(|r| r.id().to_string()).collect();
         let text = format!("is no request ID; use one of {}", ids.join(", "));
         table.complain(request.line, "request", &request.value.to_string(), &text);
     }
@@ -103,7 +104,7 @@ pub fn read(
     let field_gap_us = number("field_gap_us", usual.field_gap_us);
     let filter_ns = number("filter_ns", FILTER_NS);
     let bit = read_bit_hz(table);
-    let request = read_request(table);
+    let request = read_request(table, is_triggered);
     lines.push(("bit_hz", bit.as_ref().map_or(table.line, |b| b.line)));
     lines.push(("request", request.as_ref().map_or(table.line, |r| r.line)));
     let wanted = TFormatRequest {

@@ -86,7 +86,7 @@ fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
     }
     let encoder = read_encoder(table);
     let fast = read_bit_hz(table).is_some_and(|bit| bit.value == FAST_BIT_HZ);
-    let request = read_request(table);
+    let request = read_request(table, |_| true);
     let number = |key: &'static str, usual: u64| {
         let limits = match (key, fast) {
             ("filter_cycles", true) => {

@@ -203,6 +203,27 @@ fn log_writes_a_file_and_does_not_replace_another() {
         .all(|l| serde_json::from_str::<serde_json::Value>(l).is_ok()));
 }
 
+/// Catches a row of a trigger that never was.
+#[test]
+fn a_log_has_no_row_before_the_first_trigger() {
+    use endat_host::feed::Feed;
+    let mut card = super::host("artinchip_endat_if");
+    let mut feed = Feed::begin(&mut card, true).unwrap();
+    let mut rows = std::collections::VecDeque::new();
+    let mut fill = |card: &mut _, rows: &mut _| {
+        for _ in 0..3 {
+            feed.fill(card, rows, std::time::Duration::ZERO).unwrap();
+        }
+    };
+    fill(&mut card, &mut rows);
+    assert!(rows.is_empty(), "{rows:?}");
+    let now = card.place("card.trigger_now").unwrap();
+    card.write(&now, 1).unwrap();
+    card.bridge().transport().run(200_000);
+    fill(&mut card, &mut rows);
+    assert_eq!(rows.len(), 1, "{rows:?}");
+}
+
 /// Catches a stream that loses or doubles a set, and a link that is not as before when the log has ended.
 #[test]
 fn log_has_every_trigger_of_a_card_with_a_stream() {

@@ -8,6 +8,7 @@ use endat_host::card::Identity;
 use endat_host::name_plate::{step_name, NamePlate};
 use serde_json::{json, Value};
 use std::fmt::Write;
+use std::time::Instant;
 
 /// Arguments of `id`.
 #[derive(Args)]
@@ -40,7 +41,8 @@ pub fn run(arguments: &IdArgs) -> Result<Outcome, GenError> {
     }
     let is_good = encoders.iter().all(|encoder| match encoder {
         Encoder::Endat(plate) => plate.initialised,
-        _ => true,
+        Encoder::TFormat(reply) => reply.is_ok(),
+        Encoder::NotRead => true,
     });
     let stdout = if arguments.json {
         to_json(&as_json(&identity, &encoders))?
@@ -59,28 +61,54 @@ enum Encoder {
     NotRead,
     /// An EnDat encoder.
     Endat(Box<NamePlate>),
-    /// A T-format encoder, which has no name plate.
-    TFormat(TFormatState),
+    /// A T-format encoder, which has no name plate: what it has told, or why it has not.
+    TFormat(Result<TFormatState, String>),
 }
 
 /// What a T-format encoder has told.
 struct TFormatState {
-    /// Kind of encoder, 0 = it has not been asked.
+    /// Kind of encoder.
     encoder_id: u32,
     /// Status and alarm field.
     status: u32,
     alarm: u32,
 }
 
-fn t_format(card: &mut AnyCard, channel: usize) -> Result<TFormatState, GenError> {
-    let fields = super::place(card, &format!("t_format{channel}.fields"))?;
+/// Request whose reply has everything.
+const EVERYTHING: u32 = 3;
+
+/// Asks a T-format encoder.
+fn t_format(card: &mut AnyCard, channel: usize) -> Result<Result<TFormatState, String>, GenError> {
+    let place = |name: &str| super::place(card, &format!("t_format{channel}.{name}"));
+    let (send, answer, fields) = (place("send.id")?, place("answer")?, place("fields")?);
+    let end = Instant::now() + card.patience();
+    let mut is_sent = false;
+    let of = |name: &str, word: u32| answer.register.field(name).map_or(0, |f| f.of(word));
+    let word = loop {
+        let word = card.read(&answer).map_err(told)?;
+        if of("busy", word) == 0 {
+            if is_sent {
+                break word;
+            }
+            card.write(&send, EVERYTHING).map_err(told)?;
+            is_sent = true;
+        }
+        if Instant::now() > end {
+            break word;
+        }
+    };
+    let cause = answer.register.field("cause");
+    if of("done", word) == 0 || of("cause", word) != 0 {
+        let why = cause.and_then(|f| f.told(word));
+        return Ok(Err(why.unwrap_or_else(|| "no end of the request".into())));
+    }
     let word = card.read(&fields).map_err(told)?;
     let field = |name: &str| fields.register.field(name).map_or(0, |f| f.of(word));
-    Ok(TFormatState {
+    Ok(Ok(TFormatState {
         encoder_id: field("encoder_id"),
         status: field("status"),
         alarm: field("alarm"),
-    })
+    }))
 }
 
 fn version(identity: &Identity) -> String {
@@ -101,27 +129,29 @@ fn as_text(identity: &Identity, encoders: &[Encoder]) -> String {
     for (name, meaning) in identity.parts() {
         let _ = writeln!(text, "part                {name}: {meaning}");
     }
-    if encoders.iter().any(|e| matches!(e, Encoder::NotRead)) {
-        text.push_str("encoders            not read: the card has no part initialise\n");
-    }
     for (channel, encoder) in encoders.iter().enumerate() {
         match encoder {
-            Encoder::NotRead => {}
+            Encoder::NotRead => {
+                let _ = writeln!(
+                    text,
+                    "\nencoder {channel}\n  type              EnDat, not read: the card has no part initialise"
+                );
+            }
             Encoder::Endat(plate) => {
                 let plate = plate_text(plate, identity.system_hz);
                 let _ = write!(text, "\nencoder {channel}\n{plate}");
             }
-            Encoder::TFormat(state) => {
-                let kind = match state.encoder_id {
-                    0 => format!(
-                        "not told yet (`endat-gen reg write t_format{channel}.send.id 2` asks for it)"
+            Encoder::TFormat(reply) => {
+                let told = match reply {
+                    Ok(state) => format!(
+                        "kind              0x{:02X} (ENID)\n  status, alarm     0x{:02X}, 0x{:02X}",
+                        state.encoder_id, state.status, state.alarm
                     ),
-                    id => format!("0x{id:02X} (ENID)"),
+                    Err(why) => format!("does not tell     {why}"),
                 };
                 let _ = writeln!(
                     text,
-                    "\nencoder {channel}\n  type              T-format, which has no name plate\n  kind              {kind}\n  status, alarm     0x{:02X}, 0x{:02X}",
-                    state.status, state.alarm
+                    "\nencoder {channel}\n  type              T-format, which has no name plate\n  {told}"
                 );
             }
         }
@@ -270,15 +300,26 @@ fn as_json(identity: &Identity, encoders: &[Encoder]) -> Value {
             "delay_cycles": p.delay_cycles,
         })
     };
-    let encoder = |encoder: &Encoder| match encoder {
-        Encoder::NotRead => None,
-        Encoder::Endat(p) => Some(plate(p)),
-        Encoder::TFormat(state) => Some(json!({
-            "protocol": "t_format",
-            "encoder_id": state.encoder_id,
-            "status": state.status,
-            "alarm": state.alarm,
-        })),
+    let encoder = |(channel, encoder): (usize, &Encoder)| {
+        let (protocol, told) = match encoder {
+            Encoder::NotRead => ("endat", json!({ "initialised": null })),
+            Encoder::Endat(p) => ("endat", plate(p)),
+            Encoder::TFormat(Ok(state)) => (
+                "t_format",
+                json!({
+                    "encoder_id": state.encoder_id,
+                    "status": state.status,
+                    "alarm": state.alarm,
+                    "error": null,
+                }),
+            ),
+            Encoder::TFormat(Err(why)) => ("t_format", json!({ "error": why })),
+        };
+        let mut all = json!({ "channel": channel, "protocol": protocol });
+        if let (Value::Object(all), Value::Object(told)) = (&mut all, told) {
+            all.extend(told);
+        }
+        all
     };
     json!({
         "channels": identity.channels,
@@ -287,6 +328,6 @@ fn as_json(identity: &Identity, encoders: &[Encoder]) -> Value {
         "register_map": version(identity),
         "configuration": format!("{:08x}", identity.configuration_hash),
         "parts": identity.parts().map(|(name, _)| name).collect::<Vec<_>>(),
-        "encoders": encoders.iter().filter_map(encoder).collect::<Vec<_>>(),
+        "encoders": encoders.iter().enumerate().map(encoder).collect::<Vec<_>>(),
     })
 }

@@ -52,7 +52,7 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     let results = card.results().map_err(told)?;
     let system_hz = f64::from(card.identity().system_hz);
     let mut messages = Vec::new();
-    if results.channels.iter().all(|r| r.sequence == 0) {
+    if !results.channels.iter().any(|r| r.has_come()) {
         messages.push(
             "no channel has a result since reset; trigger one with `endat-gen reg write card.trigger_now 1 --port PORT`, or enable the timer (`endat-gen reg write card_config.trigger_sources.timer 1 --port PORT`); a card behind `virtual` is a new one each time, start one with `card`".into(),
         );
