@@ -26,6 +26,7 @@ pub mod panda;
 pub mod registers;
 pub mod result;
 pub mod stream;
+pub mod t_format;
 pub mod transport;
 pub mod units;
 

@@ -1,14 +1,14 @@
 //! `id`: who the card is, and the name plates of its encoders.
 
 use super::super::{to_json, Outcome};
-use super::{initialised, told, AnyCard, PortArgs};
+use super::{initialised, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::card::Identity;
 use endat_host::name_plate::{step_name, NamePlate};
+use endat_host::t_format::TFormatState;
 use serde_json::{json, Value};
 use std::fmt::Write;
-use std::time::Instant;
 
 /// Arguments of `id`.
 #[derive(Args)]
@@ -31,7 +31,7 @@ pub fn run(arguments: &IdArgs) -> Result<Outcome, GenError> {
     let mut encoders = Vec::new();
     for channel in 0..identity.channels {
         encoders.push(match identity.is_t_format(channel) {
-            true => Encoder::TFormat(t_format(&mut card, channel)?),
+            true => Encoder::TFormat(card.t_format_state(channel).map_err(told)?),
             false if reads_plates => {
                 let plate = card.name_plate(channel).map_err(told)?;
                 Encoder::Endat(plate.into())
@@ -63,52 +63,6 @@ enum Encoder {
     Endat(Box<NamePlate>),
     /// A T-format encoder, which has no name plate: what it has told, or why it has not.
     TFormat(Result<TFormatState, String>),
-}
-
-/// What a T-format encoder has told.
-struct TFormatState {
-    /// Kind of encoder.
-    encoder_id: u32,
-    /// Status and alarm field.
-    status: u32,
-    alarm: u32,
-}
-
-/// Request whose reply has everything.
-const EVERYTHING: u32 = 3;
-
-/// Asks a T-format encoder.
-fn t_format(card: &mut AnyCard, channel: usize) -> Result<Result<TFormatState, String>, GenError> {
-    let place = |name: &str| super::place(card, &format!("t_format{channel}.{name}"));
-    let (send, answer, fields) = (place("send.id")?, place("answer")?, place("fields")?);
-    let end = Instant::now() + card.patience();
-    let mut is_sent = false;
-    let of = |name: &str, word: u32| answer.register.field(name).map_or(0, |f| f.of(word));
-    let word = loop {
-        let word = card.read(&answer).map_err(told)?;
-        if of("busy", word) == 0 {
-            if is_sent {
-                break word;
-            }
-            card.write(&send, EVERYTHING).map_err(told)?;
-            is_sent = true;
-        }
-        if Instant::now() > end {
-            break word;
-        }
-    };
-    let cause = answer.register.field("cause");
-    if of("done", word) == 0 || of("cause", word) != 0 {
-        let why = cause.and_then(|f| f.told(word));
-        return Ok(Err(why.unwrap_or_else(|| "no end of the request".into())));
-    }
-    let word = card.read(&fields).map_err(told)?;
-    let field = |name: &str| fields.register.field(name).map_or(0, |f| f.of(word));
-    Ok(Ok(TFormatState {
-        encoder_id: field("encoder_id"),
-        status: field("status"),
-        alarm: field("alarm"),
-    }))
 }
 
 fn version(identity: &Identity) -> String {
