@@ -95,14 +95,6 @@ fn ns(hz: u64) -> String {
     decimal(1e9 / hz as f64, 4)
 }
 
-/// Numbers of the channels that speak T-format, for people.
-fn t_format_channels(project: &Project) -> String {
-    let channels = project.card.channels.iter().enumerate();
-    let numbers = channels.filter(|(_, c)| c.t_format.is_some());
-    let numbers: Vec<String> = numbers.map(|(n, _)| n.to_string()).collect();
-    numbers.join(", ")
-}
-
 /// Board top, UCF and README of a project; without a board only a README that says how to use the card.
 pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let (Some(board), Some(pll)) = (&project.board, &project.pll) else {
@@ -116,7 +108,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
             system_hz => project.card.system_hz,
             channels => project.card.channels.len(),
             protocols => project.protocols(),
-            t_format => t_format_channels(project),
+            t_format => project.card.t_format_numbers().collect::<Vec<_>>(),
             timing => explain::report(project).to_string(),
         };
         let text = include_str!("../constraints/templates/readme_bus.md.jinja");
@@ -143,7 +135,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         pll => context! { divide => pll.divide, multiply => pll.multiply, output_divide => pll.output_divide, vco_hz => pll.vco_hz },
         channels => project.card.channels.len(),
         protocols => project.protocols(),
-        t_format => t_format_channels(project),
+        t_format => project.card.t_format_numbers().collect::<Vec<_>>(),
         timing => explain::report(project).to_string(),
     };
     let files = [

@@ -153,8 +153,7 @@ fn power_up(card: &CardConfig, ports: &[Port]) -> Result<String, GenError> {
 pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
     let card = &project.card;
     let hz = card.system_hz;
-    let is_t_format = |n: &usize| card.channels[*n].t_format.is_some();
-    let t_format: Vec<usize> = (0..card.channels.len()).filter(is_t_format).collect();
+    let t_format: Vec<usize> = card.t_format_numbers().collect();
     let exchange = |c: &ChannelConfig| cycles_to_ns(c.cycle_max_cycles(hz), hz);
     let exchange_ns = card.channels.iter().map(exchange).max().unwrap_or(0);
     // A T-format line has to be idle for a while after an exchange without a reply.

@@ -185,8 +185,9 @@ pub fn service_times(config: &CardConfig) -> ServiceTimes {
 
 /// Channels from the first one on that have a place at a service: to the last one that speaks EnDat.
 fn served_channels(card: &CardConfig) -> usize {
-    let last = card.channels.iter().rposition(|c| c.t_format.is_none());
-    last.filter(|_| card.service.requests).map_or(0, |i| i + 1)
+    let last = card.endat_channels().last();
+    last.filter(|_| card.service.requests)
+        .map_or(0, |(index, _)| index + 1)
 }
 
 /// Services of a card; each has room for [`CHANNELS_SERVED`] channels that follow each other.

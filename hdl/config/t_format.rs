@@ -140,12 +140,16 @@ fn check_rate(check: &mut Check<'_>, bit_hz: u64, system_hz: u64) -> Option<u64>
 }
 
 impl CardConfig {
-    /// Channels that speak T-format: bit n for channel n.
-    pub fn t_format_channels(&self) -> u64 {
+    /// Numbers of the channels that speak T-format.
+    pub fn t_format_numbers(&self) -> impl Iterator<Item = usize> + '_ {
         let channels = self.channels.iter().enumerate();
-        channels
-            .filter(|(_, c)| c.t_format.is_some())
-            .fold(0, |mask, (n, _)| mask | 1 << n)
+        let t_format = channels.filter(|(_, c)| c.t_format.is_some());
+        t_format.map(|(n, _)| n)
+    }
+
+    /// The same as a mask: bit n for channel n.
+    pub fn t_format_channels(&self) -> u64 {
+        self.t_format_numbers().fold(0, |mask, n| mask | 1 << n)
     }
 
     /// Channels that speak EnDat, with their numbers.
