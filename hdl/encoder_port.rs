@@ -454,6 +454,7 @@ impl Logic for EncoderPort {
             self.served[i].info_active.next = self.channel[i].info_active.val();
             self.served[i].info_1.next = self.channel[i].info_1.val();
             self.served[i].info_2.next = self.channel[i].info_2.val();
+            self.served[i].info_came.next = self.channel[i].info_came.val();
             self.served[i].info_good.next = self.channel[i].info_good.val();
             self.served[i].request_runs.next = self.channel[i].request_runs.val();
             self.served[i].line_high.next = self.channel[i].line_high.val();

@@ -405,9 +405,11 @@ pub const BLOCKS: &[Block] = &[
         Register { name: "list_length", offset: 20, access: Access::ReadWrite, meaning: "Codes of the list that are selected in turn.", fields: &[
             Field { name: "length", lsb: 0, width: 4, unit: "", meaning: "0..8; more is 8", values: Values::Plain },
         ] },
-        Register { name: "info_status", offset: 21, access: Access::ReadOnly, meaning: "WRN, RM, Busy, I4..I0 as they came last.", fields: &[
+        Register { name: "info_status", offset: 21, access: Access::ReadOnly, meaning: "WRN, RM, Busy, I4..I0 as they came last with a right CRC.", fields: &[
             Field { name: "info_1", lsb: 0, width: 8, unit: "", meaning: "Of additional information 1", values: Values::Plain },
+            Field { name: "crc_1", lsb: 8, width: 1, unit: "", meaning: "CRC of the last additional information 1 wrong: nothing of it was taken", values: Values::Plain },
             Field { name: "info_2", lsb: 16, width: 8, unit: "", meaning: "Of additional information 2", values: Values::Plain },
+            Field { name: "crc_2", lsb: 24, width: 1, unit: "", meaning: "CRC of the last additional information 2 wrong: nothing of it was taken", values: Values::Plain },
         ] },
         Register { name: "limits", offset: 22, access: Access::ReadWrite, meaning: "What a frame must keep to.", fields: &[
             Field { name: "watchdog_us", lsb: 0, width: 12, unit: "us", meaning: "Longest time from the first falling edge to the end of the recovery time; 0 = not watched. Commands with a parameter and continuous clock are not watched", values: Values::Plain },
@@ -529,6 +531,9 @@ pub const BLOCKS: &[Block] = &[
         ] },
         Register { name: "frames_position_2", offset: 66, access: Access::ReadOnly, meaning: "Comparisons of positions 1 and 2 that failed.", fields: &[
             Field { name: "frames", lsb: 0, width: 32, unit: "", meaning: "Frames since clear, wrapping", values: Values::Plain },
+        ] },
+        Register { name: "bad_infos", offset: 67, access: Access::ReadOnly, meaning: "Additional informations with a wrong CRC.", fields: &[
+            Field { name: "count", lsb: 0, width: 32, unit: "", meaning: "Since clear, wrapping", values: Values::Plain },
         ] },
         Register { name: "alarms", offset: 68, access: Access::ReadOnly, meaning: "Alarms before they were cleared", fields: &[
             Field { name: "value", lsb: 0, width: 16, unit: "", meaning: "Word of the encoder", values: Values::Plain },

@@ -225,6 +225,8 @@ fn names_in_the_programming_guide_are_those_of_the_registers() {
         "tolerance",
         "list_length",
         "frames_position_2",
+        "info_status",
+        "bad_infos",
     ] {
         assert!(
             map.register(name).is_some() && page.contains(&format!("`{name}")),

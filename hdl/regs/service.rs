@@ -2,7 +2,7 @@
 
 use super::values::{MODE_COMMANDS, REQUEST_ERRORS, STEPS};
 use super::{field, word, Access, Block, Field, Register, SERVICE_BASE};
-use crate::service::map::{word as at, COUNTER_POSITION_2, NAME_PLATE};
+use crate::service::map::{word as at, COUNTER_BAD_INFOS, COUNTER_POSITION_2, NAME_PLATE};
 use Access::{ReadOnly, ReadWrite};
 
 const VALUE: &[Field] = &[field("value", 0, 32, "", "Number")];
@@ -136,9 +136,11 @@ pub const SERVICE: Block = Block {
         word("list_length", at::LIST_LENGTH, ReadWrite, "Codes of the list that are selected in turn.", &[
             field("length", 0, 4, "", "0..8; more is 8"),
         ]),
-        word("info_status", at::INFO_STATUS, ReadOnly, "WRN, RM, Busy, I4..I0 as they came last.", &[
+        word("info_status", at::INFO_STATUS, ReadOnly, "WRN, RM, Busy, I4..I0 as they came last with a right CRC.", &[
             field("info_1", 0, 8, "", "Of additional information 1"),
+            field("crc_1", 8, 1, "", "CRC of the last additional information 1 wrong: nothing of it was taken"),
             field("info_2", 16, 8, "", "Of additional information 2"),
+            field("crc_2", 24, 1, "", "CRC of the last additional information 2 wrong: nothing of it was taken"),
         ]),
         word("limits", at::LIMITS, ReadWrite, "What a frame must keep to.", &[
             field("watchdog_us", 0, 12, "us", "Longest time from the first falling edge to the end of the recovery time; 0 = not watched. Commands with a parameter and continuous clock are not watched"),
@@ -183,6 +185,9 @@ pub const SERVICE: Block = Block {
         frames("frames_own_echo", 16),
         frames("frames_recovery_too_short", 17),
         word("frames_position_2", at::COUNTERS + COUNTER_POSITION_2, ReadOnly, "Comparisons of positions 1 and 2 that failed.", COUNT),
+        word("bad_infos", at::COUNTERS + COUNTER_BAD_INFOS, ReadOnly, "Additional informations with a wrong CRC.", &[
+            field("count", 0, 32, "", "Since clear, wrapping"),
+        ]),
         plate(0),
         plate(1),
         plate(2),

@@ -267,6 +267,7 @@ service0_frames_watchdog 43F ro
 service0_frames_own_echo 440 ro
 service0_frames_recovery_too_short 441 ro
 service0_frames_position_2 442 ro
+service0_bad_infos 443 ro
 service0_alarms 444 ro
 service0_warnings 445 ro
 service0_position_bits 446 ro
@@ -348,6 +349,7 @@ service1_frames_watchdog 4BF ro
 service1_frames_own_echo 4C0 ro
 service1_frames_recovery_too_short 4C1 ro
 service1_frames_position_2 4C2 ro
+service1_bad_infos 4C3 ro
 service1_alarms 4C4 ro
 service1_warnings 4C5 ro
 service1_position_bits 4C6 ro
@@ -562,7 +564,9 @@ position_2_low value 31:0
 position_2_high value 15:0
 list_length length 3:0
 info_status info_1 7:0
+info_status crc_1 8:8
 info_status info_2 23:16
+info_status crc_2 24:24
 limits watchdog_us 11:0
 limits recovery_min_cycles 28:16
 continuous go_on 0:0
@@ -610,6 +614,7 @@ frames_watchdog frames 31:0
 frames_own_echo frames 31:0
 frames_recovery_too_short frames 31:0
 frames_position_2 frames 31:0
+bad_infos count 31:0
 alarms value 15:0
 alarms is_read 16:16
 warnings value 15:0

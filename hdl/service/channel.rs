@@ -33,6 +33,8 @@ pub struct ServiceChannel {
     pub info_1: Signal<In, Bits<24>>,
     /// Additional information 2.
     pub info_2: Signal<In, Bits<24>>,
+    /// Additional informations that the last frame brought.
+    pub info_came: Signal<In, Bits<2>>,
     /// Additional informations whose CRC is right, in the last frame.
     pub info_good: Signal<In, Bits<2>>,
     /// The frame under way has the request.
@@ -146,6 +148,7 @@ impl ServiceChannel {
             info_active: Default::default(),
             info_1: Default::default(),
             info_2: Default::default(),
+            info_came: Default::default(),
             info_good: Default::default(),
             request_runs: Default::default(),
             line_high: Default::default(),
@@ -274,7 +277,8 @@ impl Logic for ServiceChannel {
             | (bit_cast::<16, 1>(self.info_active.val().get_bits::<1>(0)) << 8)
             | (bit_cast::<16, 1>(self.missed.q.val().into()) << 9)
             | (bit_cast::<16, 1>(self.fresh.val().into()) << 10)
-            | (bit_cast::<16, 1>(self.request_runs.val().into()) << 11);
+            | (bit_cast::<16, 1>(self.request_runs.val().into()) << 11)
+            | (bit_cast::<16, 2>(self.info_came.val()) << 12);
         // What comes MSB first stands the other way round in the answer.
         self.turned.next = 0.into();
         for i in 0..24 {

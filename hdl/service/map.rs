@@ -30,6 +30,10 @@ pub mod input {
         pub const FRESH: u16 = 1 << 10;
         /// The frame under way has the request.
         pub const REQUEST_RUNS: u16 = 1 << 11;
+        /// The last frame brought additional information 1, with a right CRC or a wrong one.
+        pub const INFO_1_CAME: u16 = 1 << 12;
+        /// The last frame brought additional information 2, with a right CRC or a wrong one.
+        pub const INFO_2_CAME: u16 = 1 << 13;
     }
     /// What there is to do.
     pub const STATUS: u8 = 0;
@@ -163,7 +167,8 @@ pub mod word {
     pub const POSITION_2: [u8; 2] = [18, 19];
     /// Number of codes in the list, 0..=8.
     pub const LIST_LENGTH: u8 = 20;
-    /// Last status byte of additional information 1 (15..0) and 2 (31..16): WRN, RM, Busy, I4..I0.
+    /// Last good status byte of additional information 1 (15..0) and 2 (31..16): WRN, RM, Busy, I4..I0; then
+    /// [`super::info_status`].
     pub const INFO_STATUS: u8 = 21;
     /// Watchdog in microseconds (15..0, 0 = off), shortest recovery time in system clock cycles (31..16, 0 = not checked).
     pub const LIMITS: u8 = 22;
@@ -175,7 +180,8 @@ pub mod word {
     pub const LIST_MAX: u8 = 8;
     /// For each code of the list: 16 bits of content (15..0), number of the result that brought it (31..16).
     pub const SLOTS: u8 = 32;
-    /// Frames of each cause, 32 bits; the first one counts good frames, the last one comparisons of positions that failed.
+    /// Frames of each cause, 32 bits; the first one counts good frames, the last two comparisons of positions that failed and
+    /// additional informations with a wrong CRC.
     pub const COUNTERS: u8 = 48;
     /// Name plate: value (15..0), 1 = it has been read (31..16).
     pub const NAME_PLATE: u8 = 68;
@@ -185,6 +191,15 @@ pub mod word {
 
 /// Counter of comparisons that failed, among those of the causes.
 pub const COUNTER_POSITION_2: u8 = cause::COUNT as u8;
+
+/// Counter of additional informations with a wrong CRC, the last one.
+pub const COUNTER_BAD_INFOS: u8 = COUNTER_POSITION_2 + 1;
+
+/// Bits above the status byte, in both halves of [`word::INFO_STATUS`].
+pub mod info_status {
+    /// The information that came last had a wrong CRC; nothing of it was taken.
+    pub const BAD_CRC: u16 = 1 << 8;
+}
 
 /// Bits of [`word::REQUEST_STATE`].
 pub mod request_state {
@@ -397,6 +412,6 @@ mod tests {
         areas.dedup();
         assert_eq!(areas, [0xB9, 0xA1, 0xA3, 0xA5, 0xBD, 0xB9]);
         const { assert!(PLATE_DELAY < word::PRIVATE) };
-        const { assert!(word::COUNTERS + COUNTER_POSITION_2 < word::NAME_PLATE) };
+        const { assert!(word::COUNTERS + COUNTER_BAD_INFOS < word::NAME_PLATE) };
     }
 }

@@ -19,7 +19,7 @@ pub use initialise::{step_name, steps, Step};
 
 use super::map::{
     control, input, input::status, output, output::acknowledge, output::control as level, state,
-    word, COUNTER_POSITION_2,
+    word, COUNTER_BAD_INFOS,
 };
 use crate::config::LIST;
 use crate::sequencer::assembler::Assembler;
@@ -358,7 +358,7 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
 
     // All counters and what is latched.
     a.place("clear");
-    set(a, own::INDEX, 2 * (u16::from(COUNTER_POSITION_2) + 1));
+    set(a, own::INDEX, 2 * (u16::from(COUNTER_BAD_INFOS) + 1));
     let next = a.here();
     a.ld(own::INDEX).addi(minus(1)).st(own::INDEX).tax();
     a.ldi(0).st_x(low(word::COUNTERS));

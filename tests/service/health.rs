@@ -3,7 +3,7 @@
 use super::rig::{quick, Make, Rig, ENDAT_HZ};
 use endat_hdl::{
     protocol::ModeCommand::*,
-    service::map::{control, state, word, COUNTER_POSITION_2},
+    service::map::{control, info_status, state, word, COUNTER_BAD_INFOS, COUNTER_POSITION_2},
     transaction::cause,
 };
 use endat_sim::{
@@ -108,6 +108,48 @@ fn position_2_is_compared_over_the_wrap() {
     assert_eq!(rig.read(word::DIFFERENCE[0]), 3);
     assert_eq!(rig.read(word::COMPARISONS) >> 16, 0);
     rig.assert_clean();
+}
+
+#[test]
+fn a_wrong_crc_of_an_information_is_told_and_counted_and_nothing_of_it_is_taken() {
+    for (info, half) in [(1u8, 0), (2, 16)] {
+        let bad = [10, 11].into_iter();
+        let defect = Defect::InfoCrcXor { info, xor: 0b10 };
+        let encoder = bad.fold(encoder(), |e, n| e.defect(n, defect.clone()));
+        let mut rig = Rig::new(false, encoder, 25);
+        rig.good_position();
+        list(&mut rig, &[0x4C, 0x5B]);
+        rig.frames(6);
+        let bit = u32::from(info_status::BAD_CRC) << half;
+        let good = rig.read(word::INFO_STATUS);
+        assert_eq!(good & 0x0100_0100, 0, "{good:#x}");
+        assert_eq!(rig.read(word::COUNTERS + COUNTER_BAD_INFOS), 0);
+        let mut told = 0;
+        for _ in 0..6 {
+            let other = word::SLOTS + u8::from(info == 1);
+            let own = word::SLOTS + u8::from(info == 2);
+            let before = (rig.read(own), rig.read(other));
+            rig.frames(1);
+            let status = rig.read(word::INFO_STATUS);
+            let is_bad = status & bit != 0;
+            assert_eq!(status & 0x0100_0100, if is_bad { bit } else { 0 });
+            assert_eq!(status & !bit, good, "what came before stays");
+            told += u32::from(is_bad);
+            assert_eq!(rig.read(word::COUNTERS + COUNTER_BAD_INFOS), told);
+            assert_eq!(
+                rig.read(own) == before.0,
+                is_bad,
+                "its slot is as old as before"
+            );
+            assert_ne!(rig.read(other), before.1, "the other one is taken");
+            assert_eq!(rig.read(word::BAD_FRAMES), 0, "the position is good");
+        }
+        assert_eq!(told, 2);
+        rig.write(word::CONTROL, control::CLEAR.into());
+        rig.frames(2);
+        assert_eq!(rig.read(word::COUNTERS + COUNTER_BAD_INFOS), 0);
+        rig.assert_clean();
+    }
 }
 
 #[test]

@@ -30,7 +30,7 @@ pub struct MonitorArgs {
 /// What is looked up once.
 #[derive(Default)]
 struct Places {
-    /// Counters of frames, good ones first.
+    /// Counters of frames, good ones first, and how many words until that of bad informations.
     frames: Option<(Place, usize)>,
     state: Option<Place>,
     worst: Option<Place>,
@@ -47,14 +47,11 @@ impl Places {
             return Ok(Self::default());
         };
         let frames = named(identity.has("requests"), &format!("service{n}.frames_good"))?;
-        let last = named(
-            identity.has("requests"),
-            &format!("service{n}.frames_position_2"),
-        )?;
+        let last = named(identity.has("requests"), &format!("service{n}.bad_infos"))?;
         Ok(Self {
             frames: frames.zip(last).map(|(first, last)| {
-                let causes = usize::from(last.address() - first.address());
-                (first, causes)
+                let words = usize::from(last.address() - first.address());
+                (first, words)
             }),
             state: named(identity.has("requests"), &format!("service{n}.state"))?,
             worst: named(identity.has("margin"), &format!("line{n}.worst"))?,
@@ -104,15 +101,20 @@ fn screen(
             ns(r.delay_cycles),
             ns(r.recovery_cycles) / 1e3
         );
-        if let Some((first, causes)) = places.frames {
-            let counts = card
+        if let Some((first, words)) = places.frames {
+            let words = card
                 .bridge()
-                .read(of(&first, channel).address(), causes)
+                .read(of(&first, channel).address(), words + 1)
                 .map_err(told)?;
+            // The last two count no frames: comparisons of positions, informations.
+            let (counts, others) = words.split_at(words.len() - 2);
             let all: u64 = counts.iter().map(|c| u64::from(*c)).sum();
             let _ = write!(text, "           frames {all}, good {}", counts[0]);
             for (cause, count) in counts.iter().enumerate().skip(1).filter(|(_, c)| **c > 0) {
                 let _ = write!(text, ", {} {count}", endat_host::causes::name(cause as u8));
+            }
+            if others[1] > 0 {
+                let _ = write!(text, "; informations with a wrong CRC {}", others[1]);
             }
             text.push('\n');
         }

@@ -5,8 +5,8 @@ use super::{high, low, minus, own, set, set_bits, ServiceTimes};
 use crate::protocol::ModeCommand;
 use crate::sequencer::assembler::Assembler;
 use crate::service::map::{
-    input, input::status, output, output::acknowledge, output::control as level, output::go,
-    request_state, state, word,
+    info_status, input, input::status, output, output::acknowledge, output::control as level,
+    output::go, request_state, state, word, COUNTER_BAD_INFOS,
 };
 use crate::transaction::cause;
 
@@ -24,17 +24,18 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
 
     // What the additional informations say goes into the slots of their codes.
     a.ldi(0).st(own::MATCHED);
-    let (no_second, no_first) = (a.label(), a.label());
-    a.ld(own::STATUS).andi(status::INFO_2).jz(no_second);
-    a.inp(input::INFO_2).st(own::CONTENT);
-    a.inp(input::INFO_2_STATUS).st(high(word::INFO_STATUS));
-    a.call("store");
-    a.place(no_second);
-    a.ld(own::STATUS).andi(status::INFO_1).jz(no_first);
-    a.inp(input::INFO_1).st(own::CONTENT);
-    a.inp(input::INFO_1_STATUS).st(low(word::INFO_STATUS));
-    a.call("store");
-    a.place(no_first);
+    take(
+        a,
+        [status::INFO_2_CAME, status::INFO_2],
+        [input::INFO_2, input::INFO_2_STATUS],
+        high(word::INFO_STATUS),
+    );
+    take(
+        a,
+        [status::INFO_1_CAME, status::INFO_1],
+        [input::INFO_1, input::INFO_1_STATUS],
+        low(word::INFO_STATUS),
+    );
 
     let (sent, fulfilled) = (a.label(), a.label());
     a.ld(own::MAILBOX).jz("turn");
@@ -83,6 +84,21 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::FROM_EVENT).jmpa();
     turn(a);
     count(a);
+}
+
+/// Takes what an additional information says, or counts its wrong CRC.
+fn take(a: &mut Assembler, [came, good]: [u16; 2], [content, byte]: [u8; 2], kept: u8) {
+    let (right, done) = (a.label(), a.label());
+    a.ld(own::STATUS).andi(good).jnz(right);
+    a.ld(own::STATUS).andi(came).jz(done);
+    set_bits(a, kept, info_status::BAD_CRC);
+    set(a, own::INDEX, COUNTER_BAD_INFOS.into());
+    a.call("count").jmp(done);
+    a.place(right);
+    a.inp(content).st(own::CONTENT);
+    a.inp(byte).st(kept);
+    a.call("store");
+    a.place(done);
 }
 
 /// 0x47 repeats the MRS code, 0x45 and 0x46 repeat the address, in the upper byte.
