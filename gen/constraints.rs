@@ -40,13 +40,17 @@ struct Port {
     asynchronous: &'static str,
 }
 
-/// What a port is, in words.
-fn meaning(pin: &Assignment) -> String {
+/// What a port is, in words; `t_format` are the channels that speak it.
+fn meaning(pin: &Assignment, t_format: &[usize]) -> String {
     let channel: String = pin.signal.chars().filter(char::is_ascii_digit).collect();
+    let is_t_format = channel.parse().is_ok_and(|n| t_format.contains(&n));
     match (pin.kind, pin.signal.as_str()) {
         (Kind::Oscillator, _) => "oscillator of the board".into(),
         (Kind::Transceiver, s) if s.ends_with("_oe") => {
             format!("driver enable of the DATA transceiver, channel {channel}")
+        }
+        (Kind::Transceiver, s) if s.contains("clk") && is_t_format => {
+            format!("stays HIGH: channel {channel} speaks T-format, which has no clock")
         }
         (Kind::Transceiver, s) if s.contains("clk") => {
             format!("EnDat CLOCK to its driver, channel {channel}; idles high")
@@ -76,12 +80,12 @@ fn attributes(kind: Kind) -> &'static str {
 }
 
 impl Port {
-    fn new(pin: &Assignment) -> Self {
+    fn new(pin: &Assignment, t_format: &[usize]) -> Self {
         Self {
             signal: pin.signal.clone(),
             pin: pin.pin.clone(),
             position: pin.position.clone(),
-            meaning: meaning(pin),
+            meaning: meaning(pin, t_format),
             input: pin.kind.is_input(),
             iob: pin.kind == Kind::Transceiver,
             attributes: attributes(pin.kind),
@@ -115,10 +119,11 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         let text = template::render("readme_bus", text, &context)?;
         return Ok(vec![Artifact::new("README.md", text)]);
     };
+    let t_format: Vec<usize> = project.card.t_format_numbers().collect();
     let ports: Vec<Value> = project
         .pins
         .iter()
-        .map(|pin| Value::from(Serde(Port::new(pin))))
+        .map(|pin| Value::from(Serde(Port::new(pin, &t_format))))
         .collect();
     let context = context! {
         name => project.name.as_str(),
@@ -135,7 +140,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         pll => context! { divide => pll.divide, multiply => pll.multiply, output_divide => pll.output_divide, vco_hz => pll.vco_hz },
         channels => project.card.channels.len(),
         protocols => project.protocols(),
-        t_format => project.card.t_format_numbers().collect::<Vec<_>>(),
+        t_format,
         timing => explain::report(project).to_string(),
     };
     let files = [

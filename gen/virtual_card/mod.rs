@@ -41,6 +41,8 @@ const WRITE_MS: u16 = 2;
 
 /// The T-format encoder: single-turn position of 17 bits, multi-turn of 16.
 const T_FORMAT_DEVICE: &str = "TS5700N8401";
+/// An open plug, as `--encoder` calls it.
+const NO_DEVICE: &str = "none";
 const T_FORMAT_SINGLE_BITS: u32 = 17;
 /// Delay of a metre of cable, in nanoseconds.
 const NS_PER_M: f64 = 5.0;
@@ -89,6 +91,23 @@ fn plain(name: &str) -> String {
     kept.map(|c| c.to_ascii_lowercase()).collect()
 }
 
+fn is_t_format_device(name: &str) -> bool {
+    plain(name) == plain(T_FORMAT_DEVICE)
+}
+
+/// The device that `--encoder` asks for on a channel. One for all is one for those that speak its protocol.
+fn wanted<'a>(project: &Project, channel: usize, devices: &'a [String]) -> Option<&'a str> {
+    let is_t_format = |n: usize| project.card.channels[n].t_format.is_some();
+    match devices {
+        [one] if one != NO_DEVICE => {
+            let is_of = |n: usize| is_t_format(n) == is_t_format_device(one);
+            let takes = is_of(channel) || !(0..project.card.channels.len()).any(is_of);
+            takes.then_some(one.as_str())
+        }
+        _ => (devices.get(channel).or(devices.first())).map(String::as_str),
+    }
+}
+
 /// The encoder called `name`; of the width and command that the channel is configured for when nobody says which.
 fn encoder(
     project: &Project,
@@ -102,7 +121,7 @@ fn encoder(
     let known: Vec<&str> = DEVICES.iter().map(|d| d.name).collect();
     if wanted.is_some() {
         return Err(GenError::input(format!(
-            "--encoder = {}: unknown device; known devices: {}, none",
+            "--encoder = {}: channel {channel} speaks EnDat; the devices there are {}, {NO_DEVICE}",
             shown(name),
             known.join(", ")
         )));
@@ -146,9 +165,9 @@ fn t_format_link(
     wanted: Option<&str>,
     config: &VirtualConfig,
 ) -> Result<TFormatLink, GenError> {
-    if let Some(name) = wanted.filter(|n| *n != "none" && plain(n) != plain(T_FORMAT_DEVICE)) {
+    if let Some(name) = wanted.filter(|n| *n != NO_DEVICE && !is_t_format_device(n)) {
         return Err(GenError::input(format!(
-            "--encoder = {}: channel {channel} speaks T-format; the devices there are {T_FORMAT_DEVICE} and none; give --encoder once for each channel",
+            "--encoder = {}: channel {channel} speaks T-format; the devices there are {T_FORMAT_DEVICE} and {NO_DEVICE}",
             shown(name)
         )));
     }
@@ -172,7 +191,7 @@ fn t_format_link(
         let single = steps & ((1 << T_FORMAT_SINGLE_BITS) - 1);
         (single as u32, (steps >> T_FORMAT_SINGLE_BITS) as u16 as u32)
     }));
-    if wanted == Some("none") {
+    if wanted == Some(NO_DEVICE) {
         link.unplug();
     }
     Ok(link)
@@ -208,19 +227,14 @@ impl VirtualCard {
         let mut links = Vec::new();
         let mut t_format = Vec::new();
         for channel in 0..card.channels.len() {
-            let wanted = config.encoders.get(channel).or(config.encoders.first());
+            let wanted = wanted(project, channel, &config.encoders);
             if card.channels[channel].t_format.is_some() {
-                let wanted = wanted.map(String::as_str);
                 let link = t_format_link(project, channel, wanted, config)?;
                 t_format.push((PinNames::card(channel), link));
                 continue;
             }
-            let is_open = wanted.is_some_and(|name| name == "none");
-            let mut encoder = encoder(
-                project,
-                channel,
-                wanted.filter(|_| !is_open).map(|s| s.as_str()),
-            )?;
+            let is_open = wanted == Some(NO_DEVICE);
+            let mut encoder = encoder(project, channel, wanted.filter(|_| !is_open))?;
             encoder.position = motion(&encoder, channel, config.speed);
             encoder.seed = config.seed.wrapping_add(channel as u64);
             // As short as the card's waits.

@@ -76,7 +76,10 @@ pub const CARD: Block = Block {
                     |_, _| MAX_POSITION_BITS as u64,
                 ),
                 field("features", 16, 16, "", "Parts", |s, _| {
-                    0b1111
+                    let endat = (s.endat_channels().next().is_some()) as u64;
+                    0b1100
+                        | endat
+                        | endat << 1
                         | (s.service.requests as u64) << 4
                         | (s.service.initialise as u64) << 5
                         | (s.service.diagnosis as u64) << 6

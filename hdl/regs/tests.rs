@@ -731,6 +731,11 @@ fn a_t_format_channel_starts_with_its_own_numbers() {
     assert_eq!(CARD.register("protocols").unwrap().start(&config, 0), 2);
     let features = CARD.register("capabilities").unwrap().start(&config, 0) >> 16;
     assert_eq!(features >> 14 & 1, 1);
+    assert_eq!(features & 3, 3, "EnDat and its line delay");
+    let mut alone = config.clone();
+    alone.channels.retain(|c| c.t_format.is_some());
+    let features = CARD.register("capabilities").unwrap().start(&alone, 0) >> 16;
+    assert_eq!(features & 3, 0, "no EnDat");
     assert!(blocks(&config).any(|b| b.name == "t_format"));
     assert!(blocks(&test_config()).all(|b| b.name != "t_format"));
 }

@@ -346,6 +346,12 @@ fn every_name_of_the_map_is_explained() {
     ] {
         assert!(run(&["explain", name]).stdout.contains(told), "{name}");
     }
+    // Large letters are the same names; events of the interrupt are told once, behind the block of that name.
+    assert_eq!(run(&["explain", "CRC"]), run(&["explain", "crc"]));
+    let result = run(&["explain", "result"]).stdout;
+    assert!(result.starts_with("block result: "), "{result}");
+    assert_eq!(result.matches("interrupt.mask.channel").count(), 1);
+    assert!(result.contains("bit 0 of interrupt.mask.channel_<n>: "));
     let unknown = run(&["explain", "crx"]);
     assert_eq!(unknown.exit_code, 2);
     assert!(
@@ -360,7 +366,7 @@ fn what_cannot_be_is_told_with_a_remedy() {
         (
             &["read", "--port", "virtual:nothing"][..],
             2,
-            "known presets",
+            "virtual:PRESET in --port = nothing: unknown preset; known presets",
         ),
         (&["read", "--port", "/nowhere/ttyX"], 2, "tcp:HOST:PORT"),
         (
@@ -385,7 +391,11 @@ fn what_cannot_be_is_told_with_a_remedy() {
             "area = 0x1A1: outside 0..255",
         ),
         (&["card", "--tcp", "nowhere"], 2, "give HOST:PORT"),
-        (&["card", "--encoder", "RCN"], 2, "known devices: RCN 8510"),
+        (
+            &["card", "--encoder", "RCN"],
+            2,
+            "channel 0 speaks EnDat; the devices there are RCN 8510",
+        ),
         (&["card", "--cable-m", "-3"], 2, "--cable-m"),
     ] {
         let outcome = run(arguments);

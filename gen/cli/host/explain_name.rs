@@ -10,8 +10,12 @@ use std::fmt::Write;
 const SERVICE_CAUSES: std::ops::Range<u32> = 0..endat_hdl::transaction::cause::COUNT as u32;
 
 /// Everything called `name`: causes, registers, fields, values, with or without block and channel in front.
-pub fn text(name: &str) -> Result<String, GenError> {
+pub fn text(typed: &str) -> Result<String, GenError> {
+    let name = typed.to_ascii_lowercase();
+    let name = name.as_str();
     let mut text = String::new();
+    // Behind everything that has the name itself.
+    let mut values = String::new();
     if let Some(cause) = causes::all()
         .iter()
         .find(|c| c.name == name || c.number.to_string() == name)
@@ -70,16 +74,17 @@ pub fn text(name: &str) -> Result<String, GenError> {
                     field_text(&mut text, field);
                 }
                 if parts.len() == 1 && field.name != "cause" {
-                    value_text(&mut text, name, &full(block, register), field);
+                    value_text(&mut values, name, &full(block, register), field);
                 }
             }
         }
     }
+    text += &values;
     if text.is_empty() {
         let causes: Vec<&str> = causes::all().iter().map(|c| c.name).collect();
         return Err(GenError::input(format!(
             "name = {}: is no cause, block, register, field or value of one; causes are {}; registers: `endat-gen reg list`",
-            shown(name),
+            shown(typed),
             causes.join(", ")
         )));
     }
@@ -93,11 +98,17 @@ fn value_text(text: &mut String, name: &str, register: &str, field: &Field) {
         Values::Codes(values) => ("value", values),
         Values::Bits(values) => ("bit", values),
     };
+    // A field of each channel is told once.
+    let field_name = match field.name.strip_prefix("channel_") {
+        Some("0") => "channel_<n>",
+        Some(_) => return,
+        None => field.name,
+    };
     for value in values.iter().filter(|v| v.name == name) {
         let _ = writeln!(
             text,
-            "{kind} {} of {register}.{}: {}",
-            value.number, field.name, value.meaning
+            "{kind} {} of {register}.{field_name}: {}",
+            value.number, value.meaning
         );
     }
 }

@@ -43,6 +43,11 @@ pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
     let frames = frames.map(|n| n as u32);
     let mut card = arguments.port.open()?;
     let channel = channel(&card, arguments.channel.as_deref())?;
+    if card.identity().is_t_format(channel) {
+        return Err(GenError::input(format!(
+            "--channel = {channel}: speaks T-format; the margin is measured on EnDat channels, give one of those"
+        )));
+    }
     if !card.identity().has("margin") {
         return Err(told(HostError::Part {
             what: "margin",

@@ -12,7 +12,7 @@ pub mod serve;
 pub mod virtual_card;
 
 use super::number::{number, number_if};
-use crate::config::{load_file, load_preset, DEFAULT_PRESET};
+use crate::config::{load_file, load_preset, preset_of, DEFAULT_PRESET};
 use crate::error::GenError;
 use crate::virtual_card::{VirtualCard, VirtualConfig};
 use clap::Args;
@@ -75,7 +75,10 @@ impl PortArgs {
 fn virtual_card(name: &str) -> Result<Box<dyn Transport>, GenError> {
     let project = match name.ends_with(".toml") {
         true => load_file(Path::new(name))?,
-        false => load_preset(name)?,
+        false => {
+            preset_of("virtual:PRESET in --port", name)?;
+            load_preset(name)?
+        }
     };
     Ok(Box::new(VirtualCard::new(
         &project,

@@ -38,8 +38,10 @@ pub fn verdict(reading: &Reading) -> String {
     match (reading.fresh, reading.valid, reading.cause) {
         (true, _, 0) => "good".into(),
         (true, ..) => format!("good, {}", reading.cause_name()),
+        (_, true, 0) => "held: the answer had no position".into(),
         (_, true, _) => format!("held: {}", reading.cause_name()),
         _ if reading.sequence == 0 => "none yet".into(),
+        (.., 0) => "none: the answer had no position".into(),
         _ => format!("none: {}", reading.cause_name()),
     }
 }

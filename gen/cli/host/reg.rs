@@ -6,7 +6,7 @@ use super::{told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::{Args, Subcommand};
 use endat_host::map::BLOCKS;
-use endat_host::registers::{Access, Place, Values};
+use endat_host::registers::{Access, Named, Place, Values};
 use serde_json::json;
 use std::fmt::Write;
 
@@ -36,7 +36,7 @@ enum Action {
         port: PortArgs,
         /// BLOCK.REGISTER or BLOCK.REGISTER.FIELD, for example config0.frame.period_cycles
         name: String,
-        /// Number, or the name of one of the field's values
+        /// Number, the name of one of the field's values, or names of its bits: result,error
         #[arg(allow_negative_numbers = true)]
         value: String,
     },
@@ -126,12 +126,21 @@ fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, 
     }))
 }
 
-/// A number, or the name of one of the field's values.
+/// A number, the name of one of the field's values, or names of some of its bits.
 fn value_of(place: &Place, text: &str) -> Result<u32, GenError> {
-    if let Some(Values::Codes(codes)) = place.field.map(|f| f.values) {
-        if let Some(code) = codes.iter().find(|c| c.name == text) {
-            return Ok(code.number);
-        }
+    let by_name = |names: &[Named], text: &str| {
+        let found = names.iter().find(|n| n.name == text);
+        found.map(|n| n.number)
+    };
+    let named = match place.field.map(|f| f.values) {
+        Some(Values::Codes(codes)) => by_name(codes, text),
+        Some(Values::Bits(bits)) => text.split(',').try_fold(0, |all, one| {
+            by_name(bits, one.trim()).map(|bit| all | 1 << bit)
+        }),
+        _ => None,
+    };
+    if let Some(value) = named {
+        return Ok(value);
     }
     let most = place.field.map_or(u32::MAX, |f| f.mask() >> f.lsb);
     number("value", text, 0..=most.into()).map(|n| n as u32)
@@ -176,4 +185,23 @@ fn list() -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_numbers_or_names_of_codes_and_bits() {
+        let place = |name: &str| Place::named(name, 2).unwrap();
+        let mask = place("interrupt.mask.channel_1");
+        assert_eq!(value_of(&mask, "result,alarm").unwrap(), 0b101);
+        assert_eq!(value_of(&mask, "0xF").unwrap(), 15);
+        assert!(value_of(&mask, "result,alarms").is_err());
+        let command = place("config0.frame.command");
+        assert_eq!(value_of(&command, "0b000111").unwrap(), 7);
+        assert!(value_of(&command, "64").is_err());
+        let whole = place("interrupt.mask");
+        assert_eq!(value_of(&whole, "4294967295").unwrap(), u32::MAX);
+    }
 }

@@ -21,7 +21,7 @@ pub struct CardArgs {
     /// Make a pseudo terminal, to be opened as a serial port [default, where there are any]
     #[arg(long)]
     pty: bool,
-    /// Encoder at each port, or one for all: a device such as RCN-8510, or none [default: as in the configuration]
+    /// Encoder at each port, or one for all that speak its protocol: a device such as RCN-8510, or none [default: as in the configuration]
     #[arg(long, value_name = "DEVICE")]
     encoder: Vec<String>,
     /// Cable to each encoder in metres [default: 10]

@@ -52,11 +52,57 @@ fn the_host_commands_know_what_a_t_format_channel_is() {
         assert_eq!(refused.exit_code, 2);
         assert!(refused.messages[0].contains(text), "{refused:?}");
     }
+    let margin = run(&["margin", "--channel", "1"]);
+    assert_eq!(margin.exit_code, 2);
+    assert!(
+        margin.messages[0].starts_with("--channel = 1: speaks T-format"),
+        "{margin:?}"
+    );
     let words = run(&["reg", "read", "t_format1"]);
     assert_eq!(words.exit_code, 0, "{words:?}");
     let told = cli::run(["endat-gen", "explain", "no_header"]);
     assert!(told.stdout.starts_with("cause 20 (no_header)"), "{told:?}");
     assert!(!told.stdout.contains("counted in"));
+}
+
+/// One device for all goes to the channels that speak its protocol.
+#[test]
+fn devices_go_to_the_channels_of_their_protocol() {
+    let project = parse("mixed.toml", preset("mixed_protocols").unwrap()).unwrap();
+    let with = |devices: &[&str]| {
+        let encoders = devices.iter().map(|d| d.to_string()).collect();
+        let config = VirtualConfig {
+            encoders,
+            ..VirtualConfig::default()
+        };
+        let card = VirtualCard::new(&project, &config).map_err(|e| e.to_string())?;
+        let mut card = Card::find(Bridge::new(card)).unwrap();
+        while card.results().unwrap().channels[0].sequence < 3 {}
+        let results = card.results().unwrap().channels;
+        Ok::<_, String>([results[0].fresh, results[1].fresh])
+    };
+    for (devices, fresh) in [
+        (&["ts5700n8401"][..], [true, true]),
+        (&["RCN 8510"], [true, true]),
+        (&["none"], [false, false]),
+        (&["none", "TS5700N8401"], [false, true]),
+    ] {
+        assert_eq!(with(devices), Ok(fresh), "{devices:?}");
+    }
+    for (devices, told) in [
+        (
+            &["TS5700N8401", "TS5700N8401"][..],
+            "channel 0 speaks EnDat; the devices there are",
+        ),
+        (
+            &["RCN-8510", "RCN-8510"],
+            "channel 1 speaks T-format; the devices there are TS5700N8401 and none",
+        ),
+        (&["what"], "channel 0 speaks EnDat; the devices there are"),
+    ] {
+        let error = with(devices).unwrap_err();
+        assert!(error.contains(told), "{devices:?}: {error}");
+    }
 }
 
 #[test]
