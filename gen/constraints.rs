@@ -2,6 +2,7 @@
 
 use crate::artifact::Artifact;
 use crate::board::Assignment;
+use crate::config::pins::{PARALLEL_ADDRESS_LINES, PARALLEL_DATA_LINES};
 use crate::config::{Kind, Project};
 use crate::error::GenError;
 use crate::explain;
@@ -31,7 +32,7 @@ struct Port {
     pin: String,
     position: String,
     meaning: String,
-    input: bool,
+    direction: &'static str,
     /// The last register belongs into the output cell.
     iob: bool,
     /// UCF attributes beside place and I/O standard.
@@ -60,12 +61,22 @@ fn meaning(pin: &Assignment, t_format: &[usize]) -> String {
         (Kind::Trigger, _) => "external trigger, rising edge".into(),
         (Kind::UartInput, _) => "host UART, from the host".into(),
         (Kind::UartOutput, _) => "host UART, to the host".into(),
+        (Kind::BusInput, "spi_sck_i") => "host SPI, clock, mode 0".into(),
+        (Kind::BusInput, "spi_cs_n_i") => "host SPI, selects the card when low".into(),
+        (Kind::BusInput, "spi_mosi_i") => "host SPI, from the host".into(),
+        (Kind::BusOutput, _) => "host SPI, to the host; driven while selected".into(),
+        (Kind::BusInput, "bus_cs_n_i") => "host bus, selects the card when low".into(),
+        (Kind::BusInput, "bus_rd_n_i") => "host bus, reads when low".into(),
+        (Kind::BusInput, "bus_wr_n_i") => "host bus, writes when low".into(),
+        (Kind::BusInput, _) => "host bus, register".into(),
+        (Kind::BusData, _) => "host bus, data; driven while read".into(),
+        (Kind::Interrupt, _) => "interrupt to the host".into(),
         (Kind::Led, "led_status_o") => "status light".into(),
         (Kind::Led, _) => format!("light of channel {channel}"),
     }
 }
 
-fn attributes(kind: Kind) -> &'static str {
+fn attributes(kind: Kind, signal: &str) -> &'static str {
     match kind {
         Kind::Oscillator => "",
         // Slow edges are fast enough for 16 MHz and ring less on the wires to the wing.
@@ -74,7 +85,11 @@ fn attributes(kind: Kind) -> &'static str {
         Kind::EncoderData | Kind::UartInput => " | PULLUP",
         // An open trigger pin must stay quiet.
         Kind::Trigger => " | PULLDOWN",
-        Kind::UartOutput => " | SLEW = SLOW | DRIVE = 8",
+        // Strobes are low when they act; an open bus must stay quiet.
+        Kind::BusInput if signal.ends_with("_n_i") => " | PULLUP",
+        Kind::BusInput => " | PULLDOWN",
+        Kind::BusData => " | SLEW = SLOW | DRIVE = 8 | PULLDOWN",
+        Kind::UartOutput | Kind::BusOutput | Kind::Interrupt => " | SLEW = SLOW | DRIVE = 8",
         Kind::Led => " | SLEW = QUIETIO | DRIVE = 8",
     }
 }
@@ -86,9 +101,9 @@ impl Port {
             pin: pin.pin.clone(),
             position: pin.position.clone(),
             meaning: meaning(pin, t_format),
-            input: pin.kind.is_input(),
+            direction: pin.kind.direction(),
             iob: pin.kind == Kind::Transceiver,
-            attributes: attributes(pin.kind),
+            attributes: attributes(pin.kind, &pin.signal),
             asynchronous: pin.kind.asynchronous().unwrap_or(""),
         }
     }
@@ -97,6 +112,50 @@ impl Port {
 /// A number of ns as the vendor's tools read it, without needless digits.
 fn ns(hz: u64) -> String {
     decimal(1e9 / hz as f64, 4)
+}
+
+/// What the top connects to a port of the card.
+#[derive(Serialize)]
+struct Connection {
+    port: String,
+    net: String,
+}
+
+/// All ports of the card but clock and reset. Lines of a bus are pins one by one, and one vector at the card.
+fn connections(project: &Project) -> Vec<Connection> {
+    let own = project
+        .pins
+        .iter()
+        .filter(|pin| !matches!(pin.kind, Kind::Oscillator | Kind::BusOutput | Kind::BusData))
+        .filter(|pin| !pin.signal.starts_with("bus_address"))
+        .map(|pin| (pin.signal.clone(), pin.signal.clone()));
+    let lines = |name: &str, end: &str, count: usize| {
+        let names = (0..count).rev().map(|n| format!("{name}{n}_{end}"));
+        format!("{{{}}}", names.collect::<Vec<_>>().join(", "))
+    };
+    let mut bus = match project.bus {
+        HostBus::Spi => vec![
+            ("spi_miso_o", "spi_miso".to_owned()),
+            ("spi_miso_oe", "spi_miso_oe".to_owned()),
+        ],
+        HostBus::Parallel => vec![
+            (
+                "bus_address_i",
+                lines("bus_address", "i", PARALLEL_ADDRESS_LINES),
+            ),
+            ("bus_data_i", lines("bus_data", "io", PARALLEL_DATA_LINES)),
+            ("bus_data_o", "bus_data".to_owned()),
+            ("bus_data_oe", "bus_data_oe".to_owned()),
+        ],
+        _ => vec![],
+    };
+    if project.bus != HostBus::Uart && !project.card.outputs.interrupt {
+        bus.push(("irq_o", "unused_interrupt".to_owned()));
+    }
+    let bus = bus.into_iter().map(|(port, net)| (port.to_owned(), net));
+    own.chain(bus)
+        .map(|(port, net)| Connection { port, net })
+        .collect()
 }
 
 /// Board top, UCF and README of a project; without a board only a README that says how to use the card.
@@ -132,6 +191,10 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         board => context! { title => board.title.as_str(), name => board.name.as_str(), part => board.part.as_str() },
         iostandard => board.iostandard.as_str(),
         ports => ports,
+        bus => project.bus.name(),
+        has_bench => project.bus == HostBus::Uart,
+        data_lines => PARALLEL_DATA_LINES,
+        connections => Serde(connections(project)),
         widest => project.pins.iter().map(|p| p.signal.len()).max().unwrap_or(0),
         oscillator_hz => board.oscillator_hz,
         oscillator_ns => ns(board.oscillator_hz),

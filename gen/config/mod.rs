@@ -3,7 +3,7 @@
 mod line;
 mod names;
 mod outputs;
-mod pins;
+pub mod pins;
 pub(crate) mod protocol;
 pub(crate) mod reader;
 pub(crate) mod schema;
@@ -68,6 +68,14 @@ pub enum Kind {
     UartInput,
     /// UART output.
     UartOutput,
+    /// Input from a bus outside the device, asynchronous.
+    BusInput,
+    /// Output to a bus outside the device, driven only while the card is read.
+    BusOutput,
+    /// Data line of a bus outside the device, driven by either side.
+    BusData,
+    /// Interrupt to a processor outside the device.
+    Interrupt,
     /// Light.
     Led,
 }
@@ -77,8 +85,17 @@ impl Kind {
     pub const fn is_input(self) -> bool {
         matches!(
             self,
-            Self::Oscillator | Self::EncoderData | Self::Trigger | Self::UartInput
+            Self::Oscillator | Self::EncoderData | Self::Trigger | Self::UartInput | Self::BusInput
         )
+    }
+
+    /// Its direction in a module's port list, padded.
+    pub const fn direction(self) -> &'static str {
+        match self {
+            Self::BusData => "inout  wire",
+            kind if kind.is_input() => "input  wire",
+            _ => "output wire",
+        }
     }
 
     /// Why the timing of the port must not be analysed; `None` when it must.
@@ -87,6 +104,7 @@ impl Kind {
             Self::EncoderData => Some("answers arrive with the delay of the cable, in any phase; synchronised and tracked inside"),
             Self::Trigger => Some("belongs to no clock; synchronised inside, one system clock of jitter is documented"),
             Self::UartInput => Some("belongs to the host's clock; synchronised and sampled in mid bit inside"),
+            Self::BusInput | Self::BusData => Some("belongs to the host's clock; synchronised inside, see the bus's rules for set-up times"),
             _ => None,
         }
     }
@@ -105,7 +123,7 @@ pub struct Project {
     pub bus: HostBus,
     /// Encoder of each channel, for people; may be empty.
     pub encoders: Vec<String>,
-    /// The board; none when the card has another bus than the UART.
+    /// The board; none when somebody else's top holds the card.
     pub board: Option<Board>,
     /// The clock manager of the board.
     pub pll: Option<Pll>,

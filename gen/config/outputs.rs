@@ -5,8 +5,8 @@ use super::schema::read_parts;
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::OutputParts;
 
-/// Reads the table, for a card with this bus; `None` if something is wrong.
-pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>) -> Option<OutputParts> {
+/// Reads the table, for a card with this bus, on a board or not; `None` if something is wrong.
+pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>, has_board: bool) -> Option<OutputParts> {
     let mut parts = OutputParts::default();
     let marks = &mut [&mut parts.position, &mut parts.interrupt];
     let (line, shown) = match read_parts(table, &["position", "interrupt"], marks)? {
@@ -19,6 +19,9 @@ pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>) -> Option<OutputParts> 
         }
         Some(HostBus::Bare) => {
             "host.bus = \"none\" has the whole position and the cause as ports; leave [outputs] out"
+        }
+        _ if has_board && parts.position => {
+            "a card with a board top is the whole device, nothing else in it could take the positions; leave \"position\" out, or leave [board] out"
         }
         _ => return Some(parts),
     };

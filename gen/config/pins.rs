@@ -3,15 +3,49 @@
 use super::reader::{Source, Table};
 use super::Kind;
 use crate::board::{Assignment, Board};
+use endat_hdl::bus::HostBus;
 use std::collections::BTreeSet;
 
+/// Address lines of the parallel bus.
+pub const PARALLEL_ADDRESS_LINES: usize = 3;
+/// Data lines of the parallel bus.
+pub const PARALLEL_DATA_LINES: usize = 16;
+
+/// The ports of a bus that leaves the device.
+fn bus_ports(bus: HostBus) -> Vec<(String, Kind)> {
+    let inputs = |names: &[&str]| -> Vec<(String, Kind)> {
+        let names = names.iter();
+        names.map(|n| ((*n).to_owned(), Kind::BusInput)).collect()
+    };
+    match bus {
+        HostBus::Uart => vec![
+            ("uart_rx_i".to_owned(), Kind::UartInput),
+            ("uart_tx_o".to_owned(), Kind::UartOutput),
+        ],
+        HostBus::Spi => {
+            let mut ports = inputs(&["spi_sck_i", "spi_cs_n_i", "spi_mosi_i"]);
+            ports.push(("spi_miso_o".to_owned(), Kind::BusOutput));
+            ports
+        }
+        HostBus::Parallel => {
+            let mut ports = inputs(&["bus_cs_n_i", "bus_rd_n_i", "bus_wr_n_i"]);
+            let lines = 0..PARALLEL_ADDRESS_LINES;
+            ports.extend(lines.map(|n| (format!("bus_address{n}_i"), Kind::BusInput)));
+            let lines = 0..PARALLEL_DATA_LINES;
+            ports.extend(lines.map(|n| (format!("bus_data{n}_io"), Kind::BusData)));
+            ports
+        }
+        _ => vec![],
+    }
+}
+
 /// The ports of the board top except the oscillator, in their order.
-pub fn card_ports(channels: usize) -> Vec<(String, Kind)> {
-    let mut ports = vec![
-        ("trigger_i".to_owned(), Kind::Trigger),
-        ("uart_rx_i".to_owned(), Kind::UartInput),
-        ("uart_tx_o".to_owned(), Kind::UartOutput),
-    ];
+pub fn card_ports(bus: HostBus, has_interrupt: bool, channels: usize) -> Vec<(String, Kind)> {
+    let mut ports = vec![("trigger_i".to_owned(), Kind::Trigger)];
+    ports.extend(bus_ports(bus));
+    if has_interrupt {
+        ports.push(("irq_o".to_owned(), Kind::Interrupt));
+    }
     for n in 0..channels {
         ports.push((format!("endat_clk{n}_o"), Kind::Transceiver));
         ports.push((format!("endat_data{n}_o"), Kind::Transceiver));
@@ -31,9 +65,8 @@ pub(super) fn assign_pins(
     source: &Source<'_>,
     pins: &Table<'_, '_>,
     board: &Board,
-    channels: usize,
+    ports: Vec<(String, Kind)>,
 ) -> Vec<Assignment> {
-    let ports = card_ports(channels);
     let moved = pins.free_strings();
     for (signal, at) in &moved {
         if !ports.iter().any(|(port, _)| port == signal) {

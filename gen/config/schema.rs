@@ -1,6 +1,6 @@
 //! The keys of a configuration file, and the way from them to a [`Project`].
 
-use super::pins::assign_pins;
+use super::pins::{assign_pins, card_ports};
 use super::reader::{At, Source, Table};
 use super::{check_name, line, outputs, protocol, stream, Project};
 use crate::board::{self, Assignment, Board};
@@ -57,9 +57,11 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let host = root.table("host", &empty);
     let bus = read_bus(&host);
     let board_table = root.table("board", &empty);
-    // Board top, pins and test bench are those of a card with a UART.
     let has_uart = bus == Some(HostBus::Uart);
-    let board = match has_uart {
+    // A card with a UART is a whole device; one with another bus that leaves the device may be.
+    let may_be_device = bus.is_some_and(|bus| !bus.is_internal());
+    let has_board = has_uart || may_be_device && root.has("board");
+    let board = match has_board {
         true => read_board(&board_table),
         false => None,
     };
@@ -109,16 +111,15 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let service = root.table("service", &empty);
     let parts = read_service(&service);
     let outputs_table = root.table("outputs", &empty);
-    let outputs = outputs::read(&outputs_table, bus);
+    let outputs = outputs::read(&outputs_table, bus, has_board);
     let stream_table = root.table("stream", &empty);
     let stream = stream::read(&stream_table);
     let pins = root.table("pins", &empty);
     if let Some(bus) = bus.filter(|_| !has_uart) {
-        refuse_unused(
-            &root,
-            bus,
-            &[("link", &link), ("board", &board_table), ("pins", &pins)],
-        );
+        let unused = [("link", &link), ("board", &board_table), ("pins", &pins)];
+        // The last two belong to a board.
+        let unused = &unused[..if has_board { 1 } else { 3 }];
+        refuse_unused(&root, bus, unused);
     }
     let is_t_format =
         |c: &Option<Channel>| c.as_ref().is_some_and(|c| c.request.t_format.is_some());
@@ -149,8 +150,10 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         table.finish();
     }
     // Otherwise they have been refused as a whole.
-    if has_uart {
+    if has_board {
         board_table.finish();
+    }
+    if has_uart {
         link.finish();
     }
     if let (Some(board), Some(system), true) = (&board, &system, system_hz.is_some()) {
@@ -161,8 +164,12 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     // The pins of a card with too many channels would only repeat that complaint.
     let count = tables.as_ref().map(Vec::len);
     let count = count.filter(|count| CHANNELS.contains(count));
-    let assignments = match (&board, count) {
-        (Some(board), Some(count)) => Some(assign_pins(source, &pins, board, count)),
+    let has_interrupt = outputs.is_some_and(|parts| parts.interrupt);
+    let assignments = match (&board, bus, count) {
+        (Some(board), Some(bus), Some(count)) => {
+            let ports = card_ports(bus, has_interrupt, count);
+            Some(assign_pins(source, &pins, board, ports))
+        }
         _ => None,
     };
     let usual_read_hz = sample.as_ref().map(|s| s.value);
@@ -221,7 +228,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     };
     let channels: Vec<Channel> = channels.into_iter().collect::<Option<_>>()?;
     let (name, bus) = (name?, bus?);
-    let (board, pll, pins) = match has_uart {
+    let (board, pll, pins) = match has_board {
         false => (None, None, vec![]),
         true => {
             let board = board?;
@@ -706,7 +713,7 @@ fn refuse_unused(root: &Table<'_, '_>, bus: HostBus, tables: &[(&str, &Table<'_,
         let text = match *key {
             "link" => format!("[link]: host.bus = \"{name}\" has no UART, and [link] is about its rate; remove the table"),
             _ if bus.is_internal() => format!("[{key}]: host.bus = \"{name}\" stays inside the chip, so the card has no board top and no pins of its own; remove the table"),
-            _ => format!("[{key}]: a board top is made for a card with a UART only; remove the table, and instantiate the card with host.bus = \"{name}\" in a top of your own"),
+            _ => format!("[{key}]: says which pins of a board the signals are on, and there is no board; add [board], or remove the table"),
         };
         table.complain_plain(text);
     }

@@ -42,8 +42,8 @@ fn what_a_bus_has_no_use_for_is_refused_with_the_reason() {
         ),
         (
             HostBus::Spi,
-            "[board]\nname = \"papilio_pro\"\n",
-            "[board]: a board top is made for a card with a UART only",
+            "[pins]\ntrigger_i = \"A0\"\n",
+            "[pins]: says which pins of a board the signals are on, and there is no board; add [board]",
         ),
         (
             HostBus::Wishbone,

@@ -1,5 +1,6 @@
 //! The card behind a bus: masters of each bus on a bench with encoders, the same claims for every front.
 
+mod board;
 mod claims;
 mod cocotb;
 mod configuration;
