@@ -175,7 +175,7 @@ pub struct Transaction {
     pub calibrated: Signal<Out, Bit>,
     /// Primary cause, with `publish`, `late_fault` or `over`.
     pub cause: Signal<Out, Bits<5>>,
-    /// Raw flags, see [`cause::flag`].
+    /// Raw flags, see [`cause::flag`](mod@cause::flag).
     pub flags: Signal<Out, Bits<19>>,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,

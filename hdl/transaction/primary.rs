@@ -5,7 +5,7 @@ use rust_hdl::prelude::*;
 /// Picks the cause that explains the others; what stands later wins.
 #[derive(LogicBlock, Default)]
 pub struct PrimaryCause {
-    /// Raw flags, see [`super::cause::flag`].
+    /// Raw flags, see [`super::cause::flag`](mod@super::cause::flag).
     pub flags: Signal<In, Bits<19>>,
     /// Primary cause, see [`super::cause`].
     pub cause: Signal<Out, Bits<5>>,

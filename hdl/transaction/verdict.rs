@@ -19,7 +19,7 @@ pub struct Verdict {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Flags that go with `give_up`, `refuse` or `announce`, see [`cause::flag`].
+    /// Flags that go with `give_up`, `refuse` or `announce`, see [`cause::flag`](mod@cause::flag).
     pub found: Signal<In, Bits<19>>,
     /// Strobe: the answer has been taken; CRC and error bits decide.
     pub answer_taken: Signal<In, Bit>,
@@ -77,7 +77,7 @@ pub struct Verdict {
     pub displaced: Signal<Out, Bit>,
     /// Primary cause, with `publish`, `late_fault` or `over`.
     pub cause: Signal<Out, Bits<5>>,
-    /// Raw flags, see [`cause::flag`].
+    /// Raw flags, see [`cause::flag`](mod@cause::flag).
     pub flags: Signal<Out, Bits<19>>,
     chooser: PrimaryCause,
     has_diagnosis: Constant<Bit>,

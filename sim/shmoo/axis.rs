@@ -23,7 +23,7 @@ pub enum Quantity {
     Jitter,
     /// How much later DATA falls than it rises.
     Distortion,
-    /// Glitches on DATA at the receiver, of up to [`GLITCH_MAX`].
+    /// Glitches on DATA at the receiver, of up to `GLITCH_MAX`.
     Noise,
     /// Input filter.
     Filter,

@@ -360,6 +360,35 @@ fn every_name_of_the_map_is_explained() {
     );
 }
 
+/// Nothing would ever come: said at once, and no file is made.
+#[test]
+fn a_log_without_triggers_is_refused() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("log-without-triggers");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let text = endat_gen::config::preset("s6_two_channel").unwrap();
+    let line = text.lines().find(|l| l.starts_with("sources = ")).unwrap();
+    let file = folder.join("silent.toml");
+    fs::write(&file, text.replacen(line, "sources = []", 1)).unwrap();
+    let port = format!("virtual:{}", file.display());
+    let out = folder.join("log.csv");
+    let outcome = run(&[
+        "log",
+        "--port",
+        &port,
+        "--samples",
+        "3",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(outcome.exit_code, 1, "{outcome:?}");
+    assert!(
+        outcome.messages[0].starts_with("no trigger is enabled"),
+        "{outcome:?}"
+    );
+    assert!(!out.exists());
+}
+
 #[test]
 fn what_cannot_be_is_told_with_a_remedy() {
     for (arguments, code, told) in [

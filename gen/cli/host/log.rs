@@ -3,7 +3,7 @@
 use super::super::number::number_if;
 use super::super::pictures::{check_all, write_all, File};
 use super::super::Outcome;
-use super::{interrupted, scales, settled, told, AnyCard, PortArgs};
+use super::{interrupted, place, scales, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::{Args, ValueEnum};
 use endat_host::feed::{Feed, Row};
@@ -189,6 +189,13 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     };
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
+    let sources = place(&card, "card_config.trigger_sources")?;
+    if card.read(&sources).map_err(told)? == 0 {
+        return Err(GenError::CheckFailed(vec![format!(
+            "no trigger is enabled, so there is nothing to log; enable one, as with `endat-gen reg write card_config.trigger_sources.timer 1 --port {}`",
+            arguments.port.name()
+        )]));
+    }
     let scales = scales(&mut card)?;
     let (out, name): (Box<dyn Write>, String) = match &arguments.out {
         None => (Box::new(io::stdout()), "stdout".into()),
