@@ -1,6 +1,8 @@
 //! The Verilog test bench that is emitted with a card: everything in it follows from the configuration and the register table.
-//! A T-format channel has no encoder there: its line is idle, and the bench checks that this is told.
+//! Every channel has an encoder there, EnDat or T-format ([`t_format`]): models of their own, which share no code with the core.
 //! Of an initialisation it looks at the beginning only: the whole of it is longer than anybody simulates in Verilog.
+
+pub(crate) mod t_format;
 
 use crate::artifact::Artifact;
 use crate::config::Project;
@@ -11,7 +13,7 @@ use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, RESULT};
 use endat_hdl::service::program::{program, ServiceTimes};
-use endat_hdl::t_format;
+use endat_hdl::t_format::cause as t_cause;
 use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
 use endat_hdl::transaction::cause;
 use minijinja::context;
@@ -22,8 +24,8 @@ use serde::Serialize;
 const MARGIN_NS: u64 = 3_000;
 /// After a clock that stopped, the bench's encoder waits this long before it takes the frame for ended, in ns.
 const ENCODER_GIVES_UP_NS: u64 = 15_000;
-/// A T-format line that has been silent is idle after this: longer than any field and its pause, in ns.
-const T_FORMAT_IDLE_NS: u64 = 20_000;
+/// After a T-format reply that came late or not whole, the line is idle at the latest after this, in ns.
+pub(crate) const T_FORMAT_IDLE_NS: u64 = 25_000;
 /// Delay that the bench's encoder adds between a clock edge and its data, in ns.
 const LAUNCH_NS: u64 = 12;
 /// The trigger pin's way through synchroniser, edge detection and transaction, and one cycle for its phase.
@@ -62,14 +64,14 @@ struct Port {
 }
 
 /// A literal of type `real`.
-fn real(ns: f64) -> String {
+pub(crate) fn real(ns: f64) -> String {
     let text = format!("{ns:.3}");
     let plain = text.trim_end_matches('0');
     let zero = if plain.ends_with('.') { "0" } else { "" };
     format!("{plain}{zero}")
 }
 
-fn whole(ns: u64) -> String {
+pub(crate) fn whole(ns: u64) -> String {
     real(ns as f64)
 }
 
@@ -123,7 +125,7 @@ fn longest_ns(card: &CardConfig, cycles: impl Fn(&ChannelConfig) -> u64) -> u64 
 }
 
 /// What the bench of a card that initialises its encoders does first.
-fn power_up(card: &CardConfig, ports: &[Port]) -> Result<String, GenError> {
+fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String, GenError> {
     let times = ServiceTimes::at(card.system_hz);
     let without = ServiceTimes {
         initialise: false,
@@ -140,6 +142,7 @@ fn power_up(card: &CardConfig, ports: &[Port]) -> Result<String, GenError> {
         include_str!("templates/power_up.v.jinja"),
         &context! {
             channels => Serde(ports),
+            t_format,
             services => services(card),
             power_up_ms => times.power_up_ms,
             after_pulse_ms => times.after_pulse_ms,
@@ -154,6 +157,7 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
     let card = &project.card;
     let hz = card.system_hz;
     let t_format: Vec<usize> = card.t_format_numbers().collect();
+    let parts = t_format::Parts::new(&project.name, card, card.service.initialise)?;
     let exchange = |c: &ChannelConfig| cycles_to_ns(c.cycle_max_cycles(hz), hz);
     let exchange_ns = card.channels.iter().map(exchange).max().unwrap_or(0);
     // A T-format line has to be idle for a while after an exchange without a reply.
@@ -172,7 +176,11 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         c.recovery_limit_cycles + cycles_at_least(1_000 * c.start_timeout_us, hz)
     };
     let frames = card.endat_channels().map(|(_, c)| c.frame_time(hz));
-    let shortest_frame = frames.map(|f| f.frame_cycles).min();
+    let replies = card.channels.iter().filter_map(|c| {
+        let t_format = c.t_format.as_ref()?;
+        Some(c.period_cycles * t_format.request.wire_bits())
+    });
+    let shortest_frame = frames.map(|f| f.frame_cycles).chain(replies).min();
     let abort_us = card.endat_channels().map(|(_, c)| c.abort_us).max();
     let ports = card.endat_channels();
     let ports: Vec<Port> = ports.map(|(i, c)| Port::new(card, i, c)).collect();
@@ -183,10 +191,7 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         ("F2", cause::F2),
         ("DATA_NOT_FALLING", cause::DATA_NOT_FALLING),
         ("TRIGGER_OVERRUN", cause::TRIGGER_OVERRUN),
-        (
-            "NO_ANSWER",
-            t_format::cause::of_card(t_format::cause::NO_ANSWER),
-        ),
+        ("NO_ANSWER", t_cause::of_card(t_cause::NO_ANSWER)),
     ];
     let causes: Vec<Value> = causes
         .into_iter()
@@ -205,7 +210,7 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         &context! { name => project.name.as_str() },
     )?;
     let power_up = match card.service.initialise {
-        true => power_up(card, &ports)?,
+        true => power_up(card, &ports, !t_format.is_empty())?,
         false => String::new(),
     };
     let context = context! {
@@ -217,8 +222,15 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         first => ports.first().map_or(0, |p| p.index),
         last => ports.last().map_or(0, |p| p.index),
         count => card.channels.len(),
+        brings => if t_format.is_empty() { "ENDAT" } else { "BRINGS" },
         t_format,
+        t_format_encoder => parts.encoder,
+        t_format_ports => parts.ports,
+        t_format_steps => parts.steps,
+        silent => parts.silent,
+        masks => ports.iter().map(|p| (p.index, p.mask.clone())).chain(parts.masks).map(|(index, mask)| context! { index, mask }).collect::<Vec<_>>(),
         channels => Serde(ports),
+        host => include_str!("templates/testbench_host.v.jinja"),
         clk_ns => real(1e9 / hz as f64),
         uart_bit_ns => real(1e9 / card.baud as f64),
         calibration_ns => whole(calibration_ns),

@@ -5,6 +5,8 @@ mod formal;
 mod lint;
 mod mutations;
 mod netlist;
+mod t_format_bench;
+mod t_format_mutations;
 mod testbench;
 
 use crate::tools;
@@ -13,13 +15,17 @@ use endat_gen::config::{load_preset, Project, DEFAULT_PRESET};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// The preset with the fastest host link that the core takes, and no timer: what is simulated most is the host's bytes.
-pub fn quick_project() -> Project {
-    let mut project = load_preset(DEFAULT_PRESET).unwrap();
+/// A card with the fastest host link that the core takes, and no timer: what is simulated most is the host's bytes.
+pub fn quick(mut project: Project) -> Project {
     project.card.uart_bit_cycles = endat_hdl::config::UART_BIT_CYCLES_MIN;
     project.card.baud = project.card.system_hz / project.card.uart_bit_cycles;
     project.card.sources.timer = false;
     project
+}
+
+/// The preset, made quick.
+pub fn quick_project() -> Project {
+    quick(load_preset(DEFAULT_PRESET).unwrap())
 }
 
 /// Everything that is emitted for [`quick_project`]; made once.

@@ -12,7 +12,8 @@ pub struct Mutation {
     pub to: &'static str,
 }
 
-const fn mutation(
+/// A change.
+pub const fn mutation(
     name: &'static str,
     file: &'static str,
     from: &'static str,

@@ -9,7 +9,7 @@ use endat_hdl::config::{ServiceParts, LIST};
 use endat_hdl::service::program::{program, ServiceTimes};
 
 /// Runs a card's own test bench; what it prints.
-fn run_bench(test: &str, files: &[Artifact], plusargs: &[&str]) -> String {
+pub fn run_bench(test: &str, files: &[Artifact], plusargs: &[&str]) -> String {
     let (folder, mut sources) = write(test, files);
     let bench = files.iter().find(|f| f.path.ends_with("_tb.v")).unwrap();
     sources.insert(0, bench.path.clone());
@@ -135,8 +135,8 @@ fn bench_passes_on_a_card_with_initialisation_only_as_it_stands() {
     }
 }
 
-fn mutant(mutation: &Mutation) -> Vec<Artifact> {
-    let mut files = quick_files().to_vec();
+fn mutant(files: &[Artifact], mutation: &Mutation) -> Vec<Artifact> {
+    let mut files = files.to_vec();
     let Mutation {
         name,
         file,
@@ -154,12 +154,9 @@ fn mutant(mutation: &Mutation) -> Vec<Artifact> {
     files
 }
 
-#[test]
-fn bench_fails_on_every_broken_card() {
-    if !tools::require("iverilog", "mutations of the emitted card") {
-        return;
-    }
-    assert_eq!(run_bench("quick", quick_files(), &[]), "PASS\n");
+/// The bench of `files` passes, and fails with each of the mutations.
+pub fn check_mutations(test: &str, files: &[Artifact], mutations: &[Mutation]) {
+    assert_eq!(run_bench(test, files, &[]), "PASS\n");
     let workers = std::thread::available_parallelism().map_or(1, |n| n.get());
     let next = std::sync::atomic::AtomicUsize::new(0);
     let survivors = std::sync::Mutex::new(vec![]);
@@ -167,10 +164,11 @@ fn bench_fails_on_every_broken_card() {
         for _ in 0..workers {
             scope.spawn(|| loop {
                 let index = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-                let Some(mutation) = MUTATIONS.get(index) else {
+                let Some(mutation) = mutations.get(index) else {
                     break;
                 };
-                let text = run_bench(&format!("mutant{index}"), &mutant(mutation), &["+first"]);
+                let broken = mutant(files, mutation);
+                let text = run_bench(&format!("{test}-mutant{index}"), &broken, &["+first"]);
                 let last = text.lines().last().unwrap_or("");
                 if !last.starts_with("FAIL") {
                     survivors.lock().unwrap().push((mutation.name, text));
@@ -180,4 +178,11 @@ fn bench_fails_on_every_broken_card() {
     });
     let survivors = survivors.into_inner().unwrap();
     assert!(survivors.is_empty(), "not noticed: {survivors:?}");
+}
+
+#[test]
+fn bench_fails_on_every_broken_card() {
+    if tools::require("iverilog", "mutations of the emitted card") {
+        check_mutations("quick", quick_files(), MUTATIONS);
+    }
 }

@@ -1,0 +1,112 @@
+//! The emitted test bench of cards with T-format channels: encoders of both kinds.
+
+use super::quick;
+use super::t_format_mutations::T_FORMAT_MUTATIONS;
+use super::testbench::{check_mutations, run_bench};
+use crate::tools;
+use endat_gen::artifact::Artifact;
+use endat_gen::config::{load_preset, parse, preset};
+
+const PRESET: &str = "mixed_protocols";
+const CHECK: &str = "test bench with T-format encoders";
+const ENDAT: &str = "[[channel]]\nposition_bits = 29\ncommand = \"111000\"\n";
+
+fn t_format(keys: &str) -> String {
+    format!("[[channel]]\nprotocol = \"t_format\"\n{keys}\n")
+}
+
+/// The mixed preset, made quick, with other channels and `more` in its place.
+fn card(channels: &[String], from: &str, to: &str) -> Vec<Artifact> {
+    let text = preset(PRESET).unwrap();
+    let (head, tail) = text.split_once("\n[[channel]]").unwrap();
+    let tail = &tail[tail.find("[trigger]").unwrap()..];
+    assert!(from.is_empty() || tail.contains(from), "{from}");
+    let mut head = head.to_owned();
+    if !channels.iter().any(|c| c == ENDAT) {
+        head = head.split_once("[endat]").unwrap().0.into();
+    }
+    let text = format!(
+        "{head}\n{}{}",
+        channels.concat(),
+        tail.replacen(from, to, 1)
+    );
+    let mut text = text.replace("sample_hz = 10_000", "sample_hz = 1_000");
+    if channels.len() > 2 {
+        // The board has usual pins for two.
+        let signals = ["clk2_o", "data2_o", "data2_oe", "data2_i"].map(|s| format!("endat_{s}"));
+        for (n, signal) in signals.iter().chain([&"led_channel2_o".into()]).enumerate() {
+            text += &format!("{signal} = \"A{n}\"\n");
+        }
+    }
+    endat_gen::emit(&quick(parse("card.toml", &text).unwrap())).unwrap()
+}
+
+fn passes(name: &str, channels: &[String], from: &str, to: &str) {
+    assert_eq!(
+        run_bench(name, &card(channels, from, to), &[]),
+        "PASS\n",
+        "{name}"
+    );
+}
+
+/// As it is emitted: slow link, timer.
+#[test]
+fn it_passes_on_the_mixed_preset() {
+    if tools::require("iverilog", CHECK) {
+        let files = endat_gen::emit(&load_preset(PRESET).unwrap()).unwrap();
+        assert_eq!(run_bench("mixed-preset", &files, &[]), "PASS\n");
+    }
+}
+
+/// Every request that a trigger may send, both rates, every order of the channels, the shortest and the longest pauses.
+#[test]
+fn it_passes_on_other_cards() {
+    if !tools::require("iverilog", CHECK) {
+        return;
+    }
+    let endat = || ENDAT.to_owned();
+    passes("t-format-only", &[t_format("request = 3")], "", "");
+    passes(
+        "t-format-first",
+        &[
+            t_format("bit_hz = 5_000_000\nrequest = 0\nreply_gap_us = 1\nfield_gap_us = 0"),
+            endat(),
+        ],
+        "",
+        "",
+    );
+    passes(
+        "t-format-three",
+        &[
+            t_format("request = 1\nreply_gap_us = 63\nfield_gap_us = 7"),
+            t_format("request = 2\nbit_hz = 5_000_000"),
+            t_format("request = 12\nfilter_ns = 0"),
+        ],
+        "",
+        "",
+    );
+    passes(
+        "t-format-between",
+        &[endat(), t_format("request = 7"), endat()],
+        "",
+        "",
+    );
+}
+
+/// A card that initialises its EnDat encoders has them asleep first, and T-format encoders as well.
+#[test]
+fn it_passes_on_a_card_with_initialisation() {
+    if tools::require("iverilog", CHECK) {
+        let parts = "parts = [\"requests\", \"diagnosis\", \"continuous\", \"initialise\"]";
+        let channels = [t_format("request = 8"), ENDAT.to_owned()];
+        passes("t-format-initialise", &channels, "parts = []", parts);
+    }
+}
+
+#[test]
+fn it_fails_on_every_broken_card() {
+    if tools::require("iverilog", "mutations of the T-format channels") {
+        let files = endat_gen::emit(&quick(load_preset(PRESET).unwrap())).unwrap();
+        check_mutations("mixed", &files, T_FORMAT_MUTATIONS);
+    }
+}
