@@ -192,7 +192,6 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         iostandard => board.iostandard.as_str(),
         ports => ports,
         bus => project.bus.name(),
-        has_bench => project.bus == HostBus::Uart,
         data_lines => PARALLEL_DATA_LINES,
         connections => Serde(connections(project)),
         widest => project.pins.iter().map(|p| p.signal.len()).max().unwrap_or(0),

@@ -44,15 +44,15 @@ pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let mut artifacts = artifacts_of(project, &design)?;
     let sources = artifacts.iter().map(|a| a.path.clone());
     let sources: Vec<String> = sources.filter(|p| p.ends_with(".v")).collect();
-    // The test bench speaks to the card as a host at the UART does.
-    let has_bench = project.bus == HostBus::Uart;
+    let bench = testbench::artifact(project)?;
     artifacts.extend(integration::artifacts(
-        project, &design, &sources, has_bench,
+        project,
+        &design,
+        &sources,
+        bench.is_some(),
     )?);
     artifacts.extend(constraints::artifacts(project)?);
-    if has_bench {
-        artifacts.push(testbench::artifact(project)?);
-    }
+    artifacts.extend(bench);
     artifacts.push(artifact::manifest(&artifacts));
     Ok(artifacts)
 }

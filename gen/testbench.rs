@@ -2,16 +2,18 @@
 //! Every channel has an encoder there, EnDat or T-format ([`t_format`]): models of their own, which share no code with the core.
 //! Of an initialisation it looks at the beginning only: the whole of it is longer than anybody simulates in Verilog.
 
+mod host;
 pub(crate) mod t_format;
 
 use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
 use crate::template;
+use endat_hdl::bus::HostBus;
 use endat_hdl::card::services;
 use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig};
-use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, RESULT};
+use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, INTERRUPT, RESULT};
 use endat_hdl::service::program::{program, ServiceTimes};
 use endat_hdl::t_format::cause as t_cause;
 use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
@@ -152,9 +154,12 @@ fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String,
     )
 }
 
-/// The test bench of a card.
-pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
+/// The test bench of a card; none for a port without a bus.
+pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let card = &project.card;
+    let Some(host) = host::host(project.bus, card)? else {
+        return Ok(None);
+    };
     let hz = card.system_hz;
     let t_format: Vec<usize> = card.t_format_numbers().collect();
     let parts = t_format::Parts::new(&project.name, card, card.service.initialise)?;
@@ -213,6 +218,12 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         true => power_up(card, &ports, !t_format.is_empty())?,
         false => String::new(),
     };
+    let blocks = [&CARD, &CARD_CONFIG, &RESULT];
+    let blocks = blocks
+        .into_iter()
+        .chain(card.outputs.interrupt.then_some(&INTERRUPT));
+    // The first of the four events of each channel is a new result.
+    let results: u32 = (0..card.channels.len()).map(|n| 1 << (4 * n)).sum();
     let context = context! {
         power_up,
         name => project.name.as_str(),
@@ -230,9 +241,10 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         silent => parts.silent,
         masks => ports.iter().map(|p| (p.index, p.mask.clone())).chain(parts.masks).map(|(index, mask)| context! { index, mask }).collect::<Vec<_>>(),
         channels => Serde(ports),
-        host => include_str!("templates/testbench_host.v.jinja"),
+        host => host.text,
+        connections => Serde(host.connections),
+        settle_ns => real(host.settle_ns),
         clk_ns => real(1e9 / hz as f64),
-        uart_bit_ns => real(1e9 / card.baud as f64),
         calibration_ns => whole(calibration_ns),
         calibration_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
         cycle_ns => whole(cycle_ns),
@@ -240,7 +252,10 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         abort_ns => whole(1_000 * abort_us.unwrap_or(0) + MARGIN_NS),
         overrun_ns => whole(cycles_to_ns(shortest_frame.unwrap_or(0) / 2, hz)),
         trigger_cycles_max => TRIGGER_CYCLES_MAX,
-        words => Serde([CARD, CARD_CONFIG, RESULT].iter().flat_map(words).collect::<Vec<_>>()),
+        words => Serde(blocks.into_iter().flat_map(words).collect::<Vec<_>>()),
+        has_irq => project.bus != HostBus::Uart,
+        interrupt => card.outputs.interrupt.then(|| format!("{results:08X}")),
+        direct => card.outputs.position,
         fields => Serde([CARD_CONFIG, RESULT].iter().flat_map(fields).collect::<Vec<_>>()),
         block_stride => BLOCK_STRIDE,
         causes,
@@ -252,5 +267,5 @@ pub fn artifact(project: &Project) -> Result<Artifact, GenError> {
         include_str!("templates/testbench.v.jinja"),
         &context,
     )?;
-    Ok(Artifact::new(format!("{}_tb.v", project.name), text))
+    Ok(Some(Artifact::new(format!("{}_tb.v", project.name), text)))
 }

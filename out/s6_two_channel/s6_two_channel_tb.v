@@ -186,12 +186,13 @@ module s6_two_channel_tb;
     localparam [CHANNELS-1:0] ENDAT = 2'b11;
     localparam integer FIRST = 0, LAST = 1;
     localparam real CLK_NS = 10.0;
-    localparam real UART_BIT_NS = 500.0;
     // From a trigger to the end of everything: measuring frame, and frame at the configured clock.
     localparam real CALIBRATION_NS = 274370.0;
     localparam real CYCLE_NS = 52070.0;
     localparam real FAULT_NS = 116590.0;
     localparam real ABORT_NS = 30003000.0;
+    // A written word acts after this.
+    localparam real SETTLE_NS = 10000.0;
     // Longest time from a pin to the edge it causes, system clock cycles.
     localparam integer TRIGGER_CYCLES_MAX = 10;
 
@@ -253,11 +254,90 @@ module s6_two_channel_tb;
     reg clk;
     reg rst;
     reg trigger;
-    reg uart_to_card;
-    wire uart_from_card;
     wire [CHANNELS-1:0] endat_clk, endat_data_o, endat_data_oe, endat_data_i, led_channel;
     wire led_status;
     integer errors;
+
+    // Host: bytes out, bytes in.
+    localparam real UART_BIT_NS = 500.0;
+    reg uart_to_card;
+    wire uart_from_card;
+    reg [7:0] inbox [0:1023];
+    integer received;
+    reg [7:0] shift;
+    integer bit_number;
+
+    task host_idle;
+        begin
+            uart_to_card = 1'b1;
+            received = 0;
+        end
+    endtask
+
+    always @(negedge uart_from_card) begin
+        #(UART_BIT_NS / 2.0);
+        for (bit_number = 0; bit_number < 8; bit_number = bit_number + 1) begin
+            #(UART_BIT_NS);
+            shift = {uart_from_card, shift[7:1]};
+        end
+        #(UART_BIT_NS);
+        if (uart_from_card !== 1'b1)
+            complain("stop bit of the UART", {47'd0, uart_from_card}, 48'd1);
+        inbox[received[9:0]] = shift;
+        received = received + 1;
+    end
+
+    task send_byte(input [7:0] value);
+        integer k;
+        begin
+            uart_to_card = 1'b0;
+            #(UART_BIT_NS);
+            for (k = 0; k < 8; k = k + 1) begin
+                uart_to_card = value[k];
+                #(UART_BIT_NS);
+            end
+            uart_to_card = 1'b1;
+            #(UART_BIT_NS);
+        end
+    endtask
+
+    task send_command(input [7:0] command, input integer words, input [31:0] address);
+        begin
+            send_byte(command);
+            send_byte(words[7:0]);
+            send_byte(address[31:24]);
+            send_byte(address[23:16]);
+            send_byte(address[15:8]);
+            send_byte(address[7:0]);
+        end
+    endtask
+
+    task write_word(input [31:0] address, input [31:0] value);
+        begin
+            send_command(8'h01, 1, address);
+            send_byte(value[31:24]);
+            send_byte(value[23:16]);
+            send_byte(value[15:8]);
+            send_byte(value[7:0]);
+        end
+    endtask
+
+    // Reads into the inbox; the answer has to come within twice its length on the line.
+    task read_words(input [31:0] address, input integer words);
+        integer k;
+        begin
+            received = 0;
+            send_command(8'h02, words, address);
+            for (k = 0; k < 80 * words + 400 && received < 4 * words; k = k + 1)
+                #(UART_BIT_NS);
+            if (received < 4 * words)
+                complain("bytes of a UART answer", received, 4 * words);
+        end
+    endtask
+
+    function [31:0] word(input integer index);
+        word = {inbox[4 * index], inbox[4 * index + 1], inbox[4 * index + 2], inbox[4 * index + 3]};
+    endfunction
 
     s6_two_channel dut (
         .clk_i(clk),
@@ -381,77 +461,6 @@ module s6_two_channel_tb;
         end
 
     always #(CLK_NS / 2.0) clk = ~clk;
-
-    // Host: bytes out, bytes in.
-    reg [7:0] inbox [0:1023];
-    integer received;
-    reg [7:0] shift;
-    integer bit_number;
-
-    always @(negedge uart_from_card) begin
-        #(UART_BIT_NS / 2.0);
-        for (bit_number = 0; bit_number < 8; bit_number = bit_number + 1) begin
-            #(UART_BIT_NS);
-            shift = {uart_from_card, shift[7:1]};
-        end
-        #(UART_BIT_NS);
-        if (uart_from_card !== 1'b1)
-            complain("stop bit of the UART", {47'd0, uart_from_card}, 48'd1);
-        inbox[received[9:0]] = shift;
-        received = received + 1;
-    end
-
-    task send_byte(input [7:0] value);
-        integer k;
-        begin
-            uart_to_card = 1'b0;
-            #(UART_BIT_NS);
-            for (k = 0; k < 8; k = k + 1) begin
-                uart_to_card = value[k];
-                #(UART_BIT_NS);
-            end
-            uart_to_card = 1'b1;
-            #(UART_BIT_NS);
-        end
-    endtask
-
-    task send_command(input [7:0] command, input integer words, input [31:0] address);
-        begin
-            send_byte(command);
-            send_byte(words[7:0]);
-            send_byte(address[31:24]);
-            send_byte(address[23:16]);
-            send_byte(address[15:8]);
-            send_byte(address[7:0]);
-        end
-    endtask
-
-    task write_word(input [31:0] address, input [31:0] value);
-        begin
-            send_command(8'h01, 1, address);
-            send_byte(value[31:24]);
-            send_byte(value[23:16]);
-            send_byte(value[15:8]);
-            send_byte(value[7:0]);
-        end
-    endtask
-
-    // Reads into the inbox; the answer has to come within twice its length on the line.
-    task read_words(input [31:0] address, input integer words);
-        integer k;
-        begin
-            received = 0;
-            send_command(8'h02, words, address);
-            for (k = 0; k < 80 * words + 400 && received < 4 * words; k = k + 1)
-                #(UART_BIT_NS);
-            if (received < 4 * words)
-                complain("bytes of a UART answer", received, 4 * words);
-        end
-    endtask
-
-    function [31:0] word(input integer index);
-        word = {inbox[4 * index], inbox[4 * index + 1], inbox[4 * index + 2], inbox[4 * index + 3]};
-    endfunction
 
     function [31:0] field(input [31:0] value, input integer lsb, input integer bits);
         field = (value >> lsb) & ~(32'hFFFFFFFF << bits);
@@ -634,14 +643,13 @@ module s6_two_channel_tb;
         clk = 1'b0;
         rst = 1'b1;
         trigger = 1'b0;
-        uart_to_card = 1'b1;
+        host_idle;
         clk_far = {CHANNELS{1'b1}};
         oe_far = {CHANNELS{1'b0}};
         data_far = {CHANNELS{1'b0}};
         line_near = ~ENDAT;
         want_position = 0;
         errors = 0;
-        received = 0;
         trigger_count = 0;
         step = 0;
         stamp = 0;
@@ -670,7 +678,7 @@ module s6_two_channel_tb;
 
         // A frame that measures the line delay, then one at the configured clock.
         write_word(CARD_CALIBRATE, ~(32'hFFFFFFFF << CHANNELS));
-        #(UART_BIT_NS * 20.0);
+        #(SETTLE_NS);
         new_positions;
         frame(CALIBRATION_NS);
         check_evidence;
@@ -709,14 +717,14 @@ module s6_two_channel_tb;
         new_positions;
         frame(CYCLE_NS);
         write_word(CONFIG_HOLD, 32'd1 << HOLD_HOLD_LSB);
-        #(UART_BIT_NS * 20.0);
+        #(SETTLE_NS);
         new_positions;
         pulse_trigger;
         #(CYCLE_NS);
         check_start;
         read_results;
         write_word(CONFIG_HOLD, 32'd0);
-        #(UART_BIT_NS * 20.0);
+        #(SETTLE_NS);
         check_results;
 
         // A second trigger within the frame: counted, told, and the frame is good.
@@ -737,7 +745,7 @@ module s6_two_channel_tb;
 
         // The host's trigger, when the pin is switched off.
         write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_REGISTER_LSB);
-        #(UART_BIT_NS * 20.0);
+        #(SETTLE_NS);
         new_positions;
         pulse_trigger;
         #(CYCLE_NS);
@@ -747,7 +755,7 @@ module s6_two_channel_tb;
         check("channels that the host started", fallen, ENDAT);
         check_results;
         write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
-        #(UART_BIT_NS * 20.0);
+        #(SETTLE_NS);
 
         // No start bit on the first channel; data of the last other channel stay high after its frame, which is good.
         new_positions;

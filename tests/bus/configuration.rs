@@ -5,13 +5,13 @@ use endat_gen::config::{load_preset, parse, DEFAULT_PRESET};
 use endat_hdl::bus::HostBus;
 
 #[test]
-fn a_card_with_a_bus_has_no_board_top_and_no_test_bench() {
+fn a_card_with_a_bus_has_a_test_bench_and_no_board_top() {
     for bus in WORD_BUSES {
         let project = parse("card.toml", &text(bus, "")).unwrap();
         let files = endat_gen::emit(&project).unwrap();
         let has = |end: &str| files.iter().any(|f| f.path.ends_with(end));
         assert!(has("_card.v") && has("_registers.h") && has(".svd") && has("README.md"));
-        assert!(!has("_top.v") && !has(".ucf") && !has("_tb.v"), "{bus:?}");
+        assert!(!has("_top.v") && !has(".ucf") && has("_tb.v"), "{bus:?}");
         assert!(!has("uart_bridge.v") && has("_word_access.v"), "{bus:?}");
         let readme = files.iter().find(|f| f.path == "README.md").unwrap();
         assert!(

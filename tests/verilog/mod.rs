@@ -1,6 +1,7 @@
 //! Outside tools over the emitted card: simulators, linters, synthesis, formal equivalence, gate level.
 
 pub mod area;
+mod bus_bench;
 mod formal;
 mod lint;
 mod mutations;

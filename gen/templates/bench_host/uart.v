@@ -1,8 +1,18 @@
     // Host: bytes out, bytes in.
+    localparam real UART_BIT_NS = {{ uart_bit_ns }};
+    reg uart_to_card;
+    wire uart_from_card;
     reg [7:0] inbox [0:1023];
     integer received;
     reg [7:0] shift;
     integer bit_number;
+
+    task host_idle;
+        begin
+            uart_to_card = 1'b1;
+            received = 0;
+        end
+    endtask
 
     always @(negedge uart_from_card) begin
         #(UART_BIT_NS / 2.0);
@@ -67,8 +77,4 @@
 
     function [31:0] word(input integer index);
         word = {inbox[4 * index], inbox[4 * index + 1], inbox[4 * index + 2], inbox[4 * index + 3]};
-    endfunction
-
-    function [31:0] field(input [31:0] value, input integer lsb, input integer bits);
-        field = (value >> lsb) & ~(32'hFFFFFFFF << bits);
     endfunction

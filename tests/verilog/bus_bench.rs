@@ -1,0 +1,232 @@
+//! The emitted test bench behind every bus: passes as it stands, and fails on a broken front or output.
+
+use super::mutations::{mutation, Mutation};
+use super::testbench::check_mutations;
+use crate::tools;
+use endat_gen::config::parse;
+use endat_hdl::bus::HostBus;
+
+const APB: &[Mutation] = &[
+    mutation(
+        "APB: byte address taken for a word address",
+        "endat_apb_front.v",
+        "address_next = paddr[12:2];",
+        "address_next = paddr[10:0];",
+    ),
+    mutation(
+        "APB: answer before the word is there",
+        "endat_apb_front.v",
+        "assign pready = ready;",
+        "assign pready = ready | busy;",
+    ),
+    mutation(
+        "APB: writes only read",
+        "endat_apb_front.v",
+        "assign bank_write = writing;",
+        "assign bank_write = 1'b0;",
+    ),
+    mutation(
+        "APB: every answer is an error",
+        "endat_apb_front.v",
+        "assign pslverr = error;",
+        "assign pslverr = ready;",
+    ),
+    mutation(
+        "interrupt: clear clears nothing",
+        "endat_interrupt.v",
+        "status_next = (status & ~write_data) | events_0;",
+        "status_next = status | events_0;",
+    ),
+    mutation(
+        "interrupt: mask stays",
+        "endat_interrupt.v",
+        "mask_next = write_data;",
+        "mask_next = mask;",
+    ),
+    mutation(
+        "interrupt: channels at the wrong bits",
+        "endat_interrupt.v",
+        "assign events_0 = (events_1 << 3'd4)",
+        "assign events_0 = (events_1 << 3'd5)",
+    ),
+    mutation(
+        "direct output: told anew after a bad result",
+        "endat_direct_output_pair64.v",
+        "running_next = fresh;",
+        "running_next = 1'b1;",
+    ),
+    mutation(
+        "direct output: one bit too far",
+        "endat_direct_output_pair68.v",
+        "assign next_bit = wide[at]",
+        "assign next_bit = wide[at + 6'd1]",
+    ),
+    mutation(
+        "direct output: no strobe",
+        "endat_direct_output_pair64.v",
+        "strobe_next = 1'b1;",
+        "strobe_next = 1'b0;",
+    ),
+    mutation(
+        "direct output: causes one off",
+        "endat_direct_output_pair64.v",
+        "error_next = error_causes[cause];",
+        "error_next = error_causes[0];",
+    ),
+];
+
+const WISHBONE: &[Mutation] = &[
+    mutation(
+        "Wishbone: address of the word behind",
+        "endat_wishbone_front.v",
+        "address_next = adr;",
+        "address_next = adr + 11'd1;",
+    ),
+    mutation(
+        "Wishbone: whole words are refused",
+        "endat_wishbone_front.v",
+        "assign refused = we & !(&sel);",
+        "assign refused = we & (&sel);",
+    ),
+    mutation(
+        "Wishbone: acknowledged before the word is there",
+        "endat_wishbone_front.v",
+        "assign ack = acknowledge;",
+        "assign ack = acknowledge | busy;",
+    ),
+    mutation(
+        "Wishbone: reads write",
+        "endat_wishbone_front.v",
+        "writing_next = we;",
+        "writing_next = 1'b1;",
+    ),
+];
+
+const AXI_LITE: &[Mutation] = &[
+    mutation(
+        "AXI4-Lite: reads at the address of a write",
+        "endat_axi_lite_front.v",
+        "read_address_next = araddr[12:2];",
+        "read_address_next = awaddr[12:2];",
+    ),
+    mutation(
+        "AXI4-Lite: bytes in another order",
+        "endat_axi_lite_front.v",
+        "data_next = wdata;",
+        "data_next = {wdata[23:0], wdata[31:24]};",
+    ),
+    mutation(
+        "AXI4-Lite: whole words are refused",
+        "endat_axi_lite_front.v",
+        "error_next = (|strobes) & !(&strobes);",
+        "error_next = |strobes;",
+    ),
+    mutation(
+        "AXI4-Lite: writes only read",
+        "endat_axi_lite_front.v",
+        "writing_next = 1'b1;",
+        "writing_next = 1'b0;",
+    ),
+];
+
+const SPI: &[Mutation] = &[
+    mutation(
+        "SPI: wrong polynomial",
+        "endat_spi_front.v",
+        "POLYNOMIAL = 16'd4129;",
+        "POLYNOMIAL = 16'd4128;",
+    ),
+    mutation(
+        "SPI: no check sum behind the words",
+        "endat_spi_front.v",
+        "load_crc_next = 1'b1;",
+        "load_crc_next = 1'b0;",
+    ),
+    mutation(
+        "SPI: upper part of the address at the wrong place",
+        "endat_spi_front.v",
+        "address_next = {8'd0, byte_in[2:0]} << 4'd8;",
+        "address_next = {8'd0, byte_in[2:0]} << 4'd7;",
+    ),
+    mutation(
+        "SPI: one word too many",
+        "endat_spi_front.v",
+        "words_left_next = byte_in;",
+        "words_left_next = byte_in + 8'd1;",
+    ),
+    mutation(
+        "SPI: all writes are told as refused",
+        "endat_spi_front.v",
+        "refused_next = (|crc) | busy;",
+        "refused_next = 1'b1;",
+    ),
+];
+
+const PARALLEL: &[Mutation] = &[
+    mutation(
+        "parallel: address of the window one bit off",
+        "endat_parallel_front.v",
+        "window_address_next = strobes_written_data[10:0];",
+        "window_address_next = strobes_written_data[11:1];",
+    ),
+    mutation(
+        "parallel: low half twice",
+        "endat_parallel_front.v",
+        "window_high_next = words_read_data[31:16];",
+        "window_high_next = words_read_data[15:0];",
+    ),
+    mutation(
+        "parallel: nothing is written",
+        "endat_parallel_front.v",
+        "wants_write_next = 1'b1;",
+        "wants_write_next = 1'b0;",
+    ),
+    mutation(
+        "parallel: the lines are never free",
+        "endat_parallel_front.v",
+        "assign data_enable = !cs_n & !rd_n;",
+        "assign data_enable = !rd_n | cs_n;",
+    ),
+    mutation(
+        "parallel: the word is read whatever bit 14 says",
+        "endat_parallel_front.v",
+        "wants_read_next = !strobes_written_data[14];",
+        "wants_read_next = strobes_written_data[14];",
+    ),
+];
+
+/// A card of two channels with everything that leaves it beside the bus.
+fn check(bus: HostBus, mutations: &[Mutation]) {
+    if !tools::require("iverilog", "emitted test bench") {
+        return;
+    }
+    let outputs = "[outputs]\nparts = [\"position\", \"interrupt\"]\n";
+    let text = crate::bus::text(bus, outputs).replace("= [\"register\"]", "= [\"pin\", \"timer\"]");
+    let files = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
+    check_mutations(&format!("bus-{}", bus.name()), &files, mutations);
+}
+
+#[test]
+fn bench_behind_apb_passes_only_as_it_stands() {
+    check(HostBus::Apb, APB);
+}
+
+#[test]
+fn bench_behind_wishbone_passes_only_as_it_stands() {
+    check(HostBus::Wishbone, WISHBONE);
+}
+
+#[test]
+fn bench_behind_axi_lite_passes_only_as_it_stands() {
+    check(HostBus::AxiLite, AXI_LITE);
+}
+
+#[test]
+fn bench_behind_spi_passes_only_as_it_stands() {
+    check(HostBus::Spi, SPI);
+}
+
+#[test]
+fn bench_behind_the_parallel_bus_passes_only_as_it_stands() {
+    check(HostBus::Parallel, PARALLEL);
+}
