@@ -46,9 +46,8 @@ pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let sources: Vec<String> = sources.filter(|p| p.ends_with(".v")).collect();
     // The test bench speaks to the card as a host at the UART does.
     let has_bench = project.bus == HostBus::Uart;
-    artifacts.extend(integration::artifacts(
-        project, &design, &sources, has_bench,
-    )?);
+    let core = integration::Core::card(project, &sources, has_bench);
+    artifacts.extend(integration::artifacts(&core, &design)?);
     artifacts.extend(constraints::artifacts(project)?);
     if has_bench {
         artifacts.push(testbench::artifact(project)?);

@@ -1,6 +1,7 @@
 //! The asynchronous receiver and its encoder.
 
 mod area;
+mod bench;
 mod card;
 mod config;
 mod dsp;
