@@ -10,4 +10,5 @@ mod header;
 mod lanes;
 mod rig;
 mod three_ways;
+mod upsets;
 mod vectors;
