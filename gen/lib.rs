@@ -45,12 +45,8 @@ pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let sources = artifacts.iter().map(|a| a.path.clone());
     let sources: Vec<String> = sources.filter(|p| p.ends_with(".v")).collect();
     let bench = testbench::artifact(project)?;
-    artifacts.extend(integration::artifacts(
-        project,
-        &design,
-        &sources,
-        bench.is_some(),
-    )?);
+    let core = integration::Core::card(project, &sources, bench.is_some());
+    artifacts.extend(integration::artifacts(&core, &design)?);
     artifacts.extend(constraints::artifacts(project)?);
     artifacts.extend(bench);
     artifacts.push(artifact::manifest(&artifacts));

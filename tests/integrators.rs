@@ -1,22 +1,54 @@
 //! What integrators take: each file, used by the program that it is for.
 
 use crate::tools::{self, require, require_python, run};
-use endat_gen::config::{load_preset, Project};
+use endat_gen::artifact::Artifact;
+use endat_gen::config::{load_any_preset, Configuration, Project};
 use endat_gen::{cli, emit};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Writes all files of a project into an empty folder.
-fn emitted(project: &Project, name: &str) -> PathBuf {
+/// Writes all files of an emission into an empty folder.
+fn written(artifacts: &[Artifact], name: &str) -> PathBuf {
     let folder = tools::folder(name);
-    for artifact in emit(project).unwrap() {
+    for artifact in artifacts {
         fs::write(folder.join(&artifact.path), &artifact.text).unwrap();
     }
     folder
 }
 
-fn default_card(name: &str) -> PathBuf {
-    emitted(&load_preset("s6_two_channel").unwrap(), name)
+#[cfg(unix)]
+fn emitted(project: &Project, name: &str) -> PathBuf {
+    written(&emit(project).unwrap(), name)
+}
+
+/// The Verilog files of a core itself.
+fn sources(folder: &Path) -> Vec<String> {
+    let files = fs::read_dir(folder).unwrap();
+    let names = files.filter_map(|f| f.ok()?.file_name().into_string().ok());
+    let others = ["_tb.v", "_top.v", "holder.v"];
+    names
+        .filter(|f| f.ends_with(".v") && !others.iter().any(|o| f.ends_with(o)))
+        .collect()
+}
+
+/// What is emitted for integrators, a card and a receiver: name, class in Python, ports, folder.
+fn cores(test: &str) -> [(&'static str, &'static str, usize, PathBuf); 2] {
+    let of = |name, class, ports| {
+        let files = match load_any_preset(name).unwrap() {
+            Configuration::Card(card) => emit(&card).unwrap(),
+            Configuration::Receiver(receiver) => endat_gen::t_format::emit(&receiver).unwrap(),
+        };
+        (
+            name,
+            class,
+            ports,
+            written(&files, &format!("{test}-{name}")),
+        )
+    };
+    [
+        of("s6_two_channel", "S6TwoChannel", 16),
+        of("async_dsp", "AsyncDsp", 15),
+    ]
 }
 
 /// Catches a file that the list leaves out, a target that FuseSoC refuses, and lint.
@@ -29,29 +61,25 @@ fn fusesoc_lints_and_simulates_the_core() {
     if !has_all {
         return;
     }
-    let folder = default_card("fusesoc");
-    for target in ["lint", "sim"] {
-        let arguments = [
+    for (name, _, _, folder) in cores("fusesoc") {
+        for target in ["lint", "sim"] {
+            let target = format!("--target={target}");
+            let arguments = ["--cores-root", ".", "run", &target, name];
+            let (is_good, told) = run("fusesoc", &folder, &arguments);
+            assert!(is_good, "{name} {target}: {told}");
+            assert!(target.ends_with("lint") || told.contains("PASS"), "{told}");
+        }
+        let setup = [
             "--cores-root",
             ".",
             "run",
-            &format!("--target={target}"),
-            "s6_two_channel",
+            "--target=synth",
+            "--setup",
+            name,
         ];
-        let (is_good, told) = run("fusesoc", &folder, &arguments);
-        assert!(is_good, "{target}: {told}");
-        assert!(target == "lint" || told.contains("PASS"), "{told}");
+        let (is_good, told) = run("fusesoc", &folder, &setup);
+        assert!(is_good, "{told}");
     }
-    let setup = [
-        "--cores-root",
-        ".",
-        "run",
-        "--target=synth",
-        "--setup",
-        "s6_two_channel",
-    ];
-    let (is_good, told) = run("fusesoc", &folder, &setup);
-    assert!(is_good, "{told}");
 }
 
 /// Catches a port that is missing in the template, or has another width.
@@ -60,21 +88,17 @@ fn the_instantiation_template_is_complete() {
     if !require("iverilog", "instantiation template") {
         return;
     }
-    let folder = default_card("instance");
-    let template = fs::read_to_string(folder.join("s6_two_channel_instance.vh")).unwrap();
-    assert_eq!(template.matches("    .").count(), 16, "{template}");
-    let module = format!("module holder;\n{template}\nendmodule\n");
-    fs::write(folder.join("holder.v"), module).unwrap();
-    let sources = fs::read_dir(&folder)
-        .unwrap()
-        .filter_map(|f| f.ok()?.file_name().into_string().ok());
-    let sources: Vec<String> = sources
-        .filter(|f| f.ends_with(".v") && !f.ends_with("_tb.v") && !f.ends_with("_top.v"))
-        .collect();
-    let mut arguments = vec!["-g2005", "-tnull", "-s", "holder"];
-    arguments.extend(sources.iter().map(String::as_str));
-    let (is_good, told) = run("iverilog", &folder, &arguments);
-    assert!(is_good, "{told}");
+    for (name, _, ports, folder) in cores("instance") {
+        let template = fs::read_to_string(folder.join(format!("{name}_instance.vh"))).unwrap();
+        assert_eq!(template.matches("    .").count(), ports, "{template}");
+        let module = format!("module holder;\n{template}\nendmodule\n");
+        fs::write(folder.join("holder.v"), module).unwrap();
+        let mut arguments = vec!["-g2005", "-tnull", "-s", "holder", "holder.v"];
+        let sources = sources(&folder);
+        arguments.extend(sources.iter().map(String::as_str));
+        let (is_good, told) = run("iverilog", &folder, &arguments);
+        assert!(is_good, "{told}");
+    }
 }
 
 /// Vivado's commands as tclsh sees them: each called with words that it knows, files that exist, ports that the card has.
@@ -94,8 +118,6 @@ namespace eval ipx {
     proc update_checksums core {}
     proc save_core core { set ::saved 1 }
 }
-source s6_two_channel_vivado.tcl
-puts "files $files saved $saved"
 "#;
 
 #[test]
@@ -103,21 +125,15 @@ fn the_vivado_script_packages_every_source() {
     if !require("tclsh", "Vivado script") {
         return;
     }
-    let folder = default_card("vivado");
-    fs::write(folder.join("stub.tcl"), VIVADO).unwrap();
-    let (is_good, told) = run("tclsh", &folder, &["stub.tcl"]);
-    let is_source = |f: &fs::DirEntry| {
-        let name = f.file_name().into_string().unwrap();
-        name.ends_with(".v") && !name.ends_with("_tb.v") && !name.ends_with("_top.v")
-    };
-    let sources = fs::read_dir(&folder)
-        .unwrap()
-        .filter(|f| f.as_ref().is_ok_and(is_source))
-        .count();
-    assert!(
-        is_good && told.contains(&format!("files {sources} saved 1")),
-        "{told}"
-    );
+    for (name, _, _, folder) in cores("vivado") {
+        let script =
+            format!("{VIVADO}source {name}_vivado.tcl\nputs \"files $files saved $saved\"\n");
+        fs::write(folder.join("stub.tcl"), script).unwrap();
+        let (is_good, told) = run("tclsh", &folder, &["stub.tcl"]);
+        let count = sources(&folder).len();
+        let wanted = format!("files {count} saved 1");
+        assert!(is_good && told.contains(&wanted), "{name}: {told}");
+    }
 }
 
 #[test]
@@ -126,23 +142,28 @@ fn litex_elaborates_the_module_and_its_verilog_fits_the_card() {
     if !require_python("migen", check) || !require("iverilog", check) {
         return;
     }
-    let folder = default_card("litex");
-    let script = "
+    for (name, class, ports, folder) in cores("litex") {
+        // Clock and reset are those of the system.
+        let signals = ports - 2;
+        let script = format!(
+            "
 from migen.fhdl.verilog import convert
-from s6_two_channel_litex import S6TwoChannel, SOURCES
-card = S6TwoChannel()
-ios = {getattr(card, n) for n in vars(card) if n.endswith(('_i', '_o', '_oe'))}
-assert len(ios) == 14, len(ios)
-convert(card, ios, name='soc').write('soc.v')
+from {name}_litex import {class}, SOURCES
+core = {class}()
+ios = {{getattr(core, n) for n in vars(core) if n.endswith(('_i', '_o', '_oe'))}}
+assert len(ios) == {signals}, len(ios)
+convert(core, ios, name='soc').write('soc.v')
 open('sources', 'w').write(' '.join(SOURCES))
-";
-    let (is_good, told) = run("python3", &folder, &["-c", script]);
-    assert!(is_good, "{told}");
-    let sources = fs::read_to_string(folder.join("sources")).unwrap();
-    let mut arguments = vec!["-g2005", "-tnull", "-s", "soc", "soc.v"];
-    arguments.extend(sources.split(' '));
-    let (is_good, told) = run("iverilog", &folder, &arguments);
-    assert!(is_good, "{told}");
+"
+        );
+        let (is_good, told) = run("python3", &folder, &["-c", &script]);
+        assert!(is_good, "{told}");
+        let sources = fs::read_to_string(folder.join("sources")).unwrap();
+        let mut arguments = vec!["-g2005", "-tnull", "-s", "soc", "soc.v"];
+        arguments.extend(sources.split(' '));
+        let (is_good, told) = run("iverilog", &folder, &arguments);
+        assert!(is_good, "{told}");
+    }
 }
 
 /// The C example reads a virtual card.

@@ -5,6 +5,7 @@
 //!                  -> report
 //! ```
 
+mod bench;
 mod read;
 mod report;
 
@@ -13,9 +14,13 @@ pub use report::{report, Report};
 
 use crate::artifact::{self, Artifact};
 use crate::error::GenError;
+use crate::integration;
+use crate::template::render;
 use crate::verilog::{print_files, Header};
 use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
+use endat_hdl::t_format::protocol::SYSTEM_HZ;
+use minijinja::context;
 use rust_hdl::prelude::Block;
 
 /// A checked configuration of a receiver.
@@ -59,6 +64,7 @@ pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
     let mut artifacts: Vec<Artifact> = files
         .map(|(path, text)| Artifact::new(path, text))
         .collect();
+    let sources: Vec<String> = artifacts.iter().map(|a| a.path.clone()).collect();
     let map = include_str!("../templates/t_format_registers.md");
     artifacts.push(Artifact::new(
         format!("{}_registers.md", receiver.name),
@@ -68,6 +74,21 @@ pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
             env!("CARGO_PKG_VERSION"),
             receiver.hash
         ),
+    ));
+    let core = integration::Core::receiver(receiver, &sources);
+    artifacts.extend(integration::artifacts(&core, &design)?);
+    artifacts.push(bench::artifact(receiver)?);
+    let context = context! {
+        name => receiver.name.as_str(),
+        version => env!("CARGO_PKG_VERSION"),
+        hash => receiver.hash.as_str(),
+        clocks_mhz => SYSTEM_HZ.map(|hz| hz / 1_000_000).to_vec(),
+        timing => report,
+    };
+    let readme = include_str!("../templates/receiver_readme.md.jinja");
+    artifacts.push(Artifact::new(
+        "README.md",
+        render("receiver_readme", readme, &context)?,
     ));
     artifacts.push(artifact::manifest(&artifacts));
     Ok(artifacts)

@@ -2,6 +2,7 @@
 
 use crate::tools;
 use crate::verilog::area::require;
+use crate::verilog::is_core;
 use endat_gen::area::{subjects, synthesise, ECP5, ICE40, XC6S};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_any_preset, Configuration};
@@ -37,7 +38,7 @@ fn preset() -> Vec<Artifact> {
         panic!("a card");
     };
     let files = emit(&receiver).unwrap().into_iter();
-    files.filter(|f| f.path.ends_with(".v")).collect()
+    files.filter(is_core).collect()
 }
 
 #[test]

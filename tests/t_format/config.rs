@@ -32,7 +32,20 @@ fn the_preset_is_emitted_and_checked() {
     let folder = dir.0.join("o/async_dsp");
     let top = std::fs::read_to_string(folder.join("async_dsp.v")).unwrap();
     assert!(top.contains("module async_dsp ("), "{top}");
-    assert!(folder.join("async_dsp_registers.md").exists());
+    let readme = std::fs::read_to_string(folder.join("README.md")).unwrap();
+    for end in [
+        "_registers.md",
+        "_tb.v",
+        "_instance.vh",
+        ".core",
+        "_vivado.tcl",
+        "_litex.py",
+    ] {
+        let file = format!("async_dsp{end}");
+        assert!(folder.join(&file).exists(), "{file}");
+        assert!(readme.contains(&format!("| `{file}` |")), "{file}");
+    }
+    assert!(readme.contains("20 or 60 MHz"), "{readme}");
     assert!(folder.join("MANIFEST").exists());
 }
 

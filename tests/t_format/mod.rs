@@ -1,6 +1,7 @@
 //! The asynchronous receiver and its encoder.
 
 mod area;
+mod bench;
 mod card;
 mod config;
 mod dsp;
@@ -9,4 +10,5 @@ mod header;
 mod lanes;
 mod rig;
 mod three_ways;
+mod upsets;
 mod vectors;

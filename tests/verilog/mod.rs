@@ -4,11 +4,11 @@ pub mod area;
 mod bus_bench;
 mod formal;
 mod lint;
-mod mutations;
+pub mod mutations;
 mod netlist;
 mod t_format_bench;
 mod t_format_mutations;
-mod testbench;
+pub mod testbench;
 
 use crate::tools;
 use endat_gen::artifact::Artifact;
