@@ -63,7 +63,7 @@ impl Port {
             fast: u8::from(wanted.bit_hz == FAST_BIT_HZ),
             request: wanted.request.id(),
             own_rate: real(
-                1.0 + if index % 2 == 0 {
+                1.0 + if index.is_multiple_of(2) {
                     RATE_ERROR
                 } else {
                     -RATE_ERROR
