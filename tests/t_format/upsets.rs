@@ -116,7 +116,7 @@ impl<'a> Run<'a> {
             self.encoder.receiver(now, drive);
             let level = self.encoder.output() != Drive::Low;
             self.engine.set(rx, level.into());
-            let tick = self.cycle % SYSTEM_MHZ == 0;
+            let tick = self.cycle.is_multiple_of(SYSTEM_MHZ);
             self.engine.set(self.port.controls[0], tick.into());
             self.engine.tick();
             self.cycle += 1;

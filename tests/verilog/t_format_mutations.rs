@@ -214,6 +214,12 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
         "lost_next = 1'b0;",
     ),
     mutation(
+        "trigger within a request of the host not told",
+        PORT,
+        "if (trigger & is_busy) begin",
+        "if (trigger & is_busy & !own) begin",
+    ),
+    mutation(
         "time stamp of another edge",
         PORT,
         "snapshot_first_fall = !data_o & !started;",
