@@ -15,7 +15,6 @@ use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, INTERRUPT, RESULT};
 use endat_hdl::service::program::{program, ServiceTimes};
-use endat_hdl::t_format::cause as t_cause;
 use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
 use endat_hdl::transaction::cause;
 use minijinja::context;
@@ -196,7 +195,6 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         ("F2", cause::F2),
         ("DATA_NOT_FALLING", cause::DATA_NOT_FALLING),
         ("TRIGGER_OVERRUN", cause::TRIGGER_OVERRUN),
-        ("NO_ANSWER", t_cause::of_card(t_cause::NO_ANSWER)),
     ];
     let causes: Vec<Value> = causes
         .into_iter()

@@ -203,6 +203,7 @@ impl Parts {
             sleeps,
             channels => Serde(ports),
             count => card.channels.len(),
+            direct => card.outputs.position,
             words => Serde(words(&T_FORMAT).collect::<Vec<_>>()),
             fields => Serde(fields_of(&T_FORMAT)),
             causes => causes(),

@@ -1,7 +1,7 @@
 //! The emitted test bench behind every bus: passes as it stands, and fails on a broken front or output.
 
 use super::mutations::{mutation, Mutation};
-use super::testbench::check_mutations;
+use super::testbench::{check_mutations, run_bench};
 use crate::tools;
 use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
@@ -229,4 +229,20 @@ fn bench_behind_spi_passes_only_as_it_stands() {
 #[test]
 fn bench_behind_the_parallel_bus_passes_only_as_it_stands() {
     check(HostBus::Parallel, PARALLEL);
+}
+
+/// Steps of both protocols count the strobes of the outputs.
+#[test]
+fn bench_behind_a_bus_passes_on_a_card_with_both_protocols() {
+    if !tools::require("iverilog", "emitted test bench") {
+        return;
+    }
+    let outputs = "[outputs]\nparts = [\"position\", \"interrupt\"]\n";
+    let text = crate::bus::text(HostBus::Apb, outputs);
+    let second = "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n";
+    assert!(text.contains(second));
+    let text = text.replace(second, "[[channel]]\nprotocol = \"t_format\"\n");
+    let text = text.replace("sample_hz = 10_000", "sample_hz = 1_000");
+    let files = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
+    assert_eq!(run_bench("bus-both", &files, &[]), "PASS\n");
 }

@@ -118,12 +118,6 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
         "order_first = 1'b1;\n                            drives_next = 1'b0;\n                            phase_next = PHASE_RELEASE;",
     ),
     mutation(
-        "fields not timed from their start bits",
-        EXCHANGE,
-        "heard_next = 1'b1;\n                    grid_restart = 1'b1;",
-        "heard_next = 1'b1;",
-    ),
-    mutation(
         "complaint about the delimiter not taken for a fault",
         EXCHANGE,
         "is_good = is_whole & !(|raised[11:9]);",
@@ -220,12 +214,6 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
         "if (trigger & is_busy & !own) begin",
     ),
     mutation(
-        "time stamp of another edge",
-        PORT,
-        "snapshot_first_fall = !data_o & !started;",
-        "snapshot_first_fall = !data_o;",
-    ),
-    mutation(
         "a trigger sends the host's last request",
         PORT,
         "if (own_now) begin",
@@ -240,7 +228,23 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "T-format channel not triggered",
         "endat_card_core.v",
-        ".trigger(trigger_trigger),\n        .calibrate(bank_calibrate[1]),",
-        ".trigger(1'b0),\n        .calibrate(bank_calibrate[1]),",
+        ".trigger(trigger_trigger),\n        .calibrate(bank_calibrate[0]),",
+        ".trigger(1'b0),\n        .calibrate(bank_calibrate[0]),",
+    ),
+];
+
+/// What takes another channel, or an encoder whose clock is fast, to be seen: the second channel of the preset.
+pub const MIXED_MUTATIONS: &[Mutation] = &[
+    mutation(
+        "fields not timed from their start bits",
+        EXCHANGE,
+        "heard_next = 1'b1;\n                    grid_restart = 1'b1;",
+        "heard_next = 1'b1;",
+    ),
+    mutation(
+        "time stamp of another edge",
+        PORT,
+        "snapshot_first_fall = !data_o & !started;",
+        "snapshot_first_fall = !data_o;",
     ),
 ];
