@@ -1,5 +1,5 @@
 //! The Verilog test bench that is emitted with a card: everything in it follows from the configuration and the register table.
-//! Every channel has an encoder there, EnDat or T-format ([`t_format`]): models of their own, which share no code with the core.
+//! Every channel has an encoder there, EnDat or T-format (`t_format`): models of their own, which share no code with the core.
 //! Of an initialisation it looks at the beginning only: the whole of it is longer than anybody simulates in Verilog.
 
 mod host;

@@ -59,6 +59,8 @@ pub const BUSY_MS: u16 = 50;
 pub const ENDAT21_MAX_KHZ: u16 = 2_000;
 /// Largest deviation of the EnDat clock from the one asked for, in parts per million.
 pub const CLOCK_TOLERANCE_PPM: i64 = 5_000;
+/// How much longer or shorter than half a period a pulse may be, in per cent of the period (PWM 20).
+pub const PULSE_TOLERANCE_PERCENT: u64 = 10;
 /// Fewest system clock cycles in one EnDat clock period that the core can time.
 pub const PERIOD_CYCLES_MIN: u64 = 4;
 /// The same with data looked at on both edges of the system clock.

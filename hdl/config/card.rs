@@ -11,16 +11,25 @@ pub const BAUD_NOTE: &str = "the most that the board passes on to the host";
 
 /// Fewest system clock cycles in an EnDat period with which the phase can follow while the clock goes on.
 const CONTINUOUS_PERIOD_MIN: u64 = 8;
+/// Fewest with which a position stands in its place before the first bit of an additional information comes: 16 shifts in the five bits
+/// of the CRC.
+const REQUESTS_PERIOD_MIN: u64 = 4;
 
-fn too_fast_for_continuous(index: usize, channel: &ChannelConfig, system_hz: u64) -> Problem {
+/// A part that needs more cycles in a period than the channel has.
+fn too_fast_for(
+    index: usize,
+    channel: &ChannelConfig,
+    system_hz: u64,
+    (part, what, cycles_min): (&str, &str, u64),
+) -> Problem {
     Problem {
         section: Section::Channel(index),
         key: "clock_hz",
         value: channel.request.clock_hz.to_string(),
         text: format!(
-            "its period is {} cycles of clock.system_hz = {system_hz}, continuous clock takes {CONTINUOUS_PERIOD_MIN}; use at most {} Hz, or leave \"continuous\" out of service.parts",
+            "its period is {} cycles of clock.system_hz = {system_hz}, {what} {cycles_min}; use at most {} Hz, or leave \"{part}\" out of service.parts",
             channel.period_cycles,
-            system_hz / CONTINUOUS_PERIOD_MIN
+            system_hz / cycles_min
         ),
     }
 }
@@ -63,12 +72,29 @@ impl CardDraft {
                 .map(|c| ChannelConfig::resolve(c, system_hz, self.line.double_edge, index))
             {
                 Some(Ok(channel)) => {
+                    let parts = [
+                        (
+                            self.service.requests,
+                            (
+                                "requests",
+                                "additional informations take",
+                                REQUESTS_PERIOD_MIN,
+                            ),
+                        ),
+                        (
+                            self.service.continuous,
+                            (
+                                "continuous",
+                                "continuous clock takes",
+                                CONTINUOUS_PERIOD_MIN,
+                            ),
+                        ),
+                    ];
                     let is_endat = channel.t_format.is_none();
-                    if is_endat
-                        && self.service.continuous
-                        && channel.period_cycles < CONTINUOUS_PERIOD_MIN
-                    {
-                        problems.push(too_fast_for_continuous(index, &channel, system_hz));
+                    for (is_wanted, part) in parts {
+                        if is_endat && is_wanted && channel.period_cycles < part.2 {
+                            problems.push(too_fast_for(index, &channel, system_hz, part));
+                        }
                     }
                     channels.push((index, channel));
                 }

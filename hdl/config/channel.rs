@@ -47,7 +47,7 @@ impl ChannelConfig {
         );
         check_recovery(&mut check, request, recovery_most_ns(system_hz, cable_m));
         let period = clock_good
-            .then(|| check_clock(&mut check, request.clock_hz, system_hz))
+            .then(|| check_clock(&mut check, request.clock_hz, system_hz, double_edge))
             .flatten();
         let resolved = period.map(|period_cycles| {
             let half = period_cycles / 2;
@@ -210,16 +210,28 @@ fn check_recovery(check: &mut Check<'_>, request: &ChannelRequest, most_ns: u64)
 }
 
 /// The period in cycles, if the rate can be made well enough.
-fn check_clock(check: &mut Check<'_>, clock_hz: u64, system_hz: u64) -> Option<u64> {
+fn check_clock(
+    check: &mut Check<'_>,
+    clock_hz: u64,
+    system_hz: u64,
+    double_edge: bool,
+) -> Option<u64> {
     let period = period_cycles(clock_hz, system_hz);
-    if period < PERIOD_CYCLES_MIN {
+    let (cycles_min, remedy) = match double_edge {
+        true => (PERIOD_CYCLES_MIN_DOUBLE, ""),
+        false => (
+            PERIOD_CYCLES_MIN,
+            ", or line.parts = [\"alignment\", \"double_edge\"], which needs half of that",
+        ),
+    };
+    if period < cycles_min {
         check.fail(
             "clock_hz",
             clock_hz,
             format!(
-                "needs a system clock of at least {} Hz, clock.system_hz is {system_hz}; use at most {} Hz or a faster system clock",
-                clock_hz * PERIOD_CYCLES_MIN,
-                system_hz / PERIOD_CYCLES_MIN
+                "needs a system clock of at least {} Hz, clock.system_hz is {system_hz}; use at most {} Hz or a faster system clock{remedy}",
+                clock_hz * cycles_min,
+                system_hz / cycles_min
             ),
         );
         return None;
@@ -235,8 +247,8 @@ fn check_clock(check: &mut Check<'_>, clock_hz: u64, system_hz: u64) -> Option<u
     }
     let ppm = deviation_ppm(system_hz as f64 / period as f64, clock_hz as f64);
     if ppm.abs() > CLOCK_TOLERANCE_PPM as f64 {
-        let below = system_hz.div_ceil(clock_hz).max(PERIOD_CYCLES_MIN);
-        let above = (system_hz / clock_hz).max(PERIOD_CYCLES_MIN);
+        let below = system_hz.div_ceil(clock_hz).max(cycles_min);
+        let above = (system_hz / clock_hz).max(cycles_min);
         let rate = |cycles: u64| (system_hz + cycles / 2) / cycles;
         let remedy = match (rate(below), rate(above)) {
             (low, high) if low == high => format!("{low} Hz"),
@@ -246,6 +258,21 @@ fn check_clock(check: &mut Check<'_>, clock_hz: u64, system_hz: u64) -> Option<u
             "clock_hz",
             clock_hz,
             format!("would become {} Hz ({ppm:+.0} ppm), more than the allowed {CLOCK_TOLERANCE_PPM} ppm; use {remedy}, or another system clock", rate(period)),
+        );
+        return None;
+    }
+    // The first half of an odd period is the shorter one.
+    if 100 * (period / 2) < (50 - PULSE_TOLERANCE_PERCENT) * period {
+        check.fail(
+            "clock_hz",
+            clock_hz,
+            format!(
+                "its period of {period} cycles of clock.system_hz = {system_hz} has pulses of {} and {} cycles, encoders allow {PULSE_TOLERANCE_PERCENT} % of the period more or less than half of it; use a system clock of {} or {} Hz",
+                period / 2,
+                period - period / 2,
+                clock_hz * (period - 1),
+                clock_hz * (period + 1)
+            ),
         );
         return None;
     }

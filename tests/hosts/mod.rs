@@ -3,6 +3,7 @@
 mod clients;
 mod commands;
 mod disturbed;
+mod few_cycles;
 mod ports;
 mod slow;
 mod ti_menu;
