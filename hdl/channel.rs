@@ -208,6 +208,7 @@ pub struct Channel {
     reply_has_parameter: Reg<Bit>,
     has_requests: Constant<Bit>,
     has_double: Constant<Bit>,
+    needs_four: Constant<Bit>,
     fixed_mode: Constant<Bits<2>>,
     parameter_bits: Constant<Bits<6>>,
     test_value_bits: Constant<Bits<6>>,
@@ -403,6 +404,7 @@ impl Channel {
             reply_has_parameter: Default::default(),
             has_requests: Constant::new(features.requests),
             has_double: Constant::new(features.double_edge),
+            needs_four: Constant::new(features.double_edge && features.requests),
             fixed_mode: Constant::new(line_delay::mode::FIXED.into()),
             parameter_bits: Constant::new(u64::from(PARAMETER_BITS).into()),
             test_value_bits: Constant::new(u64::from(TEST_VALUE_BITS).into()),
@@ -589,6 +591,10 @@ impl Logic for Channel {
         self.transaction.finished.next = self.receiver.finished.val();
         self.transaction.info_missing.next = self.receiver.info_missing.val();
         self.transaction.is_known.next = self.shape.is_known.val();
+        // In fewer cycles an additional information would begin before the position is taken.
+        if self.needs_four.val() & !self.period_cycles.val().get_bits::<9>(2).any() {
+            self.transaction.is_known.next = false;
+        }
         self.transaction.has_parameter.next = self.shape.has_parameter.val();
         self.transaction.has_supplement.next = self.shape.has_supplement.val();
         self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.q.val();

@@ -54,8 +54,8 @@ pub fn advice(name: &str) -> Option<[&'static str; 2]> {
             "Trigger more slowly: `explain` shows the highest rate.",
         ],
         "unknown_command" => [
-            "The configured command is none of the mode commands, or the T-format request is none that a trigger sends; nothing was sent.",
-            "Write 7 (000111) or 56 (111000) to config<n>.frame.command; on a T-format channel 3 to config<n>.timing.request_id.",
+            "The configured command is none of the mode commands, the T-format request is none that a trigger sends, or the period is too short for additional informations; nothing was sent.",
+            "Write 7 (000111) or 56 (111000) to config<n>.frame.command, 4 or more to .period_cycles; on a T-format channel 3 to config<n>.timing.request_id.",
         ],
         "info_missing" => [
             "An additional information that was expected did not come; the position is good.",

@@ -149,6 +149,7 @@ module endat_channel (
 );
     localparam         HAS_REQUESTS = 1'b0;
     localparam         HAS_DOUBLE = 1'b0;
+    localparam         NEEDS_FOUR = 1'b0;
     localparam   [1:0] FIXED_MODE = 2'd1;
     localparam   [5:0] PARAMETER_BITS = 6'd24;
     localparam   [5:0] TEST_VALUE_BITS = 6'd40;
@@ -198,6 +199,7 @@ module endat_channel (
     wire         receiver_serial_ok;
     wire         receiver_parallel_ok;
     wire         transaction_is_fixed;
+    reg          transaction_is_known;
     wire         transaction_begin_own;
     wire         transaction_continuous;
     wire         transaction_line_wanted;
@@ -381,7 +383,7 @@ module endat_channel (
         .answer_done(receiver_done),
         .finished(receiver_finished),
         .info_missing(receiver_info_missing),
-        .is_known(shape_is_known),
+        .is_known(transaction_is_known),
         .has_parameter(shape_has_parameter),
         .has_supplement(shape_has_supplement),
         .begin_own(transaction_begin_own),
@@ -523,6 +525,13 @@ module endat_channel (
         end
     end
     assign transaction_is_fixed = phase_mode == FIXED_MODE;
+
+    always @* begin
+        transaction_is_known = shape_is_known;
+        if (NEEDS_FOUR & !(|period_cycles[10:2])) begin
+            transaction_is_known = 1'b0;
+        end
+    end
     assign transaction_begin_own = frame_own & own_wanted;
 
     always @* begin

@@ -191,3 +191,30 @@ fn fewer_clocks_are_refused_with_what_would_do() {
         assert!(found.iter().any(|d| d.ends_with(&told)), "{told} {found:?}");
     }
 }
+
+/// A host may write a period that no configuration has: nothing is sent, so that no wrong position comes.
+#[test]
+fn a_period_that_is_too_short_for_informations_gives_no_wrong_position() {
+    let text = text(64_000_000, 16_000_000, DOUBLE_EDGE, SERVICE);
+    let project = parse("few.toml", &text).unwrap();
+    let mut few = Few::new(&project, 5.0);
+    for (place, code) in [(0, 0x4C), (1, 0x5B)] {
+        few.set(&format!("service0.list_{place}.mrs"), code);
+    }
+    few.set("service0.list_length.length", 2);
+    few.run_ms(3);
+    for period_cycles in [3, 1] {
+        few.set("config0.frame.period_cycles", period_cycles);
+        few.run_ms(1);
+        for _ in 0..20 {
+            few.run_ms(1);
+            let results = few.card.results().unwrap().channels;
+            assert_eq!(results[0].cause_name(), "unknown_command");
+            assert!(!results[0].fresh && results[1].fresh, "{results:?}");
+        }
+    }
+    few.set("config0.frame.period_cycles", 4);
+    few.run_ms(2);
+    let results = few.card.results().unwrap().channels;
+    assert!(results[0].fresh && results[0].cause == 0, "{results:?}");
+}
