@@ -590,11 +590,9 @@ impl Logic for Channel {
         self.transaction.answer_done.next = self.receiver.done.val();
         self.transaction.finished.next = self.receiver.finished.val();
         self.transaction.info_missing.next = self.receiver.info_missing.val();
-        self.transaction.is_known.next = self.shape.is_known.val();
-        // In fewer cycles an additional information would begin before the position is taken.
-        if self.needs_four.val() & !self.period_cycles.val().get_bits::<9>(2).any() {
-            self.transaction.is_known.next = false;
-        }
+        // In fewer than four cycles an additional information would begin before the position is taken.
+        self.transaction.is_known.next = self.shape.is_known.val()
+            & (!self.needs_four.val() | self.period_cycles.val().get_bits::<9>(2).any());
         self.transaction.has_parameter.next = self.shape.has_parameter.val();
         self.transaction.has_supplement.next = self.shape.has_supplement.val();
         self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.q.val();

@@ -199,7 +199,7 @@ module endat_channel (
     wire         receiver_serial_ok;
     wire         receiver_parallel_ok;
     wire         transaction_is_fixed;
-    reg          transaction_is_known;
+    wire         transaction_is_known;
     wire         transaction_begin_own;
     wire         transaction_continuous;
     wire         transaction_line_wanted;
@@ -525,13 +525,7 @@ module endat_channel (
         end
     end
     assign transaction_is_fixed = phase_mode == FIXED_MODE;
-
-    always @* begin
-        transaction_is_known = shape_is_known;
-        if (NEEDS_FOUR & !(|period_cycles[10:2])) begin
-            transaction_is_known = 1'b0;
-        end
-    end
+    assign transaction_is_known = shape_is_known & (!NEEDS_FOUR | (|period_cycles[10:2]));
     assign transaction_begin_own = frame_own & own_wanted;
 
     always @* begin
