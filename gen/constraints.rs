@@ -114,6 +114,14 @@ fn ns(hz: u64) -> String {
     decimal(1e9 / hz as f64, 4)
 }
 
+/// Where an interrupt goes that the configuration does not ask for.
+const UNUSED_INTERRUPT: &str = "unused_interrupt";
+
+/// Every front but the UART has the port of the interrupt.
+fn has_unused_interrupt(project: &Project) -> bool {
+    project.bus != HostBus::Uart && !project.card.outputs.interrupt
+}
+
 /// What the top connects to a port of the card.
 #[derive(Serialize)]
 struct Connection {
@@ -149,8 +157,8 @@ fn connections(project: &Project) -> Vec<Connection> {
         ],
         _ => vec![],
     };
-    if project.bus != HostBus::Uart && !project.card.outputs.interrupt {
-        bus.push(("irq_o", "unused_interrupt".to_owned()));
+    if has_unused_interrupt(project) {
+        bus.push(("irq_o", UNUSED_INTERRUPT.to_owned()));
     }
     let bus = bus.into_iter().map(|(port, net)| (port.to_owned(), net));
     own.chain(bus)
@@ -194,6 +202,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         bus => project.bus.name(),
         data_lines => PARALLEL_DATA_LINES,
         connections => Serde(connections(project)),
+        unused_interrupt => has_unused_interrupt(project).then_some(UNUSED_INTERRUPT),
         widest => project.pins.iter().map(|p| p.signal.len()).max().unwrap_or(0),
         oscillator_hz => board.oscillator_hz,
         oscillator_ns => ns(board.oscillator_hz),

@@ -4,7 +4,7 @@ use super::Receiver;
 use crate::artifact::Artifact;
 use crate::error::GenError;
 use crate::template;
-use crate::testbench::t_format::{causes, encoder, CABLE_NS, RATE_ERROR};
+use crate::testbench::t_format::{cable_and_gap_ns, causes, encoder, RATE_ERROR};
 use crate::testbench::{real, whole, T_FORMAT_IDLE_NS};
 use endat_hdl::t_format::cause;
 use endat_hdl::t_format::dsp::TFormatStart;
@@ -46,8 +46,7 @@ fn exchange_ns(start: &TFormatStart) -> u64 {
 /// The test bench of a receiver.
 pub fn artifact(receiver: &Receiver) -> Result<Artifact, GenError> {
     let start = &receiver.start;
-    let gap_ns = 1_000.0 * start.reply_gap_us as f64;
-    let cable_ns = CABLE_NS.min(gap_ns / 4.0).floor() - 0.7;
+    let (cable_ns, reply_gap_ns) = cable_and_gap_ns(1.0, start.reply_gap_us);
     let other = TFormatStart {
         fast: !start.fast,
         // A bit may be as short as four clocks.
@@ -74,7 +73,7 @@ pub fn artifact(receiver: &Receiver) -> Result<Artifact, GenError> {
             read_id => Request::ReadEeprom.id(),
             write_id => Request::WriteEeprom.id(),
             own_rate => real(1.0 + RATE_ERROR),
-            reply_gap_ns => real(gap_ns - 2.0 * cable_ns),
+            reply_gap_ns => real(reply_gap_ns),
             field_gap_ns => whole(1_000 * start.field_gap_us),
             requests => Request::ALL.iter().map(brought).collect::<Vec<_>>(),
             unknown => (0..16).find(|id| Request::from_id(*id).is_none()),

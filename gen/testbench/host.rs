@@ -5,6 +5,7 @@ use crate::error::GenError;
 use crate::template;
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::CardConfig;
+use endat_hdl::config_ring::RING_BYTES;
 use minijinja::context;
 use serde::Serialize;
 
@@ -30,9 +31,12 @@ const UART_SETTLE_BITS: f64 = 20.0;
 /// Half an SPI clock period, in system clock cycles: a quarter more than the shortest one, and no multiple of a cycle.
 const SCK_HALF_CYCLES: f64 = 5.1;
 
-/// Longest access of a bus: a turn of the configuration ring, in system clock cycles.
-pub fn access_cycles_max(card: &CardConfig) -> u64 {
-    12 * (card.channels.len() as u64 + 1) + 100
+/// What an access takes at most besides a turn of the configuration ring, in system clock cycles.
+const ACCESS_CYCLES: usize = 100;
+
+/// Longest access of a bus, in system clock cycles.
+fn access_cycles_max(card: &CardConfig) -> usize {
+    RING_BYTES * (card.channels.len() + 1) + ACCESS_CYCLES
 }
 
 const UART: &[(&str, &str)] = &[

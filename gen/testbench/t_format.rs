@@ -20,9 +20,17 @@ use super::{fields, real, whole, words};
 /// What an edge may be off beside the rate, in bits: clock cycles of the receiver.
 const EDGE_BITS: f64 = 0.025;
 /// Longest cable each way, in ns: 100 m.
-pub(crate) const CABLE_NS: f64 = 500.0;
+const CABLE_NS: f64 = 500.0;
 /// The encoders' own clocks are wrong by this.
 pub(crate) const RATE_ERROR: f64 = 0.01;
+
+/// A cable each way of this share of the longest one, and what it leaves an encoder of the longest pause before the reply: both ways
+/// belong to that.
+pub(crate) fn cable_and_gap_ns(share: f64, reply_gap_us: u64) -> (f64, f64) {
+    let gap_ns = 1_000.0 * reply_gap_us as f64;
+    let cable_ns = (CABLE_NS * share).min(gap_ns / 4.0).floor() - 0.7;
+    (cable_ns, gap_ns - 2.0 * cable_ns)
+}
 
 /// A channel and the encoder on it.
 #[derive(Serialize)]
@@ -53,10 +61,9 @@ impl Port {
     ) -> Self {
         let has = |content: Content| wanted.request.reply().contains(&content);
         let (has_single, has_multi) = (has(Content::SingleTurn), has(Content::MultiTurn));
-        let gap_ns = 1_000.0 * wanted.reply_gap_us as f64;
-        // Every channel has another cable; both ways belong to the pause before the reply.
+        // Every channel has another cable.
         let share = (index + 1) as f64 / card.channels.len() as f64;
-        let cable_ns = (CABLE_NS * share).min(gap_ns / 4.0).floor() - 0.7;
+        let (cable_ns, reply_gap_ns) = cable_and_gap_ns(share, wanted.reply_gap_us);
         let part = |has: bool| if has { 0xFF_FFFFu64 } else { 0 };
         Self {
             index,
@@ -69,7 +76,7 @@ impl Port {
                     -RATE_ERROR
                 },
             ),
-            reply_gap_ns: real(gap_ns - 2.0 * cable_ns),
+            reply_gap_ns: real(reply_gap_ns),
             field_gap_ns: whole(1_000 * wanted.field_gap_us),
             cable_ns: real(cable_ns),
             start_cycles: channel.period_cycles / 2 - 1,
@@ -165,6 +172,7 @@ pub(crate) fn encoder(name: &str) -> Result<String, GenError> {
 }
 
 /// What the bench of a card with T-format channels has besides.
+#[derive(Default)]
 pub(super) struct Parts {
     /// The module of the encoder.
     pub encoder: String,
@@ -186,13 +194,7 @@ impl Parts {
             .filter_map(|(n, c)| Some(Port::new(card, n, c, c.t_format.as_ref()?)))
             .collect();
         if ports.is_empty() {
-            return Ok(Self {
-                encoder: String::new(),
-                ports: String::new(),
-                steps: String::new(),
-                silent: vec![],
-                masks: vec![],
-            });
+            return Ok(Self::default());
         }
         let silent = ports.iter().filter(|p| p.has_single + p.has_multi == 0);
         let silent = silent.map(|p| p.index).collect();

@@ -2,6 +2,7 @@
 
 mod clients;
 mod commands;
+mod desk;
 mod disturbed;
 mod few_cycles;
 mod ports;
