@@ -93,6 +93,8 @@ pub const T_FORMAT_CAUSES: [Named; t_format::COUNT as usize] = {
 /// Primary causes of both protocols.
 pub const CAUSES: [Named; cause::ALL_COUNT as usize] = {
     let mut all = [named("", 0, ""); cause::ALL_COUNT as usize];
+    let upset = cause::UPSET;
+    all[upset as usize] = named("upset", upset as u32, cause::name(upset));
     let mut code = 0;
     while code < CAUSE_NAMES.len() {
         all[code] = named(CAUSE_NAMES[code], code as u32, cause::name(code as u64));

@@ -64,7 +64,7 @@ pub const fn of_card(code: u64) -> u64 {
 /// Cause of a card that stands for [`LINE_NOT_IDLE`]; the others follow it.
 pub const CARD_FIRST: u64 = card::COUNT;
 
-const _: () = assert!(of_card(MULTI_TURN_ALARM) + 1 == card::ALL_COUNT);
+const _: () = assert!(of_card(MULTI_TURN_ALARM) + 1 == card::UPSET);
 
 /// Name of a code.
 pub const fn name(code: u64) -> &'static str {

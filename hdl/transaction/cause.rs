@@ -39,14 +39,17 @@ pub const OWN_ECHO: u64 = 16;
 pub const RECOVERY_TOO_SHORT: u64 = 17;
 /// Codes there are of EnDat frames.
 pub const COUNT: u64 = 18;
+/// What is stored does not fit its check: a register was upset. Of both protocols, so it stands behind all others.
+pub const UPSET: u64 = 31;
 /// Codes there are of both protocols.
-pub const ALL_COUNT: u64 = 31;
+pub const ALL_COUNT: u64 = 32;
 
 /// Raw flag of a cause.
 pub const fn flag(cause: u64) -> u64 {
     match cause {
         NONE => 0,
         1..=8 => 1 << (cause - 1),
+        UPSET => 1 << (COUNT + 1),
         _ => 1 << (cause + 1),
     }
 }
@@ -80,6 +83,7 @@ pub const fn name(code: u64) -> &'static str {
         WATCHDOG => "watchdog",
         OWN_ECHO => "echo of the own command",
         RECOVERY_TOO_SHORT => "recovery time too short",
+        UPSET => "stored data upset",
         _ => "unknown",
     }
 }
