@@ -429,6 +429,9 @@ impl Logic for CardCore {
             self.registers[i].flags.next = self.port[i].flags.val();
             self.registers[i].crc_received.next = self.port[i].crc_received.val();
             self.registers[i].crc_computed.next = self.port[i].crc_computed.val();
+            self.registers[i].position_crc.next = self.port[i].position_crc.val();
+            self.registers[i].position_width.next = self.port[i].position_width.val();
+            self.registers[i].position_has_f2.next = self.port[i].position_has_f2.val();
             self.registers[i].recovery_cycles.next = self.port[i].recovery_cycles.val();
             self.registers[i].delay_cycles.next = self.port[i].delay_cycles.val();
 

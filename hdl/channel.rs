@@ -12,13 +12,14 @@
 //! has a frame of its own. [`AddInfo`] keeps the record of the additional informations that follow each position.
 //!
 //! The first frame after reset, after an aborted frame and after `calibrate` runs at the calibration clock and
-//! measures the propagation delay; all others run at the configured clock. Configuration inputs may change while no
-//! frame is under way.
+//! measures the propagation delay; all others run at the configured clock. A frame takes its settings over with its first falling
+//! edge; inputs that change later count for the next one.
 
 use crate::add_info::AddInfo;
 use crate::clock_gen::ClockGen;
 use crate::command_sender::CommandSender;
 use crate::command_shape::CommandShape;
+use crate::frame_settings::FrameSettings;
 use crate::input_filter::InputFilter;
 use crate::line_delay::{self, LineDelay};
 use crate::protocol::{PARAMETER_BITS, TEST_VALUE_BITS};
@@ -31,8 +32,8 @@ use rust_hdl::prelude::*;
 
 /// From the cycle with the trigger strobe to the first cycle with the EnDat clock low, at every width and rate.
 pub const TRIGGER_TO_FIRST_FALL_CYCLES: u64 = 3;
-/// From the cycle in which the last CRC bit is sampled to the one with the result strobe, at every width and rate.
-pub const LAST_CRC_SAMPLE_TO_RESULT_CYCLES: u64 = 5;
+/// From the cycle in which the bit behind the last CRC bit is sampled to the one with the result strobe, at every width and rate.
+pub const TAIL_SAMPLE_TO_RESULT_CYCLES: u64 = 3;
 /// From the time in `first_fall_timestamp` to the first cycle with the EnDat clock low.
 pub const TIMESTAMP_TO_FIRST_FALL_CYCLES: u64 = 2;
 /// What registers at both pins and the synchroniser add to `delay_cycles`; the filter adds its length.
@@ -129,11 +130,17 @@ pub struct Channel {
     /// Primary cause of the last result, see [`crate::transaction::cause`].
     pub cause: Signal<Out, Bits<5>>,
     /// Raw flags of the last result.
-    pub flags: Signal<Out, Bits<19>>,
+    pub flags: Signal<Out, Bits<20>>,
     /// CRC received in the last whole frame.
     pub crc_received: Signal<Out, Bits<5>>,
     /// CRC computed for the last whole frame.
     pub crc_computed: Signal<Out, Bits<5>>,
+    /// CRC that came with the position.
+    pub position_crc: Signal<Out, Bits<5>>,
+    /// Width of the position.
+    pub position_width: Signal<Out, Bits<6>>,
+    /// The position came with F2 (EnDat 2.2); its error bits are F1 = 0, F2 = 1.
+    pub position_has_f2: Signal<Out, Bit>,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
@@ -161,7 +168,7 @@ pub struct Channel {
     /// Primary cause of the frame, as `cause`.
     pub over_cause: Signal<Out, Bits<5>>,
     /// Raw flags of the frame, as `flags`.
-    pub over_flags: Signal<Out, Bits<19>>,
+    pub over_flags: Signal<Out, Bits<20>>,
     /// Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
     pub reply: Signal<Out, Bits<48>>,
     /// The same as it came, bit 0 first: what comes MSB first stands the other way round.
@@ -193,6 +200,7 @@ pub struct Channel {
     snapshot: Snapshot,
     shape: CommandShape,
     add_info: AddInfo,
+    settings: FrameSettings,
     clk_pin: Reg<Bit>,
     data_pin: Reg<Bit>,
     oe_pin: Reg<Bit>,
@@ -355,6 +363,9 @@ impl Channel {
             flags: Default::default(),
             crc_received: Default::default(),
             crc_computed: Default::default(),
+            position_crc: Default::default(),
+            position_width: Default::default(),
+            position_has_f2: Default::default(),
             recovery_cycles: Default::default(),
             delay_cycles: Default::default(),
             phase: Default::default(),
@@ -389,6 +400,7 @@ impl Channel {
             snapshot: Default::default(),
             shape: CommandShape::new(features.requests),
             add_info: Default::default(),
+            settings: Default::default(),
             clk_pin: Reg::new(true),
             data_pin: Default::default(),
             oe_pin: Default::default(),
@@ -433,8 +445,10 @@ impl Logic for Channel {
             receiver,
             transaction,
             snapshot,
-            add_info
+            add_info,
+            settings
         );
+        self.settings.reset.next = self.reset.val();
         dff_setup!(
             self,
             clock,
@@ -471,14 +485,30 @@ impl Logic for Channel {
         self.transaction.reset.next = self.reset.val();
         self.snapshot.reset.next = self.reset.val();
 
-        self.period.next = self.period_cycles.val();
+        self.settings.is_at_rest.next =
+            self.transaction.is_at_rest.val() & !self.transaction.begun.val();
+        self.settings.start.next = self.transaction.start.val();
+        self.settings.period_cycles.next = self.period_cycles.val();
+        self.settings.first_low_extra_cycles.next = self.first_low_extra_cycles.val();
+        self.settings.command.next = self.command.val();
+        self.settings.frame_command.next = self.command_now.val();
+        self.settings.filter_cycles.next = self.filter_cycles.val();
+        self.settings.filter_half.next = self.filter_half.val();
+        self.settings.position_bits.next = self.position_bits.val();
+        self.settings.start_window_cycles.next = self.start_window_cycles.val();
+        self.settings.start_timeout_us.next = self.start_timeout_us.val();
+        self.settings.recovery_limit_cycles.next = self.recovery_limit_cycles.val();
+        self.settings.recovery_min_cycles.next = self.recovery_min_cycles.val();
+        self.settings.watchdog_us.next = self.watchdog_us.val();
+
+        self.period.next = self.settings.period_cycles_now.val();
         if self.transaction.slow.val() {
             self.period.next = self.calibration_period_cycles.val();
         }
 
         // Which command the next frame has is settled before it begins, and stays until all has been told of it.
-        self.command_now.next = self.command.val();
-        self.payload_bits.next = self.position_bits.val();
+        self.command_now.next = self.settings.command_now.val();
+        self.payload_bits.next = self.settings.position_bits_now.val();
         if self.has_requests.val() {
             self.command_now.next = self.frame_command.q.val();
             if self.shape.has_parameter.val() {
@@ -522,8 +552,8 @@ impl Logic for Channel {
         self.shape.command.next = self.command_now.val();
 
         self.filter.pin.next = self.data_i.val();
-        self.filter.filter_cycles.next = self.filter_cycles.val();
-        self.filter.filter_half.next = self.filter_half.val();
+        self.filter.filter_cycles.next = self.settings.filter_cycles_now.val();
+        self.filter.filter_half.next = self.settings.filter_half_now.val();
         self.filter.majority.next = self.majority.val();
         self.filter.both_edges.next = self.receiver.started.val();
 
@@ -534,7 +564,9 @@ impl Logic for Channel {
 
         self.sender.start.next = self.transaction.start.val();
         self.sender.fall.next = self.clock_gen.fall.val();
-        self.sender.abort.next = self.transaction.abort.val();
+        // Outside of a command nothing is left to send, whatever a register says.
+        self.sender.abort.next = self.transaction.abort.val()
+            | (!self.receiver.skipping.val() & !self.transaction.start_supplement.val());
         self.sender.start_supplement.next = self.transaction.start_supplement.val();
         self.sender.command.next = self.command_now.val();
         self.sender.has_parameter.next = self.shape.has_parameter.val();
@@ -556,9 +588,10 @@ impl Logic for Channel {
         self.delay.follow.next = self.receiver.start_found.val();
         self.delay.going_on.next = self.transaction.going_on.val();
         self.delay.period_cycles.next = self.period.val();
-        self.delay.start_window_cycles.next = self.start_window_cycles.val();
+        self.delay.start_window_cycles.next = self.settings.start_window_cycles_now.val();
 
         self.receiver.start.next = self.transaction.start.val();
+        self.receiver.abort.next = self.transaction.abort.val();
         self.receiver.acquire.next = self.transaction.acquire.val();
         self.receiver.rise.next = self.clock_gen.rise.val();
         self.receiver.sample.next = self.delay.sample.val();
@@ -589,10 +622,12 @@ impl Logic for Channel {
         self.transaction.start_refused.next = self.receiver.start_refused.val();
         self.transaction.answer_done.next = self.receiver.done.val();
         self.transaction.finished.next = self.receiver.finished.val();
+        self.transaction.separated.next = self.receiver.separated.val();
         self.transaction.info_missing.next = self.receiver.info_missing.val();
         // In fewer than four cycles an additional information would begin before the position is taken.
         self.transaction.is_known.next = self.shape.is_known.val()
-            & (!self.needs_four.val() | self.period_cycles.val().get_bits::<9>(2).any());
+            & (!self.needs_four.val()
+                | self.settings.period_cycles_now.val().get_bits::<9>(2).any());
         self.transaction.has_parameter.next = self.shape.has_parameter.val();
         self.transaction.has_supplement.next = self.shape.has_supplement.val();
         self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.q.val();
@@ -604,6 +639,8 @@ impl Logic for Channel {
             & !self.shape.has_test_values.val();
         self.transaction.stop_at_error.next = self.stop_at_error.val();
         self.transaction.line_wanted.next = self.own_wanted.q.val() | self.hold_off.val();
+        self.transaction.gap_good.next = self.receiver.gap_good.val();
+        self.transaction.again.next = self.receiver.latched.val();
         self.transaction.gap_low.next = self.receiver.gap_low.val();
         self.transaction.gap_high.next = self.receiver.gap_high.val();
         self.transaction.is_echo.next = self.receiver.is_echo.val();
@@ -620,11 +657,13 @@ impl Logic for Channel {
         self.transaction.will_rise.next = self.clock_gen.will_rise.val();
         self.transaction.outstanding.next = self.delay.outstanding.val();
         self.transaction.cells_left.next = self.receiver.cells_left.val();
-        self.transaction.first_low_extra_cycles.next = self.first_low_extra_cycles.val();
-        self.transaction.start_timeout_us.next = self.start_timeout_us.val();
-        self.transaction.recovery_limit_cycles.next = self.recovery_limit_cycles.val();
-        self.transaction.recovery_min_cycles.next = self.recovery_min_cycles.val();
-        self.transaction.watchdog_us.next = self.watchdog_us.val();
+        self.transaction.first_low_extra_cycles.next =
+            self.settings.first_low_extra_cycles_now.val();
+        self.transaction.start_timeout_us.next = self.settings.start_timeout_us_now.val();
+        self.transaction.recovery_limit_cycles.next = self.settings.recovery_limit_cycles_now.val();
+        self.transaction.recovery_min_cycles.next = self.settings.recovery_min_cycles_now.val();
+        self.transaction.watchdog_us.next = self.settings.watchdog_us_now.val();
+        self.transaction.settings_upset.next = self.settings.is_upset.val();
 
         self.snapshot.tick_us.next = self.tick_us.val();
         self.snapshot.timestamp.next = self.timestamp.val();
@@ -634,6 +673,10 @@ impl Logic for Channel {
         self.snapshot.publish.next = self.transaction.publish.val();
         self.snapshot.good.next = self.transaction.good.val();
         self.snapshot.late_fault.next = self.transaction.late_fault.val();
+        self.snapshot.withdraw.next = self.transaction.withdraw.val();
+        self.snapshot.confirm.next = self.transaction.confirm.val();
+        self.snapshot.width_in.next = self.payload_bits.val();
+        self.snapshot.has_f2_in.next = self.shape.has_f2.val();
         self.snapshot.position_in.next = self.receiver.payload.val();
         self.snapshot.crc_received_in.next = self.receiver.crc_received.val();
         self.snapshot.crc_computed_in.next = self.receiver.crc_computed.val();
@@ -696,6 +739,9 @@ impl Logic for Channel {
         self.flags.next = self.snapshot.flags.val();
         self.crc_received.next = self.snapshot.crc_received.val();
         self.crc_computed.next = self.snapshot.crc_computed.val();
+        self.position_crc.next = self.snapshot.position_crc.val();
+        self.position_width.next = self.snapshot.position_width.val();
+        self.position_has_f2.next = self.snapshot.position_has_f2.val();
         self.recovery_cycles.next = self.transaction.recovery_cycles.val();
         self.delay_cycles.next = self.delay.delay_cycles.val();
         self.phase.next = self.delay.phase.val();

@@ -45,11 +45,17 @@ pub struct ChannelRegisters {
     /// Primary cause.
     pub cause: Signal<In, Bits<5>>,
     /// Raw flags.
-    pub flags: Signal<In, Bits<19>>,
+    pub flags: Signal<In, Bits<20>>,
     /// CRC as received.
     pub crc_received: Signal<In, Bits<5>>,
     /// CRC as computed.
     pub crc_computed: Signal<In, Bits<5>>,
+    /// CRC that came with the position.
+    pub position_crc: Signal<In, Bits<5>>,
+    /// Width of the position.
+    pub position_width: Signal<In, Bits<6>>,
+    /// The position came with F2.
+    pub position_has_f2: Signal<In, Bit>,
     /// Recovery time, in system clock cycles.
     pub recovery_cycles: Signal<In, Bits<13>>,
     /// Tracked line delay, in system clock cycles.
@@ -131,6 +137,9 @@ impl ChannelRegisters {
             flags: Default::default(),
             crc_received: Default::default(),
             crc_computed: Default::default(),
+            position_crc: Default::default(),
+            position_width: Default::default(),
+            position_has_f2: Default::default(),
             recovery_cycles: Default::default(),
             delay_cycles: Default::default(),
             pending: Default::default(),
@@ -193,9 +202,14 @@ impl Logic for ChannelRegisters {
             | (bit_cast::<32, 5>(self.cause.val()) << 16)
             | (bit_cast::<32, 1>(self.position_valid.val().into()) << 22)
             | (bit_cast::<32, 1>(self.fresh.val().into()) << 23)
-            | (bit_cast::<32, 7>(self.flags.val().get_bits::<7>(12)) << 24);
+            | (bit_cast::<32, 8>(self.flags.val().get_bits::<8>(12)) << 24);
         self.word[1].next = self.position.val().get_bits::<32>(0);
-        self.word[2].next = bit_cast::<32, 16>(self.position.val().get_bits::<16>(32));
+        // A good position has F1 = 0, and F2 = 1 where there is one.
+        self.word[2].next = bit_cast::<32, 16>(self.position.val().get_bits::<16>(32))
+            | (bit_cast::<32, 5>(self.position_crc.val()) << 16)
+            | (bit_cast::<32, 1>(self.position_has_f2.val().into()) << 22)
+            | (bit_cast::<32, 1>(self.position_has_f2.val().into()) << 23)
+            | (bit_cast::<32, 6>(self.position_width.val()) << 24);
         self.word[3].next = self.first_fall_timestamp.val();
         self.word[4].next = bit_cast::<32, 5>(self.crc_received.val())
             | (bit_cast::<32, 5>(self.crc_computed.val()) << 5)

@@ -55,57 +55,132 @@ pub fn parity_mask(crc_bit: usize, width: usize) -> u128 {
         .fold(0, |mask, i| mask | 1 << i)
 }
 
-/// Parallel CRC5 of up to 50 bits, the number of which is known at run time only.
+/// Parallel CRC5 check of an answer whose width is known at run time only, over its word as it is stored: first bit at bit 0.
 ///
-/// Bits 15 places apart contribute the same, so the word is folded to 15 bits before the five parities.
+/// A CRC counts distances from the last bit, the word from the first one. So both sides of the equation are divided by the power of x
+/// that lies between: the word's side becomes five fixed parities (folded to 15 bits, the order of x), and what the received CRC bits
+/// are worth is added up as they come, with a power of 1/x that goes on with each bit of the answer.
 #[derive(LogicBlock)]
-pub struct Crc5Parallel {
-    /// The covered bits, the last received one at the top or a multiple of 15 places below it, zeros elsewhere.
-    pub word: Signal<In, Bits<50>>,
-    /// Number of covered bits, modulo 15.
-    pub covered_mod_15: Signal<In, Bits<4>>,
-    /// The CRC as transmitted; bit 4 goes first.
-    pub crc: Signal<Out, Bits<5>>,
+pub struct Crc5Check {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe: a new answer.
+    pub clear: Signal<In, Bit>,
+    /// Strobe: a bit of the word has been sampled.
+    pub word_bit: Signal<In, Bit>,
+    /// Strobe: `bit` is the next one of the received CRC.
+    pub crc_bit: Signal<In, Bit>,
+    /// The sample.
+    pub bit: Signal<In, Bit>,
+    /// The word, bit 0 = the bit received first, zeros above its width.
+    pub word: Signal<In, Bits<48>>,
+    /// The answer begins with F1.
+    pub has_f1: Signal<In, Bit>,
+    /// F2 follows it.
+    pub has_f2: Signal<In, Bit>,
+    /// Error bit 1.
+    pub f1: Signal<In, Bit>,
+    /// Error bit 2.
+    pub f2: Signal<In, Bit>,
+    /// Word, error bits and received CRC fit each other.
+    pub is_ok: Signal<Out, Bit>,
+    power: Reg<Bits<5>>,
+    received: Reg<Bits<5>>,
     mask: Vec<Constant<Bits<15>>>,
     weight: Vec<Constant<Bits<5>>>,
-    length: Vec<Constant<Bits<4>>>,
     term: Vec<Constant<Bits<5>>>,
+    first: Constant<Bits<5>>,
+    second: Constant<Bits<5>>,
+    step: Constant<Bits<5>>,
+    one: Constant<Bits<5>>,
     folded: Signal<Local, Bits<15>>,
     sum: Signal<Local, Bits<5>>,
 }
 
-impl Default for Crc5Parallel {
+/// `value / x^power` modulo the generator.
+const fn divided_by_x_power(value: u8, power: usize) -> u8 {
+    times_x_power(value, ORDER_OF_X - power % ORDER_OF_X)
+}
+
+impl Default for Crc5Check {
     fn default() -> Self {
-        let mask = |crc_bit| Constant::new((parity_mask(crc_bit, ORDER_OF_X) as u64).into());
+        let mask = |crc_bit: usize| {
+            let bits = (0..ORDER_OF_X).filter(|i| divided_by_x_power(1, *i) >> crc_bit & 1 == 1);
+            Constant::new(bits.fold(0u64, |mask, i| mask | 1 << i).into())
+        };
+        let constant = |value: u8| Constant::new(u64::from(value).into());
         Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            clear: Default::default(),
+            word_bit: Default::default(),
+            crc_bit: Default::default(),
+            bit: Default::default(),
             word: Default::default(),
-            covered_mod_15: Default::default(),
-            crc: Default::default(),
+            has_f1: Default::default(),
+            has_f2: Default::default(),
+            f1: Default::default(),
+            f2: Default::default(),
+            is_ok: Default::default(),
+            power: Reg::new(1.into()),
+            received: Default::default(),
             mask: (0..5).map(mask).collect(),
             weight: crc_bit_weights(),
-            length: (0..ORDER_OF_X)
-                .map(|n| Constant::new((n as u64).into()))
+            // The preset in front of the error bits, of which there are 0, 1 or 2.
+            term: (0..3)
+                .map(|error_bits| constant(divided_by_x_power(CRC5_PRESET, 4 - error_bits)))
                 .collect(),
-            term: (0..ORDER_OF_X)
-                .map(|n| Constant::new(u64::from(constant_term(n)).into()))
-                .collect(),
+            first: constant(times_x_power(1, 1)),
+            second: constant(times_x_power(1, 2)),
+            step: constant(divided_by_x_power(1, 1)),
+            one: constant(1),
             folded: Default::default(),
             sum: Default::default(),
         }
     }
 }
 
-impl Logic for Crc5Parallel {
+impl Logic for Crc5Check {
     #[hdl_gen]
     fn update(&mut self) {
-        self.folded.next = self.word.val().get_bits::<15>(35)
-            ^ self.word.val().get_bits::<15>(20)
-            ^ self.word.val().get_bits::<15>(5)
-            ^ (bit_cast::<15, 5>(self.word.val().get_bits::<5>(0)) << 10);
-        self.sum.next = 0.into();
-        for i in 0..15 {
-            if self.covered_mod_15.val() == self.length[i].val() {
-                self.sum.next = self.term[i].val();
+        dff_setup!(self, clock, power, received);
+        self.power.reset.next = self.reset.val();
+        self.received.reset.next = self.reset.val();
+        if self.word_bit.val() | self.crc_bit.val() {
+            self.power.d.next = self.power.q.val() >> 1;
+            if self.power.q.val().get_bit(0) {
+                self.power.d.next = (self.power.q.val() >> 1) ^ self.step.val();
+            }
+        }
+        // The CRC is sent inverted.
+        if self.crc_bit.val() & !self.bit.val() {
+            self.received.d.next = self.received.q.val() ^ self.power.q.val();
+        }
+        if self.clear.val() {
+            self.power.d.next = self.one.val();
+            self.received.d.next = 0.into();
+        }
+
+        self.folded.next = self.word.val().get_bits::<15>(0)
+            ^ self.word.val().get_bits::<15>(15)
+            ^ self.word.val().get_bits::<15>(30)
+            ^ bit_cast::<15, 3>(self.word.val().get_bits::<3>(45));
+        self.sum.next = self.term[0].val();
+        if self.has_f1.val() {
+            self.sum.next = self.term[1].val();
+            if self.f1.val() {
+                self.sum.next = self.term[1].val() ^ self.first.val();
+            }
+            if self.has_f2.val() {
+                self.sum.next = self.term[2].val();
+                if self.f1.val() {
+                    self.sum.next = self.term[2].val() ^ self.second.val();
+                }
+                if self.f2.val() {
+                    self.sum.next = self.sum.val() ^ self.first.val();
+                }
             }
         }
         for i in 0..5 {
@@ -113,7 +188,7 @@ impl Logic for Crc5Parallel {
                 self.sum.next = self.sum.val() ^ self.weight[i].val();
             }
         }
-        self.crc.next = self.sum.val();
+        self.is_ok.next = self.sum.val() == self.received.q.val();
     }
 }
 
@@ -182,6 +257,8 @@ pub struct Crc5Serial {
     pub bit: Signal<In, Bit>,
     /// The frame taken so far ends in its own, right CRC.
     pub residue_ok: Signal<Out, Bit>,
+    /// CRC of the bits taken so far, as it would be sent; bit 4 goes first.
+    pub crc: Signal<Out, Bits<5>>,
     register: Reg<Bits<5>>,
     shifted: Signal<Local, Bits<5>>,
     polynomial: Constant<Bits<5>>,
@@ -197,6 +274,7 @@ impl Default for Crc5Serial {
             enable: Default::default(),
             bit: Default::default(),
             residue_ok: Default::default(),
+            crc: Default::default(),
             register: Reg::new(u64::from(CRC5_PRESET).into()),
             shifted: Default::default(),
             polynomial: Constant::new(u64::from(CRC5_POLYNOMIAL).into()),
@@ -221,5 +299,6 @@ impl Logic for Crc5Serial {
             self.register.d.next = 31.into();
         }
         self.residue_ok.next = self.register.q.val() == self.residue.val();
+        self.crc.next = !self.register.q.val();
     }
 }

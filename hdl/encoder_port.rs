@@ -81,11 +81,17 @@ pub struct EncoderPort {
     /// Primary cause of the last result, see [`crate::transaction::cause`]; its flags mean something else in T-format.
     pub cause: Signal<Out, Bits<5>>,
     /// Raw flags of the last result.
-    pub flags: Signal<Out, Bits<19>>,
+    pub flags: Signal<Out, Bits<20>>,
     /// CRC received in the last whole frame.
     pub crc_received: Signal<Out, Bits<5>>,
     /// CRC computed for the last whole frame.
     pub crc_computed: Signal<Out, Bits<5>>,
+    /// CRC that came with the position; 0 on a T-format channel.
+    pub position_crc: Signal<Out, Bits<5>>,
+    /// Width of the position; 0 on a T-format channel.
+    pub position_width: Signal<Out, Bits<6>>,
+    /// The position came with F2.
+    pub position_has_f2: Signal<Out, Bit>,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
@@ -105,7 +111,7 @@ pub struct EncoderPort {
     /// Primary cause of the frame, as `cause`.
     pub over_cause: Signal<Out, Bits<5>>,
     /// Raw flags of the frame, as `flags`.
-    pub over_flags: Signal<Out, Bits<19>>,
+    pub over_flags: Signal<Out, Bits<20>>,
     /// Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
     pub reply: Signal<Out, Bits<48>>,
     /// Its CRC is right.
@@ -269,6 +275,9 @@ impl EncoderPort {
             flags: Default::default(),
             crc_received: Default::default(),
             crc_computed: Default::default(),
+            position_crc: Default::default(),
+            position_width: Default::default(),
+            position_has_f2: Default::default(),
             recovery_cycles: Default::default(),
             delay_cycles: Default::default(),
             busy: Default::default(),
@@ -369,6 +378,9 @@ impl Logic for EncoderPort {
             self.flags.next = self.channel[i].flags.val();
             self.crc_received.next = self.channel[i].crc_received.val();
             self.crc_computed.next = self.channel[i].crc_computed.val();
+            self.position_crc.next = self.channel[i].position_crc.val();
+            self.position_width.next = self.channel[i].position_width.val();
+            self.position_has_f2.next = self.channel[i].position_has_f2.val();
             self.recovery_cycles.next = self.channel[i].recovery_cycles.val();
             self.delay_cycles.next = self.channel[i].delay_cycles.val();
             self.busy.next = self.channel[i].busy.val();
@@ -411,6 +423,9 @@ impl Logic for EncoderPort {
             self.endat_clk.next = true;
             self.crc_received.next = 0.into();
             self.crc_computed.next = 0.into();
+            self.position_crc.next = 0.into();
+            self.position_width.next = 0.into();
+            self.position_has_f2.next = false;
             self.recovery_cycles.next = 0.into();
             self.delay_cycles.next = 0.into();
             self.request_runs.next = false;

@@ -10,16 +10,16 @@
 //! command with a parameter, without F1 and F2; what comes MSB first there is turned round where it is read. During a supplement
 //! cells are only counted.
 //!
-//! The position arrives LSB first. It is shifted in at one of four places, 15 bits apart, so that the parallel CRC
-//! sees it at the right distance from the end, and while the CRC bits arrive it is shifted down to bit 0 with at most 16
-//! system clock cycles: no barrel shifter, and F1 and F2 drop off the end.
+//! The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
+//! with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC looks at the word where it
+//! then stands, and for as long as it stands there: what is published is what was checked.
 //!
 //! `cells_left` counts down to the end of the frame. The clock generator stops when as many pulses are outstanding: so
 //! the encoder sees exactly the rising edges it needs, and never more than the shortest answer while its start bit
 //! may still be on the cable.
 
 use crate::channel::Features;
-use crate::crc5::{Crc5Parallel, Crc5Serial, ORDER_OF_X};
+use crate::crc5::{Crc5Check, Crc5Serial, ORDER_OF_X};
 use crate::protocol;
 use crate::reg::Reg;
 use rust_hdl::prelude::*;
@@ -60,6 +60,8 @@ pub struct Receiver {
     pub reset: Signal<In, Bit>,
     /// One-cycle strobe: a frame begins.
     pub start: Signal<In, Bit>,
+    /// The frame is given up: nothing is expected any more.
+    pub abort: Signal<In, Bit>,
     /// The frame measures the propagation delay: cells before the start bit are counted by clock edges.
     pub acquire: Signal<In, Bit>,
     /// Strobe of each rising clock edge.
@@ -104,10 +106,14 @@ pub struct Receiver {
     pub done: Signal<Out, Bit>,
     /// Strobe: payload and verdict of an additional information are valid.
     pub info_done: Signal<Out, Bit>,
+    /// Strobe: the LOW in front of an additional information has come. Payload and verdict stay for two more cycles.
+    pub separated: Signal<Out, Bit>,
     /// Strobe: an additional information should begin, but the line is HIGH.
     pub info_missing: Signal<Out, Bit>,
     /// Strobe: the answer with all its additional informations, or the supplement, is complete.
     pub finished: Signal<Out, Bit>,
+    /// Strobe: while the clock goes on, the cell after the last CRC bit is HIGH, as it should.
+    pub gap_good: Signal<Out, Bit>,
     /// Strobe: while the clock goes on, the cell after the last CRC bit is LOW.
     pub gap_low: Signal<Out, Bit>,
     /// Strobe: while the clock goes on, the second cell after the last CRC bit is HIGH.
@@ -124,13 +130,13 @@ pub struct Receiver {
     pub f2: Signal<Out, Bit>,
     /// CRC as received; bit 4 came first.
     pub crc_received: Signal<Out, Bits<5>>,
-    /// CRC computed in parallel from the stored word.
+    /// CRC computed from the bits as they came.
     pub crc_computed: Signal<Out, Bits<5>>,
     /// The serial register over the wire bits says the CRC is right.
     pub serial_ok: Signal<Out, Bit>,
-    /// The CRC of the stored word equals the received one.
+    /// The stored word fits the received CRC, now.
     pub parallel_ok: Signal<Out, Bit>,
-    parallel: Crc5Parallel,
+    check: Crc5Check,
     serial: Crc5Serial,
     field: Reg<Field>,
     left: Reg<Bits<7>>,
@@ -161,6 +167,10 @@ pub struct Receiver {
     supplement_over: Reg<Bit>,
     low_gap: Reg<Bit>,
     high_gap: Reg<Bit>,
+    good_gap: Reg<Bit>,
+    low_separator: Reg<Bit>,
+    separator_then: Reg<Bit>,
+    new_block: Reg<Bit>,
     heard: Reg<Bits<7>>,
     echo: Reg<Bit>,
     has_all: Constant<Bit>,
@@ -202,6 +212,7 @@ impl Receiver {
             clock: Default::default(),
             reset: Default::default(),
             start: Default::default(),
+            abort: Default::default(),
             acquire: Default::default(),
             rise: Default::default(),
             sample: Default::default(),
@@ -224,8 +235,10 @@ impl Receiver {
             cells_left: Default::default(),
             done: Default::default(),
             info_done: Default::default(),
+            separated: Default::default(),
             info_missing: Default::default(),
             finished: Default::default(),
+            gap_good: Default::default(),
             gap_low: Default::default(),
             gap_high: Default::default(),
             latched: Default::default(),
@@ -237,7 +250,7 @@ impl Receiver {
             crc_computed: Default::default(),
             serial_ok: Default::default(),
             parallel_ok: Default::default(),
-            parallel: Default::default(),
+            check: Default::default(),
             serial: Default::default(),
             field: Reg::new(Field::Done),
             left: Default::default(),
@@ -268,6 +281,10 @@ impl Receiver {
             supplement_over: Default::default(),
             low_gap: Default::default(),
             high_gap: Default::default(),
+            good_gap: Default::default(),
+            low_separator: Default::default(),
+            separator_then: Default::default(),
+            new_block: Default::default(),
             heard: Default::default(),
             echo: Default::default(),
             has_all: Constant::new(features.requests),
@@ -325,7 +342,20 @@ impl Logic for Receiver {
             parallel_equal,
             serial_good
         );
-        clock!(self, clock, serial);
+        clock!(self, clock, serial, check);
+        dff_setup!(
+            self,
+            clock,
+            good_gap,
+            low_separator,
+            separator_then,
+            new_block
+        );
+        self.check.reset.next = self.reset.val();
+        self.good_gap.reset.next = self.reset.val();
+        self.low_separator.reset.next = self.reset.val();
+        self.separator_then.reset.next = self.reset.val();
+        self.new_block.reset.next = self.reset.val();
         self.field.reset.next = self.reset.val();
         self.left.reset.next = self.reset.val();
         self.word.reset.next = self.reset.val();
@@ -423,6 +453,7 @@ impl Logic for Receiver {
         self.supplement_over.d.next = false;
         self.low_gap.d.next = false;
         self.high_gap.d.next = false;
+        self.good_gap.d.next = false;
         self.again.next = false;
 
         if self.sample.val()
@@ -496,7 +527,6 @@ impl Logic for Receiver {
             Field::Separator => {
                 if self.sample.val() {
                     self.separator.next = true;
-                    self.in_info.d.next = true;
                     self.infos_left.d.next = self.infos_left.q.val() - 1;
                     self.field.d.next = Field::Payload;
                     if self.level.val() | !self.has_all.val() {
@@ -508,6 +538,7 @@ impl Logic for Receiver {
             Field::GapHigh => {
                 if self.sample.val() {
                     self.low_gap.d.next = !self.level.val();
+                    self.good_gap.d.next = self.level.val();
                     self.field.d.next = Field::GapLow;
                 }
                 if !self.has_continuous.val() {
@@ -581,8 +612,10 @@ impl Logic for Receiver {
         if self.has_all.val() & (!self.has_f1.val() | self.in_info.q.val()) {
             self.aligned_at.next = 4.into();
         }
+        if self.last_payload.q.val() {
+            self.crc_calc.d.next = self.serial.crc.val();
+        }
         if self.take_crc.q.val() {
-            self.crc_calc.d.next = self.parallel.crc.val();
             self.align.d.next = true;
         }
         if self.align.q.val()
@@ -595,8 +628,20 @@ impl Logic for Receiver {
         if self.crc_bit.val() {
             self.crc_bits.d.next = (self.crc_bits.q.val() << 1).replace_bit(0, self.level.val());
         }
-        self.parallel.word.next = self.word.q.val();
-        self.parallel.covered_mod_15.next = self.covered.q.val();
+        self.check.clear.next = self.start.val()
+            | (self.new_block.q.val() & self.has_all.val())
+            | (self.again.val() & self.has_continuous.val());
+        self.check.word_bit.next = self.sample.val() & (self.field.q.val() == Field::Payload);
+        self.check.crc_bit.next = self.crc_bit.val();
+        self.check.bit.next = self.level.val();
+        self.check.word.next = self.word.q.val().get_bits::<48>(0);
+        self.check.has_f1.next = true;
+        if self.has_all.val() {
+            self.check.has_f1.next = self.has_f1.val() & !self.in_info.q.val();
+        }
+        self.check.has_f2.next = self.has_f2.val();
+        self.check.f1.next = self.f1_bit.q.val();
+        self.check.f2.next = self.f2_bit.q.val();
         self.serial.clear.next = self.start.val()
             | (self.separator.val() & self.has_all.val())
             | (self.again.val() & self.has_continuous.val());
@@ -610,14 +655,18 @@ impl Logic for Receiver {
             self.waiting.d.next =
                 (self.last_taken.q.val() | self.waiting.q.val()) & self.align.q.val();
         }
-        self.parallel_equal.d.next = self.crc_bits.q.val() == self.crc_calc.q.val();
+        self.parallel_equal.d.next = self.check.is_ok.val();
         self.serial_good.d.next = self.serial.residue_ok.val();
 
-        // A new block: no bits yet.
-        if self.has_all.val() & self.separator.val() {
+        // A new block: no bits yet. The position stays until it is published; the block's first bit comes a cycle after that.
+        self.low_separator.d.next = self.separator.val() & !self.level.val() & self.has_all.val();
+        self.separator_then.d.next = self.low_separator.q.val();
+        self.new_block.d.next = self.separator_then.q.val();
+        if self.has_all.val() & self.new_block.q.val() {
             self.word.d.next = 0.into();
             self.covered.d.next = 0.into();
             self.align.d.next = false;
+            self.in_info.d.next = true;
         }
         // Cells of the frame besides payload and additional information.
         self.cells_around.next = self.fixed_cells.val();
@@ -683,6 +732,9 @@ impl Logic for Receiver {
             self.heard.d.next = 0.into();
             self.echo.d.next = false;
         }
+        if self.abort.val() {
+            self.field.d.next = Field::Done;
+        }
         if self.start_supplement.val() & self.has_all.val() {
             self.field.d.next = Field::Supplement;
             self.left.d.next = self.supplement_cells.val();
@@ -701,15 +753,18 @@ impl Logic for Receiver {
         self.cells_left.next = self.left.q.val();
         self.done.next = self.done_now.q.val();
         self.info_done.next = false;
+        self.separated.next = false;
         self.info_missing.next = false;
         self.finished.next = self.done_now.q.val();
         if self.has_all.val() {
             self.done.next = self.done_now.q.val() & !self.in_info.q.val();
             self.info_done.next = self.done_now.q.val() & self.in_info.q.val();
+            self.separated.next = self.low_separator.q.val();
             self.info_missing.next = self.missing.q.val();
             self.finished.next = (self.done_now.q.val() & !self.infos_left.q.val().any())
                 | self.supplement_over.q.val();
         }
+        self.gap_good.next = self.good_gap.q.val() & self.has_continuous.val();
         self.gap_low.next = self.low_gap.q.val() & self.has_continuous.val();
         self.gap_high.next = self.high_gap.q.val() & self.has_continuous.val();
         self.latched.next = self.again.val() & self.has_continuous.val();

@@ -1,12 +1,22 @@
 //! Snapshot: one result per trigger, changed in one clock cycle, with the last good position held.
 //!
+//! ```text
+//! publish    __/\__________________    position, time stamp and what checks them change places with those before
+//! confirm    ____________/\________    the frame has ended as it should: what was before is forgotten
+//! withdraw   ____________/\________    or: it has not; what was before comes back
+//! ```
+//!
+//! What is held is guarded: its parity is taken when it has been loaded and compared in every cycle from then on. A register that
+//! was upset makes the position invalid, with a cause of its own.
+//!
 //! Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 
 use crate::reg::Reg;
+use crate::transaction::cause;
 use rust_hdl::prelude::*;
 
 /// Result registers of one channel.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock)]
 pub struct Snapshot {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -26,10 +36,18 @@ pub struct Snapshot {
     pub publish: Signal<In, Bit>,
     /// With `publish`: the position is good.
     pub good: Signal<In, Bit>,
-    /// Strobe: replace cause and flags of the present result; with flag 9 its position is not good any more.
+    /// Strobe: replace cause and flags of the present result.
     pub late_fault: Signal<In, Bit>,
+    /// Strobe: the present result's position is not good after all; the one before comes back.
+    pub withdraw: Signal<In, Bit>,
+    /// Strobe: nothing can withdraw the present result any more.
+    pub confirm: Signal<In, Bit>,
     /// Position of the frame.
     pub position_in: Signal<In, Bits<48>>,
+    /// Width of the position.
+    pub width_in: Signal<In, Bits<6>>,
+    /// The frame has F2.
+    pub has_f2_in: Signal<In, Bit>,
     /// CRC as received.
     pub crc_received_in: Signal<In, Bits<5>>,
     /// CRC as computed.
@@ -37,7 +55,7 @@ pub struct Snapshot {
     /// Primary cause.
     pub cause_in: Signal<In, Bits<5>>,
     /// Raw flags.
-    pub flags_in: Signal<In, Bits<19>>,
+    pub flags_in: Signal<In, Bits<20>>,
     /// Strobe: a new result can be read from this cycle on.
     pub result_strobe: Signal<Out, Bit>,
     /// Last good position, zeros above its width.
@@ -50,18 +68,39 @@ pub struct Snapshot {
     pub sequence: Signal<Out, Bits<16>>,
     /// Time of the first falling edge of the frame that brought the position.
     pub first_fall_timestamp: Signal<Out, Bits<32>>,
-    /// Age of the position in microseconds since its publication; stops at 65535.
+    /// Age of the position in microseconds: 0 until its frame has ended, counted from there; stops at 65535.
     pub age_us: Signal<Out, Bits<16>>,
     /// Primary cause of the last result.
     pub cause: Signal<Out, Bits<5>>,
     /// Raw flags of the last result.
-    pub flags: Signal<Out, Bits<19>>,
+    pub flags: Signal<Out, Bits<20>>,
     /// CRC received in the last whole frame.
     pub crc_received: Signal<Out, Bits<5>>,
     /// CRC computed for the last whole frame.
     pub crc_computed: Signal<Out, Bits<5>>,
+    /// CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read.
+    pub position_crc: Signal<Out, Bits<5>>,
+    /// Width of the position.
+    pub position_width: Signal<Out, Bits<6>>,
+    /// The position came with F2.
+    pub position_has_f2: Signal<Out, Bit>,
     strobe: Reg<Bit>,
+    loaded: Reg<Bit>,
     held: Reg<Bits<48>>,
+    held_crc: Reg<Bits<5>>,
+    held_width: Reg<Bits<6>>,
+    held_f2: Reg<Bit>,
+    before: Reg<Bits<48>>,
+    before_crc: Reg<Bits<5>>,
+    before_width: Reg<Bits<6>>,
+    before_f2: Reg<Bit>,
+    before_stamp: Reg<Bits<32>>,
+    before_valid: Reg<Bit>,
+    before_parity: Reg<Bit>,
+    unconfirmed: Reg<Bit>,
+    parity: Reg<Bit>,
+    is_upset: Reg<Bit>,
+    age_shown: Reg<Bits<16>>,
     valid: Reg<Bit>,
     is_fresh: Reg<Bit>,
     count: Reg<Bits<16>>,
@@ -70,11 +109,91 @@ pub struct Snapshot {
     age: Reg<Bits<16>>,
     age_full: Reg<Bit>,
     cause_held: Reg<Bits<5>>,
-    flags_held: Reg<Bits<19>>,
+    flags_held: Reg<Bits<20>>,
     received: Reg<Bits<5>>,
     computed: Reg<Bits<5>>,
     take_good: Signal<Local, Bit>,
+    take_back: Signal<Local, Bit>,
+    parity_now: Signal<Local, Bit>,
+    upset_now: Signal<Local, Bit>,
     ago: Signal<Local, Bits<11>>,
+    upset_cause: Constant<Bits<5>>,
+    upset_flag: Constant<Bits<20>>,
+}
+
+impl Default for Snapshot {
+    fn default() -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            tick_us: Default::default(),
+            timestamp: Default::default(),
+            first_fall: Default::default(),
+            latched: Default::default(),
+            delay_cycles: Default::default(),
+            publish: Default::default(),
+            good: Default::default(),
+            late_fault: Default::default(),
+            withdraw: Default::default(),
+            confirm: Default::default(),
+            position_in: Default::default(),
+            width_in: Default::default(),
+            has_f2_in: Default::default(),
+            crc_received_in: Default::default(),
+            crc_computed_in: Default::default(),
+            cause_in: Default::default(),
+            flags_in: Default::default(),
+            result_strobe: Default::default(),
+            position: Default::default(),
+            position_valid: Default::default(),
+            fresh: Default::default(),
+            sequence: Default::default(),
+            first_fall_timestamp: Default::default(),
+            age_us: Default::default(),
+            cause: Default::default(),
+            flags: Default::default(),
+            crc_received: Default::default(),
+            crc_computed: Default::default(),
+            position_crc: Default::default(),
+            position_width: Default::default(),
+            position_has_f2: Default::default(),
+            strobe: Default::default(),
+            loaded: Default::default(),
+            held: Default::default(),
+            held_crc: Default::default(),
+            held_width: Default::default(),
+            held_f2: Default::default(),
+            before: Default::default(),
+            before_crc: Default::default(),
+            before_width: Default::default(),
+            before_f2: Default::default(),
+            before_stamp: Default::default(),
+            before_valid: Default::default(),
+            before_parity: Default::default(),
+            unconfirmed: Default::default(),
+            parity: Default::default(),
+            is_upset: Default::default(),
+            age_shown: Default::default(),
+            valid: Default::default(),
+            is_fresh: Default::default(),
+            count: Default::default(),
+            moment: Default::default(),
+            stamp: Default::default(),
+            age: Default::default(),
+            age_full: Default::default(),
+            cause_held: Default::default(),
+            flags_held: Default::default(),
+            received: Default::default(),
+            computed: Default::default(),
+            take_good: Default::default(),
+            take_back: Default::default(),
+            parity_now: Default::default(),
+            upset_now: Default::default(),
+            ago: Default::default(),
+            upset_cause: Constant::new(cause::UPSET.into()),
+            upset_flag: Constant::new(cause::flag(cause::UPSET).into()),
+        }
+    }
 }
 
 impl Logic for Snapshot {
@@ -82,8 +201,41 @@ impl Logic for Snapshot {
     fn update(&mut self) {
         dff_setup!(self, clock, strobe, held, valid, is_fresh, count, moment, stamp, age);
         dff_setup!(self, clock, age_full, cause_held, flags_held, received, computed);
+        dff_setup!(
+            self,
+            clock,
+            loaded,
+            held_crc,
+            held_width,
+            held_f2,
+            before,
+            before_crc,
+            before_width,
+            before_f2,
+            before_stamp,
+            before_valid,
+            before_parity,
+            unconfirmed,
+            parity,
+            is_upset,
+            age_shown
+        );
         self.strobe.reset.next = self.reset.val();
+        self.loaded.reset.next = self.reset.val();
         self.held.reset.next = self.reset.val();
+        self.held_crc.reset.next = self.reset.val();
+        self.held_width.reset.next = self.reset.val();
+        self.held_f2.reset.next = self.reset.val();
+        self.before.reset.next = self.reset.val();
+        self.before_crc.reset.next = self.reset.val();
+        self.before_width.reset.next = self.reset.val();
+        self.before_f2.reset.next = self.reset.val();
+        self.before_stamp.reset.next = self.reset.val();
+        self.before_valid.reset.next = self.reset.val();
+        self.before_parity.reset.next = self.reset.val();
+        self.unconfirmed.reset.next = self.reset.val();
+        self.parity.reset.next = self.reset.val();
+        self.is_upset.reset.next = self.reset.val();
         self.valid.reset.next = self.reset.val();
         self.is_fresh.reset.next = self.reset.val();
         self.count.reset.next = self.reset.val();
@@ -97,6 +249,7 @@ impl Logic for Snapshot {
         self.computed.reset.next = self.reset.val();
 
         self.take_good.next = self.publish.val() & self.good.val();
+        self.take_back.next = self.withdraw.val() & self.unconfirmed.q.val();
         self.ago.next = 0.into();
         if self.latched.val() {
             self.ago.next = self.delay_cycles.val();
@@ -104,10 +257,16 @@ impl Logic for Snapshot {
         if self.first_fall.val() | self.latched.val() {
             self.moment.d.next = self.timestamp.val() - bit_cast::<32, 11>(self.ago.val());
         }
+        // The age of the position before goes on until the new one is sure; a row of withdrawn ones must not look young.
         self.age_full.d.next = self.age.q.val().all();
         if self.tick_us.val() & !self.age_full.q.val() {
             self.age.d.next = self.age.q.val() + 1;
         }
+        if self.confirm.val() & self.unconfirmed.q.val() {
+            self.age.d.next = 0.into();
+        }
+        self.age_shown.d.next = self.age.q.val();
+        self.age_shown.reset.next = self.reset.val() | self.unconfirmed.q.val();
         self.strobe.d.next = self.publish.val();
         if self.publish.val() {
             self.is_fresh.d.next = self.good.val();
@@ -115,20 +274,62 @@ impl Logic for Snapshot {
             self.received.d.next = self.crc_received_in.val();
             self.computed.d.next = self.crc_computed_in.val();
         }
+        self.loaded.d.next = self.take_good.val();
         if self.take_good.val() {
             self.held.d.next = self.position_in.val();
+            self.held_crc.d.next = self.crc_received_in.val();
+            self.held_width.d.next = self.width_in.val();
+            self.held_f2.d.next = self.has_f2_in.val();
             self.stamp.d.next = self.moment.q.val();
             self.valid.d.next = true;
-            self.age.d.next = 0.into();
+            self.before.d.next = self.held.q.val();
+            self.before_crc.d.next = self.held_crc.q.val();
+            self.before_width.d.next = self.held_width.q.val();
+            self.before_f2.d.next = self.held_f2.q.val();
+            self.before_stamp.d.next = self.stamp.q.val();
+            self.before_valid.d.next = self.valid.q.val();
+            self.before_parity.d.next = self.parity.q.val();
         }
-        // A frame of another length: its position may be anything.
-        if self.late_fault.val() & self.flags_in.val().get_bit(9) {
-            self.valid.d.next = false;
+        if self.confirm.val() | self.take_back.val() {
+            self.unconfirmed.d.next = false;
+        }
+        if self.take_good.val() {
+            self.unconfirmed.d.next = true;
+        }
+
+        // The guard. Its first look is at what has just been loaded from where the CRC was checked.
+        self.parity_now.next = self.held.q.val().xor()
+            ^ self.stamp.q.val().xor()
+            ^ self.held_crc.q.val().xor()
+            ^ self.held_width.q.val().xor()
+            ^ self.held_f2.q.val();
+        self.is_upset.d.next = (self.parity_now.val() ^ self.parity.q.val())
+            & !self.loaded.q.val()
+            & !self.take_good.val()
+            & !self.take_back.val();
+        if self.loaded.q.val() {
+            self.parity.d.next = self.parity_now.val();
+        }
+        if self.take_back.val() {
+            self.held.d.next = self.before.q.val();
+            self.held_crc.d.next = self.before_crc.q.val();
+            self.held_width.d.next = self.before_width.q.val();
+            self.held_f2.d.next = self.before_f2.q.val();
+            self.stamp.d.next = self.before_stamp.q.val();
+            self.valid.d.next = self.before_valid.q.val();
+            self.parity.d.next = self.before_parity.q.val();
             self.is_fresh.d.next = false;
         }
         if self.publish.val() | self.late_fault.val() {
             self.cause_held.d.next = self.cause_in.val();
             self.flags_held.d.next = self.flags_in.val();
+        }
+        self.upset_now.next = self.is_upset.q.val() & !self.take_good.val() & self.valid.q.val();
+        if self.upset_now.val() {
+            self.valid.d.next = false;
+            self.is_fresh.d.next = false;
+            self.cause_held.d.next = self.upset_cause.val();
+            self.flags_held.d.next = self.flags_held.q.val() | self.upset_flag.val();
         }
         self.result_strobe.next = self.strobe.q.val();
         self.position.next = self.held.q.val();
@@ -136,10 +337,13 @@ impl Logic for Snapshot {
         self.fresh.next = self.is_fresh.q.val();
         self.sequence.next = self.count.q.val();
         self.first_fall_timestamp.next = self.stamp.q.val();
-        self.age_us.next = self.age.q.val();
+        self.age_us.next = self.age_shown.q.val();
         self.cause.next = self.cause_held.q.val();
         self.flags.next = self.flags_held.q.val();
         self.crc_received.next = self.received.q.val();
         self.crc_computed.next = self.computed.q.val();
+        self.position_crc.next = self.held_crc.q.val();
+        self.position_width.next = self.held_width.q.val();
+        self.position_has_f2.next = self.held_f2.q.val();
     }
 }

@@ -13,7 +13,8 @@
 //! published; what becomes of either is told with `over`.
 //!
 //! Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
-//! off, 30 ms, then data low for longer than tR.
+//! off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. DATA that was HIGH
+//! between two frames means that something was plugged: the delay is measured again.
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
 
@@ -79,6 +80,8 @@ pub struct Transaction {
     pub answer_done: Signal<In, Bit>,
     /// Strobe: the answer with all that follows it has been taken, or the supplement is over.
     pub finished: Signal<In, Bit>,
+    /// Strobe: the LOW in front of an additional information has come.
+    pub separated: Signal<In, Bit>,
     /// Strobe: an additional information has not come.
     pub info_missing: Signal<In, Bit>,
     /// The mode command of the next frame is one that the core sends.
@@ -99,10 +102,16 @@ pub struct Transaction {
     pub stop_at_error: Signal<In, Bit>,
     /// The line is wanted for something else.
     pub line_wanted: Signal<In, Bit>,
+    /// Strobe: the cell after the last CRC bit is HIGH, while the clock goes on.
+    pub gap_good: Signal<In, Bit>,
+    /// Strobe: the next answer has begun, while the clock goes on.
+    pub again: Signal<In, Bit>,
     /// Strobe: the cell after the last CRC bit is LOW, while the clock goes on.
     pub gap_low: Signal<In, Bit>,
     /// Strobe: the cell before the next start bit is HIGH, while the clock goes on.
     pub gap_high: Signal<In, Bit>,
+    /// Settings of the frame are not what they were at its start.
+    pub settings_upset: Signal<In, Bit>,
     /// The answer begins with the own mode command.
     pub is_echo: Signal<In, Bit>,
     /// Serial CRC verdict.
@@ -161,8 +170,12 @@ pub struct Transaction {
     pub publish: Signal<Out, Bit>,
     /// With `publish`: the position is good.
     pub good: Signal<Out, Bit>,
-    /// Strobe: data did not fall after a frame that has been published.
+    /// Strobe: something was wrong after the result had been published.
     pub late_fault: Signal<Out, Bit>,
+    /// Strobe: the published position is not good after all.
+    pub withdraw: Signal<Out, Bit>,
+    /// Strobe: the published position stands.
+    pub confirm: Signal<Out, Bit>,
     /// Strobe, in the same cycle: a frame is begun, or refused.
     pub begun: Signal<Out, Bit>,
     /// No frame is under way, and all that there is to tell of the last one has been told.
@@ -176,7 +189,7 @@ pub struct Transaction {
     /// Primary cause, with `publish`, `late_fault` or `over`.
     pub cause: Signal<Out, Bits<5>>,
     /// Raw flags, see [`cause::flag`](mod@cause::flag).
-    pub flags: Signal<Out, Bits<19>>,
+    pub flags: Signal<Out, Bits<20>>,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
     health: LineHealth,
@@ -195,18 +208,18 @@ pub struct Transaction {
     probe_us: Constant<Bits<16>>,
     settle_us: Constant<Bits<16>>,
     leave_us: Constant<Bits<16>>,
-    data_not_low: Constant<Bits<19>>,
-    no_encoder: Constant<Bits<19>>,
-    stuck_high: Constant<Bits<19>>,
-    no_start_bit: Constant<Bits<19>>,
-    stuck_low: Constant<Bits<19>>,
-    late_start: Constant<Bits<19>>,
-    start_window: Constant<Bits<19>>,
-    unknown_command: Constant<Bits<19>>,
-    info_not_there: Constant<Bits<19>>,
-    not_falling: Constant<Bits<19>>,
-    too_long: Constant<Bits<19>>,
-    tail_low: Constant<Bits<19>>,
+    data_not_low: Constant<Bits<20>>,
+    no_encoder: Constant<Bits<20>>,
+    stuck_high: Constant<Bits<20>>,
+    no_start_bit: Constant<Bits<20>>,
+    stuck_low: Constant<Bits<20>>,
+    late_start: Constant<Bits<20>>,
+    start_window: Constant<Bits<20>>,
+    unknown_command: Constant<Bits<20>>,
+    info_not_there: Constant<Bits<20>>,
+    not_falling: Constant<Bits<20>>,
+    too_long: Constant<Bits<20>>,
+    tail_low: Constant<Bits<20>>,
     phase: Reg<Phase>,
     timer: Reg<Bits<16>>,
     timer_limit: Reg<Bits<16>>,
@@ -236,6 +249,8 @@ pub struct Transaction {
     settling: Reg<Bit>,
     going: Reg<Bit>,
     leaving: Reg<Bit>,
+    cleared: Reg<Bit>,
+    high_at_tick: Reg<Bit>,
     limit: Signal<Local, Bits<16>>,
     running: Signal<Local, Bit>,
     in_us: Signal<Local, Bit>,
@@ -250,9 +265,9 @@ pub struct Transaction {
     parking: Signal<Local, Bit>,
     sent: Signal<Local, Bit>,
     own: Signal<Local, Bit>,
-    found: Signal<Local, Bits<19>>,
-    not_low: Signal<Local, Bits<19>>,
-    no_start: Signal<Local, Bits<19>>,
+    found: Signal<Local, Bits<20>>,
+    not_low: Signal<Local, Bits<20>>,
+    no_start: Signal<Local, Bits<20>>,
     announce: Signal<Local, Bit>,
     answer_taken: Signal<Local, Bit>,
     probed: Signal<Local, Bit>,
@@ -262,6 +277,8 @@ pub struct Transaction {
     found_late: Signal<Local, Bit>,
     leave: Signal<Local, Bit>,
     lost: Signal<Local, Bit>,
+    proof: Signal<Local, Bit>,
+    plugged: Signal<Local, Bit>,
 }
 
 impl Logic for Transaction {
@@ -304,9 +321,12 @@ impl Logic for Transaction {
             passes,
             one_left
         );
+        dff_setup!(self, clock, cleared, high_at_tick);
+        self.cleared.reset.next = self.reset.val();
+        self.high_at_tick.reset.next = self.reset.val();
         self.one_left.reset.next = self.reset.val();
         clock!(self, clock, health, verdict);
-        self.phase.reset.next = self.reset.val();
+        self.phase.reset.next = false;
         self.timer.reset.next = self.reset.val();
         self.timer_step.reset.next = self.reset.val();
         self.timer_hit.reset.next = self.reset.val();
@@ -341,6 +361,8 @@ impl Logic for Transaction {
         self.own.next = self.is_own.val() & self.has_all.val();
         self.triggered.next = self.trigger.val() & !(self.hold_off.val() & self.has_all.val());
         self.wanted.next = self.triggered.val() | (self.begin_own.val() & self.has_all.val());
+        self.proof.next = false;
+        self.plugged.next = false;
         self.refuse.next = false;
         self.normal_end.next = false;
         self.supplement_now.d.next = false;
@@ -384,6 +406,8 @@ impl Logic for Transaction {
                 }
                 if self.level.val() {
                     self.phase.d.next = Phase::NotReady;
+                    // Longer than an edge rings.
+                    self.plugged.next = self.high_at_tick.q.val() & self.tick_us.val();
                     if self.triggered.val() {
                         self.found.next = self.not_low.val();
                         self.give_up.next = true;
@@ -395,6 +419,7 @@ impl Logic for Transaction {
                 self.idle.next = !(self.hold_off.val() & self.has_all.val());
                 if self.level.val() {
                     self.phase.d.next = Phase::NotReady;
+                    self.plugged.next = true;
                     if self.triggered.val() {
                         self.found.next = self.not_low.val();
                         self.give_up.next = true;
@@ -456,6 +481,15 @@ impl Logic for Transaction {
                 if self.answer_done.val() {
                     self.answer_taken.next = true;
                 }
+                if self.separated.val() & self.has_all.val() {
+                    self.proof.next = true;
+                }
+                if self.has_continuous.val() & self.gap_good.val() {
+                    self.proof.next = true;
+                }
+                if self.has_continuous.val() & self.again.val() {
+                    self.normal_end.next = true;
+                }
                 if self.info_missing.val() & self.has_all.val() {
                     self.found.next = self.info_not_there.val();
                     self.give_up.next = true;
@@ -463,15 +497,11 @@ impl Logic for Transaction {
                 if self.has_continuous.val() & self.gap_low.val() {
                     self.found.next = self.tail_low.val();
                     self.give_up.next = true;
-                    self.found_late.next = true;
                 }
                 if self.has_continuous.val() & self.gap_high.val() {
                     self.found.next = self.not_falling.val();
                     self.give_up.next = true;
                     self.found_late.next = true;
-                }
-                if self.finished.val() & self.going.q.val() {
-                    self.normal_end.next = true;
                 }
                 if self.finished.val() & !self.going.q.val() {
                     self.phase.d.next = Phase::Tail;
@@ -484,6 +514,8 @@ impl Logic for Transaction {
             Phase::Park => {
                 self.running.next = true;
                 self.watched.next = true;
+                // No bit follows the answer here.
+                self.proof.next = self.verdict.taken.val();
                 self.limit.next = self.park_cycles.val();
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::Frame;
@@ -521,6 +553,7 @@ impl Logic for Transaction {
                 }
                 if self.sample.val() {
                     self.tail_sampled.d.next = true;
+                    self.proof.next = !self.tail_sampled.q.val() & self.level.val();
                 }
                 if self.tail_sampled.q.val() & !self.level.val() {
                     self.recovery.d.next = self.timer.q.val().get_bits::<13>(0);
@@ -576,7 +609,17 @@ impl Logic for Transaction {
             self.found.next = self.found.val() | self.too_long.val();
             self.give_up.next = true;
         }
-        if (self.answer_taken.val() & !self.going.q.val()) | self.announce.val() {
+        // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
+        self.leave.next = self.going.q.val()
+            & self.gap_good.val()
+            & (!self.continuous.val()
+                | self.line_wanted.val()
+                | !self.known.val()
+                | (self.stop_at_error.val() & self.verdict.is_bad.val()));
+        if self.leave.val() {
+            self.normal_end.next = true;
+        }
+        if (self.proof.val() & !self.going.q.val()) | self.announce.val() {
             self.answered.d.next = true;
         }
         if self.announce.val() {
@@ -603,7 +646,10 @@ impl Logic for Transaction {
             self.timer.d.next = self.timer.q.val() + 1;
         }
         self.timer_limit.d.next = self.limit.val();
-        self.timer_hit.d.next = self.timer.q.val() == self.timer_limit.q.val();
+        // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
+        self.timer_hit.d.next =
+            (self.timer.q.val() >= self.timer_limit.q.val()) & !self.cleared.q.val();
+        self.cleared.d.next = self.timer_clear.val() | self.accept.val();
         if self.timer_clear.val() {
             self.timer.d.next = 0.into();
             self.timer_hit.d.next = false;
@@ -615,6 +661,7 @@ impl Logic for Transaction {
         self.last_cell.next = (self.phase.q.val() == Phase::Tail) & self.was_center.q.val();
         if self.last_cell.val() {
             self.timer.d.next = 2.into();
+            self.cleared.d.next = true;
         }
 
         // Pulses: never more on the cable than the answer needs.
@@ -634,6 +681,8 @@ impl Logic for Transaction {
 
         self.verdict.found.next = self.found.val();
         self.verdict.answer_taken.next = self.answer_taken.val();
+        self.verdict.prove.next = self.proof.val();
+        self.verdict.settings_upset.next = self.settings_upset.val();
         self.verdict.give_up.next = self.give_up.val();
         self.verdict.is_late.next = self.answered.q.val() | self.found_late.val();
         self.verdict.refuse.next = self.refuse.val();
@@ -649,7 +698,7 @@ impl Logic for Transaction {
         self.verdict.recovery_cycles.next = self.recovery.q.val();
         self.verdict.recovery_min_cycles.next = self.recovery_min_cycles.val();
         // The mean over several frames, if it is taken; the last of them makes the delay known.
-        if self.verdict.is_received.val() {
+        if self.verdict.is_received.val() & !(self.has_alignment.val() & self.is_fixed.val()) {
             self.is_calibrated.d.next = true;
             if self.has_alignment.val() & self.slow_now.q.val() {
                 self.passes.d.next = self.passes.q.val() + 1;
@@ -679,13 +728,6 @@ impl Logic for Transaction {
                 & self.known.val()
                 & !self.own.val();
         }
-        // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
-        self.leave.next = self.going.q.val()
-            & self.verdict.taken.val()
-            & (!self.continuous.val()
-                | self.line_wanted.val()
-                | !self.known.val()
-                | (self.stop_at_error.val() & self.verdict.is_bad.val()));
         if self.leave.val() {
             self.phase.d.next = Phase::Abort;
             self.timer_clear.next = true;
@@ -699,10 +741,22 @@ impl Logic for Transaction {
             self.probing.d.next = false;
             self.settling.d.next = false;
         }
-        if self.calibrate.val() {
+        self.high_at_tick.d.next = self.high_at_tick.q.val() & self.level.val();
+        if self.tick_us.val() {
+            self.high_at_tick.d.next = self.level.val();
+        }
+        // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
+        if self.calibrate.val()
+            | self.plugged.val()
+            | (self.has_alignment.val() & self.is_fixed.val())
+        {
             self.is_calibrated.d.next = false;
         }
-        if self.calibrate.val() | self.verdict.gave_up.val() | self.verdict.is_doubtful.val() {
+        if self.calibrate.val()
+            | self.plugged.val()
+            | self.verdict.gave_up.val()
+            | self.verdict.is_doubtful.val()
+        {
             self.passes.d.next = 0.into();
         }
         self.run_now.d.next = self.running.val();
@@ -738,18 +792,29 @@ impl Logic for Transaction {
         self.publish.next = self.verdict.publish.val();
         self.good.next = self.verdict.good.val();
         self.late_fault.next = self.verdict.late_fault.val();
+        self.withdraw.next = self.verdict.withdraw.val();
+        self.confirm.next = self.verdict.confirm.val();
         self.cause.next = self.verdict.cause.val();
         self.flags.next = self.verdict.flags.val();
         self.start_supplement.next = self.supplement_now.q.val();
         self.over.next = self.verdict.over.val();
         self.begun.next = self.accept.val() | self.refuse.val();
+        // A reset may have come in the middle of a frame. After power-up nobody has begun one.
+        if self.reset.val() {
+            self.phase.d.next = Phase::Abort;
+        }
         self.is_at_rest.next = ((self.phase.q.val() == Phase::NotReady)
             | (self.phase.q.val() == Phase::Ready))
             & !self.verdict.is_telling.val();
         self.displaced.next = self.verdict.displaced.val();
         self.calibrated.next = self.known.val();
         self.recovery_cycles.next = self.recovery.q.val();
-        self.probe.next = self.probing.q.val() & self.has_diagnosis.val();
+        self.probe.next =
+            self.probing.q.val() & (self.phase.q.val() == Phase::Abort) & self.has_diagnosis.val();
+        if self.phase.q.val() != Phase::Abort {
+            self.probing.d.next = false;
+            self.settling.d.next = false;
+        }
         self.is_probed.next =
             (self.probing.q.val() | self.settling.q.val()) & self.has_diagnosis.val();
         self.going_on.next = self.going.q.val();

@@ -209,8 +209,20 @@ impl<T: Transport> Card<T> {
         self.bridge.write(place.address(), &[word])
     }
 
-    /// Results of all channels, of one moment.
+    /// Results of all channels, of one moment. Each position is checked against its CRC once more; what does not fit is read again, and
+    /// if it still does not, it is no position: cause `upset`.
     pub fn results(&mut self) -> Result<Results, HostError> {
+        let mut results = self.read_results()?;
+        if !results.channels.iter().all(|channel| channel.fits) {
+            results = self.read_results()?;
+        }
+        for channel in &mut results.channels {
+            *channel = channel.checked();
+        }
+        Ok(results)
+    }
+
+    fn read_results(&mut self) -> Result<Results, HostError> {
         let first = Place::at("result", "status", 0).address();
         let count = STRIDE * (self.identity.channels - 1) + WORDS;
         let words = self.bridge.read(first, count)?;

@@ -17,6 +17,14 @@ pub fn name(cause: u8) -> &'static str {
     known.map_or("unknown", |c| c.name)
 }
 
+/// Number of the cause with this name.
+pub fn number(name: &str) -> Option<u8> {
+    all()
+        .iter()
+        .find(|c| c.name == name)
+        .map(|c| c.number as u8)
+}
+
 /// What the cause means for a user, and what to do about it.
 pub fn advice(name: &str) -> Option<[&'static str; 2]> {
     Some(match name {
@@ -58,7 +66,7 @@ pub fn advice(name: &str) -> Option<[&'static str; 2]> {
             "Write 7 (000111) or 56 (111000) to config<n>.frame.command, 4 or more to .period_cycles; on a T-format channel 3 to config<n>.timing.request_id.",
         ],
         "info_missing" => [
-            "An additional information that was expected did not come; the position is good.",
+            "An additional information that was expected did not come: the frame has another length than it should have, so its position is not taken.",
             "The card finds out in the next frames what the encoder sends.",
         ],
         "no_encoder" => [
@@ -84,6 +92,10 @@ pub fn advice(name: &str) -> Option<[&'static str; 2]> {
         "own_echo" => [
             "What came back is the card's own mode command.",
             "Look for a converter that sends back what it gets, or a pair that is swapped.",
+        ],
+        "upset" => [
+            "A register of the card, or a word on its way to the host, was disturbed: what is stored does not fit its CRC or parity.",
+            "Nothing, if it is rare: the next trigger brings a new position. If it is not: supply, clock and timing of the device.",
         ],
         "recovery_too_short" => [
             "DATA fell before limits.recovery_min_cycles: the encoder has another recovery time than the card; the position is good.",

@@ -31,6 +31,17 @@ pub struct Reading {
     pub age_us: u16,
     /// Recovery time of the last frame, in system clock cycles.
     pub recovery_cycles: u16,
+    /// The position as it was read fits the CRC that the encoder sent with it, or there is nothing to check.
+    pub fits: bool,
+}
+
+/// CRC5 of EnDat over these bits, in the order received; bit by bit, since answers are no whole bytes.
+fn crc5(bits: impl Iterator<Item = bool>) -> u32 {
+    let step = |register: u32, bit: bool| {
+        let feedback = (register >> 4 & 1 == 1) != bit;
+        (register << 1 & 0x1F) ^ if feedback { 0x0B } else { 0 }
+    };
+    bits.fold(0x1F, step) ^ 0x1F
 }
 
 impl Reading {
@@ -40,13 +51,23 @@ impl Reading {
             let place = Place::field_at("result", register, field, 0);
             place.of(words[usize::from(place.register.offset)])
         };
+        let position = u64::from(field("position_low", "value"))
+            | u64::from(field("position_high", "value")) << 32;
+        let width = field("position_high", "width");
+        let error_bits = [field("position_high", "f1"), field("position_high", "f2")];
+        let count = 1 + field("position_high", "has_f2") as usize;
+        let covered = error_bits[..count]
+            .iter()
+            .map(|bit| *bit == 1)
+            .chain((0..width).map(|i| position >> i & 1 == 1));
+        let fits =
+            width == 0 || position >> width == 0 && crc5(covered) == field("position_high", "crc");
         Self {
             sequence: field("status", "sequence") as u16,
             cause: field("status", "cause") as u8,
             valid: field("status", "valid") != 0,
             fresh: field("status", "fresh") != 0,
-            position: u64::from(field("position_low", "value"))
-                | u64::from(field("position_high", "value")) << 32,
+            position,
             timestamp: field("timestamp", "value"),
             crc: [
                 field("evidence", "crc_received") as u8,
@@ -56,6 +77,21 @@ impl Reading {
                 | field("age_recovery", "delay_high") << 10) as u16,
             age_us: field("age_recovery", "age_us") as u16,
             recovery_cycles: field("age_recovery", "recovery_cycles") as u16,
+            fits,
+        }
+    }
+
+    /// The same if the position fits its CRC; otherwise without one: it was spoilt behind the check in the card.
+    pub fn checked(self) -> Self {
+        if self.fits {
+            return self;
+        }
+        let cause = causes::number("upset").unwrap_or(self.cause);
+        Self {
+            valid: false,
+            fresh: false,
+            cause,
+            ..self
         }
     }
 
@@ -76,10 +112,15 @@ mod tests {
 
     #[test]
     fn the_example_of_the_host_link_page() {
+        // F1 = 0, F2 = 1, 36 bits.
+        let covered = [false, true]
+            .into_iter()
+            .chain((0..36).map(|i| 0x9_0123_5678u64 >> i & 1 == 1));
+        let crc = crc5(covered);
         let words = [
             0x00C0_0002,
             0x0123_5678,
-            0x0000_0009,
+            0x2400_0009 | 1 << 23 | 1 << 22 | crc << 16,
             77,
             (0x155 << 10) | (0x0A << 5) | 0x15,
             (1 << 29) | (0x123 << 16) | 500,
@@ -98,8 +139,20 @@ mod tests {
                 delay_cycles: 0x555,
                 age_us: 500,
                 recovery_cycles: 0x123,
+                fits: true,
             }
         );
         assert_eq!(reading.cause_name(), "none");
+        assert_eq!(reading.checked(), reading);
+        for bit in 0..36 {
+            let mut spoilt = words;
+            spoilt[1 + bit / 32] ^= 1 << (bit % 32);
+            let checked = Reading::new(&spoilt).checked();
+            assert_eq!(
+                (checked.valid, checked.fresh, checked.cause_name()),
+                (false, false, "upset"),
+                "{bit}"
+            );
+        }
     }
 }

@@ -38,7 +38,7 @@ impl Host {
         let links = links.map(|(n, link)| (PinNames::card(n), link)).collect();
         let mut bench = Bench::new(engine, system_hz, links);
         bench.set("uart_rx_i", 1);
-        bench.reset();
+        bench.power_up();
         Self { bench }
     }
 

@@ -10,7 +10,7 @@ use endat_hdl::bus::{
 };
 use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, Features, FixedTimes};
-use endat_hdl::crc5::{Crc5Fixed, Crc5Parallel, Crc5Serial};
+use endat_hdl::crc5::{Crc5Check, Crc5Fixed, Crc5Serial};
 use endat_hdl::direct::DirectOutput;
 use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::encoder_port::EncoderPort;
@@ -215,7 +215,7 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "crc5_parallel",
             "CRC5, parallel, any length to 50 bits",
-            Crc5Parallel::default(),
+            Crc5Check::default(),
         )?,
         Subject::new(
             "crc5_fixed_31",

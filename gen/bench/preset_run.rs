@@ -88,7 +88,7 @@ pub fn run(project: &Project, conditions: Conditions) -> Result<Vec<ChannelRun>,
     };
     let links = (0..card.channels.len()).map(link).collect();
     let mut bench = Bench::new(engine, card.system_hz, links);
-    bench.reset();
+    bench.power_up();
     let names = |what: &str| -> Vec<String> {
         let name = |channel| format!("direct_{what}{channel}_o");
         (0..card.channels.len()).map(name).collect()

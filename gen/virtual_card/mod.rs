@@ -261,7 +261,7 @@ impl VirtualCard {
             bench.set_double_edge();
         }
         let uart = Uart::new(&mut bench, card.uart_bit_cycles);
-        bench.reset();
+        bench.power_up();
         Ok(Self {
             bench,
             uart,

@@ -409,16 +409,21 @@ pub const RESULT: Block = Block {
     registers: &[
         word("status", 0, ReadOnly, "What became of the last trigger.", &[
             field("sequence", 0, 16, "", "Number of results, wrapping", zero),
-            field("cause", 16, 5, "", "Primary cause; 8, 10, 17, 29 and 30 come with a good position: fresh tells", zero).codes(&CAUSES),
+            field("cause", 16, 5, "", "Primary cause; 8, 17, 29 and 30 come with a good position: fresh tells", zero).codes(&CAUSES),
             field("valid", 22, 1, "", "There is a good position", zero),
             field("fresh", 23, 1, "", "The last result brought the position; 0 = held from an earlier one", zero),
-            field("line", 24, 7, "", "Raw flags: bit k stands for cause k + 11; T-format: bits 0, 1 and 2 for causes 29, 30 and 8", zero).bits(&LINE_FLAGS),
+            field("line", 24, 8, "", "Raw flags: bit k stands for cause k + 11, bit 7 for cause 31; T-format: bits 0, 1 and 2 for causes 29, 30 and 8", zero).bits(&LINE_FLAGS),
         ]),
         word("position_low", 1, ReadOnly, "Last good position, bits 31..0.", &[
             field("value", 0, 32, "", "Bit 0 is the LSB", zero),
         ]),
         word("position_high", 2, ReadOnly, "Last good position, bits 47..32.", &[
             field("value", 0, 16, "", "0 above the position's width; T-format: multi-turn in bits 47..24, single-turn in 23..0", zero),
+            field("crc", 16, 5, "", "CRC that came with this position, over F1, F2 and the position, LSB first: whoever reads it checks it once more; T-format: 0", zero),
+            field("f1", 21, 1, "", "F1 as it came with this position: 0, or it were not good", zero),
+            field("f2", 22, 1, "", "F2 as it came with this position: 1 if there was one", zero),
+            field("has_f2", 23, 1, "", "The position came with F2 (EnDat 2.2)", zero),
+            field("width", 24, 6, "bits", "Width of this position; 0 = there is none yet, or T-format: nothing to check", zero),
         ]),
         word("timestamp", 3, ReadOnly, "First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format: start bit of the request.", &[
             field("value", 0, 32, "cycles", "Since reset, wrapping", zero),
@@ -430,7 +435,7 @@ pub const RESULT: Block = Block {
             field("flags", 20, 12, "", "Raw flags; T-format: bit 0 for cause 9, bit k for cause k + 17", zero).bits(&EVIDENCE_FLAGS),
         ]),
         word("age_recovery", 5, ReadOnly, "Age and recovery time.", &[
-            field("age_us", 0, 16, "us", "Age of the position; stops at 65535", zero),
+            field("age_us", 0, 16, "us", "Age of the position: 0 until its frame has ended, counted from there; stops at 65535", zero),
             field("recovery_cycles", 16, 13, "cycles", "Recovery time tm of the last frame", zero),
             field("delay_high", 29, 1, "", "Bit 10 of delay_cycles", zero),
         ]),

@@ -145,7 +145,7 @@ pub const EVIDENCE_FLAGS: [Named; 12] = [
 const LINE_FIRST: u32 = EVIDENCE_FLAGS.len() as u32;
 
 /// Raw flags that stand in the status.
-pub const LINE_FLAGS: [Named; 7] = [
+pub const LINE_FLAGS: [Named; 8] = [
     flag_of(cause::NO_ENCODER, LINE_FIRST),
     flag_of(cause::STUCK_HIGH, LINE_FIRST),
     flag_of(cause::STUCK_LOW, LINE_FIRST),
@@ -153,6 +153,11 @@ pub const LINE_FLAGS: [Named; 7] = [
     flag_of(cause::WATCHDOG, LINE_FIRST),
     flag_of(cause::OWN_ECHO, LINE_FIRST),
     flag_of(cause::RECOVERY_TOO_SHORT, LINE_FIRST),
+    named(
+        "upset",
+        cause::flag(cause::UPSET).trailing_zeros() - LINE_FIRST,
+        cause::name(cause::UPSET),
+    ),
 ];
 
 /// Sources of the phase.

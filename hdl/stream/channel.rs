@@ -33,7 +33,7 @@ pub struct SetChannel {
     /// Primary cause of the last result.
     pub cause: Signal<In, Bits<5>>,
     /// Raw flags of the last result.
-    pub flags: Signal<In, Bits<19>>,
+    pub flags: Signal<In, Bits<20>>,
     /// Strobe: the set is closed, its content is what is there now.
     pub take: Signal<In, Bit>,
     /// Which 8 bytes of the set are asked for: channel n has number n + 1.

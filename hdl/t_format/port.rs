@@ -83,7 +83,7 @@ pub struct TFormatPort {
     /// Primary cause of the last result, see [`super::cause::of_card`].
     pub cause: Signal<Out, Bits<5>>,
     /// Raw flags of the last result, see [`super::cause`].
-    pub flags: Signal<Out, Bits<19>>,
+    pub flags: Signal<Out, Bits<20>>,
     /// Word that the host accesses, see [`word`].
     pub host_address: Signal<In, Bits<3>>,
     /// Strobe: read it.
@@ -388,13 +388,18 @@ impl Logic for TFormatPort {
         self.snapshot.delay_cycles.next = 0.into();
         self.snapshot.publish.next = self.exchange.publish.val() & !self.own.q.val();
         self.snapshot.good.next = self.takes.val();
+        // All that an exchange shows is seen before its end.
         self.snapshot.late_fault.next = false;
+        self.snapshot.withdraw.next = false;
+        self.snapshot.confirm.next = true;
+        self.snapshot.width_in.next = 0.into();
+        self.snapshot.has_f2_in.next = false;
         self.snapshot.position_in.next =
             bit_cast::<48, 24>(self.single.val()) | (bit_cast::<48, 24>(self.multi.val()) << 24);
         self.snapshot.crc_received_in.next = 0.into();
         self.snapshot.crc_computed_in.next = 0.into();
         self.snapshot.cause_in.next = self.card_cause.val();
-        self.snapshot.flags_in.next = bit_cast::<19, 15>(self.sum_flags.val());
+        self.snapshot.flags_in.next = bit_cast::<20, 15>(self.sum_flags.val());
         self.over.next = self.exchange.publish.val();
         self.over_request.next = self.own.q.val();
         self.result_strobe.next = self.snapshot.result_strobe.val();

@@ -6,7 +6,7 @@ use rust_hdl::prelude::*;
 #[derive(LogicBlock, Default)]
 pub struct PrimaryCause {
     /// Raw flags, see [`super::cause::flag`](mod@super::cause::flag).
-    pub flags: Signal<In, Bits<19>>,
+    pub flags: Signal<In, Bits<20>>,
     /// Primary cause, see [`super::cause`].
     pub cause: Signal<Out, Bits<5>>,
 }
@@ -67,6 +67,9 @@ impl Logic for PrimaryCause {
         if self.flags.val().get_bit(10) {
             self.cause.next = 9.into();
         }
+        if self.flags.val().get_bit(19) {
+            self.cause.next = 31.into();
+        }
     }
 }
 
@@ -105,8 +108,9 @@ mod tests {
             NO_ENCODER,
             STUCK_HIGH,
             UNKNOWN_COMMAND,
+            UPSET,
         ];
-        assert_eq!(order.len() as u64, cause::COUNT - 1);
+        assert_eq!(order.len() as u64, cause::COUNT);
         assert_eq!(primary(0), NONE);
         for (rank, high) in order.into_iter().enumerate() {
             let mut below = flag(high);

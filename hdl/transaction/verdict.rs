@@ -3,8 +3,12 @@
 //! ```text
 //! answer_taken, give_up ...  ____/~~\____________
 //! taken, gave_up             _______/~~\_________    the flags are put together
-//! publish, late_fault, over  __________/~~\______    cause and flags stay until the next one
+//! prove                      ___________/~~\_____    what follows the answer fits, too
+//! publish, late_fault, over  ______________/~~\__    cause and flags stay until the next one
 //! ```
+//!
+//! An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA does
+//! not fall, informations of another length) withdraws it.
 
 use super::cause::{self, flag};
 use super::primary::PrimaryCause;
@@ -20,9 +24,13 @@ pub struct Verdict {
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
     /// Flags that go with `give_up`, `refuse` or `announce`, see [`cause::flag`](mod@cause::flag).
-    pub found: Signal<In, Bits<19>>,
+    pub found: Signal<In, Bits<20>>,
     /// Strobe: the answer has been taken; CRC and error bits decide.
     pub answer_taken: Signal<In, Bit>,
+    /// Strobe, with `taken` or later: the answer has the length it should have; it is published.
+    pub prove: Signal<In, Bit>,
+    /// Settings of the frame have changed under way.
+    pub settings_upset: Signal<In, Bit>,
     /// Strobe: the frame is aborted.
     pub give_up: Signal<In, Bit>,
     /// With `give_up`: its result has been published.
@@ -59,7 +67,7 @@ pub struct Verdict {
     pub is_received: Signal<Out, Bit>,
     /// With `taken`: the CRC is wrong, and was so in the frame before.
     pub is_doubtful: Signal<Out, Bit>,
-    /// With `taken`: wrong CRC, or an alarm.
+    /// With `prove`: the answer has a wrong CRC, or an alarm.
     pub is_bad: Signal<Out, Bit>,
     /// Strobe: `give_up`, a cycle later.
     pub gave_up: Signal<Out, Bit>,
@@ -71,6 +79,10 @@ pub struct Verdict {
     pub good: Signal<Out, Bit>,
     /// Strobe: something was wrong after the result was published.
     pub late_fault: Signal<Out, Bit>,
+    /// Strobe: and its position is not good after all.
+    pub withdraw: Signal<Out, Bit>,
+    /// Strobe: the published position stands.
+    pub confirm: Signal<Out, Bit>,
     /// Strobe: a frame has ended in whatever way.
     pub over: Signal<Out, Bit>,
     /// Strobe: a trigger has been lost.
@@ -78,19 +90,20 @@ pub struct Verdict {
     /// Primary cause, with `publish`, `late_fault` or `over`.
     pub cause: Signal<Out, Bits<5>>,
     /// Raw flags, see [`cause::flag`](mod@cause::flag).
-    pub flags: Signal<Out, Bits<19>>,
+    pub flags: Signal<Out, Bits<20>>,
     chooser: PrimaryCause,
     has_diagnosis: Constant<Bit>,
     own_recovery_min_cycles: Constant<Bits<13>>,
-    possible: Constant<Bits<19>>,
-    crc_wrong: Constant<Bits<19>>,
-    parallel_wrong: Constant<Bits<19>>,
-    own_echo: Constant<Bits<19>>,
-    f1_set: Constant<Bits<19>>,
-    f2_clear: Constant<Bits<19>>,
-    trigger_overrun: Constant<Bits<19>>,
-    too_short: Constant<Bits<19>>,
-    seen: Reg<Bits<19>>,
+    possible: Constant<Bits<20>>,
+    crc_wrong: Constant<Bits<20>>,
+    parallel_wrong: Constant<Bits<20>>,
+    own_echo: Constant<Bits<20>>,
+    f1_set: Constant<Bits<20>>,
+    f2_clear: Constant<Bits<20>>,
+    trigger_overrun: Constant<Bits<20>>,
+    too_short: Constant<Bits<20>>,
+    stored_upset: Constant<Bits<20>>,
+    seen: Reg<Bits<20>>,
     taken_now: Reg<Bit>,
     gave_up_now: Reg<Bit>,
     gave_up_late: Reg<Bit>,
@@ -101,13 +114,21 @@ pub struct Verdict {
     was_bad: Reg<Bit>,
     publish_now: Reg<Bit>,
     good_now: Reg<Bit>,
+    pending: Reg<Bit>,
+    pending_good: Reg<Bit>,
+    withdraw_now: Reg<Bit>,
+    confirm_now: Reg<Bit>,
     late_now: Reg<Bit>,
     over_now: Reg<Bit>,
     lost_now: Reg<Bit>,
     cause_now: Reg<Bits<5>>,
-    flags_now: Reg<Bits<19>>,
-    told: Signal<Local, Bits<19>>,
+    flags_now: Reg<Bits<20>>,
+    told: Signal<Local, Bits<20>>,
     crc_bad: Signal<Local, Bit>,
+    bad_now: Signal<Local, Bit>,
+    proven: Signal<Local, Bit>,
+    proven_good: Signal<Local, Bit>,
+    upset: Signal<Local, Bit>,
     recovery_min: Signal<Local, Bits<13>>,
     early: Signal<Local, Bit>,
 }
@@ -139,6 +160,8 @@ impl Verdict {
             reset: Default::default(),
             found: Default::default(),
             answer_taken: Default::default(),
+            prove: Default::default(),
+            settings_upset: Default::default(),
             give_up: Default::default(),
             is_late: Default::default(),
             refuse: Default::default(),
@@ -163,6 +186,8 @@ impl Verdict {
             publish: Default::default(),
             good: Default::default(),
             late_fault: Default::default(),
+            withdraw: Default::default(),
+            confirm: Default::default(),
             over: Default::default(),
             displaced: Default::default(),
             cause: Default::default(),
@@ -178,6 +203,7 @@ impl Verdict {
             f2_clear: Constant::new(flag(cause::F2).into()),
             trigger_overrun: Constant::new(flag(cause::TRIGGER_OVERRUN).into()),
             too_short: Constant::new(flag(cause::RECOVERY_TOO_SHORT).into()),
+            stored_upset: Constant::new(flag(cause::UPSET).into()),
             seen: Default::default(),
             taken_now: Default::default(),
             gave_up_now: Default::default(),
@@ -189,6 +215,10 @@ impl Verdict {
             was_bad: Default::default(),
             publish_now: Default::default(),
             good_now: Default::default(),
+            pending: Default::default(),
+            pending_good: Default::default(),
+            withdraw_now: Default::default(),
+            confirm_now: Default::default(),
             late_now: Default::default(),
             over_now: Default::default(),
             lost_now: Default::default(),
@@ -196,6 +226,10 @@ impl Verdict {
             flags_now: Default::default(),
             told: Default::default(),
             crc_bad: Default::default(),
+            bad_now: Default::default(),
+            proven: Default::default(),
+            proven_good: Default::default(),
+            upset: Default::default(),
             recovery_min: Default::default(),
             early: Default::default(),
         }
@@ -225,6 +259,18 @@ impl Logic for Verdict {
             cause_now,
             flags_now
         );
+        dff_setup!(
+            self,
+            clock,
+            pending,
+            pending_good,
+            withdraw_now,
+            confirm_now
+        );
+        self.pending.reset.next = self.reset.val();
+        self.pending_good.reset.next = self.reset.val();
+        self.withdraw_now.reset.next = self.reset.val();
+        self.confirm_now.reset.next = self.reset.val();
         self.seen.reset.next = self.reset.val();
         self.taken_now.reset.next = self.reset.val();
         self.gave_up_now.reset.next = self.reset.val();
@@ -273,6 +319,23 @@ impl Logic for Verdict {
                 self.told.next = self.told.val() | self.parallel_wrong.val();
             }
         }
+        // Between the answer and the bit behind it: a register was upset, or a bare port's settings changed.
+        self.bad_now.next = self.crc_bad.val() | self.f1.val() | !self.f2.val();
+        self.proven.next = self.prove.val() & (self.pending.q.val() | self.taken_now.q.val());
+        self.proven_good.next = self.pending_good.q.val();
+        if self.taken_now.q.val() {
+            self.proven_good.next = !self.bad_now.val();
+        }
+        self.is_bad.next = !self.proven_good.val();
+        self.upset.next = self.proven.val()
+            & self.proven_good.val()
+            & (!self.parallel_ok.val() | self.settings_upset.val());
+        if self.pending.q.val() & (self.gave_up_now.q.val() | self.upset.val()) {
+            self.told.next = self.told.val() | self.flags_now.q.val();
+        }
+        if self.upset.val() {
+            self.told.next = self.told.val() | self.stored_upset.val();
+        }
         if self.overrun.q.val() {
             self.told.next = self.told.val() | self.trigger_overrun.val();
         }
@@ -294,6 +357,7 @@ impl Logic for Verdict {
             | self.refused.q.val()
             | self.announced.q.val()
             | self.early.val()
+            | self.upset.val()
         {
             self.flags_now.d.next = self.told.val();
             self.cause_now.d.next = self.chooser.cause.val();
@@ -305,16 +369,24 @@ impl Logic for Verdict {
             self.overrun.d.next = true;
         }
         self.lost_now.d.next = self.lost.val();
-        self.publish_now.d.next = (self.taken_now.q.val()
+        self.publish_now.d.next = (self.proven.val()
             | self.refused.q.val()
             | self.announced.q.val()
             | (self.gave_up_now.q.val() & !self.gave_up_late.q.val()))
             & !self.is_own.val();
+        if self.taken_now.q.val() {
+            self.pending.d.next = true;
+            self.pending_good.d.next = !self.bad_now.val();
+        }
+        if self.proven.val() | self.gave_up_now.q.val() {
+            self.pending.d.next = false;
+        }
         self.late_now.d.next = (self.gave_up_late.q.val() | self.early.val()) & !self.is_own.val();
+        self.withdraw_now.d.next = self.gave_up_late.q.val() & !self.is_own.val();
+        self.confirm_now.d.next = self.ended.q.val() & !self.is_own.val();
         self.is_received.next = self.taken_now.q.val() & !self.crc_bad.val();
         self.is_doubtful.next = self.taken_now.q.val() & self.crc_bad.val() & self.was_bad.q.val();
-        self.is_bad.next = self.crc_bad.val() | self.f1.val() | !self.f2.val();
-        self.good_now.d.next = self.taken_now.q.val() & !self.is_bad.val();
+        self.good_now.d.next = self.proven.val() & self.proven_good.val() & !self.upset.val();
         // `over` comes with cause and flags of whatever ended the frame.
         self.over_now.d.next = self.ended.q.val() | self.gave_up_now.q.val() | self.refused.q.val();
 
@@ -327,6 +399,8 @@ impl Logic for Verdict {
         self.publish.next = self.publish_now.q.val();
         self.good.next = self.good_now.q.val();
         self.late_fault.next = self.late_now.q.val();
+        self.withdraw.next = self.withdraw_now.q.val();
+        self.confirm.next = self.confirm_now.q.val();
         self.over.next = self.over_now.q.val();
         self.displaced.next = self.lost_now.q.val();
         self.cause.next = self.cause_now.q.val();

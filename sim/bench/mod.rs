@@ -143,11 +143,11 @@ impl<E: Engine> Bench<E> {
         self.is_double = true;
     }
 
-    /// A bench for the block `Channel` with one link, configured and reset.
+    /// A bench for the block `Channel` with one link, configured and powered up.
     pub fn channel(engine: E, system_hz: u64, settings: &ChannelSettings, link: Link) -> Self {
         let mut bench = Self::new(engine, system_hz, vec![(PinNames::channel(), link)]);
         bench.configure(settings);
-        bench.reset();
+        bench.power_up();
         bench
     }
 
@@ -158,6 +158,12 @@ impl<E: Engine> Bench<E> {
                 self.set(name, value);
             }
         }
+    }
+
+    /// Some cycles without a reset: registers have their start values, and no frame can be under way. After [`Bench::reset`] a channel
+    /// is quiet for as long as after an aborted frame.
+    pub fn power_up(&mut self) {
+        self.run_cycles(PULSE_CYCLES + 1);
     }
 
     /// Holds the reset input (`reset` or `rst_i`), if there is one, for a few cycles.

@@ -182,10 +182,10 @@ impl Case {
         bench
     }
 
-    /// Resets the bench and triggers until all frames are there.
+    /// Powers the bench up and triggers until all frames are there.
     pub fn drive<E: Engine>(&self, bench: &mut Bench<E>) {
         bench.configure(&self.settings);
-        bench.reset();
+        bench.power_up();
         let end = self.limit_cycles();
         loop {
             let is_idle = bench.get("busy") == 0;

@@ -160,10 +160,7 @@ fn run_batch<V>(
     for lane in 0..bench.lanes() {
         bench.configure(lane, &case_of(lane).settings);
     }
-    bench.set_all("reset", 1);
-    (0..RESET_CYCLES).for_each(|_| bench.tick());
-    bench.set_all("reset", 0);
-    bench.tick();
+    (0..=RESET_CYCLES).for_each(|_| bench.tick());
     let limit = members.iter().map(|c| c.limit_cycles()).max().unwrap_or(0);
     let mut ends: Vec<Option<u64>> = vec![None; members.len()];
     let words = bench.lanes() / 64;

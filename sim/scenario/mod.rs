@@ -160,7 +160,7 @@ impl Scenario {
                 }
             }
         }
-        bench.reset();
+        bench.power_up();
         let mut answers = Vec::new();
         for (number, time) in self.trigger_times().enumerate() {
             match self.requests.iter().find(|r| r.trigger == number) {

@@ -66,7 +66,7 @@ fn pins(engine: &Compiled, with: &[usize]) -> Vec<Vec<u8>> {
         .collect();
     let mut bench = Bench::new(engine.clone(), config().system_hz, links);
     bench.set("uart_rx_i", 1);
-    bench.reset();
+    bench.power_up();
     let mut all = vec![vec![]; CHANNELS.len()];
     let names = |n: usize| {
         [

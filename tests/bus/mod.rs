@@ -87,7 +87,7 @@ impl Master {
         if project.card.line.double_edge {
             bench.set_double_edge();
         }
-        bench.reset();
+        bench.power_up();
         Self {
             bus: project.bus,
             bench,

@@ -144,7 +144,7 @@ fn both_latencies_are_the_same_for_every_width_and_rate() {
                 let last = strobes.iter().rfind(|s| s.1 == 1).expect("samples").0;
                 assert_eq!(
                     result.cycle - last,
-                    channel::LAST_CRC_SAMPLE_TO_RESULT_CYCLES,
+                    channel::TAIL_SAMPLE_TO_RESULT_CYCLES,
                     "{rates:?} {command:?} {bits}"
                 );
             }

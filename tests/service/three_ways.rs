@@ -43,7 +43,7 @@ fn recorded() -> Stimulus {
     bench.record_cycles();
     let command = ModeCommand::SendPositionAddInfo;
     bench.configure(&ChannelSettings::new(SYSTEM_HZ, ENDAT_HZ, command, 13));
-    bench.reset();
+    bench.power_up();
     bench.run_for(20 * US);
     bench.trigger();
     bench.run_for(250 * US);

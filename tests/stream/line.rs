@@ -91,7 +91,7 @@ impl Line {
         let links = links.map(|(n, link)| (PinNames::card(n), link)).collect();
         let mut bench = Bench::new(engine, config.system_hz, links);
         bench.set("uart_rx_i", 1);
-        bench.reset();
+        bench.power_up();
         let port = |bench: &mut Bench<Compiled>, name| bench.engine().port(name);
         Self {
             rx: port(&mut bench, "uart_rx_i"),

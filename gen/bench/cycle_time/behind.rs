@@ -109,7 +109,7 @@ impl Behind {
         let mut settings = case.settings;
         settings.command = SendPositionAddInfo.code();
         bench.configure(&settings);
-        bench.reset();
+        bench.power_up();
         let wait = |bench: &mut Bench<Compiled>, busy| {
             bench.run_until_done(FRAME_LIMIT, |b| b.get("busy") == busy);
         };

@@ -36,7 +36,7 @@ fn recorded() -> Stimulus {
     ] {
         bench.set(name, value);
     }
-    bench.reset();
+    bench.power_up();
     bench.run_for(15 * US);
     for round in 0..24 {
         if bench.get("busy") == 0 {
