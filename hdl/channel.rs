@@ -33,7 +33,7 @@ use rust_hdl::prelude::*;
 /// From the cycle with the trigger strobe to the first cycle with the EnDat clock low, at every width and rate.
 pub const TRIGGER_TO_FIRST_FALL_CYCLES: u64 = 3;
 /// From the cycle in which the bit behind the last CRC bit is sampled to the one with the result strobe, at every width and rate.
-pub const TAIL_SAMPLE_TO_RESULT_CYCLES: u64 = 3;
+pub const TAIL_SAMPLE_TO_RESULT_CYCLES: u64 = 2;
 /// From the time in `first_fall_timestamp` to the first cycle with the EnDat clock low.
 pub const TIMESTAMP_TO_FIRST_FALL_CYCLES: u64 = 2;
 /// What registers at both pins and the synchroniser add to `delay_cycles`; the filter adds its length.
@@ -199,6 +199,7 @@ pub struct Channel {
     transaction: Transaction,
     snapshot: Snapshot,
     shape: CommandShape,
+    wanted_shape: CommandShape,
     add_info: AddInfo,
     settings: FrameSettings,
     clk_pin: Reg<Bit>,
@@ -399,6 +400,7 @@ impl Channel {
             transaction: Transaction::new(times, features),
             snapshot: Default::default(),
             shape: CommandShape::new(features.requests),
+            wanted_shape: CommandShape::new(features.requests),
             add_info: Default::default(),
             settings: Default::default(),
             clk_pin: Reg::new(true),
@@ -485,8 +487,7 @@ impl Logic for Channel {
         self.transaction.reset.next = self.reset.val();
         self.snapshot.reset.next = self.reset.val();
 
-        self.settings.is_at_rest.next =
-            self.transaction.is_at_rest.val() & !self.transaction.begun.val();
+        self.settings.is_at_rest.next = self.transaction.is_at_rest.val();
         self.settings.start.next = self.transaction.start.val();
         self.settings.period_cycles.next = self.period_cycles.val();
         self.settings.first_low_extra_cycles.next = self.first_low_extra_cycles.val();
@@ -625,9 +626,12 @@ impl Logic for Channel {
         self.transaction.separated.next = self.receiver.separated.val();
         self.transaction.info_missing.next = self.receiver.info_missing.val();
         // In fewer than four cycles an additional information would begin before the position is taken.
-        self.transaction.is_known.next = self.shape.is_known.val()
-            & (!self.needs_four.val()
-                | self.settings.period_cycles_now.val().get_bits::<9>(2).any());
+        self.wanted_shape.command.next = self.command.val();
+        if self.has_requests.val() {
+            self.wanted_shape.command.next = self.frame_command.q.val();
+        }
+        self.transaction.is_known.next = self.wanted_shape.is_known.val()
+            & (!self.needs_four.val() | self.period_cycles.val().get_bits::<9>(2).any());
         self.transaction.has_parameter.next = self.shape.has_parameter.val();
         self.transaction.has_supplement.next = self.shape.has_supplement.val();
         self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.q.val();

@@ -1,9 +1,10 @@
 //! Settings of a frame: the inputs as they were when it began.
 //!
 //! ```text
-//! is_at_rest  ~~~~~~~\________________/~~~~
-//! inputs      A  B          C               whatever they do
-//! *_now       . A  B B B B B B B B B B . C   the frame has one set of them
+//! trigger     _____/\__________________________
+//! is_at_rest  ~~~~~~~\________________/~~~~~~~
+//! inputs      A   B    C                        whatever they do
+//! *_now       . A   B                  . C      the frame has those of the cycle with the trigger
 //! ```
 //!
 //! What decides where a position stands in the answer, command and width, is guarded: its parity is taken as the frame begins.

@@ -635,10 +635,7 @@ impl Logic for Receiver {
         self.check.crc_bit.next = self.crc_bit.val();
         self.check.bit.next = self.level.val();
         self.check.word.next = self.word.q.val().get_bits::<48>(0);
-        self.check.has_f1.next = true;
-        if self.has_all.val() {
-            self.check.has_f1.next = self.has_f1.val() & !self.in_info.q.val();
-        }
+        self.check.has_f1.next = !self.has_all.val() | (self.has_f1.val() & !self.in_info.q.val());
         self.check.has_f2.next = self.has_f2.val();
         self.check.f1.next = self.f1_bit.q.val();
         self.check.f2.next = self.f2_bit.q.val();

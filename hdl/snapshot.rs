@@ -90,13 +90,13 @@ pub struct Snapshot {
     held_crc: Reg<Bits<5>>,
     held_width: Reg<Bits<6>>,
     held_f2: Reg<Bit>,
-    before: Reg<Bits<48>>,
-    before_crc: Reg<Bits<5>>,
-    before_width: Reg<Bits<6>>,
-    before_f2: Reg<Bit>,
-    before_stamp: Reg<Bits<32>>,
-    before_valid: Reg<Bit>,
-    before_parity: Reg<Bit>,
+    earlier: Reg<Bits<48>>,
+    earlier_crc: Reg<Bits<5>>,
+    earlier_width: Reg<Bits<6>>,
+    earlier_f2: Reg<Bit>,
+    earlier_stamp: Reg<Bits<32>>,
+    earlier_valid: Reg<Bit>,
+    earlier_parity: Reg<Bit>,
     unconfirmed: Reg<Bit>,
     parity: Reg<Bit>,
     is_upset: Reg<Bit>,
@@ -163,13 +163,13 @@ impl Default for Snapshot {
             held_crc: Default::default(),
             held_width: Default::default(),
             held_f2: Default::default(),
-            before: Default::default(),
-            before_crc: Default::default(),
-            before_width: Default::default(),
-            before_f2: Default::default(),
-            before_stamp: Default::default(),
-            before_valid: Default::default(),
-            before_parity: Default::default(),
+            earlier: Default::default(),
+            earlier_crc: Default::default(),
+            earlier_width: Default::default(),
+            earlier_f2: Default::default(),
+            earlier_stamp: Default::default(),
+            earlier_valid: Default::default(),
+            earlier_parity: Default::default(),
             unconfirmed: Default::default(),
             parity: Default::default(),
             is_upset: Default::default(),
@@ -208,13 +208,13 @@ impl Logic for Snapshot {
             held_crc,
             held_width,
             held_f2,
-            before,
-            before_crc,
-            before_width,
-            before_f2,
-            before_stamp,
-            before_valid,
-            before_parity,
+            earlier,
+            earlier_crc,
+            earlier_width,
+            earlier_f2,
+            earlier_stamp,
+            earlier_valid,
+            earlier_parity,
             unconfirmed,
             parity,
             is_upset,
@@ -226,13 +226,13 @@ impl Logic for Snapshot {
         self.held_crc.reset.next = self.reset.val();
         self.held_width.reset.next = self.reset.val();
         self.held_f2.reset.next = self.reset.val();
-        self.before.reset.next = self.reset.val();
-        self.before_crc.reset.next = self.reset.val();
-        self.before_width.reset.next = self.reset.val();
-        self.before_f2.reset.next = self.reset.val();
-        self.before_stamp.reset.next = self.reset.val();
-        self.before_valid.reset.next = self.reset.val();
-        self.before_parity.reset.next = self.reset.val();
+        self.earlier.reset.next = self.reset.val();
+        self.earlier_crc.reset.next = self.reset.val();
+        self.earlier_width.reset.next = self.reset.val();
+        self.earlier_f2.reset.next = self.reset.val();
+        self.earlier_stamp.reset.next = self.reset.val();
+        self.earlier_valid.reset.next = self.reset.val();
+        self.earlier_parity.reset.next = self.reset.val();
         self.unconfirmed.reset.next = self.reset.val();
         self.parity.reset.next = self.reset.val();
         self.is_upset.reset.next = self.reset.val();
@@ -266,7 +266,8 @@ impl Logic for Snapshot {
             self.age.d.next = 0.into();
         }
         self.age_shown.d.next = self.age.q.val();
-        self.age_shown.reset.next = self.reset.val() | self.unconfirmed.q.val();
+        self.age_shown.reset.next =
+            self.reset.val() | self.unconfirmed.q.val() | self.take_good.val();
         self.strobe.d.next = self.publish.val();
         if self.publish.val() {
             self.is_fresh.d.next = self.good.val();
@@ -282,13 +283,13 @@ impl Logic for Snapshot {
             self.held_f2.d.next = self.has_f2_in.val();
             self.stamp.d.next = self.moment.q.val();
             self.valid.d.next = true;
-            self.before.d.next = self.held.q.val();
-            self.before_crc.d.next = self.held_crc.q.val();
-            self.before_width.d.next = self.held_width.q.val();
-            self.before_f2.d.next = self.held_f2.q.val();
-            self.before_stamp.d.next = self.stamp.q.val();
-            self.before_valid.d.next = self.valid.q.val();
-            self.before_parity.d.next = self.parity.q.val();
+            self.earlier.d.next = self.held.q.val();
+            self.earlier_crc.d.next = self.held_crc.q.val();
+            self.earlier_width.d.next = self.held_width.q.val();
+            self.earlier_f2.d.next = self.held_f2.q.val();
+            self.earlier_stamp.d.next = self.stamp.q.val();
+            self.earlier_valid.d.next = self.valid.q.val();
+            self.earlier_parity.d.next = self.parity.q.val();
         }
         if self.confirm.val() | self.take_back.val() {
             self.unconfirmed.d.next = false;
@@ -311,13 +312,13 @@ impl Logic for Snapshot {
             self.parity.d.next = self.parity_now.val();
         }
         if self.take_back.val() {
-            self.held.d.next = self.before.q.val();
-            self.held_crc.d.next = self.before_crc.q.val();
-            self.held_width.d.next = self.before_width.q.val();
-            self.held_f2.d.next = self.before_f2.q.val();
-            self.stamp.d.next = self.before_stamp.q.val();
-            self.valid.d.next = self.before_valid.q.val();
-            self.parity.d.next = self.before_parity.q.val();
+            self.held.d.next = self.earlier.q.val();
+            self.held_crc.d.next = self.earlier_crc.q.val();
+            self.held_width.d.next = self.earlier_width.q.val();
+            self.held_f2.d.next = self.earlier_f2.q.val();
+            self.stamp.d.next = self.earlier_stamp.q.val();
+            self.valid.d.next = self.earlier_valid.q.val();
+            self.parity.d.next = self.earlier_parity.q.val();
             self.is_fresh.d.next = false;
         }
         if self.publish.val() | self.late_fault.val() {

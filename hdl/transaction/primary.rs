@@ -31,14 +31,14 @@ impl Logic for PrimaryCause {
         if self.flags.val().get_bit(3) {
             self.cause.next = 4.into();
         }
-        if self.flags.val().get_bit(17) {
-            self.cause.next = 16.into();
-        }
         if self.flags.val().get_bit(11) {
             self.cause.next = 10.into();
         }
         if self.flags.val().get_bit(6) | self.flags.val().get_bit(9) {
             self.cause.next = 7.into();
+        }
+        if self.flags.val().get_bit(17) {
+            self.cause.next = 16.into();
         }
         if self.flags.val().get_bit(2) {
             self.cause.next = 3.into();
@@ -96,9 +96,9 @@ mod tests {
             F2,
             F1,
             CRC,
-            OWN_ECHO,
             INFO_MISSING,
             DATA_NOT_FALLING,
+            OWN_ECHO,
             START_WINDOW,
             NO_START_BIT,
             LATE_START,

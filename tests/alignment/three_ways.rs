@@ -55,7 +55,7 @@ fn double_edge_agrees_on_a_line_with_jitter() {
             position_bits, filter_cycles, filter_half, phase_mode, fixed_delay, majority, start_window_cycles, start_timeout_us, recovery_limit_cycles,
             recovery_min_cycles, watchdog_us, continuous, stop_at_error, request_command, request_parameter, request_ride, request_own, request_cancel, hold_off, clock_low, forced;
             out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
-            first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles, phase, edge_measured, edge_offset, glitch, busy,
+            first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, position_crc, position_width, position_has_f2, recovery_cycles, delay_cycles, phase, edge_measured, edge_offset, glitch, busy,
             sample_strobe, sample_second, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply, answer, reply_good, info_active, info_1, info_2,
             info_came, info_good, calibrated);
         let recording = three_way(name, &mut kernel, &design, &stimulus).unwrap();

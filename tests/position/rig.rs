@@ -103,7 +103,7 @@ impl Setup {
     /// Whether sampled levels, from the first HIGH on, are an answer without alarm and with a right CRC.
     pub fn believes(&self, levels: &[bool]) -> bool {
         let f2 = self.settings.command >> 5 != 0;
-        believes(levels, self.answer_bits(), f2)
+        believes(levels, self.answer_bits(), f2, true)
     }
 
     fn link(&self) -> Link {
@@ -155,13 +155,13 @@ impl Setup {
     }
 }
 
-/// Whether sampled levels, from the first HIGH on, are an answer of so many bits without alarm and with a right CRC.
-pub fn believes(levels: &[bool], answer_bits: u32, f2: bool) -> bool {
+/// Whether sampled levels, from the first HIGH on, are an answer of so many bits without alarm, with a right CRC and this level behind it.
+pub fn believes(levels: &[bool], answer_bits: u32, f2: bool, behind: bool) -> bool {
     let start = levels.iter().position(|level| *level);
     let answer = &levels[start.unwrap_or(levels.len())..];
     let end = answer_bits as usize;
     let covered_end = end - CRC_BITS as usize;
-    if answer.len() < end {
+    if answer.get(end) != Some(&behind) {
         return false;
     }
     let sent = answer[covered_end..end].iter();

@@ -79,7 +79,7 @@ fn run(faults: &[Fault]) -> [usize; 3] {
                 .filter(|s| taken.contains(&s.time))
                 .map(|s| s.level)
                 .collect();
-            let believed = believes(&levels, POSITION_ANSWER, true);
+            let believed = believes(&levels, POSITION_ANSWER, true, false);
             assert_eq!(
                 result.fresh,
                 believed,

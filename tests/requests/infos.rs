@@ -49,8 +49,10 @@ fn informations_that_are_gone_are_forgotten_with_the_first_frame() {
         let over = rig.position();
         assert_eq!(cause::name(over.cause), "additional information missing");
         let result = rig.bench.results().last().unwrap().clone();
-        assert!(result.fresh, "the position is good");
-        assert_eq!(result.position, rig.last_frame().position);
+        assert!(
+            !result.fresh,
+            "the frame has another length than it should have"
+        );
         assert_eq!(rig.good_position().infos.len(), 0);
         rig.good_position();
     }
