@@ -55,6 +55,9 @@ pub const WRITE_MS: u16 = 12;
 pub const PARAMETER_GAP_MS: u16 = 1;
 /// Longest Busy before a request is given up, in ms: access takes up to 12 ms (PWM 20).
 pub const BUSY_MS: u16 = 50;
+/// Longest wait of a request for the trigger that it rides on, in ms, unless the host says otherwise (chosen: triggers that are slower
+/// than one a second are made by hand).
+pub const REQUEST_WAIT_MS: u16 = 2_000;
 /// Fastest clock of an encoder that knows EnDat 2.1 only, in kHz (PWM 20).
 pub const ENDAT21_MAX_KHZ: u16 = 2_000;
 /// Largest deviation of the EnDat clock from the one asked for, in parts per million.

