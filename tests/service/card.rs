@@ -65,8 +65,8 @@ fn an_encoder_that_leaves_a_slow_frame_starts_with_a_faster_calibration_clock() 
         config.uart_bit_cycles = 8;
         let mut encoder = RCN_8510.encoder();
         encoder.max_clock_high = 2 * US;
-        let links = vec![Link::new(LineConfig::cable(10.0), encoder); 2];
-        let mut host = crate::host::Host::new(Card::new(&config), config.system_hz, links);
+        let links = [0, 1].map(|_| Link::new(LineConfig::cable(10.0), encoder.clone()));
+        let mut host = crate::host::Host::new(Card::new(&config), config.system_hz, links.into());
         host.write(&CARD_CONFIG, "trigger_sources", 0, 4);
         for _ in 0..2 {
             host.write(&CARD, "trigger_now", 0, 1);
