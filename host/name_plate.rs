@@ -90,7 +90,7 @@ impl NamePlate {
             infos_1: word("infos_1"),
             infos_2: word("infos_2"),
             clock_max_khz: word("clock_max_khz").map(u32::from),
-            short_recovery: word("recovery").map(|w| w == 1),
+            short_recovery: word("recovery").map(|w| w & 3 == 1),
             alarms: word("alarms"),
             warnings: word("warnings"),
             ..Self::default()

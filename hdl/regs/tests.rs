@@ -7,6 +7,7 @@ use crate::protocol::ModeCommand;
 pub fn test_config() -> CardConfig {
     let first = ChannelRequest {
         clock_hz: 3_125_000,
+        calibration_hz: None,
         tst_ns: 2_000,
         command: ModeCommand::SendPositionAddInfo,
         position_bits: 29,

@@ -304,6 +304,8 @@ const fn entry(name: &'static str, mrs: u8, address: u8, meaning: &'static str) 
 pub const AREA_ENDAT22: u8 = 0xBD;
 /// Address of the recovery time in the operating status.
 pub const RECOVERY_ADDRESS: u8 = 3;
+/// Bits of that word which are the recovery time; what the others mean is the encoder's.
+pub const RECOVERY_MASK: u16 = 3;
 /// Long recovery time, as written there (TI).
 pub const RECOVERY_LONG: u16 = 2;
 /// Short recovery time, as written there (TI).
@@ -400,7 +402,7 @@ pub const NAME_PLATE: [PlateEntry; 21] = [
         "recovery",
         0xB9,
         0x03,
-        "Recovery time found: 2 = 10 to 30 us, 1 = 1.25 to 3.75 us",
+        "Word 3 of the operating status as set: bits 1..0 = 10: 10 to 30 us, 01: 1.25 to 3.75 us",
     ),
 ];
 /// Where the tracked line delay stands behind the name plate, in system clock cycles.

@@ -13,8 +13,8 @@ fn desk() -> Desk {
 #[test]
 fn a_request_without_a_trigger_is_refused_in_time_and_the_next_one_works() {
     let mut desk = desk();
-    let sources = desk.reg("trigger_sources");
-    desk.set("trigger_sources", 0);
+    let sources = desk.reg("card_config.trigger_sources");
+    desk.set("card_config.trigger_sources", 0);
     desk.set("service0.request_wait", 20);
     let request = Request {
         command: 0b101101,
@@ -33,6 +33,6 @@ fn a_request_without_a_trigger_is_refused_in_time_and_the_next_one_works() {
     desk.card.cancel_request(0).unwrap();
     assert_eq!(desk.reg("service0.request_state.busy"), 0);
     assert_eq!(desk.reg("service0.request_state.error"), 9);
-    desk.set("trigger_sources", sources);
+    desk.set("card_config.trigger_sources", sources);
     desk.send(0, 0b101101, 0, 0);
 }

@@ -203,6 +203,7 @@ fn errors_in_a_row_end_a_run_only_if_it_stops_at_errors() {
                 assert_eq!(*found, expected, "{n} {causes:?}");
             }
             if stop == 0 {
+                assert!(causes.len() > 30, "{frames:?} {causes:?}");
                 assert!(rig.last_frame().continuous, "{:?}", rig.last_frame());
             }
             leave(&mut rig);
