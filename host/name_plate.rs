@@ -110,3 +110,16 @@ impl NamePlate {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The word has other functions beside the recovery time.
+    #[test]
+    fn the_recovery_time_is_the_lowest_two_bits_of_its_word() {
+        let short = |found: u16| NamePlate::new(|_| Some(found)).short_recovery;
+        assert_eq!([1, 0xA555].map(short), [Some(true); 2]);
+        assert_eq!([2, 0xA556].map(short), [Some(false); 2]);
+    }
+}

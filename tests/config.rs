@@ -85,7 +85,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("system_hz = 100_000_000", "system_hz = 300_000_000", "outside 8000000..250000000"),
         ("system_hz = 100_000_000", "system_hz = 99_999_999", "the clock manager cannot make it from the board's 32000000 Hz; use 99200000 or 100000000 Hz"),
         ("clock_hz = 3_125_000", "clock_hz = 9_000_000", "endat.clock_hz = 9000000: would become 9090909 Hz (+10101 ppm), more than the allowed 5000 ppm"),
-        ("clock_hz = 3_125_000", "clock_hz = 16_000_000", "would become 16557377 Hz (+41667 ppm), more than the allowed 5000 ppm"),
+        ("clock_hz = 3_125_000", "clock_hz = 16_000_000", "would become 16666667 Hz (+41667 ppm), more than the allowed 5000 ppm"),
         ("clock_hz = 3_125_000", "clock_hz = 99_000", "outside 100000..16000000"),
         ("tst_ns = 2_000", "tst_ns = 400", "endat.tst_ns = 400: neither 0 nor in 500..10000"),
         ("filter_ns = 20", "filter_ns = 1_000", "endat.filter_ns = 1000: is 100 cycles, more than 15"),
