@@ -8,7 +8,15 @@
 //! ```
 //!
 //! The last line finds the truth again after a reset, another plug or a request that the encoder refused: each frame that contradicts
-//! the record corrects it, the second one at the latest; bit I4 of an information tells which of the two it is.
+//! the record corrects it, the second one at the latest; bit I4 of an information tells which of the two it is. A frame whose CRC is
+//! wrong contradicts nothing, and no answer is longer than both: then only those that were right are there.
+//!
+//! ```text
+//! slow frame   last CRC bit  X LOW, or HIGH for tm ~~~~\_____
+//! center       ______________/\_____________________________
+//! look         _______________________/\____________________    a short tm is not over yet
+//! sample       ______________________________________/\_____
+//! ```
 //!
 //! Ref: TI motor-control SDK, `endat_drv.c` (order, selection); HEIDENHAIN EnDat FAQ (end of selection).
 
@@ -16,7 +24,7 @@ use crate::reg::Reg;
 use rust_hdl::prelude::*;
 
 /// Record of selections and contents of one channel.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock)]
 pub struct AddInfo {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -24,6 +32,12 @@ pub struct AddInfo {
     pub reset: Signal<In, Bit>,
     /// Strobe: a frame begins.
     pub start: Signal<In, Bit>,
+    /// Strobe: middle of the expected place of a data edge.
+    pub center: Signal<In, Bit>,
+    /// Strobe: the data line is sampled, in the middle of the cell behind it.
+    pub sample: Signal<In, Bit>,
+    /// Strobe: position, or answer, and its CRC have been taken.
+    pub answer_done: Signal<In, Bit>,
     /// The frame has F2, so additional information may follow.
     pub has_f2: Signal<In, Bit>,
     /// A supplement follows.
@@ -34,7 +48,7 @@ pub struct AddInfo {
     pub mrs: Signal<In, Bits<8>>,
     /// Strobe: an additional information has been taken.
     pub info_done: Signal<In, Bit>,
-    /// Its CRC is right.
+    /// Its CRC is right; the same one cycle after `answer_done`.
     pub crc_ok: Signal<In, Bit>,
     /// Its bits WRN, RM, Busy, I4..I0, 16 bits.
     pub word: Signal<In, Bits<24>>,
@@ -46,6 +60,8 @@ pub struct AddInfo {
     pub active: Signal<Out, Bits<2>>,
     /// How many follow the position of this frame.
     pub infos: Signal<Out, Bits<2>>,
+    /// Strobe: in the first part of a long cell, where a short recovery time is not over yet.
+    pub look: Signal<Out, Bit>,
     /// Info 1 as it came last.
     pub info_1: Signal<Out, Bits<24>>,
     /// Info 2 as it came last.
@@ -59,21 +75,95 @@ pub struct AddInfo {
     second: Reg<Bits<24>>,
     seen: Reg<Bits<2>>,
     right: Reg<Bits<2>>,
+    answered: Reg<Bit>,
+    trusted: Reg<Bit>,
+    remaining: Reg<Bits<8>>,
+    look_now: Reg<Bit>,
+    separator_cycles: Constant<Bits<8>>,
     is_second: Signal<Local, Bit>,
     is_sent: Signal<Local, Bit>,
     is_selection: Signal<Local, Bit>,
     is_off: Signal<Local, Bit>,
 }
 
+impl AddInfo {
+    /// A record that looks for an information so many system clock cycles (1..=255) after the edge behind an answer.
+    pub fn new(separator_cycles: u64) -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            start: Default::default(),
+            center: Default::default(),
+            sample: Default::default(),
+            answer_done: Default::default(),
+            has_f2: Default::default(),
+            has_supplement: Default::default(),
+            command: Default::default(),
+            mrs: Default::default(),
+            info_done: Default::default(),
+            crc_ok: Default::default(),
+            word: Default::default(),
+            over: Default::default(),
+            flags: Default::default(),
+            active: Default::default(),
+            infos: Default::default(),
+            look: Default::default(),
+            info_1: Default::default(),
+            info_2: Default::default(),
+            came: Default::default(),
+            good: Default::default(),
+            selected: Default::default(),
+            first: Default::default(),
+            second: Default::default(),
+            seen: Default::default(),
+            right: Default::default(),
+            answered: Default::default(),
+            trusted: Default::default(),
+            remaining: Default::default(),
+            look_now: Default::default(),
+            separator_cycles: Constant::new(separator_cycles.into()),
+            is_second: Default::default(),
+            is_sent: Default::default(),
+            is_selection: Default::default(),
+            is_off: Default::default(),
+        }
+    }
+}
+
 impl Logic for AddInfo {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, selected, first, second, seen, right);
+        dff_setup!(
+            self, clock, selected, first, second, seen, right, answered, trusted, remaining,
+            look_now
+        );
+        self.answered.reset.next = self.reset.val();
+        self.trusted.reset.next = self.reset.val();
+        self.remaining.reset.next = self.reset.val();
+        self.look_now.reset.next = self.reset.val();
         self.selected.reset.next = self.reset.val();
         self.first.reset.next = self.reset.val();
         self.second.reset.next = self.reset.val();
         self.seen.reset.next = self.reset.val();
         self.right.reset.next = self.reset.val();
+
+        // A sample that comes first leaves nothing to look for.
+        self.look_now.d.next = (self.remaining.q.val() == 1) & !self.sample.val();
+        if self.remaining.q.val().any() {
+            self.remaining.d.next = self.remaining.q.val() - 1;
+        }
+        if self.center.val() {
+            self.remaining.d.next = self.separator_cycles.val();
+        }
+        if self.sample.val() {
+            self.remaining.d.next = 0.into();
+        }
+        self.look.next = self.look_now.q.val();
+
+        self.answered.d.next = self.answer_done.val();
+        if self.answered.q.val() {
+            self.trusted.d.next = self.crc_ok.val();
+        }
 
         // Two come in their order. One alone says itself which it is, if it can be believed.
         self.is_second.next = self.selected.q.val().get_bit(1);
@@ -101,6 +191,7 @@ impl Logic for AddInfo {
         if self.start.val() {
             self.seen.d.next = 0.into();
             self.right.d.next = 0.into();
+            self.trusted.d.next = false;
         }
 
         // Whatever gives a frame up before its end leaves the supplement unsent.
@@ -129,9 +220,14 @@ impl Logic for AddInfo {
             if self.flags.val().get_bit(11) {
                 self.selected.d.next = self.seen.q.val();
             }
-            if self.flags.val().get_bit(9) & self.has_f2.val() {
+            if self.flags.val().get_bit(9) & self.has_f2.val() & self.trusted.q.val() {
                 self.selected.d.next = 3.into();
+                if self.selected.q.val().all() {
+                    self.selected.d.next = self.right.q.val();
+                }
             }
+            // A frame teaches this once.
+            self.trusted.d.next = false;
             // 101010, whatever became of its answer.
             if self.command.val() == 42 {
                 self.selected.d.next = 0.into();

@@ -239,6 +239,8 @@ pub struct FixedTimes {
     pub ready_low_cycles: u64,
     /// Quiet time after an aborted frame, in microseconds (1..=65535).
     pub abort_us: u64,
+    /// From the edge behind an answer to the look for an additional information, in system clock cycles (1..=255).
+    pub separator_cycles: u64,
     /// Clock LOW between an answer and its supplement, in system clock cycles (1..=65535).
     pub park_cycles: u64,
     /// Longest wait for the answer to a command with a parameter, in microseconds (1..=65535).
@@ -258,6 +260,7 @@ impl FixedTimes {
             calibration_period_cycles: timing::period_cycles(timing::CALIBRATION_HZ, system_hz),
             ready_low_cycles: timing::cycles_at_least(timing::READY_LOW_NS, system_hz),
             abort_us: timing::ABORT_US,
+            separator_cycles: timing::cycles_at_most(timing::SEPARATOR_NS, system_hz),
             park_cycles: timing::cycles_at_least(timing::PARK_NS, system_hz),
             parameter_timeout_us: timing::PARAMETER_TIMEOUT_US,
             frame_us: timing::FRAME_US,
@@ -401,7 +404,7 @@ impl Channel {
             snapshot: Default::default(),
             shape: CommandShape::new(features.requests),
             wanted_shape: CommandShape::new(features.requests),
-            add_info: Default::default(),
+            add_info: AddInfo::new(times.separator_cycles),
             settings: Default::default(),
             clk_pin: Reg::new(true),
             data_pin: Default::default(),
@@ -607,6 +610,7 @@ impl Logic for Channel {
         self.receiver.has_parameter.next = self.shape.has_parameter.val();
         self.receiver.has_supplement.next = self.shape.has_supplement.val();
         self.receiver.infos.next = self.add_info.infos.val();
+        self.receiver.look.next = self.add_info.look.val();
         self.receiver.start_supplement.next = self.transaction.start_supplement.val();
         self.receiver.going_on.next = self.transaction.going_on.val();
         self.receiver.command.next = self.command_now.val();
@@ -708,6 +712,9 @@ impl Logic for Channel {
         }
 
         self.add_info.start.next = self.transaction.start.val();
+        self.add_info.center.next = self.delay.center.val();
+        self.add_info.sample.next = self.delay.sample.val();
+        self.add_info.answer_done.next = self.receiver.done.val();
         self.add_info.has_f2.next = self.shape.has_f2.val();
         self.add_info.has_supplement.next = self.shape.has_supplement.val();
         self.add_info.command.next = self.command_now.val();

@@ -84,6 +84,8 @@ pub struct Receiver {
     pub has_supplement: Signal<In, Bit>,
     /// Additional informations that follow the position, 0..=2.
     pub infos: Signal<In, Bits<2>>,
+    /// Strobe: what is HIGH now is a recovery time, which may be over in the middle of this cell.
+    pub look: Signal<In, Bit>,
     /// One-cycle strobe: the supplement begins.
     pub start_supplement: Signal<In, Bit>,
     /// The clock goes on after this answer, and another one follows.
@@ -224,6 +226,7 @@ impl Receiver {
             has_parameter: Default::default(),
             has_supplement: Default::default(),
             infos: Default::default(),
+            look: Default::default(),
             start_supplement: Default::default(),
             going_on: Default::default(),
             command: Default::default(),
@@ -525,6 +528,10 @@ impl Logic for Receiver {
                 }
             }
             Field::Separator => {
+                if self.look.val() & self.level.val() & self.has_all.val() {
+                    self.missing.d.next = true;
+                    self.field.d.next = Field::Done;
+                }
                 if self.sample.val() {
                     self.separator.next = true;
                     self.infos_left.d.next = self.infos_left.q.val() - 1;

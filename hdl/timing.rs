@@ -6,7 +6,8 @@
 pub const ENDAT_HZ_MIN: u64 = 100_000;
 /// Fastest EnDat clock with propagation-delay compensation, in hertz (PWM 20).
 pub const ENDAT_HZ_MAX: u64 = 16_000_000;
-/// Clock of the frame that measures the propagation delay, in hertz: its period is longer than any cable's delay (TI, C2000).
+/// Clock of the frame that measures the propagation delay, in hertz, unless the configuration says otherwise: its period is longer than
+/// any usual cable's delay (TI, C2000).
 pub const CALIBRATION_HZ: u64 = 200_000;
 /// The same for cables whose delay comes near its period, in hertz: the slowest that there is.
 pub const LONG_CALIBRATION_HZ: u64 = ENDAT_HZ_MIN;
@@ -26,6 +27,9 @@ pub const RECOVERY_MIN_NS: u64 = 10_000;
 pub const RECOVERY_MAX_NS: u64 = 30_000;
 /// Shortest programmed recovery time, in ns (PWM 20; EnDat 2.2 commands above 1 MHz only).
 pub const SHORT_RECOVERY_MIN_NS: u64 = 1_250;
+/// From the edge behind an answer until it is looked at whether an additional information follows, in ns, if the middle of the cell
+/// comes later: half the shortest recovery time, which would be over by then.
+pub const SEPARATOR_NS: u64 = SHORT_RECOVERY_MIN_NS / 2;
 /// Data must have been low for longer than tR before the next frame, in ns (PWM 20).
 pub const READY_LOW_NS: u64 = 500;
 /// Quiet time after an aborted transfer, in microseconds (S2 block, ADDI driver).
@@ -55,6 +59,9 @@ pub const WRITE_MS: u16 = 12;
 pub const PARAMETER_GAP_MS: u16 = 1;
 /// Longest Busy before a request is given up, in ms: access takes up to 12 ms (PWM 20).
 pub const BUSY_MS: u16 = 50;
+/// Longest wait of a request for the trigger that it rides on, in ms, unless the host says otherwise (chosen: triggers that are slower
+/// than one a second are made by hand).
+pub const REQUEST_WAIT_MS: u16 = 2_000;
 /// Fastest clock of an encoder that knows EnDat 2.1 only, in kHz (PWM 20).
 pub const ENDAT21_MAX_KHZ: u16 = 2_000;
 /// Largest deviation of the EnDat clock from the one asked for, in parts per million.
@@ -102,6 +109,11 @@ pub const fn calibration_hz(delay_ns: u64) -> u64 {
 /// The measured recovery time that is still taken for one of at least `ns`: a sixteenth less, for jitter and measuring.
 pub const fn recovery_min_cycles(ns: u64, system_hz: u64) -> u64 {
     cycles_at_most(ns - ns / 16, system_hz)
+}
+
+/// The fastest clock that measures a delay of at most `delay_ns`: as much of its period is left for pins and edges as of the usual one.
+pub const fn calibration_most_hz(delay_ns: u64) -> u64 {
+    CALIBRATION_HZ * CALIBRATION_DELAY_MAX_NS / delay_ns
 }
 
 /// Nanoseconds that `cycles` of a `system_hz` clock last, rounded to the nearest.

@@ -634,6 +634,8 @@ impl Logic for Transaction {
             self.timer_clear.next = true;
             self.accept.next = false;
             self.refuse.next = false;
+            // DATA LOW behind a frame of another length does not end it once more.
+            self.normal_end.next = false;
             self.answered.d.next = false;
             self.is_calibrated.d.next = false;
             self.late.d.next = false;
@@ -705,8 +707,8 @@ impl Logic for Transaction {
                 self.is_calibrated.d.next = self.passes.q.val().all();
             }
         }
-        // A delay that is wrong by whole periods is not seen at the start edge.
-        if self.verdict.is_doubtful.val() {
+        // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is told to.
+        if self.verdict.is_doubtful.val() & !self.going.q.val() {
             self.is_calibrated.d.next = false;
         }
         self.lost.next = self.trigger.val()

@@ -35,7 +35,7 @@ pub fn advice(name: &str) -> Option<[&'static str; 2]> {
         ],
         "no_start_bit" => [
             "The encoder did not answer: it is silent, does not know the mode command, or needs a longer calculation time than configured.",
-            "Try the command 000111; raise tcal_max_ns; lower the clock.",
+            "Try the command 000111; raise tcal_max_ns; lower the clock. If no frame gets beyond the slow ones that measure the delay: tcal_max_ns counts there, too (a start bit at clock 15 needs 28000 at 200 kHz), and an encoder that leaves a frame after 2 us of HIGH needs a faster calibration_hz.",
         ],
         "start_window" => [
             "The start bit came at another phase than expected: a glitch, another cable, or a tcal that is not the configured one.",

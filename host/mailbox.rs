@@ -18,6 +18,8 @@ pub mod command {
 
 /// Longest wait for an initialisation that is under way; simulated cards are slow.
 pub const INITIALISATION: Duration = Duration::from_secs(60);
+/// Bit `cancel` of the control word.
+const CANCEL: u32 = 1 << 2;
 /// Data of 001110 for areas without blocks.
 const NO_BLOCK: u16 = 0;
 
@@ -39,6 +41,8 @@ pub struct Answer {
     pub address: u8,
     /// Data.
     pub data: u16,
+    /// The whole answer: address and data, or the 48 bits of a longer one.
+    pub bits: u64,
     /// How long the request took.
     pub duration: Duration,
 }
@@ -57,7 +61,7 @@ impl<T: Transport> Card<T> {
         while self.read(&busy)? == 1 {
             if Instant::now() > end {
                 return Err(HostError::Refused(format!(
-                    "channel {channel}: an earlier request is still under way after {} s; try again later",
+                    "channel {channel}: an earlier request is still under way after {} s; try again later, or cancel it (`param cancel`)",
                     self.patience().as_secs()
                 )));
             }
@@ -74,6 +78,7 @@ impl<T: Transport> Card<T> {
                 break state;
             }
             if Instant::now() > end {
+                self.write(&at("control"), CANCEL)?;
                 return Err(HostError::Refused(format!(
                     "request {:06b} of channel {channel}: not finished after {} s; is the encoder plugged in, and for EnDat 2.2 commands, which ride on positions: is a trigger enabled?",
                     request.command,
@@ -96,6 +101,7 @@ impl<T: Transport> Card<T> {
             )));
         }
         let answer = self.read(&at("answer"))?;
+        let more = self.read(&at("answer_more"))?;
         let duration = self.read(&at("duration"))?;
         let (us, ms) = (u64::from(duration & 0xFFFF), u64::from(duration >> 16));
         let duration = if ms < 60 {
@@ -106,8 +112,31 @@ impl<T: Transport> Card<T> {
         Ok(Answer {
             address: (answer >> 16) as u8,
             data: answer as u16,
+            bits: u64::from(more & 0xFFFF) << 32 | u64::from(answer),
             duration,
         })
+    }
+
+    /// Gives up the request that waits for a trigger in channel `channel`, whoever sent it; whether there was one.
+    pub fn cancel_request(&mut self, channel: usize) -> Result<bool, HostError> {
+        self.needs_endat("mode commands", channel)?;
+        self.needs_requests("requests to the encoder")?;
+        let busy = Place::field_at("service", "request_state", "busy", channel);
+        if self.read(&busy)? == 0 {
+            return Ok(false);
+        }
+        // The whole word: what was asked for before must not be done again.
+        self.write(&Place::at("service", "control", channel), CANCEL)?;
+        let end = Instant::now() + self.patience();
+        while self.read(&busy)? == 1 {
+            if Instant::now() > end {
+                return Err(HostError::Refused(format!(
+                    "channel {channel}: the request is still under way {} s after it was cancelled; is the card alive?",
+                    self.patience().as_secs()
+                )));
+            }
+        }
+        Ok(true)
     }
 
     /// Waits until the card no longer initialises the encoder: meanwhile it takes no request and no trigger.

@@ -90,7 +90,7 @@ impl NamePlate {
             infos_1: word("infos_1"),
             infos_2: word("infos_2"),
             clock_max_khz: word("clock_max_khz").map(u32::from),
-            short_recovery: word("recovery").map(|w| w == 1),
+            short_recovery: word("recovery").map(|w| w & 3 == 1),
             alarms: word("alarms"),
             warnings: word("warnings"),
             ..Self::default()
@@ -108,5 +108,18 @@ impl NamePlate {
                 step_nm: f64::from(steps),
             },
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The word has other functions beside the recovery time.
+    #[test]
+    fn the_recovery_time_is_the_lowest_two_bits_of_its_word() {
+        let short = |found: u16| NamePlate::new(|_| Some(found)).short_recovery;
+        assert_eq!([1, 0xA555].map(short), [Some(true); 2]);
+        assert_eq!([2, 0xA556].map(short), [Some(false); 2]);
     }
 }

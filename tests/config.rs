@@ -241,6 +241,74 @@ fn what_is_missing_is_named_with_an_example() {
     );
 }
 
+/// The clock of the frame that measures the delay: 200 kHz, or what is asked for, as fast as the cable lets it be.
+#[test]
+fn the_calibration_clock_is_a_setting_with_a_safe_default() {
+    let whole = parse("card.toml", PRESET).unwrap();
+    assert_eq!(
+        whole.card.channels[0].calibration_period_cycles(100_000_000),
+        500
+    );
+    let said = |hz: &str| {
+        changed(
+            "clock_hz = 3_125_000",
+            &format!("clock_hz = 3_125_000\ncalibration_hz = {hz}"),
+        )
+        .0
+    };
+    let same = parse("card.toml", &said("200_000")).unwrap();
+    assert_eq!(same.hash, whole.hash);
+    let faster = parse("card.toml", &said("400_000")).unwrap();
+    assert_ne!(faster.hash, whole.hash);
+    assert_eq!(
+        faster.card.channels[1].calibration_period_cycles(100_000_000),
+        250
+    );
+    // A start bit may be two periods late.
+    let waits = |p: &Project| p.card.channels[0].start_timeout_us;
+    assert_eq!(waits(&whole) - waits(&faster), 5);
+    let (text, _) = changed(
+        "position_bits = 29",
+        "position_bits = 29\ncalibration_hz = 100_000",
+    );
+    let one = parse("card.toml", &text).unwrap();
+    let periods: Vec<u64> = one
+        .card
+        .channels
+        .iter()
+        .map(|c| c.calibration_period_cycles(100_000_000))
+        .collect();
+    assert_eq!(periods, [1_000, 500]);
+    for (hz, wanted) in [
+        ("99_000", "endat.calibration_hz = 99000: outside 100000..655737"),
+        ("700_000", "endat.calibration_hz = 700000: outside 100000..655737 (four fifths of its period must hold the 1220 ns of cable and filter, "),
+    ] {
+        let found = refuse(&said(hz));
+        assert!(found.iter().any(|d| d.text.contains(wanted)), "{found:?}");
+    }
+    // Never faster than the frames that follow.
+    let text = said("600_000")
+        .replace("clock_hz = 3_125_000", "clock_hz = 500_000")
+        .replace("sample_hz = 10_000", "sample_hz = 1_000");
+    let text = text.replace("start_window_ns = 80", "start_window_ns = 500");
+    let found = refuse(&text);
+    assert!(
+        found[0]
+            .text
+            .contains("calibration_hz = 600000: above clock_hz = 500000"),
+        "{found:?}"
+    );
+    // Slow system clocks time it, quick ones may not.
+    let text = said("100_000").replace("system_hz = 100_000_000", "system_hz = 240_000_000");
+    let found = refuse(&text);
+    assert!(
+        found.iter().any(|d| d
+            .text
+            .contains("calibration_hz = 100000: outside 117245..655737")),
+        "{found:?}"
+    );
+}
+
 #[test]
 fn optional_keys_may_be_left_out_and_keep_the_card() {
     let whole = parse("card.toml", PRESET).unwrap();

@@ -2,6 +2,7 @@
 
 use endat_gen::area::XC6S;
 use endat_hdl::config::{needed_baud, read_bytes, CHANNELS};
+use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{result_words, CARD, CARD_CONFIG, RESULT};
 use endat_hdl::transaction::cause;
 
@@ -250,5 +251,22 @@ fn names_in_the_programming_guide_are_those_of_the_registers() {
         assert_eq!(map.address(register, 0), address, "{name}");
         let bytes = format!("00 00 {:02X} {:02X}", address >> 8, address & 0xFF);
         assert!(page.contains(&bytes), "{name}: {bytes}");
+    }
+}
+
+#[test]
+fn the_table_for_artinchip_s_drivers_tells_where_the_watchdog_differs() {
+    let page = include_str!("../docs/artinchip-status.md");
+    let row = row(page, "| WDG |").join(" ");
+    // Theirs does not watch these and continuous clock, and runs from the strobe.
+    let theirs = ["101010", "100011", "011100"];
+    for command in ModeCommand::ALL {
+        let code = format!("{:06b}", command.code());
+        let is_exempt = command.has_parameter();
+        let differs = is_exempt != theirs.contains(&code.as_str());
+        assert_eq!(row.contains(&code), differs, "{code}: {row}");
+    }
+    for word in ["strobe", "first falling edge", "recovery time"] {
+        assert!(row.contains(word), "{word}: {row}");
     }
 }

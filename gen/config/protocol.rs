@@ -11,12 +11,13 @@ pub const ENDAT: &str = "endat";
 /// Keys of a channel that T-format has and EnDat has not.
 const T_FORMAT_KEYS: [&str; 4] = ["bit_hz", "request", "reply_gap_us", "field_gap_us"];
 /// Keys of a channel that EnDat has and T-format has not.
-const ENDAT_KEYS: [&str; 9] = [
+const ENDAT_KEYS: [&str; 10] = [
     "position_bits",
     "command",
     "clock_hz",
     "tst_ns",
     "start_window_ns",
+    "calibration_hz",
     "tcal_max_ns",
     "recovery_min_ns",
     "recovery_max_ns",

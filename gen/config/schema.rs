@@ -14,8 +14,9 @@ use std::collections::BTreeMap;
 use toml::de::DeTable;
 
 /// Keys that `[endat]` gives for all channels and a `[[channel]]` may give for itself.
-const LINE_KEYS: [&str; 8] = [
+const LINE_KEYS: [&str; 9] = [
     "clock_hz",
+    "calibration_hz",
     "tst_ns",
     "filter_ns",
     "start_window_ns",
@@ -370,6 +371,10 @@ fn canonical(
         if c.filter_half {
             lines.push(format!("channel {n} filter_half"));
         }
+        if c.has_own_calibration(card.system_hz) {
+            let cycles = c.calibration_period_cycles(card.system_hz);
+            lines.push(format!("channel {n} calibration_period_cycles {cycles}"));
+        }
         lines.extend(
             numbers
                 .iter()
@@ -443,6 +448,7 @@ fn read_channel(
     places.insert("channel", (table.name("position_bits"), table.line));
     let request = ChannelRequest {
         clock_hz,
+        calibration_hz: value("calibration_hz"),
         tst_ns: value("tst_ns").unwrap_or(ChannelRequest::usual_tst_ns(clock_hz)),
         command,
         position_bits: position.value,
@@ -473,6 +479,7 @@ fn read_t_format(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Channe
     places.insert("channel", (table.name("protocol"), table.line));
     let request = ChannelRequest {
         clock_hz: wanted.bit_hz,
+        calibration_hz: None,
         tst_ns: 0,
         command: ModeCommand::SendPosition,
         position_bits: 0,

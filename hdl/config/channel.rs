@@ -34,12 +34,13 @@ impl ChannelConfig {
         let clock_good = check_one("clock_hz", request.clock_hz);
         // What is wrong itself must not narrow what another may be.
         let cable_m = if cable_good { request.cable_m } else { 0 };
-        let tcal_clock_hz = if clock_good {
-            request.clock_hz
-        } else {
-            CALIBRATION_HZ
+        let calibration_good =
+            !(cable_good && clock_good) || check_calibration(&mut check, request, system_hz);
+        let slowest_hz = match (clock_good, calibration_good) {
+            (true, true) => request.clock_hz.min(request.calibration_hz()),
+            _ => CALIBRATION_HZ,
         };
-        let tcal_most_ns = tcal_most_ns(tcal_clock_hz, cable_m);
+        let tcal_most_ns = tcal_most_ns(slowest_hz, cable_m);
         check.within(
             "tcal_max_ns",
             request.tcal_max_ns,
@@ -74,7 +75,7 @@ impl ChannelConfig {
                 start_window_cycles: check_window(&mut check, request, period_cycles, system_hz),
                 start_timeout_us: request
                     .tcal_max_ns
-                    .saturating_add(start_wait_ns(request.clock_hz, cable_m))
+                    .saturating_add(start_wait_ns(slowest_hz, cable_m))
                     .div_ceil(1_000)
                     + 1,
                 recovery_limit_cycles: cycles_at_least(
@@ -149,7 +150,13 @@ impl ChannelConfig {
 
     /// Clock period of the frame that measures the propagation delay: never shorter than the ordinary one.
     pub fn calibration_period_cycles(&self, system_hz: u64) -> u64 {
-        calibration_period_cycles(self.request.delay_max_ns(), system_hz).max(self.period_cycles)
+        period_cycles(self.request.calibration_hz(), system_hz).max(self.period_cycles)
+    }
+
+    /// Whether that is not the usual one.
+    pub fn has_own_calibration(&self, system_hz: u64) -> bool {
+        let usual = calibration_period_cycles(self.request.delay_max_ns(), system_hz);
+        self.calibration_period_cycles(system_hz) != usual.max(self.period_cycles)
     }
 
     /// First falling to last rising edge of the frame that measures the propagation delay.
@@ -174,6 +181,30 @@ impl ChannelConfig {
             + self.ready_low_cycles
             + INPUT_LATENCY_CYCLES
     }
+}
+
+/// The clock that measures the delay: its period must hold the delay, and be one that can be timed.
+fn check_calibration(check: &mut Check<'_>, request: &ChannelRequest, system_hz: u64) -> bool {
+    let Some(hz) = request.calibration_hz else {
+        return true;
+    };
+    let held_ns = request.delay_max_ns() + request.filter_ns.min(1_000_000);
+    let low = ENDAT_HZ_MIN.max(system_hz.div_ceil(max_of(PERIOD_BITS)));
+    let high = calibration_most_hz(held_ns).max(low);
+    if !(low..=high).contains(&hz) {
+        let text = format!("outside {low}..{high} (four fifths of its period must hold the {held_ns} ns of cable and filter, and {} cycles of clock.system_hz the whole of it); choose a value in that range", max_of(PERIOD_BITS));
+        check.fail("calibration_hz", hz, text);
+        return false;
+    }
+    if hz > request.clock_hz {
+        let text = format!(
+            "above clock_hz = {}; the delay is measured at the clock of the other frames or a slower one, lower it",
+            request.clock_hz
+        );
+        check.fail("calibration_hz", hz, text);
+        return false;
+    }
+    true
 }
 
 fn check_recovery(check: &mut Check<'_>, request: &ChannelRequest, most_ns: u64) {

@@ -66,6 +66,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
     let range = match key {
         "system_hz" => SYSTEM_HZ_MIN..=SYSTEM_HZ_MAX,
         "clock_hz" => ENDAT_HZ_MIN..=ENDAT_HZ_MAX,
+        "calibration_hz" => ENDAT_HZ_MIN..=calibration_most_hz(DELAY_BASE_NS),
         "tst_ns" => TST_MIN_NS..=TST_MAX_NS,
         "position_bits" => u64::from(*POSITION_BITS.start())..=u64::from(*POSITION_BITS.end()),
         "cable_m" => 0..=cable_most_m(slow),
@@ -96,15 +97,14 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
 }
 
 /// Longest calculation time whose wait for the start bit can still be timed, also in the calibration frame.
-pub(super) fn tcal_most_ns(clock_hz: u64, cable_m: u64) -> u64 {
+pub(super) fn tcal_most_ns(slowest_hz: u64, cable_m: u64) -> u64 {
     let wait_ns = 1_000 * (max_of(START_TIMEOUT_BITS) - 1);
-    wait_ns - start_wait_ns(clock_hz, cable_m)
+    wait_ns - start_wait_ns(slowest_hz, cable_m)
 }
 
 /// How much longer than tcal a start bit may keep us waiting: cable, and two periods of the slowest frame, which may
 /// pass before a start edge is seen.
-pub(super) fn start_wait_ns(clock_hz: u64, cable_m: u64) -> u64 {
-    let slowest_hz = clock_hz.min(calibration_hz(delay_max_ns(cable_m)));
+pub(super) fn start_wait_ns(slowest_hz: u64, cable_m: u64) -> u64 {
     delay_max_ns(cable_m) + 2 * 1_000_000_000u64.div_ceil(slowest_hz)
 }
 

@@ -20,7 +20,7 @@ use crate::line_delay::mode;
 use crate::line_monitor::LineStart;
 use crate::protocol::ModeCommand;
 use crate::regs::CHANNELS_MAX;
-use crate::timing::{sixteenths, TST_FROM_HZ, TST_USUAL_NS};
+use crate::timing::{calibration_hz, sixteenths, TST_FROM_HZ, TST_USUAL_NS};
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -74,6 +74,8 @@ pub const INPUT_LATENCY_CYCLES: u64 = 32;
 pub struct ChannelRequest {
     /// EnDat clock, in hertz.
     pub clock_hz: u64,
+    /// EnDat clock of the frames that measure the propagation delay, in hertz; `None` = the usual one for the cable.
+    pub calibration_hz: Option<u64>,
     /// Shortest first low phase tST, in ns; 0 = an ordinary half period.
     pub tst_ns: u64,
     /// Mode command sent with every trigger.
@@ -410,6 +412,14 @@ impl ChannelRequest {
     /// Longest propagation delay tD of the line, in ns (PWM 20).
     pub const fn delay_max_ns(&self) -> u64 {
         delay_max_ns(self.cable_m)
+    }
+
+    /// EnDat clock of the frames that measure the propagation delay, in hertz.
+    pub const fn calibration_hz(&self) -> u64 {
+        match self.calibration_hz {
+            Some(hz) => hz,
+            None => calibration_hz(self.delay_max_ns()),
+        }
     }
 
     /// The start time tST that receivers use at a clock rate: none below 1 MHz.

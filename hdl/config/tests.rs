@@ -6,6 +6,7 @@ use crate::timing::{PERIOD_CYCLES_MIN, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 fn rcn_8510() -> ChannelRequest {
     ChannelRequest {
         clock_hz: 3_125_000,
+        calibration_hz: None,
         tst_ns: 2_000,
         command: ModeCommand::SendPositionAddInfo,
         position_bits: 29,

@@ -90,6 +90,7 @@ pub const SERVICE: Block = Block {
         word("control", at::CONTROL, ReadWrite, "Acts when written.", &[
             field("initialise", 0, 1, "", "1: initialise the encoder"),
             field("clear", 1, 1, "", "1: counters, alarm and position_2 to zero"),
+            field("cancel", 2, 1, "", "1: the request that waits for a trigger is given up; one on the wire is finished"),
         ]),
         word("force", at::FORCE, ReadWrite, "Errors forced upon what is received, to try the error paths; not for regular operation.", &[
             field("f1", 0, 1, "", "Inverts F1"),
@@ -166,6 +167,9 @@ pub const SERVICE: Block = Block {
         slot("slot_5", 5),
         slot("slot_6", 6),
         slot("slot_7", 7),
+        word("request_wait", at::REQUEST_WAIT, ReadWrite, "Longest wait of a request for a trigger.", &[
+            field("ms", 0, 16, "ms", "0 = no limit. The program writes 2000 at start"),
+        ]),
         frames("frames_good", 0),
         frames("frames_data_not_low", 1),
         frames("frames_no_start_bit", 2),

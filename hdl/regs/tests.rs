@@ -7,6 +7,7 @@ use crate::protocol::ModeCommand;
 pub fn test_config() -> CardConfig {
     let first = ChannelRequest {
         clock_hz: 3_125_000,
+        calibration_hz: None,
         tst_ns: 2_000,
         command: ModeCommand::SendPositionAddInfo,
         position_bits: 29,
@@ -248,6 +249,7 @@ service0_slot_4 424 ro
 service0_slot_5 425 ro
 service0_slot_6 426 ro
 service0_slot_7 427 ro
+service0_request_wait 428 rw
 service0_frames_good 430 ro
 service0_frames_data_not_low 431 ro
 service0_frames_no_start_bit 432 ro
@@ -330,6 +332,7 @@ service1_slot_4 4A4 ro
 service1_slot_5 4A5 ro
 service1_slot_6 4A6 ro
 service1_slot_7 4A7 ro
+service1_request_wait 4A8 rw
 service1_frames_good 4B0 ro
 service1_frames_data_not_low 4B1 ro
 service1_frames_no_start_bit 4B2 ro
@@ -534,6 +537,7 @@ duration us 15:0
 duration ms 31:16
 control initialise 0:0
 control clear 1:1
+control cancel 2:2
 force f1 0:0
 force f2 1:1
 force crc 2:2
@@ -595,6 +599,7 @@ slot_6 value 15:0
 slot_6 sequence 31:16
 slot_7 value 15:0
 slot_7 sequence 31:16
+request_wait ms 15:0
 frames_good frames 31:0
 frames_data_not_low frames 31:0
 frames_no_start_bit frames 31:0

@@ -246,7 +246,7 @@ const fn error(name: &'static str, code: u16) -> Named {
 }
 
 /// What became of a request.
-pub const REQUEST_ERRORS: [Named; 8] = [
+pub const REQUEST_ERRORS: [Named; 10] = [
     error("fulfilled", request_state::OK),
     error("no_answer", request_state::SILENT),
     error("address_echo", request_state::ADDRESS_ECHO),
@@ -255,6 +255,8 @@ pub const REQUEST_ERRORS: [Named; 8] = [
     error("unknown_command", request_state::UNKNOWN),
     error("frame", request_state::FRAME),
     error("busy_timeout", request_state::BUSY_TIMEOUT),
+    error("no_trigger", request_state::NO_TRIGGER),
+    error("cancelled", request_state::CANCELLED),
 ];
 
 const fn command(name: &'static str, command: ModeCommand, meaning: &'static str) -> Named {

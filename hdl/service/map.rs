@@ -174,6 +174,8 @@ pub mod word {
     pub const LIMITS: u8 = 22;
     /// Continuous clock: bit 0 wanted, bit 1 stop after an error.
     pub const CONTINUOUS: u8 = 23;
+    /// Longest wait of a request for a trigger, in milliseconds (15..0); 0 = none.
+    pub const REQUEST_WAIT: u8 = 40;
     /// MRS codes that are selected in turn.
     pub const LIST: u8 = 24;
     /// Codes in the list at most, and slots.
@@ -223,6 +225,10 @@ pub mod request_state {
     pub const FRAME: u16 = 6;
     /// Busy did not end.
     pub const BUSY_TIMEOUT: u16 = 7;
+    /// No trigger came that it could ride on, or that brought its answer.
+    pub const NO_TRIGGER: u16 = 8;
+    /// The host has cancelled it.
+    pub const CANCELLED: u16 = 9;
 
     /// What an error code means.
     pub const fn name(error: u16) -> &'static str {
@@ -235,6 +241,8 @@ pub mod request_state {
             UNKNOWN => "unknown mode command, nothing was sent",
             FRAME => "frame went wrong or could not begin",
             BUSY_TIMEOUT => "encoder stayed busy",
+            NO_TRIGGER => "no trigger came in time for a request that rides on one",
+            CANCELLED => "cancelled by the host",
             _ => "unknown",
         }
     }
@@ -246,6 +254,8 @@ pub mod control {
     pub const INITIALISE: u16 = 1 << 0;
     /// Counters and the latched part of the state go to zero.
     pub const CLEAR: u16 = 1 << 1;
+    /// The request under way is given up; what is on the wire is finished.
+    pub const CANCEL: u16 = 1 << 2;
 }
 
 /// Bits of [`word::STATE`], low half.
@@ -294,6 +304,8 @@ const fn entry(name: &'static str, mrs: u8, address: u8, meaning: &'static str) 
 pub const AREA_ENDAT22: u8 = 0xBD;
 /// Address of the recovery time in the operating status.
 pub const RECOVERY_ADDRESS: u8 = 3;
+/// Bits of that word which are the recovery time; what the others mean is the encoder's.
+pub const RECOVERY_MASK: u16 = 3;
 /// Long recovery time, as written there (TI).
 pub const RECOVERY_LONG: u16 = 2;
 /// Short recovery time, as written there (TI).
@@ -390,7 +402,7 @@ pub const NAME_PLATE: [PlateEntry; 21] = [
         "recovery",
         0xB9,
         0x03,
-        "Recovery time found: 2 = 10 to 30 us, 1 = 1.25 to 3.75 us",
+        "Word 3 of the operating status as set: bits 1..0 = 10: 10 to 30 us, 01: 1.25 to 3.75 us",
     ),
 ];
 /// Where the tracked line delay stands behind the name plate, in system clock cycles.

@@ -18,8 +18,8 @@ mod requests;
 pub use initialise::{step_name, steps, Step};
 
 use super::map::{
-    control, input, input::status, output, output::acknowledge, output::control as level, state,
-    word, COUNTER_BAD_INFOS,
+    control, input, input::status, output, output::acknowledge, output::control as level,
+    request_state, state, word, COUNTER_BAD_INFOS,
 };
 use crate::config::LIST;
 use crate::sequencer::assembler::Assembler;
@@ -48,8 +48,10 @@ pub struct ServiceTimes {
     pub gap_ms: u16,
     /// Longest Busy.
     pub busy_ms: u16,
-    /// A request that has not ended by then has failed.
+    /// A request with a frame of its own that has not ended by then has failed.
     pub request_ms: u16,
+    /// Longest wait of a request for a trigger, until the host says otherwise.
+    pub wait_ms: u16,
     /// DATA must be HIGH for so long to be taken for an open line.
     pub unplugged_ms: u16,
     /// System clock in kHz.
@@ -71,6 +73,7 @@ impl ServiceTimes {
             gap_ms: timing::PARAMETER_GAP_MS,
             busy_ms: timing::BUSY_MS,
             request_ms: 200,
+            wait_ms: timing::REQUEST_WAIT_MS,
             unplugged_ms: 5,
             system_khz: (system_hz / 1_000) as u32,
         }
@@ -231,6 +234,7 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
     if length > 0 {
         set(a, low(word::LIST_LENGTH), length.into());
     }
+    set(a, low(word::REQUEST_WAIT), times.wait_ms);
     a.ldi(acknowledge::EVENT | acknowledge::MAILBOX | acknowledge::CONTROL);
     a.out(output::ACKNOWLEDGE);
     a.call("modulus");
@@ -246,14 +250,28 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
 
 fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     a.place("main");
-    let (no_mailbox, no_clear, no_control) = (a.label(), a.label(), a.label());
+    let (free, acts, waits, levels) = (a.label(), a.label(), a.label(), a.label());
+    let (no_clear, no_control) = (a.label(), a.label());
     a.call("look");
-    // One request at a time: the next one waits at the door.
-    a.ld(own::MAILBOX).jnz(no_mailbox);
-    a.inp(input::STATUS).andi(status::MAILBOX).jnz("mailbox");
-    a.place(no_mailbox);
+    // One request at a time: the next one waits at the door, and so does the control word.
+    a.ld(own::MAILBOX).jz(free);
+    a.inp(input::STATUS)
+        .andi(status::REQUEST_RUNS | status::EVENT)
+        .jnz(levels);
+    a.inp(input::STATUS).andi(status::CONTROL).jz(waits);
+    a.ld(low(word::CONTROL)).andi(control::CANCEL).jz(waits);
+    a.ldi(request_state::CANCELLED).call("give_up");
+    a.ld(own::MAILBOX).jz(acts).jmp(levels);
+    a.place(waits);
+    a.ld(low(word::REQUEST_WAIT)).jz(levels);
+    a.inp(input::TIME_MS).sub(own::BEGAN_MS);
+    a.sub(low(word::REQUEST_WAIT)).jc(levels);
+    a.ldi(request_state::NO_TRIGGER).call("give_up");
+    a.jmp(levels);
+    a.place(free);
     a.inp(input::STATUS).andi(status::CONTROL).jz(no_control);
-    a.ld(own::MAILBOX).jnz(no_control);
+    // Before the next request, which a cancel is not meant for.
+    a.place(acts);
     a.ldi(acknowledge::CONTROL).out(output::ACKNOWLEDGE);
     a.ld(low(word::CONTROL)).andi(control::CLEAR).jz(no_clear);
     a.call("clear");
@@ -264,6 +282,8 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
         a.call("initialise");
     }
     a.place(no_control);
+    a.inp(input::STATUS).andi(status::MAILBOX).jnz("mailbox");
+    a.place(levels);
     a.inp(input::DISPLACED).st(low(word::LOST));
     // Levels are written again and again: an upset of one does not last.
     a.ld(low(word::FORCE)).out(output::FORCE);

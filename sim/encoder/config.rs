@@ -1,6 +1,6 @@
 //! What kind of encoder it is.
 
-use super::{Cause, Defect, InfoValues, TypePlate};
+use super::{Cause, Defect, InfoValues, TypePlate, LONG_RECOVERY};
 use crate::{rng::Rng, Time, MS, NS, US};
 use std::{
     ops::{Range, RangeInclusive},
@@ -108,6 +108,9 @@ pub struct EncoderConfig {
     /// Whether the error reset 101101 also ends the additional informations: HEIDENHAIN's FAQ says so, TI's driver does not
     /// count on it.
     pub error_reset_stops_infos: bool,
+    /// Function initialisation, word 3 of the operating status, after power-up: bits 1..0 are the recovery time, what the others
+    /// mean is the manufacturer's.
+    pub function: u16,
     /// What the manufacturer wrote into it.
     pub plate: TypePlate,
     /// What the additional informations say.
@@ -149,6 +152,7 @@ impl EncoderConfig {
             supplement_zeros: 7,
             continuous: None,
             error_reset_stops_infos: false,
+            function: LONG_RECOVERY,
             plate: TypePlate::rotary(position_bits.min(31)),
             values: InfoValues::default(),
             causes: Vec::new(),

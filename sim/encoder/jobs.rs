@@ -200,7 +200,7 @@ impl Encoder {
         self.job = None;
         self.selection = Default::default();
         self.registers = Registers::default();
-        self.memory.restart();
+        self.memory.restart(&self.config);
         self.status.clear(time);
     }
 

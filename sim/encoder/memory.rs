@@ -94,7 +94,7 @@ impl Memory {
         put(MANUFACTURER_3, 0, manufacturer[32..48].to_vec(), false);
         put(OPERATING_PARAMETERS, 0, vec![0; 16], true);
         put(OEM_1, 0, vec![0; 64], true); // 64 words as in TI's driver; its size differs from encoder to encoder
-        put(OPERATING_STATUS, 0, vec![0, 0, 0, LONG_RECOVERY], true);
+        put(OPERATING_STATUS, 0, vec![0, 0, 0, config.function], true);
         if config.endat22 {
             put(MANUFACTURER_22, 0, words::manufacturer_22(config), false);
             put(SECTION_2, 0, vec![0; 4 * BLOCK_WORDS], true);
@@ -106,7 +106,7 @@ impl Memory {
     }
 
     /// What a loss of supply, or a reset, leaves.
-    pub fn restart(&mut self) {
+    pub fn restart(&mut self, config: &EncoderConfig) {
         self.selected = None;
         self.set(
             Place {
@@ -114,7 +114,7 @@ impl Memory {
                 block: 0,
                 address: status_word::FUNCTION,
             },
-            LONG_RECOVERY,
+            config.function,
         );
     }
 

@@ -108,10 +108,44 @@ fn param_send_sends_any_mode_command_and_tells_what_came_back() {
         assert!(bad.messages[0].starts_with(wanted), "{bad:?}");
     }
     let unknown = with(&["param", "send", "111111"], SERVICE);
+    // Both triplets are the same, and yet it has an answer of its own.
+    let own = with(&["param", "send", "010010", "0x5A", "0x1234"], SERVICE);
+    assert!(
+        own.stdout.contains("8 bits 0x5A, 16 bits 0x1234"),
+        "{own:?}"
+    );
     assert_eq!(unknown.exit_code, 1);
     assert!(
         unknown.messages[0].contains("unknown mode command"),
         "{unknown:?}"
+    );
+}
+
+#[test]
+fn param_send_shows_a_long_answer_whole() {
+    // 40 bits of test values.
+    let values = with(&["param", "send", "010101"], SERVICE);
+    assert!(values.stdout.contains("0x0123456789"), "{values:?}");
+    let values = with(&["param", "send", "010101", "--json"], SERVICE);
+    let values = json(&values);
+    assert_eq!(values["answer"], 0x01_2345_6789_u64);
+    assert!(values["data"].is_null(), "{values}");
+    // 29 bits of a shaft at a tenth of a turn.
+    let position = with(&["param", "send", "000111", "--json"], SERVICE);
+    let position = json(&position)["answer"].as_u64().unwrap();
+    let turn = position as f64 / f64::from(1 << 29);
+    assert!((0.1..0.5).contains(&turn), "{position}");
+}
+
+#[test]
+fn param_cancel_tells_what_became_of_the_request() {
+    let nothing = with(&["param", "cancel", "--channel", "1"], SERVICE);
+    assert_eq!(nothing.exit_code, 0, "{nothing:?}");
+    assert!(
+        nothing
+            .stdout
+            .contains("channel 1: no request is under way"),
+        "{nothing:?}"
     );
 }
 

@@ -6,6 +6,7 @@ mod desk;
 mod disturbed;
 mod few_cycles;
 mod ports;
+mod requests;
 mod slow;
 mod ti_menu;
 

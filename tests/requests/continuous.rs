@@ -184,6 +184,34 @@ fn after_an_error_it_goes_on_or_stops_as_configured() {
     }
 }
 
+/// However many errors follow each other: only `stop_at_error` ends a run.
+#[test]
+fn errors_in_a_row_end_a_run_only_if_it_stops_at_errors() {
+    for frames in [3..=4, 3..=5, 3..=12] {
+        for stop in [0, 1] {
+            let encoder = encoder(29, LatchEdge::AfterLow);
+            let encoder = encoder.defects(frames.clone(), Defect::CrcXor(0b10));
+            let mut rig = rig(2_000_000, encoder, LineConfig::cable(10.0));
+            rig.bench.set("stop_at_error", stop);
+            rig.bench.trigger();
+            rig.bench.run_for(MS);
+            let causes: Vec<u64> = rig.bench.results().iter().map(|r| r.last_cause()).collect();
+            assert_eq!(causes.len() == 4, stop == 1, "{frames:?} {causes:?}");
+            for (n, found) in causes.iter().enumerate() {
+                let wrong = frames.contains(&(n as u64));
+                let expected = if wrong { cause::CRC } else { cause::NONE };
+                assert_eq!(*found, expected, "{n} {causes:?}");
+            }
+            if stop == 0 {
+                assert!(causes.len() > 30, "{frames:?} {causes:?}");
+                assert!(rig.last_frame().continuous, "{:?}", rig.last_frame());
+            }
+            leave(&mut rig);
+            rig.assert_clean();
+        }
+    }
+}
+
 #[test]
 fn what_cannot_go_on_is_flagged_and_the_next_trigger_works() {
     for (defect, expected) in [

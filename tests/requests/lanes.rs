@@ -49,7 +49,7 @@ pub fn design() -> Design {
 }
 
 /// Channels after power-up.
-fn engine() -> Lanes {
+pub fn engine() -> Lanes {
     static MADE: OnceLock<Lanes> = OnceLock::new();
     let make = || Lanes::new(&design(), Keep::Registers, LaneWords::Two).expect("no loop");
     MADE.get_or_init(make).clone()

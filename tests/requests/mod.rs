@@ -6,5 +6,6 @@ mod every_command;
 mod faults;
 mod infos;
 pub mod lanes;
+mod record;
 mod rig;
 mod upsets;

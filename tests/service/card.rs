@@ -1,11 +1,16 @@
 //! The service behind the host link of a card.
 
 use super::rig::{quick, times};
-use endat_hdl::{card::Card, config::CardConfig, regs::SERVICE};
+use endat_hdl::{
+    card::Card,
+    config::CardConfig,
+    regs::{CARD, CARD_CONFIG, RESULT, SERVICE},
+};
 use endat_sim::{
     bench::Link,
     encoder::{Device, RCN_8510, ROQ_437},
     line::LineConfig,
+    MS, US,
 };
 
 /// The service's words behind it.
@@ -45,6 +50,29 @@ impl Host {
             self.0.bench.run_cycles(10_000);
         }
         panic!("{name} of channel {channel} never comes");
+    }
+}
+
+/// An encoder that leaves a frame after 2 us of HIGH never answers at 200 kHz.
+#[test]
+fn an_encoder_that_leaves_a_slow_frame_starts_with_a_faster_calibration_clock() {
+    let preset = endat_gen::config::preset("s6_two_channel").unwrap();
+    for (hz, starts) in [(200_000, false), (400_000, true)] {
+        let key = format!("clock_hz = 3_125_000\ncalibration_hz = {hz}");
+        let text = preset.replacen("clock_hz = 3_125_000", &key, 1);
+        let mut config = endat_gen::config::parse("card.toml", &text).unwrap().card;
+        config.uart_bit_cycles = 8;
+        let mut encoder = RCN_8510.encoder();
+        encoder.max_clock_high = 2 * US;
+        let links = [0, 1].map(|_| Link::new(LineConfig::cable(10.0), encoder.clone()));
+        let mut host = crate::host::Host::new(Card::new(&config), config.system_hz, links.into());
+        host.write(&CARD_CONFIG, "trigger_sources", 0, 4);
+        for _ in 0..3 {
+            host.write(&CARD, "trigger_now", 0, 1);
+            host.bench.run_for(32 * MS);
+            let status = host.read(&RESULT, "status", 1);
+            assert_eq!(status >> 23 & 1 == 1, starts, "{hz} Hz: {status:08x}");
+        }
     }
 }
 

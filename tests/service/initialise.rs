@@ -112,6 +112,29 @@ fn recovery_is_set_as_wanted() {
     }
 }
 
+/// Word 3 of the operating status has other functions beside the recovery time: they stay, and the name plate has the word as it is now.
+#[test]
+fn setting_the_recovery_time_keeps_the_other_functions() {
+    for (short, set) in [(true, SHORT_RECOVERY), (false, LONG_RECOVERY)] {
+        for found in [LONG_RECOVERY, SHORT_RECOVERY, 0, 3] {
+            let others = 0xA554;
+            let mut encoder = quick(EncoderConfig::endat22(25));
+            encoder.function = others | found;
+            let make = Make {
+                wants_short: short,
+                ..Make::usual(true)
+            };
+            let mut rig = Rig::with(make, ENDAT_HZ, encoder, 25);
+            assert_eq!(rig.initialised(), 0);
+            let told = rig.read(plate("recovery"));
+            assert_eq!(told, 1 << 16 | u32::from(others | set), "found {found:02b}");
+            (0..2).for_each(|_| rig.good_position());
+            let word = rig.bench.link(0).encoder().word(area::OPERATING_STATUS, 3);
+            assert_eq!(word, Some(others | set), "found {found:02b}");
+        }
+    }
+}
+
 #[test]
 fn an_encoder_that_is_plugged_in_later_is_found() {
     let mut encoder = quick(EncoderConfig::endat22(25));

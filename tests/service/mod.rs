@@ -10,3 +10,4 @@ mod plug;
 mod rig;
 mod three_ways;
 mod upsets;
+mod waiting;

@@ -43,6 +43,7 @@ pub struct Line {
 pub fn card(system_hz: u64, sample_hz: u64, baud: u64, start: StreamStart) -> CardConfig {
     let first = ChannelRequest {
         clock_hz: 6_000_000,
+        calibration_hz: None,
         tst_ns: 2_000,
         command: ModeCommand::SendPositionAddInfo,
         position_bits: 29,

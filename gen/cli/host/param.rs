@@ -46,6 +46,14 @@ enum Action {
         #[arg(allow_negative_numbers = true)]
         value: String,
     },
+    /// Give up a request that waits for a trigger
+    Cancel {
+        #[command(flatten)]
+        port: PortArgs,
+        /// Channel [default: 0]
+        #[arg(long, value_name = "N", allow_negative_numbers = true)]
+        channel: Option<String>,
+    },
     /// Send any of the fourteen mode commands, and show what comes back
     Send {
         #[command(flatten)]
@@ -85,6 +93,7 @@ pub fn run(arguments: &ParamArgs) -> Result<Outcome, GenError> {
             };
             return send(port, channel.as_deref(), request, *json);
         }
+        Action::Cancel { port, channel } => return cancel(port, channel.as_deref()),
         Action::Read(word) => (word, None),
         Action::Write { word, value } => (word, Some(number("value", value, 0..=0xFFFF)? as u16)),
     };
@@ -120,9 +129,38 @@ fn mode_command(text: &str) -> Result<u8, GenError> {
         })
 }
 
-/// Whether a mode command goes out with a position, and has no answer of its own: EnDat 2.2, where both triplets are the same, or 111000.
-fn rides(command: u8) -> bool {
-    command >> 3 == command & 7 || command == 0b111000
+/// What a mode command brings back by itself.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Reply {
+    /// It goes out with a position: EnDat 2.2, where both triplets are the same, or 111000. But not 010010.
+    None,
+    /// 8 and 16 bits.
+    Parameter,
+    /// A position.
+    Position,
+    /// 40 bits.
+    TestValues,
+}
+
+fn reply_of(command: u8) -> Reply {
+    match command {
+        0b000111 => Reply::Position,
+        0b010101 => Reply::TestValues,
+        0b111000 => Reply::None,
+        0b010010 => Reply::Parameter,
+        _ if command >> 3 == command & 7 => Reply::None,
+        _ => Reply::Parameter,
+    }
+}
+
+fn cancel(port: &PortArgs, wanted: Option<&str>) -> Result<Outcome, GenError> {
+    let mut card = port.open()?;
+    let channel = channel(&card, wanted)?;
+    let said = match card.cancel_request(channel).map_err(told)? {
+        true => "the request has been cancelled",
+        false => "no request is under way",
+    };
+    Ok(Outcome::good(format!("channel {channel}: {said}\n")))
 }
 
 fn send(
@@ -136,20 +174,25 @@ fn send(
     let Answer {
         address,
         data,
+        bits,
         duration,
     } = card.request(channel, request).map_err(told)?;
     let us = duration.as_micros() as u64;
     let command = format!("{:06b}", request.command);
-    let answer = (!rides(request.command)).then_some((address, data));
+    let reply = reply_of(request.command);
     Ok(Outcome::good(if as_json {
-        let (address, data) = answer.unzip();
+        let parts = (reply == Reply::Parameter).then_some((address, data));
+        let (address, data) = parts.unzip();
+        let answer = (reply != Reply::None).then_some(bits);
         to_json(
-            &json!({"channel": channel, "command": command, "address": address, "data": data, "duration_us": us}),
+            &json!({"channel": channel, "command": command, "address": address, "data": data, "answer": answer, "duration_us": us}),
         )?
     } else {
-        let said = match answer {
-            Some((address, data)) => format!("8 bits 0x{address:02X}, 16 bits 0x{data:04X}"),
-            None => {
+        let said = match reply {
+            Reply::Parameter => format!("8 bits 0x{address:02X}, 16 bits 0x{data:04X}"),
+            Reply::Position => format!("position 0x{bits:X} = {bits}"),
+            Reply::TestValues => format!("40 bits 0x{bits:010X}"),
+            Reply::None => {
                 "sent with a position; what the encoder answers comes as additional information"
                     .into()
             }

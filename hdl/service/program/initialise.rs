@@ -292,9 +292,13 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     a.inp(input::CONFIGURED).andi(1 << 7).jz(long);
     a.ldi(map::RECOVERY_SHORT).st(own::DATA);
     a.place(long).place(decided);
-    a.ld(low(plate("recovery"))).andi(3).sub(own::DATA);
-    a.jz("initialised");
+    a.ld(low(plate("recovery"))).andi(map::RECOVERY_MASK);
+    a.sub(own::DATA).jz("initialised");
+    // The word has other functions beside.
+    a.ld(low(plate("recovery"))).andi(!map::RECOVERY_MASK);
+    a.add(own::DATA).st(own::DATA);
     a.ldi(map::RECOVERY_ADDRESS.into());
     a.call("step_write");
+    a.ld(own::DATA).st(low(plate("recovery")));
     a.jmp("initialised");
 }

@@ -117,6 +117,16 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::LEVELS).out(output::CONTROL);
     a.ld(own::FROM_STEP).jmpa();
 
+    // Ends the request that waits, with error A; not if its frame has begun in this moment.
+    let begun = a.label();
+    a.place("give_up").st(own::ERROR);
+    a.ldi(go::CANCEL).out(output::GO);
+    a.inp(input::STATUS)
+        .andi(status::REQUEST_RUNS | status::EVENT)
+        .jnz(begun);
+    a.ld(own::ERROR).jmp("finish");
+    a.place(begun).ret();
+
     // The request has come to its end with error A.
     a.place("finish");
     (0..request_state::ERROR_SHIFT).for_each(|_| {
