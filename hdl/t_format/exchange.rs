@@ -586,14 +586,15 @@ impl Logic for Exchange {
         self.is_headless.next =
             self.missed.q.val() & self.order.is_control.val() & self.heard.q.val();
         self.is_short.next = self.missed.q.val() & !self.order.is_control.val();
-        // A verdict in the middle of a reply, and nothing to show for it.
+        // A verdict in the middle of a reply and nothing to show for it, or the reply to a request that has changed since.
         self.is_ended.next = self.refused.q.val()
             | self.missed.q.val()
             | self.bad_delimiter.q.val()
             | (self.order.is_crc.val()
                 & self.is_start.val()
                 & !self.index.q.val().get_bit(1)
-                & !self.index.q.val().get_bit(2));
+                & !self.index.q.val().get_bit(2)
+                & (self.echo.q.val() == self.request_id.val()));
         self.is_astray.next = self.upset.q.val() | !self.is_ended.val();
         // An alarm beside it would hide the upset.
         self.alarms.next = self.status.val().get_bits::<2>(4);

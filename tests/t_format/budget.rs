@@ -23,6 +23,8 @@ const QUIET_US: u64 = 60;
 const TRIGGERS: usize = 2;
 /// The longest request: four fields, and the microseconds that a wait may last longer.
 const REQUEST_US: u64 = 4 * 4 + 3;
+/// What an upset may make of a request on the wire is one of a single field: its reply comes while the other three are sent.
+const GARBLED_US: u64 = 3 * 4;
 /// Silent wrong positions of all flips, in parts per thousand.
 const SILENT_PER_MILLE: usize = 5;
 const BEFORE: u64 = 0x12_3456_A5_3C96;
@@ -338,12 +340,14 @@ impl Many {
         if self.is_card {
             let ports = ["position", "position_valid", "fresh", "cause", "sequence"];
             let ports = ports.map(|name| self.lanes.port(name));
+            let parts = ["has_had_single", "has_had_multi"];
+            let parts = parts.map(|name| self.lanes.nets().position(|n| n == name).unwrap());
             let shown = (0..LANES).map(|lane| {
                 let [position, valid, fresh, cause, sequence] =
                     ports.map(|port| self.lanes.get(port, lane) as u64);
                 Shown {
                     position,
-                    valid: [valid == 1; 2],
+                    valid: parts.map(|net| valid == 1 && self.lanes.peek(net, lane) == Some(1)),
                     fresh: fresh == 1,
                     cause,
                     sequence,
@@ -468,7 +472,7 @@ fn campaign(is_card: bool) -> BTreeMap<String, Tally> {
                 tally.told += usize::from(is_told[lane]);
                 tally.silent += usize::from(is_silent[lane]);
                 tally.hung += usize::from(!good_at_last[lane]);
-                tally.conflicts += usize::from(many.conflict[lane] > 0);
+                tally.conflicts += usize::from(many.conflict[lane] > GARBLED_US * SYSTEM_MHZ);
                 let longest = many.longest_drive[lane];
                 tally.long_drives += usize::from(longest > REQUEST_US * SYSTEM_MHZ);
                 let requests = many.encoders[lane].requests();

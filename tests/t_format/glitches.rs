@@ -142,7 +142,8 @@ fn wrong_positions_from_glitches_are_within_the_bound_of_an_ideal_crc() {
     for system_mhz in [20, 60] {
         for inverts in [true, false] {
             for pulses in [[1, 1], [2, 2], [1, 4], [3, 8]] {
-                for width in [[50_000, 200_000], [50_000, 400_000], [200_000, 600_000]] {
+                // Up to half a bit: none of them passes unseen. Up to a bit: some are as long as a bit can be.
+                for (width, share) in [([50_000, 200_000], 4_000), ([50_000, 400_000], 256)] {
                     let glitches = Glitches {
                         system_mhz,
                         pulses,
@@ -151,7 +152,7 @@ fn wrong_positions_from_glitches_are_within_the_bound_of_an_ideal_crc() {
                     };
                     let judged = run(glitches, 40_000);
                     println!("{glitches:?} {judged:?}");
-                    if judged.wrong * 256 > judged.refused {
+                    if judged.wrong * share > judged.refused {
                         lost.push(format!("{glitches:?} {judged:?}"));
                     }
                 }
