@@ -590,6 +590,7 @@ impl Logic for Exchange {
         self.is_ended.next = self.refused.q.val()
             | self.missed.q.val()
             | self.bad_delimiter.q.val()
+            | self.bad_echo.q.val()
             | (self.order.is_crc.val()
                 & self.is_start.val()
                 & !self.index.q.val().get_bit(1)

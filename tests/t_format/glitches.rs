@@ -143,7 +143,7 @@ fn wrong_positions_from_glitches_are_within_the_bound_of_an_ideal_crc() {
         for inverts in [true, false] {
             for pulses in [[1, 1], [2, 2], [1, 4], [3, 8]] {
                 // Up to half a bit: none of them passes unseen. Up to a bit: some are as long as a bit can be.
-                for (width, share) in [([50_000, 200_000], 4_000), ([50_000, 400_000], 256)] {
+                for (width, share) in [([50_000, 200_000], 2_000), ([50_000, 400_000], 256)] {
                     let glitches = Glitches {
                         system_mhz,
                         pulses,
