@@ -68,7 +68,6 @@ pub fn artifact(receiver: &Receiver) -> Result<Artifact, GenError> {
             exchange_ns => whole(exchange_ns(start)),
             idle_ns => whole(T_FORMAT_IDLE_NS),
             unknown_request => cause::UNKNOWN_REQUEST,
-            trigger_overrun => cause::TRIGGER_OVERRUN,
             causes => causes(),
             read_id => Request::ReadEeprom.id(),
             write_id => Request::WriteEeprom.id(),

@@ -75,12 +75,13 @@ const T_FORMAT_NAMES: [&str; t_format::COUNT as usize] = [
     "eeprom_busy",
     "counting_error",
     "multi_turn_alarm",
+    "upset",
     "trigger_overrun",
 ];
 
-/// T-format's causes, as an exchange of the host has them.
-pub const T_FORMAT_CAUSES: [Named; t_format::COUNT as usize] = {
-    let mut all = [named("", 0, ""); t_format::COUNT as usize];
+/// T-format's causes, as an exchange of the host has them: those before the trigger overrun.
+pub const T_FORMAT_CAUSES: [Named; t_format::TRIGGER_OVERRUN as usize] = {
+    let mut all = [named("", 0, ""); t_format::TRIGGER_OVERRUN as usize];
     let mut code = 0;
     while code < all.len() {
         let meaning = t_format::name(code as u64);

@@ -42,7 +42,7 @@ pub struct TFormatChannel {
     pub rx: Signal<In, Bit>,
     /// Line to the transceiver.
     pub tx: Signal<Out, Bit>,
-    /// Driver enable of the transceiver.
+    /// Driver enable of the transceiver, two registers that must agree.
     pub driver: Signal<Out, Bit>,
     /// An exchange is under way.
     pub busy: Signal<Out, Bit>,
@@ -56,10 +56,14 @@ pub struct TFormatChannel {
     pub single_turn: Signal<Out, Bits<24>>,
     /// There is one.
     pub single_valid: Signal<Out, Bit>,
+    /// Parity of `single_turn` as it came, and of `single_valid`; whoever shows them compares.
+    pub single_parity: Signal<Out, Bit>,
     /// Last good multi-turn position.
     pub multi_turn: Signal<Out, Bits<24>>,
     /// There is one.
     pub multi_valid: Signal<Out, Bit>,
+    /// Parity of `multi_turn` as it came, and of `multi_valid`.
+    pub multi_parity: Signal<Out, Bit>,
     /// Kind of encoder, as it came last.
     pub encoder_id: Signal<Out, Bits<8>>,
     /// EEPROM data as they came last.
@@ -73,7 +77,7 @@ pub struct TFormatChannel {
     /// ID that the last reply repeats.
     pub reply_id: Signal<Out, Bits<4>>,
     /// Raw flags of the last exchange, see [`super::cause`].
-    pub flags: Signal<Out, Bits<15>>,
+    pub flags: Signal<Out, Bits<16>>,
     filter: InputFilter,
     exchange: Exchange,
     reply: Reply,
@@ -103,8 +107,10 @@ impl Default for TFormatChannel {
             sequence: Default::default(),
             single_turn: Default::default(),
             single_valid: Default::default(),
+            single_parity: Default::default(),
             multi_turn: Default::default(),
             multi_valid: Default::default(),
+            multi_parity: Default::default(),
             encoder_id: Default::default(),
             memory_data: Default::default(),
             alarm: Default::default(),
@@ -140,6 +146,7 @@ impl Logic for TFormatChannel {
         self.exchange.request_id.next = self.request_id.val();
         self.exchange.address.next = self.address.val();
         self.exchange.data.next = self.data.val();
+        self.exchange.request_fits.next = true;
         self.exchange.bit_cycles.next = bit_cast::<7, 5>(self.bit_cycles.val());
         self.exchange.reply_gap_us.next = self.reply_gap_us.val();
         self.exchange.field_gap_us.next = self.field_gap_us.val();
@@ -166,6 +173,8 @@ impl Logic for TFormatChannel {
         self.outcome.status_in.next = self.reply.status.val();
         self.outcome.single_turn_in.next = self.reply.single_turn.val();
         self.outcome.multi_turn_in.next = self.reply.multi_turn.val();
+        self.outcome.single_parity_in.next = self.reply.single_parity.val();
+        self.outcome.multi_parity_in.next = self.reply.multi_parity.val();
         self.outcome.byte_in.next = self.reply.byte_field.val();
         self.outcome.alarm_in.next = self.reply.alarm.val();
         self.outcome.has_single.next = self.exchange.has_single.val();
@@ -178,6 +187,8 @@ impl Logic for TFormatChannel {
         self.sequence.next = self.outcome.sequence.val();
         self.single_turn.next = self.outcome.single_turn.val();
         self.single_valid.next = self.outcome.single_valid.val();
+        self.single_parity.next = self.outcome.single_parity.val();
+        self.multi_parity.next = self.outcome.multi_parity.val();
         self.multi_turn.next = self.outcome.multi_turn.val();
         self.multi_valid.next = self.outcome.multi_valid.val();
         self.encoder_id.next = self.outcome.encoder_id.val();

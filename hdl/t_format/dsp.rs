@@ -7,7 +7,7 @@
 //!
 //! | address | read 7..0 | read 15..8 | write |
 //! |---|---|---|---|
-//! | 0 | request ID | 0 | 3:0 request ID; sends it |
+//! | 0 | request ID | 0 | 3:0 request ID; sends it, 6 only once for each write of address 7 |
 //! | 1 | control data | single-turn 7..0 | |
 //! | 2 | single-turn 15..8 | single-turn 23..16 | |
 //! | 3 | encoder ID | multi-turn 7..0 | |
@@ -75,7 +75,7 @@ pub struct AsyncDsp {
     pub rst_i: Signal<In, Bit>,
     /// The clock is one of 60 MHz; low = 20 MHz. A strap: it does not change while the receiver runs.
     pub clk_select_i: Signal<In, Bit>,
-    /// Trigger pin, asynchronous; a rising edge sends the last request again.
+    /// Trigger pin, asynchronous; a rising edge sends the last request again, unless it writes to the EEPROM.
     pub trigger_i: Signal<In, Bit>,
     /// Chip select, active low, asynchronous.
     pub bus_cs_n_i: Signal<In, Bit>,
@@ -113,11 +113,14 @@ pub struct AsyncDsp {
     request_id: Reg<Bits<4>>,
     settings: Reg<Bits<16>>,
     memory: Reg<Bits<16>>,
+    memory_sum: Reg<Bit>,
+    armed: Reg<Bit>,
     was_first: Reg<Bit>,
     seen_fresh: Reg<Bit>,
     seen_valid: Reg<Bits<2>>,
+    seen_sums: Reg<Bits<2>>,
     seen_id: Reg<Bits<4>>,
-    seen_flags: Reg<Bits<15>>,
+    seen_flags: Reg<Bits<16>>,
     seen_single: Reg<Bits<24>>,
     seen_multi: Reg<Bits<24>>,
     seen_identity: Reg<Bits<8>>,
@@ -128,6 +131,11 @@ pub struct AsyncDsp {
     chosen: Reg<Bits<16>>,
     out_data: Reg<Bits<16>>,
     is_first: Signal<Local, Bit>,
+    memory_fits: Signal<Local, Bit>,
+    single_fits: Signal<Local, Bit>,
+    multi_fits: Signal<Local, Bit>,
+    fits: Signal<Local, Bit>,
+    valid: Signal<Local, Bits<2>>,
     us_last: Signal<Local, Bit>,
     can_write: Signal<Local, Bit>,
     control: Signal<Local, Bits<8>>,
@@ -175,9 +183,13 @@ impl AsyncDsp {
             request_id: Reg::new(u64::from(start.request_id).into()),
             settings: Reg::new(start.word().into()),
             memory: Default::default(),
+            // Nothing to write yet.
+            memory_sum: Reg::new(true),
+            armed: Default::default(),
             was_first: Default::default(),
             seen_fresh: Default::default(),
             seen_valid: Default::default(),
+            seen_sums: Default::default(),
             seen_id: Default::default(),
             seen_flags: Default::default(),
             seen_single: Default::default(),
@@ -190,6 +202,11 @@ impl AsyncDsp {
             chosen: Default::default(),
             out_data: Default::default(),
             is_first: Default::default(),
+            memory_fits: Default::default(),
+            single_fits: Default::default(),
+            multi_fits: Default::default(),
+            fits: Default::default(),
+            valid: Default::default(),
             us_last: Default::default(),
             can_write: Default::default(),
             control: Default::default(),
@@ -215,6 +232,7 @@ impl Logic for AsyncDsp {
         dff_setup!(self, clk_i, select_0, select_1, trigger_0, trigger_1, trigger_2);
         dff_setup!(self, clk_i, us_count, us_tick, start, request_id, settings, memory, was_first);
         dff_setup!(self, clk_i, seen_fresh, seen_valid, seen_id, seen_flags);
+        dff_setup!(self, clk_i, memory_sum, armed, seen_sums);
         dff_setup!(
             self,
             clk_i,
@@ -236,6 +254,9 @@ impl Logic for AsyncDsp {
         self.request_id.reset.next = self.rst_i.val();
         self.settings.reset.next = self.rst_i.val();
         self.memory.reset.next = self.rst_i.val();
+        self.memory_sum.reset.next = self.rst_i.val();
+        self.armed.reset.next = self.rst_i.val();
+        self.seen_sums.reset.next = self.rst_i.val();
         self.was_first.reset.next = self.rst_i.val();
         self.seen_fresh.reset.next = self.rst_i.val();
         self.seen_valid.reset.next = self.rst_i.val();
@@ -287,16 +308,24 @@ impl Logic for AsyncDsp {
         if self.strobes.written.val() & !self.strobes.written_register.val().any() {
             self.start.d.next = true;
         }
+        // A byte is written once for each write of address 7 and one of address 0 behind it: no pin, no upset does it again.
+        self.memory_fits.next = self.memory.q.val().xor() == self.memory_sum.q.val();
+        self.armed.d.next = self.armed.q.val() & (self.start.q.val() | self.channel.busy.val());
+        if self.channel.result_strobe.val() & self.armed.q.val() & (self.request_id.q.val() == 6) {
+            self.memory_sum.d.next = !self.memory.q.val().xor();
+        }
         if self.strobes.written.val() & self.can_write.val() {
             match self.strobes.written_register.val().index() {
                 0 => {
                     self.request_id.d.next = self.strobes.written_data.val().get_bits::<4>(0);
+                    self.armed.d.next = true;
                 }
                 6 => {
                     self.settings.d.next = self.strobes.written_data.val();
                 }
                 7 => {
                     self.memory.d.next = self.strobes.written_data.val();
+                    self.memory_sum.d.next = self.strobes.written_data.val().xor();
                 }
                 _ => {}
             }
@@ -305,6 +334,9 @@ impl Logic for AsyncDsp {
         self.channel.tick_us.next = self.us_tick.q.val();
         self.channel.trigger.next = self.start.q.val();
         self.channel.request_id.next = self.request_id.q.val();
+        if (self.request_id.q.val() == 6) & !(self.armed.q.val() & self.memory_fits.val()) {
+            self.channel.request_id.next = 15.into();
+        }
         self.channel.address.next = self.memory.q.val().get_bits::<7>(0);
         self.channel.data.next = self.memory.q.val().get_bits::<8>(8);
         self.channel.reply_gap_us.next = self.settings.q.val().get_bits::<6>(0);
@@ -321,6 +353,8 @@ impl Logic for AsyncDsp {
             self.seen_fresh.d.next = self.channel.fresh.val();
             self.seen_valid.d.next = bit_cast::<2, 1>(self.channel.single_valid.val().into())
                 | (bit_cast::<2, 1>(self.channel.multi_valid.val().into()) << 1);
+            self.seen_sums.d.next = bit_cast::<2, 1>(self.channel.single_parity.val().into())
+                | (bit_cast::<2, 1>(self.channel.multi_parity.val().into()) << 1);
             self.seen_id.d.next = self.channel.reply_id.val();
             self.seen_flags.d.next = self.channel.flags.val();
             self.seen_single.d.next = self.channel.single_turn.val();
@@ -332,7 +366,25 @@ impl Logic for AsyncDsp {
             self.seen_memory.d.next = self.channel.memory_data.val();
         }
 
+        // From the wire to here each position has its parity with it.
+        self.single_fits.next = (self.seen_single.q.val().xor()
+            ^ self.seen_valid.q.val().get_bit(0))
+            == self.seen_sums.q.val().get_bit(0);
+        self.multi_fits.next = (self.seen_multi.q.val().xor() ^ self.seen_valid.q.val().get_bit(1))
+            == self.seen_sums.q.val().get_bit(1);
+        self.fits.next = self.single_fits.val() & self.multi_fits.val();
+        self.valid.next = self.seen_valid.q.val();
         self.primary.flags.next = self.seen_flags.q.val();
+        if !self.fits.val() {
+            // An alarm beside it would hide the upset.
+            self.primary.flags.next =
+                bit_cast::<16, 12>(self.seen_flags.q.val().get_bits::<12>(0)) | 0x4000;
+            self.valid.next = bit_cast::<2, 1>(
+                (self.single_fits.val() & self.seen_valid.q.val().get_bit(0)).into(),
+            ) | (bit_cast::<2, 1>(
+                (self.multi_fits.val() & self.seen_valid.q.val().get_bit(1)).into(),
+            ) << 1);
+        }
         self.complains.next = self.seen_flags.q.val().get_bits::<2>(9).any();
         self.communication.next = bit_cast::<8, 2>(self.seen_flags.q.val().get_bits::<2>(2))
             | (bit_cast::<8, 1>(self.seen_flags.q.val().get_bits::<1>(7)) << 2)
@@ -345,8 +397,8 @@ impl Logic for AsyncDsp {
         self.control.next = bit_cast::<8, 4>(self.seen_id.q.val())
             | (bit_cast::<8, 1>(self.repeats.val().into()) << 4)
             | (bit_cast::<8, 1>(self.communication.val().any().into()) << 5)
-            | (bit_cast::<8, 1>(self.seen_fresh.q.val().into()) << 7);
-        self.overrun.next = self.seen_flags.q.val().get_bit(14);
+            | (bit_cast::<8, 1>((self.seen_fresh.q.val() & self.fits.val()).into()) << 7);
+        self.overrun.next = self.seen_flags.q.val().get_bit(15);
         match self.strobes.register.val().index() {
             0 => {
                 self.chosen.d.next = bit_cast::<16, 4>(self.request_id.q.val());
@@ -375,8 +427,8 @@ impl Logic for AsyncDsp {
             }
             _ => {
                 self.chosen.d.next = bit_cast::<16, 8>(self.seen_memory.q.val())
-                    | (bit_cast::<16, 4>(self.primary.cause.val()) << 8)
-                    | (bit_cast::<16, 2>(self.seen_valid.q.val()) << 12)
+                    | (bit_cast::<16, 4>(self.primary.cause.val().get_bits::<4>(0)) << 8)
+                    | (bit_cast::<16, 2>(self.valid.val()) << 12)
                     | (bit_cast::<16, 1>(self.overrun.val().into()) << 14)
                     | (bit_cast::<16, 1>(self.channel.busy.val().into()) << 15);
             }

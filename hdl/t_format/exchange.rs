@@ -13,6 +13,9 @@
 //! bit and a half are passed over until the reply gap has ended. Later fields are timed from their start bits.
 //!
 //! After a reply that did not come whole the next request waits until the line has been HIGH for longer than any field lasts.
+//!
+//! Two states that do not know of each other must agree that a request is under way before the driver is on, and a request that
+//! lasts too long is cut. From the header on a reply is refused if its level changes twice within half a bit.
 
 use super::bit_grid::BitGrid;
 use super::field_order::FieldOrder;
@@ -64,9 +67,11 @@ pub struct Exchange {
     pub level: Signal<In, Bit>,
     /// Status field of the reply, 0 before it has come.
     pub status: Signal<In, Bits<8>>,
+    /// What is to be sent is what was asked for; a request that does not fit is cut.
+    pub request_fits: Signal<In, Bit>,
     /// Line to the encoder, from a register.
     pub tx: Signal<Out, Bit>,
-    /// Driver enable, from a register: the request only.
+    /// Driver enable, two registers that must agree: the request only.
     pub driver: Signal<Out, Bit>,
     /// An exchange is under way.
     pub busy: Signal<Out, Bit>,
@@ -87,7 +92,7 @@ pub struct Exchange {
     /// The reply is good.
     pub good: Signal<Out, Bit>,
     /// Raw flags, see [`super::cause`].
-    pub flags: Signal<Out, Bits<15>>,
+    pub flags: Signal<Out, Bits<16>>,
     /// The ID that the reply repeats.
     pub reply_id: Signal<Out, Bits<4>>,
     /// CRC of the reply as received.
@@ -111,6 +116,10 @@ pub struct Exchange {
     previous: Reg<Bit>,
     line: Reg<Bit>,
     drives: Reg<Bit>,
+    enabled: Reg<Bit>,
+    run: Reg<Bits<6>>,
+    owed: Reg<Bit>,
+    bits_mod_3: Reg<Bits<2>>,
     unsettled: Reg<Bit>,
     check: Reg<Bits<8>>,
     echo: Reg<Bits<4>>,
@@ -123,6 +132,16 @@ pub struct Exchange {
     bad_crc: Reg<Bit>,
     memory_busy: Reg<Bit>,
     overrun: Reg<Bit>,
+    upset: Reg<Bit>,
+    in_request: Signal<Local, Bit>,
+    turns: Signal<Local, Bit>,
+    half_bit: Signal<Local, Bits<7>>,
+    too_soon: Signal<Local, Bit>,
+    alarms: Signal<Local, Bits<2>>,
+    is_end: Signal<Local, Bit>,
+    in_field: Signal<Local, Bit>,
+    is_ended: Signal<Local, Bit>,
+    is_astray: Signal<Local, Bit>,
     rising: Signal<Local, Bit>,
     forget: Signal<Local, Bit>,
     expired: Signal<Local, Bit>,
@@ -141,7 +160,8 @@ pub struct Exchange {
     is_headless: Signal<Local, Bit>,
     is_short: Signal<Local, Bit>,
     rest_us: Signal<Local, Bits<7>>,
-    raised: Signal<Local, Bits<15>>,
+    request_us: Signal<Local, Bits<7>>,
+    raised: Signal<Local, Bits<16>>,
     is_whole: Signal<Local, Bit>,
     is_good: Signal<Local, Bit>,
 }
@@ -161,6 +181,7 @@ impl Default for Exchange {
             field_gap_us: Default::default(),
             level: Default::default(),
             status: Default::default(),
+            request_fits: Default::default(),
             tx: Default::default(),
             driver: Default::default(),
             busy: Default::default(),
@@ -189,6 +210,10 @@ impl Default for Exchange {
             previous: Default::default(),
             line: Reg::new(true),
             drives: Default::default(),
+            enabled: Default::default(),
+            run: Default::default(),
+            owed: Default::default(),
+            bits_mod_3: Default::default(),
             unsettled: Default::default(),
             check: Default::default(),
             echo: Default::default(),
@@ -201,6 +226,16 @@ impl Default for Exchange {
             bad_crc: Default::default(),
             memory_busy: Default::default(),
             overrun: Default::default(),
+            upset: Default::default(),
+            in_request: Default::default(),
+            turns: Default::default(),
+            half_bit: Default::default(),
+            too_soon: Default::default(),
+            alarms: Default::default(),
+            is_end: Default::default(),
+            in_field: Default::default(),
+            is_ended: Default::default(),
+            is_astray: Default::default(),
             rising: Default::default(),
             forget: Default::default(),
             expired: Default::default(),
@@ -219,6 +254,7 @@ impl Default for Exchange {
             is_headless: Default::default(),
             is_short: Default::default(),
             rest_us: Default::default(),
+            request_us: Default::default(),
             raised: Default::default(),
             is_whole: Default::default(),
             is_good: Default::default(),
@@ -231,7 +267,18 @@ impl Logic for Exchange {
     fn update(&mut self) {
         dff_setup!(self, clock, phase, index, timer, previous, line, drives, unsettled, check);
         dff_setup!(self, clock, echo, refused, heard, missed, bad_parity, bad_echo);
-        dff_setup!(self, clock, bad_delimiter, bad_crc, memory_busy, overrun);
+        dff_setup!(
+            self,
+            clock,
+            bad_delimiter,
+            bad_crc,
+            memory_busy,
+            overrun,
+            enabled,
+            run,
+            upset
+        );
+        dff_setup!(self, clock, owed, bits_mod_3);
         clock!(self, clock, grid, order);
         // What was noted of an exchange goes when its result has been published.
         self.forget.next = self.reset.val() | (self.phase.q.val() == Phase::Rest);
@@ -243,6 +290,11 @@ impl Logic for Exchange {
         self.previous.reset.next = self.reset.val();
         self.line.reset.next = self.reset.val();
         self.drives.reset.next = self.reset.val();
+        self.enabled.reset.next = self.reset.val();
+        self.run.reset.next = self.reset.val();
+        self.owed.reset.next = self.reset.val();
+        self.bits_mod_3.reset.next = self.reset.val();
+        self.upset.reset.next = self.forget.val();
         self.unsettled.reset.next = self.reset.val();
         // Between exchanges, and before the reply.
         self.check.reset.next =
@@ -275,11 +327,25 @@ impl Logic for Exchange {
 
         self.previous.d.next = self.level.val();
         self.rising.next = !self.previous.q.val() & self.level.val();
+        // Counts half a bit from each edge on.
+        self.turns.next = self.previous.q.val() ^ self.level.val();
+        self.half_bit.next = self.bit_cycles.val() >> 1;
+        if self.run.q.val().any() {
+            self.run.d.next = self.run.q.val() - 1;
+        }
+        if self.turns.val() {
+            self.run.d.next = self.half_bit.val().get_bits::<6>(0);
+        }
 
         // Counts below zero, to -3: a wait is longer than its setting whenever it began between two strobes.
         self.expired.next = self.timer.q.val().get_bit(6) & !self.timer.q.val().get_bit(1);
         if self.tick_us.val() & !self.expired.val() {
             self.timer.d.next = self.timer.q.val() - 1;
+        }
+        // One field, or four.
+        self.request_us.next = 3.into();
+        if self.order.is_memory.val() {
+            self.request_us.next = 15.into();
         }
         self.rest_us.next = bit_cast::<7, 3>(self.field_gap_us.val()) | 8;
 
@@ -314,13 +380,37 @@ impl Logic for Exchange {
             self.check.d.next = bit_cast::<8, 7>(self.check.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.summed.val().into()) << 7);
         }
+        self.in_field.next =
+            (self.phase.q.val() == Phase::Send) | (self.phase.q.val() == Phase::Field);
+        // Start and data bits are nine: three does not divide what an upset takes from their number, or adds.
+        self.is_end.next = !self.is_start.val() & !self.is_bit.val();
         if self.strobe.val() {
             self.index.d.next = self.index.q.val() + 1;
+            self.bits_mod_3.d.next = self.bits_mod_3.q.val() + 1;
+            if self.bits_mod_3.q.val().get_bit(1) {
+                self.bits_mod_3.d.next = 0.into();
+            }
+            if self.is_end.val() {
+                self.bits_mod_3.d.next = 0.into();
+                if self.bits_mod_3.q.val().any() & self.in_field.val() {
+                    self.upset.d.next = true;
+                }
+            }
+        }
+        if (self.phase.q.val() == Phase::Wait) | (self.phase.q.val() == Phase::Rest) {
+            self.bits_mod_3.d.next = 0.into();
         }
 
+        // An edge of the control field that is not that of a header.
+        self.too_soon.next =
+            self.order.is_control.val() & (self.is_start.val() | !self.index.q.val().any());
+
         self.publish.next = false;
+        self.in_request.next =
+            (self.phase.q.val() == Phase::Send) | (self.phase.q.val() == Phase::Release);
         match self.phase.q.val() {
             Phase::Rest => {
+                self.line.d.next = true;
                 if self.expired.val() {
                     self.unsettled.d.next = false;
                 }
@@ -330,14 +420,24 @@ impl Logic for Exchange {
                 self.order.first.next = true;
                 self.index.d.next = 15.into();
                 self.refused.d.next = false;
-                if self.trigger.val() {
-                    if !self.order.is_known.val() | !self.level.val() | self.unsettled.q.val() {
-                        self.refused.d.next = true;
-                        self.phase.d.next = Phase::Judge;
-                    } else {
-                        self.drives.d.next = true;
-                        self.grid.restart.next = true;
-                        self.phase.d.next = Phase::Send;
+                if self.owed.q.val() {
+                    // Its result would never come.
+                    self.phase.d.next = Phase::Judge;
+                } else {
+                    if self.trigger.val() {
+                        if !self.order.is_known.val() | !self.level.val() | self.unsettled.q.val() {
+                            self.refused.d.next = true;
+                            self.phase.d.next = Phase::Judge;
+                        } else {
+                            self.drives.d.next = true;
+                            self.owed.d.next = true;
+                            self.in_request.next = true;
+                            self.timer.d.next = self.request_us.val();
+                            // Until the verdict says that all of the reply has come.
+                            self.unsettled.d.next = true;
+                            self.grid.restart.next = true;
+                            self.phase.d.next = Phase::Send;
+                        }
                     }
                 }
             }
@@ -361,7 +461,7 @@ impl Logic for Exchange {
             }
             Phase::Release => {
                 if self.strobe.val() {
-                    self.drives.d.next = false;
+                    self.in_request.next = false;
                     self.timer.d.next = bit_cast::<7, 6>(self.reply_gap_us.val());
                     self.phase.d.next = Phase::Wait;
                 }
@@ -437,24 +537,43 @@ impl Logic for Exchange {
                     }
                 }
                 self.grid.restart.next = self.retimed.val();
-                // An edge that comes sooner is not that of a header.
-                if self.rising.val()
-                    & self.order.is_control.val()
-                    & (self.is_start.val() | !self.index.q.val().any())
-                {
+                if self.rising.val() & self.too_soon.val() {
                     self.phase.d.next = Phase::Wait;
+                }
+                // A pulse that no encoder sends.
+                if self.turns.val() & self.run.q.val().any() & !self.too_soon.val() {
+                    self.bad_crc.d.next = true;
+                }
+                if self.sampled.val() & self.is_bit.val() & self.order.is_foreign.val() {
+                    self.upset.d.next = true;
                 }
             }
             _ => {
                 self.publish.next = self.phase.q.val() == Phase::Judge;
                 self.phase.d.next = Phase::Rest;
                 self.overrun.d.next = false;
-                self.drives.d.next = false;
+                if self.phase.q.val() == Phase::Judge {
+                    self.owed.d.next = false;
+                }
                 // Of a reply that came whole nothing is left on the line, whatever it says.
-                if !self.is_whole.val() & !self.refused.q.val() {
-                    self.unsettled.d.next = true;
+                if self.is_whole.val() {
+                    self.unsettled.d.next = false;
                 }
             }
+        }
+        // No request lasts that long, or is another one than was asked for.
+        if self.in_request.val()
+            & (self.phase.q.val() != Phase::Rest)
+            & (self.expired.val() | !self.request_fits.val() | self.upset.q.val())
+        {
+            self.in_request.next = false;
+            self.upset.d.next = true;
+            self.timer.d.next = self.rest_us.val();
+            self.phase.d.next = Phase::Judge;
+        }
+        self.enabled.d.next = self.in_request.val();
+        if !self.in_request.val() {
+            self.drives.d.next = false;
         }
         if self.trigger.val() & (self.phase.q.val() != Phase::Rest) {
             self.overrun.d.next = true;
@@ -467,27 +586,44 @@ impl Logic for Exchange {
         self.is_headless.next =
             self.missed.q.val() & self.order.is_control.val() & self.heard.q.val();
         self.is_short.next = self.missed.q.val() & !self.order.is_control.val();
-        self.raised.next = bit_cast::<15, 1>(self.is_unknown.val().into())
-            | (bit_cast::<15, 1>(self.is_not_idle.val().into()) << 1)
-            | (bit_cast::<15, 1>(self.is_silent.val().into()) << 2)
-            | (bit_cast::<15, 1>(self.is_headless.val().into()) << 3)
-            | (bit_cast::<15, 1>(self.bad_parity.q.val().into()) << 4)
-            | (bit_cast::<15, 1>(self.bad_echo.q.val().into()) << 5)
-            | (bit_cast::<15, 1>(self.bad_delimiter.q.val().into()) << 6)
-            | (bit_cast::<15, 1>(self.is_short.val().into()) << 7)
-            | (bit_cast::<15, 1>(self.bad_crc.q.val().into()) << 8)
-            | (bit_cast::<15, 2>(self.status.val().get_bits::<2>(6)) << 9)
-            | (bit_cast::<15, 1>(self.memory_busy.q.val().into()) << 11)
-            | (bit_cast::<15, 2>(self.status.val().get_bits::<2>(4)) << 12)
-            | (bit_cast::<15, 1>(self.overrun.q.val().into()) << 14);
-        self.is_whole.next = !self.raised.val().get_bits::<9>(0).any();
+        // A verdict in the middle of a reply and nothing to show for it, or the reply to a request that has changed since.
+        self.is_ended.next = self.refused.q.val()
+            | self.missed.q.val()
+            | self.bad_delimiter.q.val()
+            | self.bad_echo.q.val()
+            | (self.order.is_crc.val()
+                & self.is_start.val()
+                & !self.index.q.val().get_bit(1)
+                & !self.index.q.val().get_bit(2)
+                & (self.echo.q.val() == self.request_id.val()));
+        self.is_astray.next = self.upset.q.val() | !self.is_ended.val();
+        // An alarm beside it would hide the upset.
+        self.alarms.next = self.status.val().get_bits::<2>(4);
+        if self.is_astray.val() {
+            self.alarms.next = 0.into();
+        }
+        self.raised.next = bit_cast::<16, 1>(self.is_unknown.val().into())
+            | (bit_cast::<16, 1>(self.is_not_idle.val().into()) << 1)
+            | (bit_cast::<16, 1>(self.is_silent.val().into()) << 2)
+            | (bit_cast::<16, 1>(self.is_headless.val().into()) << 3)
+            | (bit_cast::<16, 1>(self.bad_parity.q.val().into()) << 4)
+            | (bit_cast::<16, 1>(self.bad_echo.q.val().into()) << 5)
+            | (bit_cast::<16, 1>(self.bad_delimiter.q.val().into()) << 6)
+            | (bit_cast::<16, 1>(self.is_short.val().into()) << 7)
+            | (bit_cast::<16, 1>(self.bad_crc.q.val().into()) << 8)
+            | (bit_cast::<16, 2>(self.status.val().get_bits::<2>(6)) << 9)
+            | (bit_cast::<16, 1>(self.memory_busy.q.val().into()) << 11)
+            | (bit_cast::<16, 2>(self.alarms.val()) << 12)
+            | (bit_cast::<16, 1>(self.is_astray.val().into()) << 14)
+            | (bit_cast::<16, 1>(self.overrun.q.val().into()) << 15);
+        self.is_whole.next = !self.raised.val().get_bits::<9>(0).any() & !self.is_astray.val();
         self.is_good.next = self.is_whole.val() & !self.raised.val().get_bits::<3>(9).any();
         self.flags.next = self.raised.val();
         self.good.next = self.is_good.val();
         self.reply_id.next = self.echo.q.val();
         self.crc.next = self.check.q.val();
         self.tx.next = self.line.q.val();
-        self.driver.next = self.drives.q.val();
+        self.driver.next = self.drives.q.val() & self.enabled.q.val();
         self.busy.next = self.phase.q.val() != Phase::Rest;
         self.is_status.next = self.order.is_status.val();
         self.is_single.next = self.order.is_single.val();

@@ -62,6 +62,8 @@ pub struct FieldOrder {
     pub is_known: Signal<Out, Bit>,
     /// The last field is under way.
     pub is_last: Signal<Out, Bit>,
+    /// It is none of the fields that a reply to the request has.
+    pub is_foreign: Signal<Out, Bit>,
     /// It is the control field.
     pub is_control: Signal<Out, Bit>,
     /// It is the status field.
@@ -96,6 +98,10 @@ pub struct FieldOrder {
     is_turns: Signal<Local, Bit>,
     is_kind: Signal<Local, Bit>,
     memory: Signal<Local, Bit>,
+    is_sent: Signal<Local, Bit>,
+    with_single: Signal<Local, Bit>,
+    is_single_now: Signal<Local, Bit>,
+    is_multi_now: Signal<Local, Bit>,
 }
 
 impl Logic for FieldOrder {
@@ -110,16 +116,16 @@ impl Logic for FieldOrder {
         self.is_everything.next = false;
         self.is_turns.next = false;
         self.is_kind.next = false;
-        self.has_single.next = true;
+        self.with_single.next = true;
         match self.request_id.val().index() {
             0 => {}
             1 => {
                 self.is_turns.next = true;
-                self.has_single.next = false;
+                self.with_single.next = false;
             }
             2 => {
                 self.is_kind.next = true;
-                self.has_single.next = false;
+                self.with_single.next = false;
             }
             3 => {
                 self.is_everything.next = true;
@@ -127,19 +133,20 @@ impl Logic for FieldOrder {
             6 => {
                 self.is_write.next = true;
                 self.memory.next = true;
-                self.has_single.next = false;
+                self.with_single.next = false;
             }
             7 => {}
             8 => {}
             12 => {}
             13 => {
                 self.memory.next = true;
-                self.has_single.next = false;
+                self.with_single.next = false;
             }
             _ => {
                 self.is_known.next = false;
             }
         }
+        self.has_single.next = self.with_single.val();
         self.is_memory.next = self.memory.val();
         self.has_multi.next = self.is_turns.val() | self.is_everything.val();
         self.has_identity.next = self.is_kind.val() | self.is_everything.val();
@@ -147,19 +154,36 @@ impl Logic for FieldOrder {
 
         self.is_control.next = self.kind.q.val() == FieldKind::Control;
         self.is_status.next = self.kind.q.val() == FieldKind::Status;
-        self.is_single.next = (self.kind.q.val() == FieldKind::Single0)
+        self.is_single_now.next = (self.kind.q.val() == FieldKind::Single0)
             | (self.kind.q.val() == FieldKind::Single1)
             | (self.kind.q.val() == FieldKind::Single2);
         self.is_identity.next = self.kind.q.val() == FieldKind::Identity;
-        self.is_multi.next = (self.kind.q.val() == FieldKind::Multi0)
+        self.is_multi_now.next = (self.kind.q.val() == FieldKind::Multi0)
             | (self.kind.q.val() == FieldKind::Multi1)
             | (self.kind.q.val() == FieldKind::Multi2);
+        self.is_single.next = self.is_single_now.val();
+        self.is_multi.next = self.is_multi_now.val();
         self.is_alarm.next = self.kind.q.val() == FieldKind::Alarm;
         self.is_address.next = self.kind.q.val() == FieldKind::Address;
         self.is_data.next = self.kind.q.val() == FieldKind::Data;
         self.is_crc.next = self.kind.q.val() == FieldKind::Crc;
-        self.is_last.next = (self.kind.q.val() == FieldKind::Crc)
-            | (self.sending.val() & !self.memory.val() & (self.kind.q.val() == FieldKind::Control));
+        // Whatever else is under way in a request, it ends there.
+        self.is_sent.next = self.memory.val()
+            & ((self.kind.q.val() == FieldKind::Control)
+                | (self.kind.q.val() == FieldKind::Address)
+                | (self.kind.q.val() == FieldKind::Data));
+        self.is_last.next =
+            (self.kind.q.val() == FieldKind::Crc) | (self.sending.val() & !self.is_sent.val());
+        // Without this a field would pass for another one, with a good CRC.
+        self.is_foreign.next = (self.is_single_now.val() & !self.with_single.val())
+            | (self.is_multi_now.val() & !self.is_turns.val() & !self.is_everything.val())
+            | ((self.kind.q.val() == FieldKind::Identity)
+                & !self.is_kind.val()
+                & !self.is_everything.val())
+            | ((self.kind.q.val() == FieldKind::Alarm) & !self.is_everything.val())
+            | (((self.kind.q.val() == FieldKind::Address)
+                | (self.kind.q.val() == FieldKind::Data))
+                & !self.memory.val());
 
         if self.step.val() {
             match self.kind.q.val() {

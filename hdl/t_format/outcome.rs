@@ -1,4 +1,4 @@
-//! Outcome: the result registers, changed in one clock cycle, with the last good position held.
+//! Outcome: the result registers, changed in one clock cycle, with the last good position held, and the parity that it came with.
 
 use crate::reg::Reg;
 use rust_hdl::prelude::*;
@@ -15,7 +15,7 @@ pub struct Outcome {
     /// With `publish`: the reply is good.
     pub good: Signal<In, Bit>,
     /// Raw flags.
-    pub flags_in: Signal<In, Bits<15>>,
+    pub flags_in: Signal<In, Bits<16>>,
     /// ID that the reply repeats.
     pub reply_id_in: Signal<In, Bits<4>>,
     /// CRC as received.
@@ -26,6 +26,10 @@ pub struct Outcome {
     pub single_turn_in: Signal<In, Bits<24>>,
     /// Multi-turn position.
     pub multi_turn_in: Signal<In, Bits<24>>,
+    /// Parity of the single-turn position as it came.
+    pub single_parity_in: Signal<In, Bit>,
+    /// Parity of the multi-turn position as it came.
+    pub multi_parity_in: Signal<In, Bit>,
     /// Kind of encoder, or EEPROM data.
     pub byte_in: Signal<In, Bits<8>>,
     /// Alarm field.
@@ -50,10 +54,14 @@ pub struct Outcome {
     pub single_turn: Signal<Out, Bits<24>>,
     /// There is one.
     pub single_valid: Signal<Out, Bit>,
+    /// Parity of the single-turn position and `single_valid`.
+    pub single_parity: Signal<Out, Bit>,
     /// Last good multi-turn position.
     pub multi_turn: Signal<Out, Bits<24>>,
     /// There is one.
     pub multi_valid: Signal<Out, Bit>,
+    /// Parity of the multi-turn position and `multi_valid`.
+    pub multi_parity: Signal<Out, Bit>,
     /// Kind of encoder, as it came last.
     pub encoder_id: Signal<Out, Bits<8>>,
     /// EEPROM data as they came last.
@@ -67,7 +75,7 @@ pub struct Outcome {
     /// ID that the last reply repeats.
     pub reply_id: Signal<Out, Bits<4>>,
     /// Raw flags of the last exchange, see [`super::cause`].
-    pub flags: Signal<Out, Bits<15>>,
+    pub flags: Signal<Out, Bits<16>>,
     strobe: Reg<Bit>,
     is_fresh: Reg<Bit>,
     count: Reg<Bits<8>>,
@@ -83,8 +91,12 @@ pub struct Outcome {
     echo: Reg<Bits<4>>,
     low_flags: Reg<Bits<9>>,
     memory_busy: Reg<Bit>,
+    upset: Reg<Bit>,
     overrun: Reg<Bit>,
+    single_sum: Reg<Bit>,
+    multi_sum: Reg<Bit>,
     take: Signal<Local, Bit>,
+    alarm_flags: Signal<Local, Bits<2>>,
 }
 
 impl Logic for Outcome {
@@ -110,7 +122,17 @@ impl Logic for Outcome {
             state,
             received
         );
-        dff_setup!(self, clock, echo, low_flags, memory_busy, overrun);
+        dff_setup!(
+            self,
+            clock,
+            echo,
+            low_flags,
+            memory_busy,
+            overrun,
+            upset,
+            single_sum,
+            multi_sum
+        );
         self.strobe.reset.next = self.reset.val();
         self.is_fresh.reset.next = self.reset.val();
         self.count.reset.next = self.reset.val();
@@ -126,7 +148,10 @@ impl Logic for Outcome {
         self.echo.reset.next = self.reset.val();
         self.low_flags.reset.next = self.reset.val();
         self.memory_busy.reset.next = self.reset.val();
+        self.upset.reset.next = self.reset.val();
         self.overrun.reset.next = self.reset.val();
+        self.single_sum.reset.next = self.reset.val();
+        self.multi_sum.reset.next = self.reset.val();
 
         self.strobe.d.next = self.publish.val();
         self.take.next = self.publish.val() & self.good.val();
@@ -138,15 +163,18 @@ impl Logic for Outcome {
             self.echo.d.next = self.reply_id_in.val();
             self.low_flags.d.next = self.flags_in.val().get_bits::<9>(0);
             self.memory_busy.d.next = self.flags_in.val().get_bit(11);
-            self.overrun.d.next = self.flags_in.val().get_bit(14);
+            self.upset.d.next = self.flags_in.val().get_bit(14);
+            self.overrun.d.next = self.flags_in.val().get_bit(15);
         }
         if self.take.val() & self.has_single.val() {
             self.single.d.next = self.single_turn_in.val();
             self.has_had_single.d.next = true;
+            self.single_sum.d.next = !self.single_parity_in.val();
         }
         if self.take.val() & self.has_multi.val() {
             self.multi.d.next = self.multi_turn_in.val();
             self.has_had_multi.d.next = true;
+            self.multi_sum.d.next = !self.multi_parity_in.val();
         }
         if self.take.val() & self.has_identity.val() {
             self.identity.d.next = self.byte_in.val();
@@ -162,19 +190,26 @@ impl Logic for Outcome {
         self.sequence.next = self.count.q.val();
         self.single_turn.next = self.single.q.val();
         self.single_valid.next = self.has_had_single.q.val();
+        self.single_parity.next = self.single_sum.q.val();
         self.multi_turn.next = self.multi.q.val();
         self.multi_valid.next = self.has_had_multi.q.val();
+        self.multi_parity.next = self.multi_sum.q.val();
         self.encoder_id.next = self.identity.q.val();
         self.memory_data.next = self.memory.q.val();
         self.alarm.next = self.alarms.q.val();
         self.status.next = self.state.q.val();
         self.crc.next = self.received.q.val();
         self.reply_id.next = self.echo.q.val();
-        // Complaints and alarms stand in the status field.
-        self.flags.next = bit_cast::<15, 9>(self.low_flags.q.val())
-            | (bit_cast::<15, 2>(self.state.q.val().get_bits::<2>(6)) << 9)
-            | (bit_cast::<15, 1>(self.memory_busy.q.val().into()) << 11)
-            | (bit_cast::<15, 2>(self.state.q.val().get_bits::<2>(4)) << 12)
-            | (bit_cast::<15, 1>(self.overrun.q.val().into()) << 14);
+        // Complaints and alarms stand in the status field; an alarm beside it would hide an upset.
+        self.alarm_flags.next = self.state.q.val().get_bits::<2>(4);
+        if self.upset.q.val() {
+            self.alarm_flags.next = 0.into();
+        }
+        self.flags.next = bit_cast::<16, 9>(self.low_flags.q.val())
+            | (bit_cast::<16, 2>(self.state.q.val().get_bits::<2>(6)) << 9)
+            | (bit_cast::<16, 1>(self.memory_busy.q.val().into()) << 11)
+            | (bit_cast::<16, 2>(self.alarm_flags.val()) << 12)
+            | (bit_cast::<16, 1>(self.upset.q.val().into()) << 14)
+            | (bit_cast::<16, 1>(self.overrun.q.val().into()) << 15);
     }
 }

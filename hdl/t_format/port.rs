@@ -105,11 +105,13 @@ pub struct TFormatPort {
     started: Reg<Bit>,
     lost: Reg<Bit>,
     own: Reg<Bit>,
+    own_too: Reg<Bit>,
     armed: Reg<Bit>,
     pending: Reg<Bit>,
     send_id: Reg<Bits<4>>,
     send_address: Reg<Bits<7>>,
     send_data: Reg<Bits<8>>,
+    send_sum: Reg<Bit>,
     memory: Reg<Bits<8>>,
     echo: Reg<Bits<4>>,
     own_cause: Reg<Bits<4>>,
@@ -122,6 +124,12 @@ pub struct TFormatPort {
     has_had_multi: Reg<Bit>,
     shown: Reg<Bits<32>>,
     is_busy: Signal<Local, Bit>,
+    is_own: Signal<Local, Bit>,
+    is_torn: Signal<Local, Bit>,
+    send_sum_now: Signal<Local, Bit>,
+    send_fits: Signal<Local, Bit>,
+    reply_fits: Signal<Local, Bit>,
+    good: Signal<Local, Bit>,
     own_busy: Signal<Local, Bit>,
     own_start: Signal<Local, Bit>,
     own_now: Signal<Local, Bit>,
@@ -129,8 +137,9 @@ pub struct TFormatPort {
     sends: Signal<Local, Bit>,
     takes: Signal<Local, Bit>,
     overrun: Signal<Local, Bit>,
-    sum_flags: Signal<Local, Bits<15>>,
-    code: Signal<Local, Bits<4>>,
+    sum_flags: Signal<Local, Bits<16>>,
+    flags_in: Signal<Local, Bits<16>>,
+    code: Signal<Local, Bits<5>>,
     card_cause: Signal<Local, Bits<5>>,
     single: Signal<Local, Bits<24>>,
     multi: Signal<Local, Bits<24>>,
@@ -180,11 +189,14 @@ impl Default for TFormatPort {
             started: Default::default(),
             lost: Default::default(),
             own: Default::default(),
+            own_too: Default::default(),
             armed: Default::default(),
             pending: Default::default(),
             send_id: Default::default(),
             send_address: Default::default(),
             send_data: Default::default(),
+            // Nothing to send yet.
+            send_sum: Reg::new(true),
             memory: Default::default(),
             echo: Default::default(),
             own_cause: Default::default(),
@@ -197,6 +209,12 @@ impl Default for TFormatPort {
             has_had_multi: Default::default(),
             shown: Default::default(),
             is_busy: Default::default(),
+            is_own: Default::default(),
+            is_torn: Default::default(),
+            send_sum_now: Default::default(),
+            send_fits: Default::default(),
+            reply_fits: Default::default(),
+            good: Default::default(),
             own_busy: Default::default(),
             own_start: Default::default(),
             own_now: Default::default(),
@@ -205,6 +223,7 @@ impl Default for TFormatPort {
             takes: Default::default(),
             overrun: Default::default(),
             sum_flags: Default::default(),
+            flags_in: Default::default(),
             code: Default::default(),
             card_cause: Default::default(),
             single: Default::default(),
@@ -240,6 +259,9 @@ impl Logic for TFormatPort {
             has_had_multi,
             shown
         );
+        dff_setup!(self, clock, own_too, send_sum);
+        self.own_too.reset.next = self.reset.val();
+        self.send_sum.reset.next = self.reset.val();
         self.filter.reset.next = self.reset.val();
         self.exchange.reset.next = self.reset.val();
         self.reply.reset.next = self.reset.val();
@@ -270,11 +292,19 @@ impl Logic for TFormatPort {
         self.own_start.next = self.pending.q.val() & !self.is_busy.val() & !self.trigger.val();
         self.begins.next = !self.is_busy.val() & (self.trigger.val() | self.pending.q.val());
         self.own_now.next = self.own_start.val();
+        // Twice: whose exchange it is decides what goes out, and whose result it is.
+        self.is_own.next = self.own.q.val() & self.own_too.q.val();
+        self.is_torn.next = self.own.q.val() ^ self.own_too.q.val();
         if self.is_busy.val() {
-            self.own_now.next = self.own.q.val();
+            self.own_now.next = self.is_own.val();
         }
-        self.own.d.next = self.own_now.val();
-        self.own_busy.next = self.pending.q.val() | (self.own.q.val() & self.exchange.busy.val());
+        self.own.d.next = self.own_start.val();
+        self.own_too.d.next = self.own_start.val();
+        if self.is_busy.val() {
+            self.own.d.next = self.own.q.val();
+            self.own_too.d.next = self.own_too.q.val();
+        }
+        self.own_busy.next = self.pending.q.val() | (self.is_own.val() & self.exchange.busy.val());
         if self.tick_us.val() & self.rest.q.val().any() {
             self.rest.d.next = self.rest.q.val() - 1;
         }
@@ -283,18 +313,29 @@ impl Logic for TFormatPort {
         }
 
         // The host's request: not taken while there is one.
+        self.send_sum_now.next = self.send_id.q.val().xor()
+            ^ self.send_address.q.val().xor()
+            ^ self.send_data.q.val().xor();
+        self.send_fits.next = self.send_sum_now.val() == self.send_sum.q.val();
+        // It goes out once.
+        if self.exchange.publish.val() & self.is_own.val() {
+            self.send_sum.d.next = !self.send_sum_now.val();
+        }
         self.sends.next = self.host_write.val() & !self.host_address.val().any();
         if self.sends.val() {
             if self.host_half.val() {
                 self.armed.d.next = !self.own_busy.val();
                 if !self.own_busy.val() {
                     self.send_id.d.next = self.host_data.val().get_bits::<4>(0);
+                    self.send_sum.d.next = self.host_data.val().get_bits::<4>(0).xor();
                 }
             } else {
                 self.armed.d.next = false;
                 if self.armed.q.val() {
                     self.send_data.d.next = self.host_data.val().get_bits::<8>(0);
                     self.send_address.d.next = self.host_data.val().get_bits::<7>(8);
+                    self.send_sum.d.next =
+                        self.send_sum.q.val() ^ self.host_data.val().get_bits::<15>(0).xor();
                     self.pending.d.next = true;
                     self.done.d.next = false;
                 }
@@ -320,6 +361,7 @@ impl Logic for TFormatPort {
         if self.own_now.val() {
             self.exchange.request_id.next = self.send_id.q.val();
         }
+        self.exchange.request_fits.next = !self.own_now.val() | self.send_fits.val();
         self.exchange.address.next = self.send_address.q.val();
         self.exchange.data.next = self.send_data.q.val();
         // A bit of one cycle would have no middle.
@@ -345,48 +387,73 @@ impl Logic for TFormatPort {
         self.reply.is_alarm.next = self.exchange.is_alarm.val();
 
         // A trigger that was not taken is told by the result of the exchange under way, or of the next one.
-        self.overrun.next = self.lost.q.val() & !self.own.q.val();
-        if self.exchange.publish.val() & !self.own.q.val() {
+        self.overrun.next = self.lost.q.val() & !self.is_own.val();
+        if self.exchange.publish.val() & !self.is_own.val() {
             self.lost.d.next = false;
         }
         if self.trigger.val() & self.is_busy.val() {
             self.lost.d.next = true;
         }
-        self.sum_flags.next = bit_cast::<15, 14>(self.exchange.flags.val().get_bits::<14>(0))
-            | (bit_cast::<15, 1>(self.overrun.val().into()) << 14);
-        self.primary.flags.next = self.sum_flags.val();
+        // What is stored is what came, and it is known for whom.
+        self.reply_fits.next = !self.is_torn.val();
+        if self.exchange.has_single.val()
+            & (self.reply.single_turn.val().xor() != self.reply.single_parity.val())
+        {
+            self.reply_fits.next = false;
+        }
+        if self.exchange.has_multi.val()
+            & (self.reply.multi_turn.val().xor() != self.reply.multi_parity.val())
+        {
+            self.reply_fits.next = false;
+        }
+        self.good.next = self.exchange.good.val() & self.reply_fits.val();
+        self.sum_flags.next = bit_cast::<16, 15>(self.exchange.flags.val().get_bits::<15>(0));
+        if !self.reply_fits.val() {
+            // An alarm beside it would hide the upset.
+            self.sum_flags.next =
+                bit_cast::<16, 12>(self.exchange.flags.val().get_bits::<12>(0)) | 0x4000;
+        }
+        self.flags_in.next =
+            self.sum_flags.val() | (bit_cast::<16, 1>(self.overrun.val().into()) << 15);
+        self.primary.flags.next = self.flags_in.val();
         self.code.next = self.primary.cause.val();
-        self.card_cause.next = bit_cast::<5, 4>(self.code.val()) | 16;
+        self.card_cause.next = self.code.val() | 16;
         if self.code.val() == 0 {
             self.card_cause.next = 0.into();
         }
         if self.code.val() == 1 {
             self.card_cause.next = 9.into();
         }
-        if self.code.val() == 15 {
+        if self.code.val() == 16 {
             self.card_cause.next = 8.into();
         }
 
-        // A part that does not come stays as it was.
-        self.single.next = self.snapshot.position.val().get_bits::<24>(0);
+        // A part that does not come stays as it was, if that was good.
+        self.single.next = 0.into();
+        if self.has_had_single.q.val() {
+            self.single.next = self.snapshot.position.val().get_bits::<24>(0);
+        }
         if self.exchange.has_single.val() {
             self.single.next = self.reply.single_turn.val();
         }
-        self.multi.next = self.snapshot.position.val().get_bits::<24>(24);
+        self.multi.next = 0.into();
+        if self.has_had_multi.q.val() {
+            self.multi.next = self.snapshot.position.val().get_bits::<24>(24);
+        }
         if self.exchange.has_multi.val() {
             self.multi.next = self.reply.multi_turn.val();
         }
         self.started.d.next = self.started.q.val() | !self.exchange.tx.val();
         self.takes.next = self.exchange.publish.val()
-            & self.exchange.good.val()
-            & !self.own.q.val()
+            & self.good.val()
+            & !self.is_own.val()
             & (self.exchange.has_single.val() | self.exchange.has_multi.val());
         self.snapshot.tick_us.next = self.tick_us.val();
         self.snapshot.timestamp.next = self.timestamp.val();
         self.snapshot.first_fall.next = !self.exchange.tx.val() & !self.started.q.val();
         self.snapshot.latched.next = false;
         self.snapshot.delay_cycles.next = 0.into();
-        self.snapshot.publish.next = self.exchange.publish.val() & !self.own.q.val();
+        self.snapshot.publish.next = self.exchange.publish.val() & !self.is_own.val();
         self.snapshot.good.next = self.takes.val();
         // All that an exchange shows is seen before its end.
         self.snapshot.late_fault.next = false;
@@ -399,9 +466,9 @@ impl Logic for TFormatPort {
         self.snapshot.crc_received_in.next = 0.into();
         self.snapshot.crc_computed_in.next = 0.into();
         self.snapshot.cause_in.next = self.card_cause.val();
-        self.snapshot.flags_in.next = bit_cast::<20, 15>(self.sum_flags.val());
+        self.snapshot.flags_in.next = bit_cast::<20, 16>(self.flags_in.val());
         self.over.next = self.exchange.publish.val();
-        self.over_request.next = self.own.q.val();
+        self.over_request.next = self.is_own.val();
         self.result_strobe.next = self.snapshot.result_strobe.val();
         self.position.next = self.snapshot.position.val();
         self.position_valid.next = self.snapshot.position_valid.val();
@@ -412,7 +479,11 @@ impl Logic for TFormatPort {
         self.cause.next = self.snapshot.cause.val();
         self.flags.next = self.snapshot.flags.val();
 
-        // What the words of the host show.
+        // What the words of the host show. What the snapshot has withdrawn is there no more.
+        if !self.snapshot.position_valid.val() {
+            self.has_had_single.d.next = false;
+            self.has_had_multi.d.next = false;
+        }
         if self.takes.val() & self.exchange.has_single.val() {
             self.has_had_single.d.next = true;
         }
@@ -422,12 +493,12 @@ impl Logic for TFormatPort {
         if self.exchange.publish.val() {
             self.status.d.next = self.reply.status.val();
             self.crc.d.next = self.exchange.crc.val();
-            if self.own.q.val() {
+            if self.is_own.val() | self.is_torn.val() {
                 self.echo.d.next = self.exchange.reply_id.val();
-                self.own_cause.d.next = self.code.val();
+                self.own_cause.d.next = self.code.val().get_bits::<4>(0);
                 self.done.d.next = true;
             }
-            if self.exchange.good.val() {
+            if self.good.val() {
                 if self.exchange.has_identity.val() {
                     self.identity.d.next = self.reply.byte_field.val();
                 }

@@ -6,15 +6,18 @@ use rust_hdl::prelude::*;
 #[derive(LogicBlock, Default)]
 pub struct LowestCause {
     /// Raw flags, see [`super::cause`].
-    pub flags: Signal<In, Bits<15>>,
+    pub flags: Signal<In, Bits<16>>,
     /// Number of the lowest plus one; 0 without flags.
-    pub cause: Signal<Out, Bits<4>>,
+    pub cause: Signal<Out, Bits<5>>,
 }
 
 impl Logic for LowestCause {
     #[hdl_gen]
     fn update(&mut self) {
         self.cause.next = 0.into();
+        if self.flags.val().get_bit(15) {
+            self.cause.next = 16.into();
+        }
         if self.flags.val().get_bit(14) {
             self.cause.next = 15.into();
         }
@@ -81,7 +84,7 @@ mod tests {
         assert_eq!(primary(0), cause::NONE);
         for code in 1..cause::COUNT {
             assert_eq!(primary(cause::flag(code)), code);
-            assert_eq!(primary(0x7fff & !(cause::flag(code) - 1)), code);
+            assert_eq!(primary(0xffff & !(cause::flag(code) - 1)), code);
             assert_ne!(cause::name(code), "unknown");
         }
         assert_eq!(cause::name(cause::COUNT), "unknown");

@@ -1,4 +1,5 @@
-//! Reply: the fields of a reply while they come, each in a shift register of its own.
+//! Reply: the fields of a reply while they come, each in a shift register of its own, and the parities of the positions as they
+//! came, which go with them wherever they are kept.
 
 use crate::reg::Reg;
 use rust_hdl::prelude::*;
@@ -32,6 +33,10 @@ pub struct Reply {
     pub single_turn: Signal<Out, Bits<24>>,
     /// Multi-turn position.
     pub multi_turn: Signal<Out, Bits<24>>,
+    /// Parity of the bits of the single-turn position that have come.
+    pub single_parity: Signal<Out, Bit>,
+    /// Parity of the bits of the multi-turn position that have come.
+    pub multi_parity: Signal<Out, Bit>,
     /// Kind of encoder, or EEPROM data.
     pub byte_field: Signal<Out, Bits<8>>,
     /// Alarm field.
@@ -41,6 +46,8 @@ pub struct Reply {
     multi_bits: Reg<Bits<24>>,
     byte_bits: Reg<Bits<8>>,
     alarm_bits: Reg<Bits<8>>,
+    single_sum: Reg<Bit>,
+    multi_sum: Reg<Bit>,
 }
 
 impl Logic for Reply {
@@ -53,8 +60,12 @@ impl Logic for Reply {
             single_bits,
             multi_bits,
             byte_bits,
-            alarm_bits
+            alarm_bits,
+            single_sum,
+            multi_sum
         );
+        self.single_sum.reset.next = self.reset.val() | self.idle.val();
+        self.multi_sum.reset.next = self.reset.val() | self.idle.val();
         self.status_bits.reset.next = self.reset.val() | self.idle.val();
         // What a frame has not filled is not taken, so these need no reset.
         self.single_bits.reset.next = false;
@@ -69,6 +80,12 @@ impl Logic for Reply {
             self.single_bits.d.next =
                 bit_cast::<24, 23>(self.single_bits.q.val().get_bits::<23>(1))
                     | (bit_cast::<24, 1>(self.level.val().into()) << 23);
+        }
+        if self.take.val() & self.is_single.val() {
+            self.single_sum.d.next = self.single_sum.q.val() ^ self.level.val();
+        }
+        if self.take.val() & self.is_multi.val() {
+            self.multi_sum.d.next = self.multi_sum.q.val() ^ self.level.val();
         }
         if self.take.val() & self.is_multi.val() {
             self.multi_bits.d.next = bit_cast::<24, 23>(self.multi_bits.q.val().get_bits::<23>(1))
@@ -85,6 +102,8 @@ impl Logic for Reply {
         self.status.next = self.status_bits.q.val();
         self.single_turn.next = self.single_bits.q.val();
         self.multi_turn.next = self.multi_bits.q.val();
+        self.single_parity.next = self.single_sum.q.val();
+        self.multi_parity.next = self.multi_sum.q.val();
         self.byte_field.next = self.byte_bits.q.val();
         self.alarm.next = self.alarm_bits.q.val();
     }

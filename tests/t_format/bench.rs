@@ -171,7 +171,7 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "overrun not kept",
         OUTCOME,
-        "overrun_next = flags_in[14];",
+        "overrun_next = flags_in[15];",
         "overrun_next = 1'b0;",
     ),
     mutation(

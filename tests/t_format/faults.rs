@@ -205,7 +205,7 @@ fn a_trigger_in_an_exchange_is_told_and_its_position_taken() {
     rig.wait_us(1);
     rig.pins.trigger = false;
     let map = rig.finish();
-    assert_eq!(map.cause, cause::TRIGGER_OVERRUN);
+    assert_eq!(map.cause, cause::NONE);
     assert!(map.overrun && map.fresh && map.single_turn == 0x11_1111);
     // The pin sends the last request again.
     rig.wait_us(20);
@@ -215,6 +215,23 @@ fn a_trigger_in_an_exchange_is_told_and_its_position_taken() {
     let map = rig.finish();
     assert!(!map.overrun && map.cause == cause::NONE);
     assert_eq!(rig.encoder.replies().len(), 2);
+    assert_eq!(rig.encoder.violations(), []);
+}
+
+#[test]
+fn the_trigger_pin_and_a_second_write_of_address_0_write_no_byte_again() {
+    let mut rig = Rig::new(20, config(Defect::None));
+    assert!(rig.memory(6, 5, 0x5A).fresh);
+    rig.wait_us(6_000);
+    rig.pins.trigger = true;
+    rig.wait_us(1);
+    rig.pins.trigger = false;
+    let map = rig.finish();
+    assert_eq!((map.cause, map.fresh), (cause::UNKNOWN_REQUEST, false));
+    assert_eq!(rig.exchange(6).cause, cause::UNKNOWN_REQUEST);
+    assert_eq!(rig.encoder.requests().len(), 1);
+    assert!(rig.memory(6, 5, 0xA5).fresh);
+    assert_eq!(rig.encoder.eeprom(0, 5), 0xA5);
     assert_eq!(rig.encoder.violations(), []);
 }
 

@@ -2,10 +2,12 @@
 
 mod area;
 mod bench;
+mod budget;
 mod card;
 mod config;
 mod dsp;
 mod faults;
+mod glitches;
 mod header;
 mod lanes;
 mod rig;

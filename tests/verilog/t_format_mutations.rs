@@ -186,13 +186,13 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "a bad reply replaces the position",
         PORT,
-        "takes = over & exchange_good & !own &",
-        "takes = over & !own &",
+        "takes = over & good & !is_own &",
+        "takes = over & !is_own &",
     ),
     mutation(
         "a reply to the host gives a result",
         PORT,
-        "snapshot_publish = over & !own;",
+        "snapshot_publish = over & !is_own;",
         "snapshot_publish = over;",
     ),
     mutation(
@@ -211,7 +211,7 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
         "trigger within a request of the host not told",
         PORT,
         "if (trigger & is_busy) begin",
-        "if (trigger & is_busy & !own) begin",
+        "if (trigger & is_busy & !is_own) begin",
     ),
     mutation(
         "a trigger sends the host's last request",
@@ -222,8 +222,8 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "causes not moved behind those of EnDat",
         PORT,
-        "card_cause = {1'b0, code} | 5'd16;",
-        "card_cause = {1'b0, code};",
+        "card_cause = code | 5'd16;",
+        "card_cause = code;",
     ),
     mutation(
         "T-format channel not triggered",
