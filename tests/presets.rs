@@ -205,7 +205,7 @@ fn every_preset_runs_without_a_fault_at_every_corner_of_its_encoders() {
         // An initialisation takes long; each channel has another corner anyway.
         let firsts: &[usize] = match project.card.service.initialise {
             true => &[1, 14],
-            false => &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
+            false => &[0, 3, 5, 6, 9, 10, 12, 15],
         };
         for first in firsts {
             let wrong = run(&project, *first);

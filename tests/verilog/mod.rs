@@ -3,6 +3,7 @@
 pub mod area;
 mod bus_bench;
 mod formal;
+mod fronts;
 mod lint;
 pub mod mutations;
 mod netlist;
