@@ -9,8 +9,8 @@
 //!        results of channels+
 //! ```
 //!
-//! **A front cannot turn the ring by half.** Address and direction of an access are taken with `access` and stand until `done`; an access that
-//! comes before is not begun.
+//! **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with `access` and stand until
+//! `done`; an access that comes before is not begun. Only which byte is shown follows the front: whoever changes the address reads something else.
 //!
 //! Results of all channels are held together: they follow the channels while no channel owes a result and nothing is
 //! being read. See `docs/host-link.md`.
@@ -519,11 +519,9 @@ impl Logic for RegisterBank {
                 self.count_byte.d.next = self.count_held.q.val().get_bits::<8>(0);
             }
         }
-        if !self.busy.val() {
-            self.rom_skip.d.next = !self.card_page.val() | self.word_address.val().get_bit(3);
-            self.count_skip.d.next =
-                !self.low_page.val() | (self.low_address.val() != self.trigger_count_at.val());
-        }
+        self.rom_skip.d.next = !self.card_page.val() | self.word_address.val().get_bit(3);
+        self.count_skip.d.next =
+            !self.low_page.val() | (self.low_address.val() != self.trigger_count_at.val());
         self.strobe.next = self.starts.val() & self.write.val() & self.low_page.val();
         self.trigger_strobe.d.next = self.strobe.val()
             & (self.low_address.val() == self.trigger_now_at.val())
@@ -551,58 +549,56 @@ impl Logic for RegisterBank {
         }
         self.result_page.next =
             self.low_page.val() & self.word_address.val().get_bits::<2>(7).all();
-        if !self.busy.val() {
-            self.skipped_words.d.next = 63.into();
-            match self.word_address.val().get_bits::<3>(0).index() {
+        self.skipped_words.d.next = 63.into();
+        match self.word_address.val().get_bits::<3>(0).index() {
+            0 => {
+                self.skipped_words.d.next = 62.into();
+            }
+            1 => {
+                self.skipped_words.d.next = 61.into();
+            }
+            2 => {
+                self.skipped_words.d.next = 59.into();
+            }
+            3 => {
+                self.skipped_words.d.next = 55.into();
+            }
+            4 => {
+                self.skipped_words.d.next = 47.into();
+            }
+            5 => {
+                self.skipped_words.d.next = 31.into();
+            }
+            _ => {}
+        }
+        self.skipped_channels.d.next = 255.into();
+        if self.result_page.val() {
+            match self.word_address.val().get_bits::<4>(3).index() {
                 0 => {
-                    self.skipped_words.d.next = 62.into();
+                    self.skipped_channels.d.next = 254.into();
                 }
                 1 => {
-                    self.skipped_words.d.next = 61.into();
+                    self.skipped_channels.d.next = 253.into();
                 }
                 2 => {
-                    self.skipped_words.d.next = 59.into();
+                    self.skipped_channels.d.next = 251.into();
                 }
                 3 => {
-                    self.skipped_words.d.next = 55.into();
+                    self.skipped_channels.d.next = 247.into();
                 }
                 4 => {
-                    self.skipped_words.d.next = 47.into();
+                    self.skipped_channels.d.next = 239.into();
                 }
                 5 => {
-                    self.skipped_words.d.next = 31.into();
+                    self.skipped_channels.d.next = 223.into();
+                }
+                6 => {
+                    self.skipped_channels.d.next = 191.into();
+                }
+                7 => {
+                    self.skipped_channels.d.next = 127.into();
                 }
                 _ => {}
-            }
-            self.skipped_channels.d.next = 255.into();
-            if self.result_page.val() {
-                match self.word_address.val().get_bits::<4>(3).index() {
-                    0 => {
-                        self.skipped_channels.d.next = 254.into();
-                    }
-                    1 => {
-                        self.skipped_channels.d.next = 253.into();
-                    }
-                    2 => {
-                        self.skipped_channels.d.next = 251.into();
-                    }
-                    3 => {
-                        self.skipped_channels.d.next = 247.into();
-                    }
-                    4 => {
-                        self.skipped_channels.d.next = 239.into();
-                    }
-                    5 => {
-                        self.skipped_channels.d.next = 223.into();
-                    }
-                    6 => {
-                        self.skipped_channels.d.next = 191.into();
-                    }
-                    7 => {
-                        self.skipped_channels.d.next = 127.into();
-                    }
-                    _ => {}
-                }
             }
         }
         self.word_skip.next = self.skipped_words.q.val();
