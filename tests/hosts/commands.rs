@@ -259,7 +259,7 @@ fn log_has_every_trigger_of_a_card_with_a_stream() {
 /// The shipped card as a newcomer logs it: no sample of its 10 kHz is missing, and none comes twice.
 #[test]
 fn log_records_every_sample_of_the_shipped_card() {
-    const SAMPLES: usize = 5_000;
+    const SAMPLES: usize = 3_000;
     let out = tools::folder("host_every_sample").join("log.csv");
     let samples = SAMPLES.to_string();
     let outcome = run(&[
