@@ -538,9 +538,9 @@ impl Logic for CardCore {
             self.set_block[i].next = self.stream[i].block.val();
             self.set_byte_at[i].next = self.stream[i].byte_at.val();
             self.stream[i].selected.next = self.bank.stream_selected.val();
-            self.stream[i].word.next = self.word_address.val().get_bits::<2>(0);
+            self.stream[i].word.next = self.bank.address.val().get_bits::<2>(0);
             self.stream[i].lane.next = self.lane.val();
-            self.stream[i].access.next = self.access.val();
+            self.stream[i].access.next = self.bank.begins.val();
             self.stream[i].write.next = self.write.val();
             self.stream[i].write_data.next = self.write_data.val().get_bits::<2>(0);
             self.part_byte[0].next = self.stream[i].read_byte.val();
@@ -575,7 +575,7 @@ impl Logic for CardCore {
         }
 
         // Outputs within the device.
-        self.part_write.next = self.access.val() & self.write.val();
+        self.part_write.next = self.bank.begins.val() & self.write.val();
         for i in 0..self._directs {
             self.direct[i].clock.next = self.clk_i.val();
             self.direct[i].reset.next = self.rst_i.val();
@@ -584,8 +584,8 @@ impl Logic for CardCore {
             self.direct[i].fresh.next = self.port[i].fresh.val();
             self.direct[i].cause.next = self.port[i].cause.val();
             self.direct[i].alarm.next = self.port[i].alarm.val();
-            self.direct[i].word_address.next = self.word_address.val();
-            self.direct[i].in_range.next = self.in_range.val();
+            self.direct[i].word_address.next = self.bank.address.val();
+            self.direct[i].in_range.next = self.bank.is_inside.val();
             self.direct[i].lane.next = self.lane.val();
             self.direct[i].write.next = self.part_write.val();
             self.direct[i].write_data.next = self.write_data.val();
@@ -606,8 +606,8 @@ impl Logic for CardCore {
         for i in 0..self._interrupts {
             self.interrupt[i].clock.next = self.clk_i.val();
             self.interrupt[i].reset.next = self.rst_i.val();
-            self.interrupt[i].word_address.next = self.word_address.val();
-            self.interrupt[i].in_range.next = self.in_range.val();
+            self.interrupt[i].word_address.next = self.bank.address.val();
+            self.interrupt[i].in_range.next = self.bank.is_inside.val();
             self.interrupt[i].lane.next = self.lane.val();
             self.interrupt[i].write.next = self.part_write.val();
             self.interrupt[i].write_data.next = self.write_data.val();

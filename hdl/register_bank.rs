@@ -9,6 +9,9 @@
 //!        results of channels+
 //! ```
 //!
+//! **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with `access` and stand until
+//! `done`; an access that comes before is not begun. Only which byte is shown follows the front: whoever changes the address reads something else.
+//!
 //! Results of all channels are held together: they follow the channels while no channel owes a result and nothing is
 //! being read. See `docs/host-link.md`.
 
@@ -25,14 +28,20 @@ pub struct RegisterBank {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Word address, constant from `access` to `done`.
+    /// Word address; what stood there in the cycle before `access` counts until `done`.
     pub word_address: Signal<In, Bits<11>>,
-    /// The address fits `word_address`; otherwise a read gives 0 and a write does nothing.
+    /// The address fits `word_address`; otherwise a read gives 0 and a write does nothing. It counts like the address.
     pub in_range: Signal<In, Bit>,
     /// Byte of the word, 0 = most significant.
     pub lane: Signal<In, Bits<2>>,
-    /// One-cycle strobe: begin an access, with the address stable since the cycle before.
+    /// One-cycle strobe: begin an access, with the address stable since the cycle before. Before `done` of the last one it does nothing.
     pub access: Signal<In, Bit>,
+    /// One-cycle strobe: the access begins, in the cycle of `access`.
+    pub begins: Signal<Out, Bit>,
+    /// Word address of the access that begins or is being carried out.
+    pub address: Signal<Out, Bits<11>>,
+    /// Its `in_range`.
+    pub is_inside: Signal<Out, Bit>,
     /// With `access`: write a word; low = read a byte.
     pub write: Signal<In, Bit>,
     /// Word to write.
@@ -98,6 +107,9 @@ pub struct RegisterBank {
     /// Period of the trigger timer.
     pub period_cycles: Signal<Out, Bits<24>>,
     ring: ConfigRing,
+    held_address: Reg<Bits<11>>,
+    held_inside: Reg<Bit>,
+    line_selected: Reg<Bit>,
     turning: Reg<Bit>,
     byte_at: Reg<Bits<4>>,
     block_at: Reg<Bits<4>>,
@@ -127,6 +139,8 @@ pub struct RegisterBank {
     service_byte: Reg<Bits<8>>,
     service_selected: Reg<Bits<8>>,
     service_first: Reg<Bit>,
+    busy: Signal<Local, Bit>,
+    starts: Signal<Local, Bit>,
     low_page: Signal<Local, Bit>,
     low_address: Signal<Local, Bits<9>>,
     service_page: Signal<Local, Bit>,
@@ -190,6 +204,9 @@ impl RegisterBank {
             in_range: Default::default(),
             lane: Default::default(),
             access: Default::default(),
+            begins: Default::default(),
+            address: Default::default(),
+            is_inside: Default::default(),
             write: Default::default(),
             write_data: Default::default(),
             take_byte: Default::default(),
@@ -223,6 +240,9 @@ impl RegisterBank {
             sources: Default::default(),
             period_cycles: Default::default(),
             ring: ConfigRing::new(words),
+            held_address: Default::default(),
+            held_inside: Default::default(),
+            line_selected: Default::default(),
             turning: Default::default(),
             byte_at: Default::default(),
             block_at: Default::default(),
@@ -252,6 +272,8 @@ impl RegisterBank {
             service_byte: Default::default(),
             service_selected: Default::default(),
             service_first: Default::default(),
+            busy: Default::default(),
+            starts: Default::default(),
             low_page: Default::default(),
             low_address: Default::default(),
             service_page: Default::default(),
@@ -370,6 +392,21 @@ impl Logic for RegisterBank {
         self.service_first.reset.next = self.reset.val();
         self.service_byte.reset.next = self.service_skip.q.val();
 
+        // What an access is stands from its begin to its end, whatever the front shows.
+        dff_setup!(self, clock, held_address, held_inside, line_selected);
+        self.held_address.reset.next = self.reset.val();
+        self.held_inside.reset.next = self.reset.val();
+        self.line_selected.reset.next = self.reset.val();
+        self.busy.next = self.turning.q.val() | self.ended.q.val();
+        self.starts.next = self.access.val() & !self.busy.val();
+        if !self.busy.val() {
+            self.held_address.d.next = self.word_address.val();
+            self.held_inside.d.next = self.in_range.val();
+        }
+        self.begins.next = self.starts.val();
+        self.address.next = self.held_address.q.val();
+        self.is_inside.next = self.held_inside.q.val();
+
         // One turn for a configuration word. The counters run one cycle ahead of the ring, so that comparing them has a cycle of its own.
         // They also time the halves of a written RAM word; everything else ends as soon as its byte is there.
         self.whole_turn.next =
@@ -394,7 +431,7 @@ impl Logic for RegisterBank {
             self.byte_at.d.next = 0.into();
             self.block_at.d.next = 0.into();
         }
-        if self.access.val() {
+        if self.starts.val() {
             self.turning.d.next = true;
             self.write_now.d.next = self.write.val();
         }
@@ -409,14 +446,16 @@ impl Logic for RegisterBank {
         self.low_address.next = self.word_address.val().get_bits::<9>(0);
 
         // Configuration: the ring carries 3 of the 8 words that a block has room for.
-        self.config_page.d.next = self.low_page.val()
-            & self.word_address.val().get_bit(8)
-            & !self.word_address.val().get_bit(7)
-            & !self.word_address.val().get_bit(2);
+        if !self.busy.val() {
+            self.config_page.d.next = self.low_page.val()
+                & self.word_address.val().get_bit(8)
+                & !self.word_address.val().get_bit(7)
+                & !self.word_address.val().get_bit(2);
+        }
         self.at_word.next = self.turning.q.val()
             & self.config_page.q.val()
-            & (self.block_at.q.val() == self.word_address.val().get_bits::<4>(3))
-            & (self.byte_at.q.val().get_bits::<2>(2) == self.word_address.val().get_bits::<2>(0));
+            & (self.block_at.q.val() == self.held_address.q.val().get_bits::<4>(3))
+            & (self.byte_at.q.val().get_bits::<2>(2) == self.held_address.q.val().get_bits::<2>(0));
         self.passes.d.next = self.at_word.val();
         self.byte_passes.d.next =
             self.at_word.val() & (self.byte_at.q.val().get_bits::<2>(0) == self.lane.val());
@@ -427,7 +466,7 @@ impl Logic for RegisterBank {
         if self.byte_passes.q.val() {
             self.ring_byte.d.next = self.ring.byte_out.val();
         }
-        if self.access.val() {
+        if self.starts.val() {
             self.ring_byte.d.next = 0.into();
         }
         self.take_byte.next = self.passes.q.val();
@@ -441,7 +480,7 @@ impl Logic for RegisterBank {
         self.stream_selected.next =
             self.card_page.val() & self.word_address.val().get_bits::<2>(2).all();
         self.rom_word.next = 0.into();
-        match self.word_address.val().get_bits::<3>(0).index() {
+        match self.held_address.q.val().get_bits::<3>(0).index() {
             0 => {
                 self.rom_word.next = self.id.val();
             }
@@ -483,7 +522,7 @@ impl Logic for RegisterBank {
         self.rom_skip.d.next = !self.card_page.val() | self.word_address.val().get_bit(3);
         self.count_skip.d.next =
             !self.low_page.val() | (self.low_address.val() != self.trigger_count_at.val());
-        self.strobe.next = self.access.val() & self.write.val() & self.low_page.val();
+        self.strobe.next = self.starts.val() & self.write.val() & self.low_page.val();
         self.trigger_strobe.d.next = self.strobe.val()
             & (self.low_address.val() == self.trigger_now_at.val())
             & self.write_data.val().get_bit(0);
@@ -508,6 +547,8 @@ impl Logic for RegisterBank {
         if self.follow.q.val() {
             self.count_held.d.next = self.trigger_count.val();
         }
+        self.result_page.next =
+            self.low_page.val() & self.word_address.val().get_bits::<2>(7).all();
         self.skipped_words.d.next = 63.into();
         match self.word_address.val().get_bits::<3>(0).index() {
             0 => {
@@ -530,8 +571,6 @@ impl Logic for RegisterBank {
             }
             _ => {}
         }
-        self.result_page.next =
-            self.low_page.val() & self.word_address.val().get_bits::<2>(7).all();
         self.skipped_channels.d.next = 255.into();
         if self.result_page.val() {
             match self.word_address.val().get_bits::<4>(3).index() {
@@ -581,7 +620,7 @@ impl Logic for RegisterBank {
             & self.word_address.val().get_bits::<2>(6).all();
         self.word_page.next =
             self.service_page.val() | self.line_page.val() | self.t_format_page.val();
-        self.service_line.next = self.line_page.val() | self.t_format_page.val();
+        self.service_line.next = self.line_selected.q.val();
         self.service_channel.next = self.word_address.val().get_bits::<3>(7);
         if self.line_page.val() {
             self.service_channel.next = self.word_address.val().get_bits::<3>(6);
@@ -618,13 +657,17 @@ impl Logic for RegisterBank {
                 }
             }
         }
-        // A channel has the words of its own protocol only.
-        self.service_selected.d.next = self.selected.val() & self.endat_channels.val();
-        if self.t_format_page.val() {
-            self.service_selected.d.next = self.selected.val() & self.t_format_channels.val();
+        if !self.busy.val() {
+            self.line_selected.d.next = self.line_page.val() | self.t_format_page.val();
+            self.service_skip.d.next = !self.word_page.val();
+            // A channel has the words of its own protocol only.
+            self.service_selected.d.next = self.selected.val() & self.endat_channels.val();
+            if self.t_format_page.val() {
+                self.service_selected.d.next = self.selected.val() & self.t_format_channels.val();
+            }
         }
-        self.service_first.d.next = self.access.val();
-        self.service_address.next = self.word_address.val().get_bits::<7>(0);
+        self.service_first.d.next = self.starts.val();
+        self.service_address.next = self.held_address.q.val().get_bits::<7>(0);
         self.service_channels.next = self.service_selected.q.val();
         self.service_clear.next = self.service_first.q.val() & !self.lane.val().any();
         self.service_read.next = 0.into();
@@ -643,7 +686,6 @@ impl Logic for RegisterBank {
         if self.service_half.val() {
             self.service_data.next = self.write_data.val().get_bits::<16>(16);
         }
-        self.service_skip.d.next = !self.word_page.val();
         match self.lane.val().index() {
             0 => {
                 self.service_byte.d.next = self.service_word.val().get_bits::<8>(24);

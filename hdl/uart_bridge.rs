@@ -11,6 +11,9 @@
 //!
 //! Between answers it pushes the frames of a [`crate::stream::Stream`], each in one piece; an answer then begins with 0xFF.
 //!
+//! A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that byte
+//! waits, the second one comes later than any turn ends.
+//!
 //! A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
 //!
 //! Ref: LiteX, `litex/soc/cores/uart.py` (gateware) and `litex/tools/remote/comm_uart.py` (client).
@@ -94,6 +97,9 @@ pub struct UartBridge {
     out_of_range: Reg<Bit>,
     byte_lane: Reg<Bits<2>>,
     data: Reg<Bits<32>>,
+    next_byte: Reg<Bits<8>>,
+    has_byte: Reg<Bit>,
+    write_busy: Reg<Bit>,
     sent: Reg<Bit>,
     word_end: Reg<Bit>,
     last_word: Reg<Bit>,
@@ -113,6 +119,7 @@ pub struct UartBridge {
     next_lane: Signal<Local, Bit>,
     next_address: Signal<Local, Bits<12>>,
     high_bits: Signal<Local, Bit>,
+    data_moves: Signal<Local, Bit>,
     timeout_us: Constant<Bits<17>>,
 }
 
@@ -150,6 +157,9 @@ impl UartBridge {
             out_of_range: Default::default(),
             byte_lane: Default::default(),
             data: Default::default(),
+            next_byte: Default::default(),
+            has_byte: Default::default(),
+            write_busy: Default::default(),
             sent: Default::default(),
             word_end: Default::default(),
             last_word: Default::default(),
@@ -169,6 +179,7 @@ impl UartBridge {
             next_lane: Default::default(),
             next_address: Default::default(),
             high_bits: Default::default(),
+            data_moves: Default::default(),
             timeout_us: Constant::new(timeout_us.into()),
         }
     }
@@ -188,7 +199,10 @@ impl Logic for UartBridge {
             out_of_range
         );
         dff_setup!(self, clock, byte_lane, data, byte_ready, idle_us, expired, stop_timer);
-        dff_setup!(self, clock, marked, marker);
+        dff_setup!(self, clock, marked, marker, next_byte, has_byte, write_busy);
+        self.next_byte.reset.next = self.reset.val();
+        self.has_byte.reset.next = self.reset.val();
+        self.write_busy.reset.next = self.reset.val();
         self.marked.reset.next = self.reset.val();
         self.marker.reset.next = self.reset.val();
         dff_setup!(
@@ -382,11 +396,23 @@ impl Logic for UartBridge {
             }
         }
 
-        if (self.receiver.strobe.val() & (self.state.q.val() == BridgeState::Write))
-            | self.take_byte.val()
-        {
-            self.data.d.next =
-                (self.data.q.val() << 8) | bit_cast::<32, 8>(self.receiver.data.val());
+        // The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
+        if self.access_now.q.val() & self.writing.q.val() {
+            self.write_busy.d.next = true;
+        }
+        if self.done.val() {
+            self.write_busy.d.next = false;
+        }
+        self.data_moves.next = self.has_byte.q.val() & !self.write_busy.q.val();
+        if self.data_moves.val() {
+            self.has_byte.d.next = false;
+        }
+        if self.receiver.strobe.val() & (self.state.q.val() == BridgeState::Write) {
+            self.next_byte.d.next = self.receiver.data.val();
+            self.has_byte.d.next = true;
+        }
+        if self.data_moves.val() | self.take_byte.val() {
+            self.data.d.next = (self.data.q.val() << 8) | bit_cast::<32, 8>(self.next_byte.q.val());
         }
 
         if self.done.val() & (self.state.q.val() == BridgeState::Read) {

@@ -17,6 +17,7 @@ mod integrators;
 mod maps;
 mod pages;
 mod position;
+mod presets;
 mod program;
 mod requests;
 mod service;

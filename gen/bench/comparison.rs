@@ -351,7 +351,7 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
     }
     let result = bench.results().get(1).ok_or_else(|| fault(&"no result"))?;
     let row = back_to_back(rows, "Liu et al.")?;
-    let (lut, ff) = area("card", "xc6s");
+    let (lut, ff) = area("card_stream", "xc6s");
     let mut table = Table::new("Acquisition card: `s6_two_channel`", "Liu et al. 2024");
     table.row("sampling of two RCN 8510, 3.125 MHz", "10 kHz", {
         let most = decimal(row.cycles_per_s / 1e3, 1);

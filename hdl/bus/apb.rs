@@ -5,6 +5,7 @@
 //! prdata, pready, pslverr <---------------------------- finished
 //! ```
 //!
+//! A transfer is taken in the cycle after its first one, if it is enabled then: what a master shows in a longer SETUP and changes does not count.
 //! Every transfer has wait states; none is without an end. `pslverr` tells an address that is no multiple of 4. A
 //! master that takes `psel` away before `pready` gets no answer, and a write that has begun is carried out.
 //!
@@ -70,6 +71,7 @@ pub struct ApbFront {
     address: Reg<Bits<11>>,
     writing: Reg<Bit>,
     start: Signal<Local, Bit>,
+    enabled: Signal<Local, Bit>,
     misaligned: Signal<Local, Bit>,
 }
 
@@ -114,16 +116,17 @@ impl Logic for ApbFront {
             self.error.d.next = self.misaligned.val();
         }
         // A master that leaves in the middle gets no answer: the next transfer would take it for its own.
-        if self.busy.q.val() & !(self.psel.val() & self.penable.val()) {
+        self.enabled.next = self.psel.val() & self.penable.val();
+        if self.busy.q.val() & !self.enabled.val() {
             self.abandoned.d.next = true;
         }
-        // One that leaves at once has asked for nothing: its word cannot be trusted any more.
-        self.words.request.next = self.request.q.val() & self.psel.val();
-        if self.words.finished.val() | (self.request.q.val() & !self.psel.val()) {
+        // One that leaves at once, or does not enable it, has asked for nothing: its word cannot be trusted any more.
+        self.words.request.next = self.request.q.val() & self.enabled.val();
+        if self.words.finished.val() | (self.request.q.val() & !self.enabled.val()) {
             self.busy.d.next = false;
         }
         if self.words.finished.val() {
-            self.ready.d.next = self.psel.val() & !self.abandoned.q.val();
+            self.ready.d.next = self.enabled.val() & !self.abandoned.q.val();
         }
 
         self.words.word_address.next = self.address.q.val();

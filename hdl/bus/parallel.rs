@@ -90,6 +90,10 @@ pub struct ParallelFront {
     is_window: Reg<Bit>,
     step: Reg<Bits<2>>,
     polled: Reg<Bits<3>>,
+    was_read: Reg<Bit>,
+    last_register: Reg<Bits<3>>,
+    is_steady: Reg<Bit>,
+    is_same: Signal<Local, Bit>,
     is_first: Signal<Local, Bit>,
     is_busy: Signal<Local, Bit>,
 }
@@ -121,6 +125,10 @@ impl Logic for ParallelFront {
             settling
         );
         dff_setup!(self, clock, busy, request, address, writing, is_window, step, polled);
+        dff_setup!(self, clock, was_read, last_register, is_steady);
+        self.was_read.reset.next = self.reset.val();
+        self.last_register.reset.next = self.reset.val();
+        self.is_steady.reset.next = self.reset.val();
         self.out_data.reset.next = self.reset.val();
         self.was_first.reset.next = self.reset.val();
         self.next_status.reset.next = self.reset.val();
@@ -174,6 +182,14 @@ impl Logic for ParallelFront {
         }
         self.is_busy.next =
             self.wants_read.q.val() | self.wants_write.q.val() | self.settling.q.val();
+        // What has been read once stands still until another register is read, or the strobe ends. Register 0 takes its moment in the first
+        // cycle, so the second one still counts.
+        self.was_read.d.next = self.strobes.reading.val();
+        self.last_register.d.next = self.strobes.register.val();
+        self.is_same.next = self.strobes.reading.val()
+            & self.was_read.q.val()
+            & (self.strobes.register.val() == self.last_register.q.val());
+        self.is_steady.d.next = self.is_same.val();
         match self.strobes.register.val().index() {
             0 => {
                 self.out_data.d.next = self.seen_position.q.val().get_bits::<16>(0);
@@ -201,6 +217,9 @@ impl Logic for ParallelFront {
             _ => {
                 self.out_data.d.next = self.window_high.q.val();
             }
+        }
+        if self.is_same.val() & self.is_steady.q.val() {
+            self.out_data.d.next = self.out_data.q.val();
         }
         self.data_out.next = self.out_data.q.val();
         // No register: the lines are free as soon as the strobe ends.

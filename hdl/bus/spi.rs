@@ -8,7 +8,8 @@
 //! Addresses count words and rise; `n` words, 1 to 255. `c1 c0` is CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xFFFF): in a read over
 //! the four bytes of the request and all words that came, in a write over everything before it, from the second word on over that
 //! word. A word is written when its check sum is right; otherwise nothing more of the frame is. `s` is 0xA0, or 0xA2 if the last write was refused.
-//! All result words of a frame are of one moment. A frame may end anywhere.
+//! All result words of a frame are of one moment. A frame may end anywhere. A read that comes while a word is still being written waits for it;
+//! if the host's clock does not, the check sum of its answer is wrong.
 
 use super::word_access::WordAccess;
 use crate::card::{each, CardCore};
@@ -104,8 +105,12 @@ pub struct SpiFront {
     address: Reg<Bits<11>>,
     out_of_range: Reg<Bit>,
     data: Reg<Bits<32>>,
+    asked: Reg<Bit>,
     busy: Reg<Bit>,
     request: Reg<Bit>,
+    access_address: Reg<Bits<11>>,
+    access_outside: Reg<Bit>,
+    access_writes: Reg<Bit>,
     refused: Reg<Bit>,
     selected: Signal<Local, Bit>,
     rise: Signal<Local, Bit>,
@@ -113,6 +118,7 @@ pub struct SpiFront {
     crc_bit: Signal<Local, Bit>,
     crc_runs: Signal<Local, Bit>,
     step_address: Signal<Local, Bit>,
+    waits: Signal<Local, Bit>,
     next_address: Signal<Local, Bits<12>>,
     last_word: Signal<Local, Bit>,
     crc_sent: Signal<Local, Bits<16>>,
@@ -166,8 +172,12 @@ impl Default for SpiFront {
             address: Default::default(),
             out_of_range: Default::default(),
             data: Default::default(),
+            asked: Default::default(),
             busy: Default::default(),
             request: Default::default(),
+            access_address: Default::default(),
+            access_outside: Default::default(),
+            access_writes: Default::default(),
             refused: Default::default(),
             selected: Default::default(),
             rise: Default::default(),
@@ -175,6 +185,7 @@ impl Default for SpiFront {
             crc_bit: Default::default(),
             crc_runs: Default::default(),
             step_address: Default::default(),
+            waits: Default::default(),
             next_address: Default::default(),
             last_word: Default::default(),
             crc_sent: Default::default(),
@@ -201,7 +212,12 @@ impl Logic for SpiFront {
             address,
             out_of_range
         );
-        dff_setup!(self, clock, data, busy, request, refused);
+        dff_setup!(self, clock, data, asked, busy, request, refused);
+        dff_setup!(self, clock, access_address, access_outside, access_writes);
+        self.asked.reset.next = self.reset.val();
+        self.access_address.reset.next = self.reset.val();
+        self.access_outside.reset.next = self.reset.val();
+        self.access_writes.reset.next = self.reset.val();
         self.sck_0.reset.next = self.reset.val();
         self.sck_1.reset.next = self.reset.val();
         self.sck_2.reset.next = self.reset.val();
@@ -276,9 +292,24 @@ impl Logic for SpiFront {
             }
         }
 
-        // Bytes.
+        // One access after the other, each with an address and a direction of its own: the next frame may have begun.
         self.request.d.next = false;
         self.step_address.next = false;
+        self.waits.next = self.asked.q.val() | self.busy.q.val();
+        if self.words.finished.val() {
+            self.busy.d.next = false;
+        }
+        if self.asked.q.val() & !self.busy.q.val() {
+            self.asked.d.next = false;
+            self.busy.d.next = true;
+            self.request.d.next = true;
+            self.access_address.d.next = self.address.q.val();
+            self.access_outside.d.next = self.out_of_range.q.val();
+            self.access_writes.d.next = self.writing.q.val();
+            self.step_address.next = self.writing.q.val();
+        }
+
+        // Bytes.
         self.last_word.next = self.words_left.q.val() == 1;
         if self.byte_end.q.val() {
             match self.state.q.val() {
@@ -300,7 +331,7 @@ impl Logic for SpiFront {
                     self.address.d.next =
                         self.address.q.val() | bit_cast::<11, 8>(self.byte_in.q.val());
                     // The first word is there before the host can ask for it.
-                    self.request.d.next = !self.writing.q.val() & !self.busy.q.val();
+                    self.asked.d.next = !self.writing.q.val();
                 }
                 SpiState::Length => {
                     self.words_left.d.next = self.byte_in.q.val();
@@ -342,9 +373,9 @@ impl Logic for SpiFront {
                         self.state.d.next = SpiState::Ignore;
                         if self.writing.q.val() {
                             // A check sum behind what it belongs to leaves 0.
-                            self.refused.d.next = self.crc.q.val().any() | self.busy.q.val();
-                            if !self.crc.q.val().any() & !self.busy.q.val() {
-                                self.request.d.next = true;
+                            self.refused.d.next = self.crc.q.val().any() | self.waits.val();
+                            if !self.crc.q.val().any() & !self.waits.val() {
+                                self.asked.d.next = true;
                                 self.words_left.d.next = self.words_left.q.val() - 1;
                                 self.byte_count.d.next = 0.into();
                                 self.crc.d.next = 0xffff.into();
@@ -371,22 +402,15 @@ impl Logic for SpiFront {
             self.load_crc.d.next = false;
             if self.load_word.q.val() {
                 self.shift_out.d.next = self.words.read_data.val();
-                self.late.d.next = self.late.q.val() | self.busy.q.val();
+                self.late.d.next = self.late.q.val() | self.waits.val();
                 self.step_address.next = !self.last_word.val();
-                self.request.d.next = !self.last_word.val() & !self.busy.q.val();
+                self.asked.d.next = !self.last_word.val();
             }
             if self.load_crc.q.val() {
                 self.shift_out.d.next = bit_cast::<32, 16>(self.crc_sent.val()) << 16;
             }
         }
 
-        if self.request.q.val() {
-            self.busy.d.next = true;
-        }
-        if self.words.finished.val() {
-            self.busy.d.next = false;
-            self.step_address.next = self.writing.q.val();
-        }
         self.next_address.next = bit_cast::<12, 11>(self.address.q.val()) + 1;
         if self.step_address.val() {
             self.address.d.next = self.next_address.val().get_bits::<11>(0);
@@ -405,6 +429,9 @@ impl Logic for SpiFront {
             self.load_word.d.next = false;
             self.load_crc.d.next = false;
             self.late.d.next = false;
+            if !self.writing.q.val() {
+                self.asked.d.next = false;
+            }
             self.shift_out.d.next = self.accepted_word.val();
             if self.refused.q.val() {
                 self.shift_out.d.next = self.refused_word.val();
@@ -412,12 +439,12 @@ impl Logic for SpiFront {
         }
 
         self.words.request.next = self.request.q.val();
-        self.words.word_address.next = self.address.q.val();
-        self.words.write.next = self.writing.q.val();
+        self.words.word_address.next = self.access_address.q.val();
+        self.words.write.next = self.access_writes.q.val();
         self.words.write_data.next = self.data.q.val();
-        self.word_address.next = self.address.q.val();
-        self.in_range.next = !self.out_of_range.q.val();
-        self.bank_write.next = self.writing.q.val();
+        self.word_address.next = self.access_address.q.val();
+        self.in_range.next = !self.access_outside.q.val();
+        self.bank_write.next = self.access_writes.q.val();
         self.miso.next = self.shift_out.q.val().get_bit(31);
         // No register: the line is free as soon as the frame ends.
         self.miso_enable.next = !self.cs_n.val();

@@ -104,7 +104,9 @@ impl CardDraft {
         }
         let sample_period_cycles = self.check_sampling(&mut problems, system_hz, &channels);
         let uart_bit_cycles = self.check_link(&mut problems, system_hz, count);
-        self.check_stream(&mut problems, system_hz, count);
+        // A rate that is refused itself says nothing about what fits.
+        let rates = sample_period_cycles.is_some() && uart_bit_cycles.is_some();
+        self.check_stream(&mut problems, system_hz, count.filter(|_| rates));
         let whole = count == Some(channels.len());
         match (sample_period_cycles, uart_bit_cycles, self) {
             (

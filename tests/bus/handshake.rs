@@ -89,6 +89,27 @@ fn a_transfer_that_is_left_answers_nobody() {
     }
 }
 
+/// A master that stays in SETUP and then changes its mind has asked for what it enables, and for nothing else.
+#[test]
+fn apb_takes_what_is_enabled_however_long_the_setup() {
+    const OTHER: u32 = 0x109 << 2;
+    let mut master = Master::new(HostBus::Apb, "");
+    for held in 1..12 {
+        let before = master.transfer(SCRATCH, None, 15).word;
+        let value = 0x1234_0000 | held;
+        master.set("s_apb_psel", 1);
+        master.set("s_apb_penable", 0);
+        master.set("s_apb_pwrite", 1);
+        master.set("s_apb_paddr", SCRATCH);
+        master.set("s_apb_pwdata", !before);
+        master.bench.run_cycles(u64::from(held));
+        let answer = master.transfer(OTHER, Some(value), 15);
+        assert!(!answer.refused);
+        assert_eq!(master.transfer(SCRATCH, None, 15).word, before, "{held}");
+        assert_eq!(master.transfer(OTHER, None, 15).word, value, "{held}");
+    }
+}
+
 /// A write that is left in its first cycle writes nothing: its word may be gone already.
 #[test]
 fn a_write_that_is_left_at_once_does_nothing() {

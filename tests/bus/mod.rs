@@ -1,5 +1,6 @@
 //! The card behind a bus: masters of each bus on a bench with encoders, the same claims for every front.
 
+mod bank;
 mod board;
 mod claims;
 mod cocotb;
@@ -10,6 +11,7 @@ mod parallel;
 mod rates;
 mod spi;
 mod three_ways;
+mod uart;
 
 use endat_gen::config::{parse, Project};
 use endat_hdl::bus::HostBus;

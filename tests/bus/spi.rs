@@ -18,11 +18,17 @@ fn crc16(bytes: &[u8]) -> u16 {
     })
 }
 
-struct Host(Master);
+struct Host(
+    Master,
+    /// Clocks of the halves of its periods, in turn.
+    &'static [u64],
+    /// Chance of a pulse of noise on the clock, in a thousandth of a half period.
+    u64,
+);
 
 impl Host {
     fn new(more: &str) -> Self {
-        let mut host = Self(Master::new(HostBus::Spi, more));
+        let mut host = Self(Master::new(HostBus::Spi, more), &[HALF], 0);
         host.0.set("spi_cs_n_i", 1);
         host.0.bench.run_cycles(20);
         host
@@ -34,17 +40,28 @@ impl Host {
         assert_eq!(master.bench.get("spi_miso_oe"), 0);
         let phase = master.rng.in_range(0, 3);
         master.bench.run_cycles(phase);
+        let (halves, noise) = (self.1, self.2);
         master.set("spi_cs_n_i", 0);
-        master.bench.run_cycles(HALF);
+        master.bench.run_cycles(halves[0]);
         let mut came = vec![0; bytes.len()];
+        let half = |master: &mut Master, level: u32, index: usize| {
+            let mut left = halves[index % halves.len()];
+            if noise > 0 && master.rng.in_range(0, 999) < noise {
+                master.set("spi_sck_i", 1 - level);
+                master.bench.run_cycles(1);
+                master.set("spi_sck_i", level);
+                left -= 1;
+            }
+            master.bench.run_cycles(left);
+        };
         for bit in 0..bits {
             master.set("spi_mosi_i", (bytes[bit / 8] >> (7 - bit % 8) & 1).into());
-            master.bench.run_cycles(HALF);
+            half(master, 0, 2 * bit);
             // The host takes the bit as it raises the clock.
             assert_eq!(master.bench.get("spi_miso_oe"), 1);
             came[bit / 8] |= (master.bench.get("spi_miso_o") as u8) << (7 - bit % 8);
             master.set("spi_sck_i", 1);
-            master.bench.run_cycles(HALF);
+            half(master, 1, 2 * bit + 1);
             master.set("spi_sck_i", 0);
         }
         master.bench.run_cycles(HALF);
@@ -59,6 +76,13 @@ impl Host {
 
     /// A burst whose check sum is right.
     fn read(&mut self, address: u16, words: u8) -> Vec<u32> {
+        let (came, good) = self.burst(address, words);
+        assert!(good, "check sum at {address:#x}");
+        came
+    }
+
+    /// A burst, and whether its check sum is right.
+    fn burst(&mut self, address: u16, words: u8) -> (Vec<u32>, bool) {
         let [high, low] = address.to_be_bytes();
         let mut request = vec![3, high, low, words];
         let answer = {
@@ -66,16 +90,12 @@ impl Host {
             frame.resize(5 + 4 * usize::from(words) + 2, 0);
             self.frame(&frame)
         };
-        assert_eq!(answer[0] & 0xfd, 0xa0);
+        assert!(self.2 > 0 || answer[0] & 0xfd == 0xa0);
         let (data, crc) = answer[5..].split_at(4 * usize::from(words));
         request.extend(data);
-        assert_eq!(
-            crc16(&request).to_be_bytes(),
-            crc,
-            "check sum at {address:#x}"
-        );
+        let good = crc16(&request).to_be_bytes() == crc;
         let word = |b: &[u8]| u32::from_be_bytes(b.try_into().unwrap());
-        data.chunks(4).map(word).collect()
+        (data.chunks(4).map(word).collect(), good)
     }
 
     fn written(address: u16, words: &[u32]) -> Vec<u8> {
@@ -92,7 +112,7 @@ impl Host {
 
     fn write(&mut self, address: u16, words: &[u32]) {
         self.frame(&Self::written(address, words));
-        // A configuration word takes a turn of the ring.
+        // Who looks at the encoders at once sees the word in its place.
         self.0.bench.run_cycles(130);
     }
 }
@@ -228,5 +248,51 @@ fn eight_channels_are_read_in_time() {
         host.write(0x140, &[round, round + 1, round + 2]);
         assert_eq!(host.read(0x140, 3), [round, round + 1, round + 2]);
         assert_eq!(host.read(0x142, 1), [round + 2]);
+    }
+}
+
+/// A host too fast by a quarter, or noise on the clock of a legal one, behind a configuration write: what comes with a right
+/// check sum is right, and the ring stays what it was.
+#[test]
+fn a_read_at_once_after_a_configuration_write_leaves_the_ring_as_it_is() {
+    const LEGAL: &[u64] = &[HALF];
+    const TOO_FAST: [&[u64]; 2] = [&[3, 3, 3, 3, 3, 3, 3, 4], &[3]];
+    let channel = "[[channel]]\nposition_bits = 25\ncommand = \"111000\"\n".repeat(6);
+    for (halves, noise, rounds) in [
+        (LEGAL, 0, 60),
+        (TOO_FAST[0], 0, 60),
+        (TOO_FAST[1], 0, 60),
+        (LEGAL, 40, 400),
+    ] {
+        let mut host = Host::new(&channel);
+        let mut model = host.read(0x100, 0x43);
+        for round in 0..rounds {
+            let at = 8 * (round % 8) + 8 + round / 8 % 3;
+            model[at] = host.0.rng.next_u64() as u32;
+            host.frame(&Host::written(0x100 + at as u16, &[model[at]]));
+            (host.1, host.2) = (halves, noise);
+            // The identification is far from the ring; another word of it is not.
+            let first = host.0.rng.in_range(0, 0x42) as usize;
+            let (address, wanted) = match round % 2 {
+                0 => (0, ID),
+                _ => (0x100 + first as u16, model[first]),
+            };
+            let (came, good) = host.burst(address, 1);
+            (host.1, host.2) = (&[HALF], 0);
+            assert!(
+                good || noise > 0 || halves != LEGAL,
+                "a legal clock waits for nothing"
+            );
+            assert!(
+                !good || came[0] == wanted,
+                "{halves:?}, noise {noise}: {address:#x} is {wanted:#x}, {:#x} came with a right check sum",
+                came[0]
+            );
+            host.0.bench.run_cycles(130);
+            // What has been turned stays so.
+            if round % 10 == 9 {
+                assert_eq!(host.read(0x100, 0x43), model, "{halves:?}, noise {noise}");
+            }
+        }
     }
 }

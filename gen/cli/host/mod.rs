@@ -28,7 +28,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Baud rate of the cards that come with the program.
-const BAUD: u32 = 2_000_000;
+const BAUD: u32 = 3_000_000;
 
 /// A card, whatever it is behind.
 pub type AnyCard = endat_host::Card<Box<dyn Transport>>;
@@ -39,7 +39,7 @@ pub struct PortArgs {
     /// Serial port, tcp:HOST:PORT, or virtual, virtual:PRESET, virtual:FILE.toml for a simulated card in the program itself
     #[arg(long, value_name = "PORT")]
     port: String,
-    /// Baud rate of a serial port [default: 2000000]
+    /// Baud rate of a serial port [default: 3000000]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     baud: Option<String>,
 }
