@@ -67,6 +67,14 @@ impl CardDraft {
         };
         let mut channels = Vec::new();
         for (index, channel) in self.channels.iter().flatten().enumerate() {
+            let own = channel.as_ref().and_then(|c| c.trigger);
+            if let Some(own) = own {
+                let mut check = Check {
+                    section: Section::Channel(index),
+                    problems: &mut problems,
+                };
+                check.within("divider", own.divider, &limits("divider", None));
+            }
             match channel
                 .as_ref()
                 .map(|c| ChannelConfig::resolve(c, system_hz, self.line.double_edge, index))
@@ -159,13 +167,18 @@ impl CardDraft {
             return None;
         }
         let period = period_cycles(sample_hz, system_hz);
-        let longest = channels
-            .iter()
-            .rev()
-            .max_by_key(|(_, c)| c.cycle_max_cycles(system_hz));
+        // A channel that takes one of several triggers has so much longer.
+        let share = |channel: &ChannelConfig| {
+            let own = channel.request.trigger.unwrap_or_default();
+            let divider = own.timer_divider()?.max(1);
+            Some(channel.cycle_max_cycles(system_hz).div_ceil(divider))
+        };
+        let timed = channels.iter().rev();
+        let longest = timed
+            .filter_map(|(index, c)| Some((share(c)?, index, c)))
+            .max_by_key(|(cycles, ..)| *cycles);
         let timer = self.sources.is_some_and(|s| s.timer);
-        if let Some((index, channel)) = longest.filter(|_| timer) {
-            let cycles = channel.cycle_max_cycles(system_hz);
+        if let Some((cycles, index, channel)) = longest.filter(|_| timer) {
             if cycles > period {
                 check.fail(
                     "sample_hz",
@@ -346,6 +359,11 @@ impl CardConfig {
     /// Converts and checks a whole card; `Err` has every problem found.
     pub fn resolve(request: &CardRequest) -> Result<Self, Vec<Problem>> {
         CardDraft::from(request).resolve()
+    }
+
+    /// Whether each channel has its own enable, divider and sources.
+    pub fn own_triggers(&self) -> bool {
+        self.channels.iter().any(|c| c.request.trigger.is_some())
     }
 
     /// Sampling rate that the timer really makes, in hertz.
