@@ -26,7 +26,13 @@ fn the_slowest_encoder_does_not_set_the_rate_of_all() {
     let too_fast = problems("");
     assert!(too_fast[0].contains("a frame of channel 1"), "{too_fast:?}");
     let too_fast = problems("divider = 2\n");
-    assert!(too_fast[0].contains("a frame of channel 1"), "{too_fast:?}");
+    for part in [
+        "a frame of channel 1",
+        "so at most 15844 Hz;",
+        ", or raise divider = 2",
+    ] {
+        assert!(too_fast[0].contains(part), "{too_fast:?}");
+    }
     for own in [
         "divider = 4\n",
         "sources = [\"pin\"]\n",
@@ -40,10 +46,10 @@ fn the_slowest_encoder_does_not_set_the_rate_of_all() {
 #[test]
 fn wrong_keys_of_a_channel_are_told_with_the_remedy() {
     for (keys, expected) in [
-        ("divider = 0\n", "card.toml:13: channel[1].divider = 0: outside 1..32; choose a value in that range"),
-        ("divider = 33\n", "card.toml:13: channel[1].divider = 33: outside 1..32; choose a value in that range"),
-        ("enabled = 1\n", "card.toml:13: channel[1].enabled = 1: is an integer, must be true or false, without quotes"),
-        ("sources = [\"pn\"]\n", "card.toml:13: channel[1].sources = \"pn\": unknown trigger; use pin, timer, register"),
+        ("divider = 0\n", "card.toml:14: channel[1].divider = 0: outside 1..32; choose a value in that range"),
+        ("divider = 33\n", "card.toml:14: channel[1].divider = 33: outside 1..32; choose a value in that range"),
+        ("enabled = 1\n", "card.toml:14: channel[1].enabled = 1: is an integer, must be true or false, without quotes"),
+        ("sources = [\"pn\"]\n", "card.toml:14: channel[1].sources = \"pn\": unknown trigger; use pin, timer, register"),
     ] {
         assert!(problems(keys).iter().any(|p| p == expected), "{:?}", problems(keys));
     }
@@ -100,7 +106,6 @@ fn a_divided_channel_has_its_share_of_results_and_sets() {
     let result = |master: &mut Master, name: &str, n| {
         master.read(RESULT.address(RESULT.register(name).unwrap(), n))
     };
-    let mut together = 0;
     for _ in 0..200 {
         master.bench.run_cycles(1_777);
         let words = [0, 1].map(|n| {
@@ -112,9 +117,7 @@ fn a_divided_channel_has_its_share_of_results_and_sets() {
         // Both started in the same cycle, or the quick one a number of periods later.
         let apart = early.wrapping_sub(late) % 5_000;
         assert_eq!(apart, 0, "{early} {late}");
-        together += u32::from(early == late);
     }
-    assert!(together > 0);
 }
 
 #[test]
@@ -146,14 +149,10 @@ fn a_card_without_own_triggers_has_no_logic_for_them() {
     let plain = crate::bus::text(endat_hdl::bus::HostBus::Apb, "");
     let project = parse("card.toml", &plain).unwrap();
     assert!(!project.card.own_triggers());
-    let design = endat_gen::design(&project).unwrap();
-    let names = |design: &endat_hdl::elaborate::design::Design| {
-        design
-            .modules
-            .iter()
-            .any(|m| m.name.contains("channel_trigger"))
+    let has_it = |project| {
+        let files = endat_gen::emit(project).unwrap();
+        files.iter().any(|f| f.path.contains("channel_trigger"))
     };
-    assert!(!names(&design));
-    let own = endat_gen::design(&parse("card.toml", &text("divider = 4\n")).unwrap()).unwrap();
-    assert!(names(&own));
+    assert!(!has_it(&project));
+    assert!(has_it(&parse("card.toml", &text("divider = 4\n")).unwrap()));
 }

@@ -204,7 +204,11 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             "stream with a buffer of 2048 bytes, without the channels' parts",
             Stream::new(STREAM_BYTES, 2, false, false),
         )?,
-        Subject::new("set_channel", "a channel's part of it", SetChannel::new(0, false))?,
+        Subject::new(
+            "set_channel",
+            "a channel's part of it",
+            SetChannel::new(0, false),
+        )?,
         Subject::new(
             "direct_output",
             "direct outputs of a channel: crop, error",

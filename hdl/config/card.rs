@@ -171,20 +171,21 @@ impl CardDraft {
         let share = |channel: &ChannelConfig| {
             let own = channel.request.trigger.unwrap_or_default();
             let divider = own.timer_divider()?.max(1);
-            Some(channel.cycle_max_cycles(system_hz).div_ceil(divider))
+            let cycles = channel.cycle_max_cycles(system_hz);
+            Some((cycles.div_ceil(divider), cycles, divider))
         };
         let timed = channels.iter().rev();
         let longest = timed
             .filter_map(|(index, c)| Some((share(c)?, index, c)))
-            .max_by_key(|(cycles, ..)| *cycles);
+            .max_by_key(|((share, ..), ..)| *share);
         let timer = self.sources.is_some_and(|s| s.timer);
-        if let Some((cycles, index, channel)) = longest.filter(|_| timer) {
-            if cycles > period {
-                check.fail(
-                    "sample_hz",
-                    sample_hz,
-                    too_long(*index, channel, cycles, system_hz),
-                );
+        if let Some(((share, cycles, divider), index, channel)) = longest.filter(|_| timer) {
+            if share > period {
+                let mut text = too_long(*index, channel, (cycles, divider), system_hz);
+                if divider > 1 {
+                    text += &format!(", or raise divider = {divider} of the channel");
+                }
+                check.fail("sample_hz", sample_hz, text);
             }
         }
         Some(period)
@@ -299,12 +300,18 @@ impl CardDraft {
 }
 
 /// Why a trigger would come before a channel is ready, with the shares that can be shortened, the longest first.
-fn too_long(index: usize, channel: &ChannelConfig, cycles: u64, system_hz: u64) -> String {
+fn too_long(
+    index: usize,
+    channel: &ChannelConfig,
+    (cycles, divider): (u64, u64),
+    system_hz: u64,
+) -> String {
+    let highest_hz = system_hz.saturating_mul(divider) / cycles;
     if let Some(t_format) = &channel.t_format {
         return format!(
             "an exchange of T-format channel {index} takes up to {} us with its pauses, so at most {} Hz; lower it, or lower reply_gap_us = {} and field_gap_us = {}, or ask for less with request = 0",
             microseconds(cycles, system_hz),
-            system_hz / cycles,
+            highest_hz,
             t_format.reply_gap_us,
             t_format.field_gap_us
         );
@@ -343,7 +350,7 @@ fn too_long(index: usize, channel: &ChannelConfig, cycles: u64, system_hz: u64) 
     format!(
         "a frame of channel {index} with its recovery time takes up to {} us, the largest part from {key} = {value}, so at most {} Hz; lower it, or {}",
         microseconds(cycles, system_hz),
-        system_hz / cycles,
+        highest_hz,
         remedies.join(", or ")
     )
 }
