@@ -120,6 +120,8 @@ pub struct ChannelRegisters {
     stale_now: Signal<Local, Bit>,
     stale_shown: Reg<Bit>,
     age: Reg<Bits<16>>,
+    age_base: Signal<Local, Bits<16>>,
+    age_tick: Signal<Local, Bit>,
     age_now: Signal<Local, Bits<16>>,
     age_full: Reg<Bit>,
     age_shown: Reg<Bits<16>>,
@@ -194,6 +196,8 @@ impl ChannelRegisters {
             stale_now: Default::default(),
             stale_shown: Default::default(),
             age: Default::default(),
+            age_base: Default::default(),
+            age_tick: Default::default(),
             age_now: Default::default(),
             age_full: Default::default(),
             age_shown: Default::default(),
@@ -254,14 +258,14 @@ impl Logic for ChannelRegisters {
             self.trigger.val() | (self.behind.q.val() & !self.result_strobe.val());
         self.behind.d.next = self.behind_now.val();
         self.stale_now.next = self.stale.q.val() | self.trigger.val();
-        self.age_now.next = self.age.q.val();
-        if self.tick_us.val() & !self.age_full.q.val() {
-            self.age_now.next = self.age.q.val() + 1;
-        }
+        self.age_base.next = self.age.q.val();
+        self.age_tick.next = self.tick_us.val() & !self.age_full.q.val();
         if self.load.val() {
             self.stale_now.next = self.behind_now.val();
-            self.age_now.next = self.age_us.val();
+            self.age_base.next = self.age_us.val();
+            self.age_tick.next = false;
         }
+        self.age_now.next = self.age_base.val() + bit_cast::<16, 1>(self.age_tick.val().into());
         self.stale.d.next = self.stale_now.val();
         self.age.d.next = self.age_now.val();
         self.age_full.d.next = self.age_now.val().all();
