@@ -70,7 +70,7 @@ fn each_channel_takes_the_triggers_that_are_its_own() {
     assert_eq!(taken[1], every(&all[phase..], 3));
     assert!(phase < 3);
     assert!(taken[2].is_empty() && taken[3].is_empty());
-    host.write(address(CARD_CONFIG, "trigger_sources", 0), &[4]);
+    host.write(address(CARD_CONFIG, "trigger_sources", 0), &[4 | 8 << 8]);
     let before = host.card.core.port[2].sequence.val();
     host.write(address(CARD, "trigger_now", 0), &[1]);
     host.idle(50);
