@@ -133,11 +133,11 @@ mod tests {
         for (ignored, skip) in [(0, 0), (0, 1), (2, 0), (5, 3), (3, 31), (7, 0)] {
             set(&mut uut, ignored, skip, false);
             restart(&mut uut);
-            let mut count = 0;
+            let mut count = 0u64;
             for n in 0..200u64 {
                 let hits = [1, 2, 4, 3, 0][n as usize % 5];
                 let own = hits & !ignored != 0;
-                let expected = own && count % (skip + 1) == 0;
+                let expected = own && count.is_multiple_of(skip + 1);
                 count += u64::from(own);
                 assert_eq!(step(&mut uut, hits), expected, "{ignored} {skip} {n}");
             }
