@@ -137,6 +137,8 @@ pub struct Report {
     pub sampling: Rate,
     /// Triggers enabled after reset.
     pub sources: Vec<&'static str>,
+    /// Which triggers each channel takes after reset; empty where all take all of them.
+    pub own_triggers: Vec<String>,
     /// What each channel does besides positions.
     pub service: Vec<&'static str>,
     /// What stands between the registers and the host.
@@ -211,6 +213,27 @@ fn us_of(cycles: u64, system_hz: u64) -> f64 {
     cycles as f64 * 1e6 / system_hz as f64
 }
 
+/// What each channel of a card with own triggers takes.
+fn own_triggers(card: &CardConfig) -> Vec<String> {
+    if !card.own_triggers() {
+        return vec![];
+    }
+    let own = card.channels.iter().map(|c| {
+        let own = c.request.trigger.unwrap_or_default();
+        let sources = present(&[
+            (own.sources.pin, "pin"),
+            (own.sources.timer, "timer"),
+            (own.sources.register, "register"),
+        ]);
+        match (own.enabled, own.divider) {
+            (false, _) => "disabled".into(),
+            (_, 1) => list(&sources),
+            (_, n) => format!("one of {n}, from {}", list(&sources)),
+        }
+    });
+    own.collect()
+}
+
 /// The report of a project.
 pub fn report(project: &Project) -> Report {
     let card = &project.card;
@@ -247,6 +270,7 @@ pub fn report(project: &Project) -> Report {
             .filter(|(on, _)| *on)
             .map(|(_, name)| name)
             .collect(),
+        own_triggers: own_triggers(card),
         service: present(&[
             (card.service.requests, "requests"),
             (card.service.diagnosis, "diagnosis"),
@@ -392,6 +416,9 @@ impl fmt::Display for Report {
             rate(&self.sampling, "Hz"),
             list(&self.sources)
         )?;
+        for (n, own) in self.own_triggers.iter().enumerate() {
+            writeln!(f, "  of channel {n}     {own}")?;
+        }
         if let Some(link) = &self.link {
             writeln!(f, "host link          {}", rate(&link.baud, "bit/s"))?;
             writeln!(

@@ -13,7 +13,7 @@ use endat_hdl::bus::HostBus;
 use endat_hdl::card::services;
 use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig};
-use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, INTERRUPT, RESULT};
+use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, INTERRUPT, RESULT};
 use endat_hdl::service::program::{program, ServiceTimes};
 use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
 use endat_hdl::transaction::cause;
@@ -153,6 +153,11 @@ fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String,
     )
 }
 
+/// Whether a field of the word `frame` says which triggers a channel takes.
+fn is_own_trigger(field: &str) -> bool {
+    field == "skip" || field.starts_with("ignore_")
+}
+
 /// The test bench of a card; none for a port without a bus.
 pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let card = &project.card;
@@ -220,6 +225,15 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let blocks = blocks
         .into_iter()
         .chain(card.outputs.interrupt.then_some(&INTERRUPT));
+    // The bench is about channels that take every trigger.
+    let frame = CHANNEL_CONFIG.register("frame").into_iter();
+    let frames = frame.flat_map(|r| (0..card.channels.len()).map(move |n| (r, n)));
+    let frames = frames.filter(|_| card.own_triggers()).map(|(r, n)| {
+        let own = r.fields.iter().filter(|f| is_own_trigger(f.name));
+        let value = own.fold(r.start(card, n), |word, f| word & !f.mask());
+        let address = CHANNEL_CONFIG.address(r, n);
+        context! { address, value => format!("{value:08X}") }
+    });
     // The first of the four events of each channel is a new result.
     let results: u32 = (0..card.channels.len()).map(|n| 1 << (4 * n)).sum();
     let context = context! {
@@ -259,6 +273,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         causes,
         identification,
         timer => card.sources.timer,
+        every_trigger => frames.collect::<Vec<_>>(),
     };
     let text = template::render(
         "testbench",

@@ -18,6 +18,7 @@
 
 use crate::channel::{Features, FixedTimes};
 use crate::channel_registers::ChannelRegisters;
+use crate::channel_trigger::ChannelTrigger;
 use crate::config::{CardConfig, ChannelConfig};
 use crate::direct::DirectOutput;
 use crate::encoder_port::EncoderPort;
@@ -98,6 +99,9 @@ pub struct CardCore {
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     timebase: Timebase,
     trigger: Trigger,
+    own_trigger: Vec<ChannelTrigger>,
+    trigger_of: Vec<Signal<Local, Bit>>,
+    is_off: Vec<Signal<Local, Bit>>,
     bank: RegisterBank,
     registers: Vec<ChannelRegisters>,
     port: Vec<EncoderPort>,
@@ -127,12 +131,16 @@ pub struct CardCore {
     word_link: Vec<Signal<Local, Bits<32>>>,
     service_reads: Signal<Local, Bits<8>>,
     service_writes: Signal<Local, Bits<8>>,
-    pending: Vec<Signal<Local, Bit>>,
+    taken: Vec<Signal<Local, Bit>>,
+    owes: Vec<Signal<Local, Bit>>,
+    brought: Vec<Signal<Local, Bit>>,
+    new_set: Signal<Local, Bit>,
     faulty: Vec<Signal<Local, Bit>>,
     slow_bit: Constant<Bits<5>>,
     quick_bit: Constant<Bits<5>>,
     _channels: usize,
     _links: usize,
+    _own_triggers: usize,
     _streams: usize,
     _sets: usize,
     _set_links: usize,
@@ -239,6 +247,7 @@ impl CardCore {
     /// A card with other waits of its services.
     pub fn with_times(config: &CardConfig, service: &ServiceTimes) -> Self {
         let channels = config.channels.len();
+        let own_triggers = if config.own_triggers() { channels } else { 0 };
         let streams = usize::from(config.stream.fifo_bytes != 0);
         let sets = channels * streams;
         let directs = channels * usize::from(config.outputs.any());
@@ -281,6 +290,14 @@ impl CardCore {
             led_channel_o: each(channels),
             timebase: Timebase::new(config.system_hz),
             trigger: Default::default(),
+            own_trigger: (config.channels.iter().take(own_triggers))
+                .map(|c| {
+                    let own = c.request.trigger.unwrap_or_default();
+                    ChannelTrigger::new(own.ignored(), own.skip(), !own.enabled)
+                })
+                .collect(),
+            trigger_of: each(channels),
+            is_off: each(channels),
             bank: RegisterBank::new(config),
             registers: (0..channels)
                 .map(|i| ChannelRegisters::new(config, i))
@@ -296,7 +313,9 @@ impl CardCore {
                     Stream::new(config.stream.fifo_bytes, channels, collect, push)
                 })
                 .collect(),
-            set: (0..sets).map(SetChannel::new).collect(),
+            set: (0..sets)
+                .map(|i| SetChannel::new(i, own_triggers != 0))
+                .collect(),
             set_byte: each(sets + streams),
             set_owes: each(sets + streams),
             set_replaced: each(sets + streams),
@@ -322,12 +341,16 @@ impl CardCore {
             word_link: each(services + 1),
             service_reads: Default::default(),
             service_writes: Default::default(),
-            pending: each(channels + 1),
+            taken: each(channels + 1),
+            owes: each(channels + 1),
+            brought: each(channels + 1),
+            new_set: Default::default(),
             faulty: each(channels + 1),
             slow_bit: Constant::new(blink_bit(config.system_hz, 1).into()),
             quick_bit: Constant::new(blink_bit(config.system_hz, 8).into()),
             _channels: channels,
             _links: channels + 1,
+            _own_triggers: own_triggers,
             _streams: streams,
             _sets: sets,
             _set_links: sets + streams,
@@ -359,6 +382,23 @@ impl Logic for CardCore {
         self.trigger.sources.next = self.bank.sources.val();
         self.trigger.period_cycles.next = self.bank.period_cycles.val();
 
+        for i in 0..self._own_triggers {
+            self.own_trigger[i].clock.next = self.clk_i.val();
+            self.own_trigger[i].reset.next = self.rst_i.val();
+            self.own_trigger[i].hits.next = self.trigger.hits.val();
+            self.own_trigger[i].home.next = self.bank.ring_home.val();
+            self.own_trigger[i].ignored_sources.next = self.registers[i].ignored_sources.val();
+            self.own_trigger[i].skip.next = self.registers[i].trigger_skip.val();
+            self.own_trigger[i].off.next = self.bank.disabled.val().get_bit(i);
+            self.own_trigger[i].restart.next = self.bank.restart.val();
+            self.trigger_of[i].next = self.own_trigger[i].trigger.val();
+            self.is_off[i].next = self.own_trigger[i].disabled.val();
+        }
+        for i in self._own_triggers..self._channels {
+            self.trigger_of[i].next = self.trigger.trigger.val();
+            self.is_off[i].next = false;
+        }
+
         self.tick_us.next = self.timebase.tick_us.val();
         self.take_byte.next = self.bank.take_byte.val();
         self.passing_byte.next = self.bank.passing_byte.val();
@@ -377,7 +417,9 @@ impl Logic for CardCore {
         // From the first channel to the last: read bytes and "some channel" signals. The ring runs the other way.
         self.read_link[0].next = 0.into();
         self.service_link[0].next = 0.into();
-        self.pending[0].next = false;
+        self.taken[0].next = false;
+        self.owes[0].next = false;
+        self.brought[0].next = false;
         self.faulty[0].next = false;
         self.bank.ring_in.next = self.ring_link[0].val();
         for i in 0..self._channels {
@@ -387,7 +429,7 @@ impl Logic for CardCore {
             self.port[i].reset.next = self.rst_i.val();
             self.port[i].tick_us.next = self.timebase.tick_us.val();
             self.port[i].timestamp.next = self.timebase.timestamp.val();
-            self.port[i].trigger.next = self.trigger.trigger.val();
+            self.port[i].trigger.next = self.trigger_of[i].val();
             self.port[i].calibrate.next = self.bank.calibrate.val().get_bit(i);
 
             self.port[i].period_cycles.next = self.registers[i].period_cycles.val();
@@ -416,7 +458,9 @@ impl Logic for CardCore {
             }
             self.service_link[i + 1].next = self.service_link[i].val() | self.selected[i].val();
 
-            self.registers[i].trigger.next = self.trigger.trigger.val();
+            self.registers[i].tick_us.next = self.timebase.tick_us.val();
+            self.registers[i].trigger.next = self.trigger_of[i].val();
+            self.registers[i].new_set.next = self.new_set.val();
             self.registers[i].busy.next = self.port[i].busy.val();
             self.registers[i].result_strobe.next = self.port[i].result_strobe.val();
             self.registers[i].position.next = self.port[i].position.val();
@@ -436,6 +480,7 @@ impl Logic for CardCore {
             self.registers[i].delay_cycles.next = self.port[i].delay_cycles.val();
 
             self.registers[i].load.next = self.bank.load.val();
+            self.registers[i].show.next = self.bank.show.val();
             self.registers[i].word_skip.next = self.bank.word_skip.val();
             self.registers[i].lane.next = self.lane.val();
             self.registers[i].skip.next = self.bank.channel_skip.val().get_bit(i);
@@ -445,15 +490,18 @@ impl Logic for CardCore {
             self.registers[i].ring_home.next = self.bank.ring_home.val();
             self.registers[i].ring_in.next = self.ring_link[i + 1].val();
             self.ring_link[i].next = self.registers[i].ring_out.val();
-            self.pending[i + 1].next = self.pending[i].val() | self.registers[i].pending.val();
-            self.faulty[i + 1].next =
-                self.faulty[i].val() | self.port[i].cause.val().any() | self.port[i].alarm.val();
+            self.taken[i + 1].next = self.taken[i].val() | self.registers[i].taken.val();
+            self.owes[i + 1].next = self.owes[i].val() | self.registers[i].owes.val();
+            self.brought[i + 1].next = self.brought[i].val() | self.registers[i].brought.val();
+            self.faulty[i + 1].next = self.faulty[i].val()
+                | ((self.port[i].cause.val().any() | self.port[i].alarm.val())
+                    & !self.is_off[i].val());
 
             self.port[i].data_i.next = self.endat_data_i[i].val();
             self.endat_clk_o[i].next = self.port[i].endat_clk.val();
             self.endat_data_o[i].next = self.port[i].data_o.val();
             self.endat_data_oe[i].next = self.port[i].data_oe.val();
-            self.led_channel_o[i].next = self.port[i].fresh.val();
+            self.led_channel_o[i].next = self.port[i].fresh.val() & !self.is_off[i].val();
         }
         self.led_status_o.next = self
             .timebase
@@ -464,7 +512,10 @@ impl Logic for CardCore {
             self.ring_link[i].next = self.bank.ring_out.val();
             self.bank.channel_byte.next = self.read_link[i].val();
             self.word_link[0].next = self.service_link[i].val();
-            self.bank.pending.next = self.pending[i].val();
+            self.new_set.next = self.taken[i].val();
+            self.bank.taken.next = self.taken[i].val();
+            self.bank.owes.next = self.owes[i].val();
+            self.bank.brought.next = self.brought[i].val();
             if self.faulty[i].val() {
                 self.led_status_o.next = self
                     .timebase
@@ -554,7 +605,7 @@ impl Logic for CardCore {
             self.set[i].clock.next = self.clk_i.val();
             self.set[i].reset.next = self.rst_i.val();
             self.set[i].trigger.next = self.trigger.trigger.val();
-            self.set[i].busy.next = self.port[i].busy.val();
+            self.set[i].busy.next = self.port[i].busy.val() | !self.trigger_of[i].val();
             self.set[i].result_strobe.next = self.port[i].result_strobe.val();
             self.set[i].position.next = self.port[i].position.val();
             self.set[i].position_valid.next = self.port[i].position_valid.val();
@@ -599,7 +650,7 @@ impl Logic for CardCore {
             self.direct_position_o[i].next = self.direct[i].direct_position.val();
             self.direct_valid_o[i].next = self.direct[i].direct_valid.val();
             self.direct_fresh_o[i].next = self.direct[i].direct_fresh.val();
-            self.direct_error_o[i].next = self.direct[i].direct_error.val();
+            self.direct_error_o[i].next = self.direct[i].direct_error.val() & !self.is_off[i].val();
         }
         self.part_byte[1].next = 0.into();
         self.irq_o.next = false;
@@ -616,8 +667,9 @@ impl Logic for CardCore {
         }
         for i in 0..self._interrupt_channels {
             self.interrupt[0].result[i].next = self.port[i].result_strobe.val();
-            self.interrupt[0].error[i].next = self.direct[i].direct_error.val();
-            self.interrupt[0].alarm[i].next = self.port[i].alarm.val();
+            self.interrupt[0].error[i].next =
+                self.direct[i].direct_error.val() & !self.is_off[i].val();
+            self.interrupt[0].alarm[i].next = self.port[i].alarm.val() & !self.is_off[i].val();
             self.interrupt[0].request[i].next =
                 self.port[i].over.val() & self.port[i].over_request.val();
         }

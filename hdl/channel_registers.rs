@@ -1,11 +1,12 @@
 //! Registers of one channel: the result as the host reads it, and the configuration.
 //!
 //! ```text
-//! channel's result --(load)--> held words --> byte of each word, of the selected word only --> OR --> read_out
+//! channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
 //! ring block of the channel --(ring stands still, channel not busy)--> configuration of the channel
 //! ```
 //!
-//! The held words of all channels are loaded by the same signal, so they belong together. A byte that is not selected
+//! The held words of all channels are loaded by the same signal, so they belong together: [`crate::register_bank`] says when. What stands for longer
+//! than a trigger says so: the age counts the time that the words are held, `stale` a trigger that has come since. A byte that is not selected
 //! is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
 
 use crate::config::CardConfig;
@@ -24,8 +25,12 @@ pub struct ChannelRegisters {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
     /// The channel's trigger.
     pub trigger: Signal<In, Bit>,
+    /// Strobe: some channel takes a trigger; results of another trigger than this are not waited for.
+    pub new_set: Signal<In, Bit>,
     /// The channel does not take a trigger; its configuration must not change.
     pub busy: Signal<In, Bit>,
     /// Strobe: a new result is there.
@@ -60,10 +65,16 @@ pub struct ChannelRegisters {
     pub recovery_cycles: Signal<In, Bits<13>>,
     /// Tracked line delay, in system clock cycles.
     pub delay_cycles: Signal<In, Bits<11>>,
-    /// A trigger has been taken and its result is not there yet.
-    pub pending: Signal<Out, Bit>,
+    /// The channel takes the trigger.
+    pub taken: Signal<Out, Bit>,
+    /// The channel took the trigger of the last `new_set`, and its result is not there yet.
+    pub owes: Signal<Out, Bit>,
+    /// Strobe: this result is the one that the channel owed.
+    pub brought: Signal<Out, Bit>,
     /// The held words follow the result.
     pub load: Signal<In, Bit>,
+    /// Nothing is being read: age and `stale` of the held words go on.
+    pub show: Signal<In, Bit>,
     /// Words that are not read, one bit per word.
     pub word_skip: Signal<In, Bits<6>>,
     /// Byte of the word, 0 = most significant.
@@ -82,6 +93,10 @@ pub struct ChannelRegisters {
     pub ring_in: Signal<In, Bits<8>>,
     /// Byte to the ring block in front.
     pub ring_out: Signal<Out, Bits<8>>,
+    /// Triggers left out after each that the channel takes; this and the next one as they stand on the ring.
+    pub trigger_skip: Signal<Out, Bits<5>>,
+    /// Trigger sources that are not for this channel.
+    pub ignored_sources: Signal<Out, Bits<3>>,
     /// EnDat clock period, or a bit of T-format, in system clock cycles.
     pub period_cycles: Signal<Out, Bits<11>>,
     /// First low phase minus half a period, in system clock cycles.
@@ -105,8 +120,20 @@ pub struct ChannelRegisters {
     /// Longest recovery time, in system clock cycles.
     pub recovery_limit_cycles: Signal<Out, Bits<13>>,
     waiting: Reg<Bit>,
+    behind: Reg<Bit>,
+    behind_now: Signal<Local, Bit>,
+    stale: Reg<Bit>,
+    stale_now: Signal<Local, Bit>,
+    stale_shown: Reg<Bit>,
+    age: Reg<Bits<16>>,
+    age_base: Signal<Local, Bits<16>>,
+    age_tick: Signal<Local, Bit>,
+    age_now: Signal<Local, Bits<16>>,
+    age_full: Reg<Bit>,
+    age_shown: Reg<Bits<16>>,
     held: Vec<Reg<Bits<32>>>,
     word: Vec<Signal<Local, Bits<32>>>,
+    shown: Vec<Signal<Local, Bits<32>>>,
     byte: Vec<Reg<Bits<8>>>,
     read_byte: Reg<Bits<8>>,
     ring: ConfigRing,
@@ -124,7 +151,9 @@ impl ChannelRegisters {
         Self {
             clock: Default::default(),
             reset: Default::default(),
+            tick_us: Default::default(),
             trigger: Default::default(),
+            new_set: Default::default(),
             busy: Default::default(),
             result_strobe: Default::default(),
             position: Default::default(),
@@ -142,8 +171,11 @@ impl ChannelRegisters {
             position_has_f2: Default::default(),
             recovery_cycles: Default::default(),
             delay_cycles: Default::default(),
-            pending: Default::default(),
+            taken: Default::default(),
+            owes: Default::default(),
+            brought: Default::default(),
             load: Default::default(),
+            show: Default::default(),
             word_skip: Default::default(),
             lane: Default::default(),
             skip: Default::default(),
@@ -153,6 +185,8 @@ impl ChannelRegisters {
             ring_home: Default::default(),
             ring_in: Default::default(),
             ring_out: Default::default(),
+            trigger_skip: Default::default(),
+            ignored_sources: Default::default(),
             period_cycles: Default::default(),
             first_low_extra_cycles: Default::default(),
             command: Default::default(),
@@ -165,8 +199,20 @@ impl ChannelRegisters {
             start_timeout_us: Default::default(),
             recovery_limit_cycles: Default::default(),
             waiting: Default::default(),
+            behind: Default::default(),
+            behind_now: Default::default(),
+            stale: Default::default(),
+            stale_now: Default::default(),
+            stale_shown: Default::default(),
+            age: Default::default(),
+            age_base: Default::default(),
+            age_tick: Default::default(),
+            age_now: Default::default(),
+            age_full: Default::default(),
+            age_shown: Default::default(),
             held: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
             word: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
+            shown: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
             byte: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
             read_byte: Default::default(),
             ring: ConfigRing::new(words),
@@ -182,8 +228,24 @@ impl Logic for ChannelRegisters {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(self, clock, waiting, read_byte, config0, config1, config2);
+        dff_setup!(
+            self,
+            clock,
+            behind,
+            stale,
+            stale_shown,
+            age,
+            age_full,
+            age_shown
+        );
         clock!(self, clock, ring);
         self.waiting.reset.next = self.reset.val();
+        self.behind.reset.next = self.reset.val();
+        self.stale.reset.next = self.reset.val();
+        self.stale_shown.reset.next = self.reset.val();
+        self.age.reset.next = self.reset.val();
+        self.age_full.reset.next = self.reset.val();
+        self.age_shown.reset.next = self.reset.val();
         self.config0.reset.next = self.reset.val();
         self.config1.reset.next = self.reset.val();
         self.config2.reset.next = self.reset.val();
@@ -193,10 +255,33 @@ impl Logic for ChannelRegisters {
         if self.result_strobe.val() {
             self.waiting.d.next = false;
         }
-        if self.trigger.val() & !self.busy.val() {
-            self.waiting.d.next = true;
+        self.taken.next = self.trigger.val() & !self.busy.val();
+        if self.new_set.val() {
+            self.waiting.d.next = self.trigger.val() & !self.busy.val();
         }
-        self.pending.next = self.waiting.q.val();
+        self.owes.next = self.waiting.q.val() & !self.result_strobe.val();
+        self.brought.next = self.waiting.q.val() & self.result_strobe.val();
+
+        // A trigger that comes with a result is newer than it.
+        self.behind_now.next =
+            self.trigger.val() | (self.behind.q.val() & !self.result_strobe.val());
+        self.behind.d.next = self.behind_now.val();
+        self.stale_now.next = self.stale.q.val() | self.trigger.val();
+        self.age_base.next = self.age.q.val();
+        self.age_tick.next = self.tick_us.val() & !self.age_full.q.val();
+        if self.load.val() {
+            self.stale_now.next = self.behind_now.val();
+            self.age_base.next = self.age_us.val();
+            self.age_tick.next = false;
+        }
+        self.age_now.next = self.age_base.val() + bit_cast::<16, 1>(self.age_tick.val().into());
+        self.stale.d.next = self.stale_now.val();
+        self.age.d.next = self.age_now.val();
+        self.age_full.d.next = self.age_now.val().all();
+        if self.show.val() {
+            self.stale_shown.d.next = self.stale_now.val();
+            self.age_shown.d.next = self.age_now.val();
+        }
 
         self.word[0].next = bit_cast::<32, 16>(self.sequence.val())
             | (bit_cast::<32, 5>(self.cause.val()) << 16)
@@ -215,8 +300,7 @@ impl Logic for ChannelRegisters {
             | (bit_cast::<32, 5>(self.crc_computed.val()) << 5)
             | (bit_cast::<32, 10>(self.delay_cycles.val().get_bits::<10>(0)) << 10)
             | (bit_cast::<32, 12>(self.flags.val().get_bits::<12>(0)) << 20);
-        self.word[5].next = bit_cast::<32, 16>(self.age_us.val())
-            | (bit_cast::<32, 13>(self.recovery_cycles.val()) << 16)
+        self.word[5].next = (bit_cast::<32, 13>(self.recovery_cycles.val()) << 16)
             | (bit_cast::<32, 1>(self.delay_cycles.val().get_bit(10).into()) << 29);
         for i in 0..self._words {
             self.held[i].clock.next = self.clock.val();
@@ -225,21 +309,27 @@ impl Logic for ChannelRegisters {
             if self.load.val() {
                 self.held[i].d.next = self.word[i].val();
             }
+            self.shown[i].next = self.held[i].q.val();
+        }
+        self.shown[5].next = self.held[5].q.val()
+            | bit_cast::<32, 16>(self.age_shown.q.val())
+            | (bit_cast::<32, 1>(self.stale_shown.q.val().into()) << 30);
+        for i in 0..self._words {
             self.byte[i].clock.next = self.clock.val();
             // A reset by deselection alone takes no logic; what a reset of the card would clear is never shown.
             self.byte[i].reset.next = self.word_skip.val().get_bit(i);
             match self.lane.val().index() {
                 0 => {
-                    self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(24);
+                    self.byte[i].d.next = self.shown[i].val().get_bits::<8>(24);
                 }
                 1 => {
-                    self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(16);
+                    self.byte[i].d.next = self.shown[i].val().get_bits::<8>(16);
                 }
                 2 => {
-                    self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(8);
+                    self.byte[i].d.next = self.shown[i].val().get_bits::<8>(8);
                 }
                 _ => {
-                    self.byte[i].d.next = self.held[i].q.val().get_bits::<8>(0);
+                    self.byte[i].d.next = self.shown[i].val().get_bits::<8>(0);
                 }
             }
         }
@@ -260,6 +350,9 @@ impl Logic for ChannelRegisters {
             self.config1.d.next = self.ring.word1.val();
             self.config2.d.next = self.ring.word2.val();
         }
+        self.trigger_skip.next = self.ring.word0.val().get_bits::<5>(11);
+        self.ignored_sources.next = bit_cast::<3, 2>(self.ring.word0.val().get_bits::<2>(22))
+            | (bit_cast::<3, 1>(self.ring.word0.val().get_bit(30).into()) << 2);
         self.period_cycles.next = self.config0.q.val().get_bits::<11>(0);
         self.position_bits.next = self.config0.q.val().get_bits::<6>(16);
         self.command.next = self.config0.q.val().get_bits::<6>(24);

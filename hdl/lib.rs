@@ -17,6 +17,7 @@ pub mod bus;
 pub mod card;
 pub mod channel;
 pub mod channel_registers;
+pub mod channel_trigger;
 pub mod clock_gen;
 pub mod command_sender;
 pub mod command_shape;

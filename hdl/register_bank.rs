@@ -12,8 +12,13 @@
 //! **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with `access` and stand until
 //! `done`; an access that comes before is not begun. Only which byte is shown follows the front: whoever changes the address reads something else.
 //!
-//! Results of all channels are held together: they follow the channels while no channel owes a result and nothing is
-//! being read. See `docs/host-link.md`.
+//! Results of all channels are held together. They follow the channels, but not
+//! - while they are being read, or the host holds them;
+//! - from the first to the last result of a trigger: half of it is new, the other half is not.
+//!
+//! The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it would have no
+//! end. For a host that reads in step with the triggers, so that there never is a moment between two reads in which the words may follow,
+//! they follow as the read begins, if the second trigger has come by then. See `docs/host-link.md`.
 
 use crate::config::CardConfig;
 use crate::config_ring::{ConfigRing, RING_BYTES};
@@ -56,10 +61,16 @@ pub struct RegisterBank {
     pub done: Signal<Out, Bit>,
     /// The host is reading: results must not change.
     pub reading: Signal<In, Bit>,
-    /// A channel owes a result.
-    pub pending: Signal<In, Bit>,
+    /// Strobe: a channel takes a trigger.
+    pub taken: Signal<In, Bit>,
+    /// A channel owes a result of the last trigger that was taken.
+    pub owes: Signal<In, Bit>,
+    /// Strobe: a channel has brought its result of that trigger.
+    pub brought: Signal<In, Bit>,
     /// The held results follow the channels.
     pub load: Signal<Out, Bit>,
+    /// Nothing is being read: age and `stale` of the held results go on.
+    pub show: Signal<Out, Bit>,
     /// Result words that are not read, one bit per word.
     pub word_skip: Signal<Out, Bits<6>>,
     /// Channels whose results are not read, one bit per channel.
@@ -104,6 +115,10 @@ pub struct RegisterBank {
     pub calibrate: Signal<Out, Bits<8>>,
     /// Enabled trigger sources.
     pub sources: Signal<Out, Bits<3>>,
+    /// Channels that take no trigger, as they stand on the ring.
+    pub disabled: Signal<Out, Bits<8>>,
+    /// Strobe: a word with settings of triggers has been written.
+    pub restart: Signal<Out, Bit>,
     /// Period of the trigger timer.
     pub period_cycles: Signal<Out, Bits<24>>,
     ring: ConfigRing,
@@ -134,7 +149,14 @@ pub struct RegisterBank {
     active_sources: Reg<Bits<3>>,
     active_period: Reg<Bits<24>>,
     hold: Reg<Bit>,
-    follow: Reg<Bit>,
+    blocked: Reg<Bit>,
+    read_before: Reg<Bit>,
+    mixed: Reg<Bit>,
+    one_gone: Reg<Bit>,
+    overdue: Reg<Bit>,
+    blocked_now: Signal<Local, Bit>,
+    mixed_now: Signal<Local, Bit>,
+    load_now: Signal<Local, Bit>,
     service_skip: Reg<Bit>,
     service_byte: Reg<Bits<8>>,
     service_selected: Reg<Bits<8>>,
@@ -214,8 +236,11 @@ impl RegisterBank {
             read_byte: Default::default(),
             done: Default::default(),
             reading: Default::default(),
-            pending: Default::default(),
+            taken: Default::default(),
+            owes: Default::default(),
+            brought: Default::default(),
             load: Default::default(),
+            show: Default::default(),
             word_skip: Default::default(),
             channel_skip: Default::default(),
             channel_byte: Default::default(),
@@ -238,6 +263,8 @@ impl RegisterBank {
             trigger_now: Default::default(),
             calibrate: Default::default(),
             sources: Default::default(),
+            disabled: Default::default(),
+            restart: Default::default(),
             period_cycles: Default::default(),
             ring: ConfigRing::new(words),
             held_address: Default::default(),
@@ -267,7 +294,14 @@ impl RegisterBank {
             active_sources: Reg::new(u64::from(words[0] & 7).into()),
             active_period: Reg::new(u64::from(words[1]).into()),
             hold: Default::default(),
-            follow: Default::default(),
+            blocked: Reg::new(true),
+            read_before: Reg::new(true),
+            mixed: Default::default(),
+            one_gone: Default::default(),
+            overdue: Default::default(),
+            blocked_now: Default::default(),
+            mixed_now: Default::default(),
+            load_now: Default::default(),
             service_skip: Reg::new(true),
             service_byte: Default::default(),
             service_selected: Default::default(),
@@ -349,8 +383,9 @@ impl Logic for RegisterBank {
             hold,
             rom_skip,
             count_skip,
-            follow
+            blocked
         );
+        dff_setup!(self, clock, read_before, mixed, one_gone, overdue);
         clock!(self, clock, ring);
         self.ring.reset.next = self.reset.val();
         self.turning.reset.next = self.reset.val();
@@ -378,7 +413,11 @@ impl Logic for RegisterBank {
         self.active_sources.reset.next = self.reset.val();
         self.active_period.reset.next = self.reset.val();
         self.hold.reset.next = self.reset.val();
-        self.follow.reset.next = self.reset.val();
+        self.blocked.reset.next = self.reset.val();
+        self.read_before.reset.next = self.reset.val();
+        self.mixed.reset.next = self.reset.val();
+        self.one_gone.reset.next = self.reset.val();
+        self.overdue.reset.next = self.reset.val();
         dff_setup!(
             self,
             clock,
@@ -538,13 +577,34 @@ impl Logic for RegisterBank {
             self.hold.d.next = self.ring.word2.val().get_bit(0);
         }
         self.sources.next = self.active_sources.q.val();
+        self.disabled.next = self.ring.word0.val().get_bits::<8>(8);
+        // In the cycle in which they are taken over: the first words of card and channels.
+        self.restart.next = self.done_now.q.val()
+            & self.write_now.q.val()
+            & self.config_page.q.val()
+            & !self.word_address.val().get_bits::<2>(0).any();
         self.period_cycles.next = self.active_period.q.val();
 
         // Results.
-        // A cycle late: a result changes 2 cycles after its trigger at the earliest, the first byte is read later still.
-        self.follow.d.next = !(self.pending.val() | self.reading.val() | self.hold.q.val());
-        self.load.next = self.follow.q.val();
-        if self.follow.q.val() {
+        // Reading blocks a cycle late: the first byte is read later still.
+        self.read_before.d.next = self.reading.val();
+        self.show.next = !self.read_before.q.val();
+        self.blocked_now.next = self.reading.val() | self.hold.q.val();
+        self.blocked.d.next = self.blocked_now.val();
+        self.mixed_now.next = self.owes.val() & (self.brought.val() | self.mixed.q.val());
+        self.mixed.d.next = self.mixed_now.val() & !self.taken.val();
+        self.load_now.next = !self.blocked.q.val()
+            & (!self.mixed_now.val() | (self.blocked_now.val() & self.overdue.q.val()));
+        if self.load_now.val() {
+            self.one_gone.d.next = false;
+            self.overdue.d.next = false;
+        }
+        if self.taken.val() {
+            self.one_gone.d.next = true;
+            self.overdue.d.next = self.one_gone.q.val() & !self.load_now.val();
+        }
+        self.load.next = self.load_now.val();
+        if self.load_now.val() {
             self.count_held.d.next = self.trigger_count.val();
         }
         self.result_page.next =

@@ -1,4 +1,5 @@
-//! Triggers: three sources, one strobe for all channels.
+//! Triggers: three sources, one strobe for all channels; a card whose channels have triggers of their own takes them from the same hits
+//! ([`crate::channel_trigger`]).
 //!
 //! ```text
 //! trigger pin -> synchroniser -> rising edge --+
@@ -32,6 +33,8 @@ pub struct Trigger {
     pub sources: Signal<In, Bits<3>>,
     /// Period of the timer, at least 4 system clock cycles.
     pub period_cycles: Signal<In, Bits<24>>,
+    /// Enabled sources that trigger in the next cycle, as `sources`.
+    pub hits: Signal<Out, Bits<3>>,
     /// One-cycle strobe to all channels, from a register.
     pub trigger: Signal<Out, Bit>,
     /// Triggers since reset, wrapping.
@@ -43,6 +46,8 @@ pub struct Trigger {
     timer_hit_low: Reg<Bit>,
     timer_hit_high: Reg<Bit>,
     timer_hit: Signal<Local, Bit>,
+    pin_hit: Signal<Local, Bit>,
+    hit: Signal<Local, Bits<3>>,
     strobe: Reg<Bit>,
     count: Reg<Bits<32>>,
     timer_first: Constant<Bits<24>>,
@@ -60,6 +65,7 @@ impl Default for Trigger {
             register: Default::default(),
             sources: Default::default(),
             period_cycles: Default::default(),
+            hits: Default::default(),
             trigger: Default::default(),
             trigger_count: Default::default(),
             // High, so that a pin that is high at power-up is not an edge.
@@ -70,6 +76,8 @@ impl Default for Trigger {
             timer_hit_low: Default::default(),
             timer_hit_high: Default::default(),
             timer_hit: Default::default(),
+            pin_hit: Default::default(),
+            hit: Default::default(),
             strobe: Default::default(),
             count: Default::default(),
             timer_first: Constant::new(TIMER_FIRST.into()),
@@ -117,10 +125,13 @@ impl Logic for Trigger {
             self.timer_hit_low.d.next = false;
         }
 
-        self.strobe.d.next =
-            (self.sync1.q.val() & !self.sync2.q.val() & self.sources.val().get_bit(0))
-                | (self.timer_hit.val() & self.sources.val().get_bit(1))
-                | (self.register.val() & self.sources.val().get_bit(2));
+        self.pin_hit.next = self.sync1.q.val() & !self.sync2.q.val();
+        self.hit.next = (bit_cast::<3, 1>(self.pin_hit.val().into())
+            | (bit_cast::<3, 1>(self.timer_hit.val().into()) << 1)
+            | (bit_cast::<3, 1>(self.register.val().into()) << 2))
+            & self.sources.val();
+        self.hits.next = self.hit.val();
+        self.strobe.d.next = self.hit.val().any();
         if self.strobe.q.val() {
             self.count.d.next = self.count.q.val() + 1;
         }

@@ -3,6 +3,7 @@
 use crate::card::Card;
 use crate::causes;
 use crate::registers::Place;
+use crate::result::Reading;
 use crate::transport::Transport;
 use crate::HostError;
 use std::collections::VecDeque;
@@ -15,7 +16,7 @@ pub struct Cell {
     pub position: Option<u64>,
     /// This trigger brought it.
     pub fresh: bool,
-    /// Name of the cause; `not_taken` and `too_late` if the channel took no part.
+    /// Name of the cause; `not_taken` and `too_late` if the channel took no part; `late` if this is what came for the last `too_late`.
     pub cause: &'static str,
 }
 
@@ -69,6 +70,8 @@ pub struct Feed {
     clock: Clock,
     lost_in_card: u64,
     heard: Instant,
+    /// Sequence numbers of the last row, where results are read.
+    sequences: Vec<u16>,
 }
 
 /// Nothing for so long: perhaps the card has begun anew, and does not stream any more.
@@ -89,6 +92,7 @@ impl Feed {
             clock: Clock::default(),
             lost_in_card: 0,
             heard: Instant::now(),
+            sequences: Vec::new(),
         })
     }
 
@@ -120,6 +124,38 @@ impl Feed {
         }
     }
 
+    /// The row of these results; none if no channel has brought anything since the last one. Channels may take triggers of their own: the
+    /// one with the most results counts them, the latest moment is that of the row.
+    fn polled(&mut self, results: &[Reading]) -> Option<Row> {
+        let steps: Vec<u16> = match self.sequences.is_empty() {
+            true => results.iter().map(|r| r.sequence).collect(),
+            false => {
+                let both = results.iter().zip(&self.sequences);
+                both.map(|(r, last)| r.sequence.wrapping_sub(*last))
+                    .collect()
+            }
+        };
+        let most = steps.iter().copied().max().unwrap_or_default();
+        if most == 0 && !self.sequences.is_empty() {
+            return None;
+        }
+        self.sequences = results.iter().map(|r| r.sequence).collect();
+        let (sequence, timestamp) = self.clock.last.unwrap_or((0, results[0].timestamp));
+        let since = |r: &Reading| r.timestamp.wrapping_sub(timestamp) as i32;
+        let later = results.iter().map(since).max().unwrap_or_default().max(0);
+        let cells = results.iter().zip(steps).map(|(r, steps)| Cell {
+            position: r.valid.then_some(r.position),
+            fresh: r.fresh && steps > 0,
+            cause: match steps {
+                0 => "not_taken",
+                _ => causes::name(r.cause),
+            },
+        });
+        let cells = cells.collect();
+        let moment = timestamp.wrapping_add(later as u32);
+        Some(self.row(sequence.wrapping_add(most), moment, cells))
+    }
+
     /// Takes what has come, after waiting at most `wait`.
     pub fn fill<T: Transport>(
         &mut self,
@@ -140,8 +176,9 @@ impl Feed {
                 self.lost_in_card += u64::from(set.lost);
                 let cells = set.channels.iter().map(|s| Cell {
                     position: s.valid.then_some(s.position),
-                    fresh: s.fresh,
+                    fresh: s.fresh && !s.is_late(),
                     cause: match (s.taken, s.missing) {
+                        _ if s.is_late() => "late",
                         (false, _) => "not_taken",
                         (_, true) => "too_late",
                         _ => s.cause_name(),
@@ -153,15 +190,8 @@ impl Feed {
             return Ok(());
         }
         let results = card.results()?.channels;
-        let first = results[0];
-        let has_begun = results.iter().any(|r| r.has_come());
-        if has_begun && self.clock.last.map(|(sequence, _)| sequence) != Some(first.sequence) {
-            let cells = results.iter().map(|r| Cell {
-                position: r.valid.then_some(r.position),
-                fresh: r.fresh,
-                cause: causes::name(r.cause),
-            });
-            rows.push_back(self.row(first.sequence, first.timestamp, cells.collect()));
+        if results.iter().any(|r| r.has_come()) {
+            rows.extend(self.polled(&results));
         }
         Ok(())
     }
@@ -170,6 +200,36 @@ impl Feed {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_channel_that_takes_no_trigger_does_not_stop_the_others() {
+        let mut feed = Feed {
+            streams: false,
+            clock: Clock::default(),
+            lost_in_card: 0,
+            heard: Instant::now(),
+            sequences: Vec::new(),
+        };
+        let result = |sequence, timestamp| Reading {
+            sequence,
+            timestamp,
+            valid: sequence > 0,
+            fresh: sequence > 0,
+            ..Reading::default()
+        };
+        let mut row = |sequences: [u16; 2], timestamps: [u32; 2]| {
+            let results = [0, 1].map(|i| result(sequences[i], timestamps[i]));
+            let row = feed.polled(&results)?;
+            let fresh = [0, 1].map(|i| row.cells[i].fresh);
+            Some((row.trigger, row.missing, row.cycles, fresh))
+        };
+        // Channel 0 is disabled, or takes one of four.
+        assert_eq!(row([0, 3], [0, 5]), Some((3, 0, 0, [false, true])));
+        assert_eq!(row([0, 3], [0, 5]), None);
+        assert_eq!(row([0, 4], [0, 25]), Some((4, 0, 20, [false, true])));
+        assert_eq!(row([1, 7], [45, 85]), Some((7, 2, 80, [true, true])));
+        assert_eq!(row([1, 8], [45, 105]), Some((8, 0, 100, [false, true])));
+    }
 
     #[test]
     fn numbers_that_wrap_go_on() {

@@ -21,7 +21,7 @@ pub const BLOCKS: &[Block] = &[
         Register { name: "capabilities", offset: 2, access: Access::ReadOnly, meaning: "What this card has.", fields: &[
             Field { name: "channels", lsb: 0, width: 8, unit: "", meaning: "Encoder ports", values: Values::Plain },
             Field { name: "max_position_bits", lsb: 8, width: 8, unit: "bits", meaning: "Widest position", values: Values::Plain },
-            Field { name: "features", lsb: 16, width: 16, unit: "", meaning: "Parts", values: Values::Bits(&[Named { name: "endat22", number: 0, meaning: "EnDat 2.2 position frames (111000)" }, Named { name: "line_delay", number: 1, meaning: "line delay is measured" }, Named { name: "trigger_pin", number: 2, meaning: "trigger pin" }, Named { name: "trigger_timer", number: 3, meaning: "trigger timer" }, Named { name: "requests", number: 4, meaning: "requests" }, Named { name: "initialise", number: 5, meaning: "initialisation" }, Named { name: "diagnosis", number: 6, meaning: "diagnosis of the line" }, Named { name: "continuous", number: 7, meaning: "continuous clock" }, Named { name: "alignment", number: 8, meaning: "phase at the host's choice, mean over many edges" }, Named { name: "margin", number: 9, meaning: "margin of the samples" }, Named { name: "double_edge", number: 10, meaning: "DATA on both edges of the system clock" }, Named { name: "stream", number: 11, meaning: "stream of sample sets" }, Named { name: "direct", number: 12, meaning: "direct outputs" }, Named { name: "interrupt", number: 13, meaning: "interrupt" }, Named { name: "t_format", number: 14, meaning: "T-format channels" }]) },
+            Field { name: "features", lsb: 16, width: 16, unit: "", meaning: "Parts", values: Values::Bits(&[Named { name: "endat22", number: 0, meaning: "EnDat 2.2 position frames (111000)" }, Named { name: "line_delay", number: 1, meaning: "line delay is measured" }, Named { name: "trigger_pin", number: 2, meaning: "trigger pin" }, Named { name: "trigger_timer", number: 3, meaning: "trigger timer" }, Named { name: "requests", number: 4, meaning: "requests" }, Named { name: "initialise", number: 5, meaning: "initialisation" }, Named { name: "diagnosis", number: 6, meaning: "diagnosis of the line" }, Named { name: "continuous", number: 7, meaning: "continuous clock" }, Named { name: "alignment", number: 8, meaning: "phase at the host's choice, mean over many edges" }, Named { name: "margin", number: 9, meaning: "margin of the samples" }, Named { name: "double_edge", number: 10, meaning: "DATA on both edges of the system clock" }, Named { name: "stream", number: 11, meaning: "stream of sample sets" }, Named { name: "direct", number: 12, meaning: "direct outputs" }, Named { name: "interrupt", number: 13, meaning: "interrupt" }, Named { name: "t_format", number: 14, meaning: "T-format channels" }, Named { name: "own_trigger", number: 15, meaning: "enable, divider and sources of triggers of each channel" }]) },
         ] },
         Register { name: "system_hz", offset: 3, access: Access::ReadOnly, meaning: "System clock: the unit of every number of cycles.", fields: &[
             Field { name: "value", lsb: 0, width: 32, unit: "Hz", meaning: "Frequency", values: Values::Plain },
@@ -35,7 +35,7 @@ pub const BLOCKS: &[Block] = &[
         Register { name: "trigger_count", offset: 8, access: Access::ReadOnly, meaning: "Triggers since reset; stands still with the results (see hold).", fields: &[
             Field { name: "value", lsb: 0, width: 32, unit: "", meaning: "Wraps", values: Values::Plain },
         ] },
-        Register { name: "trigger_now", offset: 9, access: Access::Strobe, meaning: "Triggers all channels, if sources allows it.", fields: &[
+        Register { name: "trigger_now", offset: 9, access: Access::Strobe, meaning: "Triggers all channels that take it, if sources allows it.", fields: &[
             Field { name: "trigger", lsb: 0, width: 1, unit: "", meaning: "Write 1", values: Values::Plain },
         ] },
         Register { name: "calibrate", offset: 10, access: Access::Strobe, meaning: "Makes channels measure their line delay again, with their next frame.", fields: &[
@@ -122,10 +122,11 @@ pub const BLOCKS: &[Block] = &[
         ] },
     ] },
     Block { name: "card_config", base: 0x100, stride: 8, per_channel: false, meaning: "Configuration of the card.", registers: &[
-        Register { name: "trigger_sources", offset: 0, access: Access::ReadWrite, meaning: "Enabled trigger sources; one trigger starts all channels in the same clock cycle.", fields: &[
+        Register { name: "trigger_sources", offset: 0, access: Access::ReadWrite, meaning: "Enabled trigger sources; one trigger starts all channels that take it in the same clock cycle.", fields: &[
             Field { name: "pin", lsb: 0, width: 1, unit: "", meaning: "Rising edge of the trigger pin", values: Values::Plain },
             Field { name: "timer", lsb: 1, width: 1, unit: "", meaning: "Every trigger_period", values: Values::Plain },
             Field { name: "register", lsb: 2, width: 1, unit: "", meaning: "trigger_now", values: Values::Plain },
+            Field { name: "disabled", lsb: 8, width: 8, unit: "", meaning: "Channels that take no trigger, bit n for channel n; with part own_trigger only", values: Values::Plain },
         ] },
         Register { name: "trigger_period", offset: 1, access: Access::ReadWrite, meaning: "Period of the timer, at least 4; write it while the timer is disabled.", fields: &[
             Field { name: "value", lsb: 0, width: 24, unit: "cycles", meaning: "Period", values: Values::Plain },
@@ -138,8 +139,12 @@ pub const BLOCKS: &[Block] = &[
     Block { name: "config", base: 0x108, stride: 8, per_channel: true, meaning: "Configuration of a channel; taken over between two frames.", registers: &[
         Register { name: "frame", offset: 0, access: Access::ReadWrite, meaning: "What is asked of the encoder, and how fast.", fields: &[
             Field { name: "period_cycles", lsb: 0, width: 11, unit: "cycles", meaning: "EnDat clock period; the high phase is the longer one when odd; T-format: a bit, 8..127", values: Values::Plain },
+            Field { name: "skip", lsb: 11, width: 5, unit: "", meaning: "Triggers left out after each that the channel takes; with part own_trigger only, as the ignored sources", values: Values::Plain },
             Field { name: "position_bits", lsb: 16, width: 6, unit: "bits", meaning: "Position width, 1..48; T-format: no meaning, as command", values: Values::Plain },
+            Field { name: "ignore_pin", lsb: 22, width: 1, unit: "", meaning: "1: the trigger pin is not for this channel", values: Values::Plain },
+            Field { name: "ignore_timer", lsb: 23, width: 1, unit: "", meaning: "1: the timer is not", values: Values::Plain },
             Field { name: "command", lsb: 24, width: 6, unit: "", meaning: "Mode command, sent most significant bit first", values: Values::Codes(&[Named { name: "send_position", number: 7, meaning: "000111 send position (EnDat 2.1)" }, Named { name: "send_position_add_info", number: 56, meaning: "111000 send position with additional information (EnDat 2.2)" }]) },
+            Field { name: "ignore_register", lsb: 30, width: 1, unit: "", meaning: "1: trigger_now is not", values: Values::Plain },
         ] },
         Register { name: "timing", offset: 1, access: Access::ReadWrite, meaning: "First low phase and tolerance of the start bit.", fields: &[
             Field { name: "first_low_extra_cycles", lsb: 0, width: 11, unit: "cycles", meaning: "First low phase minus half a period (tST)", values: Values::Plain },
@@ -178,9 +183,10 @@ pub const BLOCKS: &[Block] = &[
             Field { name: "flags", lsb: 20, width: 12, unit: "", meaning: "Raw flags; T-format: bit 0 for cause 9, bit k for cause k + 17", values: Values::Bits(&[Named { name: "data_not_low", number: 0, meaning: "data not low before start" }, Named { name: "no_start_bit", number: 1, meaning: "no start bit" }, Named { name: "start_window", number: 2, meaning: "start bit outside its window" }, Named { name: "crc", number: 3, meaning: "CRC" }, Named { name: "f1", number: 4, meaning: "F1" }, Named { name: "f2", number: 5, meaning: "F2" }, Named { name: "data_not_falling", number: 6, meaning: "data not falling after the frame" }, Named { name: "trigger_overrun", number: 7, meaning: "trigger overrun" }, Named { name: "parallel_crc", number: 8, meaning: "parallel CRC" }, Named { name: "tail_low", number: 9, meaning: "data not high after the frame" }, Named { name: "unknown_command", number: 10, meaning: "unknown mode command" }, Named { name: "info_missing", number: 11, meaning: "additional information missing" }]) },
         ] },
         Register { name: "age_recovery", offset: 5, access: Access::ReadOnly, meaning: "Age and recovery time.", fields: &[
-            Field { name: "age_us", lsb: 0, width: 16, unit: "us", meaning: "Age of the position; stops at 65535", values: Values::Plain },
+            Field { name: "age_us", lsb: 0, width: 16, unit: "us", meaning: "Age of the position; stops at 65535; goes on while results are held", values: Values::Plain },
             Field { name: "recovery_cycles", lsb: 16, width: 13, unit: "cycles", meaning: "Recovery time tm of the last frame", values: Values::Plain },
             Field { name: "delay_high", lsb: 29, width: 1, unit: "", meaning: "Bit 10 of delay_cycles", values: Values::Plain },
+            Field { name: "stale", lsb: 30, width: 1, unit: "", meaning: "A trigger of this channel has come since this result", values: Values::Plain },
         ] },
     ] },
     Block { name: "line", base: 0x200, stride: 64, per_channel: true, meaning: "Phase of the samples, and how much margin they have. A place is a system clock cycle, or half of one with double_edge; offsets are signed.", registers: &[

@@ -29,6 +29,8 @@ pub struct Reading {
     pub delay_cycles: u16,
     /// Age of the position in microseconds; stops at 65535.
     pub age_us: u16,
+    /// A trigger of this channel has come since this result.
+    pub stale: bool,
     /// Recovery time of the last frame, in system clock cycles.
     pub recovery_cycles: u16,
     /// The position as it was read fits the CRC that the encoder sent with it, or there is nothing to check.
@@ -76,6 +78,7 @@ impl Reading {
             delay_cycles: (field("evidence", "delay_cycles")
                 | field("age_recovery", "delay_high") << 10) as u16,
             age_us: field("age_recovery", "age_us") as u16,
+            stale: field("age_recovery", "stale") != 0,
             recovery_cycles: field("age_recovery", "recovery_cycles") as u16,
             fits,
         }
@@ -123,7 +126,7 @@ mod tests {
             0x2400_0009 | 1 << 23 | 1 << 22 | crc << 16,
             77,
             (0x155 << 10) | (0x0A << 5) | 0x15,
-            (1 << 29) | (0x123 << 16) | 500,
+            (1 << 30) | (1 << 29) | (0x123 << 16) | 500,
         ];
         let reading = Reading::new(&words);
         assert_eq!(
@@ -138,6 +141,7 @@ mod tests {
                 crc: [0x15, 0x0A],
                 delay_cycles: 0x555,
                 age_us: 500,
+                stale: true,
                 recovery_cycles: 0x123,
                 fits: true,
             }

@@ -39,6 +39,11 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// Position and status are those of an earlier trigger: the last one that the channel took, whose set said `missing`.
+    pub fn is_late(&self) -> bool {
+        (!self.taken || self.missing) && (self.valid || self.fresh || self.cause != 0)
+    }
+
     /// Name of the primary cause.
     pub fn cause_name(&self) -> &'static str {
         causes::name(self.cause)

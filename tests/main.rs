@@ -15,6 +15,7 @@ mod host;
 mod hosts;
 mod integrators;
 mod maps;
+mod own_triggers;
 mod pages;
 mod position;
 mod presets;

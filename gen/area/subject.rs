@@ -206,7 +206,11 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             "stream with a buffer of 2048 bytes, without the channels' parts",
             Stream::new(streaming.stream.fifo_bytes, 2, false, false),
         )?,
-        Subject::new("set_channel", "a channel's part of it", SetChannel::new(0))?,
+        Subject::new(
+            "set_channel",
+            "a channel's part of it",
+            SetChannel::new(0, false),
+        )?,
         Subject::new(
             "direct_output",
             "direct outputs of a channel: crop, error",

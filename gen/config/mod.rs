@@ -8,6 +8,7 @@ pub(crate) mod protocol;
 pub(crate) mod reader;
 pub(crate) mod schema;
 mod stream;
+mod trigger;
 
 pub use line::phase_name;
 pub use names::{check_name, NAME_MAX};

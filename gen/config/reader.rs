@@ -193,6 +193,18 @@ impl<'s, 't> Table<'s, 't> {
         self.string(key)
     }
 
+    /// True or false, if the key is there.
+    pub fn boolean(&self, key: &'static str) -> Option<At<bool>> {
+        let spanned = self.get(key)?;
+        match spanned.get_ref().as_bool() {
+            Some(value) => self.at(value, spanned),
+            None => {
+                self.wrong_type(key, spanned, "true or false, without quotes");
+                None
+            }
+        }
+    }
+
     /// A list of strings, if the key is there.
     pub fn strings(&self, key: &'static str) -> Option<Vec<At<String>>> {
         let spanned = self.get(key)?;

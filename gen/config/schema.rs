@@ -2,7 +2,7 @@
 
 use super::pins::{assign_pins, card_ports};
 use super::reader::{At, Source, Table};
-use super::{check_name, line, outputs, protocol, stream, Project};
+use super::{check_name, line, outputs, protocol, stream, trigger, Project};
 use crate::board::{self, Assignment, Board};
 use crate::error::shorten;
 use endat_hdl::bus::HostBus;
@@ -97,7 +97,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let trigger = root.table("trigger", &empty);
     let sample_limits = limits("sample_hz", system_hz);
     let sample = trigger.required_integer("sample_hz", "10_000", &sample_limits);
-    let sources = read_sources(&trigger);
+    let sources = trigger::read_sources(&trigger);
     let link = root.table("link", &empty);
     let baud_max = board.as_ref().map(|b| b.uart_baud_max);
     let baud_limits = limits("baud", system_hz).at_most(baud_max.unwrap_or(u64::MAX), BAUD_NOTE);
@@ -381,6 +381,17 @@ fn canonical(
                 .map(|(name, value)| format!("channel {n} {name} {value}")),
         );
     }
+    if card.own_triggers() {
+        for (n, c) in card.channels.iter().enumerate() {
+            let own = c.request.trigger.unwrap_or_default();
+            lines.push(format!(
+                "channel {n} trigger enabled {} divider {} ignored {}",
+                own.enabled,
+                own.divider,
+                own.ignored()
+            ));
+        }
+    }
     lines.extend(
         pins.iter()
             .map(|pin| format!("pin {} {}", pin.signal, pin.pin)),
@@ -418,6 +429,7 @@ fn read_channel(
     is_aligned: bool,
 ) -> Option<Channel> {
     let encoder = read_encoder(table);
+    let own = trigger::read_own(table);
     let limits = limits("position_bits", system_hz);
     let position = table.required_integer("position_bits", "29", &limits);
     let command = table.required_string("command", "\"111000\"");
@@ -434,6 +446,8 @@ fn read_channel(
     let (encoder, position, command) = (encoder?, position?, command?);
     let mut values = BTreeMap::new();
     let mut places = Places::new();
+    let (own, divider_line) = own?;
+    places.insert("divider", (table.name("divider"), divider_line));
     for (key, written) in keys {
         let (path, at) = written?;
         values.insert(key, at.value);
@@ -460,6 +474,7 @@ fn read_channel(
         recovery_max_ns: value("recovery_max_ns").unwrap_or(RECOVERY_MAX_NS),
         cable_m: value("cable_m").unwrap_or(CABLE_M),
         t_format: None,
+        trigger: own,
     };
     Some(Channel {
         request,
@@ -472,7 +487,9 @@ fn read_channel(
 fn read_t_format(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Channel> {
     let encoder = read_encoder(table)?;
     let (wanted, filter_ns, lines) = protocol::read(table, system_hz);
+    let (own, divider_line) = trigger::read_own(table)?;
     let mut places = Places::new();
+    places.insert("divider", (table.name("divider"), divider_line));
     for (key, line) in lines {
         places.insert(key, (table.name(key), line));
     }
@@ -490,6 +507,7 @@ fn read_t_format(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Channe
         recovery_max_ns: RECOVERY_MAX_NS,
         cable_m: 0,
         t_format: Some(wanted),
+        trigger: own,
     };
     Some(Channel {
         request,
@@ -578,45 +596,6 @@ fn read_command(table: &Table<'_, '_>, command: At<String>) -> Option<ModeComman
         );
     }
     found
-}
-
-fn read_sources(table: &Table<'_, '_>) -> Option<TriggerSources> {
-    let Some(words) = table.strings("sources") else {
-        return Some(TriggerSources {
-            pin: true,
-            timer: true,
-            register: true,
-        });
-    };
-    let mut sources = TriggerSources::default();
-    let mut good = true;
-    for word in words {
-        let source = match word.value.as_str() {
-            "pin" => &mut sources.pin,
-            "timer" => &mut sources.timer,
-            "register" => &mut sources.register,
-            _ => {
-                table.complain(
-                    word.line,
-                    "sources",
-                    &format!("{:?}", word.value),
-                    "unknown trigger; use pin, timer, register",
-                );
-                good = false;
-                continue;
-            }
-        };
-        if std::mem::replace(source, true) {
-            table.complain(
-                word.line,
-                "sources",
-                &format!("{:?}", word.value),
-                "stands twice; remove one",
-            );
-            good = false;
-        }
-    }
-    good.then_some(sources)
 }
 
 /// Marks the parts that a list names; the line and the text of the last one, `None` if something is wrong.

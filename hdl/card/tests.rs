@@ -6,6 +6,9 @@ use crate::t_format::cause;
 use crate::testing::tick;
 use rust_hdl::prelude::Block;
 
+mod held;
+mod own_triggers;
+
 /// Cycles of a UART bit.
 const BIT: usize = 8;
 

@@ -47,6 +47,7 @@ fn set(uut: &mut ChannelRegisters, register: &str, field: &str, value: u64) {
         ("evidence", "flags") => uut.flags.next = value.into(),
         ("age_recovery", "age_us") => uut.age_us.next = value.into(),
         ("age_recovery", "recovery_cycles") => uut.recovery_cycles.next = value.into(),
+        ("age_recovery", "stale") => uut.trigger.next = value == 1,
         other => panic!("the table has a field that the test does not know: {other:?}"),
     }
 }
@@ -57,6 +58,7 @@ fn every_result_field_is_where_the_table_says() {
         for field in register.fields {
             let mut uut = new();
             uut.load.next = true;
+            uut.show.next = true;
             set(
                 &mut uut,
                 register.name,
@@ -111,6 +113,10 @@ fn output(uut: &ChannelRegisters, field: &str) -> u64 {
         "period_cycles" => uut.period_cycles.val().to_u64(),
         "position_bits" => uut.position_bits.val().to_u64(),
         "command" => uut.command.val().to_u64(),
+        "skip" => uut.trigger_skip.val().to_u64(),
+        "ignore_pin" => uut.ignored_sources.val().to_u64() & 1,
+        "ignore_timer" => uut.ignored_sources.val().to_u64() >> 1 & 1,
+        "ignore_register" => uut.ignored_sources.val().to_u64() >> 2,
         "first_low_extra_cycles" => uut.first_low_extra_cycles.val().to_u64(),
         "start_window_cycles" => uut.start_window_cycles.val().to_u64(),
         "filter_cycles" => uut.filter_cycles.val().to_u64(),
@@ -191,11 +197,14 @@ fn a_result_is_owed_from_a_trigger_that_is_taken_to_its_result() {
     let mut uut = new();
     let pulse = |uut: &mut ChannelRegisters, trigger: bool, result: bool| {
         uut.trigger.next = trigger;
+        uut.new_set.next = trigger;
         uut.result_strobe.next = result;
         step(uut);
         uut.trigger.next = false;
+        uut.new_set.next = false;
         uut.result_strobe.next = false;
-        uut.pending.val()
+        step(uut);
+        uut.owes.val()
     };
     assert!(pulse(&mut uut, true, false));
     assert!(pulse(&mut uut, false, false));
@@ -209,5 +218,37 @@ fn a_result_is_owed_from_a_trigger_that_is_taken_to_its_result() {
     assert!(
         pulse(&mut uut, true, true),
         "a trigger with the last result"
+    );
+    uut.busy.next = true;
+    assert!(
+        !pulse(&mut uut, true, false),
+        "another channel's trigger: nobody waits for this one"
+    );
+}
+
+#[test]
+fn held_words_grow_old_by_themselves() {
+    let mut uut = new();
+    uut.tick_us.next = true;
+    uut.show.next = true;
+    uut.load.next = true;
+    uut.age_us.next = 0xfff0u64.into();
+    step(&mut uut);
+    uut.load.next = false;
+    // A newer position has another age.
+    uut.age_us.next = 0u64.into();
+    (0..5).for_each(|_| step(&mut uut));
+    uut.show.next = false;
+    step(&mut uut);
+    assert_eq!(read(&mut uut, 5), 0xfff5, "stands still while it is read");
+    uut.trigger.next = true;
+    (0..20).for_each(|_| step(&mut uut));
+    assert_eq!(read(&mut uut, 5), 0xfff5);
+    uut.show.next = true;
+    step(&mut uut);
+    assert_eq!(
+        read(&mut uut, 5),
+        1 << 30 | 0xffff,
+        "the time did not; it stops there"
     );
 }

@@ -67,6 +67,14 @@ impl CardDraft {
         };
         let mut channels = Vec::new();
         for (index, channel) in self.channels.iter().flatten().enumerate() {
+            let own = channel.as_ref().and_then(|c| c.trigger);
+            if let Some(own) = own {
+                let mut check = Check {
+                    section: Section::Channel(index),
+                    problems: &mut problems,
+                };
+                check.within("divider", own.divider, &limits("divider", None));
+            }
             match channel
                 .as_ref()
                 .map(|c| ChannelConfig::resolve(c, system_hz, self.line.double_edge, index))
@@ -161,19 +169,25 @@ impl CardDraft {
             return None;
         }
         let period = period_cycles(sample_hz, system_hz);
-        let longest = channels
-            .iter()
-            .rev()
-            .max_by_key(|(_, c)| c.cycle_max_cycles(system_hz));
-        let timer = self.sources.is_some_and(|s| s.timer);
-        if let Some((index, channel)) = longest.filter(|_| timer) {
+        // A channel that takes one of several triggers has so much longer.
+        let share = |channel: &ChannelConfig| {
+            let own = channel.request.trigger.unwrap_or_default();
+            let divider = own.timer_divider()?.max(1);
             let cycles = channel.cycle_max_cycles(system_hz);
-            if cycles > period {
-                check.fail(
-                    "sample_hz",
-                    sample_hz,
-                    too_long(*index, channel, cycles, system_hz),
-                );
+            Some((cycles.div_ceil(divider), cycles, divider))
+        };
+        let timed = channels.iter().rev();
+        let longest = timed
+            .filter_map(|(index, c)| Some((share(c)?, index, c)))
+            .max_by_key(|((share, ..), ..)| *share);
+        let timer = self.sources.is_some_and(|s| s.timer);
+        if let Some(((share, cycles, divider), index, channel)) = longest.filter(|_| timer) {
+            if share > period {
+                let mut text = too_long(*index, channel, (cycles, divider), system_hz);
+                if divider > 1 {
+                    text += &format!(", or raise divider = {divider} of the channel");
+                }
+                check.fail("sample_hz", sample_hz, text);
             }
         }
         Some(period)
@@ -288,12 +302,18 @@ impl CardDraft {
 }
 
 /// Why a trigger would come before a channel is ready, with the shares that can be shortened, the longest first.
-fn too_long(index: usize, channel: &ChannelConfig, cycles: u64, system_hz: u64) -> String {
+fn too_long(
+    index: usize,
+    channel: &ChannelConfig,
+    (cycles, divider): (u64, u64),
+    system_hz: u64,
+) -> String {
+    let highest_hz = system_hz.saturating_mul(divider) / cycles;
     if let Some(t_format) = &channel.t_format {
         return format!(
             "an exchange of T-format channel {index} takes up to {} us with its pauses, so at most {} Hz; lower it, or lower reply_gap_us = {} and field_gap_us = {}, or ask for less with request = 0",
             microseconds(cycles, system_hz),
-            system_hz / cycles,
+            highest_hz,
             t_format.reply_gap_us,
             t_format.field_gap_us
         );
@@ -332,7 +352,7 @@ fn too_long(index: usize, channel: &ChannelConfig, cycles: u64, system_hz: u64) 
     format!(
         "a frame of channel {index} with its recovery time takes up to {} us, the largest part from {key} = {value}, so at most {} Hz; lower it, or {}",
         microseconds(cycles, system_hz),
-        system_hz / cycles,
+        highest_hz,
         remedies.join(", or ")
     )
 }
@@ -348,6 +368,11 @@ impl CardConfig {
     /// Converts and checks a whole card; `Err` has every problem found.
     pub fn resolve(request: &CardRequest) -> Result<Self, Vec<Problem>> {
         CardDraft::from(request).resolve()
+    }
+
+    /// Whether each channel has its own enable, divider and sources.
+    pub fn own_triggers(&self) -> bool {
+        self.channels.iter().any(|c| c.request.trigger.is_some())
     }
 
     /// Sampling rate that the timer really makes, in hertz.

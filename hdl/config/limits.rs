@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::bus::spi::SCK_CYCLES_MIN;
+use crate::channel_trigger::SKIP_BITS;
 use crate::protocol::POSITION_BITS;
 use crate::stream::buffer::BUFFER_BYTES;
 use crate::t_format::protocol::{
@@ -88,6 +89,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "reply_gap_us" => 1..=REPLY_GAP_US_MAX,
         "field_gap_us" => 0..=FIELD_GAP_US_MAX,
         "filter_cycles" => 0..=FILTER_CYCLES_MAX,
+        "divider" => 1..=1 << SKIP_BITS,
         _ => 0..=u64::MAX,
     };
     Limits {

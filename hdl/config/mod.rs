@@ -96,6 +96,8 @@ pub struct ChannelRequest {
     pub cable_m: u64,
     /// The channel speaks T-format: of the other numbers only `filter_ns` counts.
     pub t_format: Option<TFormatRequest>,
+    /// Which triggers the channel takes; if all channels say nothing about it, every one takes all, and there is no logic for another choice.
+    pub trigger: Option<OwnTrigger>,
 }
 
 /// What is asked of a card.
@@ -292,6 +294,50 @@ pub struct TriggerSources {
     pub timer: bool,
     /// Strobe written by the host.
     pub register: bool,
+}
+
+/// Which triggers a channel takes after reset; the host can change it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OwnTrigger {
+    /// It takes triggers at all.
+    pub enabled: bool,
+    /// It takes one of so many of its triggers, the first one after a change of these settings.
+    pub divider: u64,
+    /// Sources that it listens to, of those that the card has enabled.
+    pub sources: TriggerSources,
+}
+
+impl Default for OwnTrigger {
+    fn default() -> Self {
+        Self {
+            enabled: true,
+            divider: 1,
+            sources: TriggerSources {
+                pin: true,
+                timer: true,
+                register: true,
+            },
+        }
+    }
+}
+
+impl OwnTrigger {
+    /// Sources that it does not listen to: bit 0 pin, bit 1 timer, bit 2 register.
+    pub const fn ignored(&self) -> u64 {
+        !self.sources.pin as u64
+            | (!self.sources.timer as u64) << 1
+            | (!self.sources.register as u64) << 2
+    }
+
+    /// Triggers left out after each that it takes.
+    pub const fn skip(&self) -> u64 {
+        self.divider.saturating_sub(1)
+    }
+
+    /// Of how many periods of the card's timer it takes one; `None` if the timer is not for it.
+    pub fn timer_divider(&self) -> Option<u64> {
+        (self.enabled && self.sources.timer).then_some(self.divider)
+    }
 }
 
 /// Part of the configuration that a problem belongs to.

@@ -17,6 +17,7 @@ fn rcn_8510() -> ChannelRequest {
         recovery_max_ns: RECOVERY_MAX_NS,
         cable_m: 100,
         t_format: None,
+        trigger: None,
     }
 }
 

@@ -4,7 +4,7 @@ use super::values::{CAUSES, EVIDENCE_FLAGS, FEATURES, LINE_FLAGS, POSITION_COMMA
 use super::{
     word, zero, Access, Block, Field, BLOCK_STRIDE, CONFIG_BASE, ID, RESULT_BASE, VERSION,
 };
-use crate::config::{CardConfig, ChannelConfig};
+use crate::config::{CardConfig, ChannelConfig, OwnTrigger};
 use crate::protocol::MAX_POSITION_BITS;
 use Access::{ReadOnly, ReadWrite, Strobe};
 
@@ -26,6 +26,11 @@ const fn field(
 /// The channel's start values; zeros for a channel that the card does not have.
 fn of(config: &CardConfig, channel: usize, value: impl Fn(&ChannelConfig) -> u64) -> u64 {
     config.channels.get(channel).map(value).unwrap_or_default()
+}
+
+/// The triggers that a channel takes.
+fn own(channel: &ChannelConfig) -> OwnTrigger {
+    channel.request.trigger.unwrap_or_default()
 }
 
 /// Offset of the first of the stream's four words.
@@ -91,6 +96,7 @@ pub const CARD: Block = Block {
                         | (s.outputs.any() as u64) << 12
                         | (s.outputs.interrupt as u64) << 13
                         | ((s.t_format_channels() != 0) as u64) << 14
+                        | (s.own_triggers() as u64) << 15
                 })
                 .bits(&FEATURES),
             ],
@@ -141,7 +147,7 @@ pub const CARD: Block = Block {
             "trigger_now",
             9,
             Strobe,
-            "Triggers all channels, if sources allows it.",
+            "Triggers all channels that take it, if sources allows it.",
             &[field("trigger", 0, 1, "", "Write 1", zero)],
         ),
         word(
@@ -219,7 +225,7 @@ pub const CARD_CONFIG: Block = Block {
             "trigger_sources",
             0,
             ReadWrite,
-            "Enabled trigger sources; one trigger starts all channels in the same clock cycle.",
+            "Enabled trigger sources; one trigger starts all channels that take it in the same clock cycle.",
             &[
                 field("pin", 0, 1, "", "Rising edge of the trigger pin", |s, _| {
                     s.sources.pin as u64
@@ -230,6 +236,18 @@ pub const CARD_CONFIG: Block = Block {
                 field("register", 2, 1, "", "trigger_now", |s, _| {
                     s.sources.register as u64
                 }),
+                field(
+                    "disabled",
+                    8,
+                    8,
+                    "",
+                    "Channels that take no trigger, bit n for channel n; with part own_trigger only",
+                    |s, _| {
+                        let off = |c: &ChannelConfig| c.request.trigger.is_some_and(|t| !t.enabled);
+                        let channels = s.channels.iter().enumerate();
+                        channels.map(|(n, c)| (off(c) as u64) << n).sum()
+                    },
+                ),
             ],
         ),
         word(
@@ -292,6 +310,14 @@ pub const CHANNEL_CONFIG: Block = Block {
                     |s, c| of(s, c, |v| v.period_cycles),
                 ),
                 field(
+                    "skip",
+                    11,
+                    5,
+                    "",
+                    "Triggers left out after each that the channel takes; with part own_trigger only, as the ignored sources",
+                    |s, c| of(s, c, |v| own(v).skip()),
+                ),
+                field(
                     "position_bits",
                     16,
                     6,
@@ -299,6 +325,12 @@ pub const CHANNEL_CONFIG: Block = Block {
                     "Position width, 1..48; T-format: no meaning, as command",
                     |s, c| of(s, c, |v| v.position_bits as u64),
                 ),
+                field("ignore_pin", 22, 1, "", "1: the trigger pin is not for this channel", |s, c| {
+                    of(s, c, |v| own(v).ignored() & 1)
+                }),
+                field("ignore_timer", 23, 1, "", "1: the timer is not", |s, c| {
+                    of(s, c, |v| own(v).ignored() >> 1 & 1)
+                }),
                 field(
                     "command",
                     24,
@@ -313,6 +345,9 @@ pub const CHANNEL_CONFIG: Block = Block {
                     },
                 )
                 .codes(&POSITION_COMMANDS),
+                field("ignore_register", 30, 1, "", "1: trigger_now is not", |s, c| {
+                    of(s, c, |v| own(v).ignored() >> 2 & 1)
+                }),
             ],
         ),
         word(
@@ -435,9 +470,10 @@ pub const RESULT: Block = Block {
             field("flags", 20, 12, "", "Raw flags; T-format: bit 0 for cause 9, bit k for cause k + 17", zero).bits(&EVIDENCE_FLAGS),
         ]),
         word("age_recovery", 5, ReadOnly, "Age and recovery time.", &[
-            field("age_us", 0, 16, "us", "Age of the position: 0 until its frame has ended, counted from there; stops at 65535", zero),
+            field("age_us", 0, 16, "us", "Age of the position: 0 until its frame has ended, counted from there, also while results are held; stops at 65535", zero),
             field("recovery_cycles", 16, 13, "cycles", "Recovery time tm of the last frame", zero),
             field("delay_high", 29, 1, "", "Bit 10 of delay_cycles", zero),
+            field("stale", 30, 1, "", "A trigger of this channel has come since this result", zero),
         ]),
     ],
 };

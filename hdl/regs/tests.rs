@@ -18,6 +18,7 @@ pub fn test_config() -> CardConfig {
         recovery_max_ns: 30_000,
         cable_m: 20,
         t_format: None,
+        trigger: None,
     };
     let second = ChannelRequest {
         clock_hz: 2_000_000,
@@ -442,12 +443,17 @@ parts multi_valid 1:1
 trigger_sources pin 0:0
 trigger_sources timer 1:1
 trigger_sources register 2:2
+trigger_sources disabled 15:8
 trigger_period value 23:0
 hold hold 0:0
 hold scratch 31:8
 frame period_cycles 10:0
+frame skip 15:11
 frame position_bits 21:16
+frame ignore_pin 22:22
+frame ignore_timer 23:23
 frame command 29:24
+frame ignore_register 30:30
 timing first_low_extra_cycles 10:0
 timing start_window_cycles 21:16
 timing filter_half 23:23
@@ -471,6 +477,7 @@ evidence flags 31:20
 age_recovery age_us 15:0
 age_recovery recovery_cycles 28:16
 age_recovery delay_high 29:29
+age_recovery stale 30:30
 edges_0 edges 31:0
 edges_1 edges 31:0
 edges_2 edges 31:0

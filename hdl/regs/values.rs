@@ -169,7 +169,7 @@ pub const PHASE_MODES: [Named; 3] = [
 ];
 
 /// What a card has.
-pub const FEATURES: [Named; 15] = [
+pub const FEATURES: [Named; 16] = [
     named("endat22", 0, "EnDat 2.2 position frames (111000)"),
     named("line_delay", 1, "line delay is measured"),
     named("trigger_pin", 2, "trigger pin"),
@@ -189,6 +189,11 @@ pub const FEATURES: [Named; 15] = [
     named("direct", 12, "direct outputs"),
     named("interrupt", 13, "interrupt"),
     named("t_format", 14, "T-format channels"),
+    named(
+        "own_trigger",
+        15,
+        "enable, divider and sources of triggers of each channel",
+    ),
 ];
 
 /// Steps of the initialisation, in their order.

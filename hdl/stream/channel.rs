@@ -6,7 +6,8 @@
 //! result strobe ------+---+-- owes nothing: the set may be closed
 //! ```
 //!
-//! Everything is taken in one cycle, so nothing that comes later can get into the set.
+//! Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own, one of them may
+//! be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty place in the next one.
 
 use crate::reg::Reg;
 use rust_hdl::prelude::*;
@@ -48,6 +49,10 @@ pub struct SetChannel {
     pub replaced: Signal<Out, Bit>,
     took: Reg<Bit>,
     waiting: Reg<Bit>,
+    owed: Reg<Bit>,
+    late: Reg<Bit>,
+    late_now: Signal<Local, Bit>,
+    is_own: Signal<Local, Bit>,
     position_taken: Reg<Bits<48>>,
     status_taken: Reg<Bits<16>>,
     took_taken: Reg<Bit>,
@@ -56,11 +61,12 @@ pub struct SetChannel {
     open: Signal<Local, Bit>,
     status: Signal<Local, Bits<16>>,
     number: Constant<Bits<4>>,
+    takes_late: Constant<Bit>,
 }
 
 impl SetChannel {
-    /// The place of channel `channel`.
-    pub fn new(channel: usize) -> Self {
+    /// The place of channel `channel`, for late results too if `takes_late`.
+    pub fn new(channel: usize, takes_late: bool) -> Self {
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -80,6 +86,10 @@ impl SetChannel {
             replaced: Default::default(),
             took: Default::default(),
             waiting: Default::default(),
+            owed: Default::default(),
+            late: Default::default(),
+            late_now: Default::default(),
+            is_own: Default::default(),
             position_taken: Default::default(),
             status_taken: Default::default(),
             took_taken: Default::default(),
@@ -88,6 +98,7 @@ impl SetChannel {
             open: Default::default(),
             status: Default::default(),
             number: Constant::new((channel as u64 + 1).into()),
+            takes_late: Constant::new(takes_late),
         }
     }
 }
@@ -100,6 +111,8 @@ impl Logic for SetChannel {
             clock,
             took,
             waiting,
+            owed,
+            late,
             position_taken,
             status_taken,
             took_taken,
@@ -108,6 +121,8 @@ impl Logic for SetChannel {
         );
         self.took.reset.next = self.reset.val();
         self.waiting.reset.next = self.reset.val();
+        self.owed.reset.next = self.reset.val();
+        self.late.reset.next = self.reset.val();
         self.took_taken.reset.next = self.reset.val();
         self.missing_taken.reset.next = self.reset.val();
 
@@ -122,9 +137,20 @@ impl Logic for SetChannel {
         self.owes.next = self.open.val();
         self.replaced.next = self.took.q.val() & !self.waiting.q.val() & self.result_strobe.val();
 
-        // A result of another trigger never gets in: what the channel does not have is 0.
-        self.position_taken.reset.next = self.take.val() & (!self.took.q.val() | self.open.val());
-        self.status_taken.reset.next = self.take.val() & (!self.took.q.val() | self.open.val());
+        // A result that was missing in its set, and has come since.
+        self.late_now.next = self.late.q.val() | (self.owed.q.val() & self.result_strobe.val());
+        self.late.d.next = self.late_now.val() & !self.take.val();
+        if self.result_strobe.val() {
+            self.owed.d.next = false;
+        }
+        if self.take.val() & self.open.val() {
+            self.owed.d.next = self.takes_late.val();
+        }
+        // No other result of another trigger gets in: what the channel does not have is 0.
+        self.is_own.next = self.took.q.val() & !self.open.val();
+        self.position_taken.reset.next =
+            self.take.val() & !self.is_own.val() & !self.late_now.val();
+        self.status_taken.reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
         self.status.next = bit_cast::<16, 5>(self.cause.val())
             | (bit_cast::<16, 1>(self.position_valid.val().into()) << 6)
             | (bit_cast::<16, 1>(self.fresh.val().into()) << 7)

@@ -54,6 +54,7 @@ pub fn card(system_hz: u64, sample_hz: u64, baud: u64, start: StreamStart) -> Ca
         recovery_max_ns: 30_000,
         cable_m: 20,
         t_format: None,
+        trigger: None,
     };
     let second = ChannelRequest {
         position_bits: 37,

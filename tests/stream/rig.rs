@@ -179,7 +179,7 @@ impl Rig {
         Self {
             stream: Named::new(Stream::new(bytes, channels, collect, push), "stream"),
             set: (0..channels)
-                .map(|n| Named::new(SetChannel::new(n), "set_channel"))
+                .map(|n| Named::new(SetChannel::new(n, false), "set_channel"))
                 .collect(),
             channel: vec![Channel::default(); channels],
             trigger: false,

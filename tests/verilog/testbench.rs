@@ -53,6 +53,25 @@ fn bench_passes_on_other_cards() {
     );
 }
 
+/// The bench lets every channel take every trigger, whatever the card starts with.
+#[test]
+fn bench_passes_on_a_card_whose_channels_have_triggers_of_their_own() {
+    if tools::require("iverilog", "emitted test bench") {
+        let channel =
+            |keys: &str| format!("[[channel]]\nposition_bits = 25\ncommand = \"111000\"\n{keys}");
+        let text = format!(
+            "name = \"own\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\ncable_m = 20\n{}{}{}\
+             [trigger]\nsample_hz = 10_000\nsources = [\"register\", \"timer\"]\n[host]\nbus = \"wishbone\"\n",
+            channel("divider = 3\n"),
+            channel("sources = [\"timer\"]\n"),
+            channel("enabled = false\n")
+        );
+        let files = endat_gen::emit(&parse("own.toml", &text).unwrap()).unwrap();
+        assert!(files.iter().any(|f| f.path.contains("channel_trigger")));
+        assert_eq!(run_bench("own_triggers", &files, &[]), "PASS\n");
+    }
+}
+
 /// With everything about the line delay, double edge included: four frames measure the delay.
 #[test]
 fn bench_passes_on_a_card_with_all_line_parts() {

@@ -82,6 +82,7 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
                 "sequence": r.sequence,
                 "timestamp_s": f64::from(r.timestamp) / system_hz,
                 "age_us": r.age_us,
+                "stale": r.stale,
                 "delay_cycles": r.delay_cycles,
             })
         });

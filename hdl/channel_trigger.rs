@@ -1,0 +1,159 @@
+//! Trigger of one channel, where channels have their own: which sources it listens to, every how many triggers, whether at all.
+//!
+//! ```text
+//! sources' hits --> not ignored, not disabled --> every (skip + 1)-th --> register --> trigger
+//! ring: settings --(ring stands still)--^           ^-- restart: all channels count from here
+//! ```
+//!
+//! Channels with equal settings trigger in the same cycle: they take settings over in the same cycle, busy or not, and a write to one of
+//! these settings starts the count of all channels anew. The strobe is in the cycle of the card's.
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Bits of `skip`.
+pub const SKIP_BITS: u32 = 5;
+
+/// Trigger of a channel.
+#[derive(LogicBlock)]
+pub struct ChannelTrigger {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Enabled sources that trigger in the next cycle: bit 0 pin, bit 1 timer, bit 2 register.
+    pub hits: Signal<In, Bits<3>>,
+    /// The settings below stand; otherwise the ring is turning.
+    pub home: Signal<In, Bit>,
+    /// Sources that are not for this channel, as `hits`.
+    pub ignored_sources: Signal<In, Bits<3>>,
+    /// Triggers left out after each that the channel takes.
+    pub skip: Signal<In, Bits<5>>,
+    /// The channel takes no trigger.
+    pub off: Signal<In, Bit>,
+    /// Strobe: the next trigger is taken, then counting begins.
+    pub restart: Signal<In, Bit>,
+    /// One-cycle strobe to the channel, from a register.
+    pub trigger: Signal<Out, Bit>,
+    /// The channel takes no trigger.
+    pub disabled: Signal<Out, Bit>,
+    ignored: Reg<Bits<3>>,
+    skipped: Reg<Bits<5>>,
+    is_off: Reg<Bit>,
+    left: Reg<Bits<5>>,
+    strobe: Reg<Bit>,
+    own: Signal<Local, Bit>,
+    is_due: Signal<Local, Bit>,
+}
+
+impl ChannelTrigger {
+    /// With these settings after reset, as the inputs of the same names.
+    pub fn new(ignored_sources: u64, skip: u64, off: bool) -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            hits: Default::default(),
+            home: Default::default(),
+            ignored_sources: Default::default(),
+            skip: Default::default(),
+            off: Default::default(),
+            restart: Default::default(),
+            trigger: Default::default(),
+            disabled: Default::default(),
+            ignored: Reg::new(ignored_sources.into()),
+            skipped: Reg::new(skip.into()),
+            is_off: Reg::new(off),
+            left: Default::default(),
+            strobe: Default::default(),
+            own: Default::default(),
+            is_due: Default::default(),
+        }
+    }
+}
+
+impl Logic for ChannelTrigger {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, ignored, skipped, is_off, left, strobe);
+        self.ignored.reset.next = self.reset.val();
+        self.skipped.reset.next = self.reset.val();
+        self.is_off.reset.next = self.reset.val();
+        self.left.reset.next = self.reset.val() | self.restart.val();
+        self.strobe.reset.next = self.reset.val();
+
+        if self.home.val() {
+            self.ignored.d.next = self.ignored_sources.val();
+            self.skipped.d.next = self.skip.val();
+            self.is_off.d.next = self.off.val();
+        }
+        self.own.next = (self.hits.val() & !self.ignored.q.val()).any();
+        self.is_due.next = !self.left.q.val().any();
+        if self.own.val() {
+            self.left.d.next = self.left.q.val() - 1;
+            if self.is_due.val() {
+                self.left.d.next = self.skipped.q.val();
+            }
+        }
+        self.strobe.d.next = self.own.val() & self.is_due.val() & !self.is_off.q.val();
+        self.trigger.next = self.strobe.q.val();
+        self.disabled.next = self.is_off.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::tick;
+
+    fn step(uut: &mut ChannelTrigger, hits: u64) -> bool {
+        uut.hits.next = hits.into();
+        tick(uut, |u, level| u.clock.next = level.into());
+        uut.trigger.val()
+    }
+
+    fn set(uut: &mut ChannelTrigger, ignored: u64, skip: u64, off: bool) {
+        uut.ignored_sources.next = ignored.into();
+        uut.skip.next = skip.into();
+        uut.off.next = off;
+        uut.home.next = true;
+        step(uut, 0);
+        uut.home.next = false;
+    }
+
+    fn restart(uut: &mut ChannelTrigger) {
+        uut.restart.next = true;
+        step(uut, 0);
+        uut.restart.next = false;
+    }
+
+    #[test]
+    fn one_of_so_many_of_the_sources_that_are_not_ignored() {
+        let mut uut = ChannelTrigger::new(0, 0, false);
+        uut.connect_all();
+        for (ignored, skip) in [(0, 0), (0, 1), (2, 0), (5, 3), (3, 31), (7, 0)] {
+            set(&mut uut, ignored, skip, false);
+            restart(&mut uut);
+            let mut count = 0u64;
+            for n in 0..200u64 {
+                let hits = [1, 2, 4, 3, 0][n as usize % 5];
+                let own = hits & !ignored != 0;
+                let expected = own && count.is_multiple_of(skip + 1);
+                count += u64::from(own);
+                assert_eq!(step(&mut uut, hits), expected, "{ignored} {skip} {n}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_disabled_channel_counts_but_does_not_trigger() {
+        let mut uut = ChannelTrigger::new(0, 2, true);
+        uut.connect_all();
+        step(&mut uut, 0);
+        assert!((0..4).all(|_| !step(&mut uut, 1)) && uut.disabled.val());
+        set(&mut uut, 0, 2, false);
+        assert_eq!(
+            [0, 1, 2, 3].map(|_| step(&mut uut, 1)),
+            [false, false, true, false]
+        );
+    }
+}
