@@ -13,6 +13,7 @@ use crate::{
 };
 
 /// One EnDat port in all lanes.
+#[derive(Clone)]
 struct Port {
     links: Vec<Link>,
     /// When each link has something to do next.
@@ -26,6 +27,7 @@ struct Port {
 }
 
 /// Designs on their benches.
+#[derive(Clone)]
 pub struct LaneBench {
     engine: Lanes,
     system_hz: u64,
@@ -122,6 +124,11 @@ impl LaneBench {
     /// Number of lanes.
     pub fn lanes(&self) -> usize {
         self.engine.lanes()
+    }
+
+    /// The link of a lane on pin set `port`, to make something wrong with it.
+    pub fn link_mut(&mut self, port: usize, lane: usize) -> &mut Link {
+        &mut self.ports[port].links[lane]
     }
 
     /// The designs.

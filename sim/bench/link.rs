@@ -32,6 +32,7 @@ fn note<T: PartialEq>(track: &mut Vec<(Time, T)>, time: Time, value: T) {
 }
 
 /// A line with its encoder. Between two system clock edges it runs by itself, in picoseconds.
+#[derive(Clone)]
 pub struct Link {
     line: Line,
     encoder: Encoder,

@@ -164,7 +164,7 @@ enum Phase {
 }
 
 /// Working data of the frame in progress.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Work {
     /// Falling edges as counted, and as they came.
     falls: u32,
@@ -195,6 +195,7 @@ fn take_due<T>(queue: &mut VecDeque<(Time, T)>, time: Time) -> Option<(Time, T)>
 }
 
 /// An encoder. See the module's text.
+#[derive(Clone)]
 pub struct Encoder {
     config: EncoderConfig,
     rng: Rng,

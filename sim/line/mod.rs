@@ -147,6 +147,7 @@ pub enum Arrival {
 }
 
 /// The line. Time must not run backwards from call to call.
+#[derive(Clone)]
 pub struct Line {
     config: LineConfig,
     clock: Path<bool>,

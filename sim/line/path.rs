@@ -28,6 +28,7 @@ impl Edge for crate::encoder::Output {
 }
 
 /// A delay line. Edges keep their order; pulses too short for it vanish.
+#[derive(Clone)]
 pub(super) struct Path<T> {
     config: PathConfig,
     flight: Time,

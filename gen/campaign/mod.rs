@@ -1,0 +1,3 @@
+//! What campaigns leave: parts that are put together, tables, the page.
+
+pub mod report;
