@@ -62,8 +62,16 @@ impl Part {
                 ..
             } = &self.identity;
             let record = [
-                campaign, version, plan, &cases, &part, &row.subject, &row.kind, &row.place,
-                &row.class, &count,
+                campaign,
+                version,
+                plan,
+                &cases,
+                &part,
+                &row.subject,
+                &row.kind,
+                &row.place,
+                &row.class,
+                &count,
             ];
             writer.write_record(record).map_err(|e| fault(&e))?;
         }
@@ -90,7 +98,16 @@ impl Part {
             let record = record.map_err(|_| wrong(line, "has not all columns"))?;
             let number = |column: usize| {
                 let value = record[column].parse::<u64>();
-                value.map_err(|_| wrong(line, &format!("{} = {}: is no number", COLUMNS[column], shown(&record[column]))))
+                value.map_err(|_| {
+                    wrong(
+                        line,
+                        &format!(
+                            "{} = {}: is no number",
+                            COLUMNS[column],
+                            shown(&record[column])
+                        ),
+                    )
+                })
             };
             let identity = Identity {
                 campaign: record[0].to_owned(),
@@ -144,7 +161,12 @@ impl Part {
         let written = std::fs::write(scratch, text).and_then(|()| std::fs::rename(scratch, path));
         written.map_err(|e| {
             let _ = std::fs::remove_file(scratch);
-            GenError::io("write", path, &e, "give --out a file in a folder that can be written")
+            GenError::io(
+                "write",
+                path,
+                &e,
+                "give --out a file in a folder that can be written",
+            )
         })
     }
 }
@@ -185,7 +207,11 @@ pub fn merge(parts: Vec<(String, Part)>) -> Result<Part, GenError> {
             ("version", &a.version, &b.version),
             ("plan", &a.plan, &b.plan),
             ("cases", &a.cases.to_string(), &b.cases.to_string()),
-            ("parts", &first.shard.of.to_string(), &part.shard.of.to_string()),
+            (
+                "parts",
+                &first.shard.of.to_string(),
+                &part.shard.of.to_string(),
+            ),
         ]
         .into_iter()
         .find(|(_, a, b)| a != b)
@@ -303,8 +329,14 @@ mod tests {
             ("a,b\n1,2\n".to_owned(), "a.csv:1: has not the columns"),
             (lines[..1].join("\n"), "a.csv:2: is missing"),
             (good.replace("1/1", "2/1"), "a.csv:2: 2/1: is no part"),
-            (good.replace(",cases,100", ",cases,99"), "a.csv:2: has another number"),
-            (good.replace("masked,11", "masked,x"), "a.csv:3: count = x: is no number"),
+            (
+                good.replace(",cases,100", ",cases,99"),
+                "a.csv:2: has another number",
+            ),
+            (
+                good.replace("masked,11", "masked,x"),
+                "a.csv:3: count = x: is no number",
+            ),
         ] {
             let message = Part::from_csv("a.csv", &text).unwrap_err().to_string();
             assert!(message.starts_with(wanted), "{message}");

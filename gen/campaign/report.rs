@@ -1,6 +1,6 @@
 //! Tables of a campaign.
 
-use endat_sim::campaign::upsets::{Class, Mark};
+use endat_sim::campaign::port::{Class, Mark};
 use endat_sim::campaign::{Row, Tally};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -62,6 +62,52 @@ fn heading(text: &mut String, first: &str) {
     let _ = writeln!(text, "|---|{}", "---|".repeat(names.len() + 1));
 }
 
+/// The tables of a campaign.
+pub fn text(campaign: &str, tally: &Tally) -> String {
+    match campaign {
+        "upsets" => upsets(tally),
+        "accept" => accept(tally),
+        _ => disturbed(tally),
+    }
+}
+
+/// Words by width: taken, refused, and what is wrong.
+pub fn accept(tally: &Tally) -> String {
+    let classes = ["taken", "refused", "taken_wrongly", "refused_wrongly"];
+    let mut text = format!(
+        "| frame | words | {} |\n|---|---|---|---|---|---|\n",
+        classes.join(" | ")
+    );
+    for (kind, counts) in grouped(tally, |r| &r.kind) {
+        let found = classes.map(|c| counts.get(c).copied().unwrap_or(0));
+        let all: u64 = found.iter().sum();
+        let found = found.map(|n| n.to_string()).join(" | ");
+        let _ = writeln!(text, "| {kind} | {all} | {found} |");
+    }
+    text + "\n"
+}
+
+/// Per mille of all cases, for each disturbance, for each port and, if they are different, for each condition.
+pub fn disturbed(tally: &Tally) -> String {
+    let mut text = String::new();
+    heading(&mut text, "disturbance");
+    for (kind, counts) in grouped(tally, |r| &r.kind) {
+        line(&mut text, kind, &counts);
+    }
+    text.push('\n');
+    heading(&mut text, "port, frame");
+    for (subject, counts) in grouped(tally, |r| &r.subject) {
+        line(&mut text, subject, &counts);
+    }
+    text.push('\n');
+    heading(&mut text, "conditions");
+    for (place, counts) in grouped(tally, |r| &r.place) {
+        line(&mut text, place, &counts);
+    }
+    text.push('\n');
+    text
+}
+
 /// Per mille of all flips, for each kind of frame, for each block, and the worst registers.
 pub fn upsets(tally: &Tally) -> String {
     let mut text = String::new();
@@ -101,5 +147,6 @@ pub fn upsets(tally: &Tally) -> String {
             let _ = writeln!(text, "    {found:>7} of {of:>7}  {name}");
         }
     }
+    text.push('\n');
     text
 }

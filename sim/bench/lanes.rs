@@ -126,9 +126,18 @@ impl LaneBench {
         self.engine.lanes()
     }
 
-    /// The link of a lane on pin set `port`, to make something wrong with it.
-    pub fn link_mut(&mut self, port: usize, lane: usize) -> &mut Link {
-        &mut self.ports[port].links[lane]
+    /// Makes something wrong with the link of a lane on pin set `port`.
+    pub fn disturb(&mut self, port: usize, lane: usize, change: impl FnOnce(&mut Link)) {
+        let port = &mut self.ports[port];
+        change(&mut port.links[lane]);
+        // Looked at once more: it may have something to do sooner now.
+        port.due[lane] = 0;
+    }
+
+    /// Drives an input of one lane.
+    pub fn set(&mut self, name: &str, lane: usize, value: u128) {
+        let id = self.engine.port(name);
+        self.engine.set(id, lane, value);
     }
 
     /// The designs.

@@ -71,6 +71,12 @@ impl Link {
         &mut self.line
     }
 
+    /// The line, to make something wrong with it.
+    pub fn disturb(&mut self, change: impl FnOnce(&mut Line)) {
+        change(&mut self.line);
+        self.line_due = self.line.next_event();
+    }
+
     /// The encoder.
     pub fn encoder(&self) -> &Encoder {
         &self.encoder

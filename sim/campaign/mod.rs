@@ -1,7 +1,10 @@
 //! Campaigns: thousands of cases side by side, each with its own channel settings, encoder and line.
 
 mod case;
+pub mod faults;
+pub mod garbage;
 mod list;
+pub mod port;
 mod run;
 mod tally;
 #[cfg(test)]

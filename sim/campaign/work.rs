@@ -1,6 +1,7 @@
 //! Numbered cases on all processors: batches of one group each, counted together in any order.
 
 use super::{Shard, Tally};
+use endat_hdl::elaborate::Design;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::Mutex;
@@ -8,6 +9,9 @@ use std::{panic, thread};
 
 /// Cases that are taken by their numbers. What becomes of one depends on its number alone, whatever runs beside it.
 pub trait Campaign: Sync {
+    /// Tells its designs from others.
+    fn digest(&self) -> u64;
+
     /// Cases in each group, one behind the other.
     fn groups(&self) -> Vec<u64>;
 
@@ -18,6 +22,18 @@ pub trait Campaign: Sync {
     fn batch(&self, _group: usize) -> u64 {
         128
     }
+}
+
+/// A number that is the same for the same text on every machine (FNV-1a).
+pub(super) fn hash(text: &str) -> u64 {
+    text.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
+    })
+}
+
+/// The same for a design.
+pub(super) fn digest(design: &Design) -> u64 {
+    hash(&format!("{design:?}"))
 }
 
 /// All cases of a campaign.

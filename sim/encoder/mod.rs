@@ -260,6 +260,24 @@ impl Encoder {
         }
     }
 
+    /// Everything random in it, positions too, is from now on that of another seed.
+    pub fn reseed(&mut self, seed: u64) {
+        self.rng = Rng::new(seed);
+    }
+
+    /// Without supply or plug for a while; only one that is on, and only with a moment that is to come.
+    pub fn unplug(&mut self, from: Time, until: Time) {
+        let on = until + self.config.start_up;
+        self.supply.extend([(from, false), (on, true)]);
+        self.supply.make_contiguous().sort_by_key(|s| s.0);
+    }
+
+    /// A defect of the frame that comes next.
+    pub fn spoil_next(&mut self, defect: Defect) {
+        let frame = self.frames.len() as u64;
+        self.config.defects.push((frame..=frame, defect));
+    }
+
     /// Its type plate.
     pub fn config(&self) -> &EncoderConfig {
         &self.config

@@ -51,6 +51,12 @@ impl<T: Edge> Path<T> {
         }
     }
 
+    /// From now on edges vary so.
+    pub(super) fn set_jitter(&mut self, jitter: super::Jitter, seed: u64) {
+        self.config.jitter = jitter;
+        self.rng = Rng::new(seed);
+    }
+
     /// A change enters at `time`.
     pub(super) fn send(&mut self, time: Time, value: T) {
         let mut delay = (self.flight + self.config.transceivers) as i64;

@@ -19,7 +19,10 @@ use std::time::Instant;
 pub struct CampaignArgs {
     /// What to run
     name: Name,
-    /// Number of random cases [default: random 10000; upsets: none, every flip-flop in turn]
+    /// Of merge and page: files that --out has written
+    #[arg(value_name = "PART")]
+    parts: Vec<PathBuf>,
+    /// Number of random cases [default: random 10000; upsets: every flip-flop in turn; garbage 1000000]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     cases: Option<String>,
     /// Of upsets: moments of each kind of frame at which every flip-flop is inverted
@@ -30,7 +33,15 @@ pub struct CampaignArgs {
         allow_negative_numbers = true
     )]
     moments: String,
-    /// Of upsets: only this one [default: all]
+    /// Of faults: at every N-th quarter of a bit
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "1",
+        allow_negative_numbers = true
+    )]
+    step: String,
+    /// Of upsets, faults, garbage: only this port [default: all]
     #[arg(long, value_name = "NAME")]
     subject: Option<String>,
     /// Of upsets: only registers whose hierarchical name begins so
@@ -44,6 +55,15 @@ pub struct CampaignArgs {
         allow_negative_numbers = true
     )]
     seed: String,
+    /// Of those that count: a small part of the cases, in seconds
+    #[arg(long, conflicts_with_all = ["cases", "moments", "step"])]
+    quick: bool,
+    /// Of those that count: only part I of N equal ones
+    #[arg(long, value_name = "I/N")]
+    shard: Option<String>,
+    /// Of those that count, and merge: write the counts as CSV
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
     #[command(flatten)]
     threads: ThreadsArgs,
     /// Run only this case, alone
@@ -68,6 +88,16 @@ enum Name {
     Random,
     /// Every flip-flop inverted at every moment of a frame
     Upsets,
+    /// Every fault of the line, on and off at every quarter bit, with every recovery time and cable
+    Faults,
+    /// Random answers, jitter, noise, settings that change in a frame
+    Garbage,
+    /// Every word of encoders up to 13 bits, against a reference
+    Accept,
+    /// Put the parts of one campaign together
+    Merge,
+    /// The page docs/reliability.md, from the files of whole campaigns
+    Page,
 }
 
 /// Random cases, if not told.
@@ -86,13 +116,13 @@ impl CampaignArgs {
 /// Runs the command.
 pub fn run(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
     let seed = number("--seed", &arguments.seed, 0..=u64::MAX)?;
-    if let Name::Upsets = arguments.name {
+    if !matches!(arguments.name, Name::Sweep | Name::Random) {
         return tallies::run(arguments, seed);
     }
     let count = number("--cases", arguments.cases(), 1..=CASES_MAX)?;
     let cases = match arguments.name {
-        Name::Sweep | Name::Upsets => campaign::sweep(),
         Name::Random => campaign::random(count as usize, seed),
+        _ => campaign::sweep(),
     };
     match &arguments.case {
         Some(index) => {
@@ -113,8 +143,8 @@ fn fault(e: &dyn std::fmt::Display) -> GenError {
 fn replay(arguments: &CampaignArgs, index: usize) -> String {
     let random = format!(" --cases {} --seed {}", arguments.cases(), arguments.seed);
     let (name, random) = match arguments.name {
-        Name::Sweep | Name::Upsets => ("sweep", ""),
         Name::Random => ("random", random.as_str()),
+        _ => ("sweep", ""),
     };
     format!("cargo run --release -- campaign {name}{random} --case {index} --vcd case.vcd --svg case.svg")
 }

@@ -149,9 +149,11 @@ impl Reading {
 
 /// The judge of one lane.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Outcome {
+pub(in crate::campaign) struct Outcome {
     pub class: Class,
     found: [bool; Mark::ALL.len()],
+    /// The cause that was told first; 0 = none.
+    pub cause: u64,
     rounds: u32,
     good_in_row: u32,
     /// The last reading had such an error, without a cause.
@@ -174,7 +176,7 @@ impl Outcome {
     }
 
     /// Takes a reading. Whether all has been seen: two good ones after the frame, or too many that are not.
-    pub fn read(&mut self, reading: &Reading) -> bool {
+    pub(super) fn read(&mut self, reading: &Reading) -> bool {
         let is_silent = reading.cause == 0;
         if is_silent && self.open_pulses {
             self.mark(Mark::Pulses);
@@ -190,6 +192,9 @@ impl Outcome {
         self.class = self.class.max(reading.class());
         if !is_silent && reading.valid && !reading.was_sent && !reading.is_right() {
             self.mark(Mark::HeldWrong);
+        }
+        if self.cause == 0 {
+            self.cause = reading.cause;
         }
         self.rounds += 1;
         if self.rounds == 1 {

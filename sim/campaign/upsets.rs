@@ -1,20 +1,10 @@
 //! Every flip-flop inverted at every moment of a frame: what the reader of the result sees, what the encoder sees, and how many triggers it
-//! takes until all is well again.
-//!
-//! A case is one flip in one frame. Frame and encoder are the same in all cases of a group, up to the cycle of the flip; from there on
-//! each lane triggers when it is idle and its time has come, so no case depends on those beside it. The result is read just before the next
-//! trigger, as a host does that reads late.
+//! takes until all is well again. A case is one flip in one frame.
 
-mod channel;
-mod judge;
-
-pub use channel::{FrameKind, Port};
-pub use judge::{Class, Mark, TRIGGERS_MAX};
-
-use super::work::Campaign;
+use super::port::{Conditions, Mishap, Port, Ready};
+use super::work::{digest, hash, Campaign};
 use super::{CampaignError, Row, Tally};
 use crate::rng::Rng;
-use channel::Ready;
 use std::ops::Range;
 
 /// Which flips are tried.
@@ -46,14 +36,7 @@ pub struct Upsets {
     groups: Vec<Group>,
     draw: Draw,
     seed: u64,
-}
-
-/// A flip-flop, and when it is inverted.
-pub(super) struct Flip {
-    pub register: usize,
-    pub bit: usize,
-    /// After the trigger.
-    pub cycle: u64,
+    digest: u64,
 }
 
 impl Upsets {
@@ -62,11 +45,12 @@ impl Upsets {
     /// # Errors
     /// If the design of a port cannot be made.
     pub fn new(ports: &[Port], draw: Draw, seed: u64, only: &str) -> Result<Self, CampaignError> {
-        let mut groups = vec![];
+        let (mut groups, mut digested) = (vec![], 0);
         for port in ports {
+            digested ^= digest(&port.design()?);
             let engine = port.engine()?;
             for kind in port.kinds() {
-                let ready = Ready::new(*port, *kind, engine.clone());
+                let ready = Ready::new(*port, *kind, Conditions::default(), engine.clone());
                 groups.push(Group::new(ready, &engine, only));
             }
         }
@@ -78,15 +62,13 @@ impl Upsets {
                 Draw::Random { cases } => cases / count + u64::from((index as u64) < cases % count),
             };
         }
-        Ok(Self { groups, draw, seed })
+        Ok(Self {
+            groups,
+            draw,
+            seed,
+            digest: digested,
+        })
     }
-}
-
-/// A number that is the same for the same text on every machine (FNV-1a).
-fn hash(text: &str) -> u64 {
-    text.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
-    })
 }
 
 impl Group {
@@ -133,6 +115,10 @@ impl Group {
 }
 
 impl Campaign for Upsets {
+    fn digest(&self) -> u64 {
+        self.digest
+    }
+
     fn groups(&self) -> Vec<u64> {
         self.groups.iter().map(|g| g.cases).collect()
     }
@@ -142,17 +128,15 @@ impl Campaign for Upsets {
         let drawn: Vec<(usize, u64)> = cases
             .map(|number| group.case(self.draw, self.seed, number))
             .collect();
-        let flips: Vec<Flip> = drawn
-            .iter()
-            .map(|(index, cycle)| {
-                let (register, bit) = group.bits[*index];
-                Flip {
-                    register,
-                    bit,
-                    cycle: *cycle,
-                }
-            })
-            .collect();
+        let flip = |(index, cycle): &(usize, u64)| {
+            let ((register, bit), cycle) = (group.bits[*index], *cycle);
+            Mishap::Flip {
+                register,
+                bit,
+                cycle,
+            }
+        };
+        let flips: Vec<Mishap> = drawn.iter().map(flip).collect();
         let mut tally = Tally::default();
         for ((index, _), outcome) in drawn.iter().zip(group.ready.run(&flips)) {
             let mut add = |class: &str| {
