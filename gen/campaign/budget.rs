@@ -20,7 +20,7 @@ pub struct Budget {
 }
 
 /// Classes that a case is in exactly one of.
-fn is_case(row: &Row) -> bool {
+pub fn is_case(row: &Row) -> bool {
     const CLASSES: [&str; 10] = [
         "masked",
         "detected",

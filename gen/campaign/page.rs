@@ -10,7 +10,7 @@ use std::fmt::Write;
 const HEAD: &str = "# Reliability
 
 What becomes of a port when something goes wrong. Every figure here is counted by a campaign in simulation: encoder models on lines, an own \
-mishap in each frame. `docs/campaigns/run` runs them and writes this page; the results are in `docs/campaigns/`, a test compares the page \
+mishap in each frame. `campaigns/run` runs them and writes this page; the results are in `campaigns/results/`, a test compares the page \
 with them, and another one runs some of the cases again. How campaigns are run, on one machine or many: [campaigns.md](campaigns.md).
 
 Tables are per mille of all cases. Each case is in one class, the worst that was seen:

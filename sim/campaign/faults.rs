@@ -31,7 +31,7 @@ struct Group {
 impl Group {
     fn place(&self) -> String {
         let tm = self.conditions.tm.unwrap_or(0) as f64 / US as f64;
-        format!("tm {tm} us; {} m", self.conditions.cable_m)
+        format!("tm {tm:5.2} us; {:3} m", self.conditions.cable_m)
     }
 }
 

@@ -13,7 +13,7 @@ pub enum Class {
     Masked,
     /// A cause was told, or a position that is not fresh.
     Detected,
-    /// A trigger has no result, and no cause says so.
+    /// A trigger has no result, and no cause says so, with the next one neither.
     Lost,
     /// Good position, but time stamp, additional information or answer are wrong, without a cause.
     SilentOther,
@@ -125,7 +125,7 @@ pub(super) struct Reading {
 
 impl Reading {
     fn is_good(&self) -> bool {
-        self.has_result && self.cause == 0 && self.fresh && self.is_right() && self.others_right
+        self.has_result && self.fresh && self.is_right() && self.others_right
     }
 
     fn is_right(&self) -> bool {
@@ -159,6 +159,8 @@ pub(in crate::campaign) struct Outcome {
     /// The last reading had such an error, without a cause.
     open_pulses: bool,
     open_rules: bool,
+    /// It had no result, without a cause.
+    open_lost: bool,
 }
 
 impl Outcome {
@@ -189,7 +191,15 @@ impl Outcome {
         if reading.conflict {
             self.mark(Mark::Conflict);
         }
-        self.class = self.class.max(reading.class());
+        let class = match (reading.class(), std::mem::take(&mut self.open_lost)) {
+            (Class::Lost, _) => {
+                self.open_lost = true;
+                Class::Masked
+            }
+            (class, true) if is_silent => class.max(Class::Lost),
+            (class, _) => class,
+        };
+        self.class = self.class.max(class);
         if !is_silent && reading.valid && !reading.was_sent && !reading.is_right() {
             self.mark(Mark::HeldWrong);
         }
@@ -232,6 +242,9 @@ impl Outcome {
     }
 
     fn close(&mut self) {
+        if self.open_lost {
+            self.class = self.class.max(Class::Lost);
+        }
         if self.open_pulses {
             self.mark(Mark::Pulses);
         }
@@ -255,4 +268,91 @@ pub(super) fn is_count(violation: &Violation) -> bool {
 /// Whether a frame has all its pulses, and no more.
 pub(super) fn is_whole(frame: &FrameLog) -> bool {
     frame.end == FrameEnd::Complete && frame.expected_rising_edges() == Some(frame.rising_edges)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn good() -> Reading {
+        Reading {
+            has_result: true,
+            position: 7,
+            valid: true,
+            fresh: true,
+            sent: Some(7),
+            others_right: true,
+            ..Reading::default()
+        }
+    }
+
+    fn judged(readings: &[Reading]) -> (Class, Vec<Mark>) {
+        let mut outcome = Outcome::default();
+        let ends = readings.iter().map(|r| outcome.read(r));
+        let ends: Vec<bool> = ends.collect();
+        let last = ends.len() - 1;
+        assert!(ends[last] && !ends[..last].contains(&true), "{ends:?}");
+        (outcome.class, outcome.marks().collect())
+    }
+
+    /// The frame with the mishap, and two good ones behind it.
+    fn first(change: impl Fn(&mut Reading)) -> (Class, Vec<Mark>) {
+        let mut reading = good();
+        change(&mut reading);
+        judged(&[reading, good(), good()])
+    }
+
+    #[test]
+    fn a_case_is_in_the_worst_class_that_was_seen() {
+        assert_eq!(first(|_| {}), (Class::Masked, vec![]));
+        let wrong = |r: &mut Reading| r.position = 8;
+        assert_eq!(first(wrong), (Class::Silent, vec![]));
+        // With a cause it is told, but it is held.
+        let told = |r: &mut Reading| (r.position, r.cause) = (8, 7);
+        assert_eq!(first(told), (Class::Detected, vec![Mark::HeldWrong]));
+        let held = |r: &mut Reading| {
+            (r.position, r.cause, r.fresh, r.was_sent) = (6, 4, false, true);
+        };
+        assert_eq!(first(held), (Class::Detected, vec![]));
+        assert_eq!(first(|r| r.others_right = false).0, Class::SilentOther);
+        assert_eq!(first(|r| r.fresh = false).0, Class::Detected);
+        // Not fresh, and not what it was.
+        let spoilt = |r: &mut Reading| (r.position, r.fresh) = (8, false);
+        assert_eq!(first(spoilt).0, Class::Silent);
+        assert_eq!(first(|r| r.has_result = false).0, Class::Lost);
+    }
+
+    #[test]
+    fn what_the_next_result_tells_is_told() {
+        let mut lost = good();
+        lost.has_result = false;
+        let mut overrun = good();
+        overrun.cause = 8;
+        let told = judged(&[lost, overrun, good()]);
+        assert_eq!(told, (Class::Detected, vec![]));
+        let mut pulses = good();
+        pulses.pulses = true;
+        assert_eq!(judged(&[pulses, overrun, good()]).1, []);
+        assert_eq!(judged(&[pulses, good(), good()]).1, [Mark::Pulses]);
+        // In every frame.
+        assert_eq!(judged(&[good(), pulses, pulses]).1, [Mark::Pulses]);
+    }
+
+    #[test]
+    fn the_trigger_that_is_good_first_is_counted_and_too_many_are_a_hang() {
+        let mut bad = good();
+        (bad.cause, bad.fresh, bad.was_sent) = (4, false, true);
+        for (lost, mark) in [
+            (0, vec![]),
+            (1, vec![Mark::Next, Mark::Triggers2]),
+            (2, vec![Mark::Next, Mark::Triggers3]),
+            (3, vec![Mark::Next, Mark::TriggersMore]),
+        ] {
+            let mut readings = vec![bad; 1 + lost];
+            readings.extend([good(), good()]);
+            assert_eq!(judged(&readings), (Class::Detected, mark), "{lost}");
+        }
+        let (class, _) = judged(&[bad; 1 + TRIGGERS_MAX as usize]);
+        assert_eq!(class, Class::Hang);
+    }
 }
