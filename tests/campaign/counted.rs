@@ -161,12 +161,18 @@ fn the_page_is_what_the_results_say() {
 /// Some of the cases again: their rows must be the committed ones.
 #[test]
 fn the_results_are_those_of_this_core() {
-    let all = committed("upsets").tally;
+    let Part {
+        identity,
+        tally: all,
+        ..
+    } = committed("upsets");
+    let plan = identity.plan.strip_prefix("moments ").unwrap();
+    let moments = plan.split_once(';').unwrap().0.parse().unwrap();
     for (port, only) in [
         (Port::Position, "sender."),
         (Port::AllParts, "clock_gen.half."),
     ] {
-        let now = upsets(port, Draw::Grid { moments: 65 }, only);
+        let now = upsets(port, Draw::Grid { moments }, only);
         assert!(now.rows().count() > 5);
         let subject =
             |r: &endat_sim::campaign::Row| r.subject == port.name() && r.place.starts_with(only);
