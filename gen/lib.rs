@@ -11,6 +11,7 @@ pub mod area;
 pub mod artifact;
 pub mod bench;
 pub mod board;
+pub mod campaign;
 pub mod cli;
 pub mod config;
 pub mod constraints;

@@ -39,12 +39,14 @@ fn skip(what: &str, check: &str) -> bool {
         std::env::var_os("CI").is_none(),
         "{check}: {what} is not installed, and CI requires it"
     );
-    // not eprintln!, which the test harness would swallow
-    let _ = writeln!(
-        std::io::stderr(),
-        "SKIPPED {check}: {what} is not installed"
-    );
+    cannot(&format!("{what} is not installed"), check);
     false
+}
+
+/// Says that a check is skipped, for a reason that no installation cures.
+pub fn cannot(why: &str, check: &str) {
+    // not eprintln!, which the test harness would swallow
+    let _ = writeln!(std::io::stderr(), "SKIPPED {check}: {why}");
 }
 
 /// An empty folder for the files of one test.

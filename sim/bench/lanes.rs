@@ -13,6 +13,7 @@ use crate::{
 };
 
 /// One EnDat port in all lanes.
+#[derive(Clone)]
 struct Port {
     links: Vec<Link>,
     /// When each link has something to do next.
@@ -26,6 +27,7 @@ struct Port {
 }
 
 /// Designs on their benches.
+#[derive(Clone)]
 pub struct LaneBench {
     engine: Lanes,
     system_hz: u64,
@@ -122,6 +124,20 @@ impl LaneBench {
     /// Number of lanes.
     pub fn lanes(&self) -> usize {
         self.engine.lanes()
+    }
+
+    /// Makes something wrong with the link of a lane on pin set `port`.
+    pub fn disturb(&mut self, port: usize, lane: usize, change: impl FnOnce(&mut Link)) {
+        let port = &mut self.ports[port];
+        change(&mut port.links[lane]);
+        // Looked at once more: it may have something to do sooner now.
+        port.due[lane] = 0;
+    }
+
+    /// Drives an input of one lane.
+    pub fn set(&mut self, name: &str, lane: usize, value: u128) {
+        let id = self.engine.port(name);
+        self.engine.set(id, lane, value);
     }
 
     /// The designs.

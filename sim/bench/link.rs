@@ -32,6 +32,7 @@ fn note<T: PartialEq>(track: &mut Vec<(Time, T)>, time: Time, value: T) {
 }
 
 /// A line with its encoder. Between two system clock edges it runs by itself, in picoseconds.
+#[derive(Clone)]
 pub struct Link {
     line: Line,
     encoder: Encoder,
@@ -68,6 +69,12 @@ impl Link {
     /// The line, to forget old samples.
     pub fn line_mut(&mut self) -> &mut Line {
         &mut self.line
+    }
+
+    /// The line, to make something wrong with it.
+    pub fn disturb(&mut self, change: impl FnOnce(&mut Line)) {
+        change(&mut self.line);
+        self.line_due = self.line.next_event();
     }
 
     /// The encoder.

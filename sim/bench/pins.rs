@@ -51,6 +51,7 @@ pub(super) fn find(ports: &[Port], name: &str) -> Option<PortId> {
 }
 
 /// The pins of one EnDat port, as [`PinNames`] names them.
+#[derive(Clone)]
 pub(super) struct Pins {
     pub(super) clock: PortId,
     pub(super) data_o: PortId,
@@ -79,6 +80,7 @@ impl Pins {
 }
 
 /// Inputs that the bench drives by itself, where the design has them.
+#[derive(Clone)]
 pub(super) struct TimeBase {
     pub(super) tick_us: Option<PortId>,
     pub(super) timestamp: Option<PortId>,

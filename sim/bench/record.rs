@@ -55,6 +55,7 @@ impl ChannelResult {
 }
 
 /// Ports of a result; those that the design does not have read as 0.
+#[derive(Clone)]
 pub(super) struct ResultPorts {
     strobe: PortId,
     cause_bits: usize,

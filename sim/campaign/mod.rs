@@ -1,11 +1,19 @@
 //! Campaigns: thousands of cases side by side, each with its own channel settings, encoder and line.
 
 mod case;
+pub mod faults;
+pub mod garbage;
 mod list;
+pub mod port;
 mod run;
+mod tally;
 #[cfg(test)]
 mod tests;
+pub mod upsets;
+mod work;
 
 pub use case::{Case, Traces, SAMPLE_LATENCY_CYCLES};
 pub use list::{random, sweep, Story, ABORT_US, CABLES_M, RATES};
 pub use run::{run, CampaignError, Outcome, RunOptions};
+pub use tally::{Row, Shard, Tally};
+pub use work::{count, run_shard, Campaign};

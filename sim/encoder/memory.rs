@@ -49,6 +49,7 @@ fn is_area_code(mrs: u8) -> bool {
     (0xA1..=0xBF).contains(&mrs) && mrs & 1 == 1
 }
 
+#[derive(Clone)]
 struct Area {
     first: usize,
     words: Vec<u16>,
@@ -69,6 +70,7 @@ impl Place {
     }
 }
 
+#[derive(Clone)]
 pub(super) struct Memory {
     areas: BTreeMap<u8, Area>,
     /// Selected area and block.

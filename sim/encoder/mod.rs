@@ -164,7 +164,7 @@ enum Phase {
 }
 
 /// Working data of the frame in progress.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Work {
     /// Falling edges as counted, and as they came.
     falls: u32,
@@ -195,6 +195,7 @@ fn take_due<T>(queue: &mut VecDeque<(Time, T)>, time: Time) -> Option<(Time, T)>
 }
 
 /// An encoder. See the module's text.
+#[derive(Clone)]
 pub struct Encoder {
     config: EncoderConfig,
     rng: Rng,
@@ -257,6 +258,24 @@ impl Encoder {
             violations: Vec::new(),
             config,
         }
+    }
+
+    /// Everything random in it, positions too, is from now on that of another seed.
+    pub fn reseed(&mut self, seed: u64) {
+        self.rng = Rng::new(seed);
+    }
+
+    /// Without supply or plug for a while; only one that is on, and only with a moment that is to come.
+    pub fn unplug(&mut self, from: Time, until: Time) {
+        let on = until + self.config.start_up;
+        self.supply.extend([(from, false), (on, true)]);
+        self.supply.make_contiguous().sort_by_key(|s| s.0);
+    }
+
+    /// A defect of the frame that comes next.
+    pub fn spoil_next(&mut self, defect: Defect) {
+        let frame = self.frames.len() as u64;
+        self.config.defects.push((frame..=frame, defect));
     }
 
     /// Its type plate.

@@ -9,11 +9,13 @@
 //! times of an end are those of its pins.
 
 mod config;
+mod fault;
 mod path;
 #[cfg(test)]
 mod tests;
 
 pub use config::{Glitch, GlitchRate, Jitter, LineConfig, PathConfig, Stuck, Wire};
+pub use fault::{FaultKind, LineFault};
 
 use crate::{
     encoder::{Drive, Output, Symbol},
@@ -147,6 +149,7 @@ pub enum Arrival {
 }
 
 /// The line. Time must not run backwards from call to call.
+#[derive(Clone)]
 pub struct Line {
     config: LineConfig,
     clock: Path<bool>,
@@ -156,6 +159,9 @@ pub struct Line {
     /// Yet to come, or under way.
     stuck: Option<Stuck>,
     is_stuck: bool,
+    fault: Option<LineFault>,
+    /// CLOCK as the receiver drives it.
+    clock_sent: bool,
     receiver: Drive,
     encoder: Output,
     glitches: VecDeque<Glitch>,
@@ -185,6 +191,8 @@ impl Line {
             }),
             stuck: config.stuck,
             is_stuck: false,
+            fault: None,
+            clock_sent: true,
             receiver: Drive::Released,
             encoder,
             glitches: config.glitches.iter().copied().collect(),
@@ -205,9 +213,26 @@ impl Line {
         &self.config
     }
 
+    /// A fault that is to come; it takes the place of one before.
+    pub fn set_fault(&mut self, fault: LineFault) {
+        self.fault = Some(fault);
+    }
+
+    /// From now on edges of all three paths vary so.
+    pub fn set_jitter(&mut self, jitter: Jitter, seed: u64) {
+        let mut rng = Rng::new(seed);
+        self.clock.set_jitter(jitter, rng.next_u64());
+        self.data_out.set_jitter(jitter, rng.next_u64());
+        self.data_in.set_jitter(jitter, rng.next_u64());
+    }
+
     /// The receiver sets CLOCK.
     pub fn set_clock(&mut self, time: Time, level: bool) {
         self.clock.send(time, level);
+        self.clock_sent = level;
+        if self.fault.is_some() {
+            self.note_data(time);
+        }
     }
 
     /// The receiver does this to DATA.
@@ -244,7 +269,8 @@ impl Line {
             false => s.from,
         });
         let edges = glitch.min(self.clock.next()).min(data);
-        edges.min(echo).min(stuck)
+        let fault = self.fault.as_ref().map_or(Time::MAX, LineFault::next_event);
+        edges.min(echo).min(stuck).min(fault)
     }
 
     /// Lets one thing arrive that is due at `time`.
@@ -259,6 +285,15 @@ impl Line {
         if self.data_in.arrive(time).is_some() {
             self.changed(time);
             return Some(Arrival::Data(End::Receiver));
+        }
+        if let Some((changed, is_over)) = self.fault.as_mut().map(|f| f.advance(time)) {
+            if is_over {
+                self.fault = None;
+            }
+            if changed {
+                self.changed(time);
+                return Some(Arrival::Data(End::Receiver));
+            }
         }
         let echo_arrived = self.echo.as_mut().and_then(|echo| echo.arrive(time));
         if echo_arrived.is_some() || self.switch_stuck(time) {
@@ -280,7 +315,9 @@ impl Line {
 
     /// What the receiver does to DATA, as heard at the encoder.
     pub fn receiver_at_encoder(&self) -> Drive {
-        self.data_out.arrived()
+        let drive = self.data_out.arrived();
+        let faulty = |f: &LineFault| f.at_encoder(drive, self.clock_at_encoder());
+        self.fault.as_ref().map_or(drive, faulty)
     }
 
     /// What the encoder does to DATA, as heard at the receiver.
@@ -439,9 +476,11 @@ impl Line {
             local => local == Drive::High,
         };
         let glitch = self.in_glitch(Wire::Data);
+        let level = self.overriding().unwrap_or(level) ^ glitch;
+        let faulty = |f: &LineFault| f.at_receiver(level, self.receiver, self.clock_sent);
         let change = DataChange {
             time,
-            level: self.overriding().unwrap_or(level) ^ glitch,
+            level: self.fault.as_ref().map_or(level, faulty),
             who,
             glitch,
         };

@@ -28,6 +28,7 @@ impl Edge for crate::encoder::Output {
 }
 
 /// A delay line. Edges keep their order; pulses too short for it vanish.
+#[derive(Clone)]
 pub(super) struct Path<T> {
     config: PathConfig,
     flight: Time,
@@ -48,6 +49,12 @@ impl<T: Edge> Path<T> {
             next: Time::MAX,
             arrived: at_rest,
         }
+    }
+
+    /// From now on edges vary so.
+    pub(super) fn set_jitter(&mut self, jitter: super::Jitter, seed: u64) {
+        self.config.jitter = jitter;
+        self.rng = Rng::new(seed);
     }
 
     /// A change enters at `time`.

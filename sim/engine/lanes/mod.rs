@@ -221,9 +221,15 @@ impl Lanes {
         self.form.nets.iter().map(|n| n.name.as_str())
     }
 
-    /// The registers that were not dropped, as indices of their outputs in [`Lanes::nets`].
-    pub fn registers(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        self.form.registers.iter().map(|r| r.q)
+    /// The registers that were not dropped, as indices of their outputs in [`Lanes::nets`]; those on the falling edge last.
+    pub fn registers(&self) -> impl Iterator<Item = usize> + '_ {
+        let rising = self.form.registers.iter().map(|r| r.q);
+        rising.chain(self.form.falling.iter().map(|f| f.q))
+    }
+
+    /// Width of a net, by its index in [`Lanes::nets`].
+    pub fn width_bits(&self, net: usize) -> usize {
+        self.form.nets[net].width_bits
     }
 
     /// Width of a net, by its index in [`Lanes::nets`].
@@ -248,16 +254,20 @@ impl Lanes {
     /// # Panics
     /// If it is no register that was kept, or has no such bit.
     pub fn flip(&mut self, register: usize, bit: usize, lane: usize) {
-        let found = self.form.registers.iter().find(|r| r.q == register);
-        let found = found.filter(|r| bit < self.form.nets[r.q].width_bits);
-        let next = found
-            .unwrap_or_else(|| panic!("net {register} has no register bit {bit}"))
-            .next;
+        let rising = self.form.registers.iter().find(|r| r.q == register);
+        let is_falling = self.form.falling.iter().any(|f| f.q == register);
+        assert!(
+            (rising.is_some() || is_falling) && bit < self.form.nets[register].width_bits,
+            "net {register} has no register bit {bit}"
+        );
+        let next = rising.map(|r| r.next);
         self.settle();
         let value = self.load(register, lane);
         self.store(register, lane, value ^ 1 << bit);
-        // It is loaded again even if its input stays as it was.
-        self.layout.mark_commits(&mut self.state, next);
+        // It is loaded again even if its input stays as it was; at the falling edge everything is.
+        if let Some(next) = next {
+            self.layout.mark_commits(&mut self.state, next);
+        }
         self.is_settled = false;
     }
 

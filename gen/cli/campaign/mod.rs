@@ -1,9 +1,11 @@
 //! `campaign`: thousands of cases in lanes; one of them again, alone, with waveforms and a drawing.
 
-use super::number::number;
-use super::pictures::{draw, Drawn, Pictures};
-use super::work::{progress, ThreadsArgs};
-use super::{to_json, Outcome};
+mod tallies;
+
+use crate::cli::number::number;
+use crate::cli::pictures::{draw, Drawn, Pictures};
+use crate::cli::work::{progress, ThreadsArgs};
+use crate::cli::{to_json, Outcome};
 use crate::error::GenError;
 use clap::{Args, ValueEnum};
 use endat_sim::campaign::{self, Case, RunOptions, Traces};
@@ -17,14 +19,34 @@ use std::time::Instant;
 pub struct CampaignArgs {
     /// What to run
     name: Name,
-    /// Number of random cases
+    /// Of merge and page: files that --out has written
+    #[arg(value_name = "PART")]
+    parts: Vec<PathBuf>,
+    /// Number of random cases [default: random 10000; upsets: every flip-flop in turn; garbage 1000000]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    cases: Option<String>,
+    /// Of upsets: moments of each kind of frame at which every flip-flop is inverted
     #[arg(
         long,
         value_name = "N",
-        default_value = "10000",
+        default_value = "65",
         allow_negative_numbers = true
     )]
-    cases: String,
+    moments: String,
+    /// Of faults: at every N-th quarter of a bit
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "1",
+        allow_negative_numbers = true
+    )]
+    step: String,
+    /// Of upsets, faults, garbage: only this port [default: all]
+    #[arg(long, value_name = "NAME")]
+    subject: Option<String>,
+    /// Of upsets: only registers whose hierarchical name begins so
+    #[arg(long, value_name = "NAME", default_value = "")]
+    only: String,
     /// Seed of the random cases
     #[arg(
         long,
@@ -33,6 +55,15 @@ pub struct CampaignArgs {
         allow_negative_numbers = true
     )]
     seed: String,
+    /// Of those that count: a small part of the cases, in seconds
+    #[arg(long, conflicts_with_all = ["cases", "moments", "step"])]
+    quick: bool,
+    /// Of those that count: only part I of N equal ones
+    #[arg(long, value_name = "I/N")]
+    shard: Option<String>,
+    /// Of those that count, and merge: write the counts as CSV
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
     #[command(flatten)]
     threads: ThreadsArgs,
     /// Run only this case, alone
@@ -55,20 +86,43 @@ enum Name {
     Sweep,
     /// Random jitter, distortion, cable, encoder times, filter and window, within their limits
     Random,
+    /// Every flip-flop inverted at every moment of a frame
+    Upsets,
+    /// Every fault of the line, on and off at every quarter bit, with every recovery time and cable
+    Faults,
+    /// Random answers, jitter, noise, settings that change in a frame
+    Garbage,
+    /// Every word of encoders up to 13 bits, against a reference
+    Accept,
+    /// Put the parts of one campaign together
+    Merge,
+    /// The page docs/reliability.md, from the files of whole campaigns
+    Page,
 }
 
+/// Random cases, if not told.
+const CASES_USUAL: &str = "10000";
 /// Most random cases: all are made before the first one runs.
 const CASES_MAX: u64 = 1_000_000;
 /// Failures that are shown.
 const SHOWN: usize = 10;
 
+impl CampaignArgs {
+    fn cases(&self) -> &str {
+        self.cases.as_deref().unwrap_or(CASES_USUAL)
+    }
+}
+
 /// Runs the command.
 pub fn run(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
-    let count = number("--cases", &arguments.cases, 1..=CASES_MAX)?;
     let seed = number("--seed", &arguments.seed, 0..=u64::MAX)?;
+    if !matches!(arguments.name, Name::Sweep | Name::Random) {
+        return tallies::run(arguments, seed);
+    }
+    let count = number("--cases", arguments.cases(), 1..=CASES_MAX)?;
     let cases = match arguments.name {
-        Name::Sweep => campaign::sweep(),
         Name::Random => campaign::random(count as usize, seed),
+        _ => campaign::sweep(),
     };
     match &arguments.case {
         Some(index) => {
@@ -87,10 +141,10 @@ fn fault(e: &dyn std::fmt::Display) -> GenError {
 
 /// What to type to see one case alone.
 fn replay(arguments: &CampaignArgs, index: usize) -> String {
-    let random = format!(" --cases {} --seed {}", arguments.cases, arguments.seed);
+    let random = format!(" --cases {} --seed {}", arguments.cases(), arguments.seed);
     let (name, random) = match arguments.name {
-        Name::Sweep => ("sweep", ""),
         Name::Random => ("random", random.as_str()),
+        _ => ("sweep", ""),
     };
     format!("cargo run --release -- campaign {name}{random} --case {index} --vcd case.vcd --svg case.svg")
 }

@@ -1,5 +1,8 @@
 //! The campaigns of the command line.
 
+mod counted;
+mod schedulers;
+
 use endat_gen::cli;
 use endat_sim::campaign;
 use endat_sim::encoder::Defect;

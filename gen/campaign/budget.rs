@@ -1,0 +1,202 @@
+//! How much may go wrong: all limits in one place. A budget that is asserted fails the campaign; the others are what is wanted.
+
+use endat_sim::campaign::{Row, Tally};
+use std::fmt::Write;
+
+/// A limit.
+pub struct Budget {
+    /// Of which campaign.
+    pub campaign: &'static str,
+    /// In words.
+    pub what: &'static str,
+    /// The cases that are limited.
+    pub bad: fn(&Row) -> bool,
+    /// The cases of which they are a part.
+    pub of: fn(&Row) -> bool,
+    /// The limit, per mille of those.
+    pub limit_per_mille: f64,
+    /// Breaking it is a failure.
+    pub is_asserted: bool,
+}
+
+/// Classes that a case is in exactly one of.
+pub fn is_case(row: &Row) -> bool {
+    const CLASSES: [&str; 10] = [
+        "masked",
+        "detected",
+        "lost",
+        "silent_other",
+        "silent",
+        "hang",
+        "taken",
+        "refused",
+        "taken_wrongly",
+        "refused_wrongly",
+    ];
+    CLASSES.contains(&row.class.as_str())
+}
+
+/// What a receiver with a CRC of 5 bits lets through: 1 of 32 of the frames that it refuses for it, and those.
+const CRC_BOUND_PER_MILLE: f64 = 1000.0 / 32.0;
+
+fn is_crc_or_silent(row: &Row) -> bool {
+    !is_setting(row) && (row.class == "silent" || row.class == "cause_4")
+}
+
+fn is_setting(row: &Row) -> bool {
+    row.kind.starts_with("setting")
+}
+
+/// All of them.
+pub const BUDGETS: [Budget; 14] = [
+    Budget {
+        campaign: "upsets",
+        what: "wrong positions told as good",
+        bad: |r| r.class == "silent",
+        of: is_case,
+        limit_per_mille: 5.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "upsets",
+        what: "hangs of the position port",
+        bad: |r| r.class == "hang" && r.subject == "port",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: true,
+    },
+    Budget {
+        campaign: "upsets",
+        what: "hangs",
+        bad: |r| r.class == "hang",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "upsets",
+        what: "driver conflicts that outlast the frame",
+        bad: |r| r.class == "conflict",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "upsets",
+        what: "wrong pulse counts without a cause",
+        bad: |r| r.class == "pulses",
+        of: is_case,
+        limit_per_mille: 1.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "faults",
+        what: "hangs",
+        bad: |r| r.class == "hang",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "faults",
+        what: "more than 3 triggers to recover",
+        bad: |r| r.class == "triggers_more",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "faults",
+        what: "wrong positions told as good, of those and the CRC errors",
+        bad: |r| r.class == "silent",
+        of: is_crc_or_silent,
+        limit_per_mille: CRC_BOUND_PER_MILLE,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "garbage",
+        what: "hangs",
+        bad: |r| r.class == "hang",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "garbage",
+        what: "more than 3 triggers to recover",
+        bad: |r| r.class == "triggers_more",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "garbage",
+        what: "wrong positions told as good, of those and the CRC errors",
+        bad: |r| r.class == "silent" && !is_setting(r),
+        of: is_crc_or_silent,
+        limit_per_mille: CRC_BOUND_PER_MILLE,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "garbage",
+        what: "wrong positions told as good after a setting has changed",
+        bad: |r| r.class == "silent" && is_setting(r),
+        of: |r| is_case(r) && is_setting(r),
+        limit_per_mille: 0.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "accept",
+        what: "words taken that the reference refuses",
+        bad: |r| r.class == "taken_wrongly",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: true,
+    },
+    Budget {
+        campaign: "accept",
+        what: "words refused that the reference takes",
+        bad: |r| r.class == "refused_wrongly",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: true,
+    },
+];
+
+impl Budget {
+    /// What was found: cases, of how many.
+    pub fn found(&self, tally: &Tally) -> (u64, u64) {
+        (tally.count(self.bad), tally.count(self.of))
+    }
+
+    /// Whether it holds.
+    pub fn holds(&self, tally: &Tally) -> bool {
+        let (bad, of) = self.found(tally);
+        1000.0 * bad as f64 <= self.limit_per_mille * of as f64
+    }
+}
+
+/// The budgets of a campaign.
+pub fn of(campaign: &str) -> impl Iterator<Item = &'static Budget> + '_ {
+    BUDGETS.iter().filter(move |b| b.campaign == campaign)
+}
+
+/// A line for each, and whether those hold that must.
+pub fn lines(campaign: &str, tally: &Tally) -> (String, bool) {
+    let (mut text, mut all_hold) = (String::new(), true);
+    for budget in of(campaign) {
+        let ((bad, cases), holds) = (budget.found(tally), budget.holds(tally));
+        all_hold &= holds || !budget.is_asserted;
+        let verdict = match (holds, budget.is_asserted) {
+            (true, _) => "holds",
+            (false, true) => "BROKEN",
+            (false, false) => "wanted",
+        };
+        let _ = writeln!(
+            text,
+            "{verdict:>7}: {}: {bad} of {cases}, limit {} per mille",
+            budget.what, budget.limit_per_mille
+        );
+    }
+    (text, all_hold)
+}

@@ -1,0 +1,89 @@
+//! The page that says what the core stands: tables from the results of whole campaigns.
+
+use super::part::Part;
+use super::{budget, report};
+use crate::error::GenError;
+use endat_sim::campaign::Shard;
+use std::fmt::Write;
+
+/// Where the page, the results and the command that makes both are told.
+const HEAD: &str = "# Reliability
+
+What becomes of a port when something goes wrong. Every figure here is counted by a campaign in simulation: encoder models on lines, an own \
+mishap in each frame. `campaigns/run` runs them and writes this page; the results are in `campaigns/results/`, a test compares the page \
+with them, and another one runs some of the cases again. How campaigns are run, on one machine or many: [campaigns.md](campaigns.md).
+
+Tables are per mille of all cases. Each case is in one class, the worst that was seen:
+
+| class | |
+|---|---|
+| masked | every result is as without the mishap |
+| detected | a cause is told, or a position that is not fresh |
+| lost | a trigger has no result, and no cause says so |
+| silent_other | the position is right, but time stamp, additional information or answer are wrong, without a cause |
+| silent | a wrong position is told as good |
+| hang | busy for ever, or not good in 8 triggers |
+
+Beside its class, a case may have these marks:
+
+| mark | |
+|---|---|
+| pulses | the encoder saw a wrong number of clock pulses, and no cause in that frame or the next |
+| rules | another rule of the encoder was broken, and no cause |
+| conflict | for more than a bit time after the frame the driver was against the encoder's |
+| next | the next frame was not good |
+| held_wrong | with a cause: the position that is held is none that the encoder sent |
+| triggers_2, triggers_3, triggers_more | which trigger after the frame was the first that is good |
+| slow | busy for longer than the timers allow, but not for ever |
+
+Results are read just before the next trigger, as a host does that reads late. Blocks are those of [ARCHITECTURE.md](../ARCHITECTURE.md); words in block RAM are \
+not flip-flops, and are not inverted.
+";
+
+/// What stands above the tables of a campaign.
+fn title(campaign: &str) -> Option<(&'static str, &'static str)> {
+    Some(match campaign {
+        "upsets" => ("Upsets", "Every flip-flop inverted, at so many moments of every kind of frame; system clock 32 MHz, 8 cycles to a bit, 25 bits, 20 m."),
+        "faults" => ("Faults of the line", "Each begins in the frame and ends behind it, or ends in it, at every quarter of a bit; with each recovery time tm (000111: from 10 us) and cable."),
+        "garbage" => ("Spoilt frames", "One in each case, at random. A word is taken by a CRC of 5 bits with 1 in 32, with F1 and F2 besides with 1 in 128."),
+        "accept" => ("Accept set", "Every word that encoders of 1 to 13 bits can send, error bits and CRC included, against a predicate that shares no code with the core."),
+        _ => return None,
+    })
+}
+
+/// The page, from the results of whole campaigns.
+pub fn page(parts: &[Part]) -> Result<String, GenError> {
+    let mut text = HEAD.to_owned();
+    for part in parts {
+        let name = &part.identity.campaign;
+        let Some((heading, about)) = title(name).filter(|_| part.shard == Shard::WHOLE) else {
+            return Err(GenError::input(format!(
+                "{name} {}: is not a whole campaign with a place on the page; merge its parts first",
+                part.shard
+            )));
+        };
+        let _ = write!(
+            text,
+            "\n## {heading}\n\n{about} {} cases ({}).\n\n",
+            part.identity.cases, part.identity.plan
+        );
+        text.push_str("| budget | found | limit, per mille | |\n|---|---|---|---|\n");
+        for budget in budget::of(name) {
+            let (bad, of) = budget.found(&part.tally);
+            let verdict = match (budget.holds(&part.tally), budget.is_asserted) {
+                (true, true) => "holds, asserted",
+                (true, false) => "holds",
+                (false, _) => "not reached",
+            };
+            let _ = writeln!(
+                text,
+                "| {} | {bad} of {of} | {} | {verdict} |",
+                budget.what, budget.limit_per_mille
+            );
+        }
+        text.push('\n');
+        text.push_str(report::text(name, &part.tally).trim_end());
+        text.push('\n');
+    }
+    Ok(text)
+}

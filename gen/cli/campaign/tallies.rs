@@ -1,0 +1,173 @@
+//! Campaigns that count what becomes of each case: parts, tables, budgets.
+
+use super::{fault, CampaignArgs, Name};
+use crate::campaign::part::{merge, shard, Identity, Part};
+use crate::campaign::{budget, page, reference, report};
+use crate::cli::number::number;
+use crate::cli::work::progress;
+use crate::cli::Outcome;
+use crate::error::{shown, GenError};
+use endat_sim::campaign::faults::Faults;
+use endat_sim::campaign::garbage::{AcceptSet, Garbage, WIDEST_BITS};
+use endat_sim::campaign::port::Port;
+use endat_sim::campaign::upsets::{Draw, Upsets};
+use endat_sim::campaign::{count, run_shard, Campaign, CampaignError, Shard};
+use std::time::Instant;
+
+/// Most moments of a frame, and most quarter bits between two faults.
+const MOMENTS_MAX: u64 = 1_000_000;
+/// Most cases of a campaign.
+const CASES_MAX: u64 = 1_000_000_000_000;
+/// Cases of `garbage`, if not told.
+const GARBAGE_USUAL: &str = "1000000";
+/// What `--quick` takes of each.
+const QUICK_CASES: u64 = 12_800;
+const QUICK_STEP: u64 = 50;
+const QUICK_BITS: u32 = 5;
+
+/// Runs such a campaign, or puts parts of one together.
+pub fn run(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
+    match arguments.name {
+        Name::Merge => merged(arguments),
+        Name::Page => {
+            let parts = arguments.parts.iter().map(|path| Part::read(path));
+            Ok(Outcome::good(page::page(
+                &parts.collect::<Result<Vec<_>, _>>()?,
+            )?))
+        }
+        _ => one(arguments, seed),
+    }
+}
+
+/// Runs a part of a campaign, or all of it.
+fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
+    if let Some(path) = arguments.parts.first() {
+        return Err(GenError::input(format!(
+            "{}: a campaign reads no file; leave it out, or write campaign merge",
+            path.display()
+        )));
+    }
+    let part = arguments.shard.as_deref().map(shard).transpose();
+    let part = part.map_err(|e| GenError::input(format!("--shard = {e}")))?;
+    let threads = arguments.threads.count()?;
+    let (name, plan, campaign) = chosen(arguments, seed)?;
+    let campaign = campaign.map_err(|e| fault(&e))?;
+    let start = Instant::now();
+    let shard = part.unwrap_or(Shard::WHOLE);
+    let all = count(campaign.as_ref());
+    let cases = shard.cases(all);
+    let cases = cases.end - cases.start;
+    let told = progress(cases.max(1) as usize, "cases");
+    let tally = run_shard(campaign.as_ref(), shard, threads, |done| {
+        told(done as usize)
+    });
+    let seconds = start.elapsed().as_secs_f64();
+    let part = Part {
+        identity: Identity {
+            campaign: name.into(),
+            version: format!("{}-{:016x}", env!("CARGO_PKG_VERSION"), campaign.digest()),
+            plan,
+            cases: all,
+        },
+        shard,
+        tally,
+    };
+    if let Some(path) = &arguments.out {
+        part.write(path)?;
+    }
+    let mut outcome = summary(&part);
+    outcome.stdout += &format!("\n{cases} of {all} cases in {seconds:.1} s\n");
+    Ok(outcome)
+}
+
+/// Tables and budgets; a budget that must hold and does not is a failure.
+fn summary(part: &Part) -> Outcome {
+    let (lines, holds) = budget::lines(&part.identity.campaign, &part.tally);
+    let is_whole = part.shard == Shard::WHOLE;
+    Outcome {
+        stdout: report::text(&part.identity.campaign, &part.tally) + &lines,
+        exit_code: u8::from(is_whole && !holds),
+        ..Outcome::default()
+    }
+}
+
+fn merged(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
+    let named = |path: &std::path::PathBuf| Ok((path.display().to_string(), Part::read(path)?));
+    let parts: Result<Vec<_>, GenError> = arguments.parts.iter().map(named).collect();
+    let whole = merge(parts?)?;
+    if let Some(path) = &arguments.out {
+        whole.write(path)?;
+    }
+    Ok(summary(&whole))
+}
+
+type Made = Result<Box<dyn Campaign>, CampaignError>;
+
+fn boxed<C: Campaign + 'static>(made: Result<C, CampaignError>) -> Made {
+    made.map(|campaign| Box::new(campaign) as Box<dyn Campaign>)
+}
+
+/// The campaign that is asked for: its name and its plan, in words.
+fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, Made), GenError> {
+    let ports: Vec<Port> = match arguments.subject.as_deref() {
+        None => Port::ALL.to_vec(),
+        Some(name) => vec![Port::ALL
+            .into_iter()
+            .find(|p| p.name() == name)
+            .ok_or_else(|| {
+                let names = Port::ALL.map(Port::name).join(", ");
+                GenError::input(format!(
+                    "--subject = {}: is no port of a campaign; take one of {names}",
+                    shown(name)
+                ))
+            })?],
+    };
+    let subject = arguments.subject.as_deref().unwrap_or("all");
+    let cases = |usual: Option<&str>| match (arguments.quick, arguments.cases.as_deref().or(usual))
+    {
+        (true, _) => Ok(Some(QUICK_CASES)),
+        (_, Some(text)) => number("--cases", text, 1..=CASES_MAX).map(Some),
+        _ => Ok(None),
+    };
+    Ok(match arguments.name {
+        Name::Faults => {
+            let step = match arguments.quick {
+                true => QUICK_STEP,
+                false => number("--step", &arguments.step, 1..=MOMENTS_MAX)?,
+            };
+            let plan = format!("step {step}; seed {seed}; subject {subject}");
+            ("faults", plan, boxed(Faults::new(&ports, step, seed)))
+        }
+        Name::Garbage => {
+            let cases = cases(Some(GARBAGE_USUAL))?.unwrap_or(QUICK_CASES);
+            let plan = format!("seed {seed}; subject {subject}");
+            ("garbage", plan, boxed(Garbage::new(&ports, cases, seed)))
+        }
+        Name::Accept => {
+            let widest = match arguments.quick {
+                true => QUICK_BITS,
+                false => WIDEST_BITS,
+            };
+            let made = AcceptSet::new(widest, reference::position);
+            ("accept", format!("1 to {widest} bits"), boxed(made))
+        }
+        _ => {
+            let draw = match cases(None)? {
+                Some(cases) => Draw::Random { cases },
+                None => Draw::Grid {
+                    moments: number("--moments", &arguments.moments, 1..=MOMENTS_MAX)?,
+                },
+            };
+            let how = match draw {
+                Draw::Random { .. } => "random".to_owned(),
+                Draw::Grid { moments } => format!("moments {moments}"),
+            };
+            let plan = format!(
+                "{how}; seed {seed}; subject {subject}; only {}*",
+                arguments.only
+            );
+            let made = Upsets::new(&ports, draw, seed, &arguments.only);
+            ("upsets", plan, boxed(made))
+        }
+    })
+}

@@ -1,0 +1,358 @@
+//! What became of one flip, from what the reader and the encoder saw in the frame and in those that follow.
+
+use crate::encoder::{FrameEnd, FrameLog, Violation};
+
+/// Triggers after which a port that has not given a good position counts as hung.
+pub const TRIGGERS_MAX: u32 = 8;
+
+/// What became of a case: the worst that was seen, each case in one class.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Class {
+    /// Every result is as without the upset.
+    #[default]
+    Masked,
+    /// A cause was told, or a position that is not fresh.
+    Detected,
+    /// A trigger has no result, and no cause says so, with the next one neither.
+    Lost,
+    /// Good position, but time stamp, additional information or answer are wrong, without a cause.
+    SilentOther,
+    /// A wrong position is told as good.
+    Silent,
+    /// Busy for ever, or no good position in [`TRIGGERS_MAX`] triggers.
+    Hang,
+}
+
+impl Class {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Masked,
+        Self::Detected,
+        Self::Lost,
+        Self::SilentOther,
+        Self::Silent,
+        Self::Hang,
+    ];
+
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Masked => "masked",
+            Self::Detected => "detected",
+            Self::Lost => "lost",
+            Self::SilentOther => "silent_other",
+            Self::Silent => "silent",
+            Self::Hang => "hang",
+        }
+    }
+}
+
+/// What may be seen besides, in any class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Mark {
+    /// A wrong number of clock pulses, and no cause in that frame or the next.
+    Pulses,
+    /// Another rule of the encoder broken, and no cause.
+    Rules,
+    /// The driver is against the encoder's for more than a bit time after the frame.
+    Conflict,
+    /// The next frame is not good.
+    Next,
+    /// With a cause: the position that is held is none that the encoder sent.
+    HeldWrong,
+    /// The second trigger after the frame is the first that is good.
+    Triggers2,
+    /// The third one.
+    Triggers3,
+    /// A later one.
+    TriggersMore,
+    /// Busy for longer than the timers allow, but not for ever.
+    Slow,
+}
+
+impl Mark {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Pulses,
+        Self::Rules,
+        Self::Conflict,
+        Self::Next,
+        Self::HeldWrong,
+        Self::Triggers2,
+        Self::Triggers3,
+        Self::TriggersMore,
+        Self::Slow,
+    ];
+
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pulses => "pulses",
+            Self::Rules => "rules",
+            Self::Conflict => "conflict",
+            Self::Next => "next",
+            Self::HeldWrong => "held_wrong",
+            Self::Triggers2 => "triggers_2",
+            Self::Triggers3 => "triggers_3",
+            Self::TriggersMore => "triggers_more",
+            Self::Slow => "slow",
+        }
+    }
+}
+
+/// What a reader sees between two triggers.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Reading {
+    /// A result has come since the trigger.
+    pub has_result: bool,
+    /// Its cause, or the one that took its place; 0 = none.
+    pub cause: u64,
+    /// Position and `fresh` with `valid`.
+    pub position: u64,
+    pub valid: bool,
+    pub fresh: bool,
+    /// What the encoder sent in this frame; none = no frame.
+    pub sent: Option<u64>,
+    /// The position is one that the encoder has sent before.
+    pub was_sent: bool,
+    /// Time stamp, informations and answer are right.
+    pub others_right: bool,
+    /// What the encoder complains of, since the trigger.
+    pub pulses: bool,
+    pub rules: bool,
+    pub conflict: bool,
+}
+
+impl Reading {
+    fn is_good(&self) -> bool {
+        self.has_result && self.fresh && self.is_right() && self.others_right
+    }
+
+    fn is_right(&self) -> bool {
+        self.valid && Some(self.position) == self.sent
+    }
+
+    fn class(&self) -> Class {
+        if self.cause != 0 {
+            return Class::Detected;
+        }
+        match (self.has_result, self.valid, self.fresh) {
+            (true, true, true) if !self.is_right() => Class::Silent,
+            (true, true, true) if self.others_right => Class::Masked,
+            (true, true, true) => Class::SilentOther,
+            (_, true, _) if !self.was_sent && !self.is_right() => Class::Silent,
+            (false, _, _) => Class::Lost,
+            (true, _, _) => Class::Detected,
+        }
+    }
+}
+
+/// The judge of one lane.
+#[derive(Clone, Debug, Default)]
+pub(in crate::campaign) struct Outcome {
+    pub class: Class,
+    found: [bool; Mark::ALL.len()],
+    /// The cause that was told first; 0 = none.
+    pub cause: u64,
+    rounds: u32,
+    good_in_row: u32,
+    /// The last reading had such an error, without a cause.
+    open_pulses: bool,
+    open_rules: bool,
+    /// It had no result, without a cause.
+    open_lost: bool,
+}
+
+impl Outcome {
+    pub fn mark(&mut self, mark: Mark) {
+        self.found[mark as usize] = true;
+    }
+
+    pub fn marks(&self) -> impl Iterator<Item = Mark> + '_ {
+        Mark::ALL.into_iter().filter(|m| self.found[*m as usize])
+    }
+
+    /// Whether nothing has been read so far.
+    pub fn is_first(&self) -> bool {
+        self.rounds == 0
+    }
+
+    /// Takes a reading. Whether all has been seen: two good ones after the frame, or too many that are not.
+    pub(super) fn read(&mut self, reading: &Reading) -> bool {
+        let is_silent = reading.cause == 0;
+        if is_silent && self.open_pulses {
+            self.mark(Mark::Pulses);
+        }
+        if is_silent && self.open_rules {
+            self.mark(Mark::Rules);
+        }
+        self.open_pulses = is_silent && reading.pulses;
+        self.open_rules = is_silent && reading.rules;
+        if reading.conflict {
+            self.mark(Mark::Conflict);
+        }
+        let class = match (reading.class(), std::mem::take(&mut self.open_lost)) {
+            (Class::Lost, _) => {
+                self.open_lost = true;
+                Class::Masked
+            }
+            (class, true) if is_silent => class.max(Class::Lost),
+            (class, _) => class,
+        };
+        self.class = self.class.max(class);
+        if !is_silent && reading.valid && !reading.was_sent && !reading.is_right() {
+            self.mark(Mark::HeldWrong);
+        }
+        if self.cause == 0 {
+            self.cause = reading.cause;
+        }
+        self.rounds += 1;
+        if self.rounds == 1 {
+            return false;
+        }
+        self.good_in_row = match reading.is_good() {
+            true => self.good_in_row + 1,
+            false => 0,
+        };
+        let trigger = self.rounds - 1;
+        if trigger == 1 && self.good_in_row == 0 {
+            self.mark(Mark::Next);
+        }
+        if self.good_in_row == 2 {
+            match trigger - 1 {
+                1 => {}
+                2 => self.mark(Mark::Triggers2),
+                3 => self.mark(Mark::Triggers3),
+                _ => self.mark(Mark::TriggersMore),
+            }
+            self.close();
+            return true;
+        }
+        if trigger == TRIGGERS_MAX {
+            self.hang();
+            return true;
+        }
+        false
+    }
+
+    /// It stays busy, or its results stay bad.
+    pub fn hang(&mut self) {
+        self.class = Class::Hang;
+        self.close();
+    }
+
+    fn close(&mut self) {
+        if self.open_lost {
+            self.class = self.class.max(Class::Lost);
+        }
+        if self.open_pulses {
+            self.mark(Mark::Pulses);
+        }
+        if self.open_rules {
+            self.mark(Mark::Rules);
+        }
+    }
+}
+
+/// Whether the encoder saw another number of pulses than there should be.
+pub(super) fn is_count(violation: &Violation) -> bool {
+    matches!(
+        violation,
+        Violation::TooFewPulses { .. }
+            | Violation::TooManyPulses { .. }
+            | Violation::StoppedBeforeAnswer { .. }
+            | Violation::NoSupplement { .. }
+    )
+}
+
+/// Whether a frame has all its pulses, and no more.
+pub(super) fn is_whole(frame: &FrameLog) -> bool {
+    frame.end == FrameEnd::Complete && frame.expected_rising_edges() == Some(frame.rising_edges)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn good() -> Reading {
+        Reading {
+            has_result: true,
+            position: 7,
+            valid: true,
+            fresh: true,
+            sent: Some(7),
+            others_right: true,
+            ..Reading::default()
+        }
+    }
+
+    fn judged(readings: &[Reading]) -> (Class, Vec<Mark>) {
+        let mut outcome = Outcome::default();
+        let ends = readings.iter().map(|r| outcome.read(r));
+        let ends: Vec<bool> = ends.collect();
+        let last = ends.len() - 1;
+        assert!(ends[last] && !ends[..last].contains(&true), "{ends:?}");
+        (outcome.class, outcome.marks().collect())
+    }
+
+    /// The frame with the mishap, and two good ones behind it.
+    fn first(change: impl Fn(&mut Reading)) -> (Class, Vec<Mark>) {
+        let mut reading = good();
+        change(&mut reading);
+        judged(&[reading, good(), good()])
+    }
+
+    #[test]
+    fn a_case_is_in_the_worst_class_that_was_seen() {
+        assert_eq!(first(|_| {}), (Class::Masked, vec![]));
+        let wrong = |r: &mut Reading| r.position = 8;
+        assert_eq!(first(wrong), (Class::Silent, vec![]));
+        // With a cause it is told, but it is held.
+        let told = |r: &mut Reading| (r.position, r.cause) = (8, 7);
+        assert_eq!(first(told), (Class::Detected, vec![Mark::HeldWrong]));
+        let held = |r: &mut Reading| {
+            (r.position, r.cause, r.fresh, r.was_sent) = (6, 4, false, true);
+        };
+        assert_eq!(first(held), (Class::Detected, vec![]));
+        assert_eq!(first(|r| r.others_right = false).0, Class::SilentOther);
+        assert_eq!(first(|r| r.fresh = false).0, Class::Detected);
+        // Not fresh, and not what it was.
+        let spoilt = |r: &mut Reading| (r.position, r.fresh) = (8, false);
+        assert_eq!(first(spoilt).0, Class::Silent);
+        assert_eq!(first(|r| r.has_result = false).0, Class::Lost);
+    }
+
+    #[test]
+    fn what_the_next_result_tells_is_told() {
+        let mut lost = good();
+        lost.has_result = false;
+        let mut overrun = good();
+        overrun.cause = 8;
+        let told = judged(&[lost, overrun, good()]);
+        assert_eq!(told, (Class::Detected, vec![]));
+        let mut pulses = good();
+        pulses.pulses = true;
+        assert_eq!(judged(&[pulses, overrun, good()]).1, []);
+        assert_eq!(judged(&[pulses, good(), good()]).1, [Mark::Pulses]);
+        // In every frame.
+        assert_eq!(judged(&[good(), pulses, pulses]).1, [Mark::Pulses]);
+    }
+
+    #[test]
+    fn the_trigger_that_is_good_first_is_counted_and_too_many_are_a_hang() {
+        let mut bad = good();
+        (bad.cause, bad.fresh, bad.was_sent) = (4, false, true);
+        for (lost, mark) in [
+            (0, vec![]),
+            (1, vec![Mark::Next, Mark::Triggers2]),
+            (2, vec![Mark::Next, Mark::Triggers3]),
+            (3, vec![Mark::Next, Mark::TriggersMore]),
+        ] {
+            let mut readings = vec![bad; 1 + lost];
+            readings.extend([good(), good()]);
+            assert_eq!(judged(&readings), (Class::Detected, mark), "{lost}");
+        }
+        let (class, _) = judged(&[bad; 1 + TRIGGERS_MAX as usize]);
+        assert_eq!(class, Class::Hang);
+    }
+}

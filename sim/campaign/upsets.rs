@@ -1,0 +1,156 @@
+//! Every flip-flop inverted at every moment of a frame: what the reader of the result sees, what the encoder sees, and how many triggers it
+//! takes until all is well again. A case is one flip in one frame.
+
+use super::port::{Conditions, Mishap, Port, Ready};
+use super::work::{digest, hash, Campaign};
+use super::{CampaignError, Row, Tally};
+use crate::rng::Rng;
+use std::ops::Range;
+
+/// Which flips are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Draw {
+    /// Every flip-flop, each at so many moments of each kind of frame: one anywhere in each equal part of the frame.
+    Grid {
+        /// How many.
+        moments: u64,
+    },
+    /// So many, drawn at random.
+    Random {
+        /// How many.
+        cases: u64,
+    },
+}
+
+/// Flip-flops of one port in one kind of frame.
+struct Group {
+    ready: Ready,
+    /// Register and bit of each flip-flop.
+    bits: Vec<(usize, usize)>,
+    names: Vec<String>,
+    cases: u64,
+}
+
+/// The campaign.
+pub struct Upsets {
+    groups: Vec<Group>,
+    draw: Draw,
+    seed: u64,
+    digest: u64,
+}
+
+impl Upsets {
+    /// Upsets of these ports, of registers whose hierarchical name begins with `only`.
+    ///
+    /// # Errors
+    /// If the design of a port cannot be made.
+    pub fn new(ports: &[Port], draw: Draw, seed: u64, only: &str) -> Result<Self, CampaignError> {
+        let (mut groups, mut digested) = (vec![], 0);
+        for port in ports {
+            digested ^= digest(&port.design()?);
+            let engine = port.engine()?;
+            for kind in port.kinds() {
+                let ready = Ready::new(*port, *kind, Conditions::default(), engine.clone());
+                groups.push(Group::new(ready, &engine, only));
+            }
+        }
+        let count = groups.len() as u64;
+        for (index, group) in groups.iter_mut().enumerate() {
+            group.cases = match draw {
+                Draw::Grid { moments } => group.bits.len() as u64 * moments,
+                // An equal share of each kind of frame.
+                Draw::Random { cases } => cases / count + u64::from((index as u64) < cases % count),
+            };
+        }
+        Ok(Self {
+            groups,
+            draw,
+            seed,
+            digest: digested,
+        })
+    }
+}
+
+impl Group {
+    fn new(ready: Ready, engine: &crate::engine::Lanes, only: &str) -> Self {
+        let all: Vec<&str> = engine.nets().collect();
+        let registers = engine.registers().filter(|r| all[*r].starts_with(only));
+        let mut group = Self {
+            ready,
+            bits: vec![],
+            names: vec![],
+            cases: 0,
+        };
+        for register in registers {
+            for bit in 0..engine.width_bits(register) {
+                group.bits.push((register, bit));
+                group.names.push(all[register].to_owned());
+            }
+        }
+        group
+    }
+
+    /// The case with this number: which flip-flop (an index), and when.
+    fn case(&self, draw: Draw, seed: u64, number: u64) -> (usize, u64) {
+        let (port, kind) = (self.ready.port.name(), self.ready.kind.name());
+        let span = self.ready.span_cycles;
+        match draw {
+            Draw::Grid { moments } => {
+                let (index, moment) = ((number / moments) as usize, number % moments);
+                // The moment belongs to the flip-flop: it is the same in a campaign of a few registers.
+                let what = format!("{port} {kind} {} {}", self.names[index], self.bits[index].1);
+                let mut rng = Rng::new(hash(&what) ^ seed ^ moment.rotate_left(32));
+                let from = span * moment / moments;
+                let to = span * (moment + 1) / moments;
+                (index, rng.in_range(from, to.max(from + 1) - 1))
+            }
+            Draw::Random { .. } => {
+                let what = hash(&format!("{port} {kind}"));
+                let mut rng = Rng::new(Rng::new(what ^ seed).next_u64() ^ number);
+                let index = rng.in_range(0, self.bits.len() as u64 - 1) as usize;
+                (index, rng.in_range(0, span - 1))
+            }
+        }
+    }
+}
+
+impl Campaign for Upsets {
+    fn digest(&self) -> u64 {
+        self.digest
+    }
+
+    fn groups(&self) -> Vec<u64> {
+        self.groups.iter().map(|g| g.cases).collect()
+    }
+
+    fn run(&self, group: usize, cases: Range<u64>) -> Tally {
+        let group = &self.groups[group];
+        let drawn: Vec<(usize, u64)> = cases
+            .map(|number| group.case(self.draw, self.seed, number))
+            .collect();
+        let flip = |(index, cycle): &(usize, u64)| {
+            let ((register, bit), cycle) = (group.bits[*index], *cycle);
+            Mishap::Flip {
+                register,
+                bit,
+                cycle,
+            }
+        };
+        let flips: Vec<Mishap> = drawn.iter().map(flip).collect();
+        let mut tally = Tally::default();
+        for ((index, _), outcome) in drawn.iter().zip(group.ready.run(&flips)) {
+            let mut add = |class: &str| {
+                let row = Row {
+                    subject: group.ready.port.name().into(),
+                    kind: group.ready.kind.name().into(),
+                    place: group.names[*index].clone(),
+                    class: class.into(),
+                };
+                tally.add(row, 1);
+            };
+            add(outcome.class.name());
+            outcome.marks().for_each(|mark| add(mark.name()));
+        }
+        tally
+    }
+}

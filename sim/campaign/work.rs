@@ -1,0 +1,94 @@
+//! Numbered cases on all processors: batches of one group each, counted together in any order.
+
+use super::{Shard, Tally};
+use endat_hdl::elaborate::Design;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::Mutex;
+use std::{panic, thread};
+
+/// Cases that are taken by their numbers. What becomes of one depends on its number alone, whatever runs beside it.
+pub trait Campaign: Sync {
+    /// Tells its designs from others.
+    fn digest(&self) -> u64;
+
+    /// Cases in each group, one behind the other.
+    fn groups(&self) -> Vec<u64>;
+
+    /// Runs some cases of a group, at most [`Campaign::batch`].
+    fn run(&self, group: usize, cases: Range<u64>) -> Tally;
+
+    /// How many cases of a group are run together.
+    fn batch(&self, _group: usize) -> u64 {
+        128
+    }
+}
+
+/// A number that is the same for the same text on every machine (FNV-1a).
+pub(super) fn hash(text: &str) -> u64 {
+    text.bytes().fold(0xCBF2_9CE4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3)
+    })
+}
+
+/// The same for a design.
+pub(super) fn digest(design: &Design) -> u64 {
+    hash(&format!("{design:?}"))
+}
+
+/// All cases of a campaign.
+pub fn count(campaign: &dyn Campaign) -> u64 {
+    campaign.groups().iter().sum()
+}
+
+/// Runs one part of a campaign on so many threads (0 = one for each processor). `progress` is told how many cases are done.
+pub fn run_shard(
+    campaign: &dyn Campaign,
+    shard: Shard,
+    threads: usize,
+    progress: impl Fn(u64) + Sync,
+) -> Tally {
+    let jobs = jobs(campaign, shard.cases(count(campaign)));
+    let tally = Mutex::new(Tally::default());
+    let (next, done) = (AtomicUsize::new(0), AtomicU64::new(0));
+    let work = || {
+        while let Some((group, cases)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let found = campaign.run(*group, cases.clone());
+            tally.lock().unwrap_or_else(|e| e.into_inner()).merge(found);
+            let more = cases.end - cases.start;
+            progress(done.fetch_add(more, Ordering::Relaxed) + more);
+        }
+    };
+    let threads = match threads {
+        0 => thread::available_parallelism().map_or(1, usize::from),
+        count => count,
+    };
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads.min(jobs.len()))
+            .map(|_| scope.spawn(work))
+            .collect();
+        for worker in workers {
+            if let Err(cause) = worker.join() {
+                panic::resume_unwind(cause);
+            }
+        }
+    });
+    tally.into_inner().unwrap_or_else(|e| e.into_inner())
+}
+
+/// The batches that cover these cases.
+fn jobs(campaign: &dyn Campaign, cases: Range<u64>) -> Vec<(usize, Range<u64>)> {
+    let mut jobs = vec![];
+    let mut first = 0;
+    for (group, count) in campaign.groups().into_iter().enumerate() {
+        let mut from = cases.start.clamp(first, first + count) - first;
+        let end = cases.end.clamp(first, first + count) - first;
+        while from < end {
+            let to = end.min(from + campaign.batch(group));
+            jobs.push((group, from..to));
+            from = to;
+        }
+        first += count;
+    }
+    jobs
+}

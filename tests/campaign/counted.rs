@@ -1,0 +1,199 @@
+//! Campaigns that count: parts, what they find, the page of their results.
+
+use super::run;
+use endat_gen::campaign::budget;
+use endat_gen::campaign::part::Part;
+use endat_sim::campaign::port::Port;
+use endat_sim::campaign::upsets::{Draw, Upsets};
+use endat_sim::campaign::{count, run_shard, Shard, Tally};
+use endat_sim::engine::{Keep, LaneWords, Lanes};
+use std::fs;
+use std::path::Path;
+
+/// Where the results of the whole campaigns are, and the page that shows them.
+const RESULTS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/campaigns/results");
+const CAMPAIGNS: [&str; 4] = ["upsets", "faults", "garbage", "accept"];
+const PAGE: &str = include_str!("../../docs/reliability.md");
+
+fn done(folder: &Path, arguments: &[&str], out: &str) -> Vec<u8> {
+    let path = folder.join(out);
+    let all = [arguments, &["--out", path.to_str().unwrap()]].concat();
+    let outcome = run(&all);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    fs::read(path).unwrap()
+}
+
+/// Each campaign is cut where its batches are not, so every case has other neighbours.
+#[test]
+fn any_split_gives_byte_for_byte_what_one_run_gives_and_a_lost_part_is_run_again_alone() {
+    let folder = crate::tools::folder("campaign_parts");
+    for campaign in [
+        &["upsets", "--subject", "port_all", "--cases", "700"][..],
+        &["faults", "--subject", "port", "--step", "150"],
+        &["garbage", "--subject", "port_double_edge", "--cases", "400"],
+    ] {
+        let campaign = [&["campaign"], campaign].concat();
+        let whole = done(&folder, &campaign, "whole.csv");
+        let part = |index: usize, threads: &str| {
+            let shard = format!("{index}/3");
+            let all = [&campaign[..], &["--shard", &shard, "--threads", threads]].concat();
+            done(&folder, &all, &format!("{index}.csv"))
+        };
+        let parts = [part(1, "1"), part(2, "2"), part(3, "1")];
+        fs::remove_file(folder.join("2.csv")).unwrap();
+        let files = [3, 1, 2].map(|i| folder.join(format!("{i}.csv")).display().to_string());
+        let [third, first, second] = &files;
+        let refused = run(&["campaign", "merge", third, first]);
+        assert_eq!(refused.exit_code, 2);
+        assert!(
+            refused.messages[0].contains("not there: 2/3"),
+            "{refused:?}"
+        );
+        assert!(part(2, "1") == parts[1]);
+        let merged = done(
+            &folder,
+            &["campaign", "merge", third, first, second],
+            "merged.csv",
+        );
+        assert!(merged == whole, "{campaign:?}");
+    }
+}
+
+#[test]
+fn bad_arguments_of_parts_are_refused_with_their_limits() {
+    let upsets = ["campaign", "upsets"];
+    for (arguments, text) in [
+        (&["--shard", "4/3"][..], "--shard = 4/3: is no part"),
+        (&["--shard", "x"], "--shard = x: is no part"),
+        (&["--moments", "0"], "--moments = 0: outside 1..1000000"),
+        (
+            &["--subject", "x"],
+            "--subject = x: is no port of a campaign; take one of port, ",
+        ),
+        (&["a.csv"], "a.csv: a campaign reads no file"),
+    ] {
+        let outcome = run(&[&upsets[..], arguments].concat());
+        assert_eq!(outcome.exit_code, 2, "{arguments:?}");
+        assert!(
+            outcome.messages.iter().any(|m| m.contains(text)),
+            "{outcome:?}"
+        );
+    }
+    let outcome = run(&["campaign", "merge", "/none/there.csv"]);
+    assert_eq!(outcome.exit_code, 2);
+    assert!(outcome.messages[0].starts_with("/none/there.csv: cannot read"));
+}
+
+fn upsets(port: Port, draw: Draw, only: &str) -> Tally {
+    let campaign = Upsets::new(&[port], draw, 1, only).unwrap();
+    let tally = run_shard(&campaign, Shard::WHOLE, 0, |_| {});
+    let cases = tally.count(|r| budget::is_case(r));
+    assert_eq!(cases, count(&campaign), "each case is in one class");
+    tally
+}
+
+/// Catches registers that a campaign forgets, those on the falling edge among them.
+#[test]
+fn every_flip_flop_of_every_port_is_inverted_in_every_kind_of_frame() {
+    for port in Port::ALL {
+        let engine = Lanes::new(&port.design().unwrap(), Keep::Registers, LaneWords::Two).unwrap();
+        let flops: usize = engine.registers().map(|r| engine.width_bits(r)).sum();
+        let campaign = Upsets::new(&[port], Draw::Grid { moments: 65 }, 1, "").unwrap();
+        let kinds = port.kinds().len();
+        assert_eq!(count(&campaign), (flops * kinds * 65) as u64, "{port:?}");
+        let design = port.design().unwrap();
+        let falling = design.modules.iter().flat_map(|m| &m.registers);
+        assert!(falling.count() > 0 && flops > 600, "{port:?} {flops}");
+    }
+}
+
+/// A campaign that finds nothing is worth nothing: what an upset does to a register that drives a pin is seen.
+#[test]
+fn a_flip_that_must_be_seen_is_seen() {
+    let pin = upsets(Port::Position, Draw::Grid { moments: 65 }, "clk_pin");
+    let seen = pin.count(|r| r.class == "pulses" || r.class == "rules" || r.class == "detected");
+    assert!(seen > 0, "{pin:?}");
+    let stamp = upsets(
+        Port::Position,
+        Draw::Grid { moments: 65 },
+        "snapshot.crc_received",
+    );
+    let moved = stamp.count(|r| r.class == "silent" || r.class == "hang");
+    assert_eq!(
+        moved, 0,
+        "the CRC that is shown moves no position: {stamp:?}"
+    );
+}
+
+/// The budgets that are asserted hold in a small part of each campaign.
+#[test]
+fn a_quick_run_of_each_campaign_keeps_its_budgets() {
+    for campaign in CAMPAIGNS {
+        let outcome = run(&["campaign", campaign, "--quick"]);
+        assert_eq!(outcome.exit_code, 0, "{}", outcome.stdout);
+        let verdicts = outcome.stdout.matches("limit").count();
+        assert_eq!(verdicts, budget::of(campaign).count(), "{}", outcome.stdout);
+    }
+}
+
+fn committed(campaign: &str) -> Part {
+    Part::read(&Path::new(RESULTS).join(format!("{campaign}.csv"))).unwrap()
+}
+
+#[test]
+fn the_page_is_what_the_results_say() {
+    let files = CAMPAIGNS.map(|c| format!("{RESULTS}/{c}.csv"));
+    let mut arguments = vec!["campaign", "page"];
+    arguments.extend(files.iter().map(String::as_str));
+    let outcome = run(&arguments);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    for (index, (page, now)) in PAGE.lines().zip(outcome.stdout.lines()).enumerate() {
+        assert_eq!(
+            page,
+            now,
+            "docs/reliability.md:{}: campaigns/run",
+            index + 1
+        );
+    }
+    assert_eq!(PAGE, outcome.stdout);
+}
+
+/// Some of the cases again: their rows must be the committed ones.
+#[test]
+fn the_results_are_those_of_this_core() {
+    let Part {
+        identity,
+        tally: all,
+        ..
+    } = committed("upsets");
+    let plan = identity.plan.strip_prefix("moments ").unwrap();
+    let moments = plan.split_once(';').unwrap().0.parse().unwrap();
+    for (port, only) in [
+        (Port::Position, "sender."),
+        (Port::AllParts, "clock_gen.half."),
+    ] {
+        let now = upsets(port, Draw::Grid { moments }, only);
+        assert!(now.rows().count() > 5);
+        let subject =
+            |r: &endat_sim::campaign::Row| r.subject == port.name() && r.place.starts_with(only);
+        let then: Vec<_> = all.rows().filter(|(row, _)| subject(row)).collect();
+        assert_eq!(then, now.rows().collect::<Vec<_>>(), "campaigns/run");
+    }
+}
+
+/// The columns that DuckDB and pandas read have one type each: text, and whole numbers.
+#[test]
+fn results_are_plain_tables() {
+    for campaign in CAMPAIGNS {
+        let text = fs::read_to_string(format!("{RESULTS}/{campaign}.csv")).unwrap();
+        let mut lines = text.lines();
+        let heading = "campaign,version,plan,cases,part,subject,kind,place,class,count";
+        assert_eq!(lines.next(), Some(heading));
+        for line in lines {
+            let cells: Vec<&str> = line.split(',').collect();
+            assert_eq!(cells.len(), 10, "{line}");
+            assert!(cells[9].parse::<u64>().is_ok() && cells[3].parse::<u64>().is_ok());
+            assert!(cells.iter().all(|c| !c.is_empty()), "{line}");
+        }
+    }
+}
