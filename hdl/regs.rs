@@ -34,7 +34,7 @@ use crate::transaction::cause;
 use values::Values;
 
 /// Major, minor and patch version of the register map.
-pub const VERSION: [u8; 3] = [0, 7, 0];
+pub const VERSION: [u8; 3] = [0, 8, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the interrupt.

@@ -232,11 +232,6 @@ impl Lanes {
         self.form.nets[net].width_bits
     }
 
-    /// Width of a net, by its index in [`Lanes::nets`].
-    pub fn width_bits(&self, net: usize) -> usize {
-        self.form.nets[net].width_bits
-    }
-
     /// The settled value of a net in one lane, by its index in [`Lanes::nets`]; `None` if it was dropped.
     pub fn peek(&mut self, net: usize, lane: usize) -> Option<u128> {
         match self.form.place(net) {
