@@ -289,11 +289,10 @@ impl Logic for ChannelRegisters {
             | (bit_cast::<32, 1>(self.fresh.val().into()) << 23)
             | (bit_cast::<32, 8>(self.flags.val().get_bits::<8>(12)) << 24);
         self.word[1].next = self.position.val().get_bits::<32>(0);
-        // A good position has F1 = 0, and F2 = 1 where there is one.
+        // A good position has F1 = 0, and F2 = 1 where there is one: that there is one says all.
         self.word[2].next = bit_cast::<32, 16>(self.position.val().get_bits::<16>(32))
             | (bit_cast::<32, 5>(self.position_crc.val()) << 16)
             | (bit_cast::<32, 1>(self.position_has_f2.val().into()) << 22)
-            | (bit_cast::<32, 1>(self.position_has_f2.val().into()) << 23)
             | (bit_cast::<32, 6>(self.position_width.val()) << 24);
         self.word[3].next = self.first_fall_timestamp.val();
         self.word[4].next = bit_cast::<32, 5>(self.crc_received.val())

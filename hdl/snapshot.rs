@@ -99,6 +99,8 @@ pub struct Snapshot {
     earlier_parity: Reg<Bit>,
     unconfirmed: Reg<Bit>,
     parity: Reg<Bit>,
+    timed: Reg<Bit>,
+    moment_parity: Reg<Bit>,
     is_upset: Reg<Bit>,
     age_shown: Reg<Bits<16>>,
     valid: Reg<Bit>,
@@ -116,6 +118,7 @@ pub struct Snapshot {
     take_back: Signal<Local, Bit>,
     parity_now: Signal<Local, Bit>,
     upset_now: Signal<Local, Bit>,
+    moment_wrong: Signal<Local, Bit>,
     ago: Signal<Local, Bits<11>>,
     upset_cause: Constant<Bits<5>>,
     upset_flag: Constant<Bits<20>>,
@@ -172,6 +175,8 @@ impl Default for Snapshot {
             earlier_parity: Default::default(),
             unconfirmed: Default::default(),
             parity: Default::default(),
+            timed: Default::default(),
+            moment_parity: Default::default(),
             is_upset: Default::default(),
             age_shown: Default::default(),
             valid: Default::default(),
@@ -189,6 +194,7 @@ impl Default for Snapshot {
             take_back: Default::default(),
             parity_now: Default::default(),
             upset_now: Default::default(),
+            moment_wrong: Default::default(),
             ago: Default::default(),
             upset_cause: Constant::new(cause::UPSET.into()),
             upset_flag: Constant::new(cause::flag(cause::UPSET).into()),
@@ -216,6 +222,8 @@ impl Logic for Snapshot {
             earlier_valid,
             earlier_parity,
             unconfirmed,
+            timed,
+            moment_parity,
             parity,
             is_upset,
             age_shown
@@ -235,6 +243,8 @@ impl Logic for Snapshot {
         self.earlier_parity.reset.next = self.reset.val();
         self.unconfirmed.reset.next = self.reset.val();
         self.parity.reset.next = self.reset.val();
+        self.timed.reset.next = self.reset.val();
+        self.moment_parity.reset.next = self.reset.val();
         self.is_upset.reset.next = self.reset.val();
         self.valid.reset.next = self.reset.val();
         self.is_fresh.reset.next = self.reset.val();
@@ -248,7 +258,15 @@ impl Logic for Snapshot {
         self.received.reset.next = self.reset.val();
         self.computed.reset.next = self.reset.val();
 
-        self.take_good.next = self.publish.val() & self.good.val();
+        // The time stamp waits for its position as long as a frame lasts: it is guarded, too.
+        self.timed.d.next = self.first_fall.val() | self.latched.val();
+        if self.timed.q.val() {
+            self.moment_parity.d.next = self.moment.q.val().xor();
+        }
+        self.moment_wrong.next = self.good.val()
+            & !self.timed.q.val()
+            & (self.moment.q.val().xor() ^ self.moment_parity.q.val());
+        self.take_good.next = self.publish.val() & self.good.val() & !self.moment_wrong.val();
         self.take_back.next = self.withdraw.val() & self.unconfirmed.q.val();
         self.ago.next = 0.into();
         if self.latched.val() {
@@ -270,7 +288,7 @@ impl Logic for Snapshot {
             self.reset.val() | self.unconfirmed.q.val() | self.take_good.val();
         self.strobe.d.next = self.publish.val();
         if self.publish.val() {
-            self.is_fresh.d.next = self.good.val();
+            self.is_fresh.d.next = self.good.val() & !self.moment_wrong.val();
             self.count.d.next = self.count.q.val() + 1;
             self.received.d.next = self.crc_received_in.val();
             self.computed.d.next = self.crc_computed_in.val();
@@ -331,6 +349,10 @@ impl Logic for Snapshot {
             self.is_fresh.d.next = false;
             self.cause_held.d.next = self.upset_cause.val();
             self.flags_held.d.next = self.flags_held.q.val() | self.upset_flag.val();
+        }
+        if self.publish.val() & self.moment_wrong.val() {
+            self.cause_held.d.next = self.upset_cause.val();
+            self.flags_held.d.next = self.flags_in.val() | self.upset_flag.val();
         }
         self.result_strobe.next = self.strobe.q.val();
         self.position.next = self.held.q.val();

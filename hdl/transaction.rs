@@ -220,6 +220,7 @@ pub struct Transaction {
     not_falling: Constant<Bits<20>>,
     too_long: Constant<Bits<20>>,
     tail_low: Constant<Bits<20>>,
+    upset: Constant<Bits<20>>,
     phase: Reg<Phase>,
     timer: Reg<Bits<16>>,
     timer_limit: Reg<Bits<16>>,
@@ -251,6 +252,7 @@ pub struct Transaction {
     leaving: Reg<Bit>,
     cleared: Reg<Bit>,
     high_at_tick: Reg<Bit>,
+    owing: Reg<Bit>,
     limit: Signal<Local, Bits<16>>,
     running: Signal<Local, Bit>,
     in_us: Signal<Local, Bit>,
@@ -321,8 +323,9 @@ impl Logic for Transaction {
             passes,
             one_left
         );
-        dff_setup!(self, clock, cleared, high_at_tick);
+        dff_setup!(self, clock, cleared, high_at_tick, owing);
         self.cleared.reset.next = self.reset.val();
+        self.owing.reset.next = self.reset.val();
         self.high_at_tick.reset.next = self.reset.val();
         self.one_left.reset.next = self.reset.val();
         clock!(self, clock, health, verdict);
@@ -412,6 +415,11 @@ impl Logic for Transaction {
                         self.found.next = self.not_low.val();
                         self.give_up.next = true;
                     }
+                }
+                // A frame that has vanished without a result: a register was upset.
+                if self.owing.q.val() {
+                    self.found.next = self.upset.val();
+                    self.give_up.next = true;
                 }
             }
             Phase::Ready => {
@@ -566,6 +574,12 @@ impl Logic for Transaction {
                         self.give_up.next = true;
                     }
                 }
+                // Each cell had its pulse, but for one whose count was upset.
+                if self.sample.val() & !self.tail_sampled.q.val() & (self.outstanding.val() != 1) {
+                    self.found.next = self.upset.val();
+                    self.give_up.next = true;
+                    self.proof.next = false;
+                }
                 // The encoder still sends, or has stopped early: its frame has another length than ours.
                 if self.sample.val() & !self.tail_sampled.q.val() & !self.level.val() {
                     self.found.next = self.tail_low.val();
@@ -717,6 +731,12 @@ impl Logic for Transaction {
         self.verdict.lost.next = self.lost.val();
         self.known.next =
             self.is_calibrated.q.val() | (self.has_alignment.val() & self.is_fixed.val());
+        if self.verdict.publish.val() {
+            self.owing.d.next = false;
+        }
+        if self.accept.val() & !self.own.val() {
+            self.owing.d.next = true;
+        }
         if self.accept.val() {
             self.answered.d.next = false;
             self.in_supplement.d.next = false;

@@ -163,11 +163,11 @@ mod tests {
 
     #[test]
     fn every_cause_has_advice() {
-        assert_eq!(all().len(), 31);
+        assert_eq!(all().len(), 32);
         for cause in all() {
             assert!(advice(cause.name).is_some(), "{}", cause.name);
             assert_eq!(name(cause.number as u8), cause.name);
         }
-        assert_eq!(name(31), "unknown");
+        assert_eq!(name(32), "unknown");
     }
 }

@@ -173,9 +173,7 @@ pub const BLOCKS: &[Block] = &[
         Register { name: "position_high", offset: 2, access: Access::ReadOnly, meaning: "Last good position, bits 47..32.", fields: &[
             Field { name: "value", lsb: 0, width: 16, unit: "", meaning: "0 above the position's width; T-format: multi-turn in bits 47..24, single-turn in 23..0", values: Values::Plain },
             Field { name: "crc", lsb: 16, width: 5, unit: "", meaning: "CRC that came with this position, over F1, F2 and the position, LSB first: whoever reads it checks it once more; T-format: 0", values: Values::Plain },
-            Field { name: "f1", lsb: 21, width: 1, unit: "", meaning: "F1 as it came with this position: 0, or it were not good", values: Values::Plain },
-            Field { name: "f2", lsb: 22, width: 1, unit: "", meaning: "F2 as it came with this position: 1 if there was one", values: Values::Plain },
-            Field { name: "has_f2", lsb: 23, width: 1, unit: "", meaning: "The position came with F2 (EnDat 2.2)", values: Values::Plain },
+            Field { name: "f2", lsb: 22, width: 1, unit: "", meaning: "The position came with F2 = 1 (EnDat 2.2); F1 of a good position is 0", values: Values::Plain },
             Field { name: "width", lsb: 24, width: 6, unit: "bits", meaning: "Width of this position; 0 = there is none yet, or T-format: nothing to check", values: Values::Plain },
         ] },
         Register { name: "timestamp", offset: 3, access: Access::ReadOnly, meaning: "First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format: start bit of the request.", fields: &[

@@ -56,11 +56,10 @@ impl Reading {
         let position = u64::from(field("position_low", "value"))
             | u64::from(field("position_high", "value")) << 32;
         let width = field("position_high", "width");
-        let error_bits = [field("position_high", "f1"), field("position_high", "f2")];
-        let count = 1 + field("position_high", "has_f2") as usize;
-        let covered = error_bits[..count]
-            .iter()
-            .map(|bit| *bit == 1)
+        // F1 = 0, then F2 = 1 if there was one.
+        let error_bits = [false, true].into_iter();
+        let covered = error_bits
+            .take(1 + field("position_high", "f2") as usize)
             .chain((0..width).map(|i| position >> i & 1 == 1));
         let fits =
             width == 0 || position >> width == 0 && crc5(covered) == field("position_high", "crc");
@@ -123,7 +122,7 @@ mod tests {
         let words = [
             0x00C0_0002,
             0x0123_5678,
-            0x2400_0009 | 1 << 23 | 1 << 22 | crc << 16,
+            0x2400_0009 | 1 << 22 | crc << 16,
             77,
             (0x155 << 10) | (0x0A << 5) | 0x15,
             (1 << 30) | (1 << 29) | (0x123 << 16) | 500,

@@ -27,6 +27,7 @@ pub const SOURCES: &[&str] = &[
     include_str!("../crc5.rs"),
     include_str!("../direct.rs"),
     include_str!("../encoder_port.rs"),
+    include_str!("../frame_settings.rs"),
     include_str!("../half_period.rs"),
     include_str!("../input_filter.rs"),
     include_str!("../interrupt.rs"),

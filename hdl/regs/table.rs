@@ -455,9 +455,7 @@ pub const RESULT: Block = Block {
         word("position_high", 2, ReadOnly, "Last good position, bits 47..32.", &[
             field("value", 0, 16, "", "0 above the position's width; T-format: multi-turn in bits 47..24, single-turn in 23..0", zero),
             field("crc", 16, 5, "", "CRC that came with this position, over F1, F2 and the position, LSB first: whoever reads it checks it once more; T-format: 0", zero),
-            field("f1", 21, 1, "", "F1 as it came with this position: 0, or it were not good", zero),
-            field("f2", 22, 1, "", "F2 as it came with this position: 1 if there was one", zero),
-            field("has_f2", 23, 1, "", "The position came with F2 (EnDat 2.2)", zero),
+            field("f2", 22, 1, "", "The position came with F2 = 1 (EnDat 2.2); F1 of a good position is 0", zero),
             field("width", 24, 6, "bits", "Width of this position; 0 = there is none yet, or T-format: nothing to check", zero),
         ]),
         word("timestamp", 3, ReadOnly, "First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format: start bit of the request.", &[

@@ -466,9 +466,12 @@ status sequence 15:0
 status cause 20:16
 status valid 22:22
 status fresh 23:23
-status line 30:24
+status line 31:24
 position_low value 31:0
 position_high value 15:0
+position_high crc 20:16
+position_high f2 22:22
+position_high width 29:24
 timestamp value 31:0
 evidence crc_received 4:0
 evidence crc_computed 9:5

@@ -141,6 +141,7 @@ fn possible(features: Features) -> u64 {
         cause::START_WINDOW,
         cause::DATA_NOT_FALLING,
         cause::UNKNOWN_COMMAND,
+        cause::UPSET,
     ];
     if features.requests {
         causes.push(cause::INFO_MISSING);
