@@ -5,6 +5,7 @@ use crate::Time;
 const PAGE_ADDRESS: u8 = 127;
 const BUSY: u8 = 1 << 7;
 
+#[derive(Clone)]
 pub(super) struct Eeprom {
     pages: Vec<[u8; 127]>,
     page: u8,

@@ -45,6 +45,7 @@ struct Hearing {
 }
 
 /// The encoder.
+#[derive(Clone)]
 pub struct Encoder {
     /// What it is; may be changed between two exchanges.
     pub config: EncoderConfig,
