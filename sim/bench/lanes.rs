@@ -134,6 +134,15 @@ impl LaneBench {
         port.due[lane] = 0;
     }
 
+    /// Inverts a bit of a register in one lane, as an upset would: pins that it drives change at once, up to the next clock edge.
+    pub fn upset(&mut self, register: usize, bit: usize, lane: usize) {
+        self.engine.flip(register, bit, lane);
+        let now = self.now();
+        for port in &mut self.ports {
+            port.take_pins(&mut self.engine, now);
+        }
+    }
+
     /// Drives an input of one lane.
     pub fn set(&mut self, name: &str, lane: usize, value: u128) {
         let id = self.engine.port(name);

@@ -6,6 +6,7 @@ pub mod garbage;
 mod list;
 pub mod port;
 mod run;
+pub mod t_format;
 mod tally;
 #[cfg(test)]
 mod tests;
@@ -16,4 +17,4 @@ pub use case::{Case, Traces, SAMPLE_LATENCY_CYCLES};
 pub use list::{random, sweep, Story, ABORT_US, CABLES_M, RATES};
 pub use run::{run, CampaignError, Outcome, RunOptions};
 pub use tally::{Row, Shard, Tally};
-pub use work::{count, run_shard, Campaign};
+pub use work::{count, run_shard, Campaign, Joined};

@@ -4,7 +4,7 @@
 use super::port::{Conditions, Mishap, Port, Ready};
 use super::work::{digest, hash, Campaign};
 use super::{CampaignError, Row, Tally};
-use crate::rng::Rng;
+use crate::{engine::Lanes, rng::Rng};
 use std::ops::Range;
 
 /// Which flips are tried.
@@ -22,12 +22,62 @@ pub enum Draw {
     },
 }
 
+/// The flip-flops of a design.
+pub(super) struct Flops {
+    /// Register and bit of each.
+    pub bits: Vec<(usize, usize)>,
+    /// Hierarchical name of its register.
+    pub names: Vec<String>,
+}
+
+impl Flops {
+    /// Those of registers whose name begins with `only`.
+    pub fn new(engine: &Lanes, only: &str) -> Self {
+        let all: Vec<&str> = engine.nets().collect();
+        let (mut bits, mut names) = (vec![], vec![]);
+        for register in engine.registers().filter(|r| all[*r].starts_with(only)) {
+            for bit in 0..engine.width_bits(register) {
+                bits.push((register, bit));
+                names.push(all[register].to_owned());
+            }
+        }
+        Self { bits, names }
+    }
+
+    /// How many cases there are.
+    pub fn cases(&self, draw: Draw) -> u64 {
+        match draw {
+            Draw::Grid { moments } => self.bits.len() as u64 * moments,
+            Draw::Random { .. } if self.bits.is_empty() => 0,
+            Draw::Random { cases } => cases,
+        }
+    }
+
+    /// The case with this number: which flip-flop (an index), and when within `span` cycles. `label` tells groups apart.
+    pub fn case(&self, draw: Draw, seed: u64, label: &str, span: u64, number: u64) -> (usize, u64) {
+        match draw {
+            Draw::Grid { moments } => {
+                let (index, moment) = ((number / moments) as usize, number % moments);
+                // The moment belongs to the flip-flop: it is the same in a campaign of a few registers.
+                let what = format!("{label} {} {}", self.names[index], self.bits[index].1);
+                let mut rng = Rng::new(hash(&what) ^ seed ^ moment.rotate_left(32));
+                let from = span * moment / moments;
+                let to = span * (moment + 1) / moments;
+                (index, rng.in_range(from, to.max(from + 1) - 1))
+            }
+            Draw::Random { .. } => {
+                let mut rng = Rng::new(Rng::new(hash(label) ^ seed).next_u64() ^ number);
+                let index = rng.in_range(0, self.bits.len() as u64 - 1) as usize;
+                (index, rng.in_range(0, span - 1))
+            }
+        }
+    }
+}
+
 /// Flip-flops of one port in one kind of frame.
 struct Group {
     ready: Ready,
-    /// Register and bit of each flip-flop.
-    bits: Vec<(usize, usize)>,
-    names: Vec<String>,
+    flops: Flops,
     cases: u64,
 }
 
@@ -50,17 +100,22 @@ impl Upsets {
             digested ^= digest(&port.design()?);
             let engine = port.engine()?;
             for kind in port.kinds() {
-                let ready = Ready::new(*port, *kind, Conditions::default(), engine.clone());
-                groups.push(Group::new(ready, &engine, only));
+                groups.push(Group {
+                    ready: Ready::new(*port, *kind, Conditions::default(), engine.clone()),
+                    flops: Flops::new(&engine, only),
+                    cases: 0,
+                });
             }
         }
         let count = groups.len() as u64;
         for (index, group) in groups.iter_mut().enumerate() {
-            group.cases = match draw {
-                Draw::Grid { moments } => group.bits.len() as u64 * moments,
-                // An equal share of each kind of frame.
-                Draw::Random { cases } => cases / count + u64::from((index as u64) < cases % count),
-            };
+            // At random, an equal share of each kind of frame.
+            group.cases = group.flops.cases(match draw {
+                Draw::Random { cases } => Draw::Random {
+                    cases: cases / count + u64::from((index as u64) < cases % count),
+                },
+                grid => grid,
+            });
         }
         Ok(Self {
             groups,
@@ -68,49 +123,6 @@ impl Upsets {
             seed,
             digest: digested,
         })
-    }
-}
-
-impl Group {
-    fn new(ready: Ready, engine: &crate::engine::Lanes, only: &str) -> Self {
-        let all: Vec<&str> = engine.nets().collect();
-        let registers = engine.registers().filter(|r| all[*r].starts_with(only));
-        let mut group = Self {
-            ready,
-            bits: vec![],
-            names: vec![],
-            cases: 0,
-        };
-        for register in registers {
-            for bit in 0..engine.width_bits(register) {
-                group.bits.push((register, bit));
-                group.names.push(all[register].to_owned());
-            }
-        }
-        group
-    }
-
-    /// The case with this number: which flip-flop (an index), and when.
-    fn case(&self, draw: Draw, seed: u64, number: u64) -> (usize, u64) {
-        let (port, kind) = (self.ready.port.name(), self.ready.kind.name());
-        let span = self.ready.span_cycles;
-        match draw {
-            Draw::Grid { moments } => {
-                let (index, moment) = ((number / moments) as usize, number % moments);
-                // The moment belongs to the flip-flop: it is the same in a campaign of a few registers.
-                let what = format!("{port} {kind} {} {}", self.names[index], self.bits[index].1);
-                let mut rng = Rng::new(hash(&what) ^ seed ^ moment.rotate_left(32));
-                let from = span * moment / moments;
-                let to = span * (moment + 1) / moments;
-                (index, rng.in_range(from, to.max(from + 1) - 1))
-            }
-            Draw::Random { .. } => {
-                let what = hash(&format!("{port} {kind}"));
-                let mut rng = Rng::new(Rng::new(what ^ seed).next_u64() ^ number);
-                let index = rng.in_range(0, self.bits.len() as u64 - 1) as usize;
-                (index, rng.in_range(0, span - 1))
-            }
-        }
     }
 }
 
@@ -125,11 +137,17 @@ impl Campaign for Upsets {
 
     fn run(&self, group: usize, cases: Range<u64>) -> Tally {
         let group = &self.groups[group];
-        let drawn: Vec<(usize, u64)> = cases
-            .map(|number| group.case(self.draw, self.seed, number))
-            .collect();
+        let ready = &group.ready;
+        let label = format!("{} {}", ready.port.name(), ready.kind.name());
+        let draw = |number| {
+            let (draw, seed) = (self.draw, self.seed);
+            group
+                .flops
+                .case(draw, seed, &label, ready.span_cycles, number)
+        };
+        let drawn: Vec<(usize, u64)> = cases.map(draw).collect();
         let flip = |(index, cycle): &(usize, u64)| {
-            let ((register, bit), cycle) = (group.bits[*index], *cycle);
+            let ((register, bit), cycle) = (group.flops.bits[*index], *cycle);
             Mishap::Flip {
                 register,
                 bit,
@@ -143,7 +161,7 @@ impl Campaign for Upsets {
                 let row = Row {
                     subject: group.ready.port.name().into(),
                     kind: group.ready.kind.name().into(),
-                    place: group.names[*index].clone(),
+                    place: group.flops.names[*index].clone(),
                     class: class.into(),
                 };
                 tally.add(row, 1);

@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::{panic, thread};
 
 /// Cases that are taken by their numbers. What becomes of one depends on its number alone, whatever runs beside it.
-pub trait Campaign: Sync {
+pub trait Campaign: Send + Sync {
     /// Tells its designs from others.
     fn digest(&self) -> u64;
 
@@ -21,6 +21,29 @@ pub trait Campaign: Sync {
     /// How many cases of a group are run together.
     fn batch(&self, _group: usize) -> u64 {
         128
+    }
+}
+
+/// Campaigns one behind the other.
+pub struct Joined(pub Vec<Box<dyn Campaign>>);
+
+impl Campaign for Joined {
+    fn digest(&self) -> u64 {
+        self.0.iter().fold(0, |digest, c| digest ^ c.digest())
+    }
+
+    fn groups(&self) -> Vec<u64> {
+        self.0.iter().flat_map(|c| c.groups()).collect()
+    }
+
+    fn run(&self, mut group: usize, cases: Range<u64>) -> Tally {
+        for campaign in &self.0 {
+            match group.checked_sub(campaign.groups().len()) {
+                None => return campaign.run(group, cases),
+                Some(rest) => group = rest,
+            }
+        }
+        Tally::default()
     }
 }
 

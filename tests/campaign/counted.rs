@@ -131,7 +131,7 @@ fn a_quick_run_of_each_campaign_keeps_its_budgets() {
     for campaign in CAMPAIGNS {
         let outcome = run(&["campaign", campaign, "--quick"]);
         assert_eq!(outcome.exit_code, 0, "{}", outcome.stdout);
-        let verdicts = outcome.stdout.matches("limit").count();
+        let verdicts = outcome.stdout.matches(", limit ").count();
         assert_eq!(verdicts, budget::of(campaign).count(), "{}", outcome.stdout);
     }
 }

@@ -10,8 +10,9 @@ use crate::error::{shown, GenError};
 use endat_sim::campaign::faults::Faults;
 use endat_sim::campaign::garbage::{AcceptSet, Garbage, WIDEST_BITS};
 use endat_sim::campaign::port::Port;
+use endat_sim::campaign::t_format::{self, TFormatUpsets};
 use endat_sim::campaign::upsets::{Draw, Upsets};
-use endat_sim::campaign::{count, run_shard, Campaign, CampaignError, Shard};
+use endat_sim::campaign::{count, run_shard, Campaign, CampaignError, Joined, Shard};
 use std::time::Instant;
 
 /// Most moments of a frame, and most quarter bits between two faults.
@@ -107,21 +108,42 @@ fn boxed<C: Campaign + 'static>(made: Result<C, CampaignError>) -> Made {
     made.map(|campaign| Box::new(campaign) as Box<dyn Campaign>)
 }
 
+/// Upsets of these ports, and of the T-format port; at random, an eighth of the cases is its.
+fn upsets(ports: &[Port], is_t_format: bool, draw: Draw, seed: u64, only: &str) -> Made {
+    let share = |is_t_format_too: bool| match draw {
+        Draw::Random { cases } if is_t_format && !ports.is_empty() => Draw::Random {
+            cases: match is_t_format_too {
+                true => cases / 8,
+                false => cases - cases / 8,
+            },
+        },
+        draw => draw,
+    };
+    let mut joined = vec![];
+    if !ports.is_empty() {
+        joined.push(boxed(Upsets::new(ports, share(false), seed, only))?);
+    }
+    if is_t_format {
+        joined.push(boxed(TFormatUpsets::new(share(true), seed, only))?);
+    }
+    Ok(Box::new(Joined(joined)))
+}
+
 /// The campaign that is asked for: its name and its plan, in words.
 fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, Made), GenError> {
-    let ports: Vec<Port> = match arguments.subject.as_deref() {
-        None => Port::ALL.to_vec(),
-        Some(name) => vec![Port::ALL
-            .into_iter()
-            .find(|p| p.name() == name)
-            .ok_or_else(|| {
-                let names = Port::ALL.map(Port::name).join(", ");
-                GenError::input(format!(
-                    "--subject = {}: is no port of a campaign; take one of {names}",
-                    shown(name)
-                ))
-            })?],
-    };
+    let chosen = arguments.subject.as_deref();
+    let is_t_format = chosen.is_none_or(|name| name == t_format::SUBJECT);
+    let of_name = |port: &Port| chosen.is_none_or(|name| name == port.name());
+    let ports: Vec<Port> = Port::ALL.into_iter().filter(of_name).collect();
+    let is_upsets = matches!(arguments.name, Name::Upsets);
+    if ports.is_empty() && !(is_upsets && is_t_format) {
+        let names = Port::ALL.map(Port::name).join(", ");
+        return Err(GenError::input(format!(
+            "--subject = {}: is no port of a campaign; take one of {names}, and of upsets {}",
+            shown(chosen.unwrap_or_default()),
+            t_format::SUBJECT
+        )));
+    }
     let subject = arguments.subject.as_deref().unwrap_or("all");
     let cases = |usual: Option<&str>| match (arguments.quick, arguments.cases.as_deref().or(usual))
     {
@@ -166,8 +188,11 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
                 "{how}; seed {seed}; subject {subject}; only {}*",
                 arguments.only
             );
-            let made = Upsets::new(&ports, draw, seed, &arguments.only);
-            ("upsets", plan, boxed(made))
+            (
+                "upsets",
+                plan,
+                upsets(&ports, is_t_format, draw, seed, &arguments.only),
+            )
         }
     })
 }

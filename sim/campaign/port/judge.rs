@@ -102,7 +102,7 @@ impl Mark {
 
 /// What a reader sees between two triggers.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Reading {
+pub(in crate::campaign) struct Reading {
     /// A result has come since the trigger.
     pub has_result: bool,
     /// Its cause, or the one that took its place; 0 = none.
@@ -178,7 +178,7 @@ impl Outcome {
     }
 
     /// Takes a reading. Whether all has been seen: two good ones after the frame, or too many that are not.
-    pub(super) fn read(&mut self, reading: &Reading) -> bool {
+    pub fn read(&mut self, reading: &Reading) -> bool {
         let is_silent = reading.cause == 0;
         if is_silent && self.open_pulses {
             self.mark(Mark::Pulses);

@@ -7,6 +7,7 @@ mod judge;
 mod run;
 
 pub use judge::{Class, Mark, TRIGGERS_MAX};
+pub(super) use judge::{Outcome, Reading};
 
 use crate::{
     bench::{ChannelSettings, LaneBench, Link, PinNames},

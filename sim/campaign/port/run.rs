@@ -137,7 +137,7 @@ impl Run<'_> {
             while let Some((_, lane)) = next.next_if(|(at, _)| *at <= cycle) {
                 match &mishaps[lane] {
                     Mishap::Flip { register, bit, .. } => {
-                        self.bench.engine().flip(*register, *bit, lane);
+                        self.bench.upset(*register, *bit, lane);
                     }
                     Mishap::Setting { name, value, .. } => self.bench.set(name, lane, *value),
                     _ => {}
