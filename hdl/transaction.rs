@@ -574,8 +574,12 @@ impl Logic for Transaction {
                         self.give_up.next = true;
                     }
                 }
-                // Each cell had its pulse, but for one whose count was upset.
-                if self.sample.val() & !self.tail_sampled.q.val() & (self.outstanding.val() != 1) {
+                // Each cell had its pulse, but for one whose count was upset. (With two clocks in a bit the next cell has begun.)
+                if self.sample.val()
+                    & !self.tail_sampled.q.val()
+                    & !self.has_double.val()
+                    & (self.outstanding.val() != 1)
+                {
                     self.found.next = self.upset.val();
                     self.give_up.next = true;
                     self.proof.next = false;

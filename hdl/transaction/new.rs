@@ -142,7 +142,7 @@ impl Transaction {
             settling: Default::default(),
             going: Default::default(),
             leaving: Default::default(),
-            cleared: Default::default(),
+            cleared: Reg::new(true),
             high_at_tick: Default::default(),
             owing: Default::default(),
             limit: Default::default(),

@@ -553,7 +553,7 @@ module endat_channel (
         .came(info_came),
         .good(info_good)
     );
-    endat_settings u_settings (
+    endat_frame_settings u_settings (
         .clock(clock),
         .reset(reset),
         .is_at_rest(transaction_is_at_rest),

@@ -231,7 +231,7 @@ module endat_channel_registers (
     end
     assign word_0 = {16'd0, sequence_value} | ({27'd0, cause} << 5'd16) | ({31'd0, position_valid} << 5'd22) | ({31'd0, fresh} << 5'd23) | ({24'd0, flags[19:12]} << 5'd24);
     assign word_1 = position[31:0];
-    assign word_2 = {16'd0, position[47:32]} | ({27'd0, position_crc} << 5'd16) | ({31'd0, position_has_f2} << 5'd22) | ({31'd0, position_has_f2} << 5'd23) | ({26'd0, position_width} << 5'd24);
+    assign word_2 = {16'd0, position[47:32]} | ({27'd0, position_crc} << 5'd16) | ({31'd0, position_has_f2} << 5'd22) | ({26'd0, position_width} << 5'd24);
     assign word_3 = first_fall_timestamp;
     assign word_4 = {27'd0, crc_received} | ({27'd0, crc_computed} << 3'd5) | ({22'd0, delay_cycles[9:0]} << 4'd10) | ({20'd0, flags[11:0]} << 5'd20);
     assign word_5 = ({19'd0, recovery_cycles} << 5'd16) | ({31'd0, delay_cycles[10]} << 5'd29);

@@ -80,6 +80,7 @@ module endat_snapshot (
     wire         take_back;
     wire         parity_now;
     wire         upset_now;
+    wire         moment_wrong;
     reg   [10:0] ago;
     reg          strobe = 1'b0;
     reg          loaded = 1'b0;
@@ -109,6 +110,9 @@ module endat_snapshot (
     reg          unconfirmed_next;
     reg          parity = 1'b0;
     reg          parity_next;
+    reg          timed = 1'b0;
+    reg          moment_parity = 1'b0;
+    reg          moment_parity_next;
     reg          is_upset = 1'b0;
     reg   [15:0] age_shown = 16'd0;
     wire         age_shown_reset;
@@ -143,7 +147,15 @@ module endat_snapshot (
             age_next = 16'd0;
         end
     end
-    assign take_good = publish & good;
+
+    always @* begin
+        moment_parity_next = moment_parity;
+        if (timed) begin
+            moment_parity_next = ^moment;
+        end
+    end
+    assign moment_wrong = good & !timed & ((^moment) ^ moment_parity);
+    assign take_good = publish & good & !moment_wrong;
     assign take_back = withdraw & unconfirmed;
 
     always @* begin
@@ -195,7 +207,7 @@ module endat_snapshot (
         earlier_parity_next = earlier_parity;
         parity_next = parity;
         if (publish) begin
-            is_fresh_next = good;
+            is_fresh_next = good & !moment_wrong;
             count_next = count + 16'd1;
             received_next = crc_received_in;
             computed_next = crc_computed_in;
@@ -238,6 +250,10 @@ module endat_snapshot (
             cause_held_next = UPSET_CAUSE;
             flags_held_next = flags_held | UPSET_FLAG;
         end
+        if (publish & moment_wrong) begin
+            cause_held_next = UPSET_CAUSE;
+            flags_held_next = flags_in | UPSET_FLAG;
+        end
     end
     assign result_strobe = strobe;
     assign position = held;
@@ -271,6 +287,8 @@ module endat_snapshot (
             earlier_parity <= 1'b0;
             unconfirmed <= 1'b0;
             parity <= 1'b0;
+            timed <= 1'b0;
+            moment_parity <= 1'b0;
             is_upset <= 1'b0;
             valid <= 1'b0;
             is_fresh <= 1'b0;
@@ -299,6 +317,8 @@ module endat_snapshot (
             earlier_parity <= earlier_parity_next;
             unconfirmed <= unconfirmed_next;
             parity <= parity_next;
+            timed <= first_fall | latched;
+            moment_parity <= moment_parity_next;
             is_upset <= (parity_now ^ parity) & !loaded & !take_good & !take_back;
             valid <= valid_next;
             is_fresh <= is_fresh_next;

@@ -173,6 +173,7 @@ module endat_transaction (
     localparam  [19:0] NOT_FALLING = 20'd64;
     localparam  [19:0] TOO_LONG = 20'h10000;
     localparam  [19:0] TAIL_LOW = 20'd512;
+    localparam  [19:0] UPSET = 20'h80000;
     // What the wire is doing.
     localparam   [2:0] PHASE_NOT_READY = 3'd0; // Idle, but data has not yet been low for tR.
     localparam   [2:0] PHASE_READY = 3'd1; // Idle and ready for a trigger.
@@ -273,10 +274,12 @@ module endat_transaction (
     reg          going_next;
     reg          leaving = 1'b0;
     reg          leaving_next;
-    reg          cleared = 1'b0;
+    reg          cleared = 1'b1;
     reg          cleared_next;
     reg          high_at_tick = 1'b0;
     reg          high_at_tick_next;
+    reg          owing = 1'b0;
+    reg          owing_next;
 
     endat_line_health u_health (
         .clock(clock),
@@ -428,6 +431,10 @@ module endat_transaction (
                         give_up = 1'b1;
                     end
                 end
+                if (owing) begin
+                    found = UPSET;
+                    give_up = 1'b1;
+                end
             end
             PHASE_READY: begin
                 timer_clear = 1'b1;
@@ -568,6 +575,11 @@ module endat_transaction (
                     found = NOT_FALLING;
                     give_up = 1'b1;
                 end
+                if (sample & !tail_sampled & !HAS_DOUBLE & (outstanding != 7'd1)) begin
+                    found = UPSET;
+                    give_up = 1'b1;
+                    proof = 1'b0;
+                end
                 if (sample & !tail_sampled & !level) begin
                     found = TAIL_LOW;
                     give_up = 1'b1;
@@ -694,6 +706,16 @@ module endat_transaction (
             settling_next = 1'b0;
         end
     end
+
+    always @* begin
+        owing_next = owing;
+        if (publish) begin
+            owing_next = 1'b0;
+        end
+        if (accept & !own) begin
+            owing_next = 1'b1;
+        end
+    end
     assign verdict_is_late = answered | found_late;
     assign lost = trigger & !going & ((!accept & !idle) | (accept & own));
 
@@ -778,8 +800,9 @@ module endat_transaction (
             settling <= 1'b0;
             going <= 1'b0;
             leaving <= 1'b0;
-            cleared <= 1'b0;
+            cleared <= 1'b1;
             high_at_tick <= 1'b0;
+            owing <= 1'b0;
         end else begin
             timer <= timer_next;
             timer_limit <= limit;
@@ -811,6 +834,7 @@ module endat_transaction (
             leaving <= leaving_next;
             cleared <= cleared_next;
             high_at_tick <= high_at_tick_next;
+            owing <= owing_next;
         end
     end
 endmodule

@@ -81,7 +81,7 @@ module endat_verdict (
 );
     localparam         HAS_DIAGNOSIS = 1'b0;
     localparam  [12:0] OWN_RECOVERY_MIN_CYCLES = 13'd117;
-    localparam  [19:0] POSSIBLE = 20'd1607;
+    localparam  [19:0] POSSIBLE = 20'h80647;
     localparam  [19:0] CRC_WRONG = 20'd8;
     localparam  [19:0] PARALLEL_WRONG = 20'd256;
     localparam  [19:0] OWN_ECHO = 20'h20000;

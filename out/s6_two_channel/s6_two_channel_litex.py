@@ -32,7 +32,7 @@ SOURCES = [
     "endat_snapshot.v",
     "endat_command_shape.v",
     "endat_add_info.v",
-    "endat_settings.v",
+    "endat_frame_settings.v",
     "endat_stream.v",
     "endat_frame_buffer.v",
     "endat_set_channel_number1.v",

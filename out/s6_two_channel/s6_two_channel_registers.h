@@ -364,15 +364,9 @@
 /* crc: CRC that came with this position, over F1, F2 and the position, LSB first: whoever reads it checks it once more; T-format: 0 */
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_CRC_SHIFT 16u
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_CRC_MASK 0x001F0000u
-/* f1: F1 as it came with this position: 0, or it were not good */
-#define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_F1_SHIFT 21u
-#define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_F1_MASK 0x00200000u
-/* f2: F2 as it came with this position: 1 if there was one */
+/* f2: The position came with F2 = 1 (EnDat 2.2); F1 of a good position is 0 */
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_F2_SHIFT 22u
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_F2_MASK 0x00400000u
-/* has_f2: The position came with F2 (EnDat 2.2) */
-#define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_HAS_F2_SHIFT 23u
-#define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_HAS_F2_MASK 0x00800000u
 /* width: Width of this position; 0 = there is none yet, or T-format: nothing to check (bits) */
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_WIDTH_SHIFT 24u
 #define S6_TWO_CHANNEL_RESULT_POSITION_HIGH_WIDTH_MASK 0x3F000000u

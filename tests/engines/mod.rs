@@ -56,7 +56,8 @@ fn channel_stimulus(design: &Design, cycles: usize) -> Stimulus {
             row[at] = value(cycle);
         }
     };
-    set(&mut stimulus, "reset", &|cycle| (cycle < 3).into());
+    // A reset is followed by a long quiet time.
+    set(&mut stimulus, "reset", &|_| 0);
     set(&mut stimulus, "period_cycles", &|_| 12);
     set(&mut stimulus, "first_low_extra_cycles", &|_| 4);
     set(&mut stimulus, "command", &|_| 0b111000);

@@ -262,6 +262,7 @@ fn data_that_does_not_fall_withdraws_the_position_and_brings_back_the_one_before
         [before.position, before.first_fall_timestamp, 1, 0]
     );
     // Its age goes on.
+    rig.run_cycles(2);
     let age = (rig.now() - before.time) / US;
     assert!((age.saturating_sub(40)..=age).contains(&(rig.get("age_us") as u64)));
     assert_eq!(rig.results().len(), 2, "it is no result of its own");
