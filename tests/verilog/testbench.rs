@@ -67,7 +67,9 @@ fn bench_passes_on_a_card_whose_channels_have_triggers_of_their_own() {
             channel("enabled = false\n")
         );
         let files = endat_gen::emit(&parse("own.toml", &text).unwrap()).unwrap();
-        assert!(files.iter().any(|f| f.path.contains("channel_trigger")));
+        assert!(files
+            .iter()
+            .any(|f| f.path.starts_with("endat_own_trigger")));
         assert_eq!(run_bench("own_triggers", &files, &[]), "PASS\n");
     }
 }
