@@ -446,6 +446,10 @@ impl Logic for Transaction {
                         }
                     }
                 }
+                if self.owing.q.val() {
+                    self.found.next = self.upset.val();
+                    self.give_up.next = true;
+                }
             }
             Phase::FirstLow => {
                 self.running.next = true;

@@ -124,7 +124,7 @@ fn after_a_reset_within_a_frame_the_next_frame_is_good() {
         rig.run_for(at);
         rig.reset();
         // The encoder needs its own time to see that the clock has stopped.
-        rig.run_for(30 * US);
+        settle(&mut rig);
         good_frame(&mut rig);
         assert_eq!(rig.conflicts(0), [], "reset after {at} ps");
     }

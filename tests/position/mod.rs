@@ -4,6 +4,7 @@
 
 mod bit_errors;
 mod crc;
+mod doubt;
 mod faults;
 mod frame_timing;
 mod interrupted;
