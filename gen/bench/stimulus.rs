@@ -94,7 +94,7 @@ impl Stimulus {
         let mut rows = Vec::with_capacity(cycles);
         for cycle in 0..cycles as u64 {
             let engine = bench.engine();
-            engine.set(inputs[0], u128::from(cycle < RESET_CYCLES));
+            engine.set(inputs[0], 0);
             engine.set(inputs[2], u128::from(host_level(cycle, bit)));
             bench.tick();
             // Inputs stay as they are until the next tick.

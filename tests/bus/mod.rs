@@ -90,6 +90,8 @@ impl Master {
             bench.set_double_edge();
         }
         bench.power_up();
+        // The lines have their levels at rest.
+        bench.run_cycles(1_000);
         Self {
             bus: project.bus,
             bench,

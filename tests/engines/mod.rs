@@ -68,7 +68,8 @@ fn channel_stimulus(design: &Design, cycles: usize) -> Stimulus {
         (cycle % 500 == 20).into()
     });
     set(&mut stimulus, "data_i", &|cycle| {
-        (cycle / 45 % 3 == 1).into()
+        // LOW long enough for a frame to begin.
+        (cycle % 2_000 > 600 && cycle / 45 % 3 == 1).into()
     });
     set(&mut stimulus, "tick_us", &|cycle| (cycle % 4 == 0).into());
     stimulus

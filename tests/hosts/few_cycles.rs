@@ -36,7 +36,7 @@ fn check_all_good(desk: &mut Desk, channel: usize, at_least: u32) {
     let (first, last) = (first.unwrap().address(), last.unwrap().address());
     let words = usize::from(last - first) + 1;
     let counts = desk.card.bridge().read(first, words).unwrap();
-    assert_eq!(counts[1..].iter().sum::<u32>(), 0, "{channel}");
+    assert_eq!(counts[1..].iter().sum::<u32>(), 0, "{channel}: {counts:?}");
 }
 
 /// Catches an information that begins before the position stands in its place, and a supplement that is one pulse off.

@@ -79,6 +79,8 @@ fn the_watchdog_is_set_by_the_host() {
     rig.good_position();
     let off = rig.read(word::LIMITS);
     rig.write(word::LIMITS, off | 20);
+    // It counts from the next frame on that begins after the program has seen it.
+    rig.bench.run_cycles(20_000);
     rig.frames(3);
     assert_eq!(count(&mut rig, cause::WATCHDOG), 3);
     rig.write(word::LIMITS, off);

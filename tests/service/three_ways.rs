@@ -95,7 +95,7 @@ fn kernels_engines_and_verilog_agree_on_requests() {
         position_bits, filter_cycles, filter_half, start_window_cycles, start_timeout_us, recovery_limit_cycles,
         request_id, field_gap_us, host_address, host_line, host_read, host_write, host_half, host_data;
         out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
-        first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, recovery_cycles, delay_cycles, busy,
+        first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, position_crc, position_width, position_has_f2, recovery_cycles, delay_cycles, busy,
         sample_strobe, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply,
         reply_good, info_active, info_1, info_2, info_came, info_good, calibrated, alarm, host_word);
     let seen = three_way("encoder_port", &mut kernel, &design, &recorded()).unwrap();

@@ -157,7 +157,7 @@ const SPI: &[Mutation] = &[
     mutation(
         "SPI: all writes are told as refused",
         "endat_spi_front.v",
-        "refused_next = (|crc) | busy;",
+        "refused_next = (|crc) | waits;",
         "refused_next = 1'b1;",
     ),
 ];

@@ -31,9 +31,9 @@ pub const fn mutation(
 pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "parallel CRC: wrong constant for 31 bits",
-        "endat_crc5_parallel.v",
-        "TERM_1 = 5'd10;",
-        "TERM_1 = 5'd11;",
+        "endat_crc5_check.v",
+        "TERM_2 = 5'd13;",
+        "TERM_2 = 5'd12;",
     ),
     mutation(
         "serial CRC: wrong polynomial",
@@ -86,8 +86,8 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "F2 ignored",
         "endat_verdict.v",
-        "is_bad = crc_bad | f1 | !f2;",
-        "is_bad = crc_bad | f1;",
+        "bad_now = crc_bad | f1 | !f2;",
+        "bad_now = crc_bad | f1;",
     ),
     mutation(
         "wrong cause for a missing start bit",

@@ -119,7 +119,7 @@ impl Rig {
             cause: u64::from(words[0] >> 16 & 31),
             valid: words[0] >> 22 & 1 == 1,
             fresh: words[0] >> 23 & 1 == 1,
-            position: u64::from(words[1]) | u64::from(words[2]) << 32,
+            position: u64::from(words[1]) | u64::from(words[2] & 0xFFFF) << 32,
             timestamp: words[3],
         }
     }
