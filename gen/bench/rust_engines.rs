@@ -110,7 +110,8 @@ pub fn compiled_with_models(card: &CardDesign, cycles: usize) -> Result<Measured
     let mut bench = Bench::new(engine, card.system_hz, links());
     let outputs = OUTPUTS.map(|name| bench.engine().port(name));
     bench.set("uart_rx_i", 1);
-    bench.set("rst_i", 1);
+    // A reset would be followed by 30 ms of quiet.
+    bench.set("rst_i", 0);
     let mut digest = Digest::START;
     let start = Instant::now();
     for cycle in 0..cycles as u64 {
@@ -169,7 +170,7 @@ pub fn lanes_on(
         let mut bench = LaneBench::new(engine, card.system_hz, vec![port(0), port(1)]);
         let outputs = OUTPUTS.map(|name| bench.engine().port(name));
         bench.set_all("uart_rx_i", 1);
-        bench.set_all("rst_i", 1);
+        bench.set_all("rst_i", 0);
         let mut digest = Digest::START;
         for cycle in 0..cycles as u64 {
             if cycle == RESET_CYCLES {

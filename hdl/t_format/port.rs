@@ -413,6 +413,11 @@ impl Logic for TFormatPort {
             self.sum_flags.next =
                 bit_cast::<16, 12>(self.exchange.flags.val().get_bits::<12>(0)) | 0x4000;
         }
+        // What else went wrong explains it.
+        if self.exchange.flags.val().get_bits::<12>(0).any() {
+            self.sum_flags.next =
+                bit_cast::<16, 15>(self.exchange.flags.val().get_bits::<15>(0) & 0x3FFF);
+        }
         self.flags_in.next =
             self.sum_flags.val() | (bit_cast::<16, 1>(self.overrun.val().into()) << 15);
         self.primary.flags.next = self.flags_in.val();

@@ -458,6 +458,10 @@ module endat_transaction (
                         refuse = 1'b1;
                     end
                 end
+                if (owing) begin
+                    found = UPSET;
+                    give_up = 1'b1;
+                end
             end
             PHASE_FIRST_LOW: begin
                 running = 1'b1;

@@ -14,7 +14,8 @@ CONFIG = [0x100, 0x102, 0x108, 0x109, 0x10A, 0x110]
 def start(dut):
     """Clock, reset, and lines that no encoder makes LOW before a frame."""
     Clock(dut.clk_i, 10, "ns").start()
-    dut.rst_i.value = 1
+    # A reset is followed by 30 ms of quiet; registers have start values.
+    dut.rst_i.value = 0
     dut.trigger_i.value = 0
     dut.endat_data0_i.value = 1
     dut.endat_data1_i.value = 1

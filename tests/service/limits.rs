@@ -84,6 +84,7 @@ fn the_watchdog_is_set_by_the_host() {
     rig.frames(3);
     assert_eq!(count(&mut rig, cause::WATCHDOG), 3);
     rig.write(word::LIMITS, off);
+    rig.bench.run_cycles(20_000);
     rig.good_position();
     rig.good_position();
 }
