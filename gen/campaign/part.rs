@@ -262,7 +262,7 @@ mod tests {
             class: class.into(),
         };
         tally.add(row("masked"), 10 + index);
-        if index % 2 == 0 {
+        if index.is_multiple_of(2) {
             tally.add(row("hang"), 1);
         }
         Part {

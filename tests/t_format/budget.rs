@@ -27,7 +27,7 @@ const REQUEST_US: u64 = 4 * 4 + 3;
 const GARBLED_US: u64 = 3 * 4;
 /// Silent wrong positions of all flips, in parts per thousand.
 const SILENT_PER_MILLE: usize = 5;
-const BEFORE: u64 = 0x12_3456_A5_3C96;
+const BEFORE: u64 = 0x1234_56A5_3C96;
 
 /// What is exchanged while an upset comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +62,7 @@ impl Kind {
     fn position(self) -> u64 {
         match self {
             Self::Single => BEFORE & !0xFF_FFFF | 0x5A_C369,
-            Self::Everything => 0x65_4321_5A_C369,
+            Self::Everything => 0x6543_215A_C369,
             _ => BEFORE,
         }
     }
@@ -449,7 +449,7 @@ fn campaign(is_card: bool) -> BTreeMap<String, Tally> {
             // And how it goes on.
             let mut good_at_last = vec![false; LANES];
             for turn in 0..=TRIGGERS {
-                let position = 0x22_2222_11_1111 * (1 + turn as u64);
+                let position = 0x2222_2211_1111 * (1 + turn as u64);
                 many.turn_to(position);
                 if !is_card {
                     let start = TFormatStart {
