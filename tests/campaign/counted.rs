@@ -87,7 +87,7 @@ fn bad_arguments_of_parts_are_refused_with_their_limits() {
 fn upsets(port: Port, draw: Draw, only: &str) -> Tally {
     let campaign = Upsets::new(&[port], draw, 1, only).unwrap();
     let tally = run_shard(&campaign, Shard::WHOLE, 0, |_| {});
-    let cases = tally.count(|r| budget::is_case(r));
+    let cases = tally.count(budget::is_case);
     assert_eq!(cases, count(&campaign), "each case is in one class");
     tally
 }

@@ -435,8 +435,8 @@ fn campaign(is_card: bool) -> BTreeMap<String, Tally> {
             many.us(EXCHANGE_US);
             let seen = many.shown();
             many.us(QUIET_US);
-            let mut is_silent = vec![false; LANES];
-            let mut is_told = vec![false; LANES];
+            let mut is_silent = [false; LANES];
+            let mut is_told = [false; LANES];
             for lane in 0..batch.len() {
                 let it = seen[lane];
                 let is_whole = it.fresh && it.valid == [true; 2] && it.id == good.id;
@@ -447,7 +447,7 @@ fn campaign(is_card: bool) -> BTreeMap<String, Tally> {
                     || (!is_told[lane] && is_counted) && !it.is_one_of(&[kind.position()]);
             }
             // And how it goes on.
-            let mut good_at_last = vec![false; LANES];
+            let mut good_at_last = [false; LANES];
             for turn in 0..=TRIGGERS {
                 let position = 0x2222_2211_1111 * (1 + turn as u64);
                 many.turn_to(position);

@@ -2,7 +2,6 @@
 
 use crate::tools;
 use endat_gen::area::subjects;
-use std::fmt::Write;
 use std::fs;
 
 /// The five equations as Liu et al. publish them for 29 position bits (2024): d[30] is F1, d[29] is F2, d[28] the LSB.
