@@ -208,6 +208,7 @@ impl Many {
         );
     }
 
+    #[allow(clippy::needless_range_loop)] // two arrays side by side
     fn step(&mut self) {
         while let Some((_, lane, register, bit)) =
             self.flips.pop_if(|(cycle, ..)| *cycle <= self.cycle)
@@ -217,7 +218,6 @@ impl Many {
         let now = self.now();
         let [rx, tx, oe] = self.line;
         let before = self.rx;
-        #[allow(clippy::needless_range_loop)] // two arrays side by side
         for part in 0..2 {
             let levels = self.lanes.word(tx, 0, part);
             let drivers = self.lanes.word(oe, 0, part);
