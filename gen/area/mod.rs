@@ -2,10 +2,12 @@
 //!
 //! Figures are comparable only within one version of the tools, so another version of yosys is refused.
 
+mod guard;
 mod report;
 mod speed;
 mod subject;
 
+pub use guard::{Guard, GUARDS};
 pub use report::{report, Line, Peer, Report, PEERS};
 pub use speed::{speed, Device, Speed, DEVICES};
 pub use subject::{subjects, Subject};

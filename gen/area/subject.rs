@@ -1,5 +1,6 @@
 //! What is measured: the card of the preset, one channel, and some of its blocks.
 
+use super::guard::{Guard, GUARDS};
 use crate::artifact::Artifact;
 use crate::config::{load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
@@ -38,6 +39,8 @@ pub struct Subject {
     pub title: &'static str,
     /// The design.
     pub design: Design,
+    /// What is taken out of it.
+    pub without: Option<Guard>,
 }
 
 impl Subject {
@@ -56,6 +59,14 @@ impl Subject {
             name,
             title,
             design,
+            without: None,
+        })
+    }
+
+    fn without(guard: Guard, block: impl Block) -> Result<Self, GenError> {
+        Ok(Self {
+            without: Some(guard),
+            ..Self::new(guard.name, guard.title, block)?
         })
     }
 
@@ -63,9 +74,16 @@ impl Subject {
     pub fn files(&self) -> Vec<Artifact> {
         let files = print_files(&self.design, &Header::default());
         let files = files.into_iter();
-        files
+        let mut files: Vec<Artifact> = files
             .map(|(path, text)| Artifact::new(path, text))
-            .collect()
+            .collect();
+        for (path, from, to) in self.without.iter().flat_map(|guard| guard.edits) {
+            let file = files.iter_mut().find(|file| file.path == *path);
+            let file = file.unwrap_or_else(|| panic!("{}: no {path}", self.name));
+            assert_eq!(file.text.matches(from).count(), 1, "{}: {from}", self.name);
+            file.text = file.text.replace(from, to);
+        }
+        files
     }
 }
 
@@ -93,7 +111,7 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
     };
     let full = load_preset("s6_two_channel_service")?.card;
     let mixed = load_preset("mixed_protocols")?.card;
-    Ok(vec![
+    let mut subjects = vec![
         Subject::new("card_service", "the card with everything", Card::new(&full))?,
         Subject::new(
             "card",
@@ -229,5 +247,9 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             Crc5Fixed::<31>::default(),
         )?,
         Subject::new("crc5_serial", "CRC5, serial", Crc5Serial::default())?,
-    ])
+    ];
+    for guard in GUARDS {
+        subjects.push(Subject::without(guard, Channel::new(times))?);
+    }
+    Ok(subjects)
 }

@@ -115,7 +115,6 @@ pub struct Verdict {
     publish_now: Reg<Bit>,
     good_now: Reg<Bit>,
     pending: Reg<Bit>,
-    pending_good: Reg<Bit>,
     withdraw_now: Reg<Bit>,
     confirm_now: Reg<Bit>,
     late_now: Reg<Bit>,
@@ -127,7 +126,7 @@ pub struct Verdict {
     crc_bad: Signal<Local, Bit>,
     bad_now: Signal<Local, Bit>,
     proven: Signal<Local, Bit>,
-    proven_good: Signal<Local, Bit>,
+    is_pending: Signal<Local, Bit>,
     upset: Signal<Local, Bit>,
     recovery_min: Signal<Local, Bits<13>>,
     early: Signal<Local, Bit>,
@@ -217,7 +216,6 @@ impl Verdict {
             publish_now: Default::default(),
             good_now: Default::default(),
             pending: Default::default(),
-            pending_good: Default::default(),
             withdraw_now: Default::default(),
             confirm_now: Default::default(),
             late_now: Default::default(),
@@ -229,7 +227,7 @@ impl Verdict {
             crc_bad: Default::default(),
             bad_now: Default::default(),
             proven: Default::default(),
-            proven_good: Default::default(),
+            is_pending: Default::default(),
             upset: Default::default(),
             recovery_min: Default::default(),
             early: Default::default(),
@@ -260,16 +258,8 @@ impl Logic for Verdict {
             cause_now,
             flags_now
         );
-        dff_setup!(
-            self,
-            clock,
-            pending,
-            pending_good,
-            withdraw_now,
-            confirm_now
-        );
+        dff_setup!(self, clock, pending, withdraw_now, confirm_now);
         self.pending.reset.next = self.reset.val();
-        self.pending_good.reset.next = self.reset.val();
         self.withdraw_now.reset.next = self.reset.val();
         self.confirm_now.reset.next = self.reset.val();
         self.seen.reset.next = self.reset.val();
@@ -289,7 +279,7 @@ impl Logic for Verdict {
         self.cause_now.reset.next = self.reset.val();
         self.flags_now.reset.next = self.reset.val();
 
-        // The frame's bits stay where they are while this takes its two cycles.
+        // The frame's bits stay where they are until the verdict: an upset of one of them shows in its CRC.
         // Synthesis does not see by itself that some flags are never set.
         self.seen.d.next = self.found.val() & self.possible.val();
         self.taken_now.d.next = self.answer_taken.val();
@@ -301,9 +291,12 @@ impl Logic for Verdict {
         self.ended.d.next = self.normal_end.val();
 
         self.crc_bad.next = !(self.serial_ok.val() & self.parallel_ok.val());
+        self.bad_now.next = self.crc_bad.val() | self.f1.val() | !self.f2.val();
+        self.is_bad.next = self.bad_now.val();
+        self.is_pending.next = self.pending.q.val() | self.taken_now.q.val();
+        self.proven.next = self.prove.val() & self.is_pending.val();
         self.told.next = self.seen.q.val();
-        if self.taken_now.q.val() {
-            self.was_bad.d.next = self.crc_bad.val();
+        if self.proven.val() | (self.is_pending.val() & self.gave_up_now.q.val()) {
             if self.crc_bad.val() {
                 self.told.next = self.told.val() | self.crc_wrong.val();
                 if self.has_diagnosis.val() & self.is_echo.val() {
@@ -320,20 +313,10 @@ impl Logic for Verdict {
                 self.told.next = self.told.val() | self.parallel_wrong.val();
             }
         }
-        // Between the answer and the bit behind it: a register was upset, or a bare port's settings changed.
-        self.bad_now.next = self.crc_bad.val() | self.f1.val() | !self.f2.val();
-        self.proven.next = self.prove.val() & (self.pending.q.val() | self.taken_now.q.val());
-        self.proven_good.next = self.pending_good.q.val();
         if self.taken_now.q.val() {
-            self.proven_good.next = !self.bad_now.val();
+            self.was_bad.d.next = self.crc_bad.val();
         }
-        self.is_bad.next = !self.proven_good.val();
-        self.upset.next = self.proven.val()
-            & self.proven_good.val()
-            & (!self.parallel_ok.val() | self.settings_upset.val());
-        if self.pending.q.val() & (self.gave_up_now.q.val() | self.upset.val()) {
-            self.told.next = self.told.val() | self.flags_now.q.val();
-        }
+        self.upset.next = self.proven.val() & !self.bad_now.val() & self.settings_upset.val();
         if self.upset.val() {
             self.told.next = self.told.val() | self.stored_upset.val();
         }
@@ -353,12 +336,11 @@ impl Logic for Verdict {
             self.told.next = self.told.val() | self.too_short.val();
         }
         self.chooser.flags.next = self.told.val();
-        if self.taken_now.q.val()
+        if self.proven.val()
             | self.gave_up_now.q.val()
             | self.refused.q.val()
             | self.announced.q.val()
             | self.early.val()
-            | self.upset.val()
         {
             self.flags_now.d.next = self.told.val();
             self.cause_now.d.next = self.chooser.cause.val();
@@ -377,7 +359,6 @@ impl Logic for Verdict {
             & !self.is_own.val();
         if self.taken_now.q.val() {
             self.pending.d.next = true;
-            self.pending_good.d.next = !self.bad_now.val();
         }
         if self.proven.val() | self.gave_up_now.q.val() {
             self.pending.d.next = false;
@@ -387,7 +368,7 @@ impl Logic for Verdict {
         self.confirm_now.d.next = self.ended.q.val() & !self.is_own.val();
         self.is_received.next = self.taken_now.q.val() & !self.crc_bad.val();
         self.is_doubtful.next = self.taken_now.q.val() & self.crc_bad.val() & self.was_bad.q.val();
-        self.good_now.d.next = self.proven.val() & self.proven_good.val() & !self.upset.val();
+        self.good_now.d.next = self.proven.val() & !self.bad_now.val() & !self.upset.val();
         // `over` comes with cause and flags of whatever ended the frame.
         self.over_now.d.next = self.ended.q.val() | self.gave_up_now.q.val() | self.refused.q.val();
 

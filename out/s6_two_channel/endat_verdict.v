@@ -95,7 +95,7 @@ module endat_verdict (
     wire         crc_bad;
     wire         bad_now;
     wire         proven;
-    reg          proven_good;
+    wire         is_pending;
     wire         upset;
     reg   [12:0] recovery_min;
     wire         early;
@@ -115,8 +115,6 @@ module endat_verdict (
     reg          good_now = 1'b0;
     reg          pending = 1'b0;
     reg          pending_next;
-    reg          pending_good = 1'b0;
-    reg          pending_good_next;
     reg          withdraw_now = 1'b0;
     reg          confirm_now = 1'b0;
     reg          late_now = 1'b0;
@@ -133,29 +131,28 @@ module endat_verdict (
     );
 
     assign crc_bad = !(serial_ok & parallel_ok);
+
+    always @* begin
+        was_bad_next = was_bad;
+        if (taken_now) begin
+            was_bad_next = crc_bad;
+        end
+    end
     assign bad_now = crc_bad | f1 | !f2;
-    assign proven = prove & (pending | taken_now);
+    assign is_bad = bad_now;
+    assign is_pending = pending | taken_now;
+    assign proven = prove & is_pending;
 
     always @* begin
         pending_next = pending;
-        pending_good_next = pending_good;
         if (taken_now) begin
             pending_next = 1'b1;
-            pending_good_next = !bad_now;
         end
         if (proven | gave_up_now) begin
             pending_next = 1'b0;
         end
     end
-
-    always @* begin
-        proven_good = pending_good;
-        if (taken_now) begin
-            proven_good = !bad_now;
-        end
-    end
-    assign is_bad = !proven_good;
-    assign upset = proven & proven_good & (!parallel_ok | settings_upset);
+    assign upset = proven & !bad_now & settings_upset;
 
     always @* begin
         recovery_min = recovery_min_cycles;
@@ -166,10 +163,8 @@ module endat_verdict (
     assign early = HAS_DIAGNOSIS & ended & !is_going & !(|cause_now) & (recovery_cycles < recovery_min);
 
     always @* begin
-        was_bad_next = was_bad;
         told = seen;
-        if (taken_now) begin
-            was_bad_next = crc_bad;
+        if (proven | (is_pending & gave_up_now)) begin
             if (crc_bad) begin
                 told = told | CRC_WRONG;
                 if (HAS_DIAGNOSIS & is_echo) begin
@@ -186,9 +181,6 @@ module endat_verdict (
                 told = told | PARALLEL_WRONG;
             end
         end
-        if (pending & (gave_up_now | upset)) begin
-            told = told | flags_now;
-        end
         if (upset) begin
             told = told | STORED_UPSET;
         end
@@ -204,7 +196,7 @@ module endat_verdict (
         overrun_next = overrun;
         cause_now_next = cause_now;
         flags_now_next = flags_now;
-        if (taken_now | gave_up_now | refused | announced | early | upset) begin
+        if (proven | gave_up_now | refused | announced | early) begin
             flags_now_next = told;
             cause_now_next = chooser_cause;
             if (!is_own) begin
@@ -244,7 +236,6 @@ module endat_verdict (
             publish_now <= 1'b0;
             good_now <= 1'b0;
             pending <= 1'b0;
-            pending_good <= 1'b0;
             withdraw_now <= 1'b0;
             confirm_now <= 1'b0;
             late_now <= 1'b0;
@@ -263,9 +254,8 @@ module endat_verdict (
             overrun <= overrun_next;
             was_bad <= was_bad_next;
             publish_now <= (proven | refused | announced | (gave_up_now & !gave_up_late)) & !is_own;
-            good_now <= proven & proven_good & !upset;
+            good_now <= proven & !bad_now & !upset;
             pending <= pending_next;
-            pending_good <= pending_good_next;
             withdraw_now <= gave_up_late & !is_own;
             confirm_now <= ended & !is_own;
             late_now <= (gave_up_late | early) & !is_own;

@@ -60,22 +60,22 @@ fn area_is_exactly_what_the_table_says() {
     std::thread::scope(|scope| (0..2).for_each(|_| drop(scope.spawn(work))));
 
     let mut found = String::from(HEAD);
+    let mut above = vec![];
     for (subject, usages) in subjects.iter().zip(&measured) {
         let _ = writeln!(found, "\n[{}] # {}", subject.name, subject.title);
         for (family, Usage { lut, ff }) in [XC6S, ICE40].iter().zip(usages.get().unwrap()) {
             let _ = writeln!(found, "{} = {{ lut = {lut}, ff = {ff} }}", family.name);
             let ceiling = match (subject.name, family.name) {
-                ("channel", "xc6s") => 315,
-                ("card", "xc6s") => 915,
-                // 40 % of the LUTs of an LX9.
-                ("card_service", "xc6s") => 2288,
+                // Of these some 90 put the position before back when one is withdrawn; docs/reliability.md says what each guard costs.
+                ("channel", "xc6s") => 495,
+                ("card", "xc6s") => 1400,
+                // Half of the LUTs of an LX9.
+                ("card_service", "xc6s") => 2860,
                 _ => continue,
             };
-            assert!(
-                *lut <= ceiling,
-                "{}: {lut} LUT, aim {ceiling}",
-                subject.name
-            );
+            if *lut > ceiling {
+                above.push(format!("{}: {lut} LUT, aim {ceiling}", subject.name));
+            }
         }
     }
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(TABLE);
@@ -88,6 +88,7 @@ fn area_is_exactly_what_the_table_says() {
         "area has changed; if that is meant: UPDATE_EXPECT=1 cargo test area\n{}",
         difference(&expected, &found)
     );
+    assert!(above.is_empty(), "{above:?}");
 }
 
 /// Lines that differ.

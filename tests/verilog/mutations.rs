@@ -98,19 +98,19 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "a bad frame replaces the last good position",
         "endat_snapshot.v",
-        "take_good = publish & good;",
+        "take_good = publish & good & !moment_wrong;",
         "take_good = publish;",
     ),
     mutation(
         "hold has no effect",
         "endat_register_bank.v",
-        "!(pending | reading | hold)",
-        "!(pending | reading)",
+        "blocked_now = reading | hold;",
+        "blocked_now = reading;",
     ),
     mutation(
         "channel 1 is not triggered",
         "endat_card_core.v",
-        ".trigger(trigger_trigger),\n        .calibrate(bank_calibrate[1]),",
+        ".trigger(trigger_of_1),\n        .calibrate(bank_calibrate[1]),",
         ".trigger(1'b0),\n        .calibrate(bank_calibrate[1]),",
     ),
     mutation(

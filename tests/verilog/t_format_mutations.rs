@@ -108,8 +108,8 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "driver not released",
         EXCHANGE,
-        "if (strobe) begin\n                    drives_next = 1'b0;",
-        "if (strobe) begin\n                    drives_next = 1'b1;",
+        "in_request = (phase == PHASE_SEND) | (phase == PHASE_RELEASE);",
+        "in_request = (phase == PHASE_SEND) | (phase == PHASE_RELEASE) | (phase == PHASE_WAIT);",
     ),
     mutation(
         "driver released a bit too soon",
@@ -228,7 +228,7 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "T-format channel not triggered",
         "endat_card_core.v",
-        ".trigger(trigger_trigger),\n        .calibrate(bank_calibrate[0]),",
+        ".trigger(trigger_of_0),\n        .calibrate(bank_calibrate[0]),",
         ".trigger(1'b0),\n        .calibrate(bank_calibrate[0]),",
     ),
 ];

@@ -1,0 +1,101 @@
+//! What each guard of a position channel costs: its area without that guard.
+
+/// A guard, and the changes of the emitted Verilog that take its effect away, so that synthesis removes it.
+#[derive(Clone, Copy, Debug)]
+pub struct Guard {
+    /// Name of the subject that lacks it.
+    pub name: &'static str,
+    /// What the guard does.
+    pub title: &'static str,
+    /// File, text that stands there once, what it becomes.
+    pub edits: &'static [(&'static str, &'static str, &'static str)],
+}
+
+const SNAPSHOT: &str = "endat_snapshot.v";
+const TRANSACTION: &str = "endat_transaction.v";
+const SETTINGS: &str = "endat_frame_settings.v";
+
+/// All of them, the dearest first.
+pub const GUARDS: [Guard; 8] = [
+    Guard {
+        name: "channel_without_restore",
+        title: "a withdrawn position gives way to the one before, with its time stamp and CRC",
+        edits: &[
+            (SNAPSHOT, "held_next = earlier;", "held_next = held;"),
+            (
+                SNAPSHOT,
+                "held_crc_next = earlier_crc;",
+                "held_crc_next = held_crc;",
+            ),
+            (
+                SNAPSHOT,
+                "held_width_next = earlier_width;",
+                "held_width_next = held_width;",
+            ),
+            (
+                SNAPSHOT,
+                "held_f2_next = earlier_f2;",
+                "held_f2_next = held_f2;",
+            ),
+            (
+                SNAPSHOT,
+                "stamp_next = earlier_stamp;",
+                "stamp_next = stamp;",
+            ),
+        ],
+    },
+    Guard {
+        name: "channel_without_crc",
+        title: "parallel CRC over the aligned word, until it is published",
+        edits: &[(
+            "endat_crc5_check.v",
+            "is_ok = sum == received",
+            "is_ok = 1'b1",
+        )],
+    },
+    Guard {
+        name: "channel_without_parity",
+        title: "parity of the stored position, its CRC, width and time stamp",
+        edits: &[(SNAPSHOT, "upset_now = is_upset &", "upset_now = 1'b0 &")],
+    },
+    Guard {
+        name: "channel_without_pulses",
+        title: "count of the clock pulses, looked at when the frame is over",
+        edits: &[(TRANSACTION, "!HAS_DOUBLE & (outstanding != 7'd1)", "1'b0")],
+    },
+    Guard {
+        name: "channel_without_moment",
+        title: "parity of the time stamp while the frame runs",
+        edits: &[(SNAPSHOT, "moment_wrong = good &", "moment_wrong = 1'b0 &")],
+    },
+    Guard {
+        name: "channel_without_limits",
+        title: "time-outs that end although the timer has run past them",
+        edits: &[(
+            TRANSACTION,
+            "(timer >= timer_limit) & !cleared",
+            "(timer == timer_limit)",
+        )],
+    },
+    Guard {
+        name: "channel_without_settings",
+        title: "command and width as at the start of the frame: taken over, with parity",
+        edits: &[
+            (
+                SETTINGS,
+                "is_upset = parity_now ^ parity",
+                "is_upset = 1'b0",
+            ),
+            (SETTINGS, "if (is_at_rest) begin", "if (1'b1) begin"),
+        ],
+    },
+    Guard {
+        name: "channel_without_owing",
+        title: "a result for each trigger, whatever becomes of its frame",
+        edits: &[(
+            TRANSACTION,
+            "if (accept & !own) begin\n            owing_next = 1'b1;",
+            "if (accept & !own) begin\n            owing_next = 1'b0;",
+        )],
+    },
+];
