@@ -9,6 +9,9 @@
 //!
 //! With a supplement the clock stays LOW after the last CRC bit (`Park`), and `Frame` goes on until its cells are over.
 //!
+//! A frame that measures the delay after a reset, a plug, a fault or two wrong CRCs brings no position: at the slow clock an encoder of
+//! another width can look like a good one. The frame at the full clock follows by itself, and its result is the trigger's.
+//!
 //! A frame is begun by a trigger, or by `own`, for a request that needs the line for itself. What becomes of the first is
 //! published; what becomes of either is told with `over`.
 //!
@@ -253,6 +256,9 @@ pub struct Transaction {
     cleared: Reg<Bit>,
     high_at_tick: Reg<Bit>,
     owing: Reg<Bit>,
+    doubted: Reg<Bit>,
+    measuring: Reg<Bit>,
+    once_more: Reg<Bit>,
     limit: Signal<Local, Bits<16>>,
     running: Signal<Local, Bit>,
     in_us: Signal<Local, Bit>,
@@ -279,6 +285,7 @@ pub struct Transaction {
     found_late: Signal<Local, Bit>,
     leave: Signal<Local, Bit>,
     lost: Signal<Local, Bit>,
+    owed: Signal<Local, Bit>,
     proof: Signal<Local, Bit>,
     plugged: Signal<Local, Bit>,
 }
@@ -323,7 +330,19 @@ impl Logic for Transaction {
             passes,
             one_left
         );
-        dff_setup!(self, clock, cleared, high_at_tick, owing);
+        dff_setup!(
+            self,
+            clock,
+            cleared,
+            high_at_tick,
+            owing,
+            doubted,
+            measuring,
+            once_more
+        );
+        self.doubted.reset.next = false;
+        self.measuring.reset.next = self.reset.val();
+        self.once_more.reset.next = self.reset.val();
         self.cleared.reset.next = self.reset.val();
         self.owing.reset.next = self.reset.val();
         self.high_at_tick.reset.next = self.reset.val();
@@ -363,7 +382,12 @@ impl Logic for Transaction {
 
         self.own.next = self.is_own.val() & self.has_all.val();
         self.triggered.next = self.trigger.val() & !(self.hold_off.val() & self.has_all.val());
-        self.wanted.next = self.triggered.val() | (self.begin_own.val() & self.has_all.val());
+        // The position that a measuring frame has made possible.
+        self.owed.next = self.once_more.q.val()
+            & self.owing.q.val()
+            & !(self.hold_off.val() & self.has_all.val());
+        self.wanted.next =
+            self.triggered.val() | self.owed.val() | (self.begin_own.val() & self.has_all.val());
         self.proof.next = false;
         self.plugged.next = false;
         self.refuse.next = false;
@@ -411,13 +435,13 @@ impl Logic for Transaction {
                     self.phase.d.next = Phase::NotReady;
                     // Longer than an edge rings.
                     self.plugged.next = self.high_at_tick.q.val() & self.tick_us.val();
-                    if self.triggered.val() {
+                    if self.triggered.val() | self.owed.val() {
                         self.found.next = self.not_low.val();
                         self.give_up.next = true;
                     }
                 }
                 // A frame that has vanished without a result: a register was upset.
-                if self.owing.q.val() {
+                if self.owing.q.val() & !self.once_more.q.val() {
                     self.found.next = self.upset.val();
                     self.give_up.next = true;
                 }
@@ -428,7 +452,7 @@ impl Logic for Transaction {
                 if self.level.val() {
                     self.phase.d.next = Phase::NotReady;
                     self.plugged.next = true;
-                    if self.triggered.val() {
+                    if self.triggered.val() | self.owed.val() {
                         self.found.next = self.not_low.val();
                         self.give_up.next = true;
                     }
@@ -445,8 +469,16 @@ impl Logic for Transaction {
                             self.refuse.next = true;
                         }
                     }
+                    // The line is wanted for long; the trigger has a result all the same: nothing wrong, no position.
+                    if self.once_more.q.val()
+                        & self.hold_off.val()
+                        & self.has_all.val()
+                        & !self.own.val()
+                    {
+                        self.refuse.next = true;
+                    }
                 }
-                if self.owing.q.val() {
+                if self.owing.q.val() & !self.once_more.q.val() {
                     self.found.next = self.upset.val();
                     self.give_up.next = true;
                 }
@@ -656,6 +688,8 @@ impl Logic for Transaction {
             self.timer_clear.next = true;
             self.accept.next = false;
             self.refuse.next = false;
+            // A trigger just behind the one that was refused is lost, not forgotten.
+            self.idle.next = false;
             // DATA LOW behind a frame of another length does not end it once more.
             self.normal_end.next = false;
             self.answered.d.next = false;
@@ -706,6 +740,7 @@ impl Logic for Transaction {
         self.verdict.found.next = self.found.val();
         self.verdict.answer_taken.next = self.answer_taken.val();
         self.verdict.prove.next = self.proof.val();
+        self.verdict.is_measuring.next = self.measuring.q.val();
         self.verdict.settings_upset.next = self.settings_upset.val();
         self.verdict.give_up.next = self.give_up.val();
         self.verdict.is_late.next = self.answered.q.val() | self.found_late.val();
@@ -735,17 +770,33 @@ impl Logic for Transaction {
         }
         self.lost.next = self.trigger.val()
             & !self.going.q.val()
-            & ((!self.accept.val() & !self.idle.val()) | (self.accept.val() & self.own.val()));
+            & ((!self.accept.val() & !self.idle.val())
+                | (self.accept.val() & (self.own.val() | self.once_more.q.val())));
         self.verdict.lost.next = self.lost.val();
         self.known.next =
             self.is_calibrated.q.val() | (self.has_alignment.val() & self.is_fixed.val());
         if self.verdict.publish.val() {
             self.owing.d.next = false;
         }
+        if self.verdict.publish.val() & self.verdict.good.val() {
+            self.doubted.d.next = false;
+        }
+        if self.plugged.val() | self.verdict.gave_up.val() | self.verdict.is_doubtful.val() {
+            self.doubted.d.next = true;
+        }
+        // What else becomes of that frame is the trigger's result, not something that comes behind it.
+        if self.verdict.once_more.val() {
+            self.once_more.d.next = true;
+            self.answered.d.next = false;
+        }
+        if (self.accept.val() & !self.own.val()) | self.refuse.val() | self.verdict.gave_up.val() {
+            self.once_more.d.next = false;
+        }
         if self.accept.val() & !self.own.val() {
             self.owing.d.next = true;
         }
         if self.accept.val() {
+            self.measuring.d.next = !self.known.val() & self.doubted.q.val();
             self.answered.d.next = false;
             self.in_supplement.d.next = false;
             self.acquiring.d.next =
@@ -818,7 +869,8 @@ impl Logic for Transaction {
         self.stop.next = self.stop_now.q.val() | self.sent.val();
         self.acquire.next = self.acquiring.q.val();
         self.slow.next = self.slow_now.q.val();
-        self.busy.next = !self.idle.val() | (self.begin_own.val() & self.has_all.val());
+        self.busy.next =
+            !self.idle.val() | self.once_more.q.val() | (self.begin_own.val() & self.has_all.val());
         self.publish.next = self.verdict.publish.val();
         self.good.next = self.verdict.good.val();
         self.late_fault.next = self.verdict.late_fault.val();
@@ -831,6 +883,7 @@ impl Logic for Transaction {
         self.begun.next = self.accept.val() | self.refuse.val();
         // A reset may have come in the middle of a frame. After power-up nobody has begun one.
         if self.reset.val() {
+            self.doubted.d.next = true;
             self.phase.d.next = Phase::Abort;
         }
         self.is_at_rest.next = ((self.phase.q.val() == Phase::NotReady)

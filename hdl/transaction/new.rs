@@ -145,6 +145,9 @@ impl Transaction {
             cleared: Reg::new(true),
             high_at_tick: Default::default(),
             owing: Default::default(),
+            doubted: Default::default(),
+            measuring: Default::default(),
+            once_more: Default::default(),
             limit: Default::default(),
             running: Default::default(),
             in_us: Default::default(),
@@ -171,6 +174,7 @@ impl Transaction {
             found_late: Default::default(),
             leave: Default::default(),
             lost: Default::default(),
+            owed: Default::default(),
             proof: Default::default(),
             plugged: Default::default(),
         }

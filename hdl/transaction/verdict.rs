@@ -29,6 +29,8 @@ pub struct Verdict {
     pub answer_taken: Signal<In, Bit>,
     /// Strobe, with `taken` or later: the answer has the length it should have; it is published.
     pub prove: Signal<In, Bit>,
+    /// The frame measures the delay: a good answer to a trigger is not published, its position is asked for once more.
+    pub is_measuring: Signal<In, Bit>,
     /// Settings of the frame have changed under way.
     pub settings_upset: Signal<In, Bit>,
     /// Strobe: the frame is aborted.
@@ -75,6 +77,8 @@ pub struct Verdict {
     pub is_telling: Signal<Out, Bit>,
     /// Strobe: result of a trigger, `cause` and `flags` are valid.
     pub publish: Signal<Out, Bit>,
+    /// Strobe, instead of `publish`: the delay is measured, now the position itself.
+    pub once_more: Signal<Out, Bit>,
     /// With `publish`: the position is good.
     pub good: Signal<Out, Bit>,
     /// Strobe: something was wrong after the result was published.
@@ -114,6 +118,8 @@ pub struct Verdict {
     was_bad: Reg<Bit>,
     publish_now: Reg<Bit>,
     good_now: Reg<Bit>,
+    once_more_now: Reg<Bit>,
+    is_silent: Reg<Bit>,
     pending: Reg<Bit>,
     withdraw_now: Reg<Bit>,
     confirm_now: Reg<Bit>,
@@ -128,6 +134,7 @@ pub struct Verdict {
     proven: Signal<Local, Bit>,
     is_pending: Signal<Local, Bit>,
     upset: Signal<Local, Bit>,
+    measured: Signal<Local, Bit>,
     recovery_min: Signal<Local, Bits<13>>,
     early: Signal<Local, Bit>,
 }
@@ -161,6 +168,7 @@ impl Verdict {
             found: Default::default(),
             answer_taken: Default::default(),
             prove: Default::default(),
+            is_measuring: Default::default(),
             settings_upset: Default::default(),
             give_up: Default::default(),
             is_late: Default::default(),
@@ -184,6 +192,7 @@ impl Verdict {
             gave_up: Default::default(),
             is_telling: Default::default(),
             publish: Default::default(),
+            once_more: Default::default(),
             good: Default::default(),
             late_fault: Default::default(),
             withdraw: Default::default(),
@@ -215,6 +224,8 @@ impl Verdict {
             was_bad: Default::default(),
             publish_now: Default::default(),
             good_now: Default::default(),
+            once_more_now: Default::default(),
+            is_silent: Default::default(),
             pending: Default::default(),
             withdraw_now: Default::default(),
             confirm_now: Default::default(),
@@ -229,6 +240,7 @@ impl Verdict {
             proven: Default::default(),
             is_pending: Default::default(),
             upset: Default::default(),
+            measured: Default::default(),
             recovery_min: Default::default(),
             early: Default::default(),
         }
@@ -258,7 +270,17 @@ impl Logic for Verdict {
             cause_now,
             flags_now
         );
-        dff_setup!(self, clock, pending, withdraw_now, confirm_now);
+        dff_setup!(
+            self,
+            clock,
+            pending,
+            once_more_now,
+            is_silent,
+            withdraw_now,
+            confirm_now
+        );
+        self.once_more_now.reset.next = self.reset.val();
+        self.is_silent.reset.next = self.reset.val();
         self.pending.reset.next = self.reset.val();
         self.withdraw_now.reset.next = self.reset.val();
         self.confirm_now.reset.next = self.reset.val();
@@ -317,10 +339,17 @@ impl Logic for Verdict {
             self.was_bad.d.next = self.crc_bad.val();
         }
         self.upset.next = self.proven.val() & !self.bad_now.val() & self.settings_upset.val();
-        if self.upset.val() {
+        self.measured.next = self.proven.val()
+            & self.is_measuring.val()
+            & !self.bad_now.val()
+            & !self.upset.val()
+            & !self.is_own.val();
+        // A frame is not given up for nothing: the state that says so was upset.
+        if self.upset.val() | (self.gave_up_now.q.val() & !self.seen.q.val().any()) {
             self.told.next = self.told.val() | self.stored_upset.val();
         }
-        if self.overrun.q.val() {
+        // That is for the result to say.
+        if self.overrun.q.val() & !self.measured.val() {
             self.told.next = self.told.val() | self.trigger_overrun.val();
         }
         self.recovery_min.next = self.recovery_min_cycles.val();
@@ -344,7 +373,7 @@ impl Logic for Verdict {
         {
             self.flags_now.d.next = self.told.val();
             self.cause_now.d.next = self.chooser.cause.val();
-            if !self.is_own.val() {
+            if !self.is_own.val() & !self.measured.val() {
                 self.overrun.d.next = false;
             }
         }
@@ -352,7 +381,14 @@ impl Logic for Verdict {
             self.overrun.d.next = true;
         }
         self.lost_now.d.next = self.lost.val();
-        self.publish_now.d.next = (self.proven.val()
+        self.once_more_now.d.next = self.measured.val();
+        if self.measured.val() {
+            self.is_silent.d.next = true;
+        }
+        if self.answer_taken.val() {
+            self.is_silent.d.next = false;
+        }
+        self.publish_now.d.next = ((self.proven.val() & !self.measured.val())
             | self.refused.q.val()
             | self.announced.q.val()
             | (self.gave_up_now.q.val() & !self.gave_up_late.q.val()))
@@ -363,7 +399,9 @@ impl Logic for Verdict {
         if self.proven.val() | self.gave_up_now.q.val() {
             self.pending.d.next = false;
         }
-        self.late_now.d.next = (self.gave_up_late.q.val() | self.early.val()) & !self.is_own.val();
+        self.late_now.d.next = (self.gave_up_late.q.val()
+            | (self.early.val() & !self.is_silent.q.val()))
+            & !self.is_own.val();
         self.withdraw_now.d.next = self.gave_up_late.q.val() & !self.is_own.val();
         self.confirm_now.d.next = self.ended.q.val() & !self.is_own.val();
         self.is_received.next = self.taken_now.q.val() & !self.crc_bad.val();
@@ -380,6 +418,7 @@ impl Logic for Verdict {
             | self.over_now.q.val();
         self.publish.next = self.publish_now.q.val();
         self.good.next = self.good_now.q.val();
+        self.once_more.next = self.once_more_now.q.val();
         self.late_fault.next = self.late_now.q.val();
         self.withdraw.next = self.withdraw_now.q.val();
         self.confirm.next = self.confirm_now.q.val();

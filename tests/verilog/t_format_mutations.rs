@@ -108,8 +108,8 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "driver not released",
         EXCHANGE,
-        "in_request = (phase == PHASE_SEND) | (phase == PHASE_RELEASE);",
-        "in_request = (phase == PHASE_SEND) | (phase == PHASE_RELEASE) | (phase == PHASE_WAIT);",
+        "if (strobe) begin\n                    in_request = 1'b0;",
+        "if (expired) begin\n                    in_request = 1'b0;",
     ),
     mutation(
         "driver released a bit too soon",

@@ -107,6 +107,8 @@ pub(in crate::campaign) struct Reading {
     pub has_result: bool,
     /// Its cause, or the one that took its place; 0 = none.
     pub cause: u64,
+    /// A request has not been answered, and its mailbox says so.
+    pub is_refused: bool,
     /// Position and `fresh` with `valid`.
     pub position: u64,
     pub valid: bool,
@@ -132,8 +134,13 @@ impl Reading {
         self.valid && Some(self.position) == self.sent
     }
 
+    /// Nobody has been told of anything.
+    fn is_silent(&self) -> bool {
+        self.cause == 0 && !self.is_refused
+    }
+
     fn class(&self) -> Class {
-        if self.cause != 0 {
+        if !self.is_silent() {
             return Class::Detected;
         }
         match (self.has_result, self.valid, self.fresh) {
@@ -179,7 +186,7 @@ impl Outcome {
 
     /// Takes a reading. Whether all has been seen: two good ones after the frame, or too many that are not.
     pub fn read(&mut self, reading: &Reading) -> bool {
-        let is_silent = reading.cause == 0;
+        let is_silent = reading.is_silent();
         if is_silent && self.open_pulses {
             self.mark(Mark::Pulses);
         }

@@ -241,9 +241,9 @@ struct Outputs {
     fresh: PortId,
     cause: PortId,
     stamp: PortId,
-    /// With requests: both informations, which are good; answer, whether it is.
+    /// With requests: both informations, which are good; answer, whether it is, and what became of its frame.
     infos: [PortId; 3],
-    reply: [PortId; 2],
+    reply: [PortId; 3],
 }
 
 /// Lanes that are all about to begin the frame.
@@ -282,7 +282,7 @@ impl Ready {
             cause: find("cause"),
             stamp: find("first_fall_timestamp"),
             infos: ["info_1", "info_2", "info_good"].map(find),
-            reply: ["reply", "reply_good"].map(find),
+            reply: ["reply", "reply_good", "over_cause"].map(find),
         };
         let pins = (PinNames::channel(), links.collect());
         let mut bench = LaneBench::new(engine, SYSTEM_HZ, vec![pins]);

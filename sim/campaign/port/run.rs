@@ -286,7 +286,7 @@ impl Run<'_> {
         let stamp = get(outputs.stamp);
         let has_requests = self.ready.port.features().requests;
         let [info_1, info_2, info_good] = outputs.infos.map(&mut get);
-        let [reply, reply_good] = outputs.reply.map(&mut get);
+        let [reply, reply_good, over_cause] = outputs.reply.map(&mut get);
         let link = self.bench.link(0, index);
         let (frames, all) = (
             &link.encoder().frames()[lane.frames..],
@@ -348,6 +348,7 @@ impl Run<'_> {
         Reading {
             has_result: is_request && !frames.is_empty() || !results.is_empty(),
             cause,
+            is_refused: is_request && (reply_good == 0 || over_cause != 0),
             position,
             valid,
             fresh,
