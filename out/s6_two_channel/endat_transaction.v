@@ -210,6 +210,7 @@ module endat_transaction (
     reg          found_late;
     wire         leave;
     wire         lost;
+    wire         owed;
     reg          proof;
     reg          plugged;
     wire         health_under_way;
@@ -224,6 +225,7 @@ module endat_transaction (
     wire         verdict_is_doubtful;
     wire         verdict_is_bad;
     wire         verdict_is_telling;
+    wire         verdict_once_more;
     reg    [2:0] phase = PHASE_NOT_READY;
     reg    [2:0] phase_next;
     reg   [15:0] timer = 16'd0;
@@ -280,6 +282,12 @@ module endat_transaction (
     reg          high_at_tick_next;
     reg          owing = 1'b0;
     reg          owing_next;
+    reg          doubted = 1'b0;
+    reg          doubted_next;
+    reg          measuring = 1'b0;
+    reg          measuring_next;
+    reg          once_more = 1'b0;
+    reg          once_more_next;
 
     endat_line_health u_health (
         .clock(clock),
@@ -302,6 +310,7 @@ module endat_transaction (
         .found(found),
         .answer_taken(answer_taken),
         .prove(proof),
+        .is_measuring(measuring),
         .settings_upset(settings_upset),
         .give_up(give_up),
         .is_late(verdict_is_late),
@@ -325,6 +334,7 @@ module endat_transaction (
         .gave_up(abort),
         .is_telling(verdict_is_telling),
         .publish(publish),
+        .once_more(verdict_once_more),
         .good(good),
         .late_fault(late_fault),
         .withdraw(withdraw),
@@ -355,7 +365,8 @@ module endat_transaction (
     end
     assign own = is_own & HAS_ALL;
     assign triggered = trigger & !(hold_off & HAS_ALL);
-    assign wanted = triggered | (begin_own & HAS_ALL);
+    assign owed = once_more & owing & !(hold_off & HAS_ALL);
+    assign wanted = triggered | owed | (begin_own & HAS_ALL);
     assign endless = |(timer & FRAME_US);
 
     always @* begin
@@ -394,6 +405,9 @@ module endat_transaction (
         leaving_next = leaving;
         slow_now_next = slow_now;
         passes_next = passes;
+        doubted_next = doubted;
+        measuring_next = measuring;
+        once_more_next = once_more;
         proof = 1'b0;
         plugged = 1'b0;
         refuse = 1'b0;
@@ -426,12 +440,12 @@ module endat_transaction (
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
                     plugged = high_at_tick & tick_us;
-                    if (triggered) begin
+                    if (triggered | owed) begin
                         found = not_low;
                         give_up = 1'b1;
                     end
                 end
-                if (owing) begin
+                if (owing & !once_more) begin
                     found = UPSET;
                     give_up = 1'b1;
                 end
@@ -442,23 +456,28 @@ module endat_transaction (
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
                     plugged = 1'b1;
-                    if (triggered) begin
+                    if (triggered | owed) begin
                         found = not_low;
                         give_up = 1'b1;
                     end
-                end else if (wanted) begin
-                    if (is_known) begin
-                        accept = 1'b1;
-                        phase_next = PHASE_FRAME;
-                        if (extra) begin
-                            phase_next = PHASE_FIRST_LOW;
+                end else begin
+                    if (wanted) begin
+                        if (is_known) begin
+                            accept = 1'b1;
+                            phase_next = PHASE_FRAME;
+                            if (extra) begin
+                                phase_next = PHASE_FIRST_LOW;
+                            end
+                        end else begin
+                            found = UNKNOWN_COMMAND;
+                            refuse = 1'b1;
                         end
-                    end else begin
-                        found = UNKNOWN_COMMAND;
+                    end
+                    if (once_more & hold_off & HAS_ALL & !own) begin
                         refuse = 1'b1;
                     end
                 end
-                if (owing) begin
+                if (owing & !once_more) begin
                     found = UPSET;
                     give_up = 1'b1;
                 end
@@ -643,6 +662,7 @@ module endat_transaction (
             timer_clear = 1'b1;
             accept = 1'b0;
             refuse = 1'b0;
+            idle = 1'b0;
             normal_end = 1'b0;
             answered_next = 1'b0;
             is_calibrated_next = 1'b0;
@@ -674,7 +694,21 @@ module endat_transaction (
         if (verdict_is_doubtful & !going) begin
             is_calibrated_next = 1'b0;
         end
+        if (publish & good) begin
+            doubted_next = 1'b0;
+        end
+        if (plugged | abort | verdict_is_doubtful) begin
+            doubted_next = 1'b1;
+        end
+        if (verdict_once_more) begin
+            once_more_next = 1'b1;
+            answered_next = 1'b0;
+        end
+        if ((accept & !own) | refuse | abort) begin
+            once_more_next = 1'b0;
+        end
         if (accept) begin
+            measuring_next = !known & doubted;
             answered_next = 1'b0;
             in_supplement_next = 1'b0;
             acquiring_next = !known & !(HAS_ALIGNMENT & (|passes));
@@ -703,6 +737,7 @@ module endat_transaction (
             passes_next = 2'd0;
         end
         if (reset) begin
+            doubted_next = 1'b1;
             phase_next = PHASE_ABORT;
         end
         if (phase != PHASE_ABORT) begin
@@ -721,7 +756,7 @@ module endat_transaction (
         end
     end
     assign verdict_is_late = answered | found_late;
-    assign lost = trigger & !going & ((!accept & !idle) | (accept & own));
+    assign lost = trigger & !going & ((!accept & !idle) | (accept & (own | once_more)));
 
     always @* begin
         high_at_tick_next = high_at_tick & level;
@@ -758,7 +793,7 @@ module endat_transaction (
     assign stop = stop_now | sent;
     assign acquire = acquiring;
     assign slow = slow_now;
-    assign busy = !idle | (begin_own & HAS_ALL);
+    assign busy = !idle | once_more | (begin_own & HAS_ALL);
     assign start_supplement = supplement_now;
     assign begun = accept | refuse;
     assign is_at_rest = ((phase == PHASE_NOT_READY) | (phase == PHASE_READY)) & !verdict_is_telling;
@@ -772,6 +807,7 @@ module endat_transaction (
 
     always @(posedge clock) begin
         phase <= phase_next;
+        doubted <= doubted_next;
     end
 
     always @(posedge clock) begin
@@ -807,6 +843,8 @@ module endat_transaction (
             cleared <= 1'b1;
             high_at_tick <= 1'b0;
             owing <= 1'b0;
+            measuring <= 1'b0;
+            once_more <= 1'b0;
         end else begin
             timer <= timer_next;
             timer_limit <= limit;
@@ -839,6 +877,8 @@ module endat_transaction (
             cleared <= cleared_next;
             high_at_tick <= high_at_tick_next;
             owing <= owing_next;
+            measuring <= measuring_next;
+            once_more <= once_more_next;
         end
     end
 endmodule

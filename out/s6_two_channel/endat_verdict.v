@@ -16,6 +16,8 @@ module endat_verdict (
     input  wire         answer_taken,
     // Strobe, with taken or later: the answer has the length it should have; it is published.
     input  wire         prove,
+    // The frame measures the delay: a good answer to a trigger is not published, its position is asked for once more.
+    input  wire         is_measuring,
     // Settings of the frame have changed under way.
     input  wire         settings_upset,
     // Strobe: the frame is aborted.
@@ -62,6 +64,8 @@ module endat_verdict (
     output wire         is_telling,
     // Strobe: result of a trigger, cause and flags are valid.
     output wire         publish,
+    // Strobe, instead of publish: the delay is measured, now the position itself.
+    output wire         once_more,
     // With publish: the position is good.
     output wire         good,
     // Strobe: something was wrong after the result was published.
@@ -97,6 +101,7 @@ module endat_verdict (
     wire         proven;
     wire         is_pending;
     wire         upset;
+    wire         measured;
     reg   [12:0] recovery_min;
     wire         early;
     wire   [4:0] chooser_cause;
@@ -113,6 +118,9 @@ module endat_verdict (
     reg          was_bad_next;
     reg          publish_now = 1'b0;
     reg          good_now = 1'b0;
+    reg          once_more_now = 1'b0;
+    reg          is_silent = 1'b0;
+    reg          is_silent_next;
     reg          pending = 1'b0;
     reg          pending_next;
     reg          withdraw_now = 1'b0;
@@ -153,6 +161,17 @@ module endat_verdict (
         end
     end
     assign upset = proven & !bad_now & settings_upset;
+    assign measured = proven & is_measuring & !bad_now & !upset & !is_own;
+
+    always @* begin
+        is_silent_next = is_silent;
+        if (measured) begin
+            is_silent_next = 1'b1;
+        end
+        if (answer_taken) begin
+            is_silent_next = 1'b0;
+        end
+    end
 
     always @* begin
         recovery_min = recovery_min_cycles;
@@ -181,10 +200,10 @@ module endat_verdict (
                 told = told | PARALLEL_WRONG;
             end
         end
-        if (upset) begin
+        if (upset | (gave_up_now & !(|seen))) begin
             told = told | STORED_UPSET;
         end
-        if (overrun) begin
+        if (overrun & !measured) begin
             told = told | TRIGGER_OVERRUN;
         end
         if (early) begin
@@ -199,7 +218,7 @@ module endat_verdict (
         if (proven | gave_up_now | refused | announced | early) begin
             flags_now_next = told;
             cause_now_next = chooser_cause;
-            if (!is_own) begin
+            if (!is_own & !measured) begin
                 overrun_next = 1'b0;
             end
         end
@@ -214,6 +233,7 @@ module endat_verdict (
     assign is_telling = ended | gave_up_now | refused | over_now;
     assign publish = publish_now;
     assign good = good_now;
+    assign once_more = once_more_now;
     assign late_fault = late_now;
     assign withdraw = withdraw_now;
     assign confirm = confirm_now;
@@ -235,6 +255,8 @@ module endat_verdict (
             was_bad <= 1'b0;
             publish_now <= 1'b0;
             good_now <= 1'b0;
+            once_more_now <= 1'b0;
+            is_silent <= 1'b0;
             pending <= 1'b0;
             withdraw_now <= 1'b0;
             confirm_now <= 1'b0;
@@ -253,12 +275,14 @@ module endat_verdict (
             ended <= normal_end;
             overrun <= overrun_next;
             was_bad <= was_bad_next;
-            publish_now <= (proven | refused | announced | (gave_up_now & !gave_up_late)) & !is_own;
+            publish_now <= ((proven & !measured) | refused | announced | (gave_up_now & !gave_up_late)) & !is_own;
             good_now <= proven & !bad_now & !upset;
+            once_more_now <= measured;
+            is_silent <= is_silent_next;
             pending <= pending_next;
             withdraw_now <= gave_up_late & !is_own;
             confirm_now <= ended & !is_own;
-            late_now <= (gave_up_late | early) & !is_own;
+            late_now <= (gave_up_late | (early & !is_silent)) & !is_own;
             over_now <= ended | gave_up_now | refused;
             lost_now <= lost;
             cause_now <= cause_now_next;
