@@ -406,7 +406,7 @@ fn what_follows_from_another_mistake_is_not_told() {
     let rows = [
         (
             single.replacen("[[channel]]    ", "[channel]", 1),
-            "channel = ",
+            "[channel]: stands in single brackets",
         ),
         (
             format!("{}{}", &PRESET[..second], &PRESET[end..]).replacen(
@@ -580,7 +580,7 @@ proptest! {
 #[test]
 fn single_brackets_and_the_bus_of_a_receiver_are_called_what_they_are() {
     use endat_gen::config::parse_any;
-    let from = PRESET.find("[[channel]]").unwrap();
+    let from = PRESET.find("\n[[channel]]").unwrap() + 1;
     let line = PRESET[..from].matches('\n').count() + 1;
     let channel = &PRESET[from..][..PRESET[from + 1..].find("\n[").unwrap() + 2];
     let single = format!(

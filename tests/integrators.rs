@@ -197,6 +197,16 @@ fn the_c_example_reads_positions() {
     let program = folder.join("example");
     let (is_good, told) = run(program.to_str().unwrap(), &folder, &[&card.name]);
     assert!(is_good && told.contains("channel 1: position "), "{told}");
+    // Both are of one moment: the same trigger.
+    let stamp = |line: &str| {
+        line.split("time stamp ")
+            .nth(1)?
+            .split(',')
+            .next()
+            .map(str::to_owned)
+    };
+    let stamps: Vec<_> = told.lines().filter_map(stamp).collect();
+    assert!(stamps.len() == 2 && stamps[0] == stamps[1], "{told}");
     let (is_good, told) = run(program.to_str().unwrap(), &folder, &["/nowhere"]);
     assert!(!is_good && told.contains("/nowhere"), "{told}");
 }

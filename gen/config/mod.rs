@@ -279,7 +279,7 @@ pub fn parse(file: &str, text: &str) -> Result<Project, Vec<Diagnostic>> {
     check_form(file, text)?;
     if let Some(line) = t_format::receiver_line(text) {
         let known = HostBus::ALL.map(HostBus::name).join(", ");
-        let text = format!("host.bus = \"{}\": makes this the file of a T-format receiver, and this command works on cards; use emit or explain, or choose a card's bus: {known}", t_format::BUS);
+        let text = format!("host.bus = \"{}\": is a T-format receiver, and this command works on cards; use emit or explain, or choose a card's bus: {known}", t_format::BUS);
         return Err(vec![Diagnostic {
             file: file.into(),
             line,

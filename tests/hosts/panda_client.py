@@ -52,6 +52,7 @@ def main(program, folder):
             for channel in range(1, CHANNELS + 1):
                 angle = np.array(file[f"INENC{channel}.VAL.Value"])
                 assert (np.array(file[f"INENC{channel}.FRESH.Value"]) == 1).all()
+                assert (np.array(file[f"INENC{channel}.CAUSE.Value"]) == 0).all()
                 # Shafts turn slowly, and always on.
                 assert (np.diff(angle) > 0).all() and 0 < angle[-1] - angle[0] < 360
     print("PANDA GOOD")

@@ -234,9 +234,15 @@ fn read_svd(text: &str) -> BTreeSet<String> {
 /// of channel 0 that is told of all channels.
 #[test]
 fn the_svd_says_what_the_table_says() {
+    let mut interrupts = 0;
     for project in projects() {
-        same(&read_svd(&text_of(&project, ".svd")), &project, "SVD");
+        let text = text_of(&project, ".svd");
+        same(&read_svd(&text), &project, "SVD");
+        let has_interrupt = text.contains("<interrupt>");
+        assert_eq!(has_interrupt, project.card.outputs.interrupt);
+        interrupts += usize::from(has_interrupt);
     }
+    assert!(interrupts > 0, "no card here has one");
 }
 
 /// Facts that a Python reader prints.

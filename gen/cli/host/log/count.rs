@@ -4,18 +4,30 @@ use endat_host::feed::{Cell, Row};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Causes of cells that are no fault of their own: an answer that has no position, a trigger that is not for the channel, a result that
-/// its own row has counted already.
-const HARMLESS: [&str; 3] = ["none", "not_taken", "late"];
+/// Which cells are bad.
+#[derive(Clone, Copy, Default)]
+pub struct Judge {
+    /// Triggers may be for some channels only: a channel that took none has done nothing wrong.
+    pub own_triggers: bool,
+}
 
-/// Whether the trigger should have brought a position, and did not.
-pub fn is_bad(cell: &Cell) -> bool {
-    !cell.fresh && !HARMLESS.contains(&cell.cause)
+impl Judge {
+    /// Whether the trigger should have brought a position, and did not.
+    pub fn is_bad(self, cell: &Cell) -> bool {
+        // Without a cause it is an answer that has no position, to a request of the host.
+        let is_excused = match cell.cause {
+            "none" => true,
+            "not_taken" | "late" => self.own_triggers,
+            _ => false,
+        };
+        !cell.fresh && !is_excused
+    }
 }
 
 /// What became of the rows.
 #[derive(Default)]
 pub struct Count {
+    judge: Judge,
     pub rows: u64,
     pub missing: u64,
     pub bad: u64,
@@ -24,12 +36,22 @@ pub struct Count {
 }
 
 impl Count {
+    /// No rows yet.
+    pub fn new(judge: Judge) -> Self {
+        Self {
+            judge,
+            ..Self::default()
+        }
+    }
+
     /// Takes a row.
     pub fn note(&mut self, row: &Row) {
         self.rows += 1;
         self.missing += row.missing;
-        self.bad += u64::from(row.cells.iter().any(is_bad));
-        for (channel, cell) in row.cells.iter().enumerate().filter(|(_, c)| is_bad(c)) {
+        let bad = row.cells.iter().enumerate();
+        let mut bad = bad.filter(|(_, c)| self.judge.is_bad(c)).peekable();
+        self.bad += u64::from(bad.peek().is_some());
+        for (channel, cell) in bad {
             *self.causes.entry((channel, cell.cause)).or_default() += 1;
         }
     }
@@ -73,24 +95,32 @@ mod tests {
             fresh,
             cause,
         };
-        let mut count = Count::default();
-        for cells in [
-            vec![cell("none", true), cell("none", true)],
-            vec![cell("crc", false), cell("no_start_bit", false)],
-            vec![cell("crc", false), cell("not_taken", false)],
-            // A good position with a warning; a result of the row before.
-            vec![cell("recovery_too_short", true), cell("late", false)],
+        for (own_triggers, told) in [
+            (
+                true,
+                "2 of 4 rows bad (50.0 %); channel 0: crc 2; channel 1: no_start_bit 1",
+            ),
+            (
+                false,
+                "3 of 4 rows bad (75.0 %); channel 0: crc 2; channel 1: late 1, no_start_bit 1, not_taken 1",
+            ),
         ] {
-            count.note(&Row {
-                trigger: 0,
-                cycles: 0,
-                missing: 0,
-                cells,
-            });
+            let mut count = Count::new(Judge { own_triggers });
+            for cells in [
+                vec![cell("none", true), cell("none", true)],
+                vec![cell("crc", false), cell("no_start_bit", false)],
+                vec![cell("crc", false), cell("not_taken", false)],
+                // A good position with a warning; a result of the row before.
+                vec![cell("recovery_too_short", true), cell("late", false)],
+            ] {
+                count.note(&Row {
+                    trigger: 0,
+                    cycles: 0,
+                    missing: 0,
+                    cells,
+                });
+            }
+            assert_eq!(count.told(), told);
         }
-        assert_eq!(
-            count.told(),
-            "2 of 4 rows bad (50.0 %); channel 0: crc 2; channel 1: no_start_bit 1"
-        );
     }
 }

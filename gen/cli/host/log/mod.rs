@@ -9,7 +9,7 @@ use super::super::Outcome;
 use super::{interrupted, place, scales, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::Args;
-use count::Count;
+use count::{Count, Judge};
 use endat_host::feed::Feed;
 use endat_sim::diagram::{is_drawing, series_svg};
 use sheet::{Format, Lines, Sheet};
@@ -114,12 +114,15 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     });
     // Refused before the first sample, not after the last.
     check_all(&drawing.iter().collect::<Vec<_>>())?;
+    let judge = Judge {
+        own_triggers: card.identity().has("own_trigger"),
+    };
     if drawing.is_some() {
-        sheet.keep();
+        sheet.keep(judge);
     }
     let mut feed = Feed::begin(&mut card, arguments.poll).map_err(told)?;
     let stop = interrupted();
-    let mut count = Count::default();
+    let mut count = Count::new(judge);
     let mut progress = Progress::new(end.samples);
     let result = record(
         &mut card,

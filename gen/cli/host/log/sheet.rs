@@ -1,6 +1,6 @@
 //! The rows of a log as text, and the file they go into.
 
-use super::count::is_bad;
+use super::count::Judge;
 use clap::ValueEnum;
 use endat_host::feed::Row;
 use endat_host::units::Scale;
@@ -26,6 +26,7 @@ pub struct Sheet<W: Write> {
     system_hz: f64,
     /// Time of the last row.
     pub span_s: f64,
+    judge: Judge,
     /// What is to be drawn; none if nothing is.
     pub plot: Option<Vec<Series>>,
 }
@@ -38,6 +39,7 @@ impl<W: Write> Sheet<W> {
             scales,
             system_hz,
             span_s: 0.0,
+            judge: Judge::default(),
             plot: None,
         };
         if format == Format::Csv {
@@ -54,7 +56,8 @@ impl<W: Write> Sheet<W> {
     }
 
     /// From now on positions are kept for a drawing.
-    pub fn keep(&mut self) {
+    pub fn keep(&mut self, judge: Judge) {
+        self.judge = judge;
         let series = self.scales.iter().enumerate().map(|(n, scale)| Series {
             name: format!("channel {n}"),
             unit: scale.convert(0).unit.into(),
@@ -71,7 +74,7 @@ impl<W: Write> Sheet<W> {
                 .filter(|_| cell.fresh)
                 .map(|p| scale.convert(p).value);
             series.points.push((time_s, value));
-            if is_bad(cell) {
+            if self.judge.is_bad(cell) {
                 series.bad.push(time_s);
             }
         }
