@@ -248,6 +248,10 @@ fn proposal(name: &str, channels: usize) -> String {
             }
         }
     }
+    // A word before a field of some other word.
+    let parts_of = |whole: &String| whole.split('.').count();
+    let fewest = behind.iter().map(parts_of).min();
+    behind.retain(|whole| Some(parts_of(whole)) == fewest);
     let mut names = if behind.is_empty() { closest.1 } else { behind };
     names.truncate(PROPOSALS_MAX);
     match names.as_slice() {
