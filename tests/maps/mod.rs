@@ -488,11 +488,13 @@ fn maps_list_every_word_and_field_that_the_card_has() {
     let maps = |project: &Project| endat_gen::maps::artifacts(project).unwrap();
     let has = |project: &Project, name: &str| -> Vec<bool> {
         let maps = maps(project);
+        // LiteX's form has words only.
         maps.iter()
+            .filter(|a| !a.path.ends_with("_csr.csv"))
             .map(|a| a.text.to_lowercase().contains(name))
             .collect()
     };
-    assert_eq!(has(&project, "frames_good"), [false; 5]);
+    assert_eq!(has(&project, "frames_good"), [false; 4]);
     project.card.service.requests = true;
     for (part, name) in [
         (0, "serial_0"),
@@ -507,8 +509,8 @@ fn maps_list_every_word_and_field_that_the_card_has() {
             &mut parts.diagnosis,
             &mut parts.continuous,
         ][part] = true;
-        assert_eq!(has(&project, name), [false; 5], "nobody fills {name}");
-        assert_eq!(has(&with, name), [true; 5], "{name}");
+        assert_eq!(has(&project, name), [false; 4], "nobody fills {name}");
+        assert_eq!(has(&with, name), [true; 4], "{name}");
     }
     let unlike = &projects()[2];
     let page = text_of(unlike, "_registers.md");
