@@ -157,7 +157,7 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     let is_bad = count.bad_percent() > bad_max;
     if is_bad {
         messages.push(format!(
-            "bad rows = {:.1} %: more than {bad_max} %; `endat-gen explain CAUSE` tells what helps, --bad-max allows more",
+            "bad rows = {:.1} %: more than {bad_max} %; `endat-gen explain CAUSE` tells what helps, `endat-gen read` why triggers are not taken; --bad-max allows more",
             count.bad_percent()
         ));
     }
