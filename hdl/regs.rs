@@ -87,6 +87,23 @@ impl Access {
     }
 }
 
+/// Numbers that the card takes, each range from and to; none = all that fit.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Of a channel that speaks EnDat, and of the card.
+    pub endat: &'static [(u32, u32)],
+    /// Of a channel that speaks T-format.
+    pub t_format: &'static [(u32, u32)],
+}
+
+impl Limits {
+    /// All numbers that fit.
+    pub const ANY: Self = Self {
+        endat: &[],
+        t_format: &[],
+    };
+}
+
 /// Some bits of a word.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
@@ -104,6 +121,8 @@ pub struct Field {
     pub start: fn(&CardConfig, usize) -> u64,
     /// What single numbers or bits stand for.
     pub values: Values,
+    /// Which numbers the card takes.
+    pub limits: Limits,
 }
 
 impl Field {
@@ -115,6 +134,16 @@ impl Field {
     /// The same field, with a list of what its numbers stand for.
     pub const fn codes(mut self, codes: &'static [values::Named]) -> Self {
         self.values = Values::Codes(codes);
+        self
+    }
+
+    /// The same field, which takes these numbers only.
+    pub const fn takes(
+        mut self,
+        endat: &'static [(u32, u32)],
+        t_format: &'static [(u32, u32)],
+    ) -> Self {
+        self.limits = Limits { endat, t_format };
         self
     }
 
@@ -176,6 +205,7 @@ const fn field(
         meaning,
         start: zero,
         values: Values::Plain,
+        limits: Limits::ANY,
     }
 }
 

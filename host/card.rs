@@ -183,6 +183,26 @@ impl<T: Transport> Card<T> {
         Ok(place.of(self.bridge.read(place.address(), 1)?[0]))
     }
 
+    /// Refuses a value that the map forbids for this word or field; [`Card::write`] writes any that fits.
+    pub fn permits(&self, place: &Place, value: u32) -> Result<(), HostError> {
+        let is_t_format = place.block.per_channel && self.identity.is_t_format(place.channel);
+        let fields = place.register.fields.iter();
+        let meant = fields.filter(|f| place.field.is_none_or(|one| one == *f));
+        for field in meant {
+            let number = match place.field {
+                Some(_) => value,
+                None => field.of(value),
+            };
+            if let Some(takes) = field.refusal(number, is_t_format) {
+                return Err(HostError::Name(format!(
+                    "value = {value}: {place} would have {} = {number}, which takes {takes}",
+                    field.name
+                )));
+            }
+        }
+        Ok(())
+    }
+
     /// Writes a word, or changes the field that is meant and leaves the others.
     pub fn write(&mut self, place: &Place, value: u32) -> Result<(), HostError> {
         if place.register.access == Access::ReadOnly {

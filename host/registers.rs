@@ -26,6 +26,23 @@ pub enum Values {
     Bits(&'static [Named]),
 }
 
+/// Numbers that a card takes, each range from and to; none = all that fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Of a channel that speaks EnDat, and of the card.
+    pub endat: &'static [(u32, u32)],
+    /// Of a channel that speaks T-format.
+    pub t_format: &'static [(u32, u32)],
+}
+
+impl Limits {
+    /// All numbers that fit.
+    pub const ANY: Self = Self {
+        endat: &[],
+        t_format: &[],
+    };
+}
+
 /// Some bits of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
@@ -41,6 +58,8 @@ pub struct Field {
     pub meaning: &'static str,
     /// What its numbers or bits stand for.
     pub values: Values,
+    /// Which numbers the card takes.
+    pub limits: Limits,
 }
 
 /// What a host may do with a word.
@@ -95,6 +114,31 @@ impl Field {
     /// The field's bits within its word.
     pub const fn mask(&self) -> u32 {
         (((1u64 << self.width) - 1) << self.lsb) as u32
+    }
+
+    /// What it takes in a channel that speaks one protocol or the other, if `value` is nothing of it.
+    pub fn refusal(&self, value: u32, is_t_format: bool) -> Option<String> {
+        let ranges = match is_t_format {
+            true => self.limits.t_format,
+            false => self.limits.endat,
+        };
+        if !ranges.is_empty() {
+            let takes = ranges
+                .iter()
+                .any(|(low, high)| (*low..=*high).contains(&value));
+            let shown = |(low, high): &(u32, u32)| match low == high {
+                true => low.to_string(),
+                false => format!("{low}..{high}"),
+            };
+            return (!takes).then(|| ranges.iter().map(shown).collect::<Vec<_>>().join(", "));
+        }
+        match self.values {
+            // Codes are those of EnDat.
+            Values::Codes(codes) if !is_t_format && codes.iter().all(|c| c.number != value) => {
+                Some(list(codes.iter().map(|c| c.name)))
+            }
+            _ => None,
+        }
     }
 
     /// A word with this field changed; none if `value` does not fit.
@@ -162,6 +206,61 @@ fn shown(text: &str) -> String {
     format!("{clean:?}")
 }
 
+/// Most names that are proposed for a wrong one.
+const PROPOSALS_MAX: usize = 4;
+
+/// `; did you mean ...?`, or nothing: names that end with this one (its block was left out), else the ones that are closest to it.
+fn proposal(name: &str, channels: usize) -> String {
+    let parts: Vec<&str> = name.split('.').collect();
+    let mut behind = Vec::new();
+    let mut closest = (1 + name.len() / 4 + 1, Vec::new());
+    for block in BLOCKS {
+        let typed = parts[0]
+            .strip_prefix(block.name)
+            .and_then(|n| n.parse().ok());
+        let number = match block.per_channel {
+            true => typed
+                .filter(|n: &usize| *n < channels)
+                .unwrap_or(0)
+                .to_string(),
+            false => String::new(),
+        };
+        for register in block.registers {
+            let word = format!("{}{number}.{}", block.name, register.name);
+            let fields = register.fields.iter().map(|f| format!("{word}.{}", f.name));
+            for whole in std::iter::once(word.clone()).chain(fields) {
+                if whole.ends_with(&format!(".{name}")) {
+                    behind.push(whole);
+                    continue;
+                }
+                if whole.split('.').count() != parts.len().max(2) || name.len() > 64 {
+                    continue;
+                }
+                let tail = whole.split_once('.').map_or("", |(_, tail)| tail);
+                let other = if parts.len() == 1 { tail } else { &whole };
+                let distance = strsim::osa_distance(name, other);
+                if distance < closest.0 {
+                    closest = (distance, Vec::new());
+                }
+                if distance == closest.0 && distance < 2 + name.len() / 4 {
+                    closest.1.push(whole);
+                }
+            }
+        }
+    }
+    // A word before a field of some other word.
+    let parts_of = |whole: &String| whole.split('.').count();
+    let fewest = behind.iter().map(parts_of).min();
+    behind.retain(|whole| Some(parts_of(whole)) == fewest);
+    let mut names = if behind.is_empty() { closest.1 } else { behind };
+    names.truncate(PROPOSALS_MAX);
+    match names.as_slice() {
+        _ if name.is_empty() => String::new(),
+        [] => String::new(),
+        names => format!("; did you mean {}?", names.join(" or ")),
+    }
+}
+
 fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
     names.collect::<Vec<_>>().join(", ")
 }
@@ -171,8 +270,9 @@ impl Place {
     pub fn named(name: &str, channels: usize) -> Result<Self, HostError> {
         let fail = |what: String| {
             Err(HostError::Name(format!(
-                "register = {}: {what}",
-                shown(name)
+                "register = {}: {what}{}",
+                shown(name),
+                proposal(name, channels)
             )))
         };
         let mut parts = name.split('.');
@@ -331,6 +431,53 @@ mod tests {
             let error = Place::named(name, 2).unwrap_err().to_string();
             assert!(error.contains(told), "{name}: {error}");
         }
+    }
+
+    #[test]
+    fn a_name_without_its_block_or_with_a_slip_finds_the_right_one() {
+        for (name, told) in [
+            ("age_recovery", "; did you mean result0.age_recovery?"),
+            (
+                "status",
+                "; did you mean interrupt.status or result0.status?",
+            ),
+            ("frame.command", "; did you mean config0.frame.command?"),
+            (
+                "trigger_perod",
+                "; did you mean card_config.trigger_period?",
+            ),
+            ("result1.statsu", "; did you mean result1.status?"),
+            (
+                "result1.status.cuase",
+                "; did you mean result1.status.cause?",
+            ),
+        ] {
+            let error = Place::named(name, 2).unwrap_err().to_string();
+            assert!(error.ends_with(told), "{name}: {error}");
+        }
+        let error = Place::named("quite.something_else", 2).unwrap_err();
+        assert!(!error.to_string().contains("did you mean"), "{error}");
+    }
+
+    #[test]
+    fn what_the_map_forbids_is_refused() {
+        let of = |block, register, field, value, is_t_format| {
+            let place = Place::field_at(block, register, field, 0);
+            place.field.unwrap().refusal(value, is_t_format)
+        };
+        let frame = |field, value, is_t_format| of("config", "frame", field, value, is_t_format);
+        assert_eq!(frame("position_bits", 49, false).unwrap(), "1..48");
+        assert_eq!(frame("position_bits", 48, false), None);
+        assert_eq!(frame("position_bits", 49, true), None, "no meaning there");
+        assert_eq!(frame("period_cycles", 128, true).unwrap(), "8..127");
+        assert!(frame("command", 5, false)
+            .unwrap()
+            .contains("send_position"));
+        assert_eq!(frame("command", 0, true), None);
+        let id = of("config", "timing", "request_id", 6, true);
+        assert_eq!(id.unwrap(), "0..5, 7..12, 14..15");
+        let period = of("card_config", "trigger_period", "value", 3, false);
+        assert_eq!(period.unwrap(), "4..16777215");
     }
 
     #[test]

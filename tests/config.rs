@@ -89,6 +89,8 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("system_hz = 100_000_000", "system_hz = 99_999_999", "the clock manager cannot make it from the board's 32000000 Hz; use 99200000 or 100000000 Hz"),
         ("clock_hz = 3_125_000", "clock_hz = 9_000_000", "endat.clock_hz = 9000000: would become 9090909 Hz (+10101 ppm), more than the allowed 5000 ppm"),
         ("clock_hz = 3_125_000", "clock_hz = 16_000_000", "would become 16666667 Hz (+41667 ppm), more than the allowed 5000 ppm"),
+        // 16.67 MHz is above the fastest clock, so it is no advice.
+        ("clock_hz = 3_125_000", "clock_hz = 16_000_000", "ppm; use 14285714 Hz, or another system clock"),
         ("clock_hz = 3_125_000", "clock_hz = 99_000", "outside 100000..16000000"),
         ("tst_ns = 2_000", "tst_ns = 400", "endat.tst_ns = 400: neither 0 nor in 500..10000"),
         ("filter_ns = 20", "filter_ns = 1_000", "endat.filter_ns = 1000: is 100 cycles, more than 15"),
@@ -128,6 +130,8 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("parts = []", "infos = [0x4C]", "service.infos = 0x4C: a card without requests has no list"),
         ("parts = []", "parts = [\"requests\"]\ninfos = [0x4F]", "service.infos = 0x4F: no additional information; use MRS codes 0x40..0x4E"),
         ("parts = []", "parts = [\"requests\"]\ninfos = [\"0x4C\"]", "service.infos = \"0x4C\": is a string, must be a whole number"),
+        ("parts = []", "parts = [\"requests\"]\ninfos = [-1]", "service.infos = -1: no additional information; use MRS codes 0x40..0x4E"),
+        ("parts = []", "parts = [\"requests\"]\ninfos = [0x4C, 0x41, 0x4C]", "service.infos = 0x4C: stands twice; remove one"),
         ("parts = []", "parts = [\"requests\"]\ninfos = 0x4C", "service.infos = 0x4C: is an integer, must be a list of whole numbers"),
         ("parts = []", "parts = [\"requests\"]\ninfos = [64, 65, 66, 67, 68, 69, 70, 71, 72]", "service.infos = 0x48: more than 8"),
         // names
@@ -402,7 +406,7 @@ fn what_follows_from_another_mistake_is_not_told() {
     let rows = [
         (
             single.replacen("[[channel]]    ", "[channel]", 1),
-            "channel = ",
+            "[channel]: stands in single brackets",
         ),
         (
             format!("{}{}", &PRESET[..second], &PRESET[end..]).replacen(
@@ -571,4 +575,38 @@ proptest! {
             .collect();
         judge(&text)?;
     }
+}
+
+#[test]
+fn single_brackets_and_the_bus_of_a_receiver_are_called_what_they_are() {
+    use endat_gen::config::parse_any;
+    let from = PRESET.find("\n[[channel]]").unwrap() + 1;
+    let line = PRESET[..from].matches('\n').count() + 1;
+    let channel = &PRESET[from..][..PRESET[from + 1..].find("\n[").unwrap() + 2];
+    let single = format!(
+        "{}{}",
+        &PRESET[..from],
+        channel.replace("[[channel]]", "[channel]")
+    );
+    let told = refuse(&single);
+    let wanted =
+        format!("card.toml:{line}: [channel]: stands in single brackets; write [[channel]]");
+    assert!(
+        told.iter().any(|d| d.to_string().starts_with(&wanted)),
+        "{told:?}"
+    );
+    let dsp = PRESET.replacen("[link]", "[host]\nbus = \"dsp\"\n[link]", 1);
+    let told = refuse(&dsp);
+    assert_eq!(told.len(), 1);
+    assert_eq!(dsp.lines().nth(told[0].line - 1), Some("bus = \"dsp\""));
+    assert!(told[0].text.contains("this command works on cards"));
+    let told = parse_any("card.toml", &dsp).unwrap_err();
+    let says = |text: &str| told.iter().any(|d| d.text.starts_with(text));
+    assert!(
+        says("[endat]: is a table of cards, and host.bus"),
+        "{told:?}"
+    );
+    assert!(told
+        .iter()
+        .all(|d| !d.text.contains("unknown key; known keys here: channel")));
 }

@@ -16,7 +16,7 @@ const NUMBERS: [&str; 3] = ["fixed_delay_ns", "drift_limit_ns", "samples"];
 /// Reads the table; everything in it may be left out. `None` if something is wrong.
 pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<LineParts> {
     let mut parts = LineParts::default();
-    let last = read_parts(
+    let named = read_parts(
         table,
         &["alignment", "margin", "double_edge"],
         &mut [
@@ -27,11 +27,11 @@ pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<LineParts> 
     );
     let phase = table.string("phase");
     let numbers = NUMBERS.map(|key| table.integer(key, &limits(key, system_hz)));
-    let last = last?;
+    let named = named?;
     if !parts.alignment {
-        if let Some((line, shown)) = last {
+        if let Some((line, shown)) = named.first() {
             let text = "every other part takes alignment; add \"alignment\"";
-            table.complain(line, "parts", &shown, text);
+            table.complain(*line, "parts", shown, text);
             return None;
         }
         let phase = phase.map(|p| ("phase", p.line, format!("{:?}", p.value)));

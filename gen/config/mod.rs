@@ -234,11 +234,39 @@ fn text_of<'b>(file: &str, bytes: &'b [u8]) -> Result<&'b str, Vec<Diagnostic>> 
     }
 }
 
+/// Refuses text that is no TOML at first sight, where a parser's first complaint would mislead.
+fn check_form(file: &str, text: &str) -> Result<(), Vec<Diagnostic>> {
+    const REMEDY: &str =
+        "`endat-gen presets --show s6_two_channel` prints a configuration to start from";
+    let fail = |line, what: &str, remedy: &str| {
+        Err(vec![Diagnostic {
+            file: file.into(),
+            line,
+            text: format!("{what}; {remedy}"),
+        }])
+    };
+    let start = text.trim_start();
+    // A list of JSON begins like the head of a table, but no head has a brace or a number.
+    let of_list = start.strip_prefix('[').map_or("", str::trim_start);
+    if start.is_empty() {
+        return fail(0, "is empty", REMEDY);
+    }
+    if start.starts_with('{') || of_list.starts_with('{') {
+        return fail(1, "is JSON; configurations are TOML", REMEDY);
+    }
+    if text.contains('\r') && !text.contains('\n') {
+        let remedy = "save it with line ends of LF or CR LF";
+        return fail(1, "has lines that end with CR alone", remedy);
+    }
+    Ok(())
+}
+
 /// Checks the text of a configuration of either kind; `file` names it in the messages.
 pub fn parse_any(file: &str, text: &str) -> Result<Configuration, Vec<Diagnostic>> {
-    if !t_format::is_receiver(text) {
+    if t_format::receiver_line(text).is_none() {
         return parse(file, text).map(|card| Configuration::Card(card.into()));
     }
+    check_form(file, text)?;
     let source = reader::Source::new(file, text);
     match t_format::read(&source) {
         Some(receiver) if source.is_good() => Ok(Configuration::Receiver(receiver)),
@@ -248,19 +276,13 @@ pub fn parse_any(file: &str, text: &str) -> Result<Configuration, Vec<Diagnostic
 
 /// Checks the text of a card's configuration; `file` names it in the messages.
 pub fn parse(file: &str, text: &str) -> Result<Project, Vec<Diagnostic>> {
-    if text.trim().is_empty() {
-        let text = "is empty; `endat-gen presets --show s6_two_channel` prints a configuration to start from".into();
+    check_form(file, text)?;
+    if let Some(line) = t_format::receiver_line(text) {
+        let known = HostBus::ALL.map(HostBus::name).join(", ");
+        let text = format!("host.bus = \"{}\": is a T-format receiver, and this command works on cards; use emit or explain, or choose a card's bus: {known}", t_format::BUS);
         return Err(vec![Diagnostic {
             file: file.into(),
-            line: 0,
-            text,
-        }]);
-    }
-    if t_format::is_receiver(text) {
-        let text = "host.bus = \"dsp\": is a T-format receiver, and this command works on cards; use emit or explain".into();
-        return Err(vec![Diagnostic {
-            file: file.into(),
-            line: 0,
+            line,
             text,
         }]);
     }
@@ -287,6 +309,16 @@ mod tests {
                 Configuration::Card(_) => panic!("{name} is a card"),
             }
         }
+    }
+
+    #[test]
+    fn text_that_is_no_toml_is_called_what_it_is() {
+        let told = |text: &str| parse_any("f", text).unwrap_err()[0].to_string();
+        assert!(told("\n{\"name\": \"a\"}").starts_with("f:1: is JSON; configurations are TOML;"));
+        assert!(told("[\n{\"name\": 1}]").starts_with("f:1: is JSON"));
+        assert!(told("name = \"a\"\r[host]\rbus = \"dsp\"\r")
+            .starts_with("f:1: has lines that end with CR alone; save it"));
+        assert!(told(" \n").starts_with("f: is empty"));
     }
 
     #[test]

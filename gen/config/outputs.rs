@@ -9,22 +9,27 @@ use endat_hdl::config::OutputParts;
 pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>, has_board: bool) -> Option<OutputParts> {
     let mut parts = OutputParts::default();
     let marks = &mut [&mut parts.position, &mut parts.interrupt];
-    let (line, shown) = match read_parts(table, &["position", "interrupt"], marks)? {
-        Some(last) => last,
-        None => return Some(parts),
+    let named = read_parts(table, &["position", "interrupt"], marks)?;
+    let Some(last) = named.last() else {
+        return Some(parts);
     };
-    let remedy = match bus {
-        Some(HostBus::Uart) => {
-            "a card with a UART is the whole device, nothing else in it could take them; choose another host.bus, or leave [outputs] out"
-        }
-        Some(HostBus::Bare) => {
-            "host.bus = \"none\" has the whole position and the cause as ports; leave [outputs] out"
-        }
-        _ if has_board && parts.position => {
-            "a card with a board top is the whole device, nothing else in it could take the positions; leave \"position\" out, or leave [board] out"
-        }
+    // What is said of one part names that part; what is said of all, the last.
+    let position = named.iter().find(|(_, text)| text == "\"position\"");
+    let (part, remedy) = match bus {
+        Some(HostBus::Uart) => (
+            last,
+            "a card with a UART is the whole device, nothing else in it could take them; choose another host.bus, or leave [outputs] out",
+        ),
+        Some(HostBus::Bare) => (
+            last,
+            "host.bus = \"none\" has the whole position and the cause as ports; leave [outputs] out",
+        ),
+        _ if has_board && parts.position => (
+            position.unwrap_or(last),
+            "a card with a board top is the whole device, nothing else in it could take the positions; leave \"position\" out, or leave [board] out",
+        ),
         _ => return Some(parts),
     };
-    table.complain(line, "parts", &shown, remedy);
+    table.complain(part.0, "parts", &part.1, remedy);
     None
 }

@@ -222,8 +222,8 @@ impl<'s, 't> Table<'s, 't> {
         Some(all)
     }
 
-    /// A list of integers, if the key is there.
-    pub fn integers(&self, key: &'static str) -> Option<Vec<At<u64>>> {
+    /// A list of integers, if the key is there; `limits` are told of one that is negative or beyond every number.
+    pub fn integers(&self, key: &'static str, limits: &str) -> Option<Vec<At<u64>>> {
         let spanned = self.get(key)?;
         let wanted = "a list of whole numbers, as [0x4C, 0x5B]";
         let Some(array) = spanned.get_ref().as_array() else {
@@ -232,11 +232,16 @@ impl<'s, 't> Table<'s, 't> {
         };
         let mut all = Vec::new();
         for item in array.iter() {
-            let integer = item.get_ref().as_integer();
-            let value = integer.and_then(|i| u64::from_str_radix(i.as_str(), i.radix()).ok());
-            match value {
-                Some(value) => all.extend(self.at(value, item)),
-                None => self.wrong_type(key, item, "a whole number"),
+            let Some(integer) = item.get_ref().as_integer() else {
+                self.wrong_type(key, item, "a whole number");
+                continue;
+            };
+            match u64::from_str_radix(integer.as_str(), integer.radix()) {
+                Ok(value) => all.extend(self.at(value, item)),
+                Err(_) => {
+                    let line = self.source.line(item.span().start);
+                    self.complain(line, key, &self.excerpt(&item.span()), limits);
+                }
             }
         }
         Some(all)
@@ -267,6 +272,14 @@ impl<'s, 't> Table<'s, 't> {
             return Some(Vec::new());
         };
         let Some(array) = spanned.get_ref().as_array() else {
+            // The span of a table is that of its head.
+            if spanned.get_ref().is_table() {
+                let text = format!(
+                    "[{key}]: stands in single brackets; write [[{key}]], as there may be several"
+                );
+                self.source.complain(&spanned.span(), text);
+                return None;
+            }
             self.wrong_type(key, spanned, &format!("tables headed [[{key}]]"));
             return None;
         };
@@ -344,6 +357,14 @@ impl<'s, 't> Table<'s, 't> {
         }
     }
 
+    /// The same of a table.
+    pub fn refuse_table(&self, key: &'static str, text: &str) {
+        if let (true, Some(spanned)) = (self.has(key), self.get(key)) {
+            let text = format!("[{}]: {text}", self.name(key));
+            self.source.complain(&spanned.span(), text);
+        }
+    }
+
     /// Notes a complaint about the table itself.
     pub fn complain_plain(&self, text: String) {
         self.source.complain_line(self.line, text);
@@ -378,29 +399,15 @@ impl<'s, 't> Table<'s, 't> {
 
 /// The known key that is closest to a misspelt one, if any is close.
 fn nearest<'k>(key: &str, known: &BTreeSet<&'k str>) -> Option<&'k str> {
-    let scored = known.iter().map(|k| (distance(key, k), *k));
+    // Nothing that long is a key.
+    if key.len() > 64 {
+        return None;
+    }
+    let scored = known.iter().map(|k| (strsim::levenshtein(key, k), *k));
     scored
         .min()
         .filter(|(d, k)| *d <= 1 + k.len() / 4)
         .map(|(_, k)| k)
-}
-
-/// Edit distance, for short words.
-fn distance(a: &str, b: &str) -> usize {
-    if a.len() > 64 {
-        return usize::MAX;
-    }
-    let mut row: Vec<usize> = (0..=b.chars().count()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.chars().enumerate() {
-            let change = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = change.min(row[j] + 1).min(row[j + 1] + 1);
-        }
-    }
-    row[row.len() - 1]
 }
 
 fn article(kind: &str) -> String {
@@ -417,7 +424,5 @@ mod tests {
         let known = BTreeSet::from(["clock_hz", "tst_ns", "cable_m"]);
         assert_eq!(nearest("clok_hz", &known), Some("clock_hz"));
         assert_eq!(nearest("colour", &known), None);
-        assert_eq!(distance("abc", "abc"), 0);
-        assert_eq!(distance("abc", "acb"), 2);
     }
 }

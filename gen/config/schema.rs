@@ -598,13 +598,13 @@ fn read_command(table: &Table<'_, '_>, command: At<String>) -> Option<ModeComman
     found
 }
 
-/// Marks the parts that a list names; the line and the text of the last one, `None` if something is wrong.
+/// Marks the parts that a list names; line and text of each, `None` if something is wrong.
 pub(super) fn read_parts(
     table: &Table<'_, '_>,
     names: &[&str],
     marks: &mut [&mut bool],
-) -> Option<Option<(usize, String)>> {
-    let mut last = None;
+) -> Option<Vec<(usize, String)>> {
+    let mut all = Vec::new();
     for word in table.strings("parts").unwrap_or_default() {
         let shown = format!("{:?}", word.value);
         let Some(index) = names.iter().position(|name| *name == word.value) else {
@@ -616,15 +616,15 @@ pub(super) fn read_parts(
             table.complain(word.line, "parts", &shown, "stands twice; remove one");
             return None;
         }
-        last = Some((word.line, shown));
+        all.push((word.line, shown));
     }
-    Some(last)
+    Some(all)
 }
 
 fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
     let infos = read_infos(table);
     let mut parts = ServiceParts::default();
-    let last = read_parts(
+    let named = read_parts(
         table,
         &["requests", "diagnosis", "continuous", "initialise"],
         &mut [
@@ -634,9 +634,9 @@ fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
             &mut parts.initialise,
         ],
     )?;
-    if let (Some((line, shown)), false) = (last, parts.requests) {
+    if let (Some((line, shown)), false) = (named.first(), parts.requests) {
         let text = "every other part takes requests; add \"requests\"";
-        table.complain(line, "parts", &shown, text);
+        table.complain(*line, "parts", shown, text);
         return None;
     }
     let infos = infos?;
@@ -653,7 +653,8 @@ fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
 
 /// Additional informations that are selected from the start on; `None` for what cannot be.
 fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
-    let Some(infos) = table.integers("infos") else {
+    const CODES: &str = "no additional information; use MRS codes 0x40..0x4E and 0x50..0x5E";
+    let Some(infos) = table.integers("infos", CODES) else {
         return if table.has("infos") {
             None
         } else {
@@ -666,8 +667,11 @@ fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
             _ if index >= LIST => {
                 format!("more than {LIST} additional informations; leave some out")
             }
+            code if infos[..index].iter().any(|i| i.value == code) => {
+                "stands twice; remove one".into()
+            }
             0x40..=0x4E | 0x50..=0x5E => continue,
-            _ => "no additional information; use MRS codes 0x40..0x4E and 0x50..0x5E".into(),
+            _ => CODES.into(),
         };
         table.complain(info.line, "infos", &shown, &text);
         return None;

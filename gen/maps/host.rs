@@ -2,7 +2,7 @@
 
 use super::map_id;
 use endat_hdl::regs::values::{Named, Values};
-use endat_hdl::regs::{Access, Block, Field, Register, BLOCKS, VERSION};
+use endat_hdl::regs::{Access, Block, Field, Limits, Register, BLOCKS, VERSION};
 use std::fmt::Write;
 
 /// The whole map, with every part that a card may have.
@@ -11,7 +11,7 @@ pub fn write() -> String {
         "//! The register map that the cards of this version have, with every part; which of them a card has, its capabilities tell.\n\
          //!\n\
          //! Generated from the card's own table. Do not edit; `UPDATE_EXPECT=1 cargo test --test system -- maps::the_host` renews it.\n\n\
-         use crate::registers::{{Access, Block, Field, Named, Register, Values}};\n\n\
+         use crate::registers::{{Access, Block, Field, Limits, Named, Register, Values}};\n\n\
          /// Major, minor and patch version of the map.\n\
          pub const VERSION: [u8; 3] = {VERSION:?};\n\n\
          /// All blocks, lowest base first.\n\
@@ -60,14 +60,22 @@ fn register(text: &mut String, register: &Register) {
 fn field(text: &mut String, field: &Field) {
     let _ = writeln!(
         text,
-        "            Field {{ name: {:?}, lsb: {}, width: {}, unit: {:?}, meaning: {:?}, values: {} }},",
+        "            Field {{ name: {:?}, lsb: {}, width: {}, unit: {:?}, meaning: {:?}, values: {}, limits: {} }},",
         field.name,
         field.lsb,
         field.width,
         field.unit,
         field.meaning,
-        values(field.values)
+        values(field.values),
+        limits(&field.limits)
     );
+}
+
+fn limits(limits: &Limits) -> String {
+    match (limits.endat, limits.t_format) {
+        ([], []) => "Limits::ANY".into(),
+        (endat, t_format) => format!("Limits {{ endat: &{endat:?}, t_format: &{t_format:?} }}"),
+    }
 }
 
 fn values(values: Values) -> String {

@@ -5,12 +5,14 @@
 //!                                -> header.rs    C and C++
 //!                                -> svd.rs       CMSIS-SVD
 //!                                -> rdl.rs       SystemRDL
+//!                                -> csr.rs       LiteX
 //!                     (every part) -> host.rs      Rust, for the host library
 //! ```
 //!
 //! [`Map::new`] is the only walk over the table: what the card has, under which names, with which start values. A writer
 //! adds the form of its language and nothing else.
 
+mod csr;
 mod header;
 pub mod host;
 mod markdown;
@@ -226,5 +228,9 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         Artifact::new(format!("{name}_registers.h"), header::write(&map)),
         Artifact::new(format!("{name}.svd"), svd::write(&map)?),
         Artifact::new(format!("{name}.rdl"), rdl::write(&map)),
+        Artifact::new(
+            format!("{name}_csr.csv"),
+            csr::write(&map, project.card.system_hz),
+        ),
     ])
 }

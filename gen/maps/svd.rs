@@ -11,8 +11,9 @@ use endat_hdl::regs::{Access as TableAccess, Field as TableField};
 use svd_encoder::encode;
 use svd_rs::{
     Access, AddressBlock, AddressBlockUsage, BitRange, BitRangeType, Cluster, ClusterInfo, Device,
-    DimElement, EnumeratedValue, EnumeratedValues, Field, FieldInfo, Peripheral, PeripheralInfo,
-    Register, RegisterCluster, RegisterInfo, RegisterProperties, SvdError, ValidateLevel,
+    DimElement, EnumeratedValue, EnumeratedValues, Field, FieldInfo, Interrupt, Peripheral,
+    PeripheralInfo, Register, RegisterCluster, RegisterInfo, RegisterProperties, SvdError,
+    ValidateLevel,
 };
 
 /// A name or number that SVD does not allow is an error.
@@ -62,11 +63,20 @@ fn peripheral(map: &Map) -> Result<Peripheral, SvdError> {
         .iter()
         .map(|block| cluster(block).map(RegisterCluster::Cluster))
         .collect();
+    let has_interrupt = map.blocks.iter().any(|block| block.id == "interrupt");
+    let interrupt = Interrupt::builder()
+        .name(map.name.clone())
+        .description(Some(
+            "irq_o; the number is that of your interrupt controller, 0 stands in for it".into(),
+        ))
+        .value(0)
+        .build(LEVEL)?;
     let peripheral = PeripheralInfo::builder()
         .name(map.name.clone())
         .description(Some(format!("{ADDRESSES} {UNLISTED}")))
         .base_address(0)
         .address_block(Some(vec![address_block]))
+        .interrupt(has_interrupt.then(|| vec![interrupt]))
         .registers(Some(clusters?))
         .build(LEVEL)?;
     Ok(Peripheral::Single(peripheral))

@@ -9,7 +9,7 @@ mod bench;
 mod read;
 mod report;
 
-pub use read::{is_receiver, read};
+pub use read::{read, receiver_line, BUS};
 pub use report::{report, Report};
 
 use crate::artifact::{self, Artifact};

@@ -13,15 +13,20 @@ use toml::de::DeTable;
 
 /// Bus that makes a configuration one of a receiver.
 pub const BUS: &str = "dsp";
+/// Tables of a card that a receiver has nothing for.
+const TABLES_OF_CARDS: [&str; 9] = [
+    "board", "clock", "endat", "line", "link", "outputs", "service", "stream", "trigger",
+];
 /// Longest filter at the fast rate and a clock of 20 MHz, where a bit has four clocks.
 const FAST_FILTER_CYCLES_MAX: u64 = 1;
 
-/// Whether a text is the configuration of a receiver.
-pub fn is_receiver(text: &str) -> bool {
+/// The line that makes a text the configuration of a receiver.
+pub fn receiver_line(text: &str) -> Option<usize> {
     let (document, _) = DeTable::parse_recoverable(text);
-    let host = document.get_ref().get("host");
-    let bus = host.and_then(|host| host.get_ref().as_table()?.get("bus")?.get_ref().as_str());
-    bus == Some(BUS)
+    let host = document.get_ref().get("host")?;
+    let bus = host.get_ref().as_table()?.get("bus")?;
+    let is_ours = bus.get_ref().as_str() == Some(BUS);
+    is_ours.then(|| Source::new("", text).line(bus.span().start))
 }
 
 /// Reads a whole file; complaints go to `source`, and `None` means that there was at least one.
@@ -54,6 +59,10 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
         second.complain_plain(text.into());
     }
     let channel = channels.first().and_then(read_channel);
+    for key in TABLES_OF_CARDS {
+        let text = "is a table of cards, and host.bus = \"dsp\" makes this a T-format receiver; remove it, or choose another host.bus";
+        root.refuse_table(key, text);
+    }
     for table in channels.iter().chain([&host, &root]) {
         table.finish();
     }

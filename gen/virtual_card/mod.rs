@@ -296,6 +296,19 @@ impl VirtualCard {
         self.uart.unsent()
     }
 
+    /// The host has gone: whole commands that it has sent are carried out if they are few, half a one is forgotten, answers are nobody's.
+    pub fn forget_host(&mut self) {
+        let timeout = LINK_TIMEOUT_US * self.cycles_per_us;
+        let end = self.bench.cycle() + timeout;
+        while self.uart.unsent() > 0 && self.bench.cycle() < end {
+            self.run(STEP_CYCLES);
+        }
+        self.uart.forget();
+        // A little longer than the card waits for the rest of a command; the byte under way comes before that.
+        self.run(timeout + timeout / 8);
+        self.uart.received().clear();
+    }
+
     /// Its bench, to make something wrong.
     pub fn bench(&mut self) -> &mut Bench<Compiled> {
         &mut self.bench

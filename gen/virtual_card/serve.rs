@@ -53,6 +53,15 @@ impl Door {
         }
     }
 
+    /// Whether somebody is there; at a pseudo terminal nobody knows.
+    fn is_open(&self) -> bool {
+        match self {
+            Self::Tcp(_, stream) => stream.is_some(),
+            #[cfg(unix)]
+            Self::Terminal(..) => true,
+        }
+    }
+
     /// Bytes that have come; none is no error.
     fn read(&mut self) -> Vec<u8> {
         let mut buffer = [0; 4096];
@@ -145,12 +154,17 @@ pub fn serve(
     let mut at_report = (0.0, 0.0);
     let is_over = || limit.is_some_and(|l| begin.elapsed() >= l);
     while !stop.load(Ordering::Relaxed) && !is_over() {
+        let was_open = door.is_open();
         let bytes = door.read();
         card.send_bytes(&bytes);
         card.run(SLICE_US * card.cycles_per_us);
         let answer = card.take_bytes();
         if !answer.is_empty() {
             door.write(&answer);
+        }
+        if was_open && !door.is_open() {
+            // The next host's bytes must not end a command of this one.
+            card.forget_host();
         }
         let (wall, now) = (begin.elapsed().as_secs_f64(), simulated(card));
         if now > wall {

@@ -241,6 +241,11 @@ fn check_recovery(check: &mut Check<'_>, request: &ChannelRequest, most_ns: u64)
 }
 
 /// The period in cycles, if the rate can be made well enough.
+/// Whether the shorter half of a period is too short for an encoder.
+const fn is_uneven(period: u64) -> bool {
+    100 * (period / 2) < (50 - PULSE_TOLERANCE_PERCENT) * period
+}
+
 fn check_clock(
     check: &mut Check<'_>,
     clock_hz: u64,
@@ -281,9 +286,19 @@ fn check_clock(
         let below = system_hz.div_ceil(clock_hz).max(cycles_min);
         let above = (system_hz / clock_hz).max(cycles_min);
         let rate = |cycles: u64| (system_hz + cycles / 2) / cycles;
-        let remedy = match (rate(below), rate(above)) {
-            (low, high) if low == high => format!("{low} Hz"),
-            (low, high) => format!("{low} or {high} Hz"),
+        // Nothing is proposed that would be refused itself.
+        let is_good =
+            |cycles: &u64| limits("clock_hz", None).contains(rate(*cycles)) && !is_uneven(*cycles);
+        let mut rates: Vec<_> = [below, above]
+            .into_iter()
+            .filter(is_good)
+            .map(rate)
+            .collect();
+        rates.dedup();
+        let remedy = match rates.as_slice() {
+            [] => "another rate".into(),
+            [one] => format!("{one} Hz"),
+            all => format!("{} or {} Hz", all[0], all[1]),
         };
         check.fail(
             "clock_hz",
@@ -293,7 +308,7 @@ fn check_clock(
         return None;
     }
     // The first half of an odd period is the shorter one.
-    if 100 * (period / 2) < (50 - PULSE_TOLERANCE_PERCENT) * period {
+    if is_uneven(period) {
         check.fail(
             "clock_hz",
             clock_hz,

@@ -7,7 +7,8 @@ use Access::{ReadOnly, ReadWrite};
 
 const VALUE: &[Field] = &[field("value", 0, 32, "", "Number")];
 const HIGH: &[Field] = &[field("value", 0, 16, "", "Bits 47..32")];
-const CODE: &[Field] = &[field("mrs", 0, 8, "", "MRS code 0x40..0x5E")];
+const CODE: &[Field] =
+    &[field("mrs", 0, 8, "", "MRS code 0x40..0x5E").takes(&[(0, 0), (0x40, 0x5E)], &[])];
 const SLOT: &[Field] = &[
     field("value", 0, 16, "", "Content"),
     field(
@@ -117,7 +118,7 @@ pub const SERVICE: Block = Block {
         ]),
         word("threshold", at::THRESHOLD, ReadWrite, "Alarm: n bad frames of the last m.", &[
             field("n", 0, 16, "frames", "0 = no alarm"),
-            field("m", 16, 16, "frames", "1..16; another m begins a new count"),
+            field("m", 16, 16, "frames", "1..16; another m begins a new count").takes(&[(1, 16)], &[]),
         ]),
         word("bad_frames", at::BAD_FRAMES, ReadOnly, "Bad frames of the last m.", &[
             field("count", 0, 16, "frames", "How many"),
@@ -135,7 +136,7 @@ pub const SERVICE: Block = Block {
         word("position_2_low", at::POSITION_2[0], ReadOnly, "Position 2, bits 31..0.", VALUE),
         word("position_2_high", at::POSITION_2[1], ReadOnly, "Position 2, bits 47..32.", HIGH),
         word("list_length", at::LIST_LENGTH, ReadWrite, "Codes of the list that are selected in turn.", &[
-            field("length", 0, 4, "", "0..8; more is 8"),
+            field("length", 0, 4, "", "0..8; more is 8").takes(&[(0, 8)], &[]),
         ]),
         word("info_status", at::INFO_STATUS, ReadOnly, "WRN, RM, Busy, I4..I0 as they came last with a right CRC.", &[
             field("info_1", 0, 8, "", "Of additional information 1"),

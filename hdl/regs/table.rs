@@ -257,7 +257,8 @@ pub const CARD_CONFIG: Block = Block {
             "Period of the timer, at least 4; write it while the timer is disabled.",
             &[field("value", 0, 24, "cycles", "Period", |s, _| {
                 s.sample_period_cycles
-            })],
+            })
+            .takes(&[(4, 0xFF_FFFF)], &[])],
         ),
         word(
             "hold",
@@ -308,7 +309,8 @@ pub const CHANNEL_CONFIG: Block = Block {
                     "cycles",
                     "EnDat clock period; the high phase is the longer one when odd; T-format: a bit, 8..127",
                     |s, c| of(s, c, |v| v.period_cycles),
-                ),
+                )
+                .takes(&[(2, 2047)], &[(8, 127)]),
                 field(
                     "skip",
                     11,
@@ -324,7 +326,8 @@ pub const CHANNEL_CONFIG: Block = Block {
                     "bits",
                     "Position width, 1..48; T-format: no meaning, as command",
                     |s, c| of(s, c, |v| v.position_bits as u64),
-                ),
+                )
+                .takes(&[(1, 48)], &[]),
                 field("ignore_pin", 22, 1, "", "1: the trigger pin is not for this channel", |s, c| {
                     of(s, c, |v| own(v).ignored() & 1)
                 }),
@@ -395,7 +398,8 @@ pub const CHANNEL_CONFIG: Block = Block {
                     "",
                     "T-format: request ID of a trigger; 6 and 13 are not sent",
                     |s, c| of(s, c, |v| v.t_format.map_or(0, |t| t.request.id().into())),
-                ),
+                )
+                .takes(&[], &[(0, 5), (7, 12), (14, 15)]),
             ],
         ),
         word(
@@ -411,7 +415,8 @@ pub const CHANNEL_CONFIG: Block = Block {
                     "us",
                     "Longest wait for the start bit after the turnaround; T-format: longest pause before the reply, 1..63",
                     |s, c| of(s, c, |v| v.start_timeout_us),
-                ),
+                )
+                .takes(&[], &[(1, 63)]),
                 field(
                     "recovery_limit_cycles",
                     16,

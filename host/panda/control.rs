@@ -2,6 +2,7 @@
 
 use super::data::clean;
 use super::Column;
+use std::collections::BTreeMap;
 
 /// What a command wants of the server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +40,8 @@ fn lines(lines: impl Iterator<Item = String>) -> String {
 }
 
 const OK: &str = "OK\n";
+/// Type of a number with scale, offset and unit.
+const POSITION: &str = "pos_out";
 
 /// The answer to a line, and what is to be done. Unknown questions get `ERR`.
 pub fn answer(line: &str, state: &State<'_>) -> (String, Option<Wish>) {
@@ -55,6 +58,71 @@ pub fn answer(line: &str, state: &State<'_>) -> (String, Option<Wish>) {
     };
     let text = text.unwrap_or_else(|why| format!("ERR {why}: {}\n", clean(line)));
     (text, None)
+}
+
+/// Everything that `*CHANGES` tells of, with its group: name and value.
+fn values(state: &State<'_>) -> Vec<(&'static str, String, String)> {
+    let mut all = Vec::new();
+    for (block, count) in blocks(state.columns) {
+        for n in 1..=count {
+            let label = describe(block).unwrap_or_default();
+            let name = format!("*METADATA.LABEL_{block}{n}");
+            all.push(("METADATA", name, label.to_owned()));
+        }
+    }
+    for (index, column) in state.columns.iter().enumerate() {
+        let mut attribute = |name: &str, value: String| {
+            all.push(("ATTR", format!("{}.{name}", column.name), value));
+        };
+        attribute("CAPTURE", "Value".into());
+        let field = column.name.rsplit('.').next().unwrap_or_default();
+        // What has a type of its own has no scale that a client could ask for.
+        if kind(field) == POSITION {
+            attribute("OFFSET", "0".into());
+            attribute("SCALE", column.scale.to_string());
+            attribute("UNITS", column.unit.to_owned());
+            let raw = state.latest.map_or(0, |latest| latest[index]);
+            all.push(("POSN", column.name.clone(), raw.to_string()));
+        }
+    }
+    all
+}
+
+/// What a connection has been told of every value.
+pub type Seen = BTreeMap<String, String>;
+
+/// The answer to `*CHANGES?` and `*CHANGES.GROUP?`: what is new since this connection asked last, at first everything; with `=` in place
+/// of the `?` all is taken as told, with `=E` nothing. None for any other line.
+pub fn changes(line: &str, state: &State<'_>, seen: &mut Seen) -> Option<String> {
+    let rest = line.trim_end_matches('\r').strip_prefix("*CHANGES")?;
+    let at = rest.find(['?', '='])?;
+    let (group, action) = rest.split_at(at);
+    let group = group.strip_prefix('.').unwrap_or(group);
+    let is_known = [
+        "", "CONFIG", "BITS", "POSN", "READ", "ATTR", "TABLE", "METADATA",
+    ];
+    if !is_known.contains(&group) {
+        return Some(format!("ERR No such group: {}\n", clean(line)));
+    }
+    let all = values(state).into_iter();
+    let meant = all.filter(|(of, ..)| group.is_empty() || *of == group);
+    let mut news = Vec::new();
+    for (_, name, value) in meant {
+        match action {
+            "=E" => drop(seen.remove(&name)),
+            _ => {
+                if seen.get(&name) != Some(&value) {
+                    news.push(format!("{name}={value}"));
+                    seen.insert(name, value);
+                }
+            }
+        }
+    }
+    Some(match action {
+        "?" => lines(news.into_iter()),
+        "=" | "=S" | "=E" => OK.into(),
+        _ => format!("ERR Write =, =S or =E: {}\n", clean(line)),
+    })
 }
 
 /// Blocks: name and how many.
@@ -111,7 +179,7 @@ fn query(name: &str, state: &State<'_>) -> Result<String, &'static str> {
             false => Err("No such enumeration"),
         };
     }
-    if name.starts_with("*CHANGES") || name.starts_with("*METADATA") {
+    if name.starts_with("*METADATA") {
         return Ok(lines(std::iter::empty()));
     }
     match name {
@@ -192,7 +260,7 @@ fn field(name: &str, state: &State<'_>) -> Result<String, &'static str> {
 fn kind(field: &str) -> &'static str {
     match field {
         "TS_TRIG" => "ext_out timestamp",
-        _ => "pos_out",
+        _ => POSITION,
     }
 }
 
@@ -201,16 +269,59 @@ mod tests {
     use super::*;
     use crate::units::Scale;
 
+    fn columns() -> Vec<Column> {
+        let scales = [Scale::singleturn(29), Scale::Linear { step_nm: 10.0 }];
+        Column::all(100_000_000, &scales)
+    }
+
+    /// Catches a server that tells nothing, on which the EPICS driver dies, or tells the same again.
+    #[test]
+    fn changes_are_everything_at_first_and_then_what_is_new() {
+        let columns = columns();
+        let mut latest = [1, 2, 1 << 28, 1, 0, 500, 0, 4];
+        let mut seen = Seen::new();
+        let mut ask = |line: &str, latest: &[i64]| {
+            let state = State {
+                software: "",
+                card: "",
+                columns: &columns,
+                latest: Some(latest),
+                is_armed: false,
+                completion: "Ok",
+                captured: 0,
+            };
+            changes(line, &state, &mut seen)
+        };
+        let first = ask("*CHANGES?", &latest).unwrap();
+        for line in [
+            "!*METADATA.LABEL_INENC2=EnDat encoder",
+            "!*METADATA.LABEL_PCAP1=Position capture",
+            "!PCAP.TS_TRIG.CAPTURE=Value",
+            "!INENC1.VAL=268435456",
+            "!INENC2.VAL.UNITS=mm",
+            "!INENC1.CAUSE.SCALE=1",
+        ] {
+            assert!(first.contains(&format!("{line}\n")), "{line}: {first}");
+        }
+        assert_eq!(ask("*CHANGES?", &latest).unwrap(), ".\n");
+        latest[2] += 1;
+        assert_eq!(ask("*CHANGES.ATTR?", &latest).unwrap(), ".\n");
+        let news = ask("*CHANGES.POSN?\r", &latest).unwrap();
+        assert_eq!(news, "!INENC1.VAL=268435457\n.\n");
+        assert_eq!(ask("*CHANGES.TABLE=E", &latest).unwrap(), "OK\n");
+        assert_eq!(ask("*CHANGES=E", &latest).unwrap(), "OK\n");
+        assert!(ask("*CHANGES?", &latest).unwrap().len() > 100);
+        assert!(ask("*CHANGES.NO?", &latest).unwrap().starts_with("ERR "));
+        assert_eq!(ask("*IDN?", &latest), None);
+    }
+
     fn ask(line: &str) -> (String, Option<Wish>) {
-        let columns = Column::all(
-            100_000_000,
-            &[Scale::singleturn(29), Scale::Linear { step_nm: 10.0 }],
-        );
+        let columns = columns();
         let state = State {
             software: "0.1.0",
             card: "cff72a77",
             columns: &columns,
-            latest: Some(&[1, 2, 1 << 28, 1, 500, 0]),
+            latest: Some(&[1, 2, 1 << 28, 1, 0, 500, 0, 4]),
             is_armed: false,
             completion: "Ok",
             captured: 12,
@@ -225,13 +336,16 @@ mod tests {
             ("*BLOCKS?", "!INENC 2\n!PCAP 1\n!TRIGGER 1\n.\n"),
             ("*DESC.INENC?", "OK =EnDat encoder\n"),
             ("*DESC.INENC.VAL?", "OK =Last good position\n"),
-            ("INENC.*?", "!VAL 0 pos_out\n!FRESH 1 pos_out\n.\n"),
+            (
+                "INENC.*?",
+                "!VAL 0 pos_out\n!FRESH 1 pos_out\n!CAUSE 2 pos_out\n.\n",
+            ),
             ("PCAP.*?", "!TS_TRIG 0 ext_out timestamp\n.\n"),
             ("INENC1.VAL?", "OK =268435456\n"),
             ("INENC1.VAL.SCALED?", "OK =180\n"),
             ("INENC2.VAL.UNITS?", "OK =mm\n"),
             ("*PCAP.STATUS?", "OK =Idle 0 0\n"),
-            ("*CHANGES?", ".\n"),
+            ("INENC2.CAUSE?", "OK =4\n"),
             ("*ECHO hello?", "OK =hello\n"),
         ] {
             assert_eq!(ask(line), (expected.to_owned(), None), "{line}");

@@ -135,10 +135,10 @@ mod tests {
     fn frames_say_how_long_they_are() {
         let raw = form("XML FRAMED RAW").unwrap();
         let bytes = rows(raw, &columns(), &[row(), row()]);
-        assert_eq!(&bytes[..8], b"BIN \x48\0\0\0");
-        assert_eq!(bytes.len(), 8 + 2 * 4 * 8);
+        assert_eq!(&bytes[..8], b"BIN \x58\0\0\0");
+        assert_eq!(bytes.len(), 8 + 2 * 5 * 8);
         let number = |i: usize| i64::from_le_bytes(bytes[8 + 8 * i..][..8].try_into().unwrap());
-        assert_eq!([0, 1, 2, 3].map(number), [50, 7, 8, 1]);
+        assert_eq!([0, 1, 2, 3, 4].map(number), [50, 7, 8, 1, 0]);
         let scaled = rows(form("XML FRAMED SCALED").unwrap(), &columns(), &[row()]);
         let deg = f64::from_le_bytes(scaled[8 + 16..][..8].try_into().unwrap());
         assert_eq!(deg, 180.0);
@@ -147,7 +147,7 @@ mod tests {
     #[test]
     fn text_is_for_people() {
         let ascii = form("").unwrap();
-        assert_eq!(rows(ascii, &columns(), &[row()]), b" 0.5 7 180 1\n");
+        assert_eq!(rows(ascii, &columns(), &[row()]), b" 0.5 7 180 1 0\n");
         assert!(header(ascii, &columns())
             .contains(" INENC1.VAL double Value Scale: 22.5 Offset: 0 Units: deg\n"));
         assert!(form("XML BASE64").is_err());

@@ -13,6 +13,7 @@ mod server;
 
 pub use server::{Ports, Server, CONTROL_PORT, DATA_PORT};
 
+use crate::causes;
 use crate::feed::Row;
 use crate::units::Scale;
 
@@ -36,6 +37,19 @@ enum What {
     Trigger,
     Position(usize),
     Fresh(usize),
+    Cause(usize),
+}
+
+/// What a feed says instead of a cause, from the first number behind those of causes on.
+const OF_ROWS: [&str; 3] = ["not_taken", "too_late", "late"];
+const OF_ROWS_FIRST: usize = 32;
+
+fn code(cause: &str) -> i64 {
+    let of_row = OF_ROWS.iter().position(|name| *name == cause);
+    match of_row {
+        Some(index) => (OF_ROWS_FIRST + index) as i64,
+        None => causes::number(cause).map_or(0, i64::from),
+    }
 }
 
 impl Column {
@@ -78,6 +92,13 @@ impl Column {
                     "1: this trigger brought the position; 0: it is an older one, or there is none",
                 what: What::Fresh(channel),
             });
+            columns.push(Self {
+                name: format!("INENC{}.CAUSE", channel + 1),
+                scale: 1.0,
+                unit: "",
+                meaning: "Why it did not, as in the register map, 0 = none; 32: trigger not taken, 33: result too late, 34: the late result of an earlier trigger",
+                what: What::Cause(channel),
+            });
         }
         columns
     }
@@ -89,6 +110,7 @@ impl Column {
             What::Trigger => row.trigger as i64,
             What::Position(n) => cell(n).and_then(|c| c.position).unwrap_or(0) as i64,
             What::Fresh(n) => cell(n).is_some_and(|c| c.fresh).into(),
+            What::Cause(n) => cell(n).map_or(0, |c| code(c.cause)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Connections of both ports, and the acquisition.
 
-use super::control::{answer, State, Wish};
+use super::control::{answer, changes, Seen, State, Wish};
 use super::{data, Column};
 use crate::feed::{Feed, Row};
 use crate::{Card, HostError, Transport};
@@ -51,6 +51,8 @@ impl Ports {
 struct Client {
     stream: TcpStream,
     line: Vec<u8>,
+    /// What it has been told of values.
+    seen: Seen,
     is_gone: bool,
 }
 
@@ -65,6 +67,7 @@ impl Client {
         Some(Self {
             stream,
             line: Vec::new(),
+            seen: Seen::new(),
             is_gone: false,
         })
     }
@@ -197,7 +200,11 @@ impl<'c, T: Transport> Server<'c, T> {
                     completion: self.completion,
                     captured: self.captured,
                 };
-                let (text, wish) = answer(&line, &state);
+                let news = changes(&line, &state, &mut self.controls[index].seen);
+                let (text, wish) = match news {
+                    Some(text) => (text, None),
+                    None => answer(&line, &state),
+                };
                 let text = match wish {
                     Some(Wish::Arm) if self.acquisition.is_some() => {
                         "ERR Readout still taking place\n".into()

@@ -19,7 +19,15 @@
 
 #include "s6_two_channel_registers.h"
 
-enum { RESULT_WORDS = 6, ANSWER_MS = 2000 };
+enum {
+    CHANNELS = (int)S6_TWO_CHANNEL_CHANNELS,
+    RESULT_WORDS = 6,
+    /* From one channel's result to the next one's. */
+    STRIDE_WORDS = (int)S6_TWO_CHANNEL_RESULT_STRIDE_WORDS,
+    /* One burst over all channels, so that they are of one moment. */
+    BURST_WORDS = STRIDE_WORDS * (CHANNELS - 1) + RESULT_WORDS,
+    ANSWER_MS = 2000
+};
 
 /* Reads `count` words from word address `address` on, all of one moment; false if the card does not answer. */
 static bool card_read(int port, uint16_t address, uint8_t count, uint32_t *words)
@@ -53,18 +61,32 @@ struct result {
     uint32_t timestamp; /* system clock cycles */
 };
 
-static bool card_result(int port, unsigned channel, struct result *result)
+/* The results of all channels, after the same trigger. */
+static bool card_results(int port, struct result results[CHANNELS])
 {
-    uint32_t words[RESULT_WORDS];
-    if (!card_read(port, (uint16_t)S6_TWO_CHANNEL_RESULT_STATUS_WORD(channel), RESULT_WORDS, words))
+    uint32_t burst[BURST_WORDS];
+    if (!card_read(port, (uint16_t)S6_TWO_CHANNEL_RESULT_STATUS_WORD(0), BURST_WORDS, burst))
         return false;
-    result->is_fresh = S6_TWO_CHANNEL_GET(S6_TWO_CHANNEL_RESULT_STATUS_FRESH, words[0]);
-    result->is_valid = S6_TWO_CHANNEL_GET(S6_TWO_CHANNEL_RESULT_STATUS_VALID, words[0]);
-    result->sequence = (uint16_t)S6_TWO_CHANNEL_GET(S6_TWO_CHANNEL_RESULT_STATUS_SEQUENCE, words[0]);
-    result->cause = (uint8_t)S6_TWO_CHANNEL_GET(S6_TWO_CHANNEL_RESULT_STATUS_CAUSE, words[0]);
-    result->position = (uint64_t)words[2] << 32 | words[1];
-    result->timestamp = words[3];
+    for (int channel = 0; channel < CHANNELS; channel++) {
+        const uint32_t *words = burst + STRIDE_WORDS * channel;
+        struct result *result = &results[channel];
+        result->is_fresh = S6_TWO_CHANNEL_GET(S6_TWO_CHANNEL_RESULT_STATUS_FRESH, words[0]);
+        result->is_valid = S6_TWO_CHANNEL_GET(S6_TWO_CHANNEL_RESULT_STATUS_VALID, words[0]);
+        result->sequence = (uint16_t)S6_TWO_CHANNEL_GET(S6_TWO_CHANNEL_RESULT_STATUS_SEQUENCE, words[0]);
+        result->cause = (uint8_t)S6_TWO_CHANNEL_GET(S6_TWO_CHANNEL_RESULT_STATUS_CAUSE, words[0]);
+        /* Above bit 47 stands the check of the position. */
+        result->position = (uint64_t)(words[2] & 0xFFFFu) << 32 | words[1];
+        result->timestamp = words[3];
+    }
     return true;
+}
+
+static bool all_fresh(const struct result results[CHANNELS])
+{
+    bool is_fresh = true;
+    for (int channel = 0; channel < CHANNELS; channel++)
+        is_fresh = is_fresh && results[channel].is_fresh;
+    return is_fresh;
 }
 
 /* 8N1, no echo, no translation. Set the baud rate of a real port with your system's means; pseudo terminals have none. */
@@ -100,17 +122,16 @@ int main(int count, char **arguments)
         fprintf(stderr, "%s: no card answers (id 0x%08" PRIX32 ")\n", arguments[1], id);
         return 1;
     }
-    bool is_good = true;
-    for (unsigned channel = 0; channel < S6_TWO_CHANNEL_CHANNELS; channel++) {
-        struct result result = {0};
-        /* The first frame after a reset measures the line delay. */
-        for (int tries = 0; tries < 1000 && !result.is_fresh; tries++)
-            if (!card_result(port, channel, &result))
-                return 1;
-        printf("channel %u: position %" PRIu64 ", sequence %u, cause %u%s\n", channel, result.position, result.sequence,
-               result.cause, result.is_fresh ? "" : ", held");
-        is_good = is_good && result.is_fresh;
+    struct result results[CHANNELS] = {{0}};
+    /* The first frame after a reset measures the line delay. */
+    for (int tries = 0; tries < 1000 && !all_fresh(results); tries++)
+        if (!card_results(port, results))
+            return 1;
+    for (int channel = 0; channel < CHANNELS; channel++) {
+        const struct result *result = &results[channel];
+        printf("channel %d: position %" PRIu64 ", time stamp %" PRIu32 ", sequence %u, cause %u%s\n", channel,
+               result->position, result->timestamp, result->sequence, result->cause, result->is_fresh ? "" : ", held");
     }
     close(port);
-    return is_good ? 0 : 1;
+    return all_fresh(results) ? 0 : 1;
 }

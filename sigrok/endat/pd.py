@@ -45,6 +45,10 @@ def crc5(bits):
     return register ^ 0b11111
 
 
+class Cut(Exception):
+    """CLOCK has stopped HIGH where the frame should go on."""
+
+
 class Decoder(srd.Decoder):
     api_version = 3
     id = "endat"
@@ -83,7 +87,7 @@ class Decoder(srd.Decoder):
 
     def reset(self):
         self.samplerate = None
-        self.low = self.fell = 0
+        self.low = self.usual = 0
 
     def metadata(self, key, value):
         if key == srd.SRD_CONF_SAMPLERATE:
@@ -103,42 +107,50 @@ class Decoder(srd.Decoder):
         while True:
             pins = self.frame(pins)
 
-    def edge(self, kind, limit=True):
-        """The next clock edge; None if CLOCK stays as it is for longer than a frame allows."""
-        condition = [{0: kind}]
-        if limit:
-            condition.append({"skip": self.idle})
-        pins = self.wait(condition)
-        return pins if self.matched[0] else None
+    def falling(self):
+        """The next falling edge; CLOCK may not stay HIGH for longer than a frame allows."""
+        pins = self.wait([{0: "f"}, {"skip": self.idle}])
+        if not self.matched[0]:
+            raise Cut
+        return pins
+
+    def rising(self):
+        return self.wait({0: "r"})
 
     def bit(self):
-        """A bit of the encoder: launched at a rising edge, taken at the falling edge that follows."""
-        self.edge("r", limit=False)
-        self.low = self.samplenum - self.fell
-        return self.taken()
-
-    def taken(self):
-        """The bit that this rising edge has launched; None if CLOCK stays HIGH."""
+        """The bit of the encoder that this rising edge has launched, as DATA stands at the end of its period: at 16 MHz it changes behind
+        the falling edge. Ends at the next rising edge, which is much later where CLOCK is parked."""
         begin = self.samplenum
-        pins = self.edge("f")
-        self.fell = self.samplenum
-        return None if pins is None else (pins[1], begin, self.samplenum)
+        value = self.falling()[1]
+        fell = self.samplenum
+        half = max(1, fell - begin)
+        while True:
+            pins = self.wait([{0: "r"}, {1: "e"}])
+            # What changes together with CLOCK is the next bit, and what changes later is none.
+            if self.matched[0]:
+                break
+            if self.samplenum - fell < half:
+                value = pins[1]
+        self.usual, self.low = self.low, self.samplenum - fell
+        return value, begin, self.samplenum
 
     def bits(self, count):
-        taken = []
-        for _ in range(count):
-            bit = self.bit()
-            if bit is None:
-                return taken
-            taken.append(bit)
-        return taken
+        return [self.bit() for _ in range(count)]
 
     def frame(self, _):
         """From the first falling edge on; returns at the first falling edge of the next frame."""
+        begin = self.samplenum
+        try:
+            return self.whole_frame()
+        except Cut:
+            self.put_text(begin, self.samplenum, 7, ["Frame too short"])
+            return self.rest(idle=True)
+
+    def whole_frame(self):
         begin, command, parameter = self.samplenum, 0, 0
         edges, last = 0, PARAMETER_EDGES.stop
         while edges < COMMAND_EDGES.stop - 1 or edges < last:
-            pins = self.edge("r", limit=False)
+            pins = self.rising()
             edges += 1
             if edges in COMMAND_EDGES:
                 begin = self.samplenum if edges == COMMAND_EDGES.start else begin
@@ -156,8 +168,7 @@ class Decoder(srd.Decoder):
                     self.put_text(begin, self.samplenum, 7, ["Unknown mode command " + code, code])
                     return self.rest()
                 self.put_text(begin, self.samplenum, 0, ["{} {}".format(code, name), code])
-            if self.edge("f") is None:
-                return self.rest(idle=True)
+            self.falling()
         if has_parameter:
             text = "0x{:02X} 0x{:04X}".format(parameter >> 16, parameter & 0xFFFF)
             self.put_text(begin, self.samplenum, 1, [text])
@@ -165,23 +176,24 @@ class Decoder(srd.Decoder):
 
     def answer(self, command, edges):
         earliest = EARLIEST_START + (PARAMETER_BITS if edges > EARLIEST_START else 0)
+        self.rising()
+        edges += 1
         while True:
-            bit = self.bit()
-            edges += 1
-            if bit is None:
+            try:
+                bit = self.bit()
+            except Cut:
                 self.put_text(self.samplenum - 1, self.samplenum, 7, ["No start bit"])
                 return self.rest(idle=True)
             if bit[0] and edges >= earliest:
                 break
+            edges += 1
         self.put_text(bit[1], bit[2], 2, ["Start", "S"])
         if command not in POSITIONS:
-            return self.block("{:02X} {:04X}", bit[1]) or self.rest()
+            self.block("{:02X} {:04X}")
+            return self.rest()
         flags = self.bits(2 if command in ENDAT22 else 1)
         position = self.bits(self.options["bits"])
         check = self.bits(CRC_BITS)
-        if len(check) < CRC_BITS:
-            self.put_text(bit[1], self.samplenum, 7, ["Frame too short"])
-            return self.rest(idle=True)
         texts = ["F1={}".format(flags[0][0])] + ["F2={}".format(f[0]) for f in flags[1:]]
         self.put_text(flags[0][1], flags[-1][2], 3, [" ".join(texts)])
         value = sum(b[0] << i for i, b in enumerate(position))
@@ -189,24 +201,24 @@ class Decoder(srd.Decoder):
         self.check([b[0] for b in flags + position], check)
         # Additional information, if a LOW cell follows: behind the last block DATA is HIGH. Before a supplement CLOCK is parked LOW.
         while True:
-            self.edge("r", limit=False)
-            if command in SUPPLEMENTS and self.samplenum - self.fell > PARKED * self.low:
+            if command in SUPPLEMENTS and self.low > PARKED * self.usual:
                 return self.supplement()
-            first = self.taken()
-            if first is None or first[0]:
-                return self.rest(idle=first is None)
-            self.put_text(first[1], first[2], 2, ["Start", "S"])
-            if not self.block("{:02X} {:04X}", first[1]):
+            try:
+                first = self.bit()
+            except Cut:
+                # The frame ends here.
                 return self.rest(idle=True)
+            if first[0]:
+                return self.rest()
+            self.put_text(first[1], first[2], 2, ["Start", "S"])
+            self.block("{:02X} {:04X}")
 
     def supplement(self):
         """From the receiver: zeros, a start bit, address and data, each taken at a rising edge; this one is the first."""
         begin, value = self.samplenum, 0
         for edge in range(2, SUPPLEMENT_EDGES.stop):
-            if self.edge("f") is None:
-                self.put_text(begin, self.samplenum, 7, ["Supplement too short"])
-                return self.rest(idle=True)
-            pins = self.edge("r", limit=False)
+            self.falling()
+            pins = self.rising()
             if edge == SUPPLEMENT_EDGES.start:
                 begin = self.samplenum
             if edge in SUPPLEMENT_EDGES:
@@ -214,19 +226,15 @@ class Decoder(srd.Decoder):
         self.put_text(begin, self.samplenum, 1, ["0x{:02X} 0x{:04X}".format(value >> 16, value & 0xFFFF)])
         return self.rest()
 
-    def block(self, form, begin):
-        """24 bits, most significant first, and their CRC; whether it was whole."""
+    def block(self, form):
+        """24 bits, most significant first, and their CRC."""
         data = self.bits(INFO_BITS)
         check = self.bits(CRC_BITS)
-        if len(check) < CRC_BITS:
-            self.put_text(begin, self.samplenum, 7, ["Block too short"])
-            return None
         value = 0
         for bit in data:
             value = value << 1 | bit[0]
         self.put_text(data[0][1], data[-1][2], 5, [form.format(value >> 16, value & 0xFFFF)])
         self.check([b[0] for b in data], check)
-        return True
 
     def check(self, covered, check):
         received = 0

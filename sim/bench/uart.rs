@@ -57,6 +57,11 @@ impl Uart {
         self.sending.len() + usize::from(self.bits_left > 0)
     }
 
+    /// Drops what is queued; the byte on the line is finished.
+    pub fn forget(&mut self) {
+        self.sending.clear();
+    }
+
     /// Bytes from the card.
     pub fn received(&mut self) -> &mut VecDeque<u8> {
         &mut self.received

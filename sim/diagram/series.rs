@@ -2,6 +2,7 @@
 
 use super::svg::{text_width, Anchor, Svg};
 use std::cmp::Ordering;
+use std::collections::BTreeSet;
 
 /// Numbers over time.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -12,6 +13,8 @@ pub struct Series {
     pub unit: String,
     /// Seconds and value; a gap where there was none.
     pub points: Vec<(f64, Option<f64>)>,
+    /// Seconds at which there should have been one: marked at the foot of the panel, never thinned out.
+    pub bad: Vec<f64>,
 }
 
 const STYLE: &str = "\
@@ -19,7 +22,7 @@ text{font-family:'DejaVu Sans',Verdana,Helvetica,sans-serif;fill:#1f2937}\
 .title{font-size:19px;font-weight:bold}.sub{font-size:12.5px;fill:#4b5563}.name{font-size:13px;font-weight:bold}\
 .tick{font-size:11px;fill:#374151}path{fill:none}.axis{stroke:#374151;stroke-width:1}.grid{stroke:#e5e7eb;stroke-width:0.8}\
 .series-0{stroke:#0072b2;stroke-width:1.4}.series-1{stroke:#d55e00;stroke-width:1.4}.series-2{stroke:#009e73;stroke-width:1.4}\
-.series-3{stroke:#cc79a7;stroke-width:1.4}";
+.series-3{stroke:#cc79a7;stroke-width:1.4}.bad{stroke:#b91c1c;stroke-width:1}";
 
 const LEFT: f64 = 110.0;
 const TOP: f64 = 92.0;
@@ -29,6 +32,8 @@ const GAP: f64 = 54.0;
 /// Columns of the drawing: more points than that are thinned out.
 const POINTS_MAX: usize = 1640;
 const COLOURS: usize = 4;
+/// Height of a mark.
+const MARK: f64 = 9.0;
 
 /// Lowest and highest of some numbers; a little apart if they are all the same.
 fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
@@ -67,7 +72,10 @@ pub fn series_svg(series: &[Series], title: &str, subtitle: &str) -> String {
     let mut top = TOP;
     for (index, one) in series.iter().enumerate() {
         let bottom = top + HEIGHT;
-        let label = format!("{} ({})", one.name, one.unit);
+        let mut label = format!("{} ({})", one.name, one.unit);
+        if !one.bad.is_empty() {
+            label += &format!(": {} bad, marked at the foot", one.bad.len());
+        }
         svg.text(LEFT, top - 9.0, Anchor::Start, "name", &label);
         let (low, high) = range(one.points.iter().filter_map(|p| p.1)).unwrap_or((0.0, 1.0));
         let y = |value: f64| bottom - HEIGHT * (value - low) / (high - low);
@@ -96,6 +104,12 @@ pub fn series_svg(series: &[Series], title: &str, subtitle: &str) -> String {
             }
         }
         svg.line(&line, &class);
+        // One mark for each column, however many fall on it.
+        let columns = one.bad.iter().map(|time| x(*time).round() as i64);
+        for column in columns.collect::<BTreeSet<_>>() {
+            let x = column as f64;
+            svg.line(&[(x, bottom), (x, bottom - MARK)], "bad");
+        }
         svg.line(
             &[(LEFT, top), (LEFT, bottom), (LEFT + WIDTH, bottom)],
             "axis",
@@ -151,6 +165,7 @@ mod tests {
             name: "channel 0".into(),
             unit: "deg".into(),
             points: (0..5).map(point).collect(),
+            ..Series::default()
         };
         let svg = series_svg(std::slice::from_ref(&one), "log", "");
         assert_eq!(svg.matches("class=\"series-0\"").count(), 2);
@@ -158,6 +173,20 @@ mod tests {
             points: (0..100_000).map(|n| (n as f64, Some(0.0))).collect(),
             ..one
         };
-        assert!(series_svg(&[long], "log", "").len() < 60_000);
+        assert!(series_svg(std::slice::from_ref(&long), "log", "").len() < 60_000);
+        // Bad ones are seen however rare they are, and cost no more than the columns.
+        let rare = Series {
+            bad: vec![12_345.0],
+            ..long.clone()
+        };
+        let svg = series_svg(&[rare], "log", "");
+        assert_eq!(svg.matches("class=\"bad\"").count(), 1);
+        assert!(svg.contains("channel 0 (deg): 1 bad"));
+        let all = Series {
+            bad: (0..100_000).map(f64::from).collect(),
+            ..long
+        };
+        let svg = series_svg(&[all], "log", "");
+        assert!(svg.matches("class=\"bad\"").count() <= 821);
     }
 }

@@ -60,6 +60,11 @@ fn what_a_board_has_no_place_for_is_refused() {
         ),
         (
             HostBus::Spi,
+            "[outputs]\nparts = [\"position\", \"interrupt\"]\n",
+            ":20: outputs.parts = \"position\": a card with a board top is the whole device",
+        ),
+        (
+            HostBus::Spi,
             "[pins]\nuart_rx_i = \"A0\"\n",
             ":20: pins.uart_rx_i = \"A0\": no such signal; signals: trigger_i, spi_sck_i",
         ),

@@ -14,12 +14,15 @@ fn pandablocks_finds_and_records_the_card() {
     }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/panda_client.py");
     let folder = tools::folder("panda");
+    let has_ioc = tools::require_python("pandablocks_ioc", "EPICS driver at the virtual card");
+    let more = has_ioc.then_some("ioc");
     let output = Command::new("python3")
         .args([
             script,
             env!("CARGO_BIN_EXE_endat-gen"),
             folder.to_str().unwrap(),
         ])
+        .args(more)
         .output()
         .unwrap();
     let told = String::from_utf8_lossy(&output.stdout);
@@ -37,10 +40,15 @@ fn litex_reads_and_writes_the_card_over_a_pseudo_terminal() {
     if !tools::require_python("litex.tools.remote.comm_uart", "LiteX at the virtual card") {
         return;
     }
-    let card = Served::new(slow_card(), || Door::terminal().unwrap());
+    let project = slow_card();
+    let csv = tools::folder("litex_csr").join("csr.csv");
+    let maps = endat_gen::maps::artifacts(&project).unwrap();
+    let map = maps.iter().find(|m| m.path.ends_with("_csr.csv")).unwrap();
+    std::fs::write(&csv, &map.text).unwrap();
+    let card = Served::new(project, || Door::terminal().unwrap());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/litex_client.py");
     let output = Command::new("python3")
-        .args([script, &card.name])
+        .args([script, &card.name, csv.to_str().unwrap()])
         .output()
         .unwrap();
     let told = String::from_utf8_lossy(&output.stdout);

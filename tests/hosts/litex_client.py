@@ -26,7 +26,7 @@ def check(bus):
     assert len(words) == 14
 
 
-def main(port):
+def main(port, csr_csv):
     uart = CommUART(port, BAUD)
     uart.open()
     check(uart)
@@ -53,10 +53,21 @@ def main(port):
                 time.sleep(0.2)
         check(bus)
         bus.close()
+        bus = RemoteClient(port=SERVER_PORT, csr_csv=csr_csv)
+        bus.open()
+        assert bus.regs.card_id.read() == 0x456E4474
+        assert bus.constants.config_clock_frequency == 100_000_000
+        assert bus.bases.result1 == byte_address(RESULT + 8)
+        bus.close()
+        shown = subprocess.check_output(
+            ["litex_cli", "--csr-csv", csr_csv, "--port", str(SERVER_PORT), "--regs", "--filter", "card_"],
+            text=True,
+        )
+        assert "0x00000000 : 0x456e4474 card_id" in shown, shown
     finally:
         server.terminate()
         server.wait()
     print("LITEX GOOD")
 
 
-main(sys.argv[1])
+main(sys.argv[1], sys.argv[2])

@@ -5,6 +5,7 @@ mod commands;
 mod desk;
 mod disturbed;
 mod few_cycles;
+mod logs;
 mod ports;
 mod requests;
 mod slow;

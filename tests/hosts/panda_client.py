@@ -1,6 +1,8 @@
-"""PandABlocks' client: finds blocks and fields, and records HDF5. Arguments: the program, a folder."""
+"""PandABlocks' client: finds blocks and fields, and records HDF5; its EPICS driver starts. Arguments: the program, a folder, "ioc" if
+that driver is there."""
 
 import asyncio
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -25,7 +27,24 @@ async def introspect():
         assert fields["VAL"].type == "pos_out", fields
 
 
-def main(program, folder):
+def ioc():
+    # Ports of its own, so that it meets no other one.
+    ports = {"EPICS_CA_SERVER_PORT": "15064", "EPICS_PVA_SERVER_PORT": "15075", "EPICS_PVA_BROADCAST_PORT": "15076"}
+    # Its console ends with its input.
+    ended = subprocess.run(
+        [sys.executable, "-m", "pandablocks_ioc", "softioc", "127.0.0.1", "TEST"],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env={**os.environ, **ports},
+        timeout=120,
+    )
+    told = ended.stdout
+    assert "iocRun: All initialization complete" in told and "Traceback" not in told, told
+
+
+def main(program, folder, *more):
     card = ["--port", "virtual:s6_two_channel_service"]
     server = subprocess.Popen(
         [program, "serve", *card, "--samples", str(SAMPLES)], stdout=subprocess.PIPE, text=True
@@ -35,6 +54,8 @@ def main(program, folder):
             line = server.stdout.readline().strip()
             assert line == expected, line
         asyncio.run(introspect())
+        if "ioc" in more:
+            ioc()
         scheme = str(Path(folder) / "run-%d.h5")
         subprocess.run(
             ["pandablocks", "hdf", "127.0.0.1", scheme, "--num=2", "--arm"], check=True, timeout=300
@@ -52,6 +73,7 @@ def main(program, folder):
             for channel in range(1, CHANNELS + 1):
                 angle = np.array(file[f"INENC{channel}.VAL.Value"])
                 assert (np.array(file[f"INENC{channel}.FRESH.Value"]) == 1).all()
+                assert (np.array(file[f"INENC{channel}.CAUSE.Value"]) == 0).all()
                 # Shafts turn slowly, and always on.
                 assert (np.diff(angle) > 0).all() and 0 < angle[-1] - angle[0] < 360
     print("PANDA GOOD")

@@ -74,6 +74,32 @@ fn hosts_come_and_go_over_tcp() {
     }
 }
 
+/// Catches bytes of one host that end a command of the one before.
+#[test]
+fn half_a_command_goes_with_the_host_that_sent_it() {
+    use std::io::Write;
+    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    let address = card.name.trim_start_matches("tcp:");
+    let mut last = None;
+    for _ in 0..3 {
+        // One word to trigger_sources, and the half of it; then a burst of 255 words, of which nothing comes.
+        for half in [&[1, 1, 0, 0, 1, 0, 0xFF][..], &[1, 255, 0, 0, 1, 0]] {
+            let mut stream = std::net::TcpStream::connect(address).unwrap();
+            stream.write_all(half).unwrap();
+            drop(stream);
+            let mut bridge = Bridge::new(Port::open(&card.name, 2_000_000).unwrap());
+            assert_eq!(bridge.read(0, 1).unwrap(), [0x456E_4474]);
+            assert_eq!(
+                bridge.retries(),
+                0,
+                "the first command was taken for something else"
+            );
+            let words = bridge.read(0x100, 2).unwrap();
+            assert_eq!(*last.get_or_insert(words.clone()), words);
+        }
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_pseudo_terminal_is_a_serial_port() {

@@ -234,9 +234,15 @@ fn read_svd(text: &str) -> BTreeSet<String> {
 /// of channel 0 that is told of all channels.
 #[test]
 fn the_svd_says_what_the_table_says() {
+    let mut interrupts = 0;
     for project in projects() {
-        same(&read_svd(&text_of(&project, ".svd")), &project, "SVD");
+        let text = text_of(&project, ".svd");
+        same(&read_svd(&text), &project, "SVD");
+        let has_interrupt = text.contains("<interrupt>");
+        assert_eq!(has_interrupt, project.card.outputs.interrupt);
+        interrupts += usize::from(has_interrupt);
     }
+    assert!(interrupts > 0, "no card here has one");
 }
 
 /// Facts that a Python reader prints.
@@ -482,7 +488,9 @@ fn maps_list_every_word_and_field_that_the_card_has() {
     let maps = |project: &Project| endat_gen::maps::artifacts(project).unwrap();
     let has = |project: &Project, name: &str| -> Vec<bool> {
         let maps = maps(project);
+        // LiteX's form has words only.
         maps.iter()
+            .filter(|a| !a.path.ends_with("_csr.csv"))
             .map(|a| a.text.to_lowercase().contains(name))
             .collect()
     };

@@ -33,8 +33,16 @@ pub fn shown(reading: &Reading, scale: &Scale) -> String {
     }
 }
 
+/// Whether a position is older than its age can tell: 65 ms.
+fn is_old(reading: &Reading) -> bool {
+    reading.valid && reading.age_us == u16::MAX
+}
+
 /// What kind of result it is.
 pub fn verdict(reading: &Reading) -> String {
+    if reading.fresh && is_old(reading) {
+        return "old: no result for more than 65 ms".into();
+    }
     match (reading.fresh, reading.valid, reading.cause) {
         (true, _, 0) => "good".into(),
         (true, ..) => format!("good, {}", reading.cause_name()),
@@ -60,13 +68,13 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
         );
     }
     for (channel, r) in results.channels.iter().enumerate() {
-        if r.valid && r.age_us == u16::MAX {
+        if is_old(r) {
             messages.push(format!(
                 "channel {channel}: the position is older than 65 ms; is a trigger enabled (`endat-gen reg read card_config`)?"
             ));
         }
     }
-    let is_good = results.channels.iter().all(|r| r.fresh);
+    let is_good = results.channels.iter().all(|r| r.fresh && !is_old(r));
     let each = results.channels.iter().zip(&scales).enumerate();
     let stdout = if arguments.json {
         let objects = each.map(|(channel, (r, scale))| {
@@ -113,4 +121,21 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
         exit_code: u8::from(!is_good),
         ..Outcome::good(stdout)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_result_of_long_ago_is_not_called_good() {
+        let at = |age_us| Reading {
+            valid: true,
+            fresh: true,
+            age_us,
+            ..Reading::default()
+        };
+        assert_eq!(verdict(&at(65_534)), "good");
+        assert_eq!(verdict(&at(65_535)), "old: no result for more than 65 ms");
+    }
 }

@@ -39,6 +39,9 @@ enum Action {
         /// Number, the name of one of the field's values, or names of its bits: result,error
         #[arg(allow_negative_numbers = true)]
         value: String,
+        /// Write what the register map forbids, too
+        #[arg(long)]
+        force: bool,
     },
     /// List the registers that a card can have, without a card
     List,
@@ -48,7 +51,12 @@ enum Action {
 pub fn run(arguments: &RegArgs) -> Result<Outcome, GenError> {
     match &arguments.action {
         Action::Read { port, names, json } => read(&mut port.open()?, names, *json),
-        Action::Write { port, name, value } => write(&mut port.open()?, name, value),
+        Action::Write {
+            port,
+            name,
+            value,
+            force,
+        } => write(&mut port.open()?, name, value, *force),
         Action::List => Ok(Outcome::good(list())),
     }
 }
@@ -146,9 +154,13 @@ fn value_of(place: &Place, text: &str) -> Result<u32, GenError> {
     number("value", text, 0..=most.into()).map(|n| n as u32)
 }
 
-fn write(card: &mut AnyCard, name: &str, text: &str) -> Result<Outcome, GenError> {
+fn write(card: &mut AnyCard, name: &str, text: &str, force: bool) -> Result<Outcome, GenError> {
     let place = card.place(name).map_err(told)?;
     let value = value_of(&place, text)?;
+    if place.register.access != Access::ReadOnly && !force {
+        card.permits(&place, value)
+            .map_err(|e| GenError::input(format!("{e}; --force writes it all the same")))?;
+    }
     card.write(&place, value).map_err(told)?;
     if place.register.access == Access::Strobe {
         return Ok(Outcome::good(format!("{place}: done\n")));

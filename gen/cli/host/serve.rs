@@ -38,15 +38,20 @@ pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
     let data = port("--data-port", &arguments.data_port, DATA_PORT)?;
     let limit = number_if("--samples", &arguments.samples, 1..=u64::from(u32::MAX))?;
     let host = arguments.host.as_deref().unwrap_or("127.0.0.1");
-    let ports = Ports::open(host, control, data).map_err(|e| {
-        GenError::input(format!(
-            "--host = {host}, ports {control} and {data}: {e}; give other ones with --control-port and --data-port"
-        ))
-    })?;
+    let open = || {
+        Ports::open(host, control, data).map_err(|e| {
+            GenError::input(format!(
+                "--host = {host}, ports {control} and {data}: {e}; give other ones with --control-port and --data-port"
+            ))
+        })
+    };
+    // Ports that are taken are told at once. While encoders are initialised clients are refused, and try again: nobody would answer.
+    drop(open()?);
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
     let scales = scales(&mut card)?;
     let columns = Column::all(card.identity().system_hz, &scales);
+    let ports = open()?;
     let mut stdout = std::io::stdout();
     if let Ok([control, data]) = ports.addresses() {
         let _ = writeln!(stdout, "control {control}\ndata {data}");

@@ -1,0 +1,306 @@
+//! `log`: sample sets into a file, as CSV or JSON lines.
+
+mod count;
+mod sheet;
+
+use super::super::number::{decimal_if, number_if};
+use super::super::pictures::{check_all, write_all, File};
+use super::super::Outcome;
+use super::{interrupted, place, scales, settled, told, AnyCard, PortArgs};
+use crate::error::GenError;
+use clap::Args;
+use count::{Count, Judge};
+use endat_host::feed::Feed;
+use endat_sim::diagram::{is_drawing, series_svg};
+use sheet::{Format, Lines, Sheet};
+use std::collections::VecDeque;
+use std::fs;
+use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Arguments of `log`.
+#[derive(Args)]
+pub struct LogArgs {
+    #[command(flatten)]
+    port: PortArgs,
+    /// Stop after so many sample sets [default: until Ctrl-C]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    samples: Option<String>,
+    /// Stop after so many seconds
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    seconds: Option<String>,
+    /// Write into this file [default: to stdout]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Replace the file if it is there
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Draw the positions over time, at the end
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    /// Form of the file
+    #[arg(long, value_enum, default_value = "csv")]
+    format: Format,
+    /// Read results one after the other, even if the card can stream
+    #[arg(long)]
+    poll: bool,
+    /// Exit with 1 if more than this share of the rows is bad, in per cent [default: 1]
+    #[arg(long, value_name = "PERCENT", allow_negative_numbers = true)]
+    bad_max: Option<String>,
+}
+
+/// Bad rows that are still a good run, in per cent: a plug that is moved, not a wrong configuration.
+const BAD_MAX_PERCENT: f64 = 1.0;
+
+/// How long an empty stream is waited for before the end is looked for again.
+const SLICE: Duration = Duration::from_millis(100);
+/// Nothing for this long: something is wrong.
+const SILENCE: Duration = Duration::from_secs(20);
+/// Between two lines of progress.
+const PROGRESS: Duration = Duration::from_secs(2);
+
+/// When to stop.
+struct End {
+    samples: Option<u64>,
+    seconds: Option<u64>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
+    let limit = |flag, text| number_if(flag, text, 1..=u64::from(u32::MAX));
+    let end = End {
+        samples: limit("--samples", &arguments.samples)?,
+        seconds: limit("--seconds", &arguments.seconds)?,
+    };
+    let bad_max = decimal_if("--bad-max", &arguments.bad_max, 0.0..=100.0)?;
+    let bad_max = bad_max.unwrap_or(BAD_MAX_PERCENT);
+    let mut card = arguments.port.open()?;
+    settled(&mut card)?;
+    let sources = place(&card, "card_config.trigger_sources")?;
+    if card.read(&sources).map_err(told)? == 0 {
+        return Err(GenError::CheckFailed(vec![format!(
+            "no trigger is enabled, so there is nothing to log; enable one, as with `endat-gen reg write card_config.trigger_sources.timer 1 --port {}`",
+            arguments.port.name()
+        )]));
+    }
+    let scales = scales(&mut card)?;
+    let (out, name): (Box<dyn Write>, String) = match &arguments.out {
+        None => (Box::new(Lines::to(Box::new(io::stdout()))), "stdout".into()),
+        Some(path) => {
+            let mut options = fs::File::options();
+            options.write(true);
+            let options = match arguments.force {
+                true => options.create(true).truncate(true),
+                false => options.create_new(true),
+            };
+            let remedy = "give another file with --out, or replace it with --force";
+            let file = options
+                .open(path)
+                .map_err(|e| GenError::io("write", path, &e, remedy))?;
+            (Box::new(Lines::file(file)), path.display().to_string())
+        }
+    };
+    let failed =
+        |e: io::Error| GenError::input(format!("{name}: cannot write: {e}; is the disk full?"));
+    let system_hz = f64::from(card.identity().system_hz.max(1));
+    let mut sheet = Sheet::new(arguments.format, out, scales, system_hz).map_err(failed)?;
+    let mut drawing = arguments.svg.clone().map(|path| File {
+        option: "--svg",
+        path,
+        text: String::new(),
+        is_ours: is_drawing,
+    });
+    // Refused before the first sample, not after the last.
+    check_all(&drawing.iter().collect::<Vec<_>>())?;
+    let judge = Judge {
+        own_triggers: card.identity().has("own_trigger"),
+    };
+    if drawing.is_some() {
+        sheet.keep(judge);
+    }
+    let mut feed = Feed::begin(&mut card, arguments.poll).map_err(told)?;
+    let stop = interrupted();
+    let mut count = Count::new(judge);
+    let mut progress = Progress::new(end.samples);
+    let result = record(
+        &mut card,
+        &mut feed,
+        &mut sheet,
+        (&mut count, &mut progress),
+        &end,
+        &stop,
+    );
+    progress.clear();
+    // Whatever ended it: the card is quiet again, the file whole, and what was measured is told and drawn.
+    let (is_stream, lost_in_card) = (feed.streams(), feed.lost_in_card());
+    let calm = feed.end(&mut card);
+    let flushed = sheet.out.flush();
+    let mut text = format!(
+        "{name}: {} sample sets in {:.3} s of the card's time",
+        count.rows, sheet.span_s
+    );
+    if is_stream {
+        let damaged = card.bridge().decoder().damaged();
+        text += &format!(
+            "; {} triggers missing, {} of them dropped in the card; {damaged} frames damaged on the line",
+            count.missing, lost_in_card
+        );
+    } else {
+        text += &format!(
+            "; read one by one: {} results in between not read (a card with [stream] gives them all)",
+            count.missing
+        );
+    }
+    let mut messages = vec![format!("{text}; {}", count.told())];
+    let is_bad = count.bad_percent() > bad_max;
+    if is_bad {
+        messages.push(format!(
+            "bad rows = {:.1} %: more than {bad_max} %; `endat-gen explain CAUSE` tells what helps, `endat-gen read` why triggers are not taken; --bad-max allows more",
+            count.bad_percent()
+        ));
+    }
+    let mut exit_code = u8::from(is_bad || is_stream && count.missing > 0);
+    if let (Some(file), Some(plot)) = (&mut drawing, &sheet.plot) {
+        let subtitle = format!(
+            "{} sample sets, {} triggers missing, {}",
+            count.rows,
+            count.missing,
+            count.told()
+        );
+        let title = format!("Positions of {}", arguments.port.name());
+        file.text = series_svg(plot, &title, &subtitle);
+        messages.extend(write_all(&drawing.into_iter().collect::<Vec<_>>())?);
+    }
+    let error = match result.and(flushed.map_err(Failure::Write)) {
+        // A reader that has gone away (`| head`) is the end, not an error.
+        Err(Failure::Write(e)) if e.kind() == io::ErrorKind::BrokenPipe => {
+            return Ok(Outcome {
+                exit_code,
+                ..Outcome::default()
+            })
+        }
+        Err(Failure::Write(e)) => Some(failed(e)),
+        Err(Failure::Card(e)) => Some(e),
+        Ok(()) => calm.err().map(told),
+    };
+    if let Some(error) = error {
+        exit_code = error.exit_code();
+        messages.extend_from_slice(error.messages());
+    }
+    Ok(Outcome {
+        messages,
+        exit_code,
+        ..Outcome::default()
+    })
+}
+
+/// Lines of progress: one that is written over on a terminal, one after the other in a file.
+struct Progress {
+    of: Option<u64>,
+    is_terminal: bool,
+    shown: Instant,
+    is_there: bool,
+}
+
+impl Progress {
+    fn new(of: Option<u64>) -> Self {
+        Self {
+            of,
+            is_terminal: io::stderr().is_terminal(),
+            shown: Instant::now(),
+            is_there: false,
+        }
+    }
+
+    fn show(&mut self, rows: u64) {
+        let is_wanted = self.is_terminal || self.of.is_some();
+        if !is_wanted || self.shown.elapsed() < PROGRESS {
+            return;
+        }
+        self.shown = Instant::now();
+        self.is_there = true;
+        let text = self.text(rows);
+        let _ = io::stderr().write_all(text.as_bytes());
+    }
+
+    fn text(&self, rows: u64) -> String {
+        let of = self.of.map_or(String::new(), |n| format!(" of {n}"));
+        match self.is_terminal {
+            true => format!("\r{rows}{of} sample sets\x1b[K"),
+            false => format!("{rows}{of} sample sets\n"),
+        }
+    }
+
+    /// What comes next begins a line.
+    fn clear(&self) {
+        if self.is_terminal && self.is_there {
+            let _ = io::stderr().write_all(b"\r\x1b[K");
+        }
+    }
+}
+
+enum Failure {
+    Card(GenError),
+    Write(io::Error),
+}
+
+fn record<W: Write>(
+    card: &mut AnyCard,
+    feed: &mut Feed,
+    sheet: &mut Sheet<W>,
+    (count, progress): (&mut Count, &mut Progress),
+    end: &End,
+    stop: &AtomicBool,
+) -> Result<(), Failure> {
+    let begin = Instant::now();
+    let (mut heard, mut flushed) = (begin, begin);
+    let mut rows = VecDeque::new();
+    loop {
+        let filled = feed.fill(card, &mut rows, SLICE);
+        filled.map_err(|e| Failure::Card(told(e)))?;
+        if !rows.is_empty() {
+            heard = Instant::now();
+        }
+        while let Some(row) = rows.pop_front() {
+            sheet.row(&row).map_err(Failure::Write)?;
+            count.note(&row);
+            if end.samples == Some(count.rows) {
+                return Ok(());
+            }
+        }
+        let is_over = end
+            .seconds
+            .is_some_and(|s| begin.elapsed() >= Duration::from_secs(s));
+        if is_over || stop.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        if heard.elapsed() > SILENCE {
+            return Err(Failure::Card(GenError::CheckFailed(vec![format!(
+                "no sample for {} s; is a trigger enabled (`endat-gen reg read card_config`), is the card plugged in? {} sets are in the file",
+                SILENCE.as_secs(),
+                count.rows
+            )])));
+        }
+        if flushed.elapsed() >= Duration::from_secs(1) {
+            flushed = Instant::now();
+            sheet.out.flush().map_err(Failure::Write)?;
+        }
+        progress.show(count.rows);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_stays_on_one_line_of_a_terminal() {
+        let mut progress = Progress::new(Some(9));
+        progress.is_terminal = true;
+        assert_eq!(progress.text(5), "\r5 of 9 sample sets\x1b[K");
+        progress.is_terminal = false;
+        assert_eq!(progress.text(5), "5 of 9 sample sets\n");
+    }
+}

@@ -1,0 +1,182 @@
+//! `log` and `reg write` when something is wrong: what is told, drawn and kept.
+
+use super::{slow_card, Served};
+use crate::tools;
+use endat_gen::cli;
+use endat_gen::config::preset;
+use endat_gen::virtual_card::Door;
+use std::fs;
+use std::path::PathBuf;
+
+fn run(arguments: &[&str]) -> cli::Outcome {
+    cli::run(std::iter::once("endat-gen").chain(arguments.iter().copied()))
+}
+
+/// A card whose channel 0 expects another width than its encoder has: every frame is bad.
+fn wrong_width(folder: &str) -> (PathBuf, String) {
+    let folder = tools::folder(folder);
+    let toml = folder.join("wrong.toml");
+    let text = preset("s6_two_channel").unwrap();
+    let text = text.replacen("\nposition_bits = 29", "\nposition_bits = 25", 1);
+    fs::write(&toml, text).unwrap();
+    (folder, format!("virtual:{}", toml.display()))
+}
+
+/// Catches a log that calls a run good whose rows are bad, and a plot that shows nothing of it.
+#[test]
+fn a_bad_run_is_told_by_cause_marked_in_the_plot_and_not_good() {
+    let (folder, port) = wrong_width("host_bad_run");
+    let (svg, out) = (folder.join("bad.svg"), folder.join("bad.csv"));
+    let (svg, out) = (svg.to_str().unwrap(), out.to_str().unwrap());
+    let log = [
+        "log",
+        "--samples",
+        "100",
+        "--force",
+        "--port",
+        &port,
+        "--svg",
+        svg,
+        "--out",
+        out,
+    ];
+    let outcome = run(&log);
+    assert_eq!(outcome.exit_code, 1, "{outcome:?}");
+    let told = &outcome.messages;
+    assert!(
+        told[0].contains("of 100 rows bad (") && told[0].contains("; channel 0: "),
+        "{told:?}"
+    );
+    assert!(!told[0].contains("channel 1"), "{told:?}");
+    assert!(
+        told[1].starts_with("bad rows = ") && told[1].contains("more than 1 %"),
+        "{told:?}"
+    );
+    let drawn = fs::read_to_string(svg).unwrap();
+    assert!(drawn.matches("class=\"bad\"").count() > 50, "marks");
+    let allowed = run(&[&log[..], &["--bad-max", "100"]].concat());
+    assert_eq!(allowed.exit_code, 0, "{allowed:?}");
+    assert!(allowed.messages[0].contains("rows bad"), "{allowed:?}");
+    let wrong = run(&[&log[..], &["--bad-max", "101"]].concat());
+    assert_eq!(
+        wrong.messages,
+        ["--bad-max = 101: outside 0..100; give a number in that range"]
+    );
+}
+
+/// Catches a run whose drawing is lost with its disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_and_the_plot_is_there() {
+    let svg = tools::folder("host_full_disk").join("full.svg");
+    let svg = svg.to_str().unwrap();
+    let outcome = run(&[
+        "log",
+        "--samples",
+        "60",
+        "--out",
+        "/dev/full",
+        "--force",
+        "--svg",
+        svg,
+        "--port",
+        "virtual",
+    ]);
+    assert_eq!(outcome.exit_code, 2, "{outcome:?}");
+    let last = outcome.messages.last().unwrap();
+    assert!(last.starts_with("/dev/full: cannot write: "), "{outcome:?}");
+    assert!(fs::read_to_string(svg).unwrap().contains("channel 1 (deg)"));
+}
+
+/// Catches a run whose drawing is lost with its card.
+#[test]
+fn a_card_that_dies_leaves_file_and_plot() {
+    let folder = tools::folder("host_card_dies");
+    let (svg, out) = (folder.join("dies.svg"), folder.join("dies.csv"));
+    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    let port = card.name.clone();
+    let end = std::thread::spawn(move || {
+        std::thread::sleep(std::time::Duration::from_secs(5));
+        drop(card);
+    });
+    let outcome = run(&[
+        "log",
+        "--samples",
+        "1000000",
+        "--port",
+        &port,
+        "--svg",
+        svg.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    end.join().unwrap();
+    assert_eq!(outcome.exit_code, 1, "{outcome:?}");
+    assert!(
+        outcome.messages[0].contains(" sample sets in "),
+        "{outcome:?}"
+    );
+    let text = fs::read_to_string(&out).unwrap();
+    assert!(text.ends_with('\n') && text.lines().count() > 2, "{text}");
+    assert!(fs::read_to_string(&svg)
+        .unwrap()
+        .contains("channel 1 (deg)"));
+}
+
+/// Catches a write that the map itself forbids.
+#[test]
+fn reg_write_keeps_to_the_limits_of_the_map_unless_forced() {
+    let write = |name: &str, value: &str, more: &[&str]| {
+        run(&[&["reg", "write", name, value, "--port", "virtual"], more].concat())
+    };
+    for (name, value, told) in [
+        (
+            "card_config.trigger_period",
+            "3",
+            "value = 3: card_config.trigger_period would have value = 3, which takes 4..16777215; --force writes it all the same",
+        ),
+        (
+            "config1.frame.position_bits",
+            "60",
+            "value = 60: config1.frame.position_bits would have position_bits = 60, which takes 1..48; --force",
+        ),
+        (
+            "config0.frame.command",
+            "5",
+            "which takes send_position, send_position_add_info; --force",
+        ),
+    ] {
+        let outcome = write(name, value, &[]);
+        assert_eq!(outcome.exit_code, 2, "{outcome:?}");
+        assert!(outcome.messages[0].contains(told), "{outcome:?}");
+        let forced = write(name, value, &["--force"]);
+        assert_eq!(forced.exit_code, 0, "{forced:?}");
+        assert!(forced.stdout.ends_with(&format!(" = {value}\n")), "{forced:?}");
+    }
+    let near = run(&["reg", "read", "age_recovery", "--port", "virtual"]);
+    assert_eq!(near.exit_code, 2);
+    assert!(
+        near.messages[0].ends_with("; did you mean result0.age_recovery?"),
+        "{near:?}"
+    );
+}
+
+/// Catches a program that says nothing of results that nobody got.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_stdout_is_no_success() {
+    use std::process::{Command, Stdio};
+    let full = fs::File::options().write(true).open("/dev/full").unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_endat-gen"))
+        .arg("presets")
+        .stdout(Stdio::from(full))
+        .stderr(Stdio::piped())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        told.starts_with("endat-gen: stdout: cannot write: "),
+        "{told}"
+    );
+}
