@@ -740,7 +740,7 @@ impl Logic for Transaction {
         self.verdict.found.next = self.found.val();
         self.verdict.answer_taken.next = self.answer_taken.val();
         self.verdict.prove.next = self.proof.val();
-        self.verdict.is_measuring.next = self.measuring.q.val();
+        self.verdict.is_measuring.next = self.measuring.q.val() & self.doubted.q.val();
         self.verdict.settings_upset.next = self.settings_upset.val();
         self.verdict.give_up.next = self.give_up.val();
         self.verdict.is_late.next = self.answered.q.val() | self.found_late.val();
@@ -789,7 +789,11 @@ impl Logic for Transaction {
             self.once_more.d.next = true;
             self.answered.d.next = false;
         }
-        if (self.accept.val() & !self.own.val()) | self.refuse.val() | self.verdict.gave_up.val() {
+        if (self.accept.val() & !self.own.val())
+            | self.refuse.val()
+            | self.verdict.gave_up.val()
+            | !self.owing.q.val()
+        {
             self.once_more.d.next = false;
         }
         if self.accept.val() & !self.own.val() {

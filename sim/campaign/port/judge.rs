@@ -273,8 +273,16 @@ pub(super) fn is_count(violation: &Violation) -> bool {
 }
 
 /// Whether a frame has all its pulses, and no more.
-pub(super) fn is_whole(frame: &FrameLog) -> bool {
+fn is_whole(frame: &FrameLog) -> bool {
     frame.end == FrameEnd::Complete && frame.expected_rising_edges() == Some(frame.rising_edges)
+}
+
+/// Whether the frames of a trigger have all their pulses: none, or one at the full clock with those before it that measured the delay.
+pub(super) fn is_whole_answer(frames: &[FrameLog]) -> bool {
+    let Some((last, before)) = frames.split_last() else {
+        return true;
+    };
+    frames.iter().all(is_whole) && before.iter().all(|f| f.period > last.period)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! One batch: the frame with the mishaps, one in each lane, and as many frames after it as it takes.
 
-use super::judge::{is_count, is_whole, Mark, Outcome, Reading};
+use super::judge::{is_count, is_whole_answer, Mark, Outcome, Reading};
 use super::{
     begin, bits, cycles, FrameKind, Mishap, Ready, BIT, HANG_US, LEAD, SLOW_US, SYSTEM_HZ,
 };
@@ -11,6 +11,8 @@ use crate::{
     US,
 };
 
+/// Units of time in a second.
+const PER_SECOND: u64 = 1_000_000 * US;
 const LEAD_CYCLES: u64 = LEAD * (SYSTEM_HZ / 1_000_000) / US;
 
 impl Mishap {
@@ -319,7 +321,12 @@ impl Run<'_> {
         let before = &all[..all.len() - usize::from(!frames.is_empty())];
         let mut others_right = true;
         if !is_run && !is_request {
-            others_right &= stamp == (lane.begun + self.ready.stamp_after) & 0xFFFF_FFFF;
+            // The position's frame may follow one that measured the delay.
+            let later = match frames {
+                [first, .., last] => (last.first_fall - first.first_fall) * SYSTEM_HZ / PER_SECOND,
+                _ => 0,
+            };
+            others_right &= stamp == (lane.begun + self.ready.stamp_after + later) & 0xFFFF_FFFF;
         }
         if let (true, Some(frame)) = (has_requests, frames.last()) {
             for (info, _) in &frame.infos {
@@ -337,8 +344,8 @@ impl Run<'_> {
         let is_jitter = matches!(self.mishaps[index], Mishap::Jitter(..));
         let violations = &link.encoder().violations()[lane.violations..];
         let counts = violations.iter().any(|v| is_count(&v.1));
-        let is_one = is_run || frames.is_empty() || frames.len() == 1 && is_whole(&frames[0]);
-        let system_ps = |cycle: u64| cycle * 1_000_000 * US / SYSTEM_HZ;
+        let is_one = is_run || is_whole_answer(frames);
+        let system_ps = |cycle: u64| cycle * PER_SECOND / SYSTEM_HZ;
         let idle = system_ps(lane.idle_since.max(lane.begun));
         let conflicts = link.line().conflicts(self.bench.now());
         let outlasts = |c: &Conflict| {
