@@ -76,6 +76,12 @@ pub(crate) fn whole(ns: u64) -> String {
     real(ns as f64)
 }
 
+/// Period of the bench's clock, in ns: two halves of whole picoseconds, which are the steps of the simulator. A period that is none
+/// would be told wrong to everything that counts cycles by it.
+pub(crate) fn clock_ns(hz: u64) -> f64 {
+    2.0 * (5e11 / hz as f64).round() / 1e3
+}
+
 impl Port {
     fn new(card: &CardConfig, index: usize, channel: &ChannelConfig) -> Self {
         let request = &channel.request;
@@ -256,7 +262,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         host => host.text,
         connections => Serde(host.connections),
         settle_ns => real(host.settle_ns),
-        clk_ns => real(1e9 / hz as f64),
+        clk_ns => real(clock_ns(hz)),
         calibration_ns => whole(calibration_ns),
         calibration_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
         cycle_ns => whole(cycle_ns),
