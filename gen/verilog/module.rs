@@ -244,7 +244,9 @@ impl<'a> ModulePrinter<'a> {
                         false => String::new(),
                     };
                     let name = &net.name;
-                    format!("{attributes}{INDENT}reg  {vector:>7} {name}; initial {name} = {start};\n")
+                    format!(
+                        "{attributes}{INDENT}reg  {vector:>7} {name}; initial {name} = {start};\n"
+                    )
                 }
                 None if in_always.contains(&id) => {
                     format!("{INDENT}reg  {vector:>7} {};\n", net.name)
