@@ -56,7 +56,7 @@ fn card(khz: u64, bus: &str) -> Option<Vec<Artifact>> {
     let project = match parse("stranger.toml", &text) {
         Ok(project) => project,
         Err(error) => {
-            let text = error.to_string();
+            let text = format!("{error:?}");
             assert!(text.contains("clock manager"), "{khz} kHz, {bus}: {text}");
             return None;
         }
