@@ -30,14 +30,13 @@ const CLOCKS_KHZ: [u64; 27] = [
 
 /// Every pair of a clock and a bus appears in the full set; here each bus, each language, and the clocks whose half period is no whole
 /// number of picoseconds or that a fast card has.
-const QUICK: [(u64, &str, Reader); 7] = [
+const QUICK: [(u64, &str, Reader); 6] = [
     (48_000, "apb", Icarus("-g2005")),
     (73_728, "wishbone", Icarus("-g2009")),
     (77_000, "axi_lite", Icarus("-g2012")),
     (240_000, "parallel", Icarus("-g2012")),
     (33_333, "spi", Icarus("-g2009")),
     (96_000, "uart", Icarus("-g2012")),
-    (60_000, "apb", Verilator),
 ];
 
 /// A card of two channels with sixteen clocks in a bit; none where its board cannot have the clock.
@@ -86,8 +85,8 @@ fn play(folder: &Path, files: &[Artifact], reader: Reader) -> (bool, String) {
         return (false, text);
     }
     match reader {
-        Icarus(_) => run("vvp", folder, &["-n", "sim.vvp", "+first"]),
-        Verilator => run("./obj_dir/sim", folder, &["+first"]),
+        Icarus(_) => run("vvp", folder, &["-n", "sim.vvp"]),
+        Verilator => run("./obj_dir/sim", folder, &[]),
     }
 }
 
@@ -139,7 +138,7 @@ fn every_clock_behind_every_bus_in_every_language_passes() {
     assert!(said.is_empty(), "{}", said.join("\n"));
 }
 
-/// Catches a bench that fails and says so in words only.
+/// Catches a bench that fails and says so in words only. One complaint means that all else is good, in Verilator, too.
 #[test]
 fn a_failing_bench_has_an_exit_code() {
     if !has_tools() {
