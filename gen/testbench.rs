@@ -10,9 +10,9 @@ use crate::config::Project;
 use crate::error::GenError;
 use crate::template;
 use endat_hdl::bus::HostBus;
-use endat_hdl::card::services;
+use endat_hdl::card::{service_times, services};
 use endat_hdl::channel::CALIBRATION_FRAMES;
-use endat_hdl::config::{CardConfig, ChannelConfig};
+use endat_hdl::config::{CardConfig, ChannelConfig, LIST};
 use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, INTERRUPT, RESULT};
 use endat_hdl::service::program::{program, ServiceTimes};
 use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
@@ -76,6 +76,12 @@ pub(crate) fn whole(ns: u64) -> String {
     real(ns as f64)
 }
 
+/// Period of the bench's clock, in ns: two halves of whole picoseconds, which are the steps of the simulator. A period that is none
+/// would be told wrong to everything that counts cycles by it.
+pub(crate) fn clock_ns(hz: u64) -> f64 {
+    2.0 * (5e11 / hz as f64).round() / 1e3
+}
+
 impl Port {
     fn new(card: &CardConfig, index: usize, channel: &ChannelConfig) -> Self {
         let request = &channel.request;
@@ -125,6 +131,23 @@ fn longest_ns(card: &CardConfig, cycles: impl Fn(&ChannelConfig) -> u64) -> u64 
     cycles_to_ns(most.unwrap_or(0), card.system_hz)
 }
 
+/// The program of a service as Verilog literals.
+fn program_words(times: &ServiceTimes) -> Vec<String> {
+    let words = program(times).into_iter();
+    words.map(|w| format!("20'h{w:05x}")).collect()
+}
+
+/// The program that the services of a card run in the bench, if it is not their own from the start: the bench's encoders answer with
+/// positions only, so nothing selects additional informations.
+fn program_without_list(card: &CardConfig) -> Option<Vec<String>> {
+    let times = service_times(card);
+    let without = ServiceTimes {
+        infos: [0; LIST],
+        ..times
+    };
+    (times != without && !times.initialise).then(|| program_words(&without))
+}
+
 /// What the bench of a card that initialises its encoders does first.
 fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String, GenError> {
     let times = ServiceTimes::at(card.system_hz);
@@ -132,9 +155,6 @@ fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String,
         initialise: false,
         ..times
     };
-    let words = program(&without)
-        .into_iter()
-        .map(|w| format!("20'h{w:05x}"));
     let period = card
         .endat_channels()
         .map(|(_, c)| c.calibration_period_cycles(card.system_hz));
@@ -148,7 +168,7 @@ fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String,
             power_up_ms => times.power_up_ms,
             after_pulse_ms => times.after_pulse_ms,
             period_ns => real(period.max().unwrap_or(0) as f64 * 1e9 / card.system_hz as f64),
-            program => words.collect::<Vec<_>>(),
+            program => program_words(&without),
         },
     )
 }
@@ -238,6 +258,8 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let results: u32 = (0..card.channels.len()).map(|n| 1 << (4 * n)).sum();
     let context = context! {
         power_up,
+        services => services(card),
+        program => program_without_list(card),
         name => project.name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
@@ -256,7 +278,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         host => host.text,
         connections => Serde(host.connections),
         settle_ns => real(host.settle_ns),
-        clk_ns => real(1e9 / hz as f64),
+        clk_ns => real(clock_ns(hz)),
         calibration_ns => whole(calibration_ns),
         calibration_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
         cycle_ns => whole(cycle_ns),

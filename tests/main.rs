@@ -24,6 +24,7 @@ mod requests;
 mod service;
 mod shmoo;
 mod sim;
+mod strangers;
 mod stream;
 mod t_format;
 mod three_way;

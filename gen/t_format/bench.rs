@@ -5,7 +5,7 @@ use crate::artifact::Artifact;
 use crate::error::GenError;
 use crate::template;
 use crate::testbench::t_format::{cable_and_gap_ns, causes, encoder, RATE_ERROR};
-use crate::testbench::{real, whole, T_FORMAT_IDLE_NS};
+use crate::testbench::{clock_ns, real, whole, T_FORMAT_IDLE_NS};
 use endat_hdl::t_format::cause;
 use endat_hdl::t_format::dsp::TFormatStart;
 use endat_hdl::t_format::protocol::{Content, Request, BIT_HZ, SYSTEM_HZ, WAIT_GRACE_US};
@@ -76,7 +76,7 @@ pub fn artifact(receiver: &Receiver) -> Result<Artifact, GenError> {
             field_gap_ns => whole(1_000 * start.field_gap_us),
             requests => Request::ALL.iter().map(brought).collect::<Vec<_>>(),
             unknown => (0..16).find(|id| Request::from_id(*id).is_none()),
-            clocks => SYSTEM_HZ.map(|hz| real(1e9 / hz as f64)).to_vec(),
+            clocks => SYSTEM_HZ.map(|hz| real(clock_ns(hz))).to_vec(),
         },
     )?;
     Ok(Artifact::new(format!("{}_tb.v", receiver.name), text))

@@ -1,6 +1,6 @@
 //! The bench's host: how it sits at the card's bus, and the tasks `host_idle`, `write_word`, `read_words` with the function `word`.
 
-use super::real;
+use super::{clock_ns, real};
 use crate::error::GenError;
 use crate::template;
 use endat_hdl::bus::HostBus;
@@ -122,7 +122,7 @@ pub fn host(bus: HostBus, card: &CardConfig) -> Result<Option<Host>, GenError> {
         }
         HostBus::Bare => return Ok(None),
     };
-    let clk_ns = 1e9 / card.system_hz as f64;
+    let clk_ns = clock_ns(card.system_hz);
     let settle_ns = match bus {
         HostBus::Uart => UART_SETTLE_BITS * 1e9 / card.baud as f64,
         _ => access_cycles_max(card) as f64 * clk_ns,

@@ -236,12 +236,17 @@ impl<'a> ModulePrinter<'a> {
             out.push_str(&comment(&net.docs, INDENT));
             let vector = vector(net.width_bits);
             out.push_str(&match starts.get(&id) {
-                Some((start, true)) => format!(
-                    "{INDENT}{SYNCHRONISER}\n{INDENT}reg  {vector:>7} {} = {start};\n",
-                    net.name
-                ),
-                Some((start, false)) => {
-                    format!("{INDENT}reg  {vector:>7} {} = {start};\n", net.name)
+                // A start value in the declaration is set before time 0 in SystemVerilog, where `always @*` waits for a change
+                // and never sees one. Set by a process it is a change in every language.
+                Some((start, is_synchroniser)) => {
+                    let attributes = match is_synchroniser {
+                        true => format!("{INDENT}{SYNCHRONISER}\n"),
+                        false => String::new(),
+                    };
+                    let name = &net.name;
+                    format!(
+                        "{attributes}{INDENT}reg  {vector:>7} {name}; initial {name} = {start};\n"
+                    )
                 }
                 None if in_always.contains(&id) => {
                     format!("{INDENT}reg  {vector:>7} {};\n", net.name)

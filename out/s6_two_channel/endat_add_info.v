@@ -57,22 +57,22 @@ module endat_add_info (
     wire         is_sent;
     wire         is_selection;
     wire         is_off;
-    reg    [1:0] selected = 2'd0;
+    reg    [1:0] selected; initial selected = 2'd0;
     reg    [1:0] selected_next;
-    reg   [23:0] first = 24'd0;
+    reg   [23:0] first; initial first = 24'd0;
     reg   [23:0] first_next;
-    reg   [23:0] second = 24'd0;
+    reg   [23:0] second; initial second = 24'd0;
     reg   [23:0] second_next;
-    reg    [1:0] seen = 2'd0;
+    reg    [1:0] seen; initial seen = 2'd0;
     reg    [1:0] seen_next;
-    reg    [1:0] right = 2'd0;
+    reg    [1:0] right; initial right = 2'd0;
     reg    [1:0] right_next;
-    reg          answered = 1'b0;
-    reg          trusted = 1'b0;
+    reg          answered; initial answered = 1'b0;
+    reg          trusted; initial trusted = 1'b0;
     reg          trusted_next;
-    reg    [7:0] remaining = 8'd0;
+    reg    [7:0] remaining; initial remaining = 8'd0;
     reg    [7:0] remaining_next;
-    reg          look_now = 1'b0;
+    reg          look_now; initial look_now = 1'b0;
     wire         _unused_ok = &{1'b0, flags[8:3]};
 
     always @* begin

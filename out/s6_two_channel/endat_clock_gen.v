@@ -32,9 +32,9 @@ module endat_clock_gen (
     wire         held;
     wire         half_restart;
     wire         half_tick;
-    reg          level = 1'b1;
+    reg          level; initial level = 1'b1;
     reg          level_next;
-    reg          risen = 1'b0;
+    reg          risen; initial risen = 1'b0;
 
     endat_half_period u_half (
         .clock(clock),

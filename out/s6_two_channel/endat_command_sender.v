@@ -35,11 +35,11 @@ module endat_command_sender (
     reg    [7:0] cells;
     wire   [2:0] cell_now;
     wire  [31:0] bits;
-    reg    [3:0] cells_left = 4'd0;
+    reg    [3:0] cells_left; initial cells_left = 4'd0;
     reg    [3:0] cells_left_next;
-    reg    [4:0] bits_left = 5'd0;
+    reg    [4:0] bits_left; initial bits_left = 5'd0;
     reg    [4:0] bits_left_next;
-    reg          in_supplement = 1'b0;
+    reg          in_supplement; initial in_supplement = 1'b0;
     reg          in_supplement_next;
 
     always @* begin

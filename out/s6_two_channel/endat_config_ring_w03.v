@@ -23,11 +23,11 @@ module endat_config_ring_w03 (
     // Word 2, while the ring stands still.
     output wire  [31:0] word2
 );
-    reg   [31:0] w0 = 32'd3;
+    reg   [31:0] w0; initial w0 = 32'd3;
     reg   [31:0] w0_next;
-    reg   [31:0] w1 = 32'h2710;
+    reg   [31:0] w1; initial w1 = 32'h2710;
     reg   [31:0] w1_next;
-    reg   [31:0] w2 = 32'd0;
+    reg   [31:0] w2; initial w2 = 32'd0;
     reg   [31:0] w2_next;
 
     always @* begin

@@ -23,11 +23,11 @@ module endat_config_ring_w0941424672 (
     // Word 2, while the ring stands still.
     output wire  [31:0] word2
 );
-    reg   [31:0] w0 = 32'h381d0020;
+    reg   [31:0] w0; initial w0 = 32'h381d0020;
     reg   [31:0] w0_next;
-    reg   [31:0] w1 = 32'h20800b8;
+    reg   [31:0] w1; initial w1 = 32'h20800b8;
     reg   [31:0] w1_next;
-    reg   [31:0] w2 = 32'hc500012;
+    reg   [31:0] w2; initial w2 = 32'hc500012;
     reg   [31:0] w2_next;
 
     always @* begin

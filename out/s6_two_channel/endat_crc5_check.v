@@ -55,9 +55,9 @@ module endat_crc5_check (
 
     wire  [14:0] folded;
     reg    [4:0] sum;
-    reg    [4:0] power = 5'd1;
+    reg    [4:0] power; initial power = 5'd1;
     reg    [4:0] power_next;
-    reg    [4:0] received = 5'd0;
+    reg    [4:0] received; initial received = 5'd0;
     reg    [4:0] received_next;
 
     always @* begin

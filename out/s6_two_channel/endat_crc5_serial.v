@@ -25,7 +25,7 @@ module endat_crc5_serial (
     localparam   [4:0] RESIDUE = 5'd8;
 
     wire   [4:0] shifted;
-    reg    [4:0] register = 5'd31;
+    reg    [4:0] register; initial register = 5'd31;
     reg    [4:0] register_next;
 
     assign shifted = register << 1'b1;

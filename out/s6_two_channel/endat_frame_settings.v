@@ -64,29 +64,29 @@ module endat_frame_settings (
     output wire         is_upset
 );
     wire         parity_now;
-    reg   [10:0] period_held = 11'd0;
+    reg   [10:0] period_held; initial period_held = 11'd0;
     reg   [10:0] period_held_next;
-    reg   [10:0] first_low_extra_held = 11'd0;
+    reg   [10:0] first_low_extra_held; initial first_low_extra_held = 11'd0;
     reg   [10:0] first_low_extra_held_next;
-    reg    [5:0] command_held = 6'd0;
+    reg    [5:0] command_held; initial command_held = 6'd0;
     reg    [5:0] command_held_next;
-    reg    [5:0] position_held = 6'd0;
+    reg    [5:0] position_held; initial position_held = 6'd0;
     reg    [5:0] position_held_next;
-    reg    [3:0] filter_held = 4'd0;
+    reg    [3:0] filter_held; initial filter_held = 4'd0;
     reg    [3:0] filter_held_next;
-    reg    [5:0] start_window_held = 6'd0;
+    reg    [5:0] start_window_held; initial start_window_held = 6'd0;
     reg    [5:0] start_window_held_next;
-    reg   [11:0] start_timeout_held = 12'd0;
+    reg   [11:0] start_timeout_held; initial start_timeout_held = 12'd0;
     reg   [11:0] start_timeout_held_next;
-    reg   [12:0] recovery_limit_held = 13'd0;
+    reg   [12:0] recovery_limit_held; initial recovery_limit_held = 13'd0;
     reg   [12:0] recovery_limit_held_next;
-    reg   [12:0] recovery_min_held = 13'd0;
+    reg   [12:0] recovery_min_held; initial recovery_min_held = 13'd0;
     reg   [12:0] recovery_min_held_next;
-    reg   [11:0] watchdog_held = 12'd0;
+    reg   [11:0] watchdog_held; initial watchdog_held = 12'd0;
     reg   [11:0] watchdog_held_next;
-    reg          filter_half_held = 1'b0;
+    reg          filter_half_held; initial filter_half_held = 1'b0;
     reg          filter_half_held_next;
-    reg          parity = 1'b0;
+    reg          parity; initial parity = 1'b0;
     reg          parity_next;
 
     always @* begin

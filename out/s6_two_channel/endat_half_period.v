@@ -31,11 +31,11 @@ module endat_half_period (
     wire   [9:0] half_cycles;
     reg          tick_now;
     wire         is_one;
-    reg    [9:0] count = 10'd2;
+    reg    [9:0] count; initial count = 10'd2;
     reg    [9:0] count_next;
-    reg          hit = 1'b0;
+    reg          hit; initial hit = 1'b0;
     reg          hit_next;
-    reg          hit_late = 1'b0;
+    reg          hit_late; initial hit_late = 1'b0;
     reg          hit_late_next;
 
     assign half_cycles = period_cycles[10:1];

@@ -44,21 +44,21 @@ module endat_input_filter (
     wire         both;
     wire         edge_first;
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
-    reg          sync1 = 1'b0;
+    reg          sync1; initial sync1 = 1'b0;
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
-    reg          sync2 = 1'b0;
+    reg          sync2; initial sync2 = 1'b0;
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
-    reg          sync3 = 1'b0;
-    reg          earlier = 1'b0;
-    reg          earlier_first = 1'b0;
+    reg          sync3; initial sync3 = 1'b0;
+    reg          earlier; initial earlier = 1'b0;
+    reg          earlier_first; initial earlier_first = 1'b0;
     reg          earlier_first_next;
-    reg    [4:0] different = 5'd0;
+    reg    [4:0] different; initial different = 5'd0;
     reg    [4:0] different_next;
-    reg          level_now = 1'b0;
-    reg          first_now = 1'b0;
-    reg          edge_now = 1'b0;
-    reg          second_now = 1'b0;
-    reg          removed = 1'b0;
+    reg          level_now; initial level_now = 1'b0;
+    reg          first_now; initial first_now = 1'b0;
+    reg          edge_now; initial edge_now = 1'b0;
+    reg          second_now; initial second_now = 1'b0;
+    reg          removed; initial removed = 1'b0;
     reg          removed_next;
 
     assign first = 1'b0;

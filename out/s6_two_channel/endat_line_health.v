@@ -33,15 +33,15 @@ module endat_line_health (
     // DATA is HIGH whatever the receiver does.
     output wire         is_stuck
 );
-    reg   [11:0] passed_us = 12'd0;
+    reg   [11:0] passed_us; initial passed_us = 12'd0;
     reg   [11:0] passed_us_next;
-    reg          over = 1'b0;
+    reg          over; initial over = 1'b0;
     reg          over_next;
-    reg          was_high = 1'b0;
+    reg          was_high; initial was_high = 1'b0;
     reg          was_high_next;
-    reg          open = 1'b0;
+    reg          open; initial open = 1'b0;
     reg          open_next;
-    reg          stuck = 1'b0;
+    reg          stuck; initial stuck = 1'b0;
     reg          stuck_next;
 
     always @* begin

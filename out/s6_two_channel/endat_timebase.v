@@ -18,10 +18,10 @@ module endat_timebase (
     localparam   [7:0] LAST_COUNT = 8'd99;
 
     wire         hit;
-    reg    [7:0] count = 8'd0;
+    reg    [7:0] count; initial count = 8'd0;
     reg    [7:0] count_next;
-    reg          tick = 1'b0;
-    reg   [31:0] cycles = 32'd0;
+    reg          tick; initial tick = 1'b0;
+    reg   [31:0] cycles; initial cycles = 32'd0;
 
     assign hit = count == LAST_COUNT;
 

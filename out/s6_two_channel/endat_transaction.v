@@ -219,6 +219,7 @@ module endat_transaction (
     wire         health_never_high;
     wire         health_is_open;
     wire         health_is_stuck;
+    wire         verdict_is_measuring;
     wire         verdict_is_late;
     wire         verdict_taken;
     wire         verdict_is_received;
@@ -226,67 +227,67 @@ module endat_transaction (
     wire         verdict_is_bad;
     wire         verdict_is_telling;
     wire         verdict_once_more;
-    reg    [2:0] phase = PHASE_NOT_READY;
+    reg    [2:0] phase; initial phase = PHASE_NOT_READY;
     reg    [2:0] phase_next;
-    reg   [15:0] timer = 16'd0;
+    reg   [15:0] timer; initial timer = 16'd0;
     reg   [15:0] timer_next;
-    reg   [15:0] timer_limit = 16'd0;
-    reg          timer_hit = 1'b0;
+    reg   [15:0] timer_limit; initial timer_limit = 16'd0;
+    reg          timer_hit; initial timer_hit = 1'b0;
     reg          timer_hit_next;
-    reg          timer_step = 1'b0;
-    reg          hold = 1'b0;
+    reg          timer_step; initial timer_step = 1'b0;
+    reg          hold; initial hold = 1'b0;
     reg          hold_next;
-    reg          start_now = 1'b0;
-    reg          run_now = 1'b0;
-    reg          extra = 1'b0;
-    reg          stop_now = 1'b1;
-    reg          is_calibrated = 1'b0;
+    reg          start_now; initial start_now = 1'b0;
+    reg          run_now; initial run_now = 1'b0;
+    reg          extra; initial extra = 1'b0;
+    reg          stop_now; initial stop_now = 1'b1;
+    reg          is_calibrated; initial is_calibrated = 1'b0;
     reg          is_calibrated_next;
-    reg          acquiring = 1'b0;
+    reg          acquiring; initial acquiring = 1'b0;
     reg          acquiring_next;
-    reg          slow_now = 1'b0;
+    reg          slow_now; initial slow_now = 1'b0;
     reg          slow_now_next;
-    reg    [1:0] passes = 2'd0;
+    reg    [1:0] passes; initial passes = 2'd0;
     reg    [1:0] passes_next;
-    reg          stalled = 1'b0;
+    reg          stalled; initial stalled = 1'b0;
     reg          stalled_next;
-    reg          all_sent = 1'b0;
+    reg          all_sent; initial all_sent = 1'b0;
     reg          all_sent_next;
-    reg          one_left = 1'b0;
+    reg          one_left; initial one_left = 1'b0;
     reg          one_left_next;
-    reg          tail_sampled = 1'b0;
+    reg          tail_sampled; initial tail_sampled = 1'b0;
     reg          tail_sampled_next;
-    reg   [12:0] recovery = 13'd0;
+    reg   [12:0] recovery; initial recovery = 13'd0;
     reg   [12:0] recovery_next;
-    reg          in_supplement = 1'b0;
+    reg          in_supplement; initial in_supplement = 1'b0;
     reg          in_supplement_next;
-    reg          supplement_now = 1'b0;
+    reg          supplement_now; initial supplement_now = 1'b0;
     reg          supplement_now_next;
-    reg          answered = 1'b0;
+    reg          answered; initial answered = 1'b0;
     reg          answered_next;
-    reg          was_hunting = 1'b0;
-    reg          was_center = 1'b0;
-    reg          late = 1'b0;
+    reg          was_hunting; initial was_hunting = 1'b0;
+    reg          was_center; initial was_center = 1'b0;
+    reg          late; initial late = 1'b0;
     reg          late_next;
-    reg          probing = 1'b0;
+    reg          probing; initial probing = 1'b0;
     reg          probing_next;
-    reg          settling = 1'b0;
+    reg          settling; initial settling = 1'b0;
     reg          settling_next;
-    reg          going = 1'b0;
+    reg          going; initial going = 1'b0;
     reg          going_next;
-    reg          leaving = 1'b0;
+    reg          leaving; initial leaving = 1'b0;
     reg          leaving_next;
-    reg          cleared = 1'b1;
+    reg          cleared; initial cleared = 1'b1;
     reg          cleared_next;
-    reg          high_at_tick = 1'b0;
+    reg          high_at_tick; initial high_at_tick = 1'b0;
     reg          high_at_tick_next;
-    reg          owing = 1'b0;
+    reg          owing; initial owing = 1'b0;
     reg          owing_next;
-    reg          doubted = 1'b0;
+    reg          doubted; initial doubted = 1'b0;
     reg          doubted_next;
-    reg          measuring = 1'b0;
+    reg          measuring; initial measuring = 1'b0;
     reg          measuring_next;
-    reg          once_more = 1'b0;
+    reg          once_more; initial once_more = 1'b0;
     reg          once_more_next;
 
     endat_line_health u_health (
@@ -310,7 +311,7 @@ module endat_transaction (
         .found(found),
         .answer_taken(answer_taken),
         .prove(proof),
-        .is_measuring(measuring),
+        .is_measuring(verdict_is_measuring),
         .settings_upset(settings_upset),
         .give_up(give_up),
         .is_late(verdict_is_late),
@@ -386,6 +387,7 @@ module endat_transaction (
         end
     end
     assign last_cell = (phase == PHASE_TAIL) & was_center;
+    assign verdict_is_measuring = measuring & doubted;
     assign known = is_calibrated | (HAS_ALIGNMENT & is_fixed);
     assign leave = going & gap_good & (!continuous | line_wanted | !known | (stop_at_error & verdict_is_bad));
 
@@ -704,7 +706,7 @@ module endat_transaction (
             once_more_next = 1'b1;
             answered_next = 1'b0;
         end
-        if ((accept & !own) | refuse | abort) begin
+        if ((accept & !own) | refuse | abort | !owing) begin
             once_more_next = 1'b0;
         end
         if (accept) begin

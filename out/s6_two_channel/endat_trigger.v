@@ -31,18 +31,18 @@ module endat_trigger (
     wire         pin_hit;
     wire   [2:0] hit;
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
-    reg          sync0 = 1'b1;
+    reg          sync0; initial sync0 = 1'b1;
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
-    reg          sync1 = 1'b1;
+    reg          sync1; initial sync1 = 1'b1;
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
-    reg          sync2 = 1'b1;
-    reg   [23:0] timer = 24'd2;
+    reg          sync2; initial sync2 = 1'b1;
+    reg   [23:0] timer; initial timer = 24'd2;
     reg   [23:0] timer_next;
-    reg          timer_hit_low = 1'b0;
+    reg          timer_hit_low; initial timer_hit_low = 1'b0;
     reg          timer_hit_low_next;
-    reg          timer_hit_high = 1'b0;
-    reg          strobe = 1'b0;
-    reg   [31:0] count = 32'd0;
+    reg          timer_hit_high; initial timer_hit_high = 1'b0;
+    reg          strobe; initial strobe = 1'b0;
+    reg   [31:0] count; initial count = 32'd0;
     reg   [31:0] count_next;
 
     always @* begin

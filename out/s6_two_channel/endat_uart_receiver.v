@@ -27,23 +27,23 @@ module endat_uart_receiver (
     wire         hit;
     wire   [9:0] shifted;
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
-    reg          sync0 = 1'b1;
+    reg          sync0; initial sync0 = 1'b1;
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
-    reg          sync1 = 1'b1;
-    reg          previous = 1'b1;
-    reg          active = 1'b0;
+    reg          sync1; initial sync1 = 1'b1;
+    reg          previous; initial previous = 1'b1;
+    reg          active; initial active = 1'b0;
     reg          active_next;
-    reg          in_start_bit = 1'b0;
+    reg          in_start_bit; initial in_start_bit = 1'b0;
     reg          in_start_bit_next;
-    reg   [14:0] count = 15'd0;
+    reg   [14:0] count; initial count = 15'd0;
     reg   [14:0] count_next;
-    reg          sample = 1'b0;
+    reg          sample; initial sample = 1'b0;
     reg          sample_next;
-    reg    [9:0] shift = 10'd512;
+    reg    [9:0] shift; initial shift = 10'd512;
     reg    [9:0] shift_next;
-    reg          good = 1'b0;
+    reg          good; initial good = 1'b0;
     reg          good_next;
-    reg          bad = 1'b0;
+    reg          bad; initial bad = 1'b0;
     reg          bad_next;
 
     always @* begin

@@ -24,12 +24,12 @@ module endat_uart_transmitter (
 
     wire         hit;
     wire         take;
-    reg   [14:0] count = 15'd0;
+    reg   [14:0] count; initial count = 15'd0;
     reg   [14:0] count_next;
-    reg          bit_end = 1'b0;
-    reg    [9:0] shift = 10'd1;
+    reg          bit_end; initial bit_end = 1'b0;
+    reg    [9:0] shift; initial shift = 10'd1;
     reg    [9:0] shift_next;
-    reg          empty = 1'b1;
+    reg          empty; initial empty = 1'b1;
 
     assign hit = count == LAST_COUNT;
 

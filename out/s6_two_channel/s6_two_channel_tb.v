@@ -3,11 +3,14 @@
 //
 // Self-checking test bench of s6_two_channel, plain Verilog-2005, for every simulator:
 //   iverilog -g2005 -s s6_two_channel_tb -o tb.vvp s6_two_channel_tb.v s6_two_channel.v endat_*.v && vvp -n tb.vvp
-// It ends by itself with the line PASS, or FAIL and the number of complaints. Plusargs (vvp -n tb.vvp +vcd ...):
+//   or: verilator --binary --timing --top-module s6_two_channel_tb s6_two_channel_tb.v s6_two_channel.v endat_*.v && obj_dir/Vs6_two_channel_tb
+// It says what it checks, and ends by itself: with the line PASS, or with FAIL, the number of complaints and an exit code that is not 0. Plusargs (vvp -n tb.vvp +vcd ...):
 // +vcd writes s6_two_channel_tb.vcd, +first ends with the first complaint, +abort also waits out the 30 ms after an aborted frame.
 
 `timescale 1ns / 1ps
 `default_nettype none
+// Values are compared at one width; narrower ones get zeros in front, as Verilog has it.
+/* verilator lint_off WIDTH */
 
 // An encoder: counts clock edges, reads the mode command, answers with its position, waits its recovery time.
 module s6_two_channel_tb_encoder #(
@@ -122,7 +125,7 @@ module s6_two_channel_tb_encoder #(
         if (phase != IDLE) begin
             rises = rises + 1;
             if (driver_oe !== (rises >= 2 && rises <= 8))
-                complain("driver of the receiver wrong at rising edge", rises);
+                complain("receiver's driver wrong at rising edge", rises);
             if (rises >= 3 && rises <= 8)
                 command = {command[4:0], driver_data};
             if (rises == 9 && command !== COMMAND)
@@ -177,7 +180,7 @@ module s6_two_channel_tb_encoder #(
 
     always @(oe or driver_oe)
         if (oe && driver_oe)
-            complain("two drivers on the data line, falling edges", falls);
+            complain("two drivers on the line, falling edges", falls);
 endmodule
 
 module s6_two_channel_tb;
@@ -370,6 +373,11 @@ module s6_two_channel_tb;
             if ($test$plusargs("first"))
                 finish;
         end
+    endtask
+
+    // What is checked next.
+    task tell(input [8*60-1:0] what);
+        $display("%0.0f ns: %0s", $realtime, what);
     endtask
 
     task check(input [8*40-1:0] what, input [47:0] got, input [47:0] want);
@@ -598,7 +606,7 @@ module s6_two_channel_tb;
                     stamp_before[32*ch +: 32] = stamp[32*ch +: 32];
                     stamp[32*ch +: 32] = word(base + RESULT_TIMESTAMP - RESULT_STATUS);
                     if (ch > FIRST && want_fresh[FIRST])
-                        check("time stamps of the first channel and this", stamp[32*ch +: 32], stamp[32*FIRST +: 32]);
+                        check("time stamps of first channel and this", stamp[32*ch +: 32], stamp[32*FIRST +: 32]);
                 end
             end
         end
@@ -654,6 +662,7 @@ module s6_two_channel_tb;
         new_positions;
         #(CLK_NS * 220.0);
 
+        tell("identification");
         // Only the pin triggers from here on; frames that the timer has begun end.
         write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
         #(CALIBRATION_NS);
@@ -671,6 +680,7 @@ module s6_two_channel_tb;
             want_sequence[16*ch +: 16] = field(word(BLOCK_STRIDE * ch), STATUS_SEQUENCE_LSB, STATUS_SEQUENCE_BITS);
         want_frames = encoder_frames;
 
+        tell("line delay, CRC, recovery time, time stamps");
         // A frame that measures the line delay, then one at the configured clock.
         write_word(CARD_CALIBRATE, ~(32'hFFFFFFFF << CHANNELS));
         #(SETTLE_NS);
@@ -684,6 +694,7 @@ module s6_two_channel_tb;
             check("cycles between two frames", stamp[32*ch +: 32] - stamp_before[32*ch +: 32],
                   $rtoi((fall_time - fall_time_before) / CLK_NS + 0.5));
 
+        tell("wrong CRC");
         // A wrong CRC on the first channel only: its last good position stays.
         new_positions;
         spoil_crc[FIRST] = 1'b1;
@@ -691,6 +702,7 @@ module s6_two_channel_tb;
         frame(CYCLE_NS);
         check_evidence;
 
+        tell("error bits F1 and F2");
         // F1 on the first channel, F2 on the last channel that has one.
         new_positions;
         f1[FIRST] = 1'b1;
@@ -708,6 +720,7 @@ module s6_two_channel_tb;
         end
         frame(CYCLE_NS);
 
+        tell("held results");
         // Held results stand still; let go, they show what has come meanwhile.
         new_positions;
         frame(CYCLE_NS);
@@ -722,6 +735,7 @@ module s6_two_channel_tb;
         #(SETTLE_NS);
         check_results;
 
+        tell("trigger overrun");
         // A second trigger within the frame: counted, told, and the frame is good.
         new_positions;
         want_cause = {CHANNELS{TRIGGER_OVERRUN}};
@@ -737,6 +751,7 @@ module s6_two_channel_tb;
         read_words(CARD_TRIGGER_COUNT, 1);
         check("trigger_count", word(0), trigger_count);
 
+        tell("trigger of the host");
         // The host's trigger, when the pin is switched off.
         write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_REGISTER_LSB);
         #(SETTLE_NS);
@@ -751,6 +766,7 @@ module s6_two_channel_tb;
         write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
         #(SETTLE_NS);
 
+        tell("no start bit, data not falling");
         // No start bit on the first channel; data of the last other channel stay high after its frame: its position is withdrawn.
         new_positions;
         no_start[FIRST] = 1'b1;
@@ -761,6 +777,7 @@ module s6_two_channel_tb;
         end
         frame(FAULT_NS);
         if ($test$plusargs("abort")) begin
+            tell("quiet time");
             // An encoder that has lost its way finds it in the quiet time.
             stay_high = {CHANNELS{1'b0}};
             #(ABORT_NS);
@@ -780,8 +797,16 @@ module s6_two_channel_tb;
             if (errors == 0)
                 $display("PASS");
             else
-                $display("FAIL %0d complaints", errors);
+                fail;
             $finish;
+        end
+    endtask
+
+    // The only system task that gives every simulator an exit code.
+    task fail;
+        begin
+            $display("FAIL %0d complaints", errors);
+            $fatal(1, "s6_two_channel_tb has failed");
         end
     endtask
 

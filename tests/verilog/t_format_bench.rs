@@ -2,7 +2,7 @@
 
 use super::quick;
 use super::t_format_mutations::{MIXED_MUTATIONS, T_FORMAT_MUTATIONS};
-use super::testbench::{check_mutations, run_bench};
+use super::testbench::{assert_passes, check_mutations, run_bench};
 use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, parse, preset};
@@ -42,11 +42,7 @@ fn card(channels: &[String], from: &str, to: &str) -> Vec<Artifact> {
 }
 
 fn passes(name: &str, channels: &[String], from: &str, to: &str) {
-    assert_eq!(
-        run_bench(name, &card(channels, from, to), &[]),
-        "PASS\n",
-        "{name}"
-    );
+    assert_passes(&run_bench(name, &card(channels, from, to), &[]));
 }
 
 /// As it is emitted: slow link, timer.
@@ -54,7 +50,7 @@ fn passes(name: &str, channels: &[String], from: &str, to: &str) {
 fn it_passes_on_the_mixed_preset() {
     if tools::require("iverilog", CHECK) {
         let files = endat_gen::emit(&load_preset(PRESET).unwrap()).unwrap();
-        assert_eq!(run_bench("mixed-preset", &files, &[]), "PASS\n");
+        assert_passes(&run_bench("mixed-preset", &files, &[]));
     }
 }
 

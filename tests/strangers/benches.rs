@@ -1,0 +1,173 @@
+//! The emitted test bench as each language of Verilog, behind each bus, at each usual clock: a case is a clock, a bus and a reader.
+
+use crate::tools::{self, run};
+use crate::verilog::testbench::passes;
+use crate::verilog::write;
+use endat_gen::artifact::Artifact;
+use endat_gen::config::{parse, preset};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::Mutex;
+
+/// What compiles the bench.
+#[derive(Clone, Copy, Debug)]
+enum Reader {
+    /// iverilog with this language.
+    Icarus(&'static str),
+    Verilator,
+}
+
+use Reader::{Icarus, Verilator};
+
+const LANGUAGES: [Reader; 3] = [Icarus("-g2005"), Icarus("-g2009"), Icarus("-g2012")];
+const BUSES: [&str; 6] = ["apb", "wishbone", "axi_lite", "spi", "parallel", "uart"];
+/// Usual system clocks, in kHz.
+const CLOCKS_KHZ: [u64; 27] = [
+    24_000, 25_000, 27_000, 32_000, 33_333, 40_000, 48_000, 50_000, 60_000, 64_000, 66_000, 73_728,
+    75_000, 77_000, 80_000, 96_000, 100_000, 112_000, 120_000, 125_000, 128_000, 133_333, 150_000,
+    160_000, 200_000, 240_000, 250_000,
+];
+
+/// Every pair of a clock and a bus appears in the full set; here each bus, each language, and the clocks whose half period is no whole
+/// number of picoseconds or that a fast card has.
+const QUICK: [(u64, &str, Reader); 6] = [
+    (48_000, "apb", Icarus("-g2005")),
+    (73_728, "wishbone", Icarus("-g2009")),
+    (77_000, "axi_lite", Icarus("-g2012")),
+    (240_000, "parallel", Icarus("-g2012")),
+    (33_333, "spi", Icarus("-g2009")),
+    (96_000, "uart", Icarus("-g2012")),
+];
+
+/// A card of two channels with sixteen clocks in a bit; none where its board cannot have the clock.
+fn card(khz: u64, bus: &str) -> Option<Vec<Artifact>> {
+    let board = match bus {
+        "uart" => "[link]\nbaud = 1_000_000\nread_hz = 100\n[board]\nname = \"papilio_pro\"\n",
+        _ => "",
+    };
+    let text = format!(
+        "name = \"stranger\"\n[clock]\nsystem_hz = {hz}\n[endat]\nclock_hz = {bit_hz}\ncable_m = 20\n\
+         [[channel]]\nposition_bits = 25\ncommand = \"111000\"\n[[channel]]\nposition_bits = 13\ncommand = \"000111\"\n\
+         [trigger]\nsample_hz = 1_000\nsources = [\"pin\", \"register\"]\n{board}[host]\nbus = \"{bus}\"\n",
+        hz = 1_000 * khz,
+        bit_hz = 1_000 * khz / 16,
+    );
+    let project = match parse("stranger.toml", &text) {
+        Ok(project) => project,
+        Err(error) => {
+            let text = format!("{error:?}");
+            assert!(text.contains("clock manager"), "{khz} kHz, {bus}: {text}");
+            return None;
+        }
+    };
+    Some(endat_gen::emit(&project).unwrap())
+}
+
+/// Runs the bench of `files` in `folder`; whether it ended well, and what was said.
+fn play(folder: &Path, files: &[Artifact], reader: Reader) -> (bool, String) {
+    let verilog = files.iter().map(|f| f.path.as_str());
+    let verilog: Vec<&str> = verilog
+        .filter(|p| p.ends_with(".v") && !p.ends_with("_top.v"))
+        .collect();
+    let bench = verilog.iter().find(|p| p.ends_with("_tb.v")).unwrap();
+    let top = bench.trim_end_matches(".v");
+    let (compiler, mut arguments) = match reader {
+        Icarus(language) => ("iverilog", vec![language, "-s", top, "-o", "sim.vvp"]),
+        Verilator => {
+            let arguments = ["--binary", "--timing", "--top-module", top, "-o", "sim"];
+            ("verilator", arguments.to_vec())
+        }
+    };
+    arguments.extend(&verilog);
+    let (is_good, text) = run(compiler, folder, &arguments);
+    let is_quiet = !text.contains("arning");
+    if !is_good || !is_quiet {
+        return (false, text);
+    }
+    match reader {
+        Icarus(_) => run("vvp", folder, &["-n", "sim.vvp"]),
+        Verilator => run("./obj_dir/sim", folder, &[]),
+    }
+}
+
+/// Runs cases on both cores; the complaints.
+fn complaints(test: &str, cases: &[(u64, &str, Reader)]) -> Vec<String> {
+    let (next, said) = (AtomicUsize::new(0), Mutex::new(vec![]));
+    let work = || loop {
+        let index = next.fetch_add(1, Ordering::Relaxed);
+        let Some((khz, bus, reader)) = cases.get(index).copied() else {
+            return;
+        };
+        let Some(files) = card(khz, bus) else {
+            continue;
+        };
+        let (folder, _) = write(&format!("strangers-{test}-{index}"), &files);
+        let (is_good, text) = play(&folder, &files, reader);
+        if !is_good || !passes(&text) {
+            let line = format!("{khz} kHz, {bus}, {reader:?}: {text}");
+            said.lock().unwrap().push(line);
+        }
+        let _ = std::fs::remove_dir_all(folder);
+    };
+    std::thread::scope(|scope| (0..2).for_each(|_| drop(scope.spawn(work))));
+    said.into_inner().unwrap()
+}
+
+fn has_tools() -> bool {
+    tools::require("iverilog", "strangers") && tools::require("verilator", "strangers")
+}
+
+/// Catches a start value that SystemVerilog sets before time 0, and a bench that counts other clocks than it makes.
+#[test]
+fn every_language_bus_and_odd_clock_passes() {
+    if has_tools() {
+        let said = complaints("quick", &QUICK);
+        assert!(said.is_empty(), "{}", said.join("\n"));
+    }
+}
+
+/// The full set: clock x bus x language. Some minutes; `cargo test every_clock_behind_every_bus -- --ignored`.
+#[test]
+#[ignore = "some 480 simulations"]
+fn every_clock_behind_every_bus_in_every_language_passes() {
+    let pairs = BUSES.iter().flat_map(|b| CLOCKS_KHZ.map(|khz| (khz, *b)));
+    let cases: Vec<_> = pairs
+        .flat_map(|(khz, bus)| LANGUAGES.map(|reader| (khz, bus, reader)))
+        .collect();
+    let said = complaints("full", &cases);
+    assert!(said.is_empty(), "{}", said.join("\n"));
+}
+
+/// Catches a bench that fails and says so in words only. One complaint means that all else is good, in Verilator, too.
+#[test]
+fn a_failing_bench_has_an_exit_code() {
+    if !has_tools() {
+        return;
+    }
+    let mut files = card(50_000, "apb").unwrap();
+    let bench = files.iter_mut().find(|f| f.path.ends_with("_tb.v"));
+    let text = &mut bench.unwrap().text;
+    let right = "check(\"identification word 0\", word(0), 32'h456E4474);";
+    assert_eq!(text.matches(right).count(), 1);
+    *text = text.replace(right, &right.replace("4474", "4475"));
+    for (name, reader) in [("icarus", Icarus("-g2005")), ("verilator", Verilator)] {
+        let (folder, _) = write(&format!("strangers-exit-{name}"), &files);
+        let (is_good, text) = play(&folder, &files, reader);
+        assert!(!is_good && text.contains("FAIL 1 complaints"), "{text}");
+    }
+}
+
+/// The preset's commented line, as a user takes it in.
+#[test]
+fn the_bench_passes_with_a_list_of_additional_informations() {
+    if !tools::require("iverilog", "strangers") {
+        return;
+    }
+    let text = preset("s6_two_channel").unwrap();
+    let text = text.replacen("# infos =", "infos =", 1);
+    let text = text.replacen("parts = []", "parts = [\"requests\"]", 1);
+    let files = endat_gen::emit(&parse("infos.toml", &text).unwrap()).unwrap();
+    let (folder, _) = write("strangers-infos", &files);
+    let (is_good, text) = play(&folder, &files, Icarus("-g2012"));
+    assert!(is_good && passes(&text), "{text}");
+}

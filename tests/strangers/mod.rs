@@ -1,0 +1,3 @@
+//! Programs that are not of this project, and what they make of what is emitted.
+
+mod benches;
