@@ -39,8 +39,8 @@ pub const GUARDS: [Guard; 8] = [
             ),
             (
                 SNAPSHOT,
-                "stamp_next = earlier_stamp;",
-                "stamp_next = stamp;",
+                " stamp_next = earlier_stamp;",
+                " stamp_next = stamp;",
             ),
         ],
     },

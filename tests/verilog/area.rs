@@ -106,3 +106,16 @@ fn difference(expected: &str, found: &str) -> String {
     }
     text
 }
+
+/// Without the outside tool: what takes a guard away is still in the emission, once.
+#[test]
+fn every_guard_can_be_taken_away() {
+    let subjects = area::subjects().unwrap();
+    let whole = subjects.iter().find(|s| s.name == "channel").unwrap();
+    let lacking = subjects.iter().filter(|s| s.without.is_some());
+    for subject in lacking {
+        let same = subject.files().into_iter().zip(whole.files());
+        let changed = same.filter(|(ours, whole)| ours.text != whole.text);
+        assert!(changed.count() > 1, "{}", subject.name);
+    }
+}
