@@ -1,6 +1,6 @@
 //! Pages: figures in the documentation are those of the program.
 
-use endat_gen::area::XC6S;
+use endat_gen::area::{GUARDS, ICE40, XC6S};
 use endat_hdl::config::{needed_baud, read_bytes, CHANNELS};
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{result_words, CARD, CARD_CONFIG, RESULT};
@@ -46,12 +46,30 @@ fn the_sizes_in_the_readme_are_those_of_the_area_table() {
         let wanted = ["lut", "ff"].map(|kind| figure(subject, kind).to_string());
         assert_eq!(cells[1..3], wanted, "{head}");
     }
+    // The receiver of T-format stands in a sentence.
+    let [lut, ff] = ["lut", "ff"].map(|kind| &table["t_format"][ICE40.name][kind]);
+    let text = format!("it takes {lut} LUTs of four inputs and {ff} flip-flops");
+    assert!(README.contains(&text), "{text}");
     let peer: f64 = row(README, "| public peer")[1].parse().unwrap();
     let ratio = figure("channel", "lut") as f64 / peer;
     assert_eq!(row(README, "| one port")[3], format!("LUT {ratio:.2}"));
     let share = figure("card", "lut") as f64 / 5720.0 * 100.0;
     let share = format!("{share:.1} % of the LX9's 5720 LUTs");
     assert_eq!(row(README, "| two-channel card")[3], share);
+}
+
+/// What synthesis saves without it.
+#[test]
+fn the_costs_of_the_guards_are_those_of_the_area_table() {
+    let page = include_str!("../ARCHITECTURE.md");
+    let table: toml::Table = include_str!("data/area.toml").parse().unwrap();
+    let figure = |subject: &str, kind: &str| table[subject][XC6S.name][kind].as_integer().unwrap();
+    for guard in GUARDS {
+        let saved = |kind: &str| figure("channel", kind) - figure(guard.name, kind);
+        let cells = row(page, &format!("| {} |", guard.title));
+        let wanted = ["lut", "ff"].map(|kind| saved(kind).to_string());
+        assert_eq!(cells[1..3], wanted, "{}", guard.name);
+    }
 }
 
 #[test]

@@ -16,7 +16,7 @@ const TRANSACTION: &str = "endat_transaction.v";
 const SETTINGS: &str = "endat_frame_settings.v";
 
 /// All of them, the dearest first.
-pub const GUARDS: [Guard; 8] = [
+pub const GUARDS: [Guard; 9] = [
     Guard {
         name: "channel_without_restore",
         title: "a withdrawn position gives way to the one before, with its time stamp and CRC",
@@ -88,6 +88,11 @@ pub const GUARDS: [Guard; 8] = [
             ),
             (SETTINGS, "if (is_at_rest) begin", "if (1'b1) begin"),
         ],
+    },
+    Guard {
+        name: "channel_without_second",
+        title: "a frame at the full clock behind one at the calibration clock, where the width is in doubt",
+        edits: &[(TRANSACTION, "measuring_next = !known & doubted", "measuring_next = 1'b0")],
     },
     Guard {
         name: "channel_without_owing",
