@@ -9,8 +9,8 @@
 //!
 //! With a supplement the clock stays LOW after the last CRC bit (`Park`), and `Frame` goes on until its cells are over.
 //!
-//! A frame that measures the delay after a reset, a plug, a fault or two wrong CRCs brings no position: at the slow clock an encoder of
-//! another width can look like a good one. The frame at the full clock follows by itself, and its result is the trigger's.
+//! A frame that measures the delay after two wrong CRCs brings no position: at the slow clock an encoder of another width can look like a
+//! good one. The frame at the full clock follows by itself, and its result is the trigger's.
 //!
 //! A frame is begun by a trigger, or by `own`, for a request that needs the line for itself. What becomes of the first is
 //! published; what becomes of either is told with `over`.
@@ -340,7 +340,7 @@ impl Logic for Transaction {
             measuring,
             once_more
         );
-        self.doubted.reset.next = false;
+        self.doubted.reset.next = self.reset.val();
         self.measuring.reset.next = self.reset.val();
         self.once_more.reset.next = self.reset.val();
         self.cleared.reset.next = self.reset.val();
@@ -781,7 +781,7 @@ impl Logic for Transaction {
         if self.verdict.publish.val() & self.verdict.good.val() {
             self.doubted.d.next = false;
         }
-        if self.plugged.val() | self.verdict.gave_up.val() | self.verdict.is_doubtful.val() {
+        if self.verdict.is_doubtful.val() {
             self.doubted.d.next = true;
         }
         // What else becomes of that frame is the trigger's result, not something that comes behind it.
@@ -887,7 +887,6 @@ impl Logic for Transaction {
         self.begun.next = self.accept.val() | self.refuse.val();
         // A reset may have come in the middle of a frame. After power-up nobody has begun one.
         if self.reset.val() {
-            self.doubted.d.next = true;
             self.phase.d.next = Phase::Abort;
         }
         self.is_at_rest.next = ((self.phase.q.val() == Phase::NotReady)

@@ -91,8 +91,13 @@ pub const GUARDS: [Guard; 9] = [
     },
     Guard {
         name: "channel_without_second",
-        title: "a frame at the full clock behind one at the calibration clock, where the width is in doubt",
-        edits: &[(TRANSACTION, "measuring_next = !known & doubted", "measuring_next = 1'b0")],
+        title:
+            "a frame at the full clock behind one at the calibration clock, after two wrong CRCs",
+        edits: &[(
+            TRANSACTION,
+            "measuring_next = !known & doubted",
+            "measuring_next = 1'b0",
+        )],
     },
     Guard {
         name: "channel_without_owing",

@@ -364,6 +364,16 @@ module endat_transaction (
             all_sent_next = (outstanding == cells_left) | (one_left & will_rise);
         end
     end
+
+    always @* begin
+        doubted_next = doubted;
+        if (publish & good) begin
+            doubted_next = 1'b0;
+        end
+        if (verdict_is_doubtful) begin
+            doubted_next = 1'b1;
+        end
+    end
     assign own = is_own & HAS_ALL;
     assign triggered = trigger & !(hold_off & HAS_ALL);
     assign owed = once_more & owing & !(hold_off & HAS_ALL);
@@ -407,7 +417,6 @@ module endat_transaction (
         leaving_next = leaving;
         slow_now_next = slow_now;
         passes_next = passes;
-        doubted_next = doubted;
         measuring_next = measuring;
         once_more_next = once_more;
         proof = 1'b0;
@@ -696,12 +705,6 @@ module endat_transaction (
         if (verdict_is_doubtful & !going) begin
             is_calibrated_next = 1'b0;
         end
-        if (publish & good) begin
-            doubted_next = 1'b0;
-        end
-        if (plugged | abort | verdict_is_doubtful) begin
-            doubted_next = 1'b1;
-        end
         if (verdict_once_more) begin
             once_more_next = 1'b1;
             answered_next = 1'b0;
@@ -739,7 +742,6 @@ module endat_transaction (
             passes_next = 2'd0;
         end
         if (reset) begin
-            doubted_next = 1'b1;
             phase_next = PHASE_ABORT;
         end
         if (phase != PHASE_ABORT) begin
@@ -809,7 +811,6 @@ module endat_transaction (
 
     always @(posedge clock) begin
         phase <= phase_next;
-        doubted <= doubted_next;
     end
 
     always @(posedge clock) begin
@@ -845,6 +846,7 @@ module endat_transaction (
             cleared <= 1'b1;
             high_at_tick <= 1'b0;
             owing <= 1'b0;
+            doubted <= 1'b0;
             measuring <= 1'b0;
             once_more <= 1'b0;
         end else begin
@@ -879,6 +881,7 @@ module endat_transaction (
             cleared <= cleared_next;
             high_at_tick <= high_at_tick_next;
             owing <= owing_next;
+            doubted <= doubted_next;
             measuring <= measuring_next;
             once_more <= once_more_next;
         end

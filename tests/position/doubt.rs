@@ -250,14 +250,11 @@ fn data_that_was_high_between_frames_has_the_delay_measured_again() {
         let mut rig = other.on(measured.clone());
         rig.run_for(5 * US + pulled_ns * NS);
         let result = good_frame(&mut rig);
+        settle(&mut rig);
+        assert_eq!(rig.frames(0)[0].period, SLOW, "{pulled_ns} ns: {result:?}");
         good_frame(&mut rig);
         settle(&mut rig);
-        let frames = rig.frames(0);
-        assert_eq!(frames.len(), 3, "{pulled_ns} ns");
-        assert_eq!(frames[0].period, SLOW, "{pulled_ns} ns: {result:?}");
-        assert!(frames[1..].iter().all(|f| f.period < SLOW));
-        let all = (rig.violations(0).len(), rig.conflicts(0).len());
-        assert_eq!(all, (0, 0), "{pulled_ns} ns");
+        assert_sound(&other, &rig);
     }
 }
 
@@ -316,34 +313,39 @@ fn a_limit_of_zero_does_not_shorten_the_quiet_time() {
 /// Where the clock is slow, an encoder of another width can end its frame between two pulses and look like a good one. The position
 /// comes from the frame at the full clock behind it.
 #[test]
-fn an_encoder_of_another_width_gives_no_position_while_the_delay_is_measured() {
+fn an_encoder_of_another_width_gives_no_position_while_the_delay_is_measured_again() {
     let setup = Setup::card();
     let measured = setup.measured();
-    let (mut slow, mut looked_good, mut good) = (0, 0, 0);
+    let (mut slow, mut looked_good) = (0, 0);
     for bits in (8..=48).filter(|n| *n != setup.encoder.position_bits) {
         for seed in 0..4 {
             let mut other = setup.clone();
             other.encoder.position_bits = bits;
             other.encoder.seed = seed * 64 + u64::from(bits);
             let mut rig = other.on(measured.clone());
+            let mut wrong_crcs = 0;
             for _ in 0..8 {
                 let before = rig.frames(0).len();
                 let result = any_frame(&mut rig);
                 settle(&mut rig);
                 let frames = &rig.frames(0)[before..];
                 let begun_slow = frames.first().is_some_and(|f| f.period == SLOW);
-                slow += usize::from(begun_slow);
-                looked_good += usize::from(begun_slow && frames.len() == 2);
-                if result.fresh && result.cause == 0 {
-                    good += 1;
-                    let last = frames.last().unwrap();
-                    assert_ne!(last.period, SLOW, "{bits} {seed}: {result:?}");
+                // Two wrong CRCs in a row, and no other fault since.
+                let is_doubted = wrong_crcs > 1;
+                match (result.fresh, result.last_cause()) {
+                    (false, cause::CRC) => wrong_crcs += 1,
+                    _ => wrong_crcs = 0,
+                }
+                if begun_slow && is_doubted {
+                    slow += 1;
+                    looked_good += usize::from(frames.len() == 2);
+                    assert!(
+                        !result.fresh || frames.len() == 2,
+                        "{bits} {seed}: {result:?}"
+                    );
                 }
             }
         }
     }
-    assert!(
-        slow > 300 && looked_good > 30 && good < 60,
-        "{slow} {looked_good} {good}"
-    );
+    assert!(slow > 40 && looked_good > 10, "{slow} {looked_good}");
 }
