@@ -147,7 +147,11 @@ fn fate<'f>(result: &ChannelResult, frames: impl Iterator<Item = &'f FrameLog>) 
     };
     match result.last_cause() {
         cause::NONE => {
-            let frames: Vec<&FrameLog> = frames.collect();
+            let mut frames: Vec<&FrameLog> = frames.collect();
+            // After two wrong CRCs a frame that measures the delay comes before that of the position.
+            if let Some(period) = frames.last().map(|last| last.period) {
+                frames.retain(|f| f.period <= period);
+            }
             match frames.iter().find(|f| f.position == result.position) {
                 None => Fate::Wrong,
                 Some(frame) if frames.len() == 1 && is_exact(frame) => Fate::Good,
