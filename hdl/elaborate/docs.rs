@@ -20,6 +20,7 @@ pub const SOURCES: &[&str] = &[
     include_str!("../card/uart.rs"),
     include_str!("../channel.rs"),
     include_str!("../channel_registers.rs"),
+    include_str!("../channel_trigger.rs"),
     include_str!("../clock_gen.rs"),
     include_str!("../command_sender.rs"),
     include_str!("../command_shape.rs"),
