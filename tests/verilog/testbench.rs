@@ -80,7 +80,7 @@ fn bench_passes_on_a_card_whose_channels_have_triggers_of_their_own() {
         let files = endat_gen::emit(&parse("own.toml", &text).unwrap()).unwrap();
         assert!(files
             .iter()
-            .any(|f| f.path.starts_with("endat_own_trigger")));
+            .any(|f| f.path.starts_with("endat_channel_trigger")));
         assert_passes(&run_bench("own_triggers", &files, &[]));
     }
 }
