@@ -9,6 +9,13 @@ use crate::HostError;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
+/// Instead of a cause: the channel took no part in the trigger.
+pub const NOT_TAKEN: &str = "not_taken";
+/// Its result has not come in time.
+pub const TOO_LATE: &str = "too_late";
+/// This is what came for the last [`TOO_LATE`].
+pub const LATE: &str = "late";
+
 /// A channel of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
@@ -16,7 +23,7 @@ pub struct Cell {
     pub position: Option<u64>,
     /// This trigger brought it.
     pub fresh: bool,
-    /// Name of the cause; `not_taken` and `too_late` if the channel took no part; `late` if this is what came for the last `too_late`.
+    /// Name of the cause, or [`NOT_TAKEN`], [`TOO_LATE`], [`LATE`].
     pub cause: &'static str,
 }
 
@@ -147,7 +154,7 @@ impl Feed {
             position: r.valid.then_some(r.position),
             fresh: r.fresh && steps > 0,
             cause: match steps {
-                0 => "not_taken",
+                0 => NOT_TAKEN,
                 _ => causes::name(r.cause),
             },
         });
@@ -178,9 +185,9 @@ impl Feed {
                     position: s.valid.then_some(s.position),
                     fresh: s.fresh && !s.is_late(),
                     cause: match (s.taken, s.missing) {
-                        _ if s.is_late() => "late",
-                        (false, _) => "not_taken",
-                        (_, true) => "too_late",
+                        _ if s.is_late() => LATE,
+                        (false, _) => NOT_TAKEN,
+                        (_, true) => TOO_LATE,
                         _ => s.cause_name(),
                     },
                 });

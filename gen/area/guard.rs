@@ -15,7 +15,7 @@ const SNAPSHOT: &str = "endat_snapshot.v";
 const TRANSACTION: &str = "endat_transaction.v";
 const SETTINGS: &str = "endat_frame_settings.v";
 
-/// All of them, the dearest first.
+/// All of them.
 pub const GUARDS: [Guard; 9] = [
     Guard {
         name: "channel_without_restore",

@@ -240,12 +240,12 @@ fn check_recovery(check: &mut Check<'_>, request: &ChannelRequest, most_ns: u64)
     }
 }
 
-/// The period in cycles, if the rate can be made well enough.
 /// Whether the shorter half of a period is too short for an encoder.
 const fn is_uneven(period: u64) -> bool {
     100 * (period / 2) < (50 - PULSE_TOLERANCE_PERCENT) * period
 }
 
+/// The period in cycles, if the rate can be made well enough.
 fn check_clock(
     check: &mut Check<'_>,
     clock_hz: u64,

@@ -14,7 +14,7 @@ mod server;
 pub use server::{Ports, Server, CONTROL_PORT, DATA_PORT};
 
 use crate::causes;
-use crate::feed::Row;
+use crate::feed::{Row, LATE, NOT_TAKEN, TOO_LATE};
 use crate::units::Scale;
 
 /// A column of the data.
@@ -41,7 +41,7 @@ enum What {
 }
 
 /// What a feed says instead of a cause, from the first number behind those of causes on.
-const OF_ROWS: [&str; 3] = ["not_taken", "too_late", "late"];
+const OF_ROWS: [&str; 3] = [NOT_TAKEN, TOO_LATE, LATE];
 const OF_ROWS_FIRST: usize = 32;
 
 fn code(cause: &str) -> i64 {

@@ -124,6 +124,16 @@ impl FrameLog {
             .map(|s| s + self.answer.len + self.supplement_edges)
     }
 
+    /// Whether it has all its pulses, and no more.
+    pub fn is_whole(&self) -> bool {
+        self.end == FrameEnd::Complete && self.expected_rising_edges() == Some(self.rising_edges)
+    }
+
+    /// Whether it measured the delay for `position`, the frame behind it: at a slower clock, for the same trigger.
+    pub fn measures_for(&self, position: &Self) -> bool {
+        self.period > position.period
+    }
+
     /// Length of the first part of the answer, without additional informations.
     pub fn head_len(&self) -> u32 {
         self.answer.len - Info::BITS * self.infos.len() as u32

@@ -3,7 +3,7 @@
 use crate::{
     bench::ChannelResult,
     campaign::{Case, Traces},
-    encoder::{FrameEnd, FrameLog},
+    encoder::FrameLog,
     line::Sample,
     Time, US,
 };
@@ -142,19 +142,16 @@ pub(super) fn judge(case: &Case, traces: &Traces<'_>) -> Tally {
 
 /// `frames` are those that the encoder has seen for this result: pulses that it does not need can be a second one.
 fn fate<'f>(result: &ChannelResult, frames: impl Iterator<Item = &'f FrameLog>) -> Fate {
-    let is_exact = |f: &FrameLog| {
-        f.expected_rising_edges() == Some(f.rising_edges) && f.end == FrameEnd::Complete
-    };
     match result.last_cause() {
         cause::NONE => {
             let mut frames: Vec<&FrameLog> = frames.collect();
             // After two wrong CRCs a frame that measures the delay comes before that of the position.
-            if let Some(period) = frames.last().map(|last| last.period) {
-                frames.retain(|f| f.period <= period);
+            if let Some(last) = frames.last().copied() {
+                frames.retain(|f| !f.measures_for(last));
             }
             match frames.iter().find(|f| f.position == result.position) {
                 None => Fate::Wrong,
-                Some(frame) if frames.len() == 1 && is_exact(frame) => Fate::Good,
+                Some(frame) if frames.len() == 1 && frame.is_whole() => Fate::Good,
                 Some(_) => Fate::Pulses,
             }
         }

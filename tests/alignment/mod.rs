@@ -10,7 +10,7 @@ mod wander;
 use endat_hdl::{line_delay::mode, protocol::ModeCommand};
 use endat_sim::{
     campaign::{self, Case, Outcome, RunOptions, Traces},
-    encoder::{FrameEnd, FrameLog},
+    encoder::FrameLog,
     line::Jitter,
     Time,
 };
@@ -109,12 +109,10 @@ pub fn count(case: &Case, traces: &Traces<'_>, first: usize) -> Count {
         // Where the width is in doubt, frames that measure the delay come before.
         let are_slow = frames
             .iter()
-            .all(|f| frame.is_some_and(|last| f.period > last.period));
+            .all(|f| frame.is_some_and(|last| f.measures_for(last)));
         let is_told_good = result.fresh && result.last_cause() == 0;
         let is_true = frame.is_some_and(|f| f.position == result.position);
-        let is_exact = frame.is_some_and(|f| {
-            f.end == FrameEnd::Complete && f.expected_rising_edges() == Some(f.rising_edges)
-        });
+        let is_exact = frame.is_some_and(FrameLog::is_whole);
         count.good += usize::from(is_told_good && is_true && is_exact && are_slow);
         count.wrong += usize::from(is_told_good && !is_true);
     }

@@ -11,7 +11,6 @@ use endat_hdl::timing::PARK_NS;
 use endat_hdl::transaction::cause;
 use endat_sim::bench::{Bench, Link, PinNames};
 use endat_sim::campaign::{Case, Traces};
-use endat_sim::encoder::FrameEnd;
 use endat_sim::engine::Compiled;
 use endat_sim::{Time, MS, NS};
 use rust_hdl::prelude::Block;
@@ -155,9 +154,8 @@ impl Behind {
             return Err(format!("{} frames instead of {count}", traces.frames.len()));
         }
         for (frame, result) in traces.frames.iter().zip(traces.results) {
-            let is_whole = frame.end == FrameEnd::Complete
-                && frame.expected_rising_edges() == Some(frame.rising_edges)
-                && frame.is_true_answer(case.settings.position_bits, true);
+            let is_whole =
+                frame.is_whole() && frame.is_true_answer(case.settings.position_bits, true);
             let is_good = result.last_cause() == cause::NONE
                 && result.fresh
                 && result.position == frame.position;

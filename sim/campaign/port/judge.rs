@@ -1,6 +1,6 @@
 //! What became of one flip, from what the reader and the encoder saw in the frame and in those that follow.
 
-use crate::encoder::{FrameEnd, FrameLog, Violation};
+use crate::encoder::{FrameLog, Violation};
 
 /// Triggers after which a port that has not given a good position counts as hung.
 pub const TRIGGERS_MAX: u32 = 8;
@@ -272,17 +272,12 @@ pub(super) fn is_count(violation: &Violation) -> bool {
     )
 }
 
-/// Whether a frame has all its pulses, and no more.
-fn is_whole(frame: &FrameLog) -> bool {
-    frame.end == FrameEnd::Complete && frame.expected_rising_edges() == Some(frame.rising_edges)
-}
-
 /// Whether the frames of a trigger have all their pulses: none, or one at the full clock with those before it that measured the delay.
 pub(super) fn is_whole_answer(frames: &[FrameLog]) -> bool {
     let Some((last, before)) = frames.split_last() else {
         return true;
     };
-    frames.iter().all(is_whole) && before.iter().all(|f| f.period > last.period)
+    frames.iter().all(FrameLog::is_whole) && before.iter().all(|f| f.measures_for(last))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Which rows of a log are bad, counted by cause.
 
-use endat_host::feed::{Cell, Row};
+use endat_host::feed::{Cell, Row, LATE, NOT_TAKEN};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -17,7 +17,7 @@ impl Judge {
         // Without a cause it is an answer that has no position, to a request of the host.
         let is_excused = match cell.cause {
             "none" => true,
-            "not_taken" | "late" => self.own_triggers,
+            NOT_TAKEN | LATE => self.own_triggers,
             _ => false,
         };
         !cell.fresh && !is_excused
