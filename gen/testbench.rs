@@ -200,7 +200,12 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let after_frame = |c: &ChannelConfig| c.cycle_max_cycles(hz) - c.frame_time(hz).frame_cycles;
     let calibration_ns =
         longest_ns(card, |c| c.calibration_cycles(hz) + after_frame(c)) + MARGIN_NS;
-    let calibration_ns = calibration_ns.max(cycle_ns);
+    let measuring = if card.line.alignment {
+        CALIBRATION_FRAMES
+    } else {
+        1
+    };
+    let calibration_ns = calibration_ns.max(cycle_ns) * measuring as u64 + cycle_ns;
     let timeout = |c: &ChannelConfig| {
         c.recovery_limit_cycles + cycles_at_least(1_000 * c.start_timeout_us, hz)
     };
@@ -280,7 +285,6 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         settle_ns => real(host.settle_ns),
         clk_ns => real(clock_ns(hz)),
         calibration_ns => whole(calibration_ns),
-        calibration_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
         cycle_ns => whole(cycle_ns),
         fault_ns => whole(cycle_ns + longest_ns(card, timeout) + ENCODER_GIVES_UP_NS),
         abort_ns => whole(1_000 * abort_us.unwrap_or(0) + MARGIN_NS),

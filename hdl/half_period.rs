@@ -33,6 +33,8 @@ pub struct HalfPeriod {
     pub period_cycles: Signal<In, Bits<11>>,
     /// High in the last cycle of a half.
     pub tick: Signal<Out, Bit>,
+    /// Cycles until `tick` and one more: 1 with `tick`.
+    pub left_cycles: Signal<Out, Bits<10>>,
     count: Reg<Bits<10>>,
     hit: Reg<Bit>,
     hit_late: Reg<Bit>,
@@ -56,6 +58,7 @@ impl HalfPeriod {
             lengthen: Default::default(),
             period_cycles: Default::default(),
             tick: Default::default(),
+            left_cycles: Default::default(),
             count: Reg::new(2.into()),
             hit: Default::default(),
             hit_late: Default::default(),
@@ -101,5 +104,9 @@ impl Logic for HalfPeriod {
             self.hit.d.next = self.has_snap.val() & (self.half_cycles.val() == 2);
         }
         self.tick.next = self.tick_now.val();
+        self.left_cycles.next = self.half_cycles.val()
+            + bit_cast::<10, 1>((self.second.val() & self.period_cycles.val().get_bit(0)).into())
+            + 2
+            - self.count.q.val();
     }
 }

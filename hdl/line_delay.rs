@@ -436,9 +436,12 @@ impl Logic for LineDelay {
                 self.edge_outside.d.next = true;
             }
         }
-        // How early the edge is that the middle is put upon cannot be known any more: two, say.
+        // The middle is put upon the edge; how early that is, the half under way tells.
         if self.snap.val() & !self.center_seen.q.val() & !self.center_strobe.q.val() {
-            self.edge_error.d.next = 2.into();
+            self.edge_error.d.next = self.half.left_cycles.val().get_bits::<6>(0);
+            if self.half.left_cycles.val() > bit_cast::<10, 6>(self.start_window_cycles.val()) {
+                self.edge_outside.d.next = true;
+            }
         }
         self.follow_now.d.next = self.follow.val() & self.edge_error.q.val().any();
         self.half.shorten.next = self.shorten.q.val();
@@ -477,8 +480,8 @@ impl Logic for LineDelay {
                     + bit_cast::<8, 1>((!self.center_place.val()).into());
             }
         }
-        // While the mean is still being looked for, and where there is none, every edge counts.
-        self.is_open.next = self.is_frame.val() | (self.has_alignment.val() & self.slow.val());
+        // While the mean is still being looked for every edge counts.
+        self.is_open.next = self.has_alignment.val() & self.slow.val();
         self.good_edge.next = self.has_alignment.val()
             & self.sample_now.val()
             & self.edge_now.val()

@@ -9,8 +9,8 @@
 //!
 //! With a supplement the clock stays LOW after the last CRC bit (`Park`), and `Frame` goes on until its cells are over.
 //!
-//! A frame that measures the delay after two wrong CRCs brings no position: at the slow clock an encoder of another width can look like a
-//! good one. The frame at the full clock follows by itself, and its result is the trigger's.
+//! A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The frame
+//! at the full clock follows by itself, and its result is the trigger's.
 //!
 //! A frame is begun by a trigger, or by `own`, for a request that needs the line for itself. What becomes of the first is
 //! published; what becomes of either is told with `over`.
@@ -256,7 +256,6 @@ pub struct Transaction {
     cleared: Reg<Bit>,
     high_at_tick: Reg<Bit>,
     owing: Reg<Bit>,
-    doubted: Reg<Bit>,
     measuring: Reg<Bit>,
     once_more: Reg<Bit>,
     limit: Signal<Local, Bits<16>>,
@@ -336,11 +335,9 @@ impl Logic for Transaction {
             cleared,
             high_at_tick,
             owing,
-            doubted,
             measuring,
             once_more
         );
-        self.doubted.reset.next = self.reset.val();
         self.measuring.reset.next = self.reset.val();
         self.once_more.reset.next = self.reset.val();
         self.cleared.reset.next = self.reset.val();
@@ -740,7 +737,7 @@ impl Logic for Transaction {
         self.verdict.found.next = self.found.val();
         self.verdict.answer_taken.next = self.answer_taken.val();
         self.verdict.prove.next = self.proof.val();
-        self.verdict.is_measuring.next = self.measuring.q.val() & self.doubted.q.val();
+        self.verdict.is_measuring.next = self.measuring.q.val();
         self.verdict.settings_upset.next = self.settings_upset.val();
         self.verdict.give_up.next = self.give_up.val();
         self.verdict.is_late.next = self.answered.q.val() | self.found_late.val();
@@ -778,12 +775,6 @@ impl Logic for Transaction {
         if self.verdict.publish.val() {
             self.owing.d.next = false;
         }
-        if self.verdict.publish.val() & self.verdict.good.val() {
-            self.doubted.d.next = false;
-        }
-        if self.verdict.is_doubtful.val() {
-            self.doubted.d.next = true;
-        }
         // What else becomes of that frame is the trigger's result, not something that comes behind it.
         if self.verdict.once_more.val() {
             self.once_more.d.next = true;
@@ -800,7 +791,7 @@ impl Logic for Transaction {
             self.owing.d.next = true;
         }
         if self.accept.val() {
-            self.measuring.d.next = !self.known.val() & self.doubted.q.val();
+            self.measuring.d.next = !self.known.val();
             self.answered.d.next = false;
             self.in_supplement.d.next = false;
             self.acquiring.d.next =

@@ -91,11 +91,10 @@ pub const GUARDS: [Guard; 9] = [
     },
     Guard {
         name: "channel_without_second",
-        title:
-            "a frame at the full clock behind one at the calibration clock, after two wrong CRCs",
+        title: "a frame at the full clock behind one at the calibration clock",
         edits: &[(
             TRANSACTION,
-            "measuring_next = !known & doubted",
+            "measuring_next = !known",
             "measuring_next = 1'b0",
         )],
     },

@@ -145,7 +145,6 @@ impl Transaction {
             cleared: Reg::new(true),
             high_at_tick: Default::default(),
             owing: Default::default(),
-            doubted: Default::default(),
             measuring: Default::default(),
             once_more: Default::default(),
             limit: Default::default(),

@@ -214,14 +214,24 @@ impl Case {
                 conflict.from as f64 / 1e6
             ));
         }
+        // The first position comes behind those that measure, unless the delay was known before.
         let counts = (traces.results.len(), traces.frames.len());
-        if counts != (self.frames, self.frames) {
+        let measuring = counts.1.saturating_sub(counts.0);
+        if counts.0 != self.frames || ![0, self.calibration_frames()].contains(&measuring) {
             return Err(format!(
                 "{} results of {} frames instead of {}",
                 counts.0, counts.1, self.frames
             ));
         }
-        for (frame, result) in traces.frames.iter().zip(traces.results) {
+        let (first, frames) = traces.frames.split_at(measuring);
+        let measures = |f: &FrameLog| frames.first().is_some_and(|next| f.measures_for(next));
+        if let Some(frame) = first.iter().find(|f| !f.is_whole() || !measures(f)) {
+            return Err(format!(
+                "frame {}: does not measure: {frame:?}",
+                frame.index
+            ));
+        }
+        for (frame, result) in frames.iter().zip(traces.results) {
             self.check_frame(frame, result)
                 .map_err(|what| format!("frame {}: {what}", frame.index))?;
         }

@@ -6,7 +6,7 @@ use crate::{
         info_field, parameter_field, position_field, AnswerBits, Field, Info, Parameter,
         PositionAnswer, CRC_BITS,
     },
-    Time,
+    Time, US,
 };
 
 /// How a frame ended, seen from the encoder.
@@ -105,6 +105,9 @@ pub struct FrameLog {
     pub end: FrameEnd,
 }
 
+/// A clock as slow as this measures the delay: 200 kHz, as near as a frame shows it.
+const SLOW: Time = 49 * US / 10;
+
 impl FrameLog {
     pub(super) fn new(index: u64, time: Time, position: u64, position_bits: u32) -> Self {
         Self {
@@ -129,9 +132,10 @@ impl FrameLog {
         self.end == FrameEnd::Complete && self.expected_rising_edges() == Some(self.rising_edges)
     }
 
-    /// Whether it measured the delay for `position`, the frame behind it: at a slower clock, for the same trigger.
+    /// Whether it measured the delay for `position`, a frame behind it for the same trigger: at a slower clock, if that one's is not slow itself.
     pub fn measures_for(&self, position: &Self) -> bool {
-        self.period > position.period
+        let is_slower = self.period > position.period || position.period >= SLOW;
+        self.index < position.index && is_slower
     }
 
     /// Length of the first part of the answer, without additional informations.

@@ -97,16 +97,16 @@ fn paper_flow() -> Scenario {
     let bits = |f1, f2| Defect::ErrorBits { f1, f2 };
     let encoder = EncoderConfig::endat22(29)
         .position(PositionSource::Fixed(POSITION_WITH_CRC_1D))
-        .defect(2, Defect::NoStartBit)
+        .defect(3, Defect::NoStartBit)
         .defect(
-            4,
+            6,
             Defect::Glitch {
                 after: 5_050 * NS,
                 width: 300 * NS,
             },
         )
-        .defect(6, bits(true, false))
-        .defect(7, Defect::CrcXor(0b1_0000));
+        .defect(9, bits(true, false))
+        .defect(10, Defect::CrcXor(0b1_0000));
     Scenario {
         name: "paper-flow",
         summary: "the flow chart of the two-channel card: a good frame with CRC 0x1D, then no start bit, a wrong one, error bits, a wrong CRC; data is held",
@@ -245,8 +245,8 @@ fn unplugged() -> Scenario {
 
 fn crc_error() -> Scenario {
     let encoder = rcn8510()
-        .defect(2, Defect::FlipBits(1 << 7))
-        .defect(4, Defect::CrcXor(0b0_0100));
+        .defect(3, Defect::FlipBits(1 << 7))
+        .defect(5, Defect::CrcXor(0b0_0100));
     Scenario {
         name: "crc-error",
         summary: "one position bit and one CRC bit arrive wrong; the last good position is held",
@@ -258,9 +258,9 @@ fn crc_error() -> Scenario {
 fn alarm() -> Scenario {
     let bits = |f1, f2| Defect::ErrorBits { f1, f2 };
     let encoder = rcn8510()
-        .defect(2, bits(true, true))
-        .defect(3, bits(false, false))
-        .defect(4, bits(true, false));
+        .defect(3, bits(true, true))
+        .defect(4, bits(false, false))
+        .defect(5, bits(true, false));
     Scenario {
         name: "alarm",
         summary: "the encoder reports an error in F1, in F2 and in both, with a correct CRC",
@@ -373,7 +373,7 @@ fn parameter() -> Scenario {
 
 fn no_answer() -> Scenario {
     let rates = (100_000_000, 3_125_000);
-    let encoder = rcn8510().defect(2, Defect::NoStartBit);
+    let encoder = rcn8510().defect(3, Defect::NoStartBit);
     let channel = channel(rates, SendPositionAddInfo, encoder, 10.0);
     Scenario {
         name: "no-answer",

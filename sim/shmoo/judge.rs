@@ -145,7 +145,7 @@ fn fate<'f>(result: &ChannelResult, frames: impl Iterator<Item = &'f FrameLog>) 
     match result.last_cause() {
         cause::NONE => {
             let mut frames: Vec<&FrameLog> = frames.collect();
-            // After two wrong CRCs a frame that measures the delay comes before that of the position.
+            // A frame that measures the delay comes before that of the position.
             if let Some(last) = frames.last().copied() {
                 frames.retain(|f| !f.measures_for(last));
             }

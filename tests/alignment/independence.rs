@@ -27,7 +27,7 @@ const CHANNELS: [(u64, u64, ModeCommand, u64); 8] = [
     (6_400_000, 1, ModeCommand::SendPositionAddInfo, 300),
     (3_200_000, 32, ModeCommand::SendPositionAddInfo, 1),
 ];
-const CYCLES: u64 = 150_000;
+const CYCLES: u64 = 300_000;
 
 fn config() -> CardConfig {
     let mut card = load_preset("s6_two_channel").unwrap().card;

@@ -1,6 +1,7 @@
 //! Delays that change: slowly, and by a step.
 
 use super::{count, Kind};
+use endat_hdl::{line_delay::mode, transaction::cause};
 use endat_sim::{campaign::Traces, engine::Compiled, line::Jitter, MS, US};
 
 /// A microsecond in 10 000 frames, and then half a bit at once.
@@ -54,6 +55,35 @@ fn a_step_costs_one_frame_at_most_and_never_a_wrong_position() {
                 // The phase is found again: the last frames are good.
                 let got = count(&case, &Traces::of(&bench), case.frames - 20);
                 assert_eq!(got.good, got.frames, "{what}");
+            }
+        }
+    }
+}
+
+/// The start bit's edge is looked for in its window in every mode, whether the cells follow it or not.
+#[test]
+fn a_start_bit_outside_its_window_is_refused_in_every_mode() {
+    const WINDOW_CYCLES: i64 = 6;
+    for cycles in [31, 32] {
+        for phase_mode in [mode::TRACKED, mode::FRAME] {
+            for step_cycles in [-12, -8, -6, -4, 4, 6, 9, 12] {
+                let kind = Kind::single(cycles);
+                let mut case = kind.case(0.0, 3.3, 100, 1);
+                case.settings.phase_mode = phase_mode;
+                case.settings.start_window_cycles = WINDOW_CYCLES as u64;
+                let cycle_ps = 1e12 / case.system_hz as f64;
+                case.line.data_in.step = Some((2 * MS, (step_cycles as f64 * cycle_ps) as i64));
+                let engine = Compiled::new(&case.design().unwrap()).unwrap();
+                let bench = case.run_alone(engine, false);
+                let causes: Vec<u64> = bench.results().iter().map(|r| r.last_cause()).collect();
+                let refused = causes.iter().filter(|c| **c != cause::NONE).count();
+                let what = format!("{cycles} {phase_mode} {step_cycles}: {causes:?}");
+                if i64::abs(step_cycles) <= WINDOW_CYCLES {
+                    assert_eq!(refused, 0, "{what}");
+                } else {
+                    assert_eq!(refused, 1, "{what}");
+                    assert!(causes.contains(&cause::START_WINDOW), "{what}");
+                }
             }
         }
     }

@@ -12,6 +12,8 @@ use endat_sim::{
 };
 
 const SYSTEM_HZ: u64 = 100_000_000;
+/// Frames of the encoder before that of the first result.
+const MEASURING: usize = 1;
 const EDGES: [LatchEdge; 2] = [LatchEdge::InHigh, LatchEdge::AfterLow];
 
 fn encoder(position_bits: u32, edge: LatchEdge) -> EncoderConfig {
@@ -23,12 +25,12 @@ fn encoder(position_bits: u32, edge: LatchEdge) -> EncoderConfig {
         })
 }
 
-/// After the frame that measures the delay.
+/// After the frame that measures the delay, and the first position.
 fn rig(endat_hz: u64, encoder: EncoderConfig, line: LineConfig) -> Rig {
     let settings = ChannelSettings::new(SYSTEM_HZ, endat_hz, SendPosition, encoder.position_bits);
     let mut rig = Rig::with(SYSTEM_HZ, settings, encoder, line);
-    rig.bench.set("continuous", 1);
     assert_eq!(rig.position().cause, cause::NONE);
+    rig.bench.set("continuous", 1);
     rig
 }
 
@@ -54,7 +56,8 @@ fn leave(rig: &mut Rig) {
 fn assert_right(rig: &Rig, endat_hz: u64) {
     let flight = rig.bench.link(0).line().config();
     let flight = flight.flight() + flight.clock.transceivers;
-    for (result, frame) in rig.bench.results().iter().zip(rig.bench.frames(0)) {
+    let frames = &rig.bench.frames(0)[MEASURING..];
+    for (result, frame) in rig.bench.results().iter().zip(frames) {
         assert_eq!(result.last_cause(), cause::NONE, "{result:?}");
         assert!(
             result.fresh && result.position == frame.position,
@@ -91,7 +94,9 @@ fn positions_flow_at_every_width_rate_and_length() {
                 leave(&mut rig);
                 assert_right(&rig, endat_hz);
                 assert!(rig.bench.results().len() >= 7);
-                assert!(rig.bench.frames(0)[2..7].iter().all(|f| f.continuous));
+                assert!(rig.bench.frames(0)[MEASURING + 2..][..5]
+                    .iter()
+                    .all(|f| f.continuous));
                 let over = rig.position();
                 assert_eq!(over.cause, cause::NONE, "{endat_hz} {bits} {edge:?}");
                 rig.assert_clean();
@@ -166,7 +171,8 @@ fn after_an_error_it_goes_on_or_stops_as_configured() {
         (Defect::ErrorBits { f1: true, f2: true }, cause::F1),
     ] {
         for stop in [0, 1] {
-            let encoder = encoder(29, LatchEdge::AfterLow).defect(3, defect.clone());
+            let encoder =
+                encoder(29, LatchEdge::AfterLow).defect(MEASURING as u64 + 3, defect.clone());
             let mut rig = rig(2_000_000, encoder, LineConfig::cable(10.0));
             rig.bench.set("stop_at_error", stop);
             run(&mut rig, 3);
@@ -190,7 +196,9 @@ fn errors_in_a_row_end_a_run_only_if_it_stops_at_errors() {
     for frames in [3..=4, 3..=5, 3..=12] {
         for stop in [0, 1] {
             let encoder = encoder(29, LatchEdge::AfterLow);
-            let encoder = encoder.defects(frames.clone(), Defect::CrcXor(0b10));
+            let first = MEASURING as u64;
+            let (from, to) = (first + frames.start(), first + frames.end());
+            let encoder = encoder.defects(from..=to, Defect::CrcXor(0b10));
             let mut rig = rig(2_000_000, encoder, LineConfig::cable(10.0));
             rig.bench.set("stop_at_error", stop);
             rig.bench.trigger();
@@ -222,7 +230,7 @@ fn what_cannot_go_on_is_flagged_and_the_next_trigger_works() {
     ] {
         let encoder = encoder(29, LatchEdge::AfterLow)
             .position(PositionSource::Fixed(0))
-            .defect(3, defect.clone());
+            .defect(MEASURING as u64 + 3, defect.clone());
         let mut rig = rig(2_000_000, encoder, LineConfig::cable(10.0));
         rig.bench.trigger();
         let bad =
@@ -237,7 +245,12 @@ fn what_cannot_go_on_is_flagged_and_the_next_trigger_works() {
             [rig.bench.get("position_valid"), rig.bench.get("fresh")],
             [1, 0]
         );
-        assert_eq!(rig.position().cause, cause::NONE);
+        // The delay is measured again, and the run goes on.
+        run(&mut rig, 3);
+        assert!(rig.last_frame().continuous, "{defect:?}");
+        let last = rig.bench.results().last().unwrap();
+        assert_eq!((last.cause, last.fresh), (cause::NONE, true), "{defect:?}");
+        leave(&mut rig);
     }
 }
 
@@ -252,7 +265,7 @@ fn an_encoder_without_the_mode_is_noticed() {
     rig.position();
     let result = rig.bench.results().last().unwrap().clone();
     assert_eq!(result.late_cause, Some(cause::DATA_NOT_FALLING));
-    assert!(result.fresh && result.position == rig.bench.frames(0)[1].position);
+    assert!(result.fresh && result.position == rig.last_frame().position);
     assert_eq!(rig.bench.get("position_valid"), 1);
 }
 

@@ -10,7 +10,7 @@ use endat_sim::{
     bench::{ChannelResult, ChannelSettings},
     campaign::ABORT_US,
     encoder::{Defect, EncoderConfig, FrameEnd},
-    line::{LineConfig, Stuck},
+    line::{FaultKind, LineConfig, LineFault, Stuck},
     Time, MS, NS, US,
 };
 
@@ -67,7 +67,7 @@ fn a_late_start_bit_is_told_from_a_silent_encoder() {
     let limit = settings().start_timeout_us;
     for late in limit + 4..3 * limit {
         let mut rig = rig(
-            encoder().defect(1, Defect::LateStart(late * US)),
+            encoder().defect(2, Defect::LateStart(late * US)),
             LineConfig::cable(10.0),
         );
         let begin = rig.bench.now();
@@ -267,5 +267,33 @@ fn an_echo_of_the_own_command_is_no_answer() {
             let mut rig = Rig::with(SYSTEM_HZ, settings, encoder, line);
             assert_eq!(bad(&mut rig).cause, cause::OWN_ECHO, "{command:?} {delay}");
         }
+    }
+}
+
+/// What docs/programming.md says of a card that was wired wrongly, or has another encoder than it is configured for.
+#[test]
+fn a_wrong_wiring_and_a_wrong_width_have_the_causes_of_the_table() {
+    for (kind, expected) in [
+        (FaultKind::Swapped, cause::NO_ENCODER),
+        (FaultKind::ToClock, cause::STUCK_HIGH),
+    ] {
+        let mut rig = Rig::with(SYSTEM_HZ, settings(), encoder(), LineConfig::cable(10.0));
+        let fault = LineFault::new(kind, 0, Time::MAX, 1);
+        rig.bench.link_mut(0).disturb(|line| line.set_fault(fault));
+        rig.bench.run_for(10 * US);
+        assert_eq!(bad(&mut rig).last_cause(), cause::DATA_NOT_LOW, "{kind:?}");
+        for _ in 0..4 {
+            assert_eq!(bad(&mut rig).last_cause(), expected, "{kind:?}");
+        }
+    }
+    for bits in (13..=40).filter(|bits| *bits != 29) {
+        let line = LineConfig::cable(10.0);
+        let mut rig = Rig::with(SYSTEM_HZ, settings(), EncoderConfig::endat22(bits), line);
+        let causes: Vec<u64> = (0..6).map(|_| bad(&mut rig).last_cause()).collect();
+        let explained = [cause::CRC, cause::DATA_NOT_FALLING, cause::F2];
+        assert!(
+            causes.iter().all(|c| explained.contains(c)),
+            "{bits}: {causes:?}"
+        );
     }
 }

@@ -23,7 +23,7 @@ pub const ENDAT_HZ: u64 = 2_000_000;
 pub const HALF_PERIOD: Time = 250 * NS;
 pub const POSITION_BITS: u32 = 13;
 /// The frame that the mishap is for, as the encoder counts.
-pub const FRAME: u64 = 3;
+pub const FRAME: u64 = 4;
 /// First falling to last rising clock edge of that frame: tST, then 10 pulses to the start bit, 21 bits, 60 of the informations, the
 /// park time, 35 pulses.
 pub const FRAME_TIME: Time = 67_500 * NS;

@@ -11,8 +11,8 @@ use endat_sim::{
     Time, NS, US,
 };
 
-/// Frames that measure the delay and are good, then two selections: the next one has the mishap.
-const MISHAP_FRAME: u64 = 4;
+/// A frame that measures the delay, two good ones, two selections: the next one has the mishap.
+const MISHAP_FRAME: u64 = 5;
 /// Triggers after the mishap that may bring a fault.
 const TRIGGERS: usize = 2;
 /// Long and short recovery times, either side of half a period of the calibration clock.

@@ -113,7 +113,7 @@ fn position_2_is_compared_over_the_wrap() {
 #[test]
 fn a_wrong_crc_of_an_information_is_told_and_counted_and_nothing_of_it_is_taken() {
     for (info, half) in [(1u8, 0), (2, 16)] {
-        let bad = [10, 11].into_iter();
+        let bad = [11, 12].into_iter();
         let defect = Defect::InfoCrcXor { info, xor: 0b10 };
         let encoder = bad.fold(encoder(), |e, n| e.defect(n, defect.clone()));
         let mut rig = Rig::new(false, encoder, 25);
@@ -154,7 +154,7 @@ fn a_wrong_crc_of_an_information_is_told_and_counted_and_nothing_of_it_is_taken(
 
 #[test]
 fn causes_are_counted_and_n_of_m_raises_the_alarm() {
-    let bad = [3, 5, 6, 12, 13, 14].into_iter();
+    let bad = [4, 6, 7, 13, 14, 15].into_iter();
     let alarm = Defect::ErrorBits { f1: true, f2: true };
     let encoder = bad.fold(encoder(), |e, n| e.defect(n, alarm.clone()));
     let mut rig = Rig::new(false, encoder, 25);

@@ -45,7 +45,7 @@ fn every_error_has_its_code() {
     let echo = Defect::EchoXor(0x01_0000);
     let data = Defect::EchoXor(0x00_0100);
     let crc = Defect::CrcXor(4);
-    let encoder = encoder().defect(1, echo).defect(2, data).defect(3, crc);
+    let encoder = encoder().defect(2, echo).defect(3, data).defect(4, crc);
     let mut rig = Rig::new(false, encoder, 25);
     rig.good_position();
     let select = area::OPERATING_PARAMETERS;
