@@ -125,17 +125,6 @@ fn another_name_names_everything() {
 }
 
 #[test]
-fn no_card_is_called_like_a_block() {
-    let dir = Dir::new("block-name");
-    for name in ["endat", "endat_channel", "Endat_Card"] {
-        let message = bad(&["emit", "--out", &dir.path("o"), "--name", name], 2);
-        let remedy = format!("for example `my_{}`", name.to_lowercase());
-        assert!(message.contains(&remedy), "{message}");
-    }
-    assert_eq!(dir.files(), vec![]);
-}
-
-#[test]
 fn a_preset_that_was_shown_can_be_emitted_as_an_own_configuration() {
     let dir = Dir::new("own");
     let text = good(&["presets", "--show", "s6_two_channel"]);
@@ -400,7 +389,7 @@ fn explain_keeps_its_columns_and_tells_the_clock_of_the_calibration_frame() {
         "slow",
     ]);
     for cycles in [1_000, 500] {
-        let block = format!("o/slow/endat_channel_calibration_period_cycles{cycles}.v");
+        let block = format!("o/slow/slow_channel_calibration_period_cycles_{cycles}.v");
         assert!(dir.0.join(&block).exists(), "{block}");
     }
     assert_eq!(
