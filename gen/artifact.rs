@@ -116,7 +116,11 @@ pub fn differences(folder: &Path, artifacts: &[Artifact]) -> Vec<String> {
 pub fn foreign(folder: &Path, artifacts: &[Artifact]) -> Vec<String> {
     let manifest = read_regular(&folder.join(MANIFEST), FILE_BYTES_MAX).unwrap_or_default();
     let manifest = String::from_utf8_lossy(&manifest);
-    let known: BTreeSet<(&str, &str)> = listed(&manifest).collect();
+    let is_digest =
+        |digest: &str| digest.len() == 64 && digest.bytes().all(|b| b.is_ascii_hexdigit());
+    let known: BTreeSet<(&str, &str)> = (listed(&manifest))
+        .filter(|(digest, _)| is_digest(digest))
+        .collect();
     let is_list = manifest.lines().count() == known.len();
     let is_foreign = |artifact: &&Artifact| {
         let path = folder.join(&artifact.path);

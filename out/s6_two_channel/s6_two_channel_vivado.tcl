@@ -41,6 +41,9 @@ update_compile_order -fileset sources_1
 
 ipx::package_project -root_dir [file join $here ip] -vendor endat-gen -library motion -taxonomy /UserIP -import_files
 set core [ipx::current_core]
+# What Vivado has guessed gives way to what is meant.
+ipx::remove_all_bus_interface $core
+ipx::remove_all_memory_map $core
 set_property name s6_two_channel $core
 set_property version 0.1.0 $core
 set_property display_name "EnDat acquisition card, 2 channels" $core
@@ -49,6 +52,13 @@ ipx::infer_bus_interface clk_i xilinx.com:signal:clock_rtl:1.0 $core
 ipx::infer_bus_interface rst_i xilinx.com:signal:reset_rtl:1.0 $core
 set_property value ACTIVE_HIGH [ipx::add_bus_parameter POLARITY [ipx::get_bus_interfaces rst_i -of_objects $core]]
 set_property value 100000000 [ipx::add_bus_parameter FREQ_HZ [ipx::get_bus_interfaces clk_i -of_objects $core]]
+set bus [ipx::add_bus_interface uart $core]
+set_property bus_type_vlnv xilinx.com:interface:uart:1.0 $bus
+set_property abstraction_type_vlnv xilinx.com:interface:uart_rtl:1.0 $bus
+set_property interface_mode master $bus
+set_property physical_name uart_rx_i [ipx::add_port_map RxD $bus]
+set_property physical_name uart_tx_o [ipx::add_port_map TxD $bus]
+ipx::associate_bus_interfaces -busif uart -clock clk_i $core
 ipx::create_xgui_files $core
 ipx::update_checksums $core
 ipx::save_core $core
