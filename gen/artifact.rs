@@ -8,8 +8,6 @@ use std::{fs, io};
 
 /// Name of the list of all other files.
 pub const MANIFEST: &str = "MANIFEST";
-/// How the files of the blocks begin; no card is called so.
-pub const BLOCK_PREFIX: &str = "endat_";
 /// Largest file of an earlier emission that is looked at.
 const FILE_BYTES_MAX: u64 = 1 << 24;
 
@@ -114,6 +112,37 @@ pub fn differences(folder: &Path, artifacts: &[Artifact]) -> Vec<String> {
     found
 }
 
+/// Places of artefacts that hold what no emission has left there, with what is to be said about each: only their owner may replace it.
+pub fn foreign(folder: &Path, artifacts: &[Artifact]) -> Vec<String> {
+    let manifest = read_regular(&folder.join(MANIFEST), FILE_BYTES_MAX).unwrap_or_default();
+    let manifest = String::from_utf8_lossy(&manifest);
+    let is_digest =
+        |digest: &str| digest.len() == 64 && digest.bytes().all(|b| b.is_ascii_hexdigit());
+    let known: BTreeSet<(&str, &str)> = (listed(&manifest))
+        .filter(|(digest, _)| is_digest(digest))
+        .collect();
+    let is_list = manifest.lines().count() == known.len();
+    let is_foreign = |artifact: &&Artifact| {
+        let path = folder.join(&artifact.path);
+        // What is no regular file is told when it is to be written.
+        let Ok(bytes) = read_regular(&path, FILE_BYTES_MAX) else {
+            return path.is_file();
+        };
+        let is_known = match artifact.path.as_str() {
+            MANIFEST => is_list,
+            name => known.contains(&(sha256(&bytes).as_str(), name)),
+        };
+        bytes != artifact.text.as_bytes() && !is_known
+    };
+    let tell = |artifact: &Artifact| {
+        format!(
+            "{}: has been changed, or was not written by emit, and would be lost; move it away, give another folder with --out, or --force",
+            folder.join(&artifact.path).display()
+        )
+    };
+    artifacts.iter().filter(is_foreign).map(tell).collect()
+}
+
 /// Files in the folder of an emission that do not belong to it.
 #[derive(Default)]
 pub struct Leftovers {
@@ -123,7 +152,7 @@ pub struct Leftovers {
     pub kept: Vec<String>,
 }
 
-/// Compares the MANIFEST of an earlier emission, and the blocks that lie there, with the artefacts.
+/// Compares the MANIFEST of an earlier emission with the artefacts.
 pub fn leftovers(folder: &Path, artifacts: &[Artifact]) -> Leftovers {
     let mut left = Leftovers::default();
     // A file system may not tell capital letters from small ones.
@@ -144,19 +173,6 @@ pub fn leftovers(folder: &Path, artifacts: &[Artifact]) -> Leftovers {
             )),
         }
     }
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut blocks: Vec<String> = entries
-        .filter_map(|entry| entry.file_name().into_string().ok())
-        .filter(|name| name.starts_with(BLOCK_PREFIX) && name.ends_with(".v"))
-        .filter(|name| !emitted(name) && !known.contains(name.as_str()))
-        .collect();
-    blocks.sort();
-    left.kept.extend(blocks.iter().map(|name| {
-        format!(
-            "{}: is not of this card, but `{BLOCK_PREFIX}*.v` takes it in; delete it or move it away",
-            folder.join(name).display()
-        )
-    }));
     left
 }
 
@@ -173,6 +189,16 @@ pub fn write(
     folder: &Path,
     artifacts: &[Artifact],
     remedy: &str,
+) -> Result<Vec<PathBuf>, GenError> {
+    write_unless(folder, artifacts, remedy, &|| false)
+}
+
+/// The same, given up as soon as `is_stopped` says so: then no file has changed, and none is left over.
+pub fn write_unless(
+    folder: &Path,
+    artifacts: &[Artifact],
+    remedy: &str,
+    is_stopped: &dyn Fn() -> bool,
 ) -> Result<Vec<PathBuf>, GenError> {
     fs::create_dir_all(folder).map_err(|e| GenError::io("make the folder", folder, &e, remedy))?;
     let mut staged: Vec<Staged> = Vec::new();
@@ -197,7 +223,15 @@ pub fn write(
             discard(&staged);
             return Err(GenError::io("write", &path, &e, remedy));
         }
+        if is_stopped() {
+            discard(&staged);
+            return Err(GenError::input(format!(
+                "{}: interrupted, no file has changed; run the command again",
+                folder.display()
+            )));
+        }
     }
+    // From here on everything is written: a few renames, which nobody waits for.
     for index in 0..staged.len() {
         let Staged { from, to, shown } = &staged[index];
         if let Err(e) = fs::rename(from, to) {
@@ -218,6 +252,27 @@ fn discard(staged: &[Staged]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A Ctrl-C at any moment: everything or nothing, and nothing else.
+    #[test]
+    fn an_interrupted_emission_leaves_nothing_behind() {
+        use std::cell::Cell;
+        let folder = std::env::temp_dir().join(format!("endat-stop-{}", std::process::id()));
+        let files = |text: &str| ["a.v", "b.v", "c.v"].map(|name| Artifact::new(name, text));
+        write(&folder, &files("old"), "").unwrap();
+        for moment in 1..=3 {
+            let looks = Cell::new(0);
+            let stop = || {
+                looks.set(looks.get() + 1);
+                looks.get() == moment
+            };
+            let error = write_unless(&folder, &files("new"), "", &stop).unwrap_err();
+            assert!(error.messages()[0].contains("interrupted"), "{error}");
+            assert_eq!(differences(&folder, &files("old")), [""; 0]);
+            assert_eq!(fs::read_dir(&folder).unwrap().count(), 3);
+        }
+        fs::remove_dir_all(&folder).unwrap();
+    }
 
     #[test]
     fn the_manifest_lists_digest_and_name() {

@@ -1,18 +1,29 @@
-//! What integrators expect beside the Verilog: FuseSoC core, Vivado packaging, LiteX module, instantiation template, C example.
+//! What integrators expect beside the Verilog: FuseSoC core, timing constraints, Vivado packaging, LiteX module, instantiation template,
+//! C example.
+
+mod interface;
 
 use crate::artifact::Artifact;
+use crate::board::Board;
 use crate::config::Project;
 use crate::error::GenError;
 use crate::t_format::Receiver;
 use crate::template::render;
+use endat_hdl::bus::HostBus;
 use endat_hdl::elaborate::{Design, Direction};
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
+use endat_sim::decimal;
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 use serde::Serialize;
 
 /// End of the file's name, and its template.
-const TEMPLATES: [(&str, &str); 4] = [
+const TEMPLATES: [(&str, &str); 6] = [
+    (
+        "_ipxact.xml",
+        include_str!("templates/integration/ipxact.xml.jinja"),
+    ),
+    (".sdc", include_str!("templates/integration/sdc.jinja")),
     (".core", include_str!("templates/integration/core.jinja")),
     (
         "_vivado.tcl",
@@ -33,6 +44,10 @@ const EXAMPLE: (&str, &str) = (
     include_str!("templates/integration/example.c.jinja"),
 );
 
+/// Vendor and library of the names by which FuseSoC and Vivado know a core.
+const VENDOR: &str = "endat-gen";
+const LIBRARY: &str = "motion";
+
 #[derive(Serialize)]
 struct Port {
     name: String,
@@ -41,6 +56,9 @@ struct Port {
     meaning: String,
 }
 
+/// Words that Python keeps for itself and that begin like a class.
+const PYTHON_WORDS: [&str; 3] = ["False", "None", "True"];
+
 /// `s6_two_channel` as the name of a class.
 fn class_name(name: &str) -> String {
     let part = |part: &str| {
@@ -48,7 +66,36 @@ fn class_name(name: &str) -> String {
         let first = letters.next().map(|c| c.to_ascii_uppercase());
         first.into_iter().chain(letters).collect::<String>()
     };
-    name.split('_').map(part).collect()
+    let class: String = name.split('_').map(part).collect();
+    match PYTHON_WORDS.contains(&class.as_str()) {
+        true => class + "Core",
+        false => class,
+    }
+}
+
+/// A board's device, as ISE wants it told.
+#[derive(Serialize)]
+struct Target<'a> {
+    title: &'a str,
+    family: &'static str,
+    device: &'a str,
+    package: &'a str,
+    speed: String,
+}
+
+impl<'a> Target<'a> {
+    fn of(board: &'a Board) -> Self {
+        let mut words = board.part.split('-');
+        let mut word = || words.next().unwrap_or_default();
+        Self {
+            title: &board.title,
+            // The clock manager of the board top is that family's.
+            family: "spartan6",
+            device: word(),
+            package: word(),
+            speed: format!("-{}", word()),
+        }
+    }
 }
 
 /// What the files say of a core besides its design.
@@ -71,6 +118,10 @@ pub struct Core<'a> {
     pub sources: &'a [String],
     /// There is a test bench.
     pub has_bench: bool,
+    /// What stands between its registers and the host.
+    bus: HostBus,
+    /// It asks for a processor's attention.
+    has_interrupt: bool,
     /// What the templates of a card's own files need besides.
     card: Value,
 }
@@ -97,7 +148,13 @@ impl<'a> Core<'a> {
             system_hz: vec![project.card.system_hz],
             sources,
             has_bench,
-            card: context! { channels },
+            bus: project.bus,
+            has_interrupt: project.card.outputs.interrupt,
+            card: context! {
+                channels,
+                board => Value::from(Serde(project.board.as_ref().map(Target::of))),
+                base_address => project.base_address,
+            },
         }
     }
 
@@ -114,7 +171,10 @@ impl<'a> Core<'a> {
             system_hz: SYSTEM_HZ.to_vec(),
             sources,
             has_bench: true,
-            card: context! {},
+            // Its bus is an asynchronous one.
+            bus: HostBus::Parallel,
+            has_interrupt: false,
+            card: context! { board => (), base_address => 0 },
         }
     }
 }
@@ -143,7 +203,13 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
     let reset = ports
         .iter()
         .find(|p| p.meaning.starts_with("Synchronous reset"));
-    let has_uart = ports.iter().any(|p| p.name == "uart_rx_i");
+    let is_asynchronous = |p: &&Port| p.direction == "in" && p.meaning.contains("asynchronous");
+    let asynchronous = ports.iter().filter(is_asynchronous);
+    let asynchronous: Vec<String> = asynchronous.map(|p| p.name.clone()).collect();
+    let interrupt = ports
+        .iter()
+        .find(|p| core.has_interrupt && p.name == "irq_o");
+    let fastest_hz = core.system_hz.iter().copied().max().unwrap_or_default();
     let context = context! {
         name => core.name,
         class => class_name(core.name),
@@ -154,6 +220,14 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
             core.hash
         ),
         version => env!("CARGO_PKG_VERSION"),
+        vendor => VENDOR,
+        library => LIBRARY,
+        vlnv => format!("{VENDOR}:{LIBRARY}:{}:{}", core.name, env!("CARGO_PKG_VERSION")),
+        mhz => decimal(fastest_hz as f64 / 1e6, 6),
+        period_ns => decimal(1e9 / fastest_hz as f64, 3),
+        asynchronous,
+        bus => Value::from(Serde(interface::of(core.bus, &ports))),
+        interrupt => Value::from(Serde(interrupt)),
         hash => core.hash,
         title => core.title.as_str(),
         description => core.description.as_str(),
@@ -167,7 +241,9 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
         ports => Value::from(Serde(&ports)),
         ..core.card.clone()
     };
-    let wanted = TEMPLATES.iter().chain(has_uart.then_some(&EXAMPLE));
+    let wanted = TEMPLATES
+        .iter()
+        .chain((core.bus == HostBus::Uart).then_some(&EXAMPLE));
     wanted
         .map(|(end, template)| {
             let text = render(end, template, &context)?;

@@ -43,8 +43,8 @@ use verilog::Header;
 pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let design = design(project)?;
     let mut artifacts = artifacts_of(project, &design)?;
-    let sources = artifacts.iter().map(|a| a.path.clone());
-    let sources: Vec<String> = sources.filter(|p| p.ends_with(".v")).collect();
+    let sources = verilog::source_files(&artifacts);
+    artifacts.push(verilog::source_list(&project.name, &sources));
     let bench = testbench::artifact(project)?;
     let core = integration::Core::card(project, &sources, bench.is_some());
     artifacts.extend(integration::artifacts(&core, &design)?);

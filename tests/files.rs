@@ -37,22 +37,32 @@ fn check_finds_every_kind_of_staleness_and_never_writes() {
     }
     assert!(!found.contains("../o.v"), "{found}");
     assert!(
-        found.ends_with(&format!("renew with: cargo run -- emit --out {out}")),
+        found.ends_with(&format!(
+            "renew with: cargo run -- emit --out {out} --force"
+        )),
         "{found}"
     );
     assert_eq!(dir.files(), before);
 }
 
-/// A card of its own in `o/card`: the preset with one text replaced.
-fn emit(dir: &Dir, from: &str, to: &str) -> (PathBuf, Vec<String>) {
+/// A card of its own in `o/card`: the preset with some texts replaced.
+fn emit(dir: &Dir, changes: &[(&str, &str)]) -> (PathBuf, Vec<String>) {
     let text = good(&["presets", "--show", "s6_two_channel"]).replace("s6_two_channel", "card");
-    let file = dir.write("card.toml", text.replacen(from, to, 1).as_bytes());
+    let change = |text: String, (from, to): &(&str, &str)| text.replacen(from, to, 1);
+    let text = changes.iter().fold(text, change);
+    let file = dir.write("card.toml", text.as_bytes());
     let outcome = run(&["emit", "--config", &file, "--out", &dir.path("o")]);
     assert_eq!(outcome.exit_code, 0, "{outcome:?}");
     (dir.0.join("o/card"), outcome.messages)
 }
 
-/// A block that exists with two sources of triggers and not with three.
+/// Another card: it has blocks that the preset lacks, and lacks some that the preset has.
+const OTHER: [(&str, &str); 2] = [
+    ("parts = []", "parts = [\"requests\"]"),
+    ("fifo_bytes = 2_048", "fifo_bytes = 0"),
+];
+
+/// A file of one emission that another has not.
 fn block_of(folder: &Path, other: &[String]) -> String {
     let names = names(folder);
     let own = names.iter().find(|n| !other.contains(n));
@@ -71,10 +81,10 @@ fn names(folder: &Path) -> Vec<String> {
 #[test]
 fn a_file_that_is_no_longer_emitted_goes_unless_its_owner_changed_it() {
     let other = Dir::new("stale-other");
-    let (fresh, _) = emit(&other, "[\"pin\", \"timer\"]", "[]");
+    let (fresh, _) = emit(&other, &OTHER);
     let expected = names(&fresh);
     let dir = Dir::new("stale");
-    let (folder, _) = emit(&dir, "", "");
+    let (folder, _) = emit(&dir, &[]);
     let block = block_of(&folder, &expected);
     let config = dir.path("card.toml");
     let check = [
@@ -92,7 +102,7 @@ fn a_file_that_is_no_longer_emitted_goes_unless_its_owner_changed_it() {
         "{found}"
     );
     fs::write(folder.join("mine.txt"), "x").unwrap();
-    let (_, messages) = emit(&dir, "[\"pin\", \"timer\"]", "[]");
+    let (_, messages) = emit(&dir, &OTHER);
     assert_eq!(messages, [""; 0]);
     let mut left = names(&folder);
     left.retain(|n| n != "mine.txt");
@@ -103,24 +113,74 @@ fn a_file_that_is_no_longer_emitted_goes_unless_its_owner_changed_it() {
     // The way back, with a block that its owner has changed.
     let changed = block_of(&folder, &{
         let third = Dir::new("stale-third");
-        names(&emit(&third, "", "").0)
+        names(&emit(&third, &[]).0)
     });
     fs::write(folder.join(&changed), "// mine").unwrap();
-    let (_, messages) = emit(&dir, "", "");
+    let (_, messages) = emit(&dir, &[]);
     let text = format!("{changed}: is no longer emitted, but has been changed");
     assert!(
         messages.len() == 1 && messages[0].contains(&text),
         "{messages:?}"
     );
-    // The MANIFEST has forgotten it, the commands of the README would still compile it.
-    assert!(bad(&check, 1).contains(&format!("{changed}: is not of this card")));
+    // It stays, and is none of the card's files any more.
     assert!(folder.join(&changed).exists());
+    let list = fs::read_to_string(folder.join("card.f")).unwrap();
+    assert!(
+        !list.contains(&changed) && list.contains("card_channel.v"),
+        "{list}"
+    );
+}
+
+/// What its owner has changed, or put there, is refused with the way out; nothing at all has been written then.
+#[test]
+fn emit_overwrites_only_what_it_has_written() {
+    let dir = Dir::new("by-hand");
+    let (folder, _) = emit(&dir, &[]);
+    let config = dir.path("card.toml");
+    let out = dir.path("o");
+    let emit = ["emit", "--config", &config, "--out", &out];
+    // A configuration that changes many files.
+    let text = fs::read_to_string(&config).unwrap();
+    fs::write(
+        &config,
+        text.replacen("sample_hz = 10_000", "sample_hz = 5_000", 1),
+    )
+    .unwrap();
+    let top = folder.join("card.v");
+    let mine = fs::read_to_string(&top).unwrap() + "// mine\n";
+    fs::write(&top, &mine).unwrap();
+    let before = dir.files();
+    let told = bad(&emit, 2);
+    assert!(
+        told.contains("card.v: has been changed, or was not written by emit, and would be lost; move it away, give another folder with --out, or --force")
+            && told.lines().count() == 1,
+        "{told}"
+    );
+    assert_eq!(dir.files(), before);
+    // A file of somebody else in the place of one that is new.
+    let other = Dir::new("not-ours");
+    let place = other.0.join("o/card");
+    fs::create_dir_all(&place).unwrap();
+    fs::write(place.join("README.md"), "mine").unwrap();
+    fs::write(place.join("MANIFEST"), "mine, too\n").unwrap();
+    let told = bad(&["emit", "--config", &config, "--out", &other.path("o")], 2);
+    assert!(
+        told.contains("README.md: has been") && told.contains("MANIFEST: has been"),
+        "{told}"
+    );
+    assert_eq!(names(&place), ["MANIFEST", "README.md"]);
+    good(&[&emit[..], &["--force"]].concat());
+    assert_ne!(fs::read_to_string(&top).unwrap(), mine);
+    assert!(good(&emit).ends_with("up to date\n"));
+    // What emit wrote itself is renewed without a word.
+    fs::write(&config, text).unwrap();
+    good(&emit);
 }
 
 #[test]
 fn the_manifest_is_what_sha256sum_reads() {
     let dir = Dir::new("sha256sum");
-    let (folder, _) = emit(&dir, "", "");
+    let (folder, _) = emit(&dir, &[]);
     let manifest = fs::read_to_string(folder.join("MANIFEST")).unwrap();
     assert_eq!(manifest.lines().count() + 1, names(&folder).len());
     for line in manifest.lines() {
@@ -182,7 +242,7 @@ fn what_is_no_regular_file_is_neither_read_nor_replaced() {
         );
     }
     assert!(fs::metadata(&pipe).unwrap().file_type().is_fifo());
-    let (folder, _) = emit(&dir, "", "");
+    let (folder, _) = emit(&dir, &[]);
     fs::remove_file(folder.join("README.md")).unwrap();
     fs::rename(&pipe, folder.join("README.md")).unwrap();
     let config = dir.path("card.toml");

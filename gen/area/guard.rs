@@ -7,13 +7,13 @@ pub struct Guard {
     pub name: &'static str,
     /// What the guard does.
     pub title: &'static str,
-    /// File, text that stands there once, what it becomes.
+    /// Block, text that stands once in its file, what it becomes.
     pub edits: &'static [(&'static str, &'static str, &'static str)],
 }
 
-const SNAPSHOT: &str = "endat_snapshot.v";
-const TRANSACTION: &str = "endat_transaction.v";
-const SETTINGS: &str = "endat_frame_settings.v";
+const SNAPSHOT: &str = "snapshot";
+const TRANSACTION: &str = "transaction";
+const SETTINGS: &str = "frame_settings";
 
 /// All of them.
 pub const GUARDS: [Guard; 9] = [
@@ -47,11 +47,7 @@ pub const GUARDS: [Guard; 9] = [
     Guard {
         name: "channel_without_crc",
         title: "parallel CRC over the aligned word, until it is published",
-        edits: &[(
-            "endat_crc5_check.v",
-            "is_ok = sum == received",
-            "is_ok = 1'b1",
-        )],
+        edits: &[("crc5_check", "is_ok = sum == received", "is_ok = 1'b1")],
     },
     Guard {
         name: "channel_without_parity",

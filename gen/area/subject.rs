@@ -4,7 +4,7 @@ use super::guard::{Guard, GUARDS};
 use crate::artifact::Artifact;
 use crate::config::{load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
-use crate::verilog::{print_files, Header};
+use crate::verilog::{file_name, print_files, Header};
 use endat_hdl::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard,
@@ -13,7 +13,7 @@ use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, Features, FixedTimes};
 use endat_hdl::crc5::{Crc5Check, Crc5Fixed, Crc5Serial};
 use endat_hdl::direct::DirectOutput;
-use endat_hdl::elaborate::{elaborate, Design};
+use endat_hdl::elaborate::{block_name, elaborate, Design};
 use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::interrupt::Interrupt;
 use endat_hdl::line_delay::LineDelay;
@@ -77,8 +77,9 @@ impl Subject {
         let mut files: Vec<Artifact> = files
             .map(|(path, text)| Artifact::new(path, text))
             .collect();
-        for (path, from, to) in self.without.iter().flat_map(|guard| guard.edits) {
-            let file = files.iter_mut().find(|file| file.path == *path);
+        for (block, from, to) in self.without.iter().flat_map(|guard| guard.edits) {
+            let path = file_name(&block_name(self.name, block));
+            let file = files.iter_mut().find(|file| file.path == path);
             let file = file.unwrap_or_else(|| panic!("{}: no {path}", self.name));
             assert_eq!(file.text.matches(from).count(), 1, "{}: {from}", self.name);
             file.text = file.text.replace(from, to);

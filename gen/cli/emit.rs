@@ -1,11 +1,13 @@
 //! `emit`: writes the files of a card, or checks them.
 
+use super::host::interrupted;
 use super::{Outcome, SourceArgs};
 use crate::artifact;
 use crate::config::{check_name, Configuration};
 use crate::error::GenError;
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 
 /// Folder that everything is emitted into unless another is given.
 const OUT: &str = "out";
@@ -21,6 +23,9 @@ pub struct EmitArgs {
     /// Name of the folder, the files and the top module [default: the name in the configuration]
     #[arg(long, value_name = "PREFIX")]
     name: Option<String>,
+    /// Overwrite files that have been changed, or that were not written by this command
+    #[arg(long, conflicts_with = "check")]
+    force: bool,
     /// Write nothing; exit with 1 when a file is not what the configuration gives
     #[arg(long)]
     check: bool,
@@ -28,6 +33,7 @@ pub struct EmitArgs {
 
 /// Runs the command.
 pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
+    let stop = interrupted();
     let mut configuration = arguments.source.load_any()?;
     let name = match &mut configuration {
         Configuration::Card(card) => &mut card.name,
@@ -56,11 +62,20 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
                 artifacts.len()
             )));
         }
-        found.push(format!("renew with: {}", repair(arguments)));
+        let is_foreign = !artifact::foreign(&folder, &artifacts).is_empty();
+        found.push(format!("renew with: {}", repair(arguments, is_foreign)));
         return Err(GenError::CheckFailed(found));
     }
+    if !arguments.force {
+        let foreign = artifact::foreign(&folder, &artifacts);
+        if !foreign.is_empty() {
+            return Err(GenError::Input(foreign));
+        }
+    }
     let left = artifact::leftovers(&folder, &artifacts);
-    let written = artifact::write(&folder, &artifacts, "give another folder with --out")?;
+    let is_stopped = || stop.load(Ordering::Relaxed);
+    let remedy = "give another folder with --out";
+    let written = artifact::write_unless(&folder, &artifacts, remedy, &is_stopped)?;
     let mut lines: String = written
         .iter()
         .map(|path| format!("{}\n", path.display()))
@@ -88,8 +103,8 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
     })
 }
 
-/// The command that makes the check pass.
-fn repair(arguments: &EmitArgs) -> String {
+/// The command that makes the check pass; `force` if files would be lost by it.
+fn repair(arguments: &EmitArgs, force: bool) -> String {
     let mut words = Vec::new();
     let mut add = |flag: &str, value: Option<String>| {
         if let Some(value) = value {
@@ -110,6 +125,9 @@ fn repair(arguments: &EmitArgs) -> String {
         arguments.out.as_ref().map(|p| p.display().to_string()),
     );
     add("--name", arguments.name.clone());
+    if force {
+        words.push("--force".into());
+    }
     if words.is_empty() {
         return "cargo run".into();
     }
@@ -132,7 +150,11 @@ mod tests {
 
     #[test]
     fn the_repair_command_can_be_pasted_into_a_shell() {
-        assert_eq!(repair(&EmitArgs::default()), "cargo run");
+        assert_eq!(repair(&EmitArgs::default(), false), "cargo run");
+        assert_eq!(
+            repair(&EmitArgs::default(), true),
+            "cargo run -- emit --force"
+        );
         let out = Some(PathBuf::from("my 'files'"));
         let arguments = EmitArgs {
             out,
@@ -140,7 +162,7 @@ mod tests {
             ..EmitArgs::default()
         };
         assert_eq!(
-            repair(&arguments),
+            repair(&arguments, false),
             r"cargo run -- emit --out 'my '\''files'\''' --name a"
         );
     }

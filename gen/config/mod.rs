@@ -1,5 +1,6 @@
 //! Configuration files: TOML text in, a checked [`Project`] out, or every complaint with file, line and remedy.
 
+mod base;
 mod line;
 mod names;
 mod outputs;
@@ -122,6 +123,8 @@ pub struct Project {
     pub card: CardConfig,
     /// What stands between the registers and the host.
     pub bus: HostBus,
+    /// Where the registers begin in the address space of a system, in bytes; 0 behind a bus without one.
+    pub base_address: u32,
     /// Encoder of each channel, for people; may be empty.
     pub encoders: Vec<String>,
     /// The board; none when somebody else's top holds the card.

@@ -3,9 +3,6 @@
 /// Longest name; file systems and XST both stand more.
 pub const NAME_MAX: usize = 40;
 
-/// First word of the blocks' modules and files; see [`crate::artifact::BLOCK_PREFIX`].
-const PREFIX: &str = "endat";
-
 /// Words of Verilog-2005, VHDL-2008 and C that a module, file or macro must not be called; all in lower case.
 const RESERVED: &[&str] = &[
     // Verilog-2005
@@ -70,12 +67,6 @@ pub fn check_name(name: &str) -> Result<(), String> {
             "has a double or a trailing underscore, which VHDL does not allow; remove it".into(),
         );
     }
-    if name.to_ascii_lowercase().starts_with(PREFIX) {
-        return Err(format!(
-            "begins like the files of the blocks, `{PREFIX}_*.v`, which would then take the card in; put a word before it, for example `my_{}`",
-            name.to_ascii_lowercase()
-        ));
-    }
     if reserved().any(|word| word.eq_ignore_ascii_case(name)) {
         return Err("is a reserved word of Verilog, VHDL, C or the file system; add a suffix, for example `_card`".into());
     }
@@ -88,7 +79,13 @@ mod tests {
 
     #[test]
     fn reserved_words_are_refused_in_any_case_and_ordinary_names_pass() {
-        for good in ["s6_two_channel", "card", "x1", "my_endat_card"] {
+        for good in [
+            "s6_two_channel",
+            "card",
+            "x1",
+            "my_endat_card",
+            "endat_card",
+        ] {
             assert_eq!(check_name(good), Ok(()), "{good}");
         }
         for bad in [
@@ -105,9 +102,6 @@ mod tests {
             "a_",
             "ä",
             "a\0",
-            "endat",
-            "Endat_card",
-            "ENDAT_CHANNEL",
             &"a".repeat(41),
         ] {
             assert!(check_name(bad).is_err(), "{bad}");

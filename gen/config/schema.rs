@@ -2,7 +2,7 @@
 
 use super::pins::{assign_pins, card_ports};
 use super::reader::{At, Source, Table};
-use super::{check_name, line, outputs, protocol, stream, trigger, Project};
+use super::{base, check_name, line, outputs, protocol, stream, trigger, Project};
 use crate::board::{self, Assignment, Board};
 use crate::error::shorten;
 use endat_hdl::bus::HostBus;
@@ -79,6 +79,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
             host.complain(sck.line, "sck_hz", &value, &text);
         }
     }
+    let base_address = base::read(&host, bus);
     let endat = root.table("endat", &empty);
     let defaults = read_line_keys(&endat, system_hz);
     let line_table = root.table("line", &empty);
@@ -251,6 +252,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         source: source.file.into(),
         card,
         bus,
+        base_address: base_address?,
         encoders,
         board,
         pll,

@@ -17,7 +17,7 @@ pub fn write(map: &Map, system_hz: u64) -> String {
                 true => format!("{}{copy}", block.id),
                 false => block.id.clone(),
             };
-            let base = block.base_bytes() + copy * block.stride_bytes();
+            let base = map.base_address + block.base_bytes() + copy * block.stride_bytes();
             // Writing to a String cannot fail.
             let _ = writeln!(bases, "csr_base,{name},0x{base:08x},,");
             for entry in &block.registers {

@@ -18,6 +18,12 @@ pub fn write(map: &Map) -> String {
 
 fn preamble(map: &Map, prefix: &str) -> String {
     let [major, minor, patch] = map.version;
+    let base_address = match map.base_address {
+        0 => String::new(),
+        base => format!(
+            "/* Where a system has the registers: a register is at this and its ..._BYTE */\n#define {prefix}_BASE_ADDRESS 0x{base:08X}u\n"
+        ),
+    };
     format!(
         "/*
  * {title}
@@ -37,7 +43,7 @@ fn preamble(map: &Map, prefix: &str) -> String {
 #define {prefix}_MAP_PATCH {patch}u
 /* Encoder ports */
 #define {prefix}_CHANNELS {channels}u
-
+{base_address}
 /* Content of a field in a word that was read, and a field's content as part of a word to be written: */
 /* {prefix}_GET({prefix}_RESULT_STATUS_CAUSE, word) */
 #define {prefix}_GET(field, word) (((word) & field##_MASK) >> field##_SHIFT)

@@ -23,10 +23,14 @@ use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
 use endat_hdl::regs::values::{Named, Values};
-use endat_hdl::regs::{self, Block, Field, Register};
+use endat_hdl::regs::{self, Block, Field, Register, CHANNELS_MAX, SERVICE, SERVICE_BASE};
 
 /// Bytes of a word.
 pub const WORD_BYTES: u32 = 4;
+
+/// Bytes that the largest map takes.
+pub const MAP_BYTES: u32 =
+    WORD_BYTES * (SERVICE_BASE as u32 + SERVICE.stride as u32 * CHANNELS_MAX as u32);
 
 /// The registers that a card has.
 #[derive(Clone, Debug)]
@@ -41,6 +45,8 @@ pub struct Map {
     pub protocols: &'static str,
     /// Encoder ports.
     pub channels: u32,
+    /// Where it begins in the address space of a system, in bytes.
+    pub base_address: u32,
     /// Blocks, lowest base first.
     pub blocks: Vec<MapBlock>,
 }
@@ -102,6 +108,7 @@ impl Map {
             version: regs::VERSION,
             protocols: project.protocols(),
             channels: config.channels.len() as u32,
+            base_address: project.base_address,
             blocks: blocks.iter().map(map_block).collect(),
         }
     }

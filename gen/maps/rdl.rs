@@ -29,20 +29,21 @@ pub fn write(map: &Map) -> String {
     let _ = writeln!(text, "    addressing = regalign;");
     let _ = writeln!(text, "    default regwidth = 32;");
     for block in &map.blocks {
-        write_block(&mut text, block);
+        write_block(&mut text, block, map.base_address);
     }
     text.push_str("};\n");
     text
 }
 
-fn write_block(text: &mut String, block: &MapBlock) {
+fn write_block(text: &mut String, block: &MapBlock, base_address: u32) {
     let _ = writeln!(text, "\n    regfile {{");
     let _ = writeln!(text, "        desc = {};", quoted(block.block.meaning));
     for entry in &block.registers {
         write_register(text, entry);
     }
     let name = identifier(&block.id);
-    let base = block.base_bytes();
+    // The outermost map has no address of its own: a system's stands at each block.
+    let base = base_address + block.base_bytes();
     let _ = match block.block.per_channel {
         true => writeln!(
             text,

@@ -74,7 +74,7 @@ fn peripheral(map: &Map) -> Result<Peripheral, SvdError> {
     let peripheral = PeripheralInfo::builder()
         .name(map.name.clone())
         .description(Some(format!("{ADDRESSES} {UNLISTED}")))
-        .base_address(0)
+        .base_address(map.base_address.into())
         .address_block(Some(vec![address_block]))
         .interrupt(has_interrupt.then(|| vec![interrupt]))
         .registers(Some(clusters?))

@@ -16,7 +16,7 @@ use crate::artifact::{self, Artifact};
 use crate::error::GenError;
 use crate::integration;
 use crate::template::render;
-use crate::verilog::{print_files, Header};
+use crate::verilog::{print_files, source_files, source_list, Header};
 use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
@@ -64,7 +64,8 @@ pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
     let mut artifacts: Vec<Artifact> = files
         .map(|(path, text)| Artifact::new(path, text))
         .collect();
-    let sources: Vec<String> = artifacts.iter().map(|a| a.path.clone()).collect();
+    let sources = source_files(&artifacts);
+    artifacts.push(source_list(&receiver.name, &sources));
     let map = include_str!("../templates/t_format_registers.md");
     artifacts.push(Artifact::new(
         format!("{}_registers.md", receiver.name),

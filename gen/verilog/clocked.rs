@@ -1,6 +1,6 @@
 //! Registers and memories as Verilog text.
 
-use super::expression::{literal, Helpers};
+use super::expression::{bits, literal, named_literal, Helpers};
 use super::module::ModulePrinter;
 use super::text::{comment, vector, INDENT};
 use endat_hdl::elaborate::{Memory, NetId, Register};
@@ -15,7 +15,7 @@ impl ModulePrinter<'_> {
             Some(id) if (register.start as usize) < self.design.enums[id].variants.len() => {
                 self.variant(id, register.start as usize)
             }
-            _ => literal(register.start, net.width_bits),
+            _ => named_literal(&net.name, register.start, net.width_bits),
         }
     }
 
@@ -85,7 +85,7 @@ impl ModulePrinter<'_> {
         });
         let start: String = (memory.start.iter().enumerate())
             .map(|(index, value)| {
-                let value = literal(*value, memory.width_bits);
+                let value = bits(*value, memory.width_bits);
                 format!("        {word}[{index}] = {value};\n")
             })
             .collect();

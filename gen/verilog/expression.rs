@@ -3,14 +3,37 @@
 use super::module::ModulePrinter;
 use endat_hdl::elaborate::{mask, BinaryOp, Expr, ExprKind, NetId, UnaryOp};
 
-/// A sized literal.
+/// Ends of the names of quantities.
+const UNITS: [&str; 8] = ["hz", "ns", "us", "ms", "cycles", "bits", "bytes", "words"];
+
+/// The value of something that has a name: quantities in decimal, what may be flags or several fields in hexadecimal.
+pub(super) fn named_literal(name: &str, value: u128, width_bits: usize) -> String {
+    let last = name.rsplit('_').next().unwrap_or(name).to_lowercase();
+    match UNITS.contains(&last.as_str()) || value <= SMALL_MASK_MAX {
+        true => format!(
+            "{width_bits}'{}{value}",
+            if width_bits == 1 { 'b' } else { 'd' }
+        ),
+        false => bits(value, width_bits),
+    }
+}
+
+/// A sized literal: times and counts, which are below a million or round, in decimal, the others in hexadecimal.
 pub(super) fn literal(value: u128, width_bits: usize) -> String {
     match width_bits {
         1 => format!("1'b{value}"),
-        _ if value < 10_000 => format!("{width_bits}'d{value}"),
-        _ => format!("{width_bits}'h{value:x}"),
+        _ if value < 1_000_000 || value.is_multiple_of(1_000) => format!("{width_bits}'d{value}"),
+        _ => bits(value, width_bits),
     }
 }
+
+/// A sized literal of which each bit means something of its own.
+pub(super) fn bits(value: u128, width_bits: usize) -> String {
+    format!("{width_bits}'h{value:x}")
+}
+
+/// Largest pattern of bits that is said in decimal: everyone sees the bits of a small number.
+const SMALL_MASK_MAX: u128 = 255;
 
 /// A net that the printer adds because Verilog cannot take bits of an expression.
 pub(super) struct Helper {
@@ -67,6 +90,15 @@ impl ModulePrinter<'_> {
                     ExprKind::Unary(inner, _) => inner == UnaryOp::Not,
                     _ => true,
                 };
+                if let (BinaryOp::And | BinaryOp::Or | BinaryOp::Xor, ExprKind::Constant(value)) =
+                    (op, &right.kind)
+                {
+                    if *value > SMALL_MASK_MAX {
+                        let left = self.operand(left, is_bare(left, true), for_net, helpers);
+                        let mask = bits(*value, right.width_bits);
+                        return format!("{left} {} {mask}", sign(*op));
+                    }
+                }
                 let left = self.operand(left, is_bare(left, true), for_net, helpers);
                 let right = self.operand(right, is_bare(right, false), for_net, helpers);
                 format!("{left} {} {right}", sign(*op))

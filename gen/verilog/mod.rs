@@ -11,6 +11,7 @@ mod text;
 
 pub use names::emitted_name;
 
+use crate::artifact::Artifact;
 use endat_hdl::elaborate::{Design, Direction, Module};
 use std::fmt::Write;
 
@@ -44,6 +45,11 @@ pub fn print(design: &Design, header: &Header) -> String {
     out
 }
 
+/// The file of a module.
+pub fn file_name(module: &str) -> String {
+    format!("{module}.v")
+}
+
 /// Prints a design as one file per module, the top module first: file names and texts. Linters want a module in a file of its name.
 pub fn print_files(design: &Design, header: &Header) -> Vec<(String, String)> {
     let design = &names::with_emitted_names(design);
@@ -57,9 +63,21 @@ pub fn print_files(design: &Design, header: &Header) -> Vec<(String, String)> {
         out.push('\n');
         out.push_str(&module::print(design, module));
         out.push_str(EPILOGUE);
-        (format!("{}.v", module.name), out)
+        (file_name(&module.name), out)
     };
     design.modules.iter().enumerate().map(file).collect()
+}
+
+/// The Verilog files among the artefacts of a design.
+pub fn source_files(artifacts: &[Artifact]) -> Vec<String> {
+    let paths = artifacts.iter().map(|a| a.path.clone());
+    paths.filter(|p| p.ends_with(".v")).collect()
+}
+
+/// The list of a card's Verilog files that compilers read with `-f`: no pattern of names takes in a file that is not the card's.
+pub fn source_list(name: &str, sources: &[String]) -> Artifact {
+    let lines = sources.iter().map(|file| format!("{file}\n"));
+    Artifact::new(format!("{name}.f"), lines.collect::<String>())
 }
 
 const PROLOGUE: &str = "\n`timescale 1ns / 1ps\n`default_nettype none\n";

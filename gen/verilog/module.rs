@@ -1,6 +1,6 @@
 //! One module as Verilog text.
 
-use super::expression::{literal, range, Helper, Helpers};
+use super::expression::{literal, named_literal, range, Helper, Helpers};
 use super::text::{comment, ranges, upper, vector, INDENT};
 use endat_hdl::elaborate::{
     mask, Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Statement,
@@ -178,7 +178,7 @@ impl<'a> ModulePrinter<'a> {
             out.push_str(&comment(&parameter.docs, INDENT));
             let (vector, value) = (
                 vector(parameter.width_bits),
-                literal(parameter.value, parameter.width_bits),
+                named_literal(&parameter.name, parameter.value, parameter.width_bits),
             );
             out.push_str(&format!(
                 "{INDENT}localparam {vector:>7} {} = {value};\n",

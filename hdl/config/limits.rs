@@ -83,6 +83,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "fifo_bytes" => BUFFER_BYTES[0]..=BUFFER_BYTES[BUFFER_BYTES.len() - 1],
         "fixed_delay_ns" => 0..=cycles_at_most_ns(max_of(DELAY_BITS), slow),
         "drift_limit_ns" => 0..=cycles_at_most_ns(max_of(DRIFT_LIMIT_BITS) >> 4, slow),
+        "base_address" => 0..=u64::from(u32::MAX),
         "sck_hz" => 1..=fast / SCK_CYCLES_MIN,
         "bit_hz" => BIT_HZ..=FAST_BIT_HZ,
         "request" => 0..=15,

@@ -281,7 +281,8 @@ impl Builder {
         let name = verilog_name(&child.name);
         let enum_id = self.intern_enums(&mut draft.enums, &d.descriptor);
         let q = draft.net(name.clone(), d.width_bits, enum_id, draft.docs(&child.name));
-        let free_name = draft.free_name(&format!("{name}_next"));
+        // What a flip-flop is given is called d where a field has the better name.
+        let free_name = draft.free_name_of(["next", "d"].map(|end| format!("{name}_{end}")));
         let next = draft.net(free_name, d.width_bits, enum_id, vec![]);
         let free_name = draft.free_name(&format!("{name}_clock"));
         let clock = draft.net(free_name, 1, None, vec![]);

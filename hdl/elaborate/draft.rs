@@ -46,14 +46,21 @@ impl Draft<'_> {
 
     /// A name for a net that no field has: `base`, or `base` with a number if a field is called that.
     pub(super) fn free_name(&self, base: &str) -> String {
+        self.free_name_of([base.to_string()])
+    }
+
+    /// The first of some names that no field has; the last one gets a number if all are taken.
+    pub(super) fn free_name_of<const N: usize>(&self, names: [String; N]) -> String {
         let fields = self.block.atoms.iter().map(|a| &a.key);
         let mut taken: BTreeSet<String> = fields
             .chain(self.block.children.iter().map(|c| &c.name))
             .map(|key| verilog_name(key).to_lowercase())
             .collect();
         taken.extend(self.module.nets.iter().map(|n| n.name.to_lowercase()));
-        let numbered = (2..).map(|number| format!("{base}_{number}"));
-        std::iter::once(base.to_string())
+        let last = names.last().cloned().unwrap_or_default();
+        let numbered = (2..).map(|number| format!("{last}_{number}"));
+        names
+            .into_iter()
             .chain(numbered)
             .find(|name| !taken.contains(&name.to_lowercase()))
             .unwrap_or_default()

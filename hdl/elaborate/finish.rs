@@ -59,30 +59,29 @@ fn top_down(design: &Design, top: ModuleId) -> Vec<ModuleId> {
     done
 }
 
+/// The name of a block's module in a design with the top `top`. The top's name comes first, so two designs in one project never have
+/// different modules of one name.
+pub fn block_name(top: &str, type_name: &str) -> String {
+    format!("{top}_{}", snake_case(type_name))
+}
+
 fn name_modules(design: &mut Design, top_name: &str) {
     let mut by_type: BTreeMap<String, Vec<ModuleId>> = BTreeMap::new();
     for (id, module) in design.modules.iter().enumerate().skip(1) {
-        by_type
-            .entry(snake_case(&module.type_name))
-            .or_default()
-            .push(id);
+        let name = block_name(top_name, &module.type_name);
+        by_type.entry(name).or_default().push(id);
     }
     design.modules[0].name = top_name.into();
-    let mut taken = vec![top_name.to_lowercase()];
-    for (type_name, ids) in by_type {
+    for (name, ids) in by_type {
         let suffixes = suffixes(design, &ids);
         for (id, suffix) in ids.into_iter().zip(suffixes) {
-            let mut name = format!("endat_{type_name}{suffix}");
-            while taken.contains(&name.to_lowercase()) {
-                name.push_str("_core");
-            }
-            taken.push(name.to_lowercase());
-            design.modules[id].name = name;
+            design.modules[id].name = format!("{name}{suffix}");
         }
     }
 }
 
 /// What tells modules of one block type apart: the first width or constant that differs in all of them, or else a number.
+/// Start values of registers are no part of a name: they may be as long as the register.
 fn suffixes(design: &Design, ids: &[ModuleId]) -> Vec<String> {
     if ids.len() == 1 {
         return vec![String::new()];
@@ -97,12 +96,18 @@ fn suffixes(design: &Design, ids: &[ModuleId]) -> Vec<String> {
                 .all(|(i, v)| !values[..i].contains(v))
     });
     match distinguishing {
-        Some(key) => facts.iter().map(|f| format!("_{}", f[key])).collect(),
+        Some(key) => facts
+            .iter()
+            .map(|f| match f[key].as_str() {
+                "" => String::new(),
+                fact => format!("_{fact}"),
+            })
+            .collect(),
         None => (1..=ids.len()).map(|number| format!("_{number}")).collect(),
     }
 }
 
-/// Widths of the ports and values of the constants; widths sort first.
+/// Widths of the ports and values of the constants, as they are said in a name; widths sort first.
 fn facts(design: &Design, id: ModuleId) -> BTreeMap<String, String> {
     let module = &design.modules[id];
     let mut facts = BTreeMap::new();
@@ -115,16 +120,18 @@ fn facts(design: &Design, id: ModuleId) -> BTreeMap<String, String> {
         };
         facts.insert(
             format!("{kind} {}", net.name),
-            format!("w{}", net.width_bits),
+            format!("{}_bits", net.width_bits),
         );
     }
     for parameter in &module.parameters {
         let key = parameter.name.to_lowercase();
-        facts.insert(format!("2p {key}"), format!("{key}{}", parameter.value));
-    }
-    for register in &module.registers {
-        let name = &module.nets[register.q].name;
-        facts.insert(format!("3r {name}"), format!("{name}{}", register.start));
+        // A feature is named where it is there.
+        let fact = match (parameter.width_bits, parameter.value) {
+            (1, 0) => String::new(),
+            (1, _) => key.clone(),
+            (_, value) => format!("{key}_{value}"),
+        };
+        facts.insert(format!("2p {key}"), fact);
     }
     facts
 }

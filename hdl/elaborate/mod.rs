@@ -27,6 +27,7 @@ mod uses;
 
 pub use design::*;
 pub use execute::{binary, evaluate, execute};
+pub use finish::block_name;
 use rust_hdl::prelude::Block;
 
 /// Why a block cannot be elaborated.
@@ -43,8 +44,8 @@ pub struct ElaborateError {
     pub remedy: String,
 }
 
-/// Elaborates a block. `name` becomes the name of the top module; the other modules are `endat_` and the snake case of their
-/// Rust type.
+/// Elaborates a block. `name` becomes the name of the top module; the other modules are named by [`block_name`], and by what
+/// differs where a block type has several.
 ///
 /// # Errors
 /// For every construct that has no exact meaning as hardware.

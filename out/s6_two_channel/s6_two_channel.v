@@ -108,7 +108,7 @@ module s6_two_channel (
     wire         bridge_push_take;
     wire         _unused_ok = &{1'b0, core_passing_byte, core_irq_o};
 
-    endat_card_core u_core (
+    s6_two_channel_card_core u_core (
         .clk_i(clk_i),
         .rst_i(rst_i),
         .trigger_i(trigger_i),
@@ -142,7 +142,7 @@ module s6_two_channel (
         .led_channel0_o(led_channel0_o),
         .led_channel1_o(led_channel1_o)
     );
-    endat_uart_bridge u_bridge (
+    s6_two_channel_uart_bridge u_bridge (
         .clock(clk_i),
         .reset(rst_i),
         .tick_us(core_tick_us),

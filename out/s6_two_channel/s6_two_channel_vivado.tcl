@@ -4,43 +4,46 @@
 set here [file dirname [file normalize [info script]]]
 create_project -in_memory -part xc7a35tcpg236-1
 add_files -norecurse [file join $here s6_two_channel.v]
-add_files -norecurse [file join $here endat_card_core.v]
-add_files -norecurse [file join $here endat_timebase.v]
-add_files -norecurse [file join $here endat_trigger.v]
-add_files -norecurse [file join $here endat_register_bank.v]
-add_files -norecurse [file join $here endat_config_ring_w03.v]
-add_files -norecurse [file join $here endat_channel_registers.v]
-add_files -norecurse [file join $here endat_config_ring_w0941424672.v]
-add_files -norecurse [file join $here endat_encoder_port.v]
-add_files -norecurse [file join $here endat_channel.v]
-add_files -norecurse [file join $here endat_input_filter.v]
-add_files -norecurse [file join $here endat_clock_gen.v]
-add_files -norecurse [file join $here endat_command_sender.v]
-add_files -norecurse [file join $here endat_line_delay.v]
-add_files -norecurse [file join $here endat_half_period.v]
-add_files -norecurse [file join $here endat_receiver.v]
-add_files -norecurse [file join $here endat_crc5_check.v]
-add_files -norecurse [file join $here endat_crc5_serial.v]
-add_files -norecurse [file join $here endat_transaction.v]
-add_files -norecurse [file join $here endat_line_health.v]
-add_files -norecurse [file join $here endat_verdict.v]
-add_files -norecurse [file join $here endat_primary_cause.v]
-add_files -norecurse [file join $here endat_snapshot.v]
-add_files -norecurse [file join $here endat_command_shape.v]
-add_files -norecurse [file join $here endat_add_info.v]
-add_files -norecurse [file join $here endat_frame_settings.v]
-add_files -norecurse [file join $here endat_stream.v]
-add_files -norecurse [file join $here endat_frame_buffer.v]
-add_files -norecurse [file join $here endat_set_channel_number1.v]
-add_files -norecurse [file join $here endat_set_channel_number2.v]
-add_files -norecurse [file join $here endat_uart_bridge.v]
-add_files -norecurse [file join $here endat_uart_receiver.v]
-add_files -norecurse [file join $here endat_uart_transmitter.v]
+add_files -norecurse [file join $here s6_two_channel_card_core.v]
+add_files -norecurse [file join $here s6_two_channel_timebase.v]
+add_files -norecurse [file join $here s6_two_channel_trigger.v]
+add_files -norecurse [file join $here s6_two_channel_register_bank.v]
+add_files -norecurse [file join $here s6_two_channel_config_ring_1.v]
+add_files -norecurse [file join $here s6_two_channel_channel_registers.v]
+add_files -norecurse [file join $here s6_two_channel_config_ring_2.v]
+add_files -norecurse [file join $here s6_two_channel_encoder_port.v]
+add_files -norecurse [file join $here s6_two_channel_channel.v]
+add_files -norecurse [file join $here s6_two_channel_input_filter.v]
+add_files -norecurse [file join $here s6_two_channel_clock_gen.v]
+add_files -norecurse [file join $here s6_two_channel_command_sender.v]
+add_files -norecurse [file join $here s6_two_channel_line_delay.v]
+add_files -norecurse [file join $here s6_two_channel_half_period.v]
+add_files -norecurse [file join $here s6_two_channel_receiver.v]
+add_files -norecurse [file join $here s6_two_channel_crc5_check.v]
+add_files -norecurse [file join $here s6_two_channel_crc5_serial.v]
+add_files -norecurse [file join $here s6_two_channel_transaction.v]
+add_files -norecurse [file join $here s6_two_channel_line_health.v]
+add_files -norecurse [file join $here s6_two_channel_verdict.v]
+add_files -norecurse [file join $here s6_two_channel_primary_cause.v]
+add_files -norecurse [file join $here s6_two_channel_snapshot.v]
+add_files -norecurse [file join $here s6_two_channel_command_shape.v]
+add_files -norecurse [file join $here s6_two_channel_add_info.v]
+add_files -norecurse [file join $here s6_two_channel_frame_settings.v]
+add_files -norecurse [file join $here s6_two_channel_stream.v]
+add_files -norecurse [file join $here s6_two_channel_frame_buffer.v]
+add_files -norecurse [file join $here s6_two_channel_set_channel_number_1.v]
+add_files -norecurse [file join $here s6_two_channel_set_channel_number_2.v]
+add_files -norecurse [file join $here s6_two_channel_uart_bridge.v]
+add_files -norecurse [file join $here s6_two_channel_uart_receiver.v]
+add_files -norecurse [file join $here s6_two_channel_uart_transmitter.v]
 set_property top s6_two_channel [current_fileset]
 update_compile_order -fileset sources_1
 
 ipx::package_project -root_dir [file join $here ip] -vendor endat-gen -library motion -taxonomy /UserIP -import_files
 set core [ipx::current_core]
+# What Vivado has guessed gives way to what is meant.
+ipx::remove_all_bus_interface $core
+ipx::remove_all_memory_map $core
 set_property name s6_two_channel $core
 set_property version 0.1.0 $core
 set_property display_name "EnDat acquisition card, 2 channels" $core
@@ -49,6 +52,13 @@ ipx::infer_bus_interface clk_i xilinx.com:signal:clock_rtl:1.0 $core
 ipx::infer_bus_interface rst_i xilinx.com:signal:reset_rtl:1.0 $core
 set_property value ACTIVE_HIGH [ipx::add_bus_parameter POLARITY [ipx::get_bus_interfaces rst_i -of_objects $core]]
 set_property value 100000000 [ipx::add_bus_parameter FREQ_HZ [ipx::get_bus_interfaces clk_i -of_objects $core]]
+set bus [ipx::add_bus_interface uart $core]
+set_property bus_type_vlnv xilinx.com:interface:uart:1.0 $bus
+set_property abstraction_type_vlnv xilinx.com:interface:uart_rtl:1.0 $bus
+set_property interface_mode master $bus
+set_property physical_name uart_rx_i [ipx::add_port_map RxD $bus]
+set_property physical_name uart_tx_o [ipx::add_port_map TxD $bus]
+ipx::associate_bus_interfaces -busif uart -clock clk_i $core
 ipx::create_xgui_files $core
 ipx::update_checksums $core
 ipx::save_core $core

@@ -358,10 +358,10 @@ fn arrays_loops_structs_and_interfaces_agree() {
         names,
         [
             "everything",
-            "endat_stages",
-            "endat_wide_stage",
-            "endat_source",
-            "endat_sink"
+            "everything_stages",
+            "everything_wide_stage",
+            "everything_source",
+            "everything_sink"
         ]
     );
     let engine = kernel_engine!(block; clock; in reset, wide, mask, index, amount, pair;

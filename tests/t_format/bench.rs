@@ -48,10 +48,10 @@ fn it_passes_on_receivers() {
     }
 }
 
-const TOP: &str = "async_dsp.v";
-const STROBES: &str = "endat_strobes.v";
-const EXCHANGE: &str = "endat_exchange.v";
-const OUTCOME: &str = "endat_outcome.v";
+const TOP: &str = "";
+const STROBES: &str = "strobes";
+const EXCHANGE: &str = "exchange";
+const OUTCOME: &str = "outcome";
 
 #[test]
 fn it_fails_on_every_broken_receiver() {

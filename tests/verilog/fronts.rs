@@ -3,10 +3,12 @@
 //!
 //! `tests/formal` has the properties; they are put into the flattened module, so that induction can use its registers.
 
+use super::{file_of, is_core, name_of};
 use crate::bus::text;
 use crate::tools;
 use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
+use endat_hdl::elaborate::block_name;
 use std::fs;
 
 const BANK: &str = include_str!("../formal/bank.vh");
@@ -27,7 +29,7 @@ const WAIT_DEPTH: &str = "66";
 /// A module of a card and what is claimed of it.
 struct Claim {
     bus: HostBus,
-    module: &'static str,
+    block: &'static str,
     properties: &'static [&'static str],
     /// Names of the claims that take as many steps as the longest wait.
     waits: &'static [&'static str],
@@ -36,19 +38,19 @@ struct Claim {
 const FRONTS: [Claim; 3] = [
     Claim {
         bus: HostBus::Apb,
-        module: "endat_apb_front",
+        block: "apb_front",
         properties: &[BANK, GHOSTS, APB, TRANSFER],
         waits: &["answers_in_time"],
     },
     Claim {
         bus: HostBus::Wishbone,
-        module: "endat_wishbone_front",
+        block: "wishbone_front",
         properties: &[BANK, GHOSTS, WISHBONE, TRANSFER],
         waits: &["answers_in_time"],
     },
     Claim {
         bus: HostBus::AxiLite,
-        module: "endat_axi_lite_front",
+        block: "axi_lite_front",
         properties: &[BANK, AXI_LITE],
         waits: &["write_answers_in_time", "read_answers_in_time"],
     },
@@ -56,7 +58,7 @@ const FRONTS: [Claim; 3] = [
 
 const RING_CLAIM: Claim = Claim {
     bus: HostBus::Apb,
-    module: "endat_register_bank",
+    block: "register_bank",
     properties: &[RING],
     waits: &[],
 };
@@ -69,17 +71,18 @@ enum Verdict {
 }
 
 impl Claim {
-    /// The emitted module with all that it holds in one text; `mutation` is a piece of it and what stands there instead.
-    fn flat(&self, folder: &std::path::Path, mutation: Option<(&str, &str)>) -> String {
+    /// The name of the emitted module, and it with all that it holds in one text; `mutation` is a piece of it and what stands there instead.
+    fn flat(&self, folder: &std::path::Path, mutation: Option<(&str, &str)>) -> (String, String) {
         let second = "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n";
         let one = text(self.bus, "").replace(second, "");
         let files = endat_gen::emit(&parse("card.toml", &one).unwrap()).unwrap();
         let mut names = vec![];
         let mut is_mutated = mutation.is_none();
-        for file in files.iter().filter(|f| f.path.starts_with("endat_")) {
+        let own = file_of(&files, "");
+        for file in files.iter().filter(|f| is_core(f) && f.path != own) {
             let mut text = file.text.clone();
             if let Some((from, to)) = mutation {
-                if file.path == format!("{}.v", self.module) {
+                if file.path == file_of(&files, self.block) {
                     assert_eq!(text.matches(from).count(), 1, "{from}");
                     text = text.replace(from, to);
                     is_mutated = true;
@@ -92,17 +95,18 @@ impl Claim {
         let script = format!(
             "read_verilog {}; hierarchy -top {}; proc; flatten; opt_clean; write_verilog -noattr flat.v",
             names.join(" "),
-            self.module
+            block_name(name_of(&files), self.block)
         );
         let (done, text) = tools::run("yosys", folder, &["-q", "-p", &script]);
         assert!(done, "{text}");
-        fs::read_to_string(folder.join("flat.v")).unwrap()
+        let flat = fs::read_to_string(folder.join("flat.v")).unwrap();
+        (block_name(name_of(&files), self.block), flat)
     }
 
     /// Base and induction step of all properties; those of `waits` come after, with the others taken for granted.
     fn judge(&self, name: &str, mutation: Option<(&str, &str)>) -> Verdict {
         let folder = tools::folder(&format!("proof-{name}"));
-        let flat = self.flat(&folder, mutation);
+        let (module, flat) = self.flat(&folder, mutation);
         let all = self.properties.concat();
         // A mutant is to fail by what it does, not by how it is made inside.
         let all = match mutation {
@@ -132,8 +136,7 @@ impl Claim {
             )
             .unwrap();
             let script = format!(
-                "read_verilog -formal claim.v; prep -top {}; dffunmap; write_smt2 -wires claim.smt2",
-                self.module
+                "read_verilog -formal claim.v; prep -top {module}; dffunmap; write_smt2 -wires claim.smt2"
             );
             let (done, text) = tools::run("yosys", &folder, &["-q", "-p", &script]);
             assert!(done, "{text}");
@@ -165,7 +168,7 @@ fn fronts_answer_every_request_once_in_order_and_in_time() {
         return;
     }
     for claim in &FRONTS {
-        assert_eq!(claim.judge(claim.module, None), Verdict::Proved);
+        assert_eq!(claim.judge(claim.block, None), Verdict::Proved);
     }
 }
 
@@ -214,7 +217,7 @@ fn fronts_that_are_wrong_are_refuted() {
             "begins_at_home",
         ),
     ] {
-        let name = format!("mutant-{}", claim.module);
+        let name = format!("mutant-{}", claim.block);
         match claim.judge(&name, Some((from, to))) {
             Verdict::Proved => panic!("{to}: not seen"),
             Verdict::Refuted(text) => {

@@ -4,8 +4,8 @@
 pub struct Mutation {
     /// What it breaks.
     pub name: &'static str,
-    /// File.
-    pub file: &'static str,
+    /// Block; none is the card's own module.
+    pub block: &'static str,
     /// Text that stands there exactly once.
     pub from: &'static str,
     /// What it becomes.
@@ -15,13 +15,13 @@ pub struct Mutation {
 /// A change.
 pub const fn mutation(
     name: &'static str,
-    file: &'static str,
+    block: &'static str,
     from: &'static str,
     to: &'static str,
 ) -> Mutation {
     Mutation {
         name,
-        file,
+        block,
         from,
         to,
     }
@@ -31,103 +31,103 @@ pub const fn mutation(
 pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "parallel CRC: wrong constant for 31 bits",
-        "endat_crc5_check.v",
+        "crc5_check",
         "TERM_2 = 5'd13;",
         "TERM_2 = 5'd12;",
     ),
     mutation(
         "serial CRC: wrong polynomial",
-        "endat_crc5_serial.v",
+        "crc5_serial",
         "POLYNOMIAL = 5'd11;",
         "POLYNOMIAL = 5'd9;",
     ),
     mutation(
         "one clock pulse fewer",
-        "endat_transaction.v",
+        "transaction",
         "all_sent_next = outstanding == cells_left",
         "all_sent_next = outstanding == cells_left - 7'd1",
     ),
     mutation(
         "clock pulses on the cable not counted",
-        "endat_transaction.v",
+        "transaction",
         "all_sent_next = outstanding == cells_left",
         "all_sent_next = 7'd1 == cells_left",
     ),
     mutation(
         "driver never released",
-        "endat_command_sender.v",
+        "command_sender",
         "fall & (|cells_left)",
         "fall & (|cells_left[3:1])",
     ),
     mutation(
         "driver on one period too early",
-        "endat_command_sender.v",
+        "command_sender",
         "oe = |cell_now",
         "oe = |cells_left",
     ),
     mutation(
         "mode command shifted by one bit",
-        "endat_command_sender.v",
+        "command_sender",
         "{2'd0, command} << 1'b1",
         "{2'd0, command} << 2'd2",
     ),
     mutation(
         "sample half a bit off",
-        "endat_line_delay.v",
+        "line_delay",
         "half_tick & !second_half & cells_run",
         "half_tick & second_half & cells_run",
     ),
     mutation(
         "line delay measured too long",
-        "endat_line_delay.v",
+        "line_delay",
         "delay_next = since_rise;",
         "delay_next = since_rise + 10'd20;",
     ),
     mutation(
         "F2 ignored",
-        "endat_verdict.v",
+        "verdict",
         "bad_now = crc_bad | f1 | !f2;",
         "bad_now = crc_bad | f1;",
     ),
     mutation(
         "wrong cause for a missing start bit",
-        "endat_transaction.v",
+        "transaction",
         "no_start = NO_START_BIT;",
         "no_start = START_WINDOW;",
     ),
     mutation(
         "a bad frame replaces the last good position",
-        "endat_snapshot.v",
+        "snapshot",
         "take_good = publish & good & !moment_wrong;",
         "take_good = publish;",
     ),
     mutation(
         "hold has no effect",
-        "endat_register_bank.v",
+        "register_bank",
         "blocked_now = reading | hold;",
         "blocked_now = reading;",
     ),
     mutation(
         "channel 1 is not triggered",
-        "endat_card_core.v",
+        "card_core",
         ".trigger(trigger_of_1),\n        .calibrate(bank_calibrate[1]),",
         ".trigger(1'b0),\n        .calibrate(bank_calibrate[1]),",
     ),
     mutation(
         "words of the position exchanged",
-        "endat_channel_registers.v",
+        "channel_registers",
         "word_1 = position[31:0];",
         "word_1 = {16'd0, position[47:32]};",
     ),
     mutation(
         "trigger count at another word",
-        "endat_register_bank.v",
+        "register_bank",
         "TRIGGER_COUNT_AT = 9'd8;",
         "TRIGGER_COUNT_AT = 9'd9;",
     ),
     mutation(
         "trigger overrun not told",
-        "endat_verdict.v",
+        "verdict",
         "overrun_next = 1'b1;",
         "overrun_next = 1'b0;",
     ),

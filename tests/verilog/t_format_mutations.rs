@@ -2,22 +2,22 @@
 
 use super::mutations::{mutation, Mutation};
 
-const EXCHANGE: &str = "endat_exchange.v";
-const ORDER: &str = "endat_field_order.v";
-const REPLY: &str = "endat_reply.v";
-const PORT: &str = "endat_tformat_port.v";
+const EXCHANGE: &str = "exchange";
+const ORDER: &str = "field_order";
+const REPLY: &str = "reply";
+const PORT: &str = "tformat_port";
 
 /// All of them.
 pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "wrong parity of the request",
-        "endat_request_bits.v",
+        "request_bits",
         "request_id[2] ^ request_id[3];",
         "request_id[2];",
     ),
     mutation(
         "wrong sync code",
-        "endat_request_bits.v",
+        "request_bits",
         "<< 3'd7) | 8'd2;",
         "<< 3'd7) | 8'd6;",
     ),
@@ -137,13 +137,13 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     ),
     mutation(
         "a bit one cycle too long",
-        "endat_bit_grid.v",
+        "bit_grid",
         "left_next = bit_cycles;",
         "left_next = bit_cycles + 7'd1;",
     ),
     mutation(
         "start bit half a bit late",
-        "endat_bit_grid.v",
+        "bit_grid",
         "left_next = {1'b0, bit_cycles[6:1]};",
         "left_next = bit_cycles;",
     ),
@@ -227,7 +227,7 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     ),
     mutation(
         "T-format channel not triggered",
-        "endat_card_core.v",
+        "card_core",
         ".trigger(trigger_of_0),\n        .calibrate(bank_calibrate[0]),",
         ".trigger(1'b0),\n        .calibrate(bank_calibrate[0]),",
     ),

@@ -1,7 +1,7 @@
 //! The emitted test bench on the emitted card: passes as it stands, and fails on every broken card.
 
 use super::mutations::{Mutation, MUTATIONS};
-use super::{compile, preset_files, quick_files, quick_project, write};
+use super::{compile, file_of, has_block, preset_files, quick_files, quick_project, write};
 use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{parse, preset};
@@ -78,9 +78,7 @@ fn bench_passes_on_a_card_whose_channels_have_triggers_of_their_own() {
             channel("enabled = false\n")
         );
         let files = endat_gen::emit(&parse("own.toml", &text).unwrap()).unwrap();
-        assert!(files
-            .iter()
-            .any(|f| f.path.starts_with("endat_channel_trigger")));
+        assert!(has_block(&files, "channel_trigger"));
         assert_passes(&run_bench("own_triggers", &files, &[]));
     }
 }
@@ -94,7 +92,7 @@ fn bench_passes_on_a_card_with_all_line_parts() {
         let parts = "parts = [\"alignment\", \"margin\", \"double_edge\"]";
         let text = format!("{head}[line]{}", tail.replacen("parts = []", parts, 1));
         let files = endat_gen::emit(&parse("line.toml", &text).unwrap()).unwrap();
-        assert!(files.iter().any(|f| f.path == "endat_line_monitor.v"));
+        assert!(has_block(&files, "line_monitor"));
         assert_passes(&run_bench("line", &files, &[]));
     }
 }
@@ -106,7 +104,7 @@ fn bench_passes_on_a_card_with_requests() {
         let text = preset("s6_two_channel").unwrap();
         let text = text.replacen("parts = []", "parts = [\"requests\"]", 1);
         let files = endat_gen::emit(&parse("requests.toml", &text).unwrap()).unwrap();
-        assert!(files.iter().any(|f| f.path == "endat_service.v"));
+        assert!(has_block(&files, "service"));
         assert_passes(&run_bench("requests", &files, &[]));
     }
 }
@@ -150,12 +148,13 @@ fn bench_passes_on_a_card_with_initialisation_only_as_it_stands() {
     for (name, change, complaint) in rows {
         let wrong = times(change);
         let mut broken = files.clone();
-        let file = broken.iter_mut().find(|f| f.path == "endat_sequencer.v");
+        let path = file_of(&files, "sequencer");
+        let file = broken.iter_mut().find(|f| f.path == path);
         let text = &mut file.unwrap().text;
         let mut count = 0;
         for (k, (from, to)) in right.iter().zip(&wrong).enumerate() {
             if from != to {
-                let line = |word: &u32| format!("program_value[{k}] = 20'd{word};");
+                let line = |word: &u32| format!("program_value[{k}] = 20'h{word:x};");
                 assert_eq!(text.matches(&line(from)).count(), 1, "{}", line(from));
                 *text = text.replace(&line(from), &line(to));
                 count += 1;
@@ -171,11 +170,12 @@ fn mutant(files: &[Artifact], mutation: &Mutation) -> Vec<Artifact> {
     let mut files = files.to_vec();
     let Mutation {
         name,
-        file,
+        block,
         from,
         to,
     } = mutation;
-    let target = files.iter_mut().find(|f| f.path == *file);
+    let file = file_of(&files, block);
+    let target = files.iter_mut().find(|f| f.path == file);
     let target = target.unwrap_or_else(|| panic!("{name}: no file {file}"));
     assert_eq!(
         target.text.matches(from).count(),

@@ -1,0 +1,29 @@
+//! The key `host.base_address`.
+
+use super::reader::Table;
+use crate::maps::MAP_BYTES;
+use endat_hdl::bus::HostBus;
+use endat_hdl::config::limits;
+
+/// Reads where a system has the registers; `None` if something is wrong.
+pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>) -> Option<u32> {
+    const KEY: &str = "base_address";
+    let limits = limits(KEY, None);
+    let Some(base) = table.integer(KEY, &limits) else {
+        return (!table.has(KEY)).then_some(0);
+    };
+    let has_addresses = |bus: HostBus| bus.is_internal() && bus != HostBus::Bare;
+    let problem = match u32::try_from(base.value) {
+        _ if !bus.is_none_or(has_addresses) => {
+            "has a meaning behind apb, wishbone and axi_lite only; leave it out".into()
+        }
+        Err(_) => limits.to_string(),
+        Ok(value) if value % MAP_BYTES != 0 => {
+            let below = value - value % MAP_BYTES;
+            format!("is no multiple of 0x{MAP_BYTES:X}, the size of the register map; use 0x{below:08X}")
+        }
+        Ok(value) => return Some(value),
+    };
+    table.complain(base.line, KEY, &format!("0x{:08X}", base.value), &problem);
+    None
+}

@@ -1,0 +1,71 @@
+//! Names that mean something to one of the tools: every emitted file stands them.
+
+use super::written;
+use crate::tools::{require_python, run};
+use endat_gen::config::{load_preset, parse, preset};
+
+/// Words of Python, YAML, SystemRDL, Tcl and LiteX that are no reserved words of Verilog, VHDL or C.
+const NAMES: [&str; 14] = [
+    "true",
+    "False",
+    "none",
+    "yes",
+    "off",
+    "clock_signal",
+    "reset_signal",
+    "instance_x",
+    "SOURCES",
+    "migen",
+    "os",
+    "self",
+    "addrmap",
+    "endat_card",
+];
+
+/// Imports the module and makes the instance; reads the FuseSoC core and the register map.
+const SCRIPT: &str = "
+import importlib, sys, yaml
+from migen.fhdl.verilog import convert
+from systemrdl import RDLCompiler
+name, title = sys.argv[1:]
+module = importlib.import_module(name + '_litex')
+core = getattr(module, title)()
+text = str(convert(core, {core.trigger_i}, name='soc'))
+assert name + ' ' in text, text
+described = yaml.safe_load(open(name + '.core').read().split('\\n', 1)[1])
+assert described['targets']['default']['toplevel'] == name, described
+compiler = RDLCompiler()
+compiler.compile_file(name + '.rdl')
+assert compiler.elaborate().top.inst_name == name
+";
+
+#[test]
+fn names_that_are_words_elsewhere_are_names_here() {
+    let check = "names of cards";
+    let has_all = ["migen", "yaml", "systemrdl"]
+        .iter()
+        .all(|m| require_python(m, check));
+    if !has_all {
+        return;
+    }
+    assert!(load_preset("s6_two_channel").is_ok());
+    for name in NAMES {
+        let text = preset("s6_two_channel")
+            .unwrap()
+            .replace("\"s6_two_channel\"", &format!("{name:?}"));
+        let files = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
+        let place = written(&files, &format!("name-{name}"));
+        let module = files
+            .iter()
+            .find(|f| f.path.ends_with("_litex.py"))
+            .unwrap();
+        let class = module
+            .text
+            .lines()
+            .find_map(|l| l.strip_prefix("class "))
+            .unwrap();
+        let class = class.split('(').next().unwrap();
+        let (is_good, told) = run("python3", &place, &["-c", SCRIPT, name, class]);
+        assert!(is_good, "{name}: {told}");
+    }
+}
