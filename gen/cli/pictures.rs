@@ -130,7 +130,7 @@ pub fn draw(
 /// The wires of the first link, of whichever protocol.
 fn wires(bench: &Bench<Compiled>, out: &mut Vec<u8>) -> std::io::Result<()> {
     match bench.link_count() {
-        0 => write_t_format_wires(bench.t_format(0), out),
+        0 => write_t_format_wires(bench.t_format(0), bench.now(), out),
         _ => write_wires(bench.link(0), out),
     }
 }

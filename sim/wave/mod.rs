@@ -68,16 +68,21 @@ pub fn write_wires(link: &Link, out: impl Write) -> io::Result<()> {
         (&t.clock_at_encoder, &t.data_at_encoder)
     });
     // DATA of the same nanosecond is there when CLOCK changes.
-    write_scalars(&[("data", data), ("clk", clock)], out)
+    write_scalars(&[("data", data), ("clk", clock)], None, out)
 }
 
 /// The line of a T-format link at the encoder's end, in the same way.
-pub fn write_t_format_wires(link: &TFormatLink, out: impl Write) -> io::Result<()> {
-    write_scalars(&[("data", link.trace())], out)
+pub fn write_t_format_wires(link: &TFormatLink, end: Time, out: impl Write) -> io::Result<()> {
+    // The last bits of a reply may be without an edge.
+    write_scalars(&[("data", link.trace())], Some(end), out)
 }
 
 /// Named wires with their changes; those of the same nanosecond in this order.
-fn write_scalars(wires: &[(&str, &[(Time, bool)])], out: impl Write) -> io::Result<()> {
+fn write_scalars(
+    wires: &[(&str, &[(Time, bool)])],
+    end: Option<Time>,
+    out: impl Write,
+) -> io::Result<()> {
     let mut w = vcd::Writer::new(out);
     w.version(&format!("{PROGRAM} {}", env!("CARGO_PKG_VERSION")))?;
     w.timescale(1, TimescaleUnit::NS)?;
@@ -97,6 +102,9 @@ fn write_scalars(wires: &[(&str, &[(Time, bool)])], out: impl Write) -> io::Resu
             now = Some(time);
         }
         w.change_scalar(id, level)?;
+    }
+    if let Some(end) = end {
+        w.timestamp(end / NS)?;
     }
     Ok(())
 }
