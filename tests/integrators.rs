@@ -266,8 +266,8 @@ fn sigrok_decodes_every_t_format_exchange() {
     let Some((report, told)) = decoded("t-format", "t_format:data=data") else {
         return;
     };
-    let exchanges = report["exchanges"].as_array().unwrap();
-    assert!(exchanges.len() >= 7 && report["complaints"] == serde_json::json!([]));
+    let exchanges = report[0]["exchanges"].as_array().unwrap();
+    assert!(exchanges.len() >= 7 && report[0]["complaints"] == serde_json::json!([]));
     let lines: Vec<_> = told
         .lines()
         .filter_map(|l| l.split_once(": ")?.1.into())

@@ -175,13 +175,13 @@ fn t_format_json(report: &TFormatReport) -> Value {
             "position": e.result.as_ref().filter(|r| r.fresh).map(|r| r.position),
         })
     });
-    json!({
+    json!([{
         "scenario": t_format::NAME,
         "summary": t_format::SUMMARY,
         "system_hz": t_format::SYSTEM_HZ,
         "exchanges": exchanges.collect::<Vec<_>>(),
         "complaints": report.complaints,
-    })
+    }])
 }
 
 /// What cannot go wrong has.
