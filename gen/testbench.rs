@@ -3,6 +3,7 @@
 //! Of an initialisation it looks at the beginning only: the whole of it is longer than anybody simulates in Verilog.
 
 mod host;
+mod purpose;
 pub(crate) mod t_format;
 
 use crate::artifact::Artifact;
@@ -13,7 +14,9 @@ use endat_hdl::bus::HostBus;
 use endat_hdl::card::{service_times, services};
 use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig, LIST};
-use endat_hdl::regs::{Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, INTERRUPT, RESULT};
+use endat_hdl::regs::{
+    Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, RESULT,
+};
 use endat_hdl::service::program::{program, ServiceTimes};
 use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
 use endat_hdl::transaction::cause;
@@ -137,24 +140,43 @@ fn program_words(times: &ServiceTimes) -> Vec<String> {
     words.map(|w| format!("20'h{w:05x}")).collect()
 }
 
-/// The program that the services of a card run in the bench, if it is not their own from the start: the bench's encoders answer with
-/// positions only, so nothing selects additional informations.
-fn program_without_list(card: &CardConfig) -> Option<Vec<String>> {
+/// The program that the services of a card run in the bench, if it is not their own: the bench's encoders answer with positions only, so
+/// nothing selects additional informations, and of an initialisation there is the beginning only.
+fn program_text(card: &CardConfig) -> Result<String, GenError> {
     let times = service_times(card);
-    let without = ServiceTimes {
-        infos: [0; LIST],
-        ..times
+    let without = match times.initialise {
+        true => ServiceTimes {
+            initialise: false,
+            ..ServiceTimes::at(card.system_hz)
+        },
+        false => ServiceTimes {
+            infos: [0; LIST],
+            ..times
+        },
     };
-    (times != without && !times.initialise).then(|| program_words(&without))
+    if times == without {
+        return Ok(String::new());
+    }
+    let program = program_words(&without);
+    template::render(
+        "bench_program",
+        include_str!("templates/bench_program.v.jinja"),
+        &context! { program, services => services(card) },
+    )
+}
+
+/// How a bench tells what it checks (more values may stand before that), and that it has failed.
+pub(crate) fn tell(name: &str, before: &str, values: &str) -> Result<String, GenError> {
+    template::render(
+        "bench_tell",
+        include_str!("templates/bench_tell.v.jinja"),
+        &context! { name, before, values },
+    )
 }
 
 /// What the bench of a card that initialises its encoders does first.
 fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String, GenError> {
     let times = ServiceTimes::at(card.system_hz);
-    let without = ServiceTimes {
-        initialise: false,
-        ..times
-    };
     let period = card
         .endat_channels()
         .map(|(_, c)| c.calibration_period_cycles(card.system_hz));
@@ -168,9 +190,21 @@ fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String,
             power_up_ms => times.power_up_ms,
             after_pulse_ms => times.after_pulse_ms,
             period_ns => real(period.max().unwrap_or(0) as f64 * 1e9 / card.system_hz as f64),
-            program => program_words(&without),
         },
     )
+}
+
+/// From a trigger to the end of everything, in ns.
+fn cycle_ns(card: &CardConfig) -> u64 {
+    let hz = card.system_hz;
+    let exchange = |c: &ChannelConfig| cycles_to_ns(c.cycle_max_cycles(hz), hz);
+    let exchange_ns = card.channels.iter().map(exchange).max().unwrap_or(0);
+    // A T-format line has to be idle for a while after an exchange without a reply.
+    let idle_ns = match card.t_format_numbers().next() {
+        Some(_) => T_FORMAT_IDLE_NS,
+        None => 0,
+    };
+    exchange_ns + MARGIN_NS + idle_ns
 }
 
 /// Whether a field of the word `frame` says which triggers a channel takes.
@@ -187,16 +221,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let hz = card.system_hz;
     let t_format: Vec<usize> = card.t_format_numbers().collect();
     let parts = t_format::Parts::new(&project.name, card, card.service.initialise)?;
-    let exchange = |c: &ChannelConfig| cycles_to_ns(c.cycle_max_cycles(hz), hz);
-    let exchange_ns = card.channels.iter().map(exchange).max().unwrap_or(0);
-    // A T-format line has to be idle for a while after an exchange without a reply.
-    let cycle_ns = exchange_ns
-        + MARGIN_NS
-        + if t_format.is_empty() {
-            0
-        } else {
-            T_FORMAT_IDLE_NS
-        };
+    let cycle_ns = cycle_ns(card);
     let after_frame = |c: &ChannelConfig| c.cycle_max_cycles(hz) - c.frame_time(hz).frame_cycles;
     let calibration_ns =
         longest_ns(card, |c| c.calibration_cycles(hz) + after_frame(c)) + MARGIN_NS;
@@ -225,6 +250,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         ("F2", cause::F2),
         ("DATA_NOT_FALLING", cause::DATA_NOT_FALLING),
         ("TRIGGER_OVERRUN", cause::TRIGGER_OVERRUN),
+        ("WATCHDOG", cause::WATCHDOG),
     ];
     let causes: Vec<Value> = causes
         .into_iter()
@@ -246,10 +272,13 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         true => power_up(card, &ports, !t_format.is_empty())?,
         false => String::new(),
     };
+    let program = program_text(card)?;
+    let purpose = purpose::Parts::new(card, &ports)?;
     let blocks = [&CARD, &CARD_CONFIG, &RESULT];
     let blocks = blocks
         .into_iter()
-        .chain(card.outputs.interrupt.then_some(&INTERRUPT));
+        .chain(card.outputs.interrupt.then_some(&INTERRUPT))
+        .chain(card.outputs.position.then_some(&DIRECT));
     // The bench is about channels that take every trigger.
     let frame = CHANNEL_CONFIG.register("frame").into_iter();
     let frames = frame.flat_map(|r| (0..card.channels.len()).map(move |n| (r, n)));
@@ -262,9 +291,13 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     // The first of the four events of each channel is a new result.
     let results: u32 = (0..card.channels.len()).map(|n| 1 << (4 * n)).sum();
     let context = context! {
+        without_list => !program.is_empty() && !card.service.initialise,
+        program,
         power_up,
-        services => services(card),
-        program => program_without_list(card),
+        purpose => purpose.steps,
+        purpose_tasks => purpose.tasks,
+        tell => tell(&project.name, "", "")?,
+        direct_stride => DIRECT.stride,
         name => project.name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
@@ -294,7 +327,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         has_irq => project.bus != HostBus::Uart,
         interrupt => card.outputs.interrupt.then(|| format!("{results:08X}")),
         direct => card.outputs.position,
-        fields => Serde([CARD_CONFIG, RESULT].iter().flat_map(fields).collect::<Vec<_>>()),
+        fields => Serde([CARD_CONFIG, RESULT, DIRECT].iter().flat_map(fields).collect::<Vec<_>>()),
         block_stride => BLOCK_STRIDE,
         causes,
         identification,

@@ -75,6 +75,11 @@ impl Scale {
         }
     }
 
+    /// The value in units that is 0 again; a T-format encoder does not tell its own.
+    pub fn wraps_at(&self) -> Option<f64> {
+        matches!(self, Self::Rotary { .. }).then_some(360.0)
+    }
+
     /// Digits behind the point that show one measuring step.
     pub fn digits(&self) -> usize {
         let step = match *self {

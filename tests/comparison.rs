@@ -1,6 +1,8 @@
 //! The page that compares, and the tables that translate for users of other systems.
 
 use crate::program::good;
+use crate::tools;
+use endat_gen::area;
 use endat_gen::config::{load_preset, PRESETS};
 use endat_hdl::regs::blocks;
 use endat_hdl::regs::values::{
@@ -21,6 +23,48 @@ fn the_page_is_what_the_command_writes() {
         );
     }
     assert_eq!(page.trim_end(), now.trim_end());
+}
+
+/// Catches a figure of the data file that was typed.
+#[test]
+fn logic_cells_are_what_place_and_route_packs() {
+    if !area::is_available() {
+        assert!(
+            std::env::var_os("CI").is_none(),
+            "CI is set: yosys is required"
+        );
+        return eprintln!("skipped: yosys is not installed");
+    }
+    let table: toml::Table = include_str!("data/logic_cells.toml").parse().unwrap();
+    for (name, cells) in &table {
+        let subjects = area::subjects().unwrap();
+        let subject = subjects.iter().find(|s| s.name == name).unwrap();
+        let folder = tools::folder(&format!("logic_cells_{name}"));
+        let packed = area::logic_cells(&folder, &subject.files(), name).unwrap();
+        assert_eq!(cells.as_integer(), Some(packed as i64), "{name}");
+    }
+}
+
+/// Catches a right side that is said to be measured in words, and a row that does not say.
+#[test]
+fn the_page_tells_what_is_measured() {
+    let page = include_str!("../docs/comparison.md");
+    let rows = page
+        .lines()
+        .filter(|l| l.starts_with("| ") && !l.starts_with("| |"));
+    let mut kinds = std::collections::BTreeMap::new();
+    for row in rows {
+        let cells: Vec<&str> = row.split(" | ").collect();
+        let kind = cells.last().unwrap().trim_end_matches('|').trim();
+        *kinds.entry(kind).or_insert(0) += 1;
+        let is_figure = cells[2].contains(|c: char| c.is_ascii_digit());
+        assert!(kind != "measured" || is_figure, "{row}");
+        assert!(
+            ["measured", "synthesis", "description", "words"].contains(&kind),
+            "{row}"
+        );
+    }
+    assert!(kinds["measured"] >= 15 && kinds["words"] < 14, "{kinds:?}");
 }
 
 /// Catches a status bit that is left out, and a register, field, cause or flag that does not exist on that card.

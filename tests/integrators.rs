@@ -259,8 +259,8 @@ fn the_c_example_reads_positions() {
     assert!(!is_good && told.contains("/nowhere"), "{told}");
 }
 
-/// Runs sigrok's decoder over the wires of a scenario; its annotations.
-fn decoded(scenario: &str, bits: u32) -> Option<(serde_json::Value, String)> {
+/// Runs a decoder of sigrok, with its options, over the wires of a scenario; its annotations.
+fn decoded(scenario: &str, decoder: &str) -> Option<(serde_json::Value, String)> {
     if !require("sigrok-cli", "sigrok decoder") {
         return None;
     }
@@ -289,9 +289,9 @@ fn decoded(scenario: &str, bits: u32) -> Option<(serde_json::Value, String)> {
             "-i",
             file,
             "-P",
-            &format!("endat:clk=clk:data=data:bits={bits}"),
+            decoder,
             "-A",
-            "endat",
+            decoder.split(':').next().unwrap(),
         ])
         .output()
         .unwrap();
@@ -304,10 +304,70 @@ fn decoded(scenario: &str, bits: u32) -> Option<(serde_json::Value, String)> {
     Some((serde_json::from_str(&outcome.stdout).unwrap(), told))
 }
 
+fn endat(bits: u32) -> String {
+    format!("endat:clk=clk:data=data:bits={bits}")
+}
+
+/// Catches a decoder of T-format that takes another field or byte order, misses a wrong check sum, or a request of the host.
+#[test]
+fn sigrok_decodes_every_t_format_exchange() {
+    let Some((report, told)) = decoded("t-format", "t_format:data=data") else {
+        return;
+    };
+    let exchanges = report[0]["exchanges"].as_array().unwrap();
+    assert!(exchanges.len() >= 7 && report[0]["complaints"] == serde_json::json!([]));
+    let lines: Vec<_> = told
+        .lines()
+        .filter_map(|l| l.split_once(": ")?.1.into())
+        .collect();
+    // What the encoder heard and answered, as the decoder should tell it.
+    let mut wanted = vec![];
+    for exchange in exchanges {
+        let bytes = |name: &str| -> Vec<u64> {
+            let bytes = exchange[name].as_array().unwrap();
+            bytes.iter().map(|b| b.as_u64().unwrap()).collect()
+        };
+        let (sent, reply) = (bytes("request"), bytes("reply"));
+        let id = exchange["id"].as_u64().unwrap();
+        let number = |b: &[u64]| b[0] | b[1] << 8 | b[2] << 16;
+        wanted.push(format!("ID {id:X} "));
+        if sent.len() > 1 {
+            wanted.push(format!("ADF {:02X}", sent[1]));
+        }
+        wanted.push(format!("Reply {:02X}", reply[0]));
+        let spoilt = exchange["cause"] == "reply_crc";
+        match (id, spoilt) {
+            (0, _) => wanted.push(format!("Single-turn {} ", number(&reply[2..]))),
+            (1, _) => wanted.push(format!("Multi-turn {} ", number(&reply[2..]))),
+            (2, _) => wanted.push(format!("ENID {:02X}", reply[2])),
+            (3, false) => {
+                wanted.push(format!("Single-turn {} ", number(&reply[2..])));
+                wanted.push(format!("Multi-turn {} ", number(&reply[6..])));
+            }
+            (6 | 0xD, _) => wanted.push(format!("EDF {:02X}", reply[2])),
+            _ => {}
+        }
+        let sum = reply.last().unwrap();
+        wanted.push(match spoilt {
+            true => format!("CRC {sum:02X}, should be"),
+            false => format!("CRC {sum:02X}"),
+        });
+    }
+    let mut rest = lines.iter();
+    for text in &wanted {
+        let found = rest.any(|line: &&str| line.contains(text.as_str()));
+        assert!(found, "{text}: {told}");
+    }
+    assert_eq!(told.matches("CRC wrong").count(), 1, "{told}");
+    for never in ["missing", "No re", "Delimiter", "another"] {
+        assert!(!told.contains(never), "{never}: {told}");
+    }
+}
+
 /// Catches a decoder that dies of a frame that the card gave up, or takes the next one for its end.
 #[test]
 fn sigrok_goes_on_after_frames_that_were_cut() {
-    let Some((report, told)) = decoded("paper-flow", 29) else {
+    let Some((report, told)) = decoded("paper-flow", &endat(29)) else {
         return;
     };
     let frames = report[0]["channels"][0]["frames"].as_array().unwrap();
@@ -331,7 +391,7 @@ fn sigrok_decodes_every_frame_to_the_encoders_position() {
         // DATA changes behind the falling edge there.
         ("sixteen-megahertz", 25),
     ] {
-        let Some((report, told)) = decoded(scenario, bits) else {
+        let Some((report, told)) = decoded(scenario, &endat(bits)) else {
             return;
         };
         let frames = report[0]["channels"][0]["frames"].as_array().unwrap();

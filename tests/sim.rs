@@ -30,11 +30,18 @@ fn the_core_is_sound_in_every_scenario() {
             serde_json::from_str(&good(&["sim", name, "--json"])).unwrap();
         for channel in report.as_array().unwrap() {
             assert_eq!(channel["complaints"], serde_json::json!([]), "{name}");
-            let frames = channel["channels"][0]["frames"].as_array().unwrap();
-            let positions = frames
-                .iter()
-                .filter(|f| f["result"]["position"].is_number())
-                .count();
+            let positions = match channel["exchanges"].as_array() {
+                Some(exchanges) => exchanges
+                    .iter()
+                    .filter(|e| e["position"].is_number())
+                    .count(),
+                None => channel["channels"][0]["frames"]
+                    .as_array()
+                    .unwrap()
+                    .iter()
+                    .filter(|f| f["result"]["position"].is_number())
+                    .count(),
+            };
             assert!(positions > 0, "{name} brought no position");
         }
     }
@@ -65,6 +72,29 @@ fn the_real_frame_has_its_66_rising_edges_and_can_be_looked_at() {
             .contains("is a folder, not a file")
     );
     assert!(bad(&["sim", "real-1", "--vcd", "/"], 2).contains("is not the name of a file"));
+}
+
+/// Catches a story of a T-format encoder without its line, and one that takes options which mean nothing there.
+#[test]
+fn the_line_of_a_t_format_encoder_can_be_written_and_is_not_drawn() {
+    let dir = Dir::new("sim_t_format");
+    let (vcd, wires) = (dir.path("all.vcd"), dir.path("line.vcd"));
+    let outcome = run(&["sim", "t-format", "--vcd", &vcd, "--wires", &wires]);
+    assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    for part in ["1A 00 56 34 12 17", "reply_crc", "all as it should be"] {
+        assert!(outcome.stdout.contains(part), "{part}: {outcome:?}");
+    }
+    let all = fs::read_to_string(&vcd).unwrap();
+    assert!(all.contains("module t_format0") && all.contains("result_strobe"));
+    // The last of the line is in the file, though nothing changes there.
+    let line = fs::read_to_string(&wires).unwrap();
+    let last = line.lines().rfind(|l| l.starts_with('#')).unwrap();
+    assert!(last[1..].parse::<u64>().unwrap() > 1_450_000, "{last}");
+    assert!(line.matches('\n').count() > 200);
+    let refused = bad(&["sim", "t-format", "--svg", &dir.path("no.svg")], 2);
+    assert!(refused.contains("only EnDat frames are drawn"), "{refused}");
+    let refused = bad(&["sim", "t-format", "--channel", "1"], 2);
+    assert!(refused.contains("has one channel"), "{refused}");
 }
 
 /// Answers to requests with frames of their own, and what the initialisation has sent before the first trigger.

@@ -2,11 +2,13 @@
 //!
 //! Figures are comparable only within one version of the tools, so another version of yosys is refused.
 
+mod cells;
 mod guard;
 mod report;
 mod speed;
 mod subject;
 
+pub use cells::logic_cells;
 pub use guard::{Guard, GUARDS};
 pub use report::{report, Line, Peer, Report, PEERS};
 pub use speed::{speed, Device, Speed, DEVICES};

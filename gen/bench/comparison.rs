@@ -4,51 +4,34 @@
 //! Protocol Design", AM243x motor control SDK 09.01; ArtInChip, manual of ENDAT-IF (M6800); Liu et al., "Angle encoder data acquisition system based
 //! on FPGA", 2024; Kang et al., "A FPGA implementation of a rotary machine receiver", 2004.
 
+use super::comparison_table::{Basis, Table, LEGEND};
 use super::preset_run::{project, run, ChannelRun, Conditions};
 use super::{cycle_times, fault, CycleTime, CycleTimeOptions};
 use crate::config::Project;
 use crate::error::GenError;
+use endat_hdl::config::CHANNELS;
 use endat_hdl::config::{filter_longest, ChannelConfig, ChannelRequest};
 use endat_hdl::direct::CROP_CYCLES;
 use endat_hdl::elaborate::elaborate;
-use endat_hdl::timing::{RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS};
+use endat_hdl::protocol::ModeCommand;
+use endat_hdl::t_format::protocol::{Request, BIT_HZ, FAST_BIT_HZ};
+use endat_hdl::timing::{
+    PERIOD_CYCLES_MIN, PERIOD_CYCLES_MIN_DOUBLE, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
+};
 use endat_hdl::{channel::Channel, channel::FixedTimes};
 use endat_sim::engine::Compiled;
 use endat_sim::scenario::{self, RunOptions};
 use endat_sim::{decimal, Time, NS, US};
 use rust_hdl::prelude::Block;
-use std::fmt::Write as _;
 
 /// The budgets that a test compares with synthesis.
 const AREA: &str = include_str!("../../tests/data/area.toml");
+/// Logic cells that a test compares with place and route.
+const LOGIC_CELLS: &str = include_str!("../../tests/data/logic_cells.toml");
 /// Cables, in metres, from short to long, that a preset is tried on.
 const CABLES_M: [u64; 4] = [20, 100, 150, 780];
 /// Triggers of a run.
 const TRIGGERS: usize = 8;
-
-/// A table of the page.
-struct Table {
-    heading: &'static str,
-    /// Who is in the second column.
-    theirs: &'static str,
-    rows: Vec<[String; 3]>,
-    notes: String,
-}
-
-impl Table {
-    fn new(heading: &'static str, theirs: &'static str) -> Self {
-        Self {
-            heading,
-            theirs,
-            rows: vec![],
-            notes: String::new(),
-        }
-    }
-
-    fn row(&mut self, what: &str, theirs: &str, ours: impl Into<String>) {
-        self.rows.push([what.into(), theirs.into(), ours.into()]);
-    }
-}
 
 fn us(time: Time) -> String {
     format!("{} us", decimal(time as f64 / US as f64, 2))
@@ -113,6 +96,22 @@ fn at_clock(request: &mut ChannelRequest, clock_hz: u64) {
     request.filter_ns = 0;
 }
 
+/// How many channels a card may have.
+fn channels_told() -> String {
+    let (fewest, most) = (CHANNELS.start(), CHANNELS.end());
+    format!("{fewest} to {most} from the same description")
+}
+
+/// Places in a bit of the preset's fastest channel, and how few there may be.
+fn samples_told(project: &Project) -> String {
+    let periods = project.card.channels.iter().map(|c| c.period_cycles);
+    let places = 1 + u64::from(project.card.line.double_edge);
+    format!(
+        "{}; works from {PERIOD_CYCLES_MIN} on, from {PERIOD_CYCLES_MIN_DOUBLE} with double edge",
+        periods.min().unwrap_or_default() * places
+    )
+}
+
 fn area(name: &str, family: &str) -> (u64, u64) {
     let table: toml::Table = AREA.parse().unwrap_or_default();
     let figure = |what: &str| table.get(name)?.get(family)?.get(what)?.as_integer();
@@ -144,6 +143,7 @@ fn clb(rows: &[CycleTime]) -> Result<Table, GenError> {
         "Kim et al. 2024",
     );
     table.row(
+        Basis::Measured,
         "36 bits, 2 MHz, 000111: time of the frame",
         "about 35 us",
         {
@@ -152,34 +152,44 @@ fn clb(rows: &[CycleTime]) -> Result<Table, GenError> {
         },
     );
     table.row(
+        Basis::Measured,
         "trigger to the position at the control loop, cable of 3 m",
         "–",
         us(channel.position),
     );
     table.row(
+        Basis::Measured,
         "left of the control cycle of 62.5 us",
-        "27.5 us",
+        "about 27.5 us",
         us(62_500 * NS - channel.position),
     );
     let most = decimal(row.cycles_per_s, 0);
     table.row(
+        Basis::Measured,
         "cycles per second",
         "16 000",
         format!("16 000; at most {most}"),
     );
     table.row(
+        Basis::Words,
         "propagation delay compensation",
-        "none, 2 MHz is the end",
+        "none; 2 MHz is the highest rate without it",
         "measured, then followed in each frame",
     );
     let longest = longest(&project, conditions)?;
     table.row(
+        Basis::Measured,
         "cable with every position right, at 2 MHz",
-        "short",
+        "–",
         longest,
     );
-    table.row("CRC", "in software", "two in hardware, compared");
-    table.notes = "A receiver without compensation samples half a period after its own clock edge: at 2 MHz that is 250 ns, or 20 m of cable there and back.".into();
+    table.row(
+        Basis::Words,
+        "CRC",
+        "received, no errors told; where it is checked: –",
+        "two in hardware, compared",
+    );
+    table.note("A receiver without compensation samples half a period after its own clock edge: at 2 MHz that is 250 ns, or 20 m of cable there and back.");
     Ok(table)
 }
 
@@ -199,29 +209,43 @@ fn ti(rows: &[CycleTime]) -> Result<Table, GenError> {
     let each: Vec<String> = channels.iter().map(each).collect();
     let row = back_to_back(rows, "TI")?;
     let mut table = Table::new("Three channels: `ti_three_channel`", "TI AM243x");
-    table.row("channels", "3", "3; 1 to 8 from the same description");
     table.row(
+        Basis::Description,
+        "channels",
+        "3",
+        format!("3; {}", channels_told()),
+    );
+    table.row(
+        Basis::Measured,
         "encoders of different make, each at its own rate, 100 m of cable",
         "one clock for all",
         each.join("; "),
     );
-    table.row("encoders of same make, one trigger", "yes", same_make()?);
-    table.row("8 MHz", "100 m", longest_at(8_000_000)?);
-    table.row("16 MHz", "20 m", longest_at(16_000_000)?);
     table.row(
+        Basis::Measured,
+        "encoders of same make, one trigger",
+        "yes",
+        same_make()?,
+    );
+    table.row(Basis::Measured, "8 MHz", "100 m", longest_at(8_000_000)?);
+    table.row(Basis::Measured, "16 MHz", "20 m", longest_at(16_000_000)?);
+    table.row(
+        Basis::Description,
         "samples in a bit at 16 MHz",
         "8",
-        "8; works from 4 on, from 2 with double edge",
+        samples_told(&preset),
     );
     table.row(
+        Basis::Words,
         "delay",
         "measured at the start, 200 kHz",
         "the same, then the mean of many edges follows it",
     );
     let cycle = decimal(row.cycle_us, 2);
     table.row(
+        Basis::Measured,
         "37 bits at 8 MHz, from position to position",
-        "control cycle of 62.5 us",
+        "–",
         format!("{cycle} us"),
     );
     Ok(table)
@@ -298,6 +322,7 @@ fn artinchip() -> Result<Table, GenError> {
         "ArtInChip ENDAT-IF",
     );
     table.row(
+        Basis::Measured,
         "rates at run time, MHz",
         "16, 8, 4, 2, 1, 0.2, 0.1",
         format!(
@@ -305,34 +330,53 @@ fn artinchip() -> Result<Table, GenError> {
             rates.join(", ")
         ),
     );
-    table.row("ports", "2, one each", "2; 1 to 8");
-    table.row("mode commands", "10", "14");
     table.row(
+        Basis::Description,
+        "ports",
+        "–",
+        format!("2; {}", channels_told()),
+    );
+    table.row(
+        Basis::Description,
+        "mode commands",
+        "10",
+        ModeCommand::ALL.len().to_string(),
+    );
+    table.row(
+        Basis::Description,
         "step of the input filter",
         "4.1 ns",
         format!("{} ns, 0 to {steps} steps", decimal(step_ns, 1)),
     );
     table.row(
+        Basis::Description,
         "cropped position to the current loop",
-        "up to 16 bits",
-        format!("up to 32 bits, {} ns after the result", decimal(crop_ns, 0)),
+        "16 bits in the example",
+        format!(
+            "up to {} bits, {} ns after the result",
+            CROP_CYCLES - 1,
+            decimal(crop_ns, 0)
+        ),
     );
     table.row(
+        Basis::Words,
         "errors to the current loop",
         "OR of selected ones",
         "OR of selected causes, alarm too",
     );
     table.row(
+        Basis::Words,
         "watchdog",
         "driver off, 30 ms, then DATA LOW for tR",
         "the same",
     );
     table.row(
+        Basis::Words,
         "status bits",
         "15",
         "all of them: [artinchip-status.md](artinchip-status.md)",
     );
-    table.notes = "The filter's step is half a system clock of 128 MHz here, for DATA is looked at on both edges; theirs is a clock of 240 MHz.".into();
+    table.note("The filter's step is half a system clock of 128 MHz here, for DATA is looked at on both edges; theirs is a clock of 240 MHz.");
     Ok(table)
 }
 
@@ -353,16 +397,22 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
     let row = back_to_back(rows, "Liu et al.")?;
     let (lut, ff) = area("card_stream", "xc6s");
     let mut table = Table::new("Acquisition card: `s6_two_channel`", "Liu et al. 2024");
-    table.row("sampling of two RCN 8510, 3.125 MHz", "10 kHz", {
-        let most = decimal(row.cycles_per_s / 1e3, 1);
-        format!("10 kHz; at most {most} kHz with the same settings")
-    });
     table.row(
+        Basis::Measured,
+        "sampling of two RCN 8510, 3.125 MHz",
+        "10 kHz",
+        {
+            let most = decimal(row.cycles_per_s / 1e3, 1);
+            format!("10 kHz; at most {most} kHz with the same settings")
+        },
+    );
+    table.row(
+        Basis::Measured,
         "one frame from position to position",
         "cycle of 100 us",
         format!("{} us", decimal(row.cycle_us, 2)),
     );
-    table.row("captured frame: F1 F2, CRC", "01, 1D", {
+    table.row(Basis::Measured, "captured frame: F1 F2, CRC", "01, 1D", {
         let frame = bench.frames(0).get(1).ok_or_else(|| fault(&"no frame"))?;
         let bit = |on| if on { '1' } else { '0' };
         let (f1, f2) = (bit(frame.errors.0), frame.errors.1.map_or('-', bit));
@@ -372,6 +422,7 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
         )
     });
     table.row(
+        Basis::Measured,
         "ways out of the flow chart",
         "start time-out, wrong start bit, error bits, CRC",
         {
@@ -387,22 +438,31 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
         },
     );
     table.row(
+        Basis::Words,
         "signal `link`",
         "frame ended well, position taken",
         "`result_strobe` with `fresh`",
     );
     table.row(
+        Basis::Words,
         "signal `check`",
         "CRC is right",
         "`crc_received` = `crc_computed`, cause not 4",
     );
-    table.row("signal `err`", "F1 F2", "flags F1 and F2, causes 5 and 6");
     table.row(
+        Basis::Words,
+        "signal `err`",
+        "F1 F2",
+        "flags F1 and F2, causes 5 and 6",
+    );
+    table.row(
+        Basis::Words,
         "signal `dir`",
         "direction of the transceiver",
         "`endat_data_oe`",
     );
     table.row(
+        Basis::Synthesis,
         "area",
         "device of 9152 logic cells",
         format!("{lut} LUT6, {ff} FF"),
@@ -410,30 +470,48 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
     Ok(table)
 }
 
-fn asynchronous() -> Table {
+fn asynchronous() -> Result<Table, GenError> {
     let [(all, all_ff), (receiver, receiver_ff)] =
         ["async_dsp", "t_format"].map(|n| area(n, "ice40"));
+    let cells: toml::Table = LOGIC_CELLS.parse().unwrap_or_default();
+    let cells = cells.get("async_dsp").and_then(|c| c.as_integer());
+    let cells = cells.ok_or_else(|| fault(&"no logic cells of async_dsp"))?;
+    let requests = Request::ALL.map(|r| format!("{:X}", r.id()));
+    let rates = [BIT_HZ, FAST_BIT_HZ].map(|hz| format!("{} Mbit/s", decimal(hz as f64 / 1e6, 1)));
     let mut table = Table::new("Asynchronous receiver: `async_dsp`", "Kang et al. 2004");
     table.row(
+        Basis::Synthesis,
         "receiver with the bus of a signal processor",
-        "707 logic cells (FLEX10K)",
-        format!("{all} LUT4, {all_ff} FF (iCE40)"),
+        "707 logic cells (FLEX10K, LUT4 and FF each)",
+        format!("{cells} logic cells (iCE40, the same): {all} LUT4, {all_ff} FF"),
     );
     table.row(
+        Basis::Synthesis,
         "receiver alone",
         "236 to 248 LUT, 256 FF (Microchip's core for the same protocol)",
         format!("{receiver} LUT4, {receiver_ff} FF (iCE40)"),
     );
-    table.row("rate", "2.5 Mbit/s", "2.5 and 5 Mbit/s");
-    table.row("clock", "20 or 60 MHz by a pin", "the same");
-    table.row("requests", "0, 1, 3", "0, 1, 2, 3, 6, 7, 8, C, D");
     table.row(
+        Basis::Description,
+        "rate",
+        "2.5 Mbit/s",
+        rates.join(" and "),
+    );
+    table.row(Basis::Words, "clock", "20 or 60 MHz by a pin", "the same");
+    table.row(
+        Basis::Description,
+        "requests",
+        "0, 1, 3",
+        requests.join(", "),
+    );
+    table.row(
+        Basis::Words,
         "bus",
         "data 4 clocks after the address, held for 5",
         "the same",
     );
-    table.notes = "What is read after which disturbance, and how many frames that was tried with: [t-format.md](t-format.md).".into();
-    table
+    table.note("What is read after which disturbance, and how many frames that was tried with: [t-format.md](t-format.md).");
+    Ok(table)
 }
 
 /// The page.
@@ -445,27 +523,18 @@ pub fn comparison() -> Result<String, GenError> {
         tm_ns: 10_000,
     })?;
     let rows = &times.rows;
-    let mut page = "# Comparison\n\nWhat the systems that this project learns from have published, beside what the same work measures here. The right column comes from runs of the presets as \
-        they are emitted (but for the sampling rate and the initialisation), with encoder models on lines that have the delay of a cable, not its attenuation (EnDat allows 150 m); `cargo run --release -- bench comparison > docs/comparison.md` writes this page, and a test compares it. A dash: not told.\n"
-        .to_owned();
+    let mut page = format!(
+        "# Comparison\n\nWhat the systems that this project learns from have published, beside what the same work measures here. The right column comes from runs of the presets as \
+        they are emitted (but for the sampling rate and the initialisation), with encoder models on lines that have the delay of a cable, not its attenuation (EnDat allows 150 m); `cargo run --release -- bench comparison > docs/comparison.md` writes this page, and a test compares it. A dash: not told. {LEGEND}\n"
+    );
     for table in [
         clb(rows)?,
         ti(rows)?,
         artinchip()?,
         card(rows)?,
-        asynchronous(),
+        asynchronous()?,
     ] {
-        let _ = write!(
-            page,
-            "\n## {}\n\n| | {} | here |\n|---|---|---|\n",
-            table.heading, table.theirs
-        );
-        for [what, theirs, ours] in &table.rows {
-            let _ = writeln!(page, "| {what} | {theirs} | {ours} |");
-        }
-        if !table.notes.is_empty() {
-            let _ = writeln!(page, "\n{}", table.notes);
-        }
+        page += &table.to_string();
     }
     Ok(page)
 }

@@ -5,7 +5,7 @@ use crate::error::{shown, GenError};
 use endat_sim::bench::Bench;
 use endat_sim::diagram::{frame_svg, is_drawing, overview_svg};
 use endat_sim::engine::Compiled;
-use endat_sim::wave::{is_layout, is_vcd, write_wires, Wave};
+use endat_sim::wave::{is_layout, is_vcd, write_t_format_wires, write_wires, Wave};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -81,7 +81,7 @@ pub fn draw(
     }
     if let Some(path) = wanted.wires {
         let mut bytes = Vec::new();
-        write_wires(bench.link(0), &mut bytes)
+        wires(bench, &mut bytes)
             .map_err(|e| GenError::io("write", path, &e, "give another file"))?;
         files.push(File {
             option: "--wires",
@@ -91,6 +91,12 @@ pub fn draw(
         });
     }
     if let Some(path) = wanted.svg {
+        if bench.link_count() == 0 {
+            return Err(GenError::input(format!(
+                "--svg = {}: only EnDat frames are drawn; leave it out, or take --vcd or --wires",
+                path.display()
+            )));
+        }
         let link = bench.link(0);
         let nothing = || {
             GenError::input(format!(
@@ -119,6 +125,14 @@ pub fn draw(
         });
     }
     write_all(&files)
+}
+
+/// The wires of the first link, of whichever protocol.
+fn wires(bench: &Bench<Compiled>, out: &mut Vec<u8>) -> std::io::Result<()> {
+    match bench.link_count() {
+        0 => write_t_format_wires(bench.t_format(0), bench.now(), out),
+        _ => write_wires(bench.link(0), out),
+    }
 }
 
 /// Refuses files that cannot be written, or would replace something else.

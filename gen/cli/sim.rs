@@ -10,7 +10,10 @@ use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::service::program::ServiceTimes;
 use endat_sim::bench::Bench;
 use endat_sim::engine::Compiled;
-use endat_sim::scenario::{self, ChannelReport, FrameReport, Report, RunOptions, Scenario};
+use endat_sim::scenario::{
+    self, t_format, t_format::TFormatReport, ChannelReport, FrameReport, Report, RunOptions,
+    Scenario,
+};
 use rust_hdl::prelude::Block;
 use serde_json::{json, Value};
 use std::path::PathBuf;
@@ -67,9 +70,13 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
         scenario::all()
             .iter()
             .map(|s| s.name)
+            .chain([t_format::NAME])
             .collect::<Vec<_>>()
             .join(", ")
     };
+    if name == t_format::NAME {
+        return run_t_format(arguments);
+    }
     let Some(scenario) = scenario::named(name) else {
         return Err(GenError::input(format!(
             "scenario = {}: unknown scenario; known scenarios: {}",
@@ -125,17 +132,80 @@ pub fn run(arguments: &SimArgs) -> Result<Outcome, GenError> {
     Ok(outcome)
 }
 
+/// The story with a T-format encoder: one port, whose line can be written.
+fn run_t_format(arguments: &SimArgs) -> Result<Outcome, GenError> {
+    if let Some(text) = arguments.channel.as_deref().filter(|text| *text != "0") {
+        return Err(GenError::input(format!(
+            "--channel = {}: {} has one channel; leave it out",
+            shown(text),
+            t_format::NAME
+        )));
+    }
+    let mut block = EncoderPort::t_format(false);
+    block.connect_all();
+    let design = elaborate(&block, "encoder_port").map_err(|e| fault(&e))?;
+    let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
+    let (bench, report) = t_format::run(engine);
+    let files = Pictures {
+        vcd: arguments.vcd.as_deref(),
+        wires: arguments.wires.as_deref(),
+        svg: arguments.svg.as_deref(),
+        frame: Drawn::default(),
+    };
+    let stdout = match arguments.json {
+        true => to_json(&t_format_json(&report))?,
+        false => report.to_string(),
+    };
+    Ok(Outcome {
+        exit_code: u8::from(!report.complaints.is_empty()),
+        messages: draw(&files, &bench, t_format::SUMMARY)?,
+        stdout,
+    })
+}
+
+fn t_format_json(report: &TFormatReport) -> Value {
+    let exchanges = report.exchanges.iter().map(|e| {
+        json!({
+            "time_us": us(e.time),
+            "id": e.request.id(),
+            "request": e.sent,
+            "reply": e.reply,
+            "cause": e.cause_name(),
+            "cause_code": e.cause(),
+            "position": e.result.as_ref().filter(|r| r.fresh).map(|r| r.position),
+        })
+    });
+    json!([{
+        "scenario": t_format::NAME,
+        "summary": t_format::SUMMARY,
+        "system_hz": t_format::SYSTEM_HZ,
+        "exchanges": exchanges.collect::<Vec<_>>(),
+        "complaints": report.complaints,
+    }])
+}
+
+/// What cannot go wrong has.
+fn fault(e: &dyn std::fmt::Display) -> GenError {
+    GenError::input(format!(
+        "design: {e}; this is a fault of endat-gen, please report it"
+    ))
+}
+
 fn list(as_data: bool) -> Result<Outcome, GenError> {
-    let all = scenario::all();
+    let all: Vec<_> = scenario::all()
+        .iter()
+        .map(|s| (s.name, s.summary))
+        .collect();
+    let all = [all, vec![(t_format::NAME, t_format::SUMMARY)]].concat();
     if as_data {
         let objects = all
             .iter()
-            .map(|s| json!({"name": s.name, "summary": s.summary}));
+            .map(|(name, summary)| json!({"name": name, "summary": summary}));
         return Ok(Outcome::good(to_json(&objects.collect::<Vec<_>>())?));
     }
     Ok(Outcome::good(
         all.iter()
-            .map(|s| format!("{:<20} {}\n", s.name, s.summary))
+            .map(|(name, summary)| format!("{name:<20} {summary}\n"))
             .collect::<String>(),
     ))
 }
@@ -158,11 +228,6 @@ fn chosen(arguments: &SimArgs, scenario: &Scenario) -> Result<Vec<usize>, GenErr
 }
 
 fn run_channel(scenario: &Scenario, index: usize) -> Result<(Bench<Compiled>, Report), GenError> {
-    let fault = |e: &dyn std::fmt::Display| {
-        GenError::input(format!(
-            "design: {e}; this is a fault of endat-gen, please report it"
-        ))
-    };
     let settings = &scenario.channels[index].settings;
     let times = FixedTimes {
         abort_us: settings.abort_us,

@@ -5,7 +5,7 @@ use crate::artifact::Artifact;
 use crate::error::GenError;
 use crate::template;
 use crate::testbench::t_format::{cable_and_gap_ns, causes, encoder, RATE_ERROR};
-use crate::testbench::{clock_ns, real, whole, T_FORMAT_IDLE_NS};
+use crate::testbench::{clock_ns, real, tell, whole, T_FORMAT_IDLE_NS};
 use endat_hdl::t_format::cause;
 use endat_hdl::t_format::dsp::TFormatStart;
 use endat_hdl::t_format::protocol::{Content, Request, BIT_HZ, SYSTEM_HZ, WAIT_GRACE_US};
@@ -60,6 +60,7 @@ pub fn artifact(receiver: &Receiver) -> Result<Artifact, GenError> {
             name => receiver.name.as_str(),
             version => env!("CARGO_PKG_VERSION"),
             hash => receiver.hash.as_str(),
+            tell => tell(&receiver.name, "clk_select %0d, ", "clk_select, ")?,
             encoder => encoder(&receiver.name)?,
             settings => format!("{:04X}", start.word()),
             other_settings => format!("{:04X}", other.word()),

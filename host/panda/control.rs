@@ -179,8 +179,16 @@ fn query(name: &str, state: &State<'_>) -> Result<String, &'static str> {
             false => Err("No such enumeration"),
         };
     }
-    if name.starts_with("*METADATA") {
-        return Ok(lines(std::iter::empty()));
+    if let Some(rest) = name.strip_prefix("*METADATA") {
+        let all = values(state).into_iter().filter(|v| v.0 == "METADATA");
+        let mut all = all.filter_map(|v| Some((v.1.split_once('.')?.1.to_owned(), v.2)));
+        return match rest.strip_prefix('.') {
+            None | Some("*") => Ok(lines(all.map(|(key, _)| key))),
+            Some(key) => {
+                let found = all.find(|(k, _)| k == key);
+                found.map(|(_, text)| value(text)).ok_or("No such metadata")
+            }
+        };
     }
     match name {
         "*IDN" => Ok(value(format_args!(
@@ -347,6 +355,11 @@ mod tests {
             ("*PCAP.STATUS?", "OK =Idle 0 0\n"),
             ("INENC2.CAUSE?", "OK =4\n"),
             ("*ECHO hello?", "OK =hello\n"),
+            (
+                "*METADATA.*?",
+                "!LABEL_INENC1\n!LABEL_INENC2\n!LABEL_PCAP1\n!LABEL_TRIGGER1\n.\n",
+            ),
+            ("*METADATA.LABEL_PCAP1?", "OK =Position capture\n"),
         ] {
             assert_eq!(ask(line), (expected.to_owned(), None), "{line}");
         }
@@ -363,6 +376,7 @@ mod tests {
             "INENC1.NOTHING?",
             "INENC9.VAL.X?",
             "*DESC.?",
+            "*METADATA.NO?",
             "TTLOUT1.VAL=ZERO",
             "\u{7}\u{1b}[2J?",
         ] {

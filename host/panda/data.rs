@@ -2,6 +2,8 @@
 
 use super::Column;
 use crate::feed::Row;
+use humantime::format_rfc3339_nanos;
+use std::time::SystemTime;
 
 /// Form that a client asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,8 +47,27 @@ pub fn clean(word: &str) -> String {
     graphic.take(40).collect()
 }
 
+/// When an acquisition was armed and when its first row came, if one has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Times {
+    /// Armed.
+    pub arm: SystemTime,
+    /// First row.
+    pub start: Option<SystemTime>,
+}
+
+impl Times {
+    /// Names and moments, as clients know them.
+    fn told(self) -> Vec<(&'static str, String)> {
+        let start = self.start.map(|time| ("start_time", time));
+        let all = std::iter::once(("arm_time", self.arm)).chain(start);
+        all.map(|(name, time)| (name, format_rfc3339_nanos(time).to_string()))
+            .collect()
+    }
+}
+
 /// What goes out when an acquisition begins.
-pub fn header(form: Form, columns: &[Column]) -> String {
+pub fn header(form: Form, columns: &[Column], times: Times) -> String {
     if !form.has_header {
         return String::new();
     }
@@ -62,7 +83,13 @@ pub fn header(form: Form, columns: &[Column]) -> String {
             )
         });
         let fields: String = fields.collect();
-        return format!("missed: 0\nprocess: {process}\nformat: {format}\nfields:\n{fields}\n");
+        let times = times.told().into_iter();
+        let times: String = times
+            .map(|(name, time)| format!("{name}: {time}\n"))
+            .collect();
+        return format!(
+            "{times}missed: 0\nprocess: {process}\nformat: {format}\nfields:\n{fields}\n"
+        );
     }
     let fields = columns.iter().map(|c| {
         format!(
@@ -71,8 +98,12 @@ pub fn header(form: Form, columns: &[Column]) -> String {
         )
     });
     let fields: String = fields.collect();
+    let times = times.told().into_iter();
+    let times: String = times
+        .map(|(name, time)| format!("{name}=\"{time}\" "))
+        .collect();
     format!(
-        "<header>\n<data missed=\"0\" process=\"{process}\" format=\"{format}\" sample_bytes=\"{bytes}\" />\n<fields>\n{fields}</fields>\n</header>\n\n"
+        "<header>\n<data {times}missed=\"0\" process=\"{process}\" format=\"{format}\" sample_bytes=\"{bytes}\" />\n<fields>\n{fields}</fields>\n</header>\n\n"
     )
 }
 
@@ -113,6 +144,7 @@ mod tests {
     use super::*;
     use crate::feed::Cell;
     use crate::units::Scale;
+    use std::time::Duration;
 
     fn columns() -> Vec<Column> {
         Column::all(100, &[Scale::singleturn(4)])
@@ -148,9 +180,21 @@ mod tests {
     fn text_is_for_people() {
         let ascii = form("").unwrap();
         assert_eq!(rows(ascii, &columns(), &[row()]), b" 0.5 7 180 1 0\n");
-        assert!(header(ascii, &columns())
-            .contains(" INENC1.VAL double Value Scale: 22.5 Offset: 0 Units: deg\n"));
+        let arm = SystemTime::UNIX_EPOCH + Duration::from_millis(86_400_500);
+        let mut times = Times { arm, start: None };
+        let told = header(ascii, &columns(), times);
+        assert!(told.starts_with("arm_time: 1970-01-02T00:00:00.500000000Z\nmissed: 0\n"));
+        assert!(told.contains(" INENC1.VAL double Value Scale: 22.5 Offset: 0 Units: deg\n"));
         assert!(form("XML BASE64").is_err());
-        assert_eq!(header(form("XML FRAMED BARE").unwrap(), &columns()), "");
+        assert_eq!(
+            header(form("XML FRAMED BARE").unwrap(), &columns(), times),
+            ""
+        );
+        times.start = Some(arm + Duration::from_secs(1));
+        let told = header(form("XML").unwrap(), &columns(), times);
+        assert!(
+            told.contains(" start_time=\"1970-01-02T00:00:01.500000000Z\" missed="),
+            "{told}"
+        );
     }
 }

@@ -1,13 +1,14 @@
 //! Connections of both ports, and the acquisition.
 
 use super::control::{answer, changes, Seen, State, Wish};
+use super::data::Times;
 use super::{data, Column};
 use crate::feed::{Feed, Row};
 use crate::{Card, HostError, Transport};
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// Port that clients send commands to.
 pub const CONTROL_PORT: u16 = 8888;
@@ -120,6 +121,7 @@ struct DataClient {
 struct Acquisition {
     feed: Feed,
     rows: u64,
+    times: Times,
 }
 
 /// A card behind the two ports.
@@ -226,7 +228,6 @@ impl<'c, T: Transport> Server<'c, T> {
     }
 
     fn answer_datas(&mut self) {
-        let is_armed = self.acquisition.is_some();
         for each in &mut self.datas {
             for line in each.client.lines() {
                 let answer = match data::form(&line) {
@@ -238,10 +239,20 @@ impl<'c, T: Transport> Server<'c, T> {
                 };
                 each.client.send(answer.as_bytes());
             }
-            // A client that comes late gets what is left.
-            if let Some(form) = each.form.filter(|_| is_armed && !each.is_recording) {
-                each.client
-                    .send(data::header(form, &self.columns).as_bytes());
+        }
+        // A client that comes late gets what is left.
+        let times = self.acquisition.as_ref().map(|a| a.times);
+        if let Some(times) = times.filter(|times| times.start.is_some()) {
+            self.send_headers(times);
+        }
+    }
+
+    /// Begins the acquisition for those who have asked for data and do not have its header.
+    fn send_headers(&mut self, times: Times) {
+        for each in self.datas.iter_mut().filter(|d| !d.is_recording) {
+            if let Some(form) = each.form {
+                let header = data::header(form, &self.columns, times);
+                each.client.send(header.as_bytes());
                 each.is_recording = true;
             }
         }
@@ -249,7 +260,15 @@ impl<'c, T: Transport> Server<'c, T> {
 
     fn arm(&mut self) -> Result<(), HostError> {
         let feed = Feed::begin(self.card, false)?;
-        self.acquisition = Some(Acquisition { feed, rows: 0 });
+        let times = Times {
+            arm: SystemTime::now(),
+            start: None,
+        };
+        self.acquisition = Some(Acquisition {
+            feed,
+            rows: 0,
+            times,
+        });
         self.captured = 0;
         // Who is connected has every row.
         self.answer_datas();
@@ -276,6 +295,9 @@ impl<'c, T: Transport> Server<'c, T> {
         self.captured = acquisition.rows;
         let is_over = self.limit == Some(acquisition.rows);
         if let Some(last) = rows.last() {
+            acquisition.times.start.get_or_insert_with(SystemTime::now);
+            let times = acquisition.times;
+            self.send_headers(times);
             self.latest = Some(self.columns.iter().map(|c| c.raw(last)).collect());
             for each in self.datas.iter_mut().filter(|d| d.is_recording) {
                 if let Some(form) = each.form {
@@ -295,6 +317,8 @@ impl<'c, T: Transport> Server<'c, T> {
             return Ok(());
         };
         self.completion = reason;
+        // Also without a row a begin belongs to each end.
+        self.send_headers(acquisition.times);
         for each in self.datas.iter_mut().filter(|d| d.is_recording) {
             each.client
                 .send(data::end(acquisition.rows, reason).as_bytes());

@@ -5,7 +5,8 @@
 //   iverilog -g2005 -s s6_two_channel_tb -o tb.vvp s6_two_channel_tb.v -f s6_two_channel.f && vvp -n tb.vvp
 //   or: verilator --binary --timing --top-module s6_two_channel_tb s6_two_channel_tb.v -f s6_two_channel.f && obj_dir/Vs6_two_channel_tb
 // It says what it checks, and ends by itself: with the line PASS, or with FAIL, the number of complaints and an exit code that is not 0. Plusargs (vvp -n tb.vvp +vcd ...):
-// +vcd writes s6_two_channel_tb.vcd, +first ends with the first complaint, +abort also waits out the 30 ms after an aborted frame.
+// +vcd writes s6_two_channel_tb.vcd, +first ends with the first complaint, +abort also waits out the 30 ms after an aborted frame, +slow also tries
+// clock rates below 1 MHz.
 
 `timescale 1ns / 1ps
 `default_nettype none
@@ -250,6 +251,9 @@ module s6_two_channel_tb;
     localparam integer AGE_RECOVERY_RECOVERY_CYCLES_LSB = 16, AGE_RECOVERY_RECOVERY_CYCLES_BITS = 13;
     localparam integer AGE_RECOVERY_DELAY_HIGH_LSB = 29, AGE_RECOVERY_DELAY_HIGH_BITS = 1;
     localparam integer AGE_RECOVERY_STALE_LSB = 30, AGE_RECOVERY_STALE_BITS = 1;
+    localparam integer CROP_FIRST_BIT_LSB = 0, CROP_FIRST_BIT_BITS = 6;
+    localparam integer CROP_LENGTH_BITS_LSB = 8, CROP_LENGTH_BITS_BITS = 6;
+    localparam integer ERROR_CAUSES_CAUSES_LSB = 0, ERROR_CAUSES_CAUSES_BITS = 32;
     // Causes.
     localparam [4:0] NO_START_BIT = 5'd2;
     localparam [4:0] CRC = 5'd4;
@@ -257,6 +261,7 @@ module s6_two_channel_tb;
     localparam [4:0] F2 = 5'd6;
     localparam [4:0] DATA_NOT_FALLING = 5'd7;
     localparam [4:0] TRIGGER_OVERRUN = 5'd8;
+    localparam [4:0] WATCHDOG = 5'd15;
 
     reg clk;
     reg rst;
@@ -378,6 +383,14 @@ module s6_two_channel_tb;
     // What is checked next.
     task tell(input [8*60-1:0] what);
         $display("%0.0f ns: %0s", $realtime, what);
+    endtask
+
+    // The only system task that gives every simulator an exit code.
+    task fail;
+        begin
+            $display("FAIL %0d complaints", errors);
+            $fatal(1, "s6_two_channel_tb has failed");
+        end
     endtask
 
     task check(input [8*40-1:0] what, input [47:0] got, input [47:0] want);
@@ -639,6 +652,33 @@ module s6_two_channel_tb;
         end
     endtask
 
+    // Period of the clock of each channel: the shortest time between two rising edges of a frame.
+    real rise_time [0:CHANNELS-1];
+    real shortest [0:CHANNELS-1];
+    always @(posedge endat_clk[0]) begin
+        if ($realtime - rise_time[0] < shortest[0])
+            shortest[0] = $realtime - rise_time[0];
+        rise_time[0] = $realtime;
+    end
+    // A frame begins.
+    always @(negedge fallen[0])
+        shortest[0] = 1.0e9;
+    always @(posedge endat_clk[1]) begin
+        if ($realtime - rise_time[1] < shortest[1])
+            shortest[1] = $realtime - rise_time[1];
+        rise_time[1] = $realtime;
+    end
+    // A frame begins.
+    always @(negedge fallen[1])
+        shortest[1] = 1.0e9;
+
+    task check_periods(input real period_ns);
+        for (ch = 0; ch < CHANNELS; ch = ch + 1) if (ENDAT[ch])
+            check_range("period of the clock, ps", $rtoi(1000.0 * shortest[ch]), $rtoi(1000.0 * period_ns) - 2, $rtoi(1000.0 * period_ns) + 2);
+    endtask
+
+
+
     initial begin
         if ($test$plusargs("vcd")) begin
             $dumpfile("s6_two_channel_tb.vcd");
@@ -751,6 +791,79 @@ module s6_two_channel_tb;
         read_words(CARD_TRIGGER_COUNT, 1);
         check("trigger_count", word(0), trigger_count);
 
+        tell("clock rates");
+        // Every usual rate that this system clock makes, set as a host sets it.
+        begin
+            write_word(32'h108, 32'h381D0019);
+            write_word(32'h109, 32'h020600BC);
+            write_word(32'h10A, 32'h0C500012);
+            write_word(32'h110, 32'h381D0019);
+            write_word(32'h111, 32'h020600BC);
+            write_word(32'h112, 32'h0C500012);
+            #(SETTLE_NS);
+            new_positions;
+            frame(49280.0);
+            check_periods(250.0);
+        end
+        begin
+            write_word(32'h108, 32'h381D0032);
+            write_word(32'h109, 32'h020C00AF);
+            write_word(32'h10A, 32'h0C500012);
+            write_word(32'h110, 32'h381D0032);
+            write_word(32'h111, 32'h020C00AF);
+            write_word(32'h112, 32'h0C500012);
+            #(SETTLE_NS);
+            new_positions;
+            frame(60530.0);
+            check_periods(500.0);
+        end
+        begin
+            write_word(32'h108, 32'h381D0064);
+            write_word(32'h109, 32'h02190096);
+            write_word(32'h10A, 32'h0C500012);
+            write_word(32'h110, 32'h381D0064);
+            write_word(32'h111, 32'h02190096);
+            write_word(32'h112, 32'h0C500012);
+            #(SETTLE_NS);
+            new_positions;
+            frame(84030.0);
+            check_periods(1000.0);
+        end
+        if ($test$plusargs("slow")) begin
+            write_word(32'h108, 32'h381D01F4);
+            write_word(32'h109, 32'h021E0000);
+            write_word(32'h10A, 32'h0C500012);
+            write_word(32'h110, 32'h381D01F4);
+            write_word(32'h111, 32'h021E0000);
+            write_word(32'h112, 32'h0C500012);
+            #(SETTLE_NS);
+            new_positions;
+            frame(272530.0);
+            check_periods(5000.0);
+        end
+        if ($test$plusargs("slow")) begin
+            write_word(32'h108, 32'h381D03E8);
+            write_word(32'h109, 32'h021E0000);
+            write_word(32'h10A, 32'h0C50001C);
+            write_word(32'h110, 32'h381D03E8);
+            write_word(32'h111, 32'h021E0000);
+            write_word(32'h112, 32'h0C50001C);
+            #(SETTLE_NS);
+            new_positions;
+            frame(510030.0);
+            check_periods(10000.0);
+        end
+        write_word(32'h108, 32'h381D0020);
+        write_word(32'h109, 32'h020800B8);
+        write_word(32'h10A, 32'h0C500012);
+        write_word(32'h110, 32'h381D0020);
+        write_word(32'h111, 32'h020800B8);
+        write_word(32'h112, 32'h0C500012);
+        #(SETTLE_NS);
+        new_positions;
+        frame(CYCLE_NS);
+
+
         tell("trigger of the host");
         // The host's trigger, when the pin is switched off.
         write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_REGISTER_LSB);
@@ -799,14 +912,6 @@ module s6_two_channel_tb;
             else
                 fail;
             $finish;
-        end
-    endtask
-
-    // The only system task that gives every simulator an exit code.
-    task fail;
-        begin
-            $display("FAIL %0d complaints", errors);
-            $fatal(1, "s6_two_channel_tb has failed");
         end
     endtask
 

@@ -133,6 +133,11 @@ impl<E: Engine> Bench<E> {
         &self.t_format[index].link
     }
 
+    /// Number of T-format encoders.
+    pub fn t_format_count(&self) -> usize {
+        self.t_format.len()
+    }
+
     /// The same, to make something wrong with it.
     pub fn t_format_mut(&mut self, index: usize) -> &mut TFormatLink {
         &mut self.t_format[index].link

@@ -29,6 +29,10 @@ pub struct TFormatLink {
     data: bool,
     /// Nobody is plugged in.
     is_open: bool,
+    /// What the receiver does, at the encoder's pins.
+    arrived: Drive,
+    /// The line at the encoder's pins, if it is kept: changes with their times.
+    trace: Option<Vec<(Time, bool)>>,
 }
 
 impl TFormatLink {
@@ -45,12 +49,33 @@ impl TFormatLink {
             sent: true,
             data: true,
             is_open: false,
+            arrived: Drive::Released,
+            trace: None,
         }
     }
 
     /// Its shaft moves like this; it latches with the start bit of a request.
     pub fn set_motion(&mut self, motion: TFormatMotion) {
         self.motion = Some(motion);
+    }
+
+    /// From now on every change of the line at the encoder is kept.
+    pub fn record(&mut self) {
+        self.trace = Some(vec![(0, true)]);
+    }
+
+    /// The line at the encoder's pins, HIGH where nobody drives it; empty unless it is recorded.
+    pub fn trace(&self) -> &[(Time, bool)] {
+        self.trace.as_deref().unwrap_or_default()
+    }
+
+    fn note(&mut self, time: Time) {
+        let level = self.arrived != Drive::Low && self.encoder.output() != Drive::Low;
+        if let Some(trace) = &mut self.trace {
+            if trace.last().is_none_or(|(_, last)| *last != level) {
+                trace.push((time, level));
+            }
+        }
     }
 
     /// Unplugs the encoder.
@@ -111,6 +136,7 @@ impl TFormatLink {
             self.sent = level;
             self.to_receiver.push_back((time + self.delay, level));
         }
+        self.note(time);
     }
 
     fn hear(&mut self, time: Time, drive: Drive) {
@@ -125,6 +151,7 @@ impl TFormatLink {
             }
             self.heard = Some(time);
         }
+        self.arrived = drive;
         self.encoder.receiver(time, drive);
     }
 }

@@ -38,7 +38,7 @@ path{fill:none}.axis{stroke:#374151;stroke-width:1}.grid{stroke:#e5e7eb;stroke-w
 .expected{stroke:#111827;stroke-width:1;stroke-dasharray:4 3}.margin{stroke:#c2410c;stroke-width:1.2}";
 
 const LEFT: f64 = 64.0;
-const TOP: f64 = 112.0;
+const TOP: f64 = 120.0;
 const HEIGHT: f64 = 240.0;
 const BIN: f64 = 22.0;
 
@@ -125,7 +125,8 @@ pub fn edges_svg(edges: &Edges, title: &str) -> String {
         svg.rect(LEFT, TOP, (x(-half) - LEFT).max(0.0), HEIGHT, "far");
         svg.rect(x(half), TOP, right - x(half), HEIGHT, "far");
     }
-    let most = f64::from(edges.bins.iter().copied().max().unwrap_or(0).max(1));
+    // Some room above the highest.
+    let most = 1.08 * f64::from(edges.bins.iter().copied().max().unwrap_or(0).max(1));
     let (counts, _) = ticks(0.0, most);
     for count in counts {
         let y = bottom - HEIGHT * count / most;

@@ -20,6 +20,17 @@ pub(super) enum Part {
     Supplement,
 }
 
+impl Part {
+    /// The CRC that fits its bits, and the one that came. What the receiver sends has none.
+    fn crcs(self, frame: &FrameLog) -> (u8, u8) {
+        match self {
+            Self::Answer => frame.crcs(0),
+            Self::Info(n) => frame.crcs(frame.head_len() + n as u32 * Info::BITS),
+            Self::Parameter | Self::Supplement => (0, 0),
+        }
+    }
+}
+
 /// Pieces of DATA that stand under one bracket.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -196,7 +207,17 @@ impl Group {
             }
             Kind::Data(_) => vec![format!("parameter 0x{value:04X}"), "parameter".into()],
             Kind::Block => vec![format!("block address 0x{value:02X}"), "block".into()],
-            Kind::Crc(_) => vec![format!("CRC 0x{value:02X}"), "CRC".into()],
+            Kind::Crc(part) => {
+                let (fits, came) = part.crcs(f);
+                let whole = format!("CRC 0x{value:02X}");
+                match fits == came {
+                    true => vec![whole, "CRC".into()],
+                    false => vec![
+                        format!("{whole}: wrong, 0x{fits:02X} fits"),
+                        format!("{whole}: wrong"),
+                    ],
+                }
+            }
             Kind::Pause => texts(&["pause: CLOCK stays LOW", "pause"]),
             Kind::Zeros => vec![format!("{} zeros", self.bits.len()), "zeros".into()],
             Kind::LeadOut => texts(&["LOW"]),
@@ -237,6 +258,11 @@ pub(super) fn fill(by: By) -> &'static str {
         By::Nobody => "f-nobody",
         By::Both => "f-both",
     }
+}
+
+/// Whether a piece is a bit that arrives wrong.
+pub(super) fn is_wrong(s: &Segment, frame: &FrameLog) -> bool {
+    matches!(s.meaning, Meaning::Answer(index, _) if frame.is_wrong_bit(index))
 }
 
 /// The class that fills a piece.

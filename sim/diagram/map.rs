@@ -1,6 +1,6 @@
 //! Draws a shmoo map: margin as a shade where all frames were good, a colour and a letter where not.
 
-use super::svg::{text_width, Anchor, Svg};
+use super::svg::{text_width, Anchor, Svg, BOLD_WIDTH};
 use crate::decimal;
 use crate::shmoo::{Axis, Fate, Map, Quantity, DECIMALS, PUBLISHED};
 
@@ -19,8 +19,7 @@ path{fill:none}rect{stroke:#ffffff;stroke-width:0.6}.frame{fill:none;stroke:#374
 /// Shades of the margin, from none to half a bit.
 const SHADES: usize = 8;
 const LEFT: f64 = 86.0;
-const TOP: f64 = 84.0;
-const LEGEND_WIDTH: f64 = 340.0;
+const TOP: f64 = 104.0;
 
 /// A map as SVG.
 pub fn map_svg(map: &Map, title: &str) -> String {
@@ -90,9 +89,8 @@ pub fn map_svg(map: &Map, title: &str) -> String {
         svg.line(&line, &format!("limit limit-{index}"));
     }
     let shown: Vec<usize> = limits.iter().map(|(index, _)| *index).collect();
-    let end = legend(&mut svg, map, right + 28.0, &shown);
-    let width = (right + 28.0 + LEGEND_WIDTH).max(head + 24.0);
-    svg.finish(width, end.max(bottom + 62.0), title, STYLE)
+    let (edge, end) = legend(&mut svg, map, right + 28.0, &shown);
+    svg.finish(edge.max(head) + 24.0, end.max(bottom + 62.0), title, STYLE)
 }
 
 /// The shade of a margin.
@@ -177,24 +175,20 @@ fn limits(map: &Map) -> Vec<(usize, Vec<(f64, f64)>)> {
     drawn.collect()
 }
 
-/// Margin, fates and limits beside the map; where it ends.
-fn legend(svg: &mut Svg, map: &Map, x: f64, limits: &[usize]) -> f64 {
+/// Margin, fates and limits beside the map; where it ends, to the right and below.
+fn legend(svg: &mut Svg, map: &Map, x: f64, limits: &[usize]) -> (f64, f64) {
     let mut y = TOP + 4.0;
-    svg.text(
-        x,
-        y,
-        Anchor::Start,
-        "head",
+    let mut edge = x + 26.0 * SHADES as f64;
+    let told = [
         "all frames good; smallest distance of a",
-    );
-    svg.text(
-        x,
-        y + 15.0,
-        Anchor::Start,
-        "head",
         "sample from a DATA edge, part of a bit",
-    );
-    y += 26.0;
+    ];
+    for text in told {
+        svg.text(x, y, Anchor::Start, "head", text);
+        edge = edge.max(x + text_width(text, 12.0) * BOLD_WIDTH);
+        y += 15.0;
+    }
+    y -= 4.0;
     for step in 0..SHADES {
         svg.rect(x + 26.0 * step as f64, y, 26.0, 16.0, &format!("m{step}"));
     }
@@ -221,6 +215,7 @@ fn legend(svg: &mut Svg, map: &Map, x: f64, limits: &[usize]) -> f64 {
         svg.text(x + 10.0, y + 12.0, Anchor::Middle, ink(*fate), &letter);
         let text = format!("{} ({} cells)", fate.title(), map.count(*fate));
         svg.text(x + 28.0, y + 12.0, Anchor::Start, "legend", &text);
+        edge = edge.max(x + 28.0 + text_width(&text, 11.5));
         y += 21.0;
     }
     if !limits.is_empty() {
@@ -230,14 +225,10 @@ fn legend(svg: &mut Svg, map: &Map, x: f64, limits: &[usize]) -> f64 {
     }
     for index in limits {
         svg.line(&[(x, y), (x + 20.0, y)], &format!("limit limit-{index}"));
-        svg.text(
-            x + 28.0,
-            y + 4.0,
-            Anchor::Start,
-            "legend",
-            PUBLISHED[*index].title,
-        );
+        let text = PUBLISHED[*index].title;
+        svg.text(x + 28.0, y + 4.0, Anchor::Start, "legend", text);
+        edge = edge.max(x + 28.0 + text_width(text, 11.5));
         y += 20.0;
     }
-    y + 16.0
+    (edge, y + 16.0)
 }

@@ -7,6 +7,7 @@ mod edges;
 mod groups;
 mod map;
 mod overview;
+mod rows;
 mod scale;
 mod series;
 mod svg;
@@ -27,8 +28,9 @@ pub use overview::overview_svg;
 pub use series::{series_svg, Series};
 pub use svg::is_drawing;
 
-use groups::{bit_name, fill, groups, segment_fill, stroke};
+use groups::{bit_name, fill, groups, is_wrong, segment_fill, stroke};
 use scale::Scale;
+use std::ops::Range;
 use svg::{text_width, Anchor, Svg};
 
 const STYLE: &str = "\
@@ -41,10 +43,12 @@ path{fill:none}.clock{stroke:#111827;stroke-width:1.4}.grid{stroke:#e5e7eb;strok
 .receiver{stroke:#1d4ed8;stroke-width:1.8}.encoder{stroke:#b45309;stroke-width:1.8}.nobody{stroke:#9ca3af;stroke-width:1.4;stroke-dasharray:4 3}\
 .both,.glitch{stroke:#dc2626;stroke-width:2.2}.axis{stroke:#6b7280;stroke-width:1}.dimline{stroke:#c2410c;stroke-width:1}\
 .bracket{stroke:#9ca3af;stroke-width:1}.cell{stroke:#ffffff;stroke-width:1.2}.gap{fill:#ffffff;stroke:none}.gapline{stroke:#9ca3af;stroke-width:1.1}\
-.f-receiver{fill:#dbeafe}.f-encoder{fill:#fef3c7}.f-nobody{fill:#f3f4f6}.f-both{fill:#fecaca}.f-start{fill:#fcd34d}.f-crc{fill:#fde68a}\
+.f-receiver{fill:#dbeafe}.f-encoder{fill:#fef3c7}.f-nobody{fill:#f3f4f6}.f-both{fill:#fecaca}.f-start{fill:#fcd34d}.f-crc{fill:#fde68a}.f-wrong{fill:#f87171}\
 .f-idle{fill:#fffbeb}.f-address{fill:#fdba74}.f-data{fill:#ffedd5}.f-info{fill:#dfb8d3}\
 .f-sent-zero{fill:#eff6ff}.f-sent-start{fill:#60a5fa}.f-sent-address{fill:#93c5fd}.f-sent-data{fill:#bfdbfe}";
 
+/// Between a row and the next.
+const ROW_GAP: f64 = 26.0;
 /// Place of the first moment on the page.
 const LEFT: f64 = 118.0;
 const RIGHT: f64 = 40.0;
@@ -85,7 +89,10 @@ struct Diagram<'a> {
     /// First falling clock edge at the receiver: zero of the axis.
     zero: Time,
     begin: Time,
-    end: Time,
+    rows: Vec<Range<Time>>,
+    /// The row that is drawn, and where it begins on a page without rows.
+    row: Range<Time>,
+    shift: f64,
     segments: Vec<Segment>,
     far_segments: Vec<Segment>,
     both_ends: bool,
@@ -122,13 +129,17 @@ impl<'a> Diagram<'a> {
         let events = edges.filter(is_shown).chain(cuts).chain(ends);
         let events = events.filter(|t| (begin..=end).contains(t));
         let events = events.chain([begin, end]).collect();
+        let scale = Scale::new(events, LEFT, period, PERIOD_PIXELS, QUIET_PERIODS * period);
+        let cells: Vec<Time> = segments.iter().map(|s| s.from).collect();
         Some(Self {
-            scale: Scale::new(events, LEFT, period, PERIOD_PIXELS, QUIET_PERIODS * period),
+            rows: rows::cut(&scale, &cells, begin, end),
+            row: begin..end,
+            shift: 0.0,
+            scale,
             link,
             frame,
             zero,
             begin,
-            end,
             segments,
             far_segments,
             both_ends,
@@ -136,15 +147,22 @@ impl<'a> Diagram<'a> {
         })
     }
 
-    fn x(&self, time: Time) -> f64 {
-        self.scale.x(time.clamp(self.begin, self.end))
-    }
-
     fn draw(mut self, title: &str) -> String {
         let subtitle = self.subtitle();
-        let width = self.scale.end().max(self.svg.head(title, &subtitle)) + RIGHT;
-        self.legend(24.0, 78.0);
-        let rows = match self.both_ends {
+        let mut right = self.svg.head(title, &subtitle).max(self.legend(24.0, 78.0));
+        let mut y = 112.0;
+        for row in self.rows.clone() {
+            self.begin_row(&row);
+            y = self.draw_row(y) + ROW_GAP;
+            right = right.max(self.x(row.end));
+        }
+        let height = y - ROW_GAP + 16.0;
+        self.svg.finish(right + RIGHT, height, title, STYLE)
+    }
+
+    /// CLOCK, DATA, axis and times of a row, and the height that they need.
+    fn draw_row(&mut self, mut y: f64) -> f64 {
+        let tracks = match self.both_ends {
             false => vec![Row::Clock(End::Receiver), Row::Data(End::Receiver)],
             true => vec![
                 Row::Clock(End::Receiver),
@@ -153,9 +171,8 @@ impl<'a> Diagram<'a> {
                 Row::Data(End::Receiver),
             ],
         };
-        let mut y = 112.0;
-        for row in &rows {
-            match row {
+        for track in &tracks {
+            match track {
                 Row::Clock(end) => {
                     self.clock_row(*end, y + 12.0);
                     self.break_marks(y + 7.0, y + 17.0 + CLOCK_HEIGHT);
@@ -171,8 +188,7 @@ impl<'a> Diagram<'a> {
         }
         self.axis(y);
         self.break_marks(y - 5.0, y + 5.0);
-        let bottom = self.dimensions(y + 44.0);
-        self.svg.finish(width, bottom + 16.0, title, STYLE)
+        self.dimensions(y + 44.0)
     }
 
     fn subtitle(&self) -> String {
@@ -194,7 +210,8 @@ impl<'a> Diagram<'a> {
         )
     }
 
-    fn legend(&mut self, mut x: f64, y: f64) {
+    /// Where it ends.
+    fn legend(&mut self, mut x: f64, y: f64) -> f64 {
         let entries = [
             (By::Receiver, "receiver drives"),
             (By::Encoder, "encoder drives"),
@@ -216,7 +233,15 @@ impl<'a> Diagram<'a> {
                 .line(&[(x + 4.0, y - 9.0), (x + 4.0, y + 1.0)], "glitch");
             self.svg
                 .text(x + 14.0, y, Anchor::Start, "legend", "glitch");
+            x += 14.0 + text_width("glitch", 11.5) + 22.0;
         }
+        if self.shown(|s| is_wrong(s, self.frame)) {
+            let text = "arrives wrong";
+            self.svg.rect(x, y - 10.0, 22.0, 12.0, "f-wrong");
+            self.svg.text(x + 29.0, y, Anchor::Start, "legend", text);
+            x += 29.0 + text_width(text, 11.5) + 22.0;
+        }
+        x
     }
 
     fn shown(&self, which: impl Fn(&Segment) -> bool) -> bool {
@@ -244,13 +269,23 @@ impl<'a> Diagram<'a> {
         };
         let bottom = top + CLOCK_HEIGHT;
         let level_y = |level: bool| if level { top } else { bottom };
-        let mut points = vec![(self.x(self.begin), top)];
+        let before_row = track
+            .iter()
+            .rfind(|e| e.0 > self.begin && e.0 < self.row.start);
+        let first_level = before_row.is_none_or(|e| e.1);
+        let mut points = vec![(self.x(self.row.start), level_y(first_level))];
         let mut count = 0;
         let mut hidden = None;
         let mut labels = Vec::new();
-        for (time, level) in track.iter().filter(|e| e.0 > self.begin && e.0 < self.end) {
+        for (time, level) in track
+            .iter()
+            .filter(|e| e.0 > self.begin && e.0 < self.row.end)
+        {
             let counts = *level && *time > first;
             count += u32::from(counts);
+            if *time < self.row.start {
+                continue;
+            }
             if let Some(middle) = self.scale.middle_of_break(*time) {
                 hidden = Some(middle);
                 continue;
@@ -267,7 +302,7 @@ impl<'a> Diagram<'a> {
                 labels.push((x, count));
             }
         }
-        points.push((self.x(self.end), points.last().map_or(top, |p| p.1)));
+        points.push((self.x(self.row.end), points.last().map_or(top, |p| p.1)));
         self.svg.line(&points, "clock");
         self.row_name("CLOCK", end, top + CLOCK_HEIGHT / 2.0 + 4.0);
         let marked = [
@@ -290,6 +325,10 @@ impl<'a> Diagram<'a> {
         let bottom = top + DATA_HEIGHT;
         let middle = top + DATA_HEIGHT / 2.0;
         let segments = self.segments_at(end).to_vec();
+        let segments: Vec<Segment> = segments
+            .into_iter()
+            .filter(|s| self.is_in_row(&(s.from..s.until)))
+            .collect();
         let y_of = |level: Level| match level {
             Level::High => top + 3.0,
             Level::Low => bottom - 3.0,
@@ -297,7 +336,11 @@ impl<'a> Diagram<'a> {
         };
         for s in &segments {
             let (a, b) = (self.x(s.from), self.x(s.until));
-            self.svg.rect(a, top, b - a, DATA_HEIGHT, segment_fill(s));
+            let class = match is_wrong(s, self.frame) {
+                true => "f-wrong",
+                false => segment_fill(s),
+            };
+            self.svg.rect(a, top, b - a, DATA_HEIGHT, class);
         }
         let mut before: Option<f64> = None;
         let mut named = None;
@@ -317,8 +360,10 @@ impl<'a> Diagram<'a> {
             };
             self.svg.line(&points, class);
             before = Some(y);
-            if let Some(label) = name.filter(|_| named != Some(s.meaning)) {
-                if text_width(&label, 9.0) < b - a {
+            let is_home = self.is_home(&(s.from..s.until));
+            if let Some(label) = name.filter(|_| is_home && named != Some(s.meaning)) {
+                // What a row cuts off makes no room less.
+                if text_width(&label, 9.0) < self.scale.x(s.until) - self.scale.x(s.from) {
                     named = Some(s.meaning);
                     self.svg
                         .text((a + b) / 2.0, middle + 3.2, Anchor::Middle, "bit", &label);
@@ -338,6 +383,10 @@ impl<'a> Diagram<'a> {
     /// What the cells belong to, above them.
     fn field_brackets(&mut self, end: End, y: f64) {
         for group in groups(self.segments_at(end), self.frame) {
+            let span = group.from..group.until;
+            if !self.is_in_row(&span) {
+                continue;
+            }
             let (a, b) = (self.x(group.from), self.x(group.until));
             let fits = |t: &String| text_width(t, 11.0) < b - a - 2.0;
             let Some(text) = group.texts(self.frame).into_iter().find(fits) else {
@@ -345,12 +394,19 @@ impl<'a> Diagram<'a> {
             };
             let (top, bottom) = (y + 10.0, y + 18.0);
             let (l, r) = (a + 1.5, b - 1.5);
-            self.svg.line(
-                &[(l, bottom), (l, top + 4.0), (r, top + 4.0), (r, bottom)],
-                "bracket",
-            );
-            self.svg
-                .text((a + b) / 2.0, top, Anchor::Middle, "field", &text);
+            let mut bracket = vec![(l, top + 4.0), (r, top + 4.0)];
+            // Open where it goes on in another row.
+            if group.from >= self.row.start {
+                bracket.insert(0, (l, bottom));
+            }
+            if group.until <= self.row.end {
+                bracket.push((r, bottom));
+            }
+            self.svg.line(&bracket, "bracket");
+            if self.is_home(&span) {
+                self.svg
+                    .text((a + b) / 2.0, top, Anchor::Middle, "field", &text);
+            }
         }
     }
 }

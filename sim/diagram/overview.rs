@@ -2,19 +2,22 @@
 
 use super::{
     groups::command_name,
-    svg::{Anchor, Svg},
+    svg::{text_width, Anchor, Svg},
     LEFT, RIGHT, STYLE,
 };
 use crate::{
     bench::Link,
-    encoder::{AnswerKind, FrameLog},
+    encoder::{AnswerKind, FrameEnd, FrameLog, Symbol},
     frame::Parameter,
     Time, MS, US,
 };
+use std::ops::Range;
 
 /// A frame, and the pause before it.
 const FRAME_WIDTH: f64 = 172.0;
 const PAUSE_WIDTH: f64 = 72.0;
+/// A pause without an encoder.
+const ABSENT_WIDTH: f64 = 118.0;
 /// Frames in a line.
 const FRAMES: usize = 6;
 const LINE_HEIGHT: f64 = 132.0;
@@ -28,10 +31,11 @@ const STROKES: f64 = 4.0;
 /// Every frame of a link as SVG; none if there are none.
 pub fn overview_svg(link: &Link, title: &str) -> Option<String> {
     let frames = link.encoder().frames();
+    let absent = absent(link);
     let mut before = 0;
     let mut svg = Svg::new();
-    let subtitle = "each frame: clock, DATA (blue: the receiver sends, yellow: the encoder answers), what it is, when it begins; between frames the pause";
-    let head = svg.head(title, subtitle);
+    let subtitle = "each frame: clock, DATA (blue: the receiver sends, yellow: the encoder answers, red: wrong), what it is, when it begins; between frames the pause";
+    let mut right = svg.head(title, subtitle);
     for (line, frames) in frames.chunks(FRAMES).enumerate() {
         let y = 84.0 + LINE_HEIGHT * line as f64;
         for (text, y) in [
@@ -40,18 +44,64 @@ pub fn overview_svg(link: &Link, title: &str) -> Option<String> {
         ] {
             svg.text(24.0, y, Anchor::Start, "name", text);
         }
-        for (place, frame) in frames.iter().enumerate() {
-            let x = LEFT + (FRAME_WIDTH + PAUSE_WIDTH) * place as f64;
-            pause(&mut svg, x, y, frame.first_fall.saturating_sub(before));
-            draw(&mut svg, x + PAUSE_WIDTH, y, frame);
+        let mut x = LEFT;
+        for frame in frames {
+            x = pauses(&mut svg, x, y, before..frame.first_fall, &absent);
+            draw(&mut svg, x, y, frame);
+            x += FRAME_WIDTH;
             before = frame.data_fall.unwrap_or(frame.last_rise);
         }
+        right = right.max(x);
     }
     let lines = frames.len().div_ceil(FRAMES);
-    let longest = frames.len().min(FRAMES) as f64;
-    let width = head.max(LEFT + (FRAME_WIDTH + PAUSE_WIDTH) * longest) + RIGHT;
     let height = 84.0 + LINE_HEIGHT * lines as f64;
-    (lines > 0).then(|| svg.finish(width, height, title, STYLE))
+    (lines > 0).then(|| svg.finish(right + RIGHT, height, title, STYLE))
+}
+
+/// When there was no encoder: unplugged, or without supply.
+fn absent(link: &Link) -> Vec<Range<Time>> {
+    let outputs = link.trace().map_or(&[][..], |t| &t.encoder);
+    let ends = outputs.iter().skip(1).map(|o| o.0).chain([Time::MAX]);
+    let spans = outputs.iter().zip(ends);
+    let absent = spans.filter(|(o, _)| o.1.symbol == Symbol::Absent);
+    absent.map(|(o, end)| o.0..end).collect()
+}
+
+/// What is between two frames, which may be that there was no encoder; where it ends.
+fn pauses(svg: &mut Svg, mut x: f64, y: f64, span: Range<Time>, absent: &[Range<Time>]) -> f64 {
+    let mut from = span.start.min(span.end);
+    for gone in absent {
+        let (start, end) = (gone.start.max(from), gone.end.min(span.end));
+        if start >= end {
+            continue;
+        }
+        if start > from {
+            pause(svg, x, y, PAUSE_WIDTH, start - from);
+            x += PAUSE_WIDTH;
+        }
+        pause(svg, x, y, ABSENT_WIDTH, end - start);
+        nobody(svg, x, y + 34.0, ABSENT_WIDTH);
+        x += ABSENT_WIDTH;
+        from = end;
+    }
+    if from < span.end {
+        pause(svg, x, y, PAUSE_WIDTH, span.end - from);
+        x += PAUSE_WIDTH;
+    }
+    x
+}
+
+/// Nobody drives DATA, as there is no encoder.
+fn nobody(svg: &mut Svg, x: f64, y: f64, width: f64) {
+    svg.rect(x, y, width, DATA_HEIGHT, "gap");
+    svg.rect(x, y, width, DATA_HEIGHT, "f-nobody");
+    let (middle, text) = (x + width / 2.0, "no encoder");
+    let half = text_width(text, 11.0) / 2.0 + 3.0;
+    let row = y + DATA_HEIGHT / 2.0;
+    for (a, b) in [(x, middle - half), (middle + half, x + width)] {
+        svg.line(&[(a, row), (b, row)], "nobody");
+    }
+    svg.text(middle, row + 4.0, Anchor::Middle, "field", text);
 }
 
 /// A time for people, with three digits or more.
@@ -64,10 +114,10 @@ fn span(time: Time) -> String {
 }
 
 /// CLOCK HIGH, DATA LOW.
-fn pause(svg: &mut Svg, x: f64, y: f64, time: Time) {
-    let (data, end) = (y + 34.0, x + PAUSE_WIDTH);
+fn pause(svg: &mut Svg, x: f64, y: f64, width: f64, time: Time) {
+    let (data, end) = (y + 34.0, x + width);
     svg.line(&[(x, y), (end, y)], "clock");
-    idle(svg, x, data, PAUSE_WIDTH);
+    idle(svg, x, data, width);
     let (row, a, b) = (data + DATA_HEIGHT + 12.0, x + 3.0, end - 3.0);
     svg.line(&[(a, row), (b, row)], "dimline");
     for (x, side) in [(a, 4.0), (b, -4.0)] {
@@ -114,6 +164,7 @@ fn draw(svg: &mut Svg, x: f64, y: f64, frame: &FrameLog) {
         None => idle(svg, x, data, FRAME_WIDTH),
         Some(_) => {
             let answer = match frame.start_edge {
+                Some(_) if fault(frame).is_some() => "f-both",
                 Some(_) => "f-encoder",
                 None => "f-nobody",
             };
@@ -147,6 +198,18 @@ fn draw(svg: &mut Svg, x: f64, y: f64, frame: &FrameLog) {
     );
 }
 
+/// What is wrong with an answer.
+fn fault(f: &FrameLog) -> Option<&'static str> {
+    match f.errors {
+        _ if f.end == FrameEnd::Lost => Some("cut off"),
+        _ if !f.all_crcs_fit() => Some("CRC wrong"),
+        (true, Some(false)) => Some("F1 and F2"),
+        (true, _) => Some("error F1"),
+        (_, Some(false)) => Some("error F2"),
+        _ => None,
+    }
+}
+
 /// What a frame is, what the receiver sent, what came back.
 fn texts(f: &FrameLog) -> (String, String, String) {
     let word = |p: Parameter| format!("{:02X} {:04X}", p.address, p.data);
@@ -159,6 +222,7 @@ fn texts(f: &FrameLog) -> (String, String, String) {
     };
     let came = match (f.start_edge, f.kind, f.reply) {
         (None, ..) => "no start bit".into(),
+        _ if fault(f).is_some() => fault(f).unwrap_or_default().into(),
         (_, AnswerKind::Parameter, Some(reply)) => word(reply),
         // Wider ones have no room.
         (_, AnswerKind::Position, _) if f.position < 1 << 36 => format!("{:#X}", f.position),

@@ -79,9 +79,9 @@ impl Scale {
         Some((self.x(found.from) + self.x(found.until)) / 2.0)
     }
 
-    /// The right end.
-    pub(super) fn end(&self) -> f64 {
-        self.knots.last().map_or(0.0, |k| k.1)
+    /// The events, none of them inside a shortened span.
+    pub(super) fn events(&self) -> impl Iterator<Item = Time> + '_ {
+        self.knots.iter().map(|k| k.0)
     }
 }
 
@@ -98,6 +98,6 @@ mod tests {
         );
         assert_eq!(s.x(600), 60.0);
         assert!(s.in_break(600) && !s.in_break(100) && !s.in_break(1150));
-        assert_eq!(s.end(), 110.0);
+        assert_eq!(s.x(9999), 110.0);
     }
 }

@@ -13,8 +13,20 @@ pub struct Series {
     pub unit: String,
     /// Seconds and value; a gap where there was none.
     pub points: Vec<(f64, Option<f64>)>,
+    /// The value that is 0 again, as 360 degrees are; none if there is none. A step over it is no line.
+    pub wraps_at: Option<f64>,
     /// Seconds at which there should have been one: marked at the foot of the panel, never thinned out.
     pub bad: Vec<f64>,
+}
+
+impl Series {
+    /// Whether the shorter way from one value to the next is over the wrap.
+    fn is_wrapped(&self, before: Option<f64>, value: Option<f64>) -> bool {
+        match (before, value, self.wraps_at) {
+            (Some(a), Some(b), Some(turn)) => (b - a).abs() > turn / 2.0,
+            _ => false,
+        }
+    }
 }
 
 const STYLE: &str = "\
@@ -34,6 +46,8 @@ const POINTS_MAX: usize = 1640;
 const COLOURS: usize = 4;
 /// Height of a mark.
 const MARK: f64 = 9.0;
+/// Room above and below the values: part of their range.
+const HEADROOM: f64 = 0.08;
 
 /// Lowest and highest of some numbers; a little apart if they are all the same.
 fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
@@ -78,6 +92,8 @@ pub fn series_svg(series: &[Series], title: &str, subtitle: &str) -> String {
         }
         svg.text(LEFT, top - 9.0, Anchor::Start, "name", &label);
         let (low, high) = range(one.points.iter().filter_map(|p| p.1)).unwrap_or((0.0, 1.0));
+        let room = (high - low) * HEADROOM;
+        let (low, high) = (low - room, high + room);
         let y = |value: f64| bottom - HEIGHT * (value - low) / (high - low);
         let (values, digits) = ticks(low, high);
         for value in values {
@@ -94,14 +110,14 @@ pub fn series_svg(series: &[Series], title: &str, subtitle: &str) -> String {
         let every = one.points.len().div_ceil(POINTS_MAX).max(1);
         let mut line = Vec::new();
         let class = format!("series-{}", index % COLOURS);
+        let mut before = None;
         for (time, value) in one.points.iter().step_by(every) {
-            match value {
-                Some(value) => line.push((x(*time), y(*value))),
-                None => {
-                    svg.line(&line, &class);
-                    line.clear();
-                }
+            if value.is_none() || one.is_wrapped(before, *value) {
+                svg.line(&line, &class);
+                line.clear();
             }
+            line.extend(value.map(|value| (x(*time), y(value))));
+            before = *value;
         }
         svg.line(&line, &class);
         // One mark for each column, however many fall on it.
@@ -169,6 +185,26 @@ mod tests {
         };
         let svg = series_svg(std::slice::from_ref(&one), "log", "");
         assert_eq!(svg.matches("class=\"series-0\"").count(), 2);
+        let turning = Series {
+            points: [350.0, 355.0, 1.0, 6.0, 359.0]
+                .iter()
+                .enumerate()
+                .map(|(n, v)| (n as f64, Some(*v)))
+                .collect(),
+            wraps_at: Some(360.0),
+            ..one.clone()
+        };
+        let svg = series_svg(std::slice::from_ref(&turning), "log", "");
+        assert_eq!(svg.matches("class=\"series-0\"").count(), 3);
+        // Nothing stands on the frame.
+        let tops = svg.lines().filter(|l| l.contains("class=\"series-0\""));
+        let tops = tops.flat_map(|l| l.split('"').nth(3).unwrap().split(" L"));
+        let tops = tops.map(|p| p.split(' ').nth(1).unwrap().parse().unwrap());
+        let (high, low) = range(tops).unwrap();
+        assert!(
+            high > TOP + 5.0 && low < TOP + HEIGHT - MARK,
+            "{high} {low}"
+        );
         let long = Series {
             points: (0..100_000).map(|n| (n as f64, Some(0.0))).collect(),
             ..one

@@ -37,7 +37,7 @@ pub fn is_drawing(head: &str) -> bool {
 const CHARACTER_WIDTH: f64 = 0.57;
 
 /// How much wider bold characters are.
-const BOLD_WIDTH: f64 = 1.2;
+pub(super) const BOLD_WIDTH: f64 = 1.2;
 
 /// Estimated width of a text.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {

@@ -5,11 +5,15 @@ use super::{
     Diagram,
 };
 use crate::{Time, US};
+use std::ops::Range;
 
 impl Diagram<'_> {
     pub(super) fn break_marks(&mut self, top: f64, bottom: f64) {
         for b in self.scale.breaks.clone() {
-            let x = (self.scale.x(b.from) + self.scale.x(b.until)) / 2.0;
+            if !self.is_in_row(&(b.from..b.until)) {
+                continue;
+            }
+            let x = (self.x(b.from) + self.x(b.until)) / 2.0;
             let wave = |x: f64| {
                 let mut d = format!("M{x:.1} {top:.1}");
                 let mut y = top;
@@ -30,7 +34,7 @@ impl Diagram<'_> {
     }
 
     pub(super) fn axis(&mut self, y: f64) {
-        let (from, until) = (self.x(self.begin), self.x(self.end));
+        let (from, until) = (self.x(self.row.start), self.x(self.row.end));
         self.svg.line(&[(from, y), (until, y)], "axis");
         self.svg
             .text(24.0, y + 4.0, Anchor::Start, "end", "time in us");
@@ -40,9 +44,9 @@ impl Diagram<'_> {
         let step = (step_us * US as f64) as Time;
         let mut last_x = f64::MIN;
         let mut time = self.zero;
-        while time < self.end {
+        while time < self.row.end {
             let x = self.x(time);
-            if !self.scale.in_break(time) && x - last_x > 34.0 {
+            if time >= self.row.start && !self.scale.in_break(time) && x - last_x > 34.0 {
                 let value = (time - self.zero) as f64 / US as f64;
                 let text = match step_us < 1.0 {
                     true => format!("{value:.1}"),
@@ -81,22 +85,35 @@ impl Diagram<'_> {
             f.last_rise,
             format!("frame {:.3} us", us(f.last_rise - f.first_fall)),
         ));
-        let rows = spans.len();
-        for (i, (from, until, text)) in spans.into_iter().enumerate() {
-            let (from, until) = (at_receiver(from), at_receiver(until));
-            self.dimension(y + 20.0 * i as f64, from, until, &text);
+        let mut place = y - 20.0;
+        for (from, until, text) in spans {
+            let span = at_receiver(from)..at_receiver(until);
+            if self.is_in_row(&span) {
+                place += 20.0;
+                self.dimension(place, &span, &text);
+            }
         }
+        // Beside the frame that it follows.
         if let Some(fall) = f.data_fall {
             let text = format!("tm {:.3} us", us(fall - f.last_rise));
-            let row = y + 20.0 * (rows - 1) as f64;
-            self.dimension(row, at_receiver(f.last_rise), at_receiver(fall), &text);
+            let span = at_receiver(f.last_rise)..at_receiver(fall);
+            if self.is_in_row(&span) {
+                place = place.max(y);
+                self.dimension(place, &span, &text);
+            }
         }
-        y + 20.0 * rows as f64
+        place + 20.0
     }
 
-    fn dimension(&mut self, y: f64, from: Time, until: Time, text: &str) {
-        let (a, b) = (self.x(from), self.x(until));
-        for (x, side) in [(a, 5.0), (b, -5.0)] {
+    /// A time with its arrows; open where it goes on in another row.
+    fn dimension(&mut self, y: f64, span: &Range<Time>, text: &str) {
+        let (a, b) = (self.x(span.start), self.x(span.end));
+        let ends = [(span.start, 5.0), (span.end, -5.0)];
+        for (time, side) in ends {
+            if !(self.row.start..=self.row.end).contains(&time) {
+                continue;
+            }
+            let x = self.x(time);
             self.svg.line(&[(x, y - 5.0), (x, y + 5.0)], "dimline");
             self.svg.line(
                 &[(x + side, y - 2.5), (x, y), (x + side, y + 2.5)],
@@ -104,6 +121,9 @@ impl Diagram<'_> {
             );
         }
         self.svg.line(&[(a, y), (b, y)], "dimline");
+        if !self.is_home(span) {
+            return;
+        }
         let width = text_width(text, 11.0);
         if width + 16.0 < b - a {
             let middle = (a + b) / 2.0;

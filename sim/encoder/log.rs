@@ -3,7 +3,7 @@
 use super::ErrorSource;
 use crate::{
     frame::{
-        info_field, parameter_field, position_field, AnswerBits, Field, Info, Parameter,
+        crc5, info_field, parameter_field, position_field, AnswerBits, Field, Info, Parameter,
         PositionAnswer, CRC_BITS,
     },
     Time, US,
@@ -159,16 +159,56 @@ impl FrameLog {
 
     /// Whether the answer is, bit by bit, what a sound encoder would send for this position and these additional informations.
     pub fn is_true_answer(&self, position_bits: u32, f2: bool) -> bool {
-        let good = PositionAnswer {
-            f1: false,
-            f2: f2.then_some(true),
+        self.answer == self.true_position((false, f2.then_some(true)), position_bits)
+    }
+
+    fn true_position(&self, (f1, f2): (bool, Option<bool>), position_bits: u32) -> AnswerBits {
+        let head = PositionAnswer {
+            f1,
+            f2,
             position: self.position,
             position_bits,
         };
-        let mut bits = good.bits();
+        let mut bits = head.bits();
         for (info, _) in &self.infos {
             bits.append(&info.bits_with_crc(info.crc()));
         }
-        self.answer == bits
+        bits
+    }
+
+    /// Whether bit `index` of the answer is another one than that of its position, error bits, parameter or additional information. What
+    /// test values should be is not recorded.
+    pub fn is_wrong_bit(&self, index: u32) -> bool {
+        let good = match (self.kind, self.reply) {
+            (AnswerKind::Position, _) => self.true_position(self.errors, self.position_bits),
+            (AnswerKind::Parameter, Some(reply)) => reply.bits_with_crc(reply.crc()),
+            _ => return false,
+        };
+        index < self.answer.len && good.get(index) != self.answer.get(index)
+    }
+
+    /// The CRC that fits the bits of the part of the answer with bit `index`, and the one that came.
+    pub fn crcs(&self, index: u32) -> (u8, u8) {
+        let head = self.head_len();
+        let (first, len) = match index.checked_sub(head) {
+            None => (0, head),
+            Some(beyond) => (head + beyond / Info::BITS * Info::BITS, Info::BITS),
+        };
+        let covered = (first + 1..first + len - CRC_BITS).map(|i| self.answer.get(i));
+        let came = (first + len - CRC_BITS..first + len).map(|i| self.answer.get(i));
+        let came = came.fold(0, |crc, bit| crc << 1 | u8::from(bit));
+        (crc5(covered), came)
+    }
+
+    /// Whether every CRC of the answer fits what it covers.
+    pub fn all_crcs_fit(&self) -> bool {
+        let parts = (0..=self.infos.len() as u32).map(|n| match n {
+            0 => 0,
+            n => self.head_len() + (n - 1) * Info::BITS,
+        });
+        self.kind == AnswerKind::None
+            || parts
+                .map(|first| self.crcs(first))
+                .all(|(fits, came)| fits == came)
     }
 }

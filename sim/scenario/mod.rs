@@ -2,6 +2,7 @@
 
 mod list;
 mod report;
+pub mod t_format;
 #[cfg(test)]
 mod tests;
 

@@ -1,7 +1,7 @@
 //! Waveform files of a bench: VCD for any viewer, and a GTKWave layout that opens with the signals grouped.
 
 use crate::{
-    bench::{Bench, Link},
+    bench::{Bench, Link, TFormatLink},
     engine::Engine,
     line::End,
     segments::{data_segments, By, Level, Segment},
@@ -64,24 +64,37 @@ pub fn is_layout(head: &str) -> bool {
 
 /// CLOCK and DATA of a link at the encoder's end as two scalars, in nanoseconds: what logic analysers' programs read.
 pub fn write_wires(link: &Link, out: impl Write) -> io::Result<()> {
+    let (clock, data) = link.trace().map_or((&[][..], &[][..]), |t| {
+        (&t.clock_at_encoder, &t.data_at_encoder)
+    });
+    // DATA of the same nanosecond is there when CLOCK changes.
+    write_scalars(&[("data", data), ("clk", clock)], None, out)
+}
+
+/// The line of a T-format link at the encoder's end, in the same way.
+pub fn write_t_format_wires(link: &TFormatLink, end: Time, out: impl Write) -> io::Result<()> {
+    // The last bits of a reply may be without an edge.
+    write_scalars(&[("data", link.trace())], Some(end), out)
+}
+
+/// Named wires with their changes; those of the same nanosecond in this order.
+fn write_scalars(
+    wires: &[(&str, &[(Time, bool)])],
+    end: Option<Time>,
+    out: impl Write,
+) -> io::Result<()> {
     let mut w = vcd::Writer::new(out);
     w.version(&format!("{PROGRAM} {}", env!("CARGO_PKG_VERSION")))?;
     w.timescale(1, TimescaleUnit::NS)?;
     w.add_module(TOP)?;
-    let (clk, data) = (w.add_wire(1, "clk")?, w.add_wire(1, "data")?);
+    let mut changes = vec![];
+    for (name, wire) in wires {
+        let id = w.add_wire(1, name)?;
+        changes.extend(wire.iter().map(|(time, level)| (time / NS, id, *level)));
+    }
     w.upscope()?;
     w.enddefinitions()?;
-    let Some(trace) = link.trace() else {
-        return Ok(());
-    };
-    let of = |changes: &[(Time, bool)], id: IdCode| -> Vec<(Time, IdCode, bool)> {
-        let change = |(time, level): &(Time, bool)| (time / NS, id, *level);
-        changes.iter().map(change).collect()
-    };
-    let mut changes = of(&trace.clock_at_encoder, clk);
-    changes.extend(of(&trace.data_at_encoder, data));
-    // DATA of the same nanosecond is there when CLOCK changes.
-    changes.sort_by_key(|(time, id, _)| (*time, *id == clk));
+    changes.sort_by_key(|(time, ..)| *time);
     let mut now = None;
     for (time, id, level) in changes {
         if now != Some(time) {
@@ -89,6 +102,9 @@ pub fn write_wires(link: &Link, out: impl Write) -> io::Result<()> {
             now = Some(time);
         }
         w.change_scalar(id, level)?;
+    }
+    if let Some(end) = end {
+        w.timestamp(end / NS)?;
     }
     Ok(())
 }
@@ -106,6 +122,18 @@ impl Wave {
                 signals: link_signals(bench.link(i), end),
             })
             .collect();
+        groups.extend((0..bench.t_format_count()).map(|i| {
+            let line = bench.t_format(i).trace().iter();
+            let changes = line.map(|(t, level)| (*t, Held::Level(Level::driven(*level))));
+            Group {
+                name: format!("t_format{i}"),
+                signals: vec![Signal {
+                    name: "data".into(),
+                    kind: Kind::Bit,
+                    changes: changes.collect(),
+                }],
+            }
+        }));
         if !bench.watched().is_empty() {
             let signals = bench.watched().iter().map(|w| {
                 let kind = match w.width_bits() {

@@ -5,12 +5,15 @@ import asyncio
 import os
 import subprocess
 import sys
+from datetime import datetime
 from pathlib import Path
 
 import h5py
 import numpy as np
 from pandablocks.asyncio import AsyncioClient
-from pandablocks.commands import Get, GetBlockInfo, GetFieldInfo, Identify
+from pandablocks.blocking import BlockingClient
+from pandablocks.commands import Arm, Get, GetBlockInfo, GetFieldInfo, GetState, Identify
+from pandablocks.responses import EndData, ReadyData, StartData
 
 SAMPLES = 400
 RATE_HZ = 10_000
@@ -25,6 +28,22 @@ async def introspect():
         assert blocks["INENC"].number == CHANNELS, blocks
         fields = await client.send(GetFieldInfo("INENC"))
         assert fields["VAL"].type == "pos_out", fields
+        # What `pandablocks save` writes.
+        state = await client.send(GetState())
+        assert "*METADATA.LABEL_INENC1=EnDat encoder" in state and "INENC1.VAL.UNITS=deg" in state, state
+
+
+def metadata():
+    # The header of an acquisition, as every client sees it.
+    with BlockingClient("127.0.0.1") as client:
+        data = client.data(scaled=False)
+        assert isinstance(next(data), ReadyData)
+        client.send(Arm())
+        start = next(d for d in data if isinstance(d, StartData))
+        units = {field.name: field.units for field in start.fields}
+        assert units["INENC1.VAL"] == "deg" and units["PCAP.TS_TRIG"] == "s", units
+        assert all(field.scale > 0 for field in start.fields)
+        next(d for d in data if isinstance(d, EndData))
 
 
 def ioc():
@@ -54,8 +73,10 @@ def main(program, folder, *more):
             line = server.stdout.readline().strip()
             assert line == expected, line
         asyncio.run(introspect())
+        metadata()
         if "ioc" in more:
             ioc()
+        before = datetime.utcnow()
         scheme = str(Path(folder) / "run-%d.h5")
         subprocess.run(
             ["pandablocks", "hdf", "127.0.0.1", scheme, "--num=2", "--arm"], check=True, timeout=300
@@ -65,6 +86,8 @@ def main(program, folder, *more):
         server.wait()
     for number in (1, 2):
         with h5py.File(scheme % number) as file:
+            armed, started = (datetime.fromisoformat(file.attrs[name][:26]) for name in ("arm_time", "start_time"))
+            assert before <= armed <= started <= datetime.utcnow(), (before, armed, started)
             trigger = np.array(file["TRIGGER.COUNT.Value"])
             time = np.array(file["PCAP.TS_TRIG.Value"])
             assert len(trigger) == SAMPLES, len(trigger)

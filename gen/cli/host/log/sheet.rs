@@ -61,6 +61,7 @@ impl<W: Write> Sheet<W> {
         let series = self.scales.iter().enumerate().map(|(n, scale)| Series {
             name: format!("channel {n}"),
             unit: scale.convert(0).unit.into(),
+            wraps_at: scale.wraps_at(),
             ..Series::default()
         });
         self.plot = Some(series.collect());

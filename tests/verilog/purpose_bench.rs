@@ -1,0 +1,118 @@
+//! What the published systems are for, in the emitted bench: usual clock rates, cropped positions, selected causes, the watchdog.
+
+use super::mutations::{mutation, Mutation};
+use super::testbench::{assert_passes, check_mutations, run_bench};
+use crate::tools;
+use endat_gen::config::{load_preset, parse};
+use endat_hdl::bus::HostBus;
+
+const BROKEN: &[Mutation] = &[
+    mutation(
+        "crop begins at the first bit",
+        "endat_direct_output_pair64.v",
+        "at_next = first_bit;",
+        "at_next = 6'd0;",
+    ),
+    mutation(
+        "crop has no end",
+        "endat_direct_output_pair68.v",
+        "(taken < length_bits)",
+        "(taken < 6'd32)",
+    ),
+    mutation(
+        "selected causes stay",
+        "endat_direct_output_pair64.v",
+        "error_causes_next = write_data;",
+        "error_causes_next = error_causes;",
+    ),
+    mutation(
+        "watchdog never ends a frame",
+        "endat_line_health.v",
+        "over_next = under_way & (|watchdog_us)",
+        "over_next = under_way & (&watchdog_us)",
+    ),
+    mutation(
+        "watchdog: the service does not tell it",
+        "endat_service_channel.v",
+        "out_watchdog_next = io_out[11:0];",
+        "out_watchdog_next = out_watchdog;",
+    ),
+    mutation(
+        "a written clock rate is not taken",
+        "endat_frame_settings.v",
+        "period_held_next = period_cycles;",
+        "period_held_next = 11'd32;",
+    ),
+];
+
+fn card() -> Vec<endat_gen::artifact::Artifact> {
+    let more =
+        "[service]\nparts = [\"requests\", \"diagnosis\"]\n[outputs]\nparts = [\"position\"]\n";
+    let text = crate::bus::text(HostBus::Apb, more).replace("= [\"register\"]", "= [\"pin\"]");
+    endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap()
+}
+
+#[test]
+fn bench_of_a_card_for_a_control_loop_passes_only_as_it_stands() {
+    if tools::require("iverilog", "emitted test bench") {
+        check_mutations("purpose", &card(), BROKEN);
+    }
+}
+
+/// Catches a bench that leaves out what a published system is for.
+#[test]
+fn benches_of_the_published_systems_do_what_those_are_for() {
+    let wanted: [(&str, &[&str]); 5] = [
+        (
+            "artinchip_endat_if",
+            &[
+                "clock rates",
+                "cropped position",
+                "selected causes",
+                "watchdog",
+                "interrupt",
+            ],
+        ),
+        (
+            "clb_2mhz",
+            &[
+                "clock rates",
+                "cropped position",
+                "selected causes",
+                "interrupt",
+            ],
+        ),
+        (
+            "ti_three_channel",
+            &[
+                "clock rates",
+                "cropped position",
+                "selected causes",
+                "watchdog",
+                "power-up",
+            ],
+        ),
+        ("mixed_protocols", &["clock rates"]),
+        (
+            "s6_two_channel_service",
+            &["clock rates", "watchdog", "power-up"],
+        ),
+    ];
+    for (name, steps) in wanted {
+        let files = endat_gen::emit(&load_preset(name).unwrap()).unwrap();
+        let bench = files.iter().find(|f| f.path.ends_with("_tb.v")).unwrap();
+        for step in steps {
+            let told = format!("tell(\"{step}\");");
+            assert_eq!(bench.text.matches(&told).count(), 1, "{name}: {step}");
+        }
+        if name == "artinchip_endat_if" {
+            // All seven rates of the peripheral.
+            assert_eq!(bench.text.matches("            check_periods(").count(), 7);
+        }
+    }
+    // The control loop's runs quickly.
+    if tools::require("iverilog", "emitted test bench") {
+        let files = endat_gen::emit(&load_preset("clb_2mhz").unwrap()).unwrap();
+        assert_passes(&run_bench("purpose-clb", &files, &["+slow"]));
+    }
+}
