@@ -11,7 +11,7 @@ use std::sync::Mutex;
 
 /// What compiles the bench.
 #[derive(Clone, Copy, Debug)]
-enum Reader {
+pub enum Reader {
     /// iverilog with this language.
     Icarus(&'static str),
     Verilator,
@@ -64,7 +64,7 @@ fn card(khz: u64, bus: &str) -> Option<Vec<Artifact>> {
 }
 
 /// Runs the bench of `files` in `folder`; whether it ended well, and what was said.
-fn play(folder: &Path, files: &[Artifact], reader: Reader) -> (bool, String) {
+pub fn play(folder: &Path, files: &[Artifact], reader: Reader) -> (bool, String) {
     let verilog = files.iter().map(|f| f.path.as_str());
     let verilog: Vec<&str> = verilog
         .filter(|p| p.ends_with(".v") && !p.ends_with("_top.v"))
@@ -90,30 +90,38 @@ fn play(folder: &Path, files: &[Artifact], reader: Reader) -> (bool, String) {
     }
 }
 
-/// Runs cases on both cores; the complaints.
-fn complaints(test: &str, cases: &[(u64, &str, Reader)]) -> Vec<String> {
+/// Does something with each case on both cores; what was said.
+pub fn on_both_cores<T: Sync>(
+    cases: &[T],
+    complaint: impl Fn(usize, &T) -> Option<String> + Sync,
+) -> Vec<String> {
     let (next, said) = (AtomicUsize::new(0), Mutex::new(vec![]));
     let work = || loop {
         let index = next.fetch_add(1, Ordering::Relaxed);
-        let Some((khz, bus, reader)) = cases.get(index).copied() else {
+        let Some(case) = cases.get(index) else {
             return;
         };
-        let Some(files) = card(khz, bus) else {
-            continue;
-        };
-        let (folder, _) = write(&format!("strangers-{test}-{index}"), &files);
-        let (is_good, text) = play(&folder, &files, reader);
-        if !is_good || !passes(&text) {
-            let line = format!("{khz} kHz, {bus}, {reader:?}: {text}");
+        if let Some(line) = complaint(index, case) {
             said.lock().unwrap().push(line);
         }
-        let _ = std::fs::remove_dir_all(folder);
     };
     std::thread::scope(|scope| (0..2).for_each(|_| drop(scope.spawn(work))));
     said.into_inner().unwrap()
 }
 
-fn has_tools() -> bool {
+/// Runs cases; the complaints.
+fn complaints(test: &str, cases: &[(u64, &str, Reader)]) -> Vec<String> {
+    on_both_cores(cases, |index, (khz, bus, reader)| {
+        let files = card(*khz, bus)?;
+        let (folder, _) = write(&format!("strangers-{test}-{index}"), &files);
+        let (is_good, text) = play(&folder, &files, *reader);
+        let _ = std::fs::remove_dir_all(folder);
+        let fails = !is_good || !passes(&text);
+        fails.then(|| format!("{khz} kHz, {bus}, {reader:?}: {text}"))
+    })
+}
+
+pub fn has_tools() -> bool {
     tools::require("iverilog", "strangers") && tools::require("verilator", "strangers")
 }
 
