@@ -3,3 +3,4 @@
 mod benches;
 mod configurations;
 mod emissions;
+pub mod table;
