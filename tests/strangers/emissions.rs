@@ -1,15 +1,13 @@
 //! Every configuration of the list, in every language and simulator: lint, the emitted bench, and cocotb at the card's own bus.
 
-use super::benches::{has_tools, on_both_cores, play, Reader};
+use super::benches::{has_tools, on_both_cores};
 use super::configurations::{emission, texts, Emission};
 use crate::tools::{self, run};
-use crate::verilog::testbench::passes;
 use crate::verilog::write;
 use endat_gen::config::Configuration;
+use endat_gen::readers::{is_bench, Reader, LINTERS};
 use std::path::Path;
-use Reader::{Icarus, Verilator};
 
-const READERS: [Reader; 3] = [Icarus("-g2005"), Icarus("-g2012"), Verilator];
 const PYTHON: &str = "cocotb at every emission";
 
 /// The emissions, written; `of` gives what is wrong with one.
@@ -26,31 +24,6 @@ fn check(test: &str, of: impl Fn(&Emission, &Path) -> Vec<String> + Sync) {
         (!wrong.is_empty()).then(|| wrong.join("\n"))
     });
     assert!(said.is_empty(), "{}", said.join("\n"));
-}
-
-/// What a reader says about the card and, in iverilog, its bench: nothing, if all is well.
-fn lint(emission: &Emission, folder: &Path, reader: Reader) -> Option<String> {
-    let names = emission.files.iter().map(|f| f.path.as_str());
-    let verilog = names.filter(|p| p.ends_with(".v") && !p.ends_with("_top.v"));
-    let (benches, core): (Vec<&str>, Vec<&str>) = verilog.partition(|p| p.ends_with("_tb.v"));
-    let bench = benches.first();
-    let top = bench.map_or(emission.top(), |bench| bench.trim_end_matches(".v"));
-    let (is_good, text) = match reader {
-        Icarus(language) => {
-            let options = [language, "-Wall", "-tnull", "-s", top];
-            run(
-                "iverilog",
-                folder,
-                &[&options, &core[..], &benches].concat(),
-            )
-        }
-        Verilator => {
-            let options = ["--lint-only", "-Wall", "--top-module", emission.top()];
-            run("verilator", folder, &[&options, &core[..]].concat())
-        }
-    };
-    let is_silent = is_good && text.is_empty();
-    (!is_silent).then(|| format!("{reader:?}: {text}"))
 }
 
 /// Names of the top module's ports of one direction.
@@ -107,8 +80,11 @@ fn has_cocotb() -> bool {
 fn every_emission_is_clean_in_every_language() {
     if has_tools() {
         check("lint", |emission, folder| {
-            let said = READERS.map(|reader| lint(emission, folder, reader));
-            said.into_iter().flatten().collect()
+            let lint = |reader: Reader| {
+                let said = reader.lint(folder, emission.top(), &emission.files);
+                Some(format!("{reader}: {}", said.unwrap()?))
+            };
+            LINTERS.into_iter().filter_map(lint).collect()
         });
     }
 }
@@ -132,11 +108,11 @@ fn every_emission_runs_in_every_language() {
     }
     check("product", |emission, folder| {
         let mut wrong = vec![];
-        if emission.files.iter().any(|f| f.path.ends_with("_tb.v")) {
-            for reader in READERS {
-                let (is_good, text) = play(folder, &emission.files, reader);
-                if !is_good || !passes(&text) {
-                    wrong.push(format!("{reader:?}: {text}"));
+        if emission.files.iter().any(is_bench) {
+            for reader in LINTERS {
+                let (passes, text) = reader.play(folder, &emission.files).unwrap();
+                if !passes {
+                    wrong.push(format!("{reader}: {text}"));
                 }
             }
         }
