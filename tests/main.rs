@@ -8,6 +8,7 @@ mod comparison;
 mod config;
 mod constraints;
 mod cycle_time;
+mod documents;
 mod elaborate;
 mod engines;
 mod files;

@@ -5,6 +5,7 @@
 use super::asked::{Asked, Kind};
 use crate::error::{shorten, Diagnostic};
 use endat_hdl::config::Limits;
+use endat_host::did_you_mean::closest;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -418,7 +419,8 @@ impl<'s, 't> Table<'s, 't> {
                 continue;
             }
             let list = known.iter().copied().collect::<Vec<_>>().join(", ");
-            let hint = match nearest(key.get_ref(), &known) {
+            let near = closest(key.get_ref(), known.iter(), |known| known);
+            let hint = match near.first() {
                 Some(near) => format!("did you mean {near}?"),
                 None => format!("known keys here: {list}"),
             };
@@ -431,32 +433,7 @@ impl<'s, 't> Table<'s, 't> {
     }
 }
 
-/// The known key that is closest to a misspelt one, if any is close.
-fn nearest<'k>(key: &str, known: &BTreeSet<&'k str>) -> Option<&'k str> {
-    // Nothing that long is a key.
-    if key.len() > 64 {
-        return None;
-    }
-    let scored = known.iter().map(|k| (strsim::levenshtein(key, k), *k));
-    scored
-        .min()
-        .filter(|(d, k)| *d <= 1 + k.len() / 4)
-        .map(|(_, k)| k)
-}
-
 fn article(kind: &str) -> String {
     let an = kind.starts_with(['a', 'e', 'i', 'o', 'u']);
     format!("{} {kind}", if an { "an" } else { "a" })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_misspelt_key_finds_its_neighbour_and_a_foreign_one_does_not() {
-        let known = BTreeSet::from(["clock_hz", "tst_ns", "cable_m"]);
-        assert_eq!(nearest("clok_hz", &known), Some("clock_hz"));
-        assert_eq!(nearest("colour", &known), None);
-    }
 }

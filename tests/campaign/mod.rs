@@ -1,5 +1,6 @@
 //! The campaigns of the command line.
 
+mod configurations;
 mod counted;
 mod schedulers;
 
