@@ -17,6 +17,7 @@ mod hosts;
 mod integrators;
 mod maps;
 mod own_triggers;
+mod packages;
 mod pages;
 mod position;
 mod presets;

@@ -2,6 +2,7 @@
 
 mod configurations;
 mod counted;
+mod results;
 mod schedulers;
 
 use endat_gen::cli;
