@@ -8,6 +8,7 @@ use crate::config::{parse_any, Configuration};
 use crate::error::GenError;
 use crate::readers::{is_bench, Reader, LINTERS};
 use crate::{emit, scratch, t_format};
+use endat_hdl::bus::HostBus;
 use endat_sim::campaign::{Campaign, Row, Tally};
 use sha2::{Digest, Sha256};
 use std::ops::Range;
@@ -17,8 +18,10 @@ use std::panic::catch_unwind;
 const VALID: u64 = 5;
 const OF: u64 = 7;
 const BENCH_EVERY: u64 = 50;
-/// Drawn again until there is a bench: a bare port has none.
-const BENCH_DRAWS: u64 = 100;
+/// Drawn again until there is a bench (a bare port has none) that ends in a minute: what is simulated most is bits.
+const BENCH_DRAWS: u64 = 1_000;
+/// Longest bit of a UART and of an encoder, in cycles, where the bench is run.
+const BENCH_BIT_CYCLES_MAX: u64 = 64;
 
 /// Random configurations.
 pub struct Configurations {
@@ -81,7 +84,8 @@ impl Configurations {
             match emission(&found.text) {
                 Made::Emission(emission) => {
                     found.subject = emission.bus;
-                    if !wants_bench || emission.files.iter().any(is_bench) {
+                    let has_bench = emission.is_quick && emission.files.iter().any(is_bench);
+                    if !wants_bench || has_bench {
                         found.read(&emission.top, &emission.files, wants_bench);
                         return found;
                     }
@@ -122,13 +126,22 @@ enum Made {
 struct Emission {
     bus: String,
     top: String,
+    /// Whether the bench would end soon.
+    is_quick: bool,
     files: Vec<Artifact>,
 }
 
 fn emission(text: &str) -> Made {
     let made = catch_unwind(|| -> Result<Emission, GenError> {
+        let mut is_quick = true;
         let (bus, top, files) = match parse_any("drawn.toml", text)? {
-            Configuration::Card(card) => (card.bus.name(), card.name.clone(), emit(&card)?),
+            Configuration::Card(card) => {
+                let is_uart = card.bus == HostBus::Uart;
+                let channels = card.card.channels.iter().map(|c| c.period_cycles);
+                let bits = channels.chain(is_uart.then_some(card.card.uart_bit_cycles));
+                is_quick = bits.into_iter().all(|bit| bit <= BENCH_BIT_CYCLES_MAX);
+                (card.bus.name(), card.name.clone(), emit(&card)?)
+            }
             Configuration::Receiver(receiver) => {
                 let files = t_format::emit(&receiver)?;
                 (t_format::BUS, receiver.name, files)
@@ -137,6 +150,7 @@ fn emission(text: &str) -> Made {
         Ok(Emission {
             bus: bus.into(),
             top,
+            is_quick,
             files,
         })
     });
