@@ -16,6 +16,7 @@
 pub mod bridge;
 pub mod card;
 pub mod causes;
+pub mod did_you_mean;
 mod error;
 pub mod feed;
 #[rustfmt::skip]

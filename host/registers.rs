@@ -1,5 +1,6 @@
 //! Registers by name: `result0.status`, `config1.frame.period_cycles`, `service0.request`.
 
+use crate::did_you_mean::closest;
 use crate::map::BLOCKS;
 use crate::HostError;
 use std::fmt;
@@ -212,8 +213,7 @@ const PROPOSALS_MAX: usize = 4;
 /// `; did you mean ...?`, or nothing: names that end with this one (its block was left out), else the ones that are closest to it.
 fn proposal(name: &str, channels: usize) -> String {
     let parts: Vec<&str> = name.split('.').collect();
-    let mut behind = Vec::new();
-    let mut closest = (1 + name.len() / 4 + 1, Vec::new());
+    let (mut behind, mut others) = (Vec::new(), Vec::new());
     for block in BLOCKS {
         let typed = parts[0]
             .strip_prefix(block.name)
@@ -233,17 +233,8 @@ fn proposal(name: &str, channels: usize) -> String {
                     behind.push(whole);
                     continue;
                 }
-                if whole.split('.').count() != parts.len().max(2) || name.len() > 64 {
-                    continue;
-                }
-                let tail = whole.split_once('.').map_or("", |(_, tail)| tail);
-                let other = if parts.len() == 1 { tail } else { &whole };
-                let distance = strsim::osa_distance(name, other);
-                if distance < closest.0 {
-                    closest = (distance, Vec::new());
-                }
-                if distance == closest.0 && distance < 2 + name.len() / 4 {
-                    closest.1.push(whole);
+                if whole.split('.').count() == parts.len().max(2) {
+                    others.push(whole);
                 }
             }
         }
@@ -252,7 +243,15 @@ fn proposal(name: &str, channels: usize) -> String {
     let parts_of = |whole: &String| whole.split('.').count();
     let fewest = behind.iter().map(parts_of).min();
     behind.retain(|whole| Some(parts_of(whole)) == fewest);
-    let mut names = if behind.is_empty() { closest.1 } else { behind };
+    // A name without a block is compared with names without theirs.
+    let tail = |whole: &String| match parts.len() {
+        1 => whole.find('.').map_or(0, |dot| dot + 1),
+        _ => 0,
+    };
+    let mut names = match behind.is_empty() {
+        true => closest(name, others, |whole| &whole[tail(whole)..]),
+        false => behind,
+    };
     names.truncate(PROPOSALS_MAX);
     match names.as_slice() {
         _ if name.is_empty() => String::new(),

@@ -1,5 +1,6 @@
 //! Outside tools. A tool that is missing is a skipped check with a line that says so; in CI (variable `CI` set) it is a failure.
 
+use crate::strangers::table as strangers;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -22,11 +23,13 @@ pub fn has(tool: &str) -> bool {
 
 /// Whether a check that needs `tool` can run. If not, says which check is skipped, or fails in CI.
 pub fn require(tool: &str, check: &str) -> bool {
+    strangers::assert_listed(tool);
     has(tool) || skip(tool, check)
 }
 
 /// The same for a module of Python.
 pub fn require_python(module: &str, check: &str) -> bool {
+    strangers::assert_listed(module);
     let import = Command::new("python3")
         .args(["-c", &format!("import {module}")])
         .stderr(Stdio::null())

@@ -3,7 +3,6 @@
 use super::{speed, subjects, synthesise, version, Device, Speed, Usage, DEVICES, ICE40, XC6S};
 use super::{YOSYS, YOSYS_VERSION};
 use crate::error::GenError;
-use crate::scratch::Scratch;
 use serde::Serialize;
 use std::fmt;
 
@@ -88,11 +87,11 @@ pub fn report(only: &[String], with_speed: bool) -> Result<Report, GenError> {
         }
     }
     subjects.retain(|subject| only.is_empty() || only.iter().any(|name| name == subject.name));
-    let scratch = Scratch::new("area");
+    let scratch = crate::scratch::folder()?;
     let mut lines = vec![];
     for subject in subjects {
         let files = subject.files();
-        let folder = scratch.0.join(subject.name);
+        let folder = scratch.path().join(subject.name);
         let usage = |family| synthesise(&folder, &files, subject.name, family).map(|s| s.usage);
         let measure = |device: &Device| speed(&folder, &subject.design, &files, device);
         let fast = with_speed && ["card", "channel"].contains(&subject.name);

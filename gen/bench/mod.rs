@@ -19,7 +19,6 @@ pub use report::{Report, Row};
 pub use rust_engines::card_kernels;
 
 use crate::error::GenError;
-use crate::scratch::Scratch;
 use design::CardDesign;
 use endat_sim::engine::LaneWords;
 use outside::Verilator;
@@ -68,7 +67,7 @@ pub fn run(options: Options, progress: &dyn Fn(&str)) -> Result<Report, GenError
     let (slowest, slow) = ((cycles / 200).max(1), (cycles / 20).max(1));
     progress("recording the stimulus");
     let stimulus = Stimulus::record(&card, cycles)?;
-    let scratch = Scratch::new("bench");
+    let scratch = crate::scratch::folder()?;
     let mut alone = vec![];
     let mut models = vec![];
     progress("rust-hdl kernels");
@@ -89,16 +88,16 @@ pub fn run(options: Options, progress: &dyn Fn(&str)) -> Result<Report, GenError
             &card,
             &stimulus,
             slowest,
-            &scratch.0.join("iverilog"),
+            &scratch.path().join("iverilog"),
         )?);
         match Verilator::find() {
             None => progress("Verilator is not there"),
             Some(verilator) => {
                 progress("Verilator, the card alone");
-                let folder = scratch.0.join("verilator");
+                let folder = scratch.path().join("verilator");
                 alone.push(verilator.play(&card, &stimulus, cycles, &folder)?);
                 progress("Verilator with models in C++");
-                let folder = scratch.0.join("verilator-models");
+                let folder = scratch.path().join("verilator-models");
                 models.push(verilator.with_models(&card, cycles, &folder)?);
                 version = Some(verilator.version.clone());
             }

@@ -21,7 +21,7 @@ pub struct Budget {
 
 /// Classes that a case is in exactly one of.
 pub fn is_case(row: &Row) -> bool {
-    const CLASSES: [&str; 10] = [
+    const CLASSES: [&str; 14] = [
         "masked",
         "detected",
         "lost",
@@ -32,6 +32,10 @@ pub fn is_case(row: &Row) -> bool {
         "refused",
         "taken_wrongly",
         "refused_wrongly",
+        "clean",
+        "unclean",
+        "panic",
+        "not_found",
     ];
     CLASSES.contains(&row.class.as_str())
 }
@@ -48,7 +52,7 @@ fn is_setting(row: &Row) -> bool {
 }
 
 /// All of them.
-pub const BUDGETS: [Budget; 14] = [
+pub const BUDGETS: [Budget; 18] = [
     Budget {
         campaign: "upsets",
         what: "wrong positions told as good",
@@ -157,6 +161,38 @@ pub const BUDGETS: [Budget; 14] = [
         campaign: "accept",
         what: "words refused that the reference takes",
         bad: |r| r.class == "refused_wrongly",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: true,
+    },
+    Budget {
+        campaign: "configurations",
+        what: "emissions that a linter complains about",
+        bad: |r| r.class == "unclean",
+        of: |r| is_case(r) && r.kind == "valid",
+        limit_per_mille: 0.0,
+        is_asserted: true,
+    },
+    Budget {
+        campaign: "configurations",
+        what: "benches that fail",
+        bad: |r| r.class == "bench_failed",
+        of: |r| r.class.starts_with("bench_"),
+        limit_per_mille: 0.0,
+        is_asserted: true,
+    },
+    Budget {
+        campaign: "configurations",
+        what: "panics",
+        bad: |r| r.class == "panic",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: true,
+    },
+    Budget {
+        campaign: "configurations",
+        what: "draws without a valid configuration",
+        bad: |r| r.class == "not_found",
         of: is_case,
         limit_per_mille: 0.0,
         is_asserted: true,

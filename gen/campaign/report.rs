@@ -67,6 +67,7 @@ pub fn text(campaign: &str, tally: &Tally) -> String {
     match campaign {
         "upsets" => upsets(tally),
         "accept" => accept(tally),
+        "configurations" => configurations(tally),
         _ => disturbed(tally),
     }
 }
@@ -85,6 +86,31 @@ pub fn accept(tally: &Tally) -> String {
         let _ = writeln!(text, "| {kind} | {all} | {found} |");
     }
     text + "\n"
+}
+
+/// Configurations by bus, and the cases that are wrong.
+pub fn configurations(tally: &Tally) -> String {
+    const CLASSES: [&str; 8] = [
+        "clean",
+        "unclean",
+        "refused",
+        "taken",
+        "panic",
+        "not_found",
+        "bench_passed",
+        "bench_failed",
+    ];
+    let mut text = format!("| bus | {} |\n", CLASSES.join(" | "));
+    let _ = writeln!(text, "|---|{}", "---|".repeat(CLASSES.len()));
+    for (subject, counts) in grouped(tally, |r| &r.subject) {
+        let found = CLASSES.map(|c| counts.get(c).copied().unwrap_or(0).to_string());
+        let _ = writeln!(text, "| {subject} | {} |", found.join(" | "));
+    }
+    text.push('\n');
+    for (row, _) in tally.rows().filter(|(row, _)| row.place != "all") {
+        let _ = writeln!(text, "{}: {}: {}", row.class, row.subject, row.place);
+    }
+    text
 }
 
 /// Per mille of all cases, for each disturbance, for each port and, if they are different, for each condition.

@@ -4,6 +4,7 @@ mod area;
 mod bench;
 mod campaign;
 mod crc_command;
+mod documents;
 mod emit;
 mod host;
 mod number;
@@ -107,6 +108,10 @@ enum Command {
     Param(host::param::ParamArgs),
     /// Show where the edges of DATA are, as the card has measured it
     Margin(host::margin::MarginArgs),
+    /// Print the completions of the command line for a shell
+    Completions(documents::CompletionsArgs),
+    /// Print the manual page, or write those of all commands
+    Man(documents::ManArgs),
 }
 
 /// Which configuration.
@@ -210,6 +215,8 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Reg(arguments)) => host::reg::run(&arguments),
         Some(Command::Param(arguments)) => host::param::run(&arguments),
         Some(Command::Margin(arguments)) => host::margin::run(&arguments),
+        Some(Command::Completions(arguments)) => documents::completions(&arguments),
+        Some(Command::Man(arguments)) => documents::man(&arguments),
     }
 }
 

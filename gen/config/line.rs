@@ -13,6 +13,9 @@ const PHASES: [(&str, PhaseSource); 3] = [
 /// Numbers among the settings of the part alignment.
 const NUMBERS: [&str; 3] = ["fixed_delay_ns", "drift_limit_ns", "samples"];
 
+/// How many samples of a bit there may be; the last of the numbers.
+const SAMPLES: [u64; 2] = [1, 3];
+
 /// Reads the table; everything in it may be left out. `None` if something is wrong.
 pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<LineParts> {
     let mut parts = LineParts::default();
@@ -26,7 +29,9 @@ pub fn read(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<LineParts> 
         ],
     );
     let phase = table.string("phase");
+    table.offer(PHASES.map(|(name, _)| name));
     let numbers = NUMBERS.map(|key| table.integer(key, &limits(key, system_hz)));
+    table.offer(SAMPLES);
     let named = named?;
     if !parts.alignment {
         if let Some((line, shown)) = named.first() {
@@ -88,7 +93,7 @@ pub fn phase_name(phase: PhaseSource) -> &'static str {
 fn within(table: &Table<'_, '_>, key: &str, number: &At<u64>, system_hz: Option<u64>) -> bool {
     let value = number.value;
     let text = match key {
-        "samples" if value != 1 && value != 3 => {
+        "samples" if !SAMPLES.contains(&value) => {
             "not a number of samples; use 1, or 3 for their majority".to_owned()
         }
         _ if !limits(key, system_hz).contains(value) => limits(key, system_hz).to_string(),

@@ -1,5 +1,6 @@
 //! Configuration files: TOML text in, a checked [`Project`] out, or every complaint with file, line and remedy.
 
+pub(crate) mod asked;
 mod base;
 mod line;
 mod names;

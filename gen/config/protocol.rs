@@ -34,6 +34,7 @@ fn all_keys() -> Vec<&'static str> {
 /// Whether a channel of a card speaks T-format; `None` for what is no protocol. Keys of the other protocol are refused.
 pub fn is_t_format(table: &Table<'_, '_>) -> Option<bool> {
     let protocol = table.string("protocol");
+    table.offer([ENDAT, T_FORMAT]);
     let is_t_format = match &protocol {
         None if table.has("protocol") => {
             table.know(&all_keys());
@@ -62,6 +63,7 @@ pub fn is_t_format(table: &Table<'_, '_>) -> Option<bool> {
 /// The bit rate, if it is one of T-format.
 pub fn read_bit_hz(table: &Table<'_, '_>) -> Option<At<u64>> {
     let bit = table.integer("bit_hz", &limits("bit_hz", None));
+    table.offer([BIT_HZ, FAST_BIT_HZ]);
     if let Some(bit) = bit.as_ref().filter(|bit| !is_rate(bit.value)) {
         let text = format!("is no rate of T-format encoders; use {BIT_HZ} or {FAST_BIT_HZ}");
         table.complain(bit.line, "bit_hz", &bit.value.to_string(), &text);
@@ -71,7 +73,10 @@ pub fn read_bit_hz(table: &Table<'_, '_>) -> Option<At<u64>> {
 
 /// A request, if there is such a one, with the line it stands on; a wrong one is answered with those that `may` be.
 pub fn read_request(table: &Table<'_, '_>, may: fn(Request) -> bool) -> Option<At<Request>> {
-    let request = table.integer("request", &limits("request", None))?;
+    let request = table.integer("request", &limits("request", None));
+    let usual = Request::ALL.iter().filter(|r| may(**r));
+    table.offer(usual.map(|r| r.id()));
+    let request = request?;
     let known = u8::try_from(request.value).ok().and_then(Request::from_id);
     if known.is_none() {
         let usual = Request::ALL.iter().filter(|r| may(**r));

@@ -2,8 +2,10 @@
 //!
 //! `serde` stops at the first problem; a configuration is a form, and a form is checked as a whole.
 
+use super::asked::{Asked, Kind};
 use crate::error::{shorten, Diagnostic};
 use endat_hdl::config::Limits;
+use endat_host::did_you_mean::closest;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -16,6 +18,7 @@ pub struct Source<'t> {
     pub file: &'t str,
     text: &'t str,
     diagnostics: RefCell<Vec<Diagnostic>>,
+    asked: RefCell<Vec<Asked>>,
 }
 
 impl<'t> Source<'t> {
@@ -24,7 +27,8 @@ impl<'t> Source<'t> {
         Self {
             file,
             text,
-            diagnostics: RefCell::new(Vec::new()),
+            diagnostics: RefCell::default(),
+            asked: RefCell::default(),
         }
     }
 
@@ -57,6 +61,11 @@ impl<'t> Source<'t> {
     /// Whether nothing is wrong so far.
     pub fn is_good(&self) -> bool {
         self.diagnostics.borrow().is_empty()
+    }
+
+    /// All that was asked for, and all complaints, in the order of the lines.
+    pub fn into_asked(self) -> (Vec<Asked>, Vec<Diagnostic>) {
+        (self.asked.take(), self.into_diagnostics())
     }
 
     /// All complaints, in the order of the lines.
@@ -113,6 +122,24 @@ impl<'s, 't> Table<'s, 't> {
         }
     }
 
+    /// Notes what is asked for.
+    fn ask(&self, key: &'static str, kind: Kind) {
+        let mut asked = self.source.asked.borrow_mut();
+        asked.push(Asked {
+            table: self.path.clone(),
+            key,
+            kind,
+            words: Vec::new(),
+        });
+    }
+
+    /// Notes all that the key asked for last may be, if it is one of a few.
+    pub fn offer(&self, words: impl IntoIterator<Item = impl std::fmt::Display>) {
+        if let Some(last) = self.source.asked.borrow_mut().last_mut() {
+            last.words = words.into_iter().map(|word| word.to_string()).collect();
+        }
+    }
+
     fn get(&self, key: &'static str) -> Option<&'s Spanned<DeValue<'t>>> {
         self.known.borrow_mut().insert(key);
         self.table.get(key)
@@ -142,6 +169,7 @@ impl<'s, 't> Table<'s, 't> {
 
     /// An integer, if the key is there; `limits` are told when it is negative or beyond every number of hardware.
     pub fn integer(&self, key: &'static str, limits: &Limits) -> Option<At<u64>> {
+        self.ask(key, Kind::Integer(limits.clone()));
         let spanned = self.get(key)?;
         let Some(integer) = spanned.get_ref().as_integer() else {
             self.wrong_type(
@@ -171,12 +199,14 @@ impl<'s, 't> Table<'s, 't> {
         example: &str,
         limits: &Limits,
     ) -> Option<At<u64>> {
+        let found = self.integer(key, limits);
         self.require(key, example)?;
-        self.integer(key, limits)
+        found
     }
 
     /// A string, if the key is there.
     pub fn string(&self, key: &'static str) -> Option<At<String>> {
+        self.ask(key, Kind::Text);
         let spanned = self.get(key)?;
         match spanned.get_ref().as_str() {
             Some(text) => self.at(text.to_owned(), spanned),
@@ -189,12 +219,14 @@ impl<'s, 't> Table<'s, 't> {
 
     /// A string that must be there.
     pub fn required_string(&self, key: &'static str, example: &str) -> Option<At<String>> {
+        let found = self.string(key);
         self.require(key, example)?;
-        self.string(key)
+        found
     }
 
     /// True or false, if the key is there.
     pub fn boolean(&self, key: &'static str) -> Option<At<bool>> {
+        self.ask(key, Kind::Boolean);
         let spanned = self.get(key)?;
         match spanned.get_ref().as_bool() {
             Some(value) => self.at(value, spanned),
@@ -207,6 +239,7 @@ impl<'s, 't> Table<'s, 't> {
 
     /// A list of strings, if the key is there.
     pub fn strings(&self, key: &'static str) -> Option<Vec<At<String>>> {
+        self.ask(key, Kind::Texts);
         let spanned = self.get(key)?;
         let Some(array) = spanned.get_ref().as_array() else {
             self.wrong_type(key, spanned, "a list of texts in quotes");
@@ -224,6 +257,7 @@ impl<'s, 't> Table<'s, 't> {
 
     /// A list of integers, if the key is there; `limits` are told of one that is negative or beyond every number.
     pub fn integers(&self, key: &'static str, limits: &str) -> Option<Vec<At<u64>>> {
+        self.ask(key, Kind::Integers);
         let spanned = self.get(key)?;
         let wanted = "a list of whole numbers, as [0x4C, 0x5B]";
         let Some(array) = spanned.get_ref().as_array() else {
@@ -268,6 +302,7 @@ impl<'s, 't> Table<'s, 't> {
 
     /// An array of tables; empty when missing, `None` when it is something else.
     pub fn tables(&self, key: &'static str) -> Option<Vec<Table<'s, 't>>> {
+        self.ask(key, Kind::Tables);
         let Some(spanned) = self.get(key) else {
             return Some(Vec::new());
         };
@@ -384,7 +419,8 @@ impl<'s, 't> Table<'s, 't> {
                 continue;
             }
             let list = known.iter().copied().collect::<Vec<_>>().join(", ");
-            let hint = match nearest(key.get_ref(), &known) {
+            let near = closest(key.get_ref(), known.iter(), |known| known);
+            let hint = match near.first() {
                 Some(near) => format!("did you mean {near}?"),
                 None => format!("known keys here: {list}"),
             };
@@ -397,32 +433,7 @@ impl<'s, 't> Table<'s, 't> {
     }
 }
 
-/// The known key that is closest to a misspelt one, if any is close.
-fn nearest<'k>(key: &str, known: &BTreeSet<&'k str>) -> Option<&'k str> {
-    // Nothing that long is a key.
-    if key.len() > 64 {
-        return None;
-    }
-    let scored = known.iter().map(|k| (strsim::levenshtein(key, k), *k));
-    scored
-        .min()
-        .filter(|(d, k)| *d <= 1 + k.len() / 4)
-        .map(|(_, k)| k)
-}
-
 fn article(kind: &str) -> String {
     let an = kind.starts_with(['a', 'e', 'i', 'o', 'u']);
     format!("{} {kind}", if an { "an" } else { "a" })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_misspelt_key_finds_its_neighbour_and_a_foreign_one_does_not() {
-        let known = BTreeSet::from(["clock_hz", "tst_ns", "cable_m"]);
-        assert_eq!(nearest("clok_hz", &known), Some("clock_hz"));
-        assert_eq!(nearest("colour", &known), None);
-    }
 }

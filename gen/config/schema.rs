@@ -5,6 +5,7 @@ use super::reader::{At, Source, Table};
 use super::{base, check_name, line, outputs, protocol, stream, trigger, Project};
 use crate::board::{self, Assignment, Board};
 use crate::error::shorten;
+use crate::t_format::BUS;
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::*;
 use endat_hdl::protocol::ModeCommand;
@@ -435,6 +436,7 @@ fn read_channel(
     let limits = limits("position_bits", system_hz);
     let position = table.required_integer("position_bits", "29", &limits);
     let command = table.required_string("command", "\"111000\"");
+    table.offer(ModeCommand::POSITION.map(|c| format!("{:06b}", c.code())));
     let command = command.and_then(|c| read_command(table, c));
     let mut keys = defaults.clone();
     keys.extend(read_line_keys(table, system_hz));
@@ -607,7 +609,9 @@ pub(super) fn read_parts(
     marks: &mut [&mut bool],
 ) -> Option<Vec<(usize, String)>> {
     let mut all = Vec::new();
-    for word in table.strings("parts").unwrap_or_default() {
+    let words = table.strings("parts");
+    table.offer(names);
+    for word in words.unwrap_or_default() {
         let shown = format!("{:?}", word.value);
         let Some(index) = names.iter().position(|name| *name == word.value) else {
             let text = format!("unknown part; use {}", names.join(", "));
@@ -683,7 +687,9 @@ fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
 
 /// The bus; `None` for what is no bus.
 fn read_bus(table: &Table<'_, '_>) -> Option<HostBus> {
-    let Some(name) = table.string("bus") else {
+    let name = table.string("bus");
+    table.offer(HostBus::ALL.iter().map(|b| b.name()).chain([BUS]));
+    let Some(name) = name else {
         return (!table.has("bus")).then(HostBus::default);
     };
     let bus = HostBus::from_name(&name.value);
@@ -712,7 +718,9 @@ fn refuse_unused(root: &Table<'_, '_>, bus: HostBus, tables: &[(&str, &Table<'_,
 }
 
 fn read_board(table: &Table<'_, '_>) -> Option<Board> {
-    let name = table.required_string("name", "\"papilio_pro\"")?;
+    let name = table.required_string("name", "\"papilio_pro\"");
+    table.offer(board::names());
+    let name = name?;
     match Board::named(&name.value) {
         Ok(board) => Some(board),
         Err(text) => {

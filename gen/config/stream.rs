@@ -2,6 +2,7 @@
 
 use super::reader::{At, Table};
 use endat_hdl::config::{limits, StreamParts, StreamStart};
+use endat_hdl::stream::buffer::BUFFER_BYTES;
 
 /// What was written for the stream; what could not be read is missing, and has been complained about.
 pub struct Written {
@@ -27,7 +28,9 @@ pub fn start_name(start: StreamStart) -> &'static str {
 /// Reads the table; everything in it may be left out.
 pub fn read(table: &Table<'_, '_>) -> Written {
     let fifo_bytes = table.integer("fifo_bytes", &limits("fifo_bytes", None));
+    table.offer([0].iter().chain(&BUFFER_BYTES));
     let start = table.string("start");
+    table.offer(STARTS.map(|(name, _)| name));
     let mut parts = StreamParts {
         fifo_bytes: fifo_bytes.as_ref().map_or(0, |b| b.value),
         start: StreamStart::Off,

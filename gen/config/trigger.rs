@@ -29,7 +29,9 @@ pub fn read_own(table: &Table<'_, '_>) -> Option<(Option<OwnTrigger>, usize)> {
 
 /// The list `sources` of a card or a channel: all three where there is none, `None` if something is wrong.
 pub fn read_sources(table: &Table<'_, '_>) -> Option<TriggerSources> {
-    let Some(words) = table.strings("sources") else {
+    let words = table.strings("sources");
+    table.offer(["pin", "timer", "register"]);
+    let Some(words) = words else {
         return Some(TriggerSources {
             pin: true,
             timer: true,

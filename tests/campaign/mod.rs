@@ -1,6 +1,8 @@
 //! The campaigns of the command line.
 
+mod configurations;
 mod counted;
+mod results;
 mod schedulers;
 
 use endat_gen::cli;

@@ -15,6 +15,7 @@ pub mod testbench;
 use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, Project, DEFAULT_PRESET};
+pub use endat_gen::readers::is_core;
 use endat_gen::verilog::file_name;
 use endat_hdl::elaborate::block_name;
 use std::path::{Path, PathBuf};
@@ -45,11 +46,6 @@ pub fn quick_files() -> &'static [Artifact] {
 pub fn preset_files() -> &'static [Artifact] {
     static FILES: OnceLock<Vec<Artifact>> = OnceLock::new();
     FILES.get_or_init(|| endat_gen::emit(&load_preset(DEFAULT_PRESET).unwrap()).unwrap())
-}
-
-/// Whether a file belongs to the card itself: no board top, no test bench.
-pub fn is_core(file: &Artifact) -> bool {
-    file.path.ends_with(".v") && !file.path.ends_with("_top.v") && !file.path.ends_with("_tb.v")
 }
 
 /// The name of an emitted card or receiver.

@@ -5,14 +5,9 @@ use super::{compile, file_of, has_block, preset_files, quick_files, quick_projec
 use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{parse, preset};
+pub use endat_gen::readers::passes;
 use endat_hdl::config::{ServiceParts, LIST};
 use endat_hdl::service::program::{program, ServiceTimes};
-
-/// Whether a bench has passed, by what it printed.
-pub fn passes(text: &str) -> bool {
-    let says = |word| text.lines().any(|line| line.starts_with(word));
-    says("PASS") && !says("FAIL")
-}
 
 /// The bench has passed.
 pub fn assert_passes(text: &str) {

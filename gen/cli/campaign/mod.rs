@@ -22,7 +22,7 @@ pub struct CampaignArgs {
     /// Of merge and page: files that --out has written
     #[arg(value_name = "PART")]
     parts: Vec<PathBuf>,
-    /// Number of random cases [default: random 10000; upsets: every flip-flop in turn; garbage 1000000]
+    /// Number of random cases [default: random 10000; upsets: every flip-flop in turn; garbage 1000000; configurations 5000, and 2000 spoilt ones]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     cases: Option<String>,
     /// Of upsets: moments of each kind of frame at which every flip-flop is inverted
@@ -94,6 +94,8 @@ enum Name {
     Garbage,
     /// Every word of encoders up to 13 bits, against a reference
     Accept,
+    /// Random configurations: every emission linted in both languages, some benches run; and spoilt ones
+    Configurations,
     /// Put the parts of one campaign together
     Merge,
     /// The page docs/reliability.md, from the files of whole campaigns

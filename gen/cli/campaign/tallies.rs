@@ -1,6 +1,7 @@
 //! Campaigns that count what becomes of each case: parts, tables, budgets.
 
 use super::{fault, CampaignArgs, Name};
+use crate::campaign::configurations::Configurations;
 use crate::campaign::part::{merge, shard, Identity, Part};
 use crate::campaign::{budget, page, reference, report};
 use crate::cli::number::number;
@@ -21,8 +22,11 @@ const MOMENTS_MAX: u64 = 1_000_000;
 const CASES_MAX: u64 = 1_000_000_000_000;
 /// Cases of `garbage`, if not told.
 const GARBAGE_USUAL: &str = "1000000";
+/// Valid configurations of `configurations`, if not told.
+const CONFIGURATIONS_USUAL: &str = "5000";
 /// What `--quick` takes of each.
 const QUICK_CASES: u64 = 12_800;
+const QUICK_CONFIGURATIONS: u64 = 10;
 const QUICK_STEP: u64 = 50;
 const QUICK_BITS: u32 = 5;
 
@@ -51,8 +55,20 @@ fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
     let part = arguments.shard.as_deref().map(shard).transpose();
     let part = part.map_err(|e| GenError::input(format!("--shard = {e}")))?;
     let threads = arguments.threads.count()?;
-    let (name, plan, campaign) = chosen(arguments, seed)?;
-    let campaign = campaign.map_err(|e| fault(&e))?;
+    let (name, plan, campaign) = match arguments.name {
+        Name::Configurations => {
+            let configurations = configurations(arguments, seed)?;
+            if let Some(index) = &arguments.case {
+                return alone(&configurations, index);
+            }
+            let plan = format!("seed {seed}");
+            ("configurations", plan, Box::new(configurations) as _)
+        }
+        _ => {
+            let (name, plan, campaign) = chosen(arguments, seed)?;
+            (name, plan, campaign.map_err(|e| fault(&e))?)
+        }
+    };
     let start = Instant::now();
     let shard = part.unwrap_or(Shard::WHOLE);
     let all = count(campaign.as_ref());
@@ -79,6 +95,33 @@ fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
     let mut outcome = summary(&part);
     outcome.stdout += &format!("\n{cases} of {all} cases in {seconds:.1} s\n");
     Ok(outcome)
+}
+
+/// The campaign over configurations that is asked for.
+fn configurations(arguments: &CampaignArgs, seed: u64) -> Result<Configurations, GenError> {
+    if let Some(subject) = &arguments.subject {
+        return Err(GenError::input(format!(
+            "--subject = {}: configurations have no ports; leave it out",
+            shown(subject)
+        )));
+    }
+    let told = arguments.cases.as_deref().unwrap_or(CONFIGURATIONS_USUAL);
+    let valid = match arguments.quick {
+        true => QUICK_CONFIGURATIONS,
+        false => number("--cases", told, 1..=MOMENTS_MAX)?,
+    };
+    Configurations::new(valid, seed)
+}
+
+/// One configuration: the text, and what was said about it.
+fn alone(configurations: &Configurations, index: &str) -> Result<Outcome, GenError> {
+    let case = number("--case", index, 0..=configurations.cases() - 1)?;
+    let found = configurations.case(case);
+    Ok(Outcome {
+        stdout: format!("{}\n", found.text.trim_end()),
+        exit_code: u8::from(!found.is_good()),
+        messages: found.told,
+    })
 }
 
 /// Tables and budgets; a budget that must hold and does not is a failure.

@@ -1,0 +1,141 @@
+//! Programs of others that read emitted Verilog: linters and simulators.
+
+use crate::artifact::Artifact;
+use crate::error::GenError;
+use std::fmt;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// A program, and the language that it takes the Verilog for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reader {
+    /// iverilog with this language.
+    Icarus(&'static str),
+    /// Verilator, which knows SystemVerilog.
+    Verilator,
+}
+
+/// Both languages, and both programs.
+pub const LINTERS: [Reader; 3] = [
+    Reader::Icarus("-g2005"),
+    Reader::Icarus("-g2012"),
+    Reader::Verilator,
+];
+
+impl fmt::Display for Reader {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Icarus(language) => write!(f, "iverilog {language}"),
+            Self::Verilator => f.write_str("verilator"),
+        }
+    }
+}
+
+/// Runs a program; whether it ended well, and what it said.
+fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<(bool, String), GenError> {
+    let mut command = Command::new(program);
+    command
+        .current_dir(folder)
+        .args(arguments)
+        .stdin(Stdio::null());
+    let output = command.output().map_err(|e| cannot_start(program, &e))?;
+    let text = [output.stdout, output.stderr].concat();
+    Ok((
+        output.status.success(),
+        String::from_utf8_lossy(&text).into_owned(),
+    ))
+}
+
+fn cannot_start(program: &str, error: &std::io::Error) -> GenError {
+    GenError::input(format!("{program}: cannot be started: {error}; install it"))
+}
+
+/// Whether a file belongs to the card itself: no board top, no test bench.
+pub fn is_core(file: &Artifact) -> bool {
+    file.path.ends_with(".v") && !file.path.ends_with("_top.v") && !is_bench(file)
+}
+
+/// Whether a file is a test bench.
+pub fn is_bench(file: &Artifact) -> bool {
+    file.path.ends_with("_tb.v")
+}
+
+/// Files of the card itself, and its bench.
+fn sources(files: &[Artifact]) -> (Vec<&str>, Option<&str>) {
+    let core = files.iter().filter(|f| is_core(f));
+    let bench = files.iter().find(|f| is_bench(f));
+    (
+        core.map(|f| f.path.as_str()).collect(),
+        bench.map(|f| f.path.as_str()),
+    )
+}
+
+/// Whether a bench has passed, by what it printed.
+pub fn passes(text: &str) -> bool {
+    let says = |word| text.lines().any(|line| line.starts_with(word));
+    says("PASS") && !says("FAIL")
+}
+
+impl Reader {
+    const fn program(self) -> &'static str {
+        match self {
+            Self::Icarus(_) => "iverilog",
+            Self::Verilator => "verilator",
+        }
+    }
+
+    /// An error if it is not there.
+    pub fn find(&self) -> Result<(), GenError> {
+        let version = match self {
+            Self::Icarus(_) => "-V",
+            Self::Verilator => "--version",
+        };
+        run(self.program(), Path::new("."), &[version]).map(drop)
+    }
+
+    /// What it says about the files of an emission in a folder, with all warnings on: nothing, if all is well. iverilog is given the bench, too.
+    pub fn lint(
+        self,
+        folder: &Path,
+        top: &str,
+        files: &[Artifact],
+    ) -> Result<Option<String>, GenError> {
+        let (core, bench) = sources(files);
+        let top_of_all = bench.map_or(top, |bench| bench.trim_end_matches(".v"));
+        let mut arguments = match self {
+            Self::Icarus(language) => vec![language, "-Wall", "-tnull", "-s", top_of_all],
+            Self::Verilator => vec!["--lint-only", "-Wall", "--top-module", top],
+        };
+        arguments.extend(&core);
+        arguments.extend(bench.filter(|_| self != Self::Verilator));
+        let (is_good, text) = run(self.program(), folder, &arguments)?;
+        let is_silent = is_good && text.is_empty();
+        Ok((!is_silent).then_some(text))
+    }
+
+    /// Builds and runs the bench of an emission in a folder; whether it has passed, with an exit code that says so, and what was said.
+    pub fn play(self, folder: &Path, files: &[Artifact]) -> Result<(bool, String), GenError> {
+        let (core, bench) = sources(files);
+        let Some(bench) = bench else {
+            return Ok((false, "there is no bench".into()));
+        };
+        let top = bench.trim_end_matches(".v");
+        let mut arguments = match self {
+            Self::Icarus(language) => vec![language, "-s", top, "-o", "sim.vvp", bench],
+            Self::Verilator => {
+                let build = ["--binary", "--timing", "--top-module", top, "-o", "sim"];
+                [&build[..], &[bench]].concat()
+            }
+        };
+        arguments.extend(&core);
+        let (is_good, text) = run(self.program(), folder, &arguments)?;
+        if !is_good || text.contains("arning") {
+            return Ok((false, text));
+        }
+        let (is_good, text) = match self {
+            Self::Icarus(_) => run("vvp", folder, &["-n", "sim.vvp"]),
+            Self::Verilator => run("./obj_dir/sim", folder, &[]),
+        }?;
+        Ok((is_good && passes(&text), text))
+    }
+}

@@ -1,0 +1,50 @@
+//! The name that was meant by a misspelt one. One measure and one bound for everything that a user types.
+
+/// Nothing longer is a name.
+const NAME_MAX: usize = 64;
+
+/// The names that are closest to a misspelt one, as `text` spells them; none if none is close.
+pub fn closest<T>(
+    typed: &str,
+    names: impl IntoIterator<Item = T>,
+    text: impl Fn(&T) -> &str,
+) -> Vec<T> {
+    let mut found = Vec::new();
+    if typed.len() > NAME_MAX {
+        return found;
+    }
+    // One slip, and one more for each four letters; two letters that have changed places are one.
+    let mut least = 1 + typed.len() / 4;
+    for name in names {
+        let distance = strsim::osa_distance(typed, text(&name));
+        if distance < least {
+            found.clear();
+            least = distance;
+        }
+        if distance == least {
+            found.push(name);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_is_found_and_a_foreign_word_is_not() {
+        let closest = |typed| closest(typed, ["clock_hz", "tst_ns", "cable_m"], |name| name);
+        assert_eq!(closest("clok_hz"), ["clock_hz"]);
+        assert_eq!(closest("clcok_hz"), ["clock_hz"]);
+        assert_eq!(closest("tts_n"), ["tst_ns"]);
+        assert!(closest("colour").is_empty());
+        assert!(closest("").is_empty());
+        assert!(closest(&"clock_hz".repeat(9)).is_empty());
+    }
+
+    #[test]
+    fn all_that_are_equally_close_are_told() {
+        assert_eq!(closest("b1", ["a1", "c1", "dd"], |name| name), ["a1", "c1"]);
+    }
+}

@@ -1,0 +1,158 @@
+//! The crates as others get them: which Rust they need, what they say of themselves, and a program that runs without its sources.
+
+use crate::program::Dir;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// What Cargo knows of the workspace and everything that this machine builds for it.
+fn metadata() -> Value {
+    let rustc = Command::new("rustc").arg("-vV").output().unwrap();
+    let told = String::from_utf8(rustc.stdout).unwrap();
+    let host = told.lines().find_map(|l| l.strip_prefix("host: ")).unwrap();
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--format-version", "1", "--locked", "--offline"])
+        .args(["--filter-platform", host])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn is_own(package: &Value) -> bool {
+    package["source"].is_null()
+}
+
+/// Major, minor, patch; what is left out is 0.
+fn version(text: &str) -> [u64; 3] {
+    let mut parts = text.split('.').map(|part| part.parse().unwrap());
+    [(); 3].map(|()| parts.next().unwrap_or(0))
+}
+
+/// Catches a dependency that wants a newer Rust than the workspace says.
+#[test]
+fn rust_version_is_what_the_dependencies_need() {
+    let metadata = metadata();
+    let packages = metadata["packages"].as_array().unwrap();
+    let wanted = packages.iter().filter(|p| !is_own(p)).filter_map(|p| {
+        let name = p["name"].as_str()?;
+        Some((version(p["rust_version"].as_str()?), name))
+    });
+    let (greatest, name) = wanted.max().unwrap();
+    for package in packages.iter().filter(|p| is_own(p)) {
+        let said = package["rust_version"].as_str().unwrap();
+        assert!(
+            version(said) >= greatest,
+            "{}: rust-version = {said}: {name} needs {greatest:?}; raise it in Cargo.toml",
+            package["name"]
+        );
+    }
+}
+
+#[test]
+fn every_crate_says_what_it_is_and_may_be_published() {
+    let metadata = metadata();
+    let packages = metadata["packages"].as_array().unwrap();
+    let own: Vec<&Value> = packages.iter().filter(|p| is_own(p)).collect();
+    assert_eq!(own.len(), 4);
+    for package in own {
+        let name = package["name"].as_str().unwrap();
+        for key in ["description", "license", "readme", "rust_version"] {
+            assert!(
+                package[key].as_str().is_some_and(|t| !t.is_empty()),
+                "{name}: no {key}"
+            );
+        }
+        assert!(
+            package["publish"].is_null(),
+            "{name}: publish = {}",
+            package["publish"]
+        );
+        let folder = Path::new(package["manifest_path"].as_str().unwrap())
+            .parent()
+            .unwrap();
+        let readme = fs::read_to_string(folder.join(package["readme"].as_str().unwrap())).unwrap();
+        assert!(readme.starts_with(&format!("# {name}\n")), "{name}");
+        // A registry takes no dependency without a version.
+        for dependency in package["dependencies"].as_array().unwrap() {
+            assert_ne!(dependency["req"], "*", "{name}: {}", dependency["name"]);
+        }
+    }
+}
+
+/// The section of the changelog that this version has, released or to be, and the tag that it names.
+#[test]
+fn the_changelog_has_one_section_for_this_version() {
+    let page = include_str!("../CHANGELOG.md");
+    let sections: Vec<&str> = page.split("\n## [").skip(1).collect();
+    let version = env!("CARGO_PKG_VERSION");
+    let own = sections.iter().filter(|section| {
+        section.starts_with(&format!("{version}]")) || section.starts_with("Unreleased]")
+    });
+    let own: Vec<_> = own.collect();
+    assert_eq!(own.len(), 1, "sections of {version}");
+    assert!(
+        own[0].contains(&format!("tag `v{version}`")),
+        "{version}: names no tag"
+    );
+    for heading in ["### Added", "### Changed"] {
+        assert!(own[0].matches(heading).count() <= 1, "{heading} twice");
+    }
+}
+
+/// The program alone in an empty folder gives what it gives here; nothing of it is read from the sources.
+#[test]
+fn the_program_runs_without_its_sources() {
+    let dir = Dir::new("installed");
+    let program = dir.0.join("endat-gen");
+    fs::copy(env!("CARGO_BIN_EXE_endat-gen"), &program).unwrap();
+    let output = Command::new(&program)
+        .current_dir(&dir.0)
+        .env_clear()
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let ours = Path::new(env!("CARGO_MANIFEST_DIR")).join("out/s6_two_channel");
+    let mut count = 0;
+    for entry in fs::read_dir(ours).unwrap() {
+        let path = entry.unwrap().path();
+        let emitted = dir
+            .0
+            .join("out/s6_two_channel")
+            .join(path.file_name().unwrap());
+        assert!(
+            fs::read(&path).unwrap() == fs::read(emitted).unwrap(),
+            "{}",
+            path.display()
+        );
+        count += 1;
+    }
+    assert!(count > 20);
+}
+
+/// What is compiled into the libraries names no folder of the machine that built them. Sources of tests may.
+#[test]
+fn no_library_knows_its_own_folder() {
+    let mut folders = ["gen", "hdl", "host", "sim"]
+        .map(|f| Path::new(env!("CARGO_MANIFEST_DIR")).join(f))
+        .to_vec();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let text = fs::read_to_string(&path).unwrap();
+                let library = text.split("#[cfg(test)]\nmod ").next().unwrap();
+                assert!(
+                    !library.contains("CARGO_MANIFEST_DIR"),
+                    "{}",
+                    path.display()
+                );
+            }
+        }
+    }
+}
