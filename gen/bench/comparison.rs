@@ -4,6 +4,7 @@
 //! Protocol Design", AM243x motor control SDK 09.01; ArtInChip, manual of ENDAT-IF (M6800); Liu et al., "Angle encoder data acquisition system based
 //! on FPGA", 2024; Kang et al., "A FPGA implementation of a rotary machine receiver", 2004.
 
+use super::comparison_t_format::asynchronous;
 use super::comparison_table::{Basis, Table, LEGEND};
 use super::preset_run::{project, run, ChannelRun, Conditions};
 use super::{cycle_times, fault, CycleTime, CycleTimeOptions};
@@ -14,7 +15,6 @@ use endat_hdl::config::{filter_longest, ChannelConfig, ChannelRequest};
 use endat_hdl::direct::CROP_CYCLES;
 use endat_hdl::elaborate::elaborate;
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::t_format::protocol::{Request, BIT_HZ, FAST_BIT_HZ};
 use endat_hdl::timing::{
     PERIOD_CYCLES_MIN, PERIOD_CYCLES_MIN_DOUBLE, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
@@ -26,8 +26,6 @@ use rust_hdl::prelude::Block;
 
 /// The budgets that a test compares with synthesis.
 const AREA: &str = include_str!("../../tests/data/area.toml");
-/// Logic cells that a test compares with place and route.
-const LOGIC_CELLS: &str = include_str!("../../tests/data/logic_cells.toml");
 /// Cables, in metres, from short to long, that a preset is tried on.
 const CABLES_M: [u64; 4] = [20, 100, 150, 780];
 /// Triggers of a run.
@@ -112,7 +110,7 @@ fn samples_told(project: &Project) -> String {
     )
 }
 
-fn area(name: &str, family: &str) -> (u64, u64) {
+pub(super) fn area(name: &str, family: &str) -> (u64, u64) {
     let table: toml::Table = AREA.parse().unwrap_or_default();
     let figure = |what: &str| table.get(name)?.get(family)?.get(what)?.as_integer();
     let figure = |what| figure(what).unwrap_or_default() as u64;
@@ -467,50 +465,6 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
         "device of 9152 logic cells",
         format!("{lut} LUT6, {ff} FF"),
     );
-    Ok(table)
-}
-
-fn asynchronous() -> Result<Table, GenError> {
-    let [(all, all_ff), (receiver, receiver_ff)] =
-        ["async_dsp", "t_format"].map(|n| area(n, "ice40"));
-    let cells: toml::Table = LOGIC_CELLS.parse().unwrap_or_default();
-    let cells = cells.get("async_dsp").and_then(|c| c.as_integer());
-    let cells = cells.ok_or_else(|| fault(&"no logic cells of async_dsp"))?;
-    let requests = Request::ALL.map(|r| format!("{:X}", r.id()));
-    let rates = [BIT_HZ, FAST_BIT_HZ].map(|hz| format!("{} Mbit/s", decimal(hz as f64 / 1e6, 1)));
-    let mut table = Table::new("Asynchronous receiver: `async_dsp`", "Kang et al. 2004");
-    table.row(
-        Basis::Synthesis,
-        "receiver with the bus of a signal processor",
-        "707 logic cells (FLEX10K, LUT4 and FF each)",
-        format!("{cells} logic cells (iCE40, the same): {all} LUT4, {all_ff} FF"),
-    );
-    table.row(
-        Basis::Synthesis,
-        "receiver alone",
-        "236 to 248 LUT, 256 FF (Microchip's core for the same protocol)",
-        format!("{receiver} LUT4, {receiver_ff} FF (iCE40)"),
-    );
-    table.row(
-        Basis::Description,
-        "rate",
-        "2.5 Mbit/s",
-        rates.join(" and "),
-    );
-    table.row(Basis::Words, "clock", "20 or 60 MHz by a pin", "the same");
-    table.row(
-        Basis::Description,
-        "requests",
-        "0, 1, 3",
-        requests.join(", "),
-    );
-    table.row(
-        Basis::Words,
-        "bus",
-        "data 4 clocks after the address, held for 5",
-        "the same",
-    );
-    table.note("What is read after which disturbance, and how many frames that was tried with: [t-format.md](t-format.md).");
     Ok(table)
 }
 

@@ -2,6 +2,7 @@
 //! speed of the core itself, [`cycle_times`].
 
 mod comparison;
+mod comparison_t_format;
 mod comparison_table;
 mod cycle_time;
 mod design;
