@@ -9,6 +9,7 @@ pub mod pins;
 pub(crate) mod protocol;
 pub(crate) mod reader;
 pub(crate) mod schema;
+mod service;
 mod stream;
 mod trigger;
 

@@ -2,7 +2,7 @@
 
 use super::pins::{assign_pins, card_ports};
 use super::reader::{At, Source, Table};
-use super::{base, check_name, line, outputs, protocol, stream, trigger, Project};
+use super::{base, check_name, line, outputs, protocol, service, stream, trigger, Project};
 use crate::board::{self, Assignment, Board};
 use crate::error::shorten;
 use crate::t_format::BUS;
@@ -112,7 +112,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         _ => None,
     };
     let service = root.table("service", &empty);
-    let parts = read_service(&service);
+    let parts = service::read(&service);
     let outputs_table = root.table("outputs", &empty);
     let outputs = outputs::read(&outputs_table, bus, has_board);
     let stream_table = root.table("stream", &empty);
@@ -625,64 +625,6 @@ pub(super) fn read_parts(
         all.push((word.line, shown));
     }
     Some(all)
-}
-
-fn read_service(table: &Table<'_, '_>) -> Option<ServiceParts> {
-    let infos = read_infos(table);
-    let mut parts = ServiceParts::default();
-    let named = read_parts(
-        table,
-        &["requests", "diagnosis", "continuous", "initialise"],
-        &mut [
-            &mut parts.requests,
-            &mut parts.diagnosis,
-            &mut parts.continuous,
-            &mut parts.initialise,
-        ],
-    )?;
-    if let (Some((line, shown)), false) = (named.first(), parts.requests) {
-        let text = "every other part takes requests; add \"requests\"";
-        table.complain(*line, "parts", shown, text);
-        return None;
-    }
-    let infos = infos?;
-    if let (Some(first), false) = (infos.first(), parts.requests) {
-        let text = "a card without requests has no list of additional informations; add \"requests\" to service.parts";
-        table.complain(first.line, "infos", &format!("0x{:02X}", first.value), text);
-        return None;
-    }
-    for (place, info) in parts.infos.iter_mut().zip(&infos) {
-        *place = info.value as u8;
-    }
-    Some(parts)
-}
-
-/// Additional informations that are selected from the start on; `None` for what cannot be.
-fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
-    const CODES: &str = "no additional information; use MRS codes 0x40..0x4E and 0x50..0x5E";
-    let Some(infos) = table.integers("infos", CODES) else {
-        return if table.has("infos") {
-            None
-        } else {
-            Some(vec![])
-        };
-    };
-    for (index, info) in infos.iter().enumerate() {
-        let shown = format!("0x{:02X}", info.value);
-        let text = match info.value {
-            _ if index >= LIST => {
-                format!("more than {LIST} additional informations; leave some out")
-            }
-            code if infos[..index].iter().any(|i| i.value == code) => {
-                "stands twice; remove one".into()
-            }
-            0x40..=0x4E | 0x50..=0x5E => continue,
-            _ => CODES.into(),
-        };
-        table.complain(info.line, "infos", &shown, &text);
-        return None;
-    }
-    Some(infos)
 }
 
 /// The bus; `None` for what is no bus.

@@ -350,6 +350,29 @@ mod tests {
         );
     }
 
+    /// Catches a panic of the reader, and spoilt texts that are all alike to it.
+    #[test]
+    fn two_thousand_spoilt_configurations_are_taken_or_refused_in_words() {
+        let (mut taken, mut refused) = (0, 0);
+        for seed in 0..200 {
+            let text = valid(seed).unwrap();
+            for spoiling in 0..10 {
+                let spoilt = mutated(&text, 1_000 * seed + spoiling);
+                match parse_any("spoilt.toml", &spoilt) {
+                    Ok(_) => taken += 1,
+                    Err(complaints) => {
+                        refused += 1;
+                        assert!(!complaints.is_empty(), "{spoilt}");
+                    }
+                }
+            }
+        }
+        assert!(
+            taken > 20 && refused > 1_000,
+            "{taken} taken, {refused} refused"
+        );
+    }
+
     #[test]
     fn edges_are_the_ends_of_the_limits() {
         let limits = endat_hdl::config::limits("position_bits", None);
