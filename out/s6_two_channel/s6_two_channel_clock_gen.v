@@ -32,9 +32,11 @@ module s6_two_channel_clock_gen (
     wire         held;
     wire         half_restart;
     wire         half_tick;
+    wire   [9:0] half_left_cycles;
     reg          level; initial level = 1'b1;
     reg          level_next;
     reg          risen; initial risen = 1'b0;
+    wire         _unused_ok = &{1'b0, half_left_cycles};
 
     s6_two_channel_half_period u_half (
         .clock(clock),
@@ -45,7 +47,8 @@ module s6_two_channel_clock_gen (
         .shorten(1'b0),
         .lengthen(1'b0),
         .period_cycles(period_cycles),
-        .tick(half_tick)
+        .tick(half_tick),
+        .left_cycles(half_left_cycles)
     );
 
     assign held = hold_low & !level;

@@ -23,7 +23,9 @@ module s6_two_channel_half_period (
     // Period, in system clock cycles.
     input  wire  [10:0] period_cycles,
     // High in the last cycle of a half.
-    output wire         tick
+    output wire         tick,
+    // Cycles until tick and one more: 1 with tick.
+    output wire   [9:0] left_cycles
 );
     localparam         HAS_SNAP = 1'b0;
     localparam         HAS_ONE = 1'b0;
@@ -69,6 +71,7 @@ module s6_two_channel_half_period (
         end
     end
     assign tick = tick_now;
+    assign left_cycles = (half_cycles + {9'd0, second & period_cycles[0]} + 10'd2) - count;
 
     always @(posedge clock) begin
         if (reset) begin

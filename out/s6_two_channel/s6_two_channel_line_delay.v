@@ -92,6 +92,7 @@ module s6_two_channel_line_delay (
     wire         half_began;
     reg          half_second;
     wire         half_tick;
+    wire   [9:0] half_left_cycles;
     reg   [10:0] delay; initial delay = 11'd0;
     reg   [10:0] delay_next;
     reg   [10:0] since_rise; initial since_rise = 11'd0;
@@ -147,7 +148,8 @@ module s6_two_channel_line_delay (
         .shorten(shorten),
         .lengthen(lengthen),
         .period_cycles(period_cycles),
-        .tick(half_tick)
+        .tick(half_tick),
+        .left_cycles(half_left_cycles)
     );
 
     assign first_rise = rise & (acquire | !timing_armed);
@@ -327,7 +329,10 @@ module s6_two_channel_line_delay (
             end
         end
         if (snap & !center_seen & !center_strobe) begin
-            edge_error_next = 6'd2;
+            edge_error_next = half_left_cycles[5:0];
+            if (half_left_cycles > {4'd0, start_window_cycles}) begin
+                edge_outside_next = 1'b1;
+            end
         end
         offset_now_next = distance;
         if (!late_now) begin
@@ -344,7 +349,7 @@ module s6_two_channel_line_delay (
             edge_outside_next = 1'b0;
         end
     end
-    assign is_open = is_frame | (HAS_ALIGNMENT & slow);
+    assign is_open = HAS_ALIGNMENT & slow;
     assign good_edge = HAS_ALIGNMENT & sample_now & edge_now & (!edge_outside | is_open) & (follow | (in_answer & !is_frame));
     assign over = !run | (drain & !(|pulses));
     assign sample = sample_now;

@@ -190,8 +190,8 @@ module s6_two_channel_tb;
     localparam [CHANNELS-1:0] ENDAT = 2'b11;
     localparam integer FIRST = 0, LAST = 1;
     localparam real CLK_NS = 10.0;
-    // From a trigger to the end of everything: measuring frame, and frame at the configured clock.
-    localparam real CALIBRATION_NS = 274370.0;
+    // From a trigger to the end of everything: with the frames that measure the delay, and at the configured clock only.
+    localparam real CALIBRATION_NS = 326440.0;
     localparam real CYCLE_NS = 52070.0;
     localparam real FAULT_NS = 116590.0;
     localparam real ABORT_NS = 30003000.0;
@@ -721,7 +721,7 @@ module s6_two_channel_tb;
         want_frames = encoder_frames;
 
         tell("line delay, CRC, recovery time, time stamps");
-        // A frame that measures the line delay, then one at the configured clock.
+        // Behind the frames that measure the line delay comes one at the configured clock; then that one alone.
         write_word(CARD_CALIBRATE, ~(32'hFFFFFFFF << CHANNELS));
         #(SETTLE_NS);
         new_positions;

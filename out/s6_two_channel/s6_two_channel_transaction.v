@@ -219,7 +219,6 @@ module s6_two_channel_transaction (
     wire         health_never_high;
     wire         health_is_open;
     wire         health_is_stuck;
-    wire         verdict_is_measuring;
     wire         verdict_is_late;
     wire         verdict_taken;
     wire         verdict_is_received;
@@ -283,8 +282,6 @@ module s6_two_channel_transaction (
     reg          high_at_tick_next;
     reg          owing; initial owing = 1'b0;
     reg          owing_next;
-    reg          doubted; initial doubted = 1'b0;
-    reg          doubted_next;
     reg          measuring; initial measuring = 1'b0;
     reg          measuring_next;
     reg          once_more; initial once_more = 1'b0;
@@ -311,7 +308,7 @@ module s6_two_channel_transaction (
         .found(found),
         .answer_taken(answer_taken),
         .prove(proof),
-        .is_measuring(verdict_is_measuring),
+        .is_measuring(measuring),
         .settings_upset(settings_upset),
         .give_up(give_up),
         .is_late(verdict_is_late),
@@ -364,16 +361,6 @@ module s6_two_channel_transaction (
             all_sent_next = (outstanding == cells_left) | (one_left & will_rise);
         end
     end
-
-    always @* begin
-        doubted_next = doubted;
-        if (publish & good) begin
-            doubted_next = 1'b0;
-        end
-        if (verdict_is_doubtful) begin
-            doubted_next = 1'b1;
-        end
-    end
     assign own = is_own & HAS_ALL;
     assign triggered = trigger & !(hold_off & HAS_ALL);
     assign owed = once_more & owing & !(hold_off & HAS_ALL);
@@ -397,7 +384,6 @@ module s6_two_channel_transaction (
         end
     end
     assign last_cell = (phase == PHASE_TAIL) & was_center;
-    assign verdict_is_measuring = measuring & doubted;
     assign known = is_calibrated | (HAS_ALIGNMENT & is_fixed);
     assign leave = going & gap_good & (!continuous | line_wanted | !known | (stop_at_error & verdict_is_bad));
 
@@ -713,7 +699,7 @@ module s6_two_channel_transaction (
             once_more_next = 1'b0;
         end
         if (accept) begin
-            measuring_next = !known & doubted;
+            measuring_next = !known;
             answered_next = 1'b0;
             in_supplement_next = 1'b0;
             acquiring_next = !known & !(HAS_ALIGNMENT & (|passes));
@@ -846,7 +832,6 @@ module s6_two_channel_transaction (
             cleared <= 1'b1;
             high_at_tick <= 1'b0;
             owing <= 1'b0;
-            doubted <= 1'b0;
             measuring <= 1'b0;
             once_more <= 1'b0;
         end else begin
@@ -881,7 +866,6 @@ module s6_two_channel_transaction (
             cleared <= cleared_next;
             high_at_tick <= high_at_tick_next;
             owing <= owing_next;
-            doubted <= doubted_next;
             measuring <= measuring_next;
             once_more <= once_more_next;
         end
