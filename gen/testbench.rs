@@ -318,6 +318,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         settle_ns => real(host.settle_ns),
         clk_ns => real(clock_ns(hz)),
         calibration_ns => whole(calibration_ns),
+        measuring_frames => measuring,
         cycle_ns => whole(cycle_ns),
         fault_ns => whole(cycle_ns + longest_ns(card, timeout) + ENCODER_GIVES_UP_NS),
         abort_ns => whole(1_000 * abort_us.unwrap_or(0) + MARGIN_NS),

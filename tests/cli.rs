@@ -289,7 +289,7 @@ fn a_wrong_word_stands_beside_its_option_with_one_limit() {
         ),
         (
             vec!["sim", "lc416", "--svg", "x.svg", "--frame", "99"],
-            "--frame = 99: the encoder saw 5 frames; choose one of 0..4",
+            "--frame = 99: the encoder saw 6 frames; choose one of 0..5",
         ),
         (
             vec!["explain", "--preset", ""],

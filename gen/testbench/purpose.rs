@@ -3,7 +3,6 @@
 use super::{clock_ns, cycle_ns, is_own_trigger, real, whole, Port};
 use crate::error::GenError;
 use crate::template;
-use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig, ChannelRequest};
 use endat_hdl::regs::{CHANNEL_CONFIG, SERVICE};
 use endat_hdl::timing::{cycles_to_ns, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS};
@@ -116,7 +115,6 @@ impl Parts {
             watchdog => watched(card),
             power_up => card.service.initialise,
             channels => Serde(ports),
-            calibration_frames => if card.line.alignment { CALIBRATION_FRAMES } else { 1 },
         };
         let steps = include_str!("../templates/bench_purpose.v.jinja");
         let tasks = include_str!("../templates/bench_purpose_tasks.v.jinja");

@@ -192,6 +192,7 @@ module s6_two_channel_tb;
     localparam real CLK_NS = 10.0;
     // From a trigger to the end of everything: with the frames that measure the delay, and at the configured clock only.
     localparam real CALIBRATION_NS = 326440.0;
+    localparam integer MEASURING_FRAMES = 1;
     localparam real CYCLE_NS = 52070.0;
     localparam real FAULT_NS = 116590.0;
     localparam real ABORT_NS = 30003000.0;
@@ -652,6 +653,17 @@ module s6_two_channel_tb;
         end
     endtask
 
+    // The same where frames that measure the line delay come first, on these channels.
+    task measuring_frame(input [CHANNELS-1:0] measuring);
+        begin
+            for (ch = 0; ch < CHANNELS; ch = ch + 1) if (measuring[ch])
+                want_frames[32*ch +: 32] = want_frames[32*ch +: 32] + MEASURING_FRAMES;
+            new_positions;
+            frame(CALIBRATION_NS);
+            check_evidence;
+        end
+    endtask
+
     // Period of the clock of each channel: the shortest time between two rising edges of a frame.
     real rise_time [0:CHANNELS-1];
     real shortest [0:CHANNELS-1];
@@ -721,15 +733,15 @@ module s6_two_channel_tb;
         want_frames = encoder_frames;
 
         tell("line delay, CRC, recovery time, time stamps");
-        // Behind the frames that measure the line delay comes one at the configured clock; then that one alone.
+        // Behind the frames that measure the line delay comes one at the configured clock; then such frames alone.
         write_word(CARD_CALIBRATE, ~(32'hFFFFFFFF << CHANNELS));
         #(SETTLE_NS);
-        new_positions;
-        frame(CALIBRATION_NS);
-        check_evidence;
-        new_positions;
-        frame(CYCLE_NS);
-        check_evidence;
+        measuring_frame(ENDAT);
+        repeat (2) begin
+            new_positions;
+            frame(CYCLE_NS);
+            check_evidence;
+        end
         for (ch = 0; ch < CHANNELS; ch = ch + 1) if (ENDAT[ch])
             check("cycles between two frames", stamp[32*ch +: 32] - stamp_before[32*ch +: 32],
                   $rtoi((fall_time - fall_time_before) / CLK_NS + 0.5));
@@ -894,9 +906,7 @@ module s6_two_channel_tb;
             // An encoder that has lost its way finds it in the quiet time.
             stay_high = {CHANNELS{1'b0}};
             #(ABORT_NS);
-            new_positions;
-            frame(CALIBRATION_NS);
-            check_evidence;
+            measuring_frame((1 << FIRST) | (1 << LAST));
         end
 
 

@@ -59,6 +59,13 @@ pub struct Master {
     pub rng: Rng,
 }
 
+/// An encoder that makes nobody wait.
+pub fn sound(seed: u64, position_bits: u32) -> EncoderConfig {
+    let mut encoder = EncoderConfig::endat22(position_bits).seed(seed);
+    encoder.tm = 10 * US..=12 * US;
+    encoder
+}
+
 impl Master {
     /// A card with this bus, reset, its encoders at the end of `cable_m` metres.
     pub fn new(bus: HostBus, more: &str) -> Self {
@@ -74,17 +81,20 @@ impl Master {
 
     /// The same with EnDat encoders at some channels only: number and width.
     pub fn at_channels(project: &Project, widths: &[(usize, u32)]) -> Self {
+        let encoders = widths.iter().enumerate();
+        let encoders = encoders.map(|(index, (n, bits))| (*n, sound(index as u64, *bits)));
+        Self::with_encoders(project, encoders.collect())
+    }
+
+    /// The same with these encoders, each at its channel.
+    pub fn with_encoders(project: &Project, encoders: Vec<(usize, EncoderConfig)>) -> Self {
         let design = endat_gen::design(project).unwrap();
         let engine = Compiled::new(&design).unwrap();
-        let link = |index: usize, n: usize, bits| {
-            let mut encoder = EncoderConfig::endat22(bits).seed(index as u64);
-            encoder.tm = 10 * US..=12 * US;
+        let link = |(n, encoder)| {
             let port = PinNames::card(n);
             (port, Link::new(LineConfig::cable(20.0), encoder))
         };
-        let links = widths.iter().enumerate();
-        let links = links.map(|(index, (n, bits))| link(index, *n, *bits));
-        let links = links.collect();
+        let links = encoders.into_iter().map(link).collect();
         let mut bench = Bench::new(engine, project.card.system_hz, links);
         if project.card.line.double_edge {
             bench.set_double_edge();

@@ -93,9 +93,9 @@ impl Behind {
         elaborate(&block, "channel")
     }
 
-    /// The frame with which measuring begins: one measures the delay, others select.
+    /// The frame with which the frames back to back begin: one measures the delay, one brings the first position, others select.
     pub fn first_frame(self) -> usize {
-        1 + self.infos as usize
+        2 + self.infos as usize
     }
 
     /// Frames back to back.
@@ -149,11 +149,15 @@ impl Behind {
         if let Some((_, violation)) = traces.violations.first() {
             return Err(violation.to_string());
         }
-        let count = self.first_frame() + CYCLES + 1;
-        if (traces.frames.len(), traces.results.len()) != (count, count) {
-            return Err(format!("{} frames instead of {count}", traces.frames.len()));
+        let count = self.first_frame() + CYCLES;
+        let (measuring, frames) = traces.frames.split_at(traces.frames.len().min(1));
+        if (frames.len(), traces.results.len()) != (count, count) {
+            return Err(format!("{} frames instead of {count}", frames.len()));
         }
-        for (frame, result) in traces.frames.iter().zip(traces.results) {
+        if let Some(frame) = measuring.iter().find(|f| !f.measures_for(&frames[0])) {
+            return Err(format!("frame {} does not measure", frame.index));
+        }
+        for (frame, result) in frames.iter().zip(traces.results) {
             let is_whole =
                 frame.is_whole() && frame.is_true_answer(case.settings.position_bits, true);
             let is_good = result.last_cause() == cause::NONE
