@@ -243,7 +243,15 @@ fn the_c_example_reads_positions() {
     assert!(is_good, "{told}");
     let card = Served::new(project, || Door::terminal().unwrap());
     let program = folder.join("example");
-    let (is_good, told) = run(program.to_str().unwrap(), &folder, &[&card.name]);
+    // The first trigger measures the delays, and has a position of each channel when that is done.
+    let read = || run(program.to_str().unwrap(), &folder, &[&card.name]);
+    let first = |told: &str| {
+        [0, 1]
+            .iter()
+            .any(|n| told.contains(&format!("sequence {n},")))
+    };
+    let mut again = (0..100).map(|_| read());
+    let (is_good, told) = again.find(|(_, told)| !first(told)).expect("triggers");
     assert!(is_good && told.contains("channel 1: position "), "{told}");
     // Both are of one moment: the same trigger.
     let stamp = |line: &str| {
@@ -391,7 +399,13 @@ fn sigrok_decodes_every_frame_to_the_encoders_position() {
         // DATA changes behind the falling edge there.
         ("sixteen-megahertz", 25),
     ] {
-        let Some((report, told)) = decoded(scenario, &endat(bits)) else {
+        // A short recovery time: the next frame begins less than the usual 6 us behind this one.
+        let short = if scenario == "sixteen-megahertz" {
+            ":idle_us=3"
+        } else {
+            ""
+        };
+        let Some((report, told)) = decoded(scenario, &(endat(bits) + short)) else {
             return;
         };
         let frames = report[0]["channels"][0]["frames"].as_array().unwrap();

@@ -123,12 +123,12 @@ const DRAWINGS: [(&str, &str, &[&str]); 6] = [
     (
         "supplement.svg",
         include_str!("../docs/supplement.svg"),
-        &["additional-information", "--frame", "4"],
+        &["additional-information", "--frame", "5"],
     ),
     (
         "parameter.svg",
         include_str!("../docs/parameter.svg"),
-        &["parameter", "--frame", "3"],
+        &["parameter", "--frame", "4"],
     ),
     (
         "initialise.svg",
@@ -138,7 +138,7 @@ const DRAWINGS: [(&str, &str, &[&str]); 6] = [
     (
         "no-answer.svg",
         include_str!("../docs/no-answer.svg"),
-        &["no-answer", "--frame", "2"],
+        &["no-answer", "--frame", "3"],
     ),
     (
         "no-answer-pause.svg",
