@@ -316,6 +316,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         host => host.text,
         connections => Serde(host.connections),
         settle_ns => real(host.settle_ns),
+        pushes => host::pushes(project.bus, card),
         clk_ns => real(clock_ns(hz)),
         calibration_ns => whole(calibration_ns),
         measuring_frames => measuring,

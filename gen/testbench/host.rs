@@ -102,6 +102,11 @@ const PARALLEL: &[(&str, &str)] = &[
 /// Tasks of hosts that move one word at a time.
 const WORDS: &str = include_str!("../templates/bench_host/words.v");
 
+/// Whether frames of the stream go out over the UART from the start.
+pub fn pushes(bus: HostBus, card: &CardConfig) -> bool {
+    bus == HostBus::Uart && card.stream.start.pushes()
+}
+
 /// The host of a card with this bus; none for a port without a bus.
 pub fn host(bus: HostBus, card: &CardConfig) -> Result<Option<Host>, GenError> {
     let (own, words, connections) = match bus {
@@ -129,6 +134,9 @@ pub fn host(bus: HostBus, card: &CardConfig) -> Result<Option<Host>, GenError> {
     };
     let context = context! {
         uart_bit_ns => real(1e9 / card.baud as f64),
+        pushes => pushes(bus, card),
+        // Twice the longest frame of a stream.
+        frame_bits => real((2 * 10 * endat_hdl::stream::buffer::frame_bytes(card.channels.len())) as f64),
         sck_half_ns => real(SCK_HALF_CYCLES * clk_ns),
         access_cycles_max => access_cycles_max(card),
     };

@@ -499,6 +499,7 @@ module s6_two_channel_tb;
     reg [CHANNELS-1:0] want_fresh;
     reg [32*CHANNELS-1:0] want_frames;
     reg [32*CHANNELS-1:0] stamp, stamp_before;
+    reg is_measuring;
     real trigger_time, fall_time, fall_time_before;
     reg [31:0] trigger_count;
     integer step;
@@ -619,7 +620,7 @@ module s6_two_channel_tb;
                 if (want_fresh[ch]) begin
                     stamp_before[32*ch +: 32] = stamp[32*ch +: 32];
                     stamp[32*ch +: 32] = word(base + RESULT_TIMESTAMP - RESULT_STATUS);
-                    if (ch > FIRST && want_fresh[FIRST])
+                    if (ch > FIRST && want_fresh[FIRST] && !is_measuring)
                         check("time stamps of first channel and this", stamp[32*ch +: 32], stamp[32*FIRST +: 32]);
                 end
             end
@@ -659,7 +660,10 @@ module s6_two_channel_tb;
             for (ch = 0; ch < CHANNELS; ch = ch + 1) if (measuring[ch])
                 want_frames[32*ch +: 32] = want_frames[32*ch +: 32] + MEASURING_FRAMES;
             new_positions;
+            // The frame of the position begins when the measuring one ends, on each channel by itself.
+            is_measuring = 1'b1;
             frame(CALIBRATION_NS);
+            is_measuring = 1'b0;
             check_evidence;
         end
     endtask
@@ -706,6 +710,7 @@ module s6_two_channel_tb;
         data_far = {CHANNELS{1'b0}};
         line_near = ~ENDAT;
         want_position = 0;
+        is_measuring = 1'b0;
         errors = 0;
         trigger_count = 0;
         step = 0;

@@ -75,6 +75,20 @@
         end
     endtask
 
+{% if pushes %}
+    // A card that pushes frames from the start: the one under way goes out, and one byte stands in front of the next answer.
+    task stop_pushing;
+        begin
+            write_word(CARD_STREAM_CONTROL, 32'd0);
+            #(UART_BIT_NS * {{ frame_bits }});
+            read_words(CARD_ID, 1);
+            #(UART_BIT_NS * 12.0);
+            if (received != 5 || inbox[0] !== 8'hFF)
+                complain("byte in front of the first answer", inbox[0], 48'hFF);
+        end
+    endtask
+
+{% endif %}
     function [31:0] word(input integer index);
         word = {inbox[4 * index], inbox[4 * index + 1], inbox[4 * index + 2], inbox[4 * index + 3]};
     endfunction
