@@ -133,17 +133,33 @@ fn a_failing_bench_has_an_exit_code() {
     }
 }
 
-/// The preset's commented line, as a user takes it in.
-#[test]
-fn the_bench_passes_with_a_list_of_additional_informations() {
+/// Runs the bench of the shipped card with these lines of its preset changed, as a user changes them.
+fn passes_with(test: &str, changes: &[(&str, &str)]) {
     if !tools::require("iverilog", "strangers") {
         return;
     }
-    let text = preset("s6_two_channel").unwrap();
-    let text = text.replacen("# infos =", "infos =", 1);
-    let text = text.replacen("parts = []", "parts = [\"requests\"]", 1);
-    let files = endat_gen::emit(&parse("infos.toml", &text).unwrap()).unwrap();
-    let (folder, _) = write("strangers-infos", &files);
+    let change = |text: String, (old, new): &(&str, &str)| {
+        assert_eq!(text.matches(old).count(), 1, "{old}");
+        text.replacen(old, new, 1)
+    };
+    let text = preset("s6_two_channel").unwrap().to_owned();
+    let text = changes.iter().fold(text, change);
+    let files = endat_gen::emit(&parse("changed.toml", &text).unwrap()).unwrap();
+    let (folder, _) = write(test, &files);
     let (is_good, text) = play(&folder, &files, Icarus("-g2012"));
     assert!(is_good, "{text}");
+}
+
+#[test]
+fn the_bench_passes_with_a_list_of_additional_informations() {
+    let list = ("# infos =", "infos =");
+    let none = "parts = []                      # (default: none)\n\n[line]";
+    let requests = (none, "parts = [\"requests\"]\n\n[line]");
+    passes_with("strangers-infos", &[list, requests]);
+}
+
+/// Frames of the stream are on the line from the first trigger on.
+#[test]
+fn the_bench_passes_where_the_card_pushes_from_the_start() {
+    passes_with("strangers-push", &[("start = \"off\"", "start = \"push\"")]);
 }
