@@ -5,7 +5,7 @@ mod ipxact;
 mod litex;
 mod names;
 
-use crate::tools::{self, require, require_python, run};
+use crate::tools::{self, require, require_all, require_python, run};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_any_preset, Configuration, Project};
 use endat_gen::{cli, emit};
@@ -59,11 +59,7 @@ fn cores(test: &str) -> [(&'static str, &'static str, usize, PathBuf); 2] {
 /// Catches a file that the list leaves out, a target that FuseSoC refuses, and lint.
 #[test]
 fn fusesoc_lints_and_simulates_the_core() {
-    let check = "FuseSoC core";
-    let has_all = ["fusesoc", "verilator", "iverilog"]
-        .iter()
-        .all(|t| require(t, check));
-    if !has_all {
+    if !require_all(&["fusesoc", "verilator", "iverilog"], "FuseSoC core") {
         return;
     }
     for (name, _, _, folder) in cores("fusesoc") {

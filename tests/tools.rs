@@ -21,6 +21,11 @@ pub fn has(tool: &str) -> bool {
         .is_ok()
 }
 
+/// Whether all these tools are there, see [`require`].
+pub fn require_all(tools: &[&str], check: &str) -> bool {
+    tools.iter().all(|tool| require(tool, check))
+}
+
 /// Whether a check that needs `tool` can run. If not, says which check is skipped, or fails in CI.
 pub fn require(tool: &str, check: &str) -> bool {
     strangers::assert_listed(tool);

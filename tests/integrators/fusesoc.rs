@@ -2,7 +2,7 @@
 
 use super::written;
 use crate::bus::text;
-use crate::tools::{folder, require, run};
+use crate::tools::{folder, require_all, run};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_any_preset, parse, Configuration};
 use endat_gen::emit;
@@ -90,11 +90,7 @@ endmodule
 /// Catches a module that two cores have with different contents: Verilator takes one of them for both.
 #[test]
 fn two_cards_and_a_receiver_share_a_design() {
-    let check = "cores in one design";
-    let has_all = ["fusesoc", "verilator", "iverilog"]
-        .iter()
-        .all(|t| require(t, check));
-    if !has_all {
+    if !require_all(&["fusesoc", "verilator", "iverilog"], "cores in one design") {
         return;
     }
     let place = folder("fusesoc-soc");
@@ -228,11 +224,10 @@ fn targets_know_the_clock_and_make_no_bitstream_without_pins() {
 /// The clock that the target asks for is the one that the verdict is about.
 #[test]
 fn a_slow_card_meets_its_clock_on_ice40() {
-    let check = "FuseSoC target ice40";
-    let has_all = ["fusesoc", "yosys", "nextpnr-ice40"]
-        .iter()
-        .all(|t| require(t, check));
-    if !has_all {
+    if !require_all(
+        &["fusesoc", "yosys", "nextpnr-ice40"],
+        "FuseSoC target ice40",
+    ) {
         return;
     }
     let second = "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n";
