@@ -2,7 +2,7 @@
 
 use super::written;
 use crate::bus::text;
-use crate::tools::{folder, require_all, run};
+use crate::tools::{folder, require, require_all, run};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_any_preset, parse, Configuration};
 use endat_gen::emit;
