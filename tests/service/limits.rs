@@ -68,6 +68,8 @@ fn a_hasty_encoder_is_counted_and_its_positions_are_good() {
     // A request is answered all the same.
     assert_eq!(rig.request(SelectMemory, 0xA1, 0).0, 0);
     rig.write(word::LIMITS, 0);
+    // It counts from the next frame on that begins after the program has seen it.
+    rig.bench.run_cycles(20_000);
     let before = count(&mut rig, cause::NONE);
     rig.frames(5);
     assert_eq!(count(&mut rig, cause::NONE), before + 5);
