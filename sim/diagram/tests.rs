@@ -15,7 +15,7 @@ fn drawing(name: &str, frame: usize) -> String {
         record: true,
         ..RunOptions::default()
     };
-    let (bench, _) = s.run_channel(0, TestReceiver::new(s.system_hz), options);
+    let (bench, _) = s.run_channel(0, TestReceiver::new(s.system_hz).measuring_apart(), options);
     frame_svg(bench.link(0), frame, s.summary).unwrap()
 }
 
@@ -25,7 +25,7 @@ fn overview(name: &str) -> String {
         record: true,
         ..RunOptions::default()
     };
-    let (bench, _) = s.run_channel(0, TestReceiver::new(s.system_hz), options);
+    let (bench, _) = s.run_channel(0, TestReceiver::new(s.system_hz).measuring_apart(), options);
     overview_svg(bench.link(0), s.summary).unwrap()
 }
 
@@ -99,14 +99,14 @@ fn bits_that_arrive_wrong_are_marked_and_so_is_the_crc() {
     let wrong = |svg: &str| svg.matches("<rect class=\"f-wrong\"").count();
     let legend = |svg: &str| usize::from(svg.contains("arrives wrong"));
     // One bit of the position, then one of the CRC; beside each the legend's.
-    for frame in [2, 4] {
+    for frame in [3, 5] {
         let svg = drawing("crc-error", frame);
         assert_eq!((wrong(&svg), legend(&svg)), (2, 1));
         let crc = texts(&svg, "field").into_iter();
         let crc: Vec<_> = crc.filter(|t| t.starts_with("CRC")).collect();
         assert!(crc[0].ends_with(": wrong"), "{crc:?}");
     }
-    let svg = drawing("crc-error", 3);
+    let svg = drawing("crc-error", 4);
     assert_eq!((wrong(&svg), legend(&svg)), (0, 0));
 }
 
@@ -123,7 +123,8 @@ fn frames_that_end_early_can_be_drawn() {
             record: true,
             ..RunOptions::default()
         };
-        let (bench, _) = s.run_channel(0, TestReceiver::new(s.system_hz), options);
+        let (bench, _) =
+            s.run_channel(0, TestReceiver::new(s.system_hz).measuring_apart(), options);
         assert!(frame_svg(bench.link(0), 1, "a < b & c")
             .unwrap()
             .contains("a &lt; b &amp; c"));
@@ -134,7 +135,7 @@ fn frames_that_end_early_can_be_drawn() {
 /// The clock goes on behind the mark, and the count with it.
 #[test]
 fn a_long_wait_is_shortened_though_the_clock_goes_on() {
-    let svg = drawing("no-answer", 2);
+    let svg = drawing("no-answer", 3);
     let counts = texts(&svg, "mark").into_iter().chain(texts(&svg, "count"));
     let counts: Vec<u32> = counts.map(|n| n.parse().unwrap()).collect();
     let jump = counts.windows(2).position(|n| n[1] > n[0] + 1).unwrap();
@@ -158,8 +159,9 @@ fn edges_beside_a_mark_are_upright() {
             record: true,
             ..RunOptions::default()
         };
-        let (bench, _) = s.run_channel(0, TestReceiver::new(s.system_hz), options);
-        let svg = frame_svg(bench.link(0), 2, "").unwrap();
+        let (bench, _) =
+            s.run_channel(0, TestReceiver::new(s.system_hz).measuring_apart(), options);
+        let svg = frame_svg(bench.link(0), 3, "").unwrap();
         let clocks = svg.lines().filter(|l| l.contains("class=\"clock\""));
         let mut edges = 0;
         for clock in clocks {
@@ -182,20 +184,22 @@ fn an_overview_has_every_frame_with_what_was_sent_and_what_came() {
     let s = scenario::named("no-answer").unwrap();
     let svg = overview("no-answer");
     let frames = texts(&svg, "name");
-    assert_eq!(frames.iter().filter(|n| *n == "send position").count(), 5);
+    assert_eq!(frames.iter().filter(|n| *n == "send position").count(), 7);
     let mut wanted = Vec::new();
     for came in [
         "0x1234567",
         "0x1235678",
+        "0x1236789",
         "no start bit",
-        "0x123789A",
         "0x12389AB",
+        "0x1239ABC",
+        "0x123ABCD",
     ] {
         wanted.extend(["111000", came]);
     }
     assert_eq!(texts(&svg, "field"), wanted);
-    assert_eq!(texts(&svg, "dim").len(), 5);
-    assert_eq!(texts(&svg, "tick")[2], "at 12.620 ms, 3.125 MHz");
+    assert_eq!(texts(&svg, "dim").len(), 7);
+    assert_eq!(texts(&svg, "tick")[3], "at 12.620 ms, 3.125 MHz");
 
     let last = (0b100_011, 0x0D, 0, 0);
     let select = (0b001_110, area::MANUFACTURER_1, 0, 0);
@@ -206,14 +210,14 @@ fn an_overview_has_every_frame_with_what_was_sent_and_what_came() {
 
     let svg = overview("unplugged");
     assert_eq!(
-        texts(&svg, "field")[6..9],
-        ["no encoder", "111000", "0x123789A"]
+        texts(&svg, "field")[8..11],
+        ["no encoder", "111000", "0x12389AB"]
     );
-    let times = ["838 us", "2.0 ms", "120 us", "742 us"];
-    assert_eq!(texts(&svg, "dim")[3..], times);
-    let came = ["0x1235678", "111000", "CRC wrong", "111000", "0x123789A"];
+    let times = ["842 us", "2.0 ms", "120 us", "1 us", "697 us"];
+    assert_eq!(texts(&svg, "dim")[4..], times);
+    let came = ["0x1236789", "111000", "CRC wrong", "111000", "0x12389AB"];
     let svg = overview("crc-error");
-    assert_eq!(texts(&svg, "field")[3..8], came);
+    assert_eq!(texts(&svg, "field")[5..10], came);
     assert_eq!(svg.matches("class=\"f-both\"").count(), 2);
     let svg = overview("alarm");
     let came = texts(&svg, "field");
@@ -221,7 +225,7 @@ fn an_overview_has_every_frame_with_what_was_sent_and_what_came() {
     assert_eq!(came, ["error F1", "error F2", "F1 and F2"]);
 
     let nothing = Bench::channel(
-        TestReceiver::new(s.system_hz),
+        TestReceiver::new(s.system_hz).measuring_apart(),
         s.system_hz,
         &s.channels[0].settings,
         s.link(0),

@@ -2,7 +2,7 @@ use super::*;
 use crate::test_receiver::{Bug, TestReceiver, LATENCY};
 
 fn run(scenario: &Scenario, index: usize, bug: Bug) -> Report {
-    let receiver = TestReceiver::with_bug(scenario.system_hz, bug);
+    let receiver = TestReceiver::with_bug(scenario.system_hz, bug).measuring_apart();
     let options = RunOptions {
         record: false,
         sample_latency_cycles: LATENCY,
@@ -26,7 +26,9 @@ fn every_scenario_goes_as_it_says() {
         for i in 0..s.channels.len() {
             let report = run(&s, i, Bug::None);
             assert_eq!(report.complaints(), [""; 0], "{report}");
-            assert_eq!(report.channels[0].frames.len(), s.causes.len());
+            let frames = report.channels[0].frames.iter();
+            let results = frames.filter(|f| f.result.is_some()).count();
+            assert_eq!(results, s.causes.len());
         }
     }
 }
@@ -92,13 +94,14 @@ fn the_report_reads_well() {
         "",
         "channel 0: command 111000, 29 position bits, 3.125 MHz from 100 MHz (32 cycles, +0 ppm), 10 m of cable",
         "   trigger us  command  result                            position      encoder's   pulses  start  S at us frame us    tm us",
-        "       20.000  111000   good                             0x1234567      0x1234567    48/48   R#11   52.500  237.500   24.916",
-        "      620.000  111000   good                             0x1235678      0x1235678    48/48   R#11    5.200   17.040   18.887",
-        "      720.000  111000   held: F1                         0x1235678      0x1236789    48/48   R#11    5.200   17.040   25.258",
-        "      820.000  111000   held: F2                         0x1235678      0x123789A    48/48   R#11    5.200   17.040   20.461",
-        "      920.000  111000   held: F1                         0x1235678      0x12389AB    48/48   R#11    5.200   17.040   25.880",
-        "     1020.000  111000   good                             0x1239ABC      0x1239ABC    48/48   R#11    5.200   17.040   22.108",
-        "  222 samples, narrowest margin 160.0 ns",
+        "       20.000  111000   -                                        -      0x1234567    48/48   R#11   52.500  237.500   24.916",
+        "       20.000  111000   good                             0x1235678      0x1235678    48/48   R#11    5.200   17.040   18.887",
+        "      620.000  111000   good                             0x1236789      0x1236789    48/48   R#11    5.200   17.040   25.258",
+        "      720.000  111000   held: F1                         0x1236789      0x123789A    48/48   R#11    5.200   17.040   20.461",
+        "      820.000  111000   held: F2                         0x1236789      0x12389AB    48/48   R#11    5.200   17.040   25.880",
+        "      920.000  111000   held: F1                         0x1236789      0x1239ABC    48/48   R#11    5.200   17.040   22.108",
+        "     1020.000  111000   good                             0x123ABCD      0x123ABCD    48/48   R#11    5.200   17.040   20.602",
+        "  259 samples, narrowest margin 160.0 ns",
         "",
         "all as it should be",
     ];
