@@ -9,37 +9,37 @@ use endat_hdl::bus::HostBus;
 const BROKEN: &[Mutation] = &[
     mutation(
         "crop begins at the first bit",
-        "endat_direct_output_pair64.v",
+        "direct_output_pair_64",
         "at_next = first_bit;",
         "at_next = 6'd0;",
     ),
     mutation(
         "crop has no end",
-        "endat_direct_output_pair68.v",
+        "direct_output_pair_68",
         "(taken < length_bits)",
         "(taken < 6'd32)",
     ),
     mutation(
         "selected causes stay",
-        "endat_direct_output_pair64.v",
+        "direct_output_pair_64",
         "error_causes_next = write_data;",
         "error_causes_next = error_causes;",
     ),
     mutation(
         "watchdog never ends a frame",
-        "endat_line_health.v",
+        "line_health",
         "over_next = under_way & (|watchdog_us)",
         "over_next = under_way & (&watchdog_us)",
     ),
     mutation(
         "watchdog: the service does not tell it",
-        "endat_service_channel.v",
+        "service_channel",
         "out_watchdog_next = io_out[11:0];",
         "out_watchdog_next = out_watchdog;",
     ),
     mutation(
         "a written clock rate is not taken",
-        "endat_frame_settings.v",
+        "frame_settings",
         "period_held_next = period_cycles;",
         "period_held_next = 11'd32;",
     ),
