@@ -38,6 +38,13 @@ impl GenError {
         Self::Input(vec![text.into()])
     }
 
+    /// What can go wrong by a fault of this program only.
+    pub fn fault(what: &str, error: &dyn fmt::Display) -> Self {
+        Self::input(format!(
+            "{what}: {error}; this is a fault of endat-gen, please report it"
+        ))
+    }
+
     /// A file that could not be read or written.
     pub fn io(action: &str, path: &Path, error: &std::io::Error, remedy: &str) -> Self {
         Self::input(format!(

@@ -50,11 +50,7 @@ impl Subject {
         mut block: impl Block,
     ) -> Result<Self, GenError> {
         block.connect_all();
-        let design = elaborate(&block, name).map_err(|e| {
-            GenError::input(format!(
-                "{name}: {e}; this is a fault of endat-gen, please report it"
-            ))
-        })?;
+        let design = elaborate(&block, name).map_err(|e| GenError::fault(name, &e))?;
         Ok(Self {
             name,
             title,

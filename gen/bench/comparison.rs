@@ -391,7 +391,8 @@ fn card(rows: &[CycleTime]) -> Result<Table, GenError> {
     if let Some(complaint) = report.complaints().first() {
         return Err(fault(&format!("{}: {complaint}", flow.name)));
     }
-    let result = bench.results().get(1).ok_or_else(|| fault(&"no result"))?;
+    // The first result is of frame 1; frame 0 measures the delay.
+    let result = bench.results().first().ok_or_else(|| fault(&"no result"))?;
     let row = back_to_back(rows, "Liu et al.")?;
     let (lut, ff) = area("card_stream", "xc6s");
     let mut table = Table::new("Acquisition card: `s6_two_channel`", "Liu et al. 2024");

@@ -24,9 +24,7 @@ pub struct ManArgs {
 }
 
 fn fault(e: &dyn std::fmt::Display) -> GenError {
-    GenError::input(format!(
-        "man: {e}; this is a fault of endat-gen, please report it"
-    ))
+    GenError::fault("man", e)
 }
 
 /// Prints the completions for a shell.

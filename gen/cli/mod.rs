@@ -260,9 +260,6 @@ impl<T: serde::Serialize + ToString> Shown for T {
 /// Indented JSON with a newline at the end.
 fn to_json(value: &impl serde::Serialize) -> Result<String, GenError> {
     let text = serde_json::to_string_pretty(value);
-    text.map(|t| t + "\n").map_err(|e| {
-        GenError::input(format!(
-            "JSON: {e}; this is a fault of endat-gen, please report it"
-        ))
-    })
+    text.map(|t| t + "\n")
+        .map_err(|e| GenError::fault("JSON", &e))
 }

@@ -165,11 +165,9 @@ pub fn run(arguments: &ShmooArgs) -> Result<Outcome, GenError> {
     // Before the long work, not after it.
     check_all(&[&svg, &csv].into_iter().flatten().collect::<Vec<_>>())?;
     let told = progress(plan.channels(), "channels");
-    let map = plan.run(arguments.threads.count()?, told).map_err(|e| {
-        GenError::input(format!(
-            "shmoo: {e}; this is a fault of endat-gen, please report it"
-        ))
-    })?;
+    let map = plan
+        .run(arguments.threads.count()?, told)
+        .map_err(|e| GenError::fault("shmoo", &e))?;
     if let Some(svg) = &mut svg {
         svg.text = map_svg(&map, &title(&plan));
     }

@@ -186,9 +186,7 @@ fn t_format_json(report: &TFormatReport) -> Value {
 
 /// What cannot go wrong has.
 fn fault(e: &dyn std::fmt::Display) -> GenError {
-    GenError::input(format!(
-        "design: {e}; this is a fault of endat-gen, please report it"
-    ))
+    GenError::fault("design", e)
 }
 
 fn list(as_data: bool) -> Result<Outcome, GenError> {

@@ -40,11 +40,7 @@ pub struct Receiver {
 pub fn design(receiver: &Receiver) -> Result<Design, GenError> {
     let mut block = AsyncDsp::new(&receiver.start);
     block.connect_all();
-    elaborate(&block, &receiver.name).map_err(|e| {
-        GenError::input(format!(
-            "design: {e}; this is a fault of endat-gen, please report it"
-        ))
-    })
+    elaborate(&block, &receiver.name).map_err(|e| GenError::fault("design", &e))
 }
 
 /// All files of a receiver, the MANIFEST last.

@@ -96,6 +96,20 @@ impl<'a> Traces<'a> {
             samples: bench.samples(0),
         }
     }
+
+    /// The frames behind those that measured the delay for the first result: one for each result, if all is well.
+    ///
+    /// # Errors
+    /// A frame before them that has not measured.
+    pub fn positions(&self) -> Result<&'a [FrameLog], String> {
+        let measuring = self.frames.len().saturating_sub(self.results.len());
+        let (first, frames) = self.frames.split_at(measuring);
+        let measures = |f: &FrameLog| frames.first().is_some_and(|next| f.measures_for(next));
+        match first.iter().find(|f| !f.is_whole() || !measures(f)) {
+            Some(f) => Err(format!("frame {}: does not measure: {f:?}", f.index)),
+            None => Ok(frames),
+        }
+    }
 }
 
 impl Case {
@@ -223,15 +237,7 @@ impl Case {
                 counts.0, counts.1, self.frames
             ));
         }
-        let (first, frames) = traces.frames.split_at(measuring);
-        let measures = |f: &FrameLog| frames.first().is_some_and(|next| f.measures_for(next));
-        if let Some(frame) = first.iter().find(|f| !f.is_whole() || !measures(f)) {
-            return Err(format!(
-                "frame {}: does not measure: {frame:?}",
-                frame.index
-            ));
-        }
-        for (frame, result) in frames.iter().zip(traces.results) {
+        for (frame, result) in traces.positions()?.iter().zip(traces.results) {
             self.check_frame(frame, result)
                 .map_err(|what| format!("frame {}: {what}", frame.index))?;
         }

@@ -150,14 +150,12 @@ impl Behind {
             return Err(violation.to_string());
         }
         let count = self.first_frame() + CYCLES;
-        let (measuring, frames) = traces.frames.split_at(traces.frames.len().min(1));
-        if (frames.len(), traces.results.len()) != (count, count) {
-            return Err(format!("{} frames instead of {count}", frames.len()));
+        // One more measures the delay.
+        let counts = (traces.frames.len(), traces.results.len());
+        if counts != (count + 1, count) {
+            return Err(format!("{} frames instead of {}", counts.0, count + 1));
         }
-        if let Some(frame) = measuring.iter().find(|f| !f.measures_for(&frames[0])) {
-            return Err(format!("frame {} does not measure", frame.index));
-        }
-        for (frame, result) in frames.iter().zip(traces.results) {
+        for (frame, result) in traces.positions()?.iter().zip(traces.results) {
             let is_whole =
                 frame.is_whole() && frame.is_true_answer(case.settings.position_bits, true);
             let is_good = result.last_cause() == cause::NONE

@@ -136,9 +136,7 @@ pub fn run(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
 }
 
 fn fault(e: &dyn std::fmt::Display) -> GenError {
-    GenError::input(format!(
-        "campaign: {e}; this is a fault of endat-gen, please report it"
-    ))
+    GenError::fault("campaign", e)
 }
 
 /// What to type to see one case alone.
