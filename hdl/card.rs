@@ -25,6 +25,7 @@ use crate::encoder_port::EncoderPort;
 use crate::interrupt::Interrupt;
 use crate::register_bank::RegisterBank;
 use crate::service::{program::ServiceTimes, Service, CHANNELS_SERVED};
+pub(crate) use crate::several::each;
 use crate::stream::{channel::SetChannel, Stream};
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
@@ -231,11 +232,6 @@ pub fn bare_port(card: &CardConfig) -> EncoderPort {
         line(card),
         card.line.start(card.system_hz),
     )
-}
-
-/// `n` signals or links.
-pub(crate) fn each<T: Default>(n: usize) -> Vec<T> {
-    (0..n).map(|_| T::default()).collect()
 }
 
 impl CardCore {

@@ -25,7 +25,9 @@ use crate::line_delay::{self, LineDelay};
 use crate::protocol::{PARAMETER_BITS, TEST_VALUE_BITS};
 use crate::receiver::Receiver;
 use crate::reg::Reg;
+use crate::several::each;
 use crate::snapshot::Snapshot;
+use crate::sure_bit::SureBit;
 use crate::timing;
 use crate::transaction::Transaction;
 use rust_hdl::prelude::*;
@@ -205,8 +207,11 @@ pub struct Channel {
     clk_pin: Reg<Bit>,
     data_pin: Reg<Bit>,
     oe_pin: Reg<Bit>,
-    own_wanted: Reg<Bit>,
-    ride_wanted: Reg<Bit>,
+    own_asked: Vec<SureBit>,
+    ride_asked: Vec<SureBit>,
+    own_wanted: Signal<Local, Bit>,
+    ride_wanted: Signal<Local, Bit>,
+    _requests: usize,
     frame_command: Reg<Bits<6>>,
     frame_own: Reg<Bit>,
     frame_ride: Reg<Bit>,
@@ -321,6 +326,7 @@ impl Channel {
 
     /// A channel with these fixed times and features.
     pub fn with(times: FixedTimes, features: Features) -> Self {
+        let requests = usize::from(features.requests);
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -409,8 +415,11 @@ impl Channel {
             clk_pin: Reg::new(true),
             data_pin: Default::default(),
             oe_pin: Default::default(),
+            own_asked: each(requests),
+            ride_asked: each(requests),
             own_wanted: Default::default(),
             ride_wanted: Default::default(),
+            _requests: requests,
             frame_command: Default::default(),
             frame_own: Default::default(),
             frame_ride: Default::default(),
@@ -457,8 +466,6 @@ impl Logic for Channel {
         dff_setup!(
             self,
             clock,
-            own_wanted,
-            ride_wanted,
             frame_command,
             frame_own,
             frame_ride,
@@ -468,8 +475,6 @@ impl Logic for Channel {
             reply_right,
             reply_has_parameter
         );
-        self.own_wanted.reset.next = self.reset.val();
-        self.ride_wanted.reset.next = self.reset.val();
         self.frame_command.reset.next = self.reset.val();
         self.frame_own.reset.next = self.reset.val();
         self.frame_ride.reset.next = self.reset.val();
@@ -522,36 +527,34 @@ impl Logic for Channel {
                 self.payload_bits.next = self.test_value_bits.val();
             }
         }
-        if self.transaction.begun.val() {
-            if self.frame_own.q.val() {
-                self.own_wanted.d.next = false;
-            }
-            if self.frame_ride.q.val() {
-                self.ride_wanted.d.next = false;
-            }
-        } else {
-            if self.transaction.is_at_rest.val() & self.has_requests.val() {
-                self.frame_command.d.next = self.command.val();
-                self.frame_own.d.next = self.own_wanted.q.val();
-                self.frame_ride.d.next = self.ride_wanted.q.val()
-                    & self.transaction.calibrated.val()
-                    & !self.own_wanted.q.val();
-                if self.own_wanted.q.val()
-                    | (self.ride_wanted.q.val() & self.transaction.calibrated.val())
-                {
-                    self.frame_command.d.next = self.request_command.val();
-                }
-            }
+        self.own_wanted.next = false;
+        self.ride_wanted.next = false;
+        for i in 0..self._requests {
+            self.own_asked[i].clock.next = self.clock.val();
+            self.own_asked[i].reset.next = self.reset.val();
+            self.own_asked[i].set.next = self.request_own.val() & !self.request_cancel.val();
+            self.own_asked[i].clear.next =
+                self.request_cancel.val() | (self.transaction.begun.val() & self.frame_own.q.val());
+            self.own_wanted.next = self.own_asked[i].is_set.val();
+            self.ride_asked[i].clock.next = self.clock.val();
+            self.ride_asked[i].reset.next = self.reset.val();
+            self.ride_asked[i].set.next = self.request_ride.val() & !self.request_cancel.val();
+            self.ride_asked[i].clear.next = self.request_cancel.val()
+                | (self.transaction.begun.val() & self.frame_ride.q.val());
+            self.ride_wanted.next = self.ride_asked[i].is_set.val();
         }
-        if self.request_own.val() & self.has_requests.val() {
-            self.own_wanted.d.next = true;
-        }
-        if self.request_ride.val() & self.has_requests.val() {
-            self.ride_wanted.d.next = true;
-        }
-        if self.request_cancel.val() {
-            self.own_wanted.d.next = false;
-            self.ride_wanted.d.next = false;
+        if !self.transaction.begun.val()
+            & self.transaction.is_at_rest.val()
+            & self.has_requests.val()
+        {
+            self.frame_command.d.next = self.command.val();
+            self.frame_own.d.next = self.own_wanted.val();
+            self.frame_ride.d.next =
+                self.ride_wanted.val() & self.transaction.calibrated.val() & !self.own_wanted.val();
+            if self.own_wanted.val() | (self.ride_wanted.val() & self.transaction.calibrated.val())
+            {
+                self.frame_command.d.next = self.request_command.val();
+            }
         }
         self.shape.command.next = self.command_now.val();
 
@@ -598,6 +601,7 @@ impl Logic for Channel {
         self.receiver.abort.next = self.transaction.abort.val();
         self.receiver.acquire.next = self.transaction.acquire.val();
         self.receiver.rise.next = self.clock_gen.rise.val();
+        self.receiver.pulse.next = self.delay.pulse.val();
         self.receiver.sample.next = self.delay.sample.val();
         self.receiver.level.next = self.filter.level.val();
         if self.has_double.val() & !self.delay.sample_second.val() {
@@ -634,11 +638,14 @@ impl Logic for Channel {
         if self.has_requests.val() {
             self.wanted_shape.command.next = self.frame_command.q.val();
         }
-        self.transaction.is_known.next = self.wanted_shape.is_known.val()
+        // A trigger takes positions only: another command's answer is none, and may change the encoder.
+        self.transaction.is_known.next = (self.wanted_shape.is_position.val()
+            | (self.wanted_shape.is_known.val()
+                & (self.frame_own.q.val() | self.frame_ride.q.val())))
             & (!self.needs_four.val() | self.period_cycles.val().get_bits::<9>(2).any());
         self.transaction.has_parameter.next = self.shape.has_parameter.val();
         self.transaction.has_supplement.next = self.shape.has_supplement.val();
-        self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.q.val();
+        self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.val();
         self.transaction.is_own.next = self.frame_own.q.val();
         self.transaction.hold_off.next = self.hold_off.val();
         self.transaction.continuous.next = self.continuous.val()
@@ -646,7 +653,7 @@ impl Logic for Channel {
             & !self.shape.has_f2.val()
             & !self.shape.has_test_values.val();
         self.transaction.stop_at_error.next = self.stop_at_error.val();
-        self.transaction.line_wanted.next = self.own_wanted.q.val() | self.hold_off.val();
+        self.transaction.line_wanted.next = self.own_wanted.val() | self.hold_off.val();
         self.transaction.gap_good.next = self.receiver.gap_good.val();
         self.transaction.again.next = self.receiver.latched.val();
         self.transaction.gap_low.next = self.receiver.gap_low.val();
@@ -664,7 +671,8 @@ impl Logic for Channel {
         }
         self.transaction.will_rise.next = self.clock_gen.will_rise.val();
         self.transaction.outstanding.next = self.delay.outstanding.val();
-        self.transaction.cells_left.next = self.receiver.cells_left.val();
+        self.transaction.pulses_left.next = self.receiver.pulses_left.val();
+        self.transaction.delay_upset.next = self.delay.is_upset.val();
         self.transaction.first_low_extra_cycles.next =
             self.settings.first_low_extra_cycles_now.val();
         self.transaction.start_timeout_us.next = self.settings.start_timeout_us_now.val();

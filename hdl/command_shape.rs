@@ -21,6 +21,8 @@ pub struct CommandShape {
     pub command: Signal<In, Bits<6>>,
     /// It is a mode command that this design sends.
     pub is_known: Signal<Out, Bit>,
+    /// It is 000111 or 111000.
+    pub is_position: Signal<Out, Bit>,
     /// The answer begins with F1.
     pub has_f1: Signal<Out, Bit>,
     /// F2 follows F1; the selected additional information follows the position.
@@ -36,7 +38,6 @@ pub struct CommandShape {
     right: Signal<Local, Bits<3>>,
     is_same: Signal<Local, Bit>,
     is_complement: Signal<Local, Bit>,
-    is_position: Signal<Local, Bit>,
     is_two: Signal<Local, Bit>,
 }
 

@@ -43,8 +43,10 @@ pub mod register_bank;
 pub mod regs;
 pub mod sequencer;
 pub mod service;
+mod several;
 pub mod snapshot;
 pub mod stream;
+pub mod sure_bit;
 pub mod t_format;
 #[cfg(test)]
 mod testing;

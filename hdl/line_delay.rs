@@ -71,6 +71,10 @@ pub struct LineDelay {
     pub center: Signal<Out, Bit>,
     /// A rising data edge lies within the window of this cell.
     pub edge_in_window: Signal<Out, Bit>,
+    /// Strobe: a clock pulse is sent that the answer needs; not one before the start edge of a frame that measures.
+    pub pulse: Signal<Out, Bit>,
+    /// The tracked delay is not what was measured: a register was upset. Until it is measured again.
+    pub is_upset: Signal<Out, Bit>,
     /// Clock pulses sent whose cell has not ended.
     pub outstanding: Signal<Out, Bits<7>>,
     /// Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
@@ -101,6 +105,10 @@ pub struct LineDelay {
     edge_outside: Reg<Bit>,
     shorten: Reg<Bit>,
     lengthen: Reg<Bit>,
+    parity: Reg<Bit>,
+    moved: Reg<Bit>,
+    wrong: Reg<Bit>,
+    parity_now: Signal<Local, Bit>,
     first_rise: Signal<Local, Bit>,
     acquired: Signal<Local, Bit>,
     first_center: Signal<Local, Bit>,
@@ -173,6 +181,8 @@ impl LineDelay {
             sample_second: Default::default(),
             center: Default::default(),
             edge_in_window: Default::default(),
+            pulse: Default::default(),
+            is_upset: Default::default(),
             outstanding: Default::default(),
             delay_cycles: Default::default(),
             phase: Default::default(),
@@ -198,6 +208,10 @@ impl LineDelay {
             edge_outside: Default::default(),
             shorten: Default::default(),
             lengthen: Default::default(),
+            parity: Default::default(),
+            moved: Default::default(),
+            wrong: Default::default(),
+            parity_now: Default::default(),
             first_rise: Default::default(),
             acquired: Default::default(),
             first_center: Default::default(),
@@ -268,8 +282,14 @@ impl Logic for LineDelay {
             measured_now,
             second,
             edge_place,
-            was_over
+            was_over,
+            parity,
+            moved,
+            wrong
         );
+        self.parity.reset.next = self.reset.val();
+        self.moved.reset.next = self.reset.val();
+        self.wrong.reset.next = self.reset.val();
         self.was_over.reset.next = self.reset.val();
         clock!(self, clock, half);
         self.delay.reset.next = self.reset.val();
@@ -317,6 +337,23 @@ impl Logic for LineDelay {
         if self.has_double.val() {
             self.delay_now.next = self.places.val().get_bits::<11>(1);
         }
+        // The delay stands from frame to frame: it is guarded.
+        self.moved.d.next = self.follow_now.q.val() | self.acquired.val();
+        for i in 0..self._trackers {
+            self.moved.d.next = self.tracker[i].moves.val();
+        }
+        self.parity_now.next = self.places.val().xor();
+        if self.moved.q.val() {
+            self.parity.d.next = self.parity_now.val();
+        } else {
+            if self.parity_now.val() ^ self.parity.q.val() {
+                self.wrong.d.next = true;
+            }
+        }
+        if self.acquired.val() {
+            self.wrong.d.next = false;
+        }
+        self.is_upset.next = self.wrong.q.val();
         self.delay_over.d.next =
             self.timing_armed.q.val() & (self.since_rise.q.val() == self.delay_now.val());
 
@@ -541,6 +578,8 @@ impl Logic for LineDelay {
         self.center.next = self.center_now.val();
         self.edge_in_window.next =
             self.edge_now.val() & (!self.edge_outside.q.val() | self.is_open.val());
+        self.pulse.next = (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()))
+            | self.acquired.val();
         self.outstanding.next = self.pulses.q.val();
         self.sample_second.next = self.second.q.val();
         self.delay_cycles.next = self.delay_now.val();

@@ -50,6 +50,8 @@ pub struct PhaseTracker {
     pub delay_places: Signal<Out, Bits<12>>,
     /// It is more than half a place above that.
     pub past_half: Signal<Out, Bit>,
+    /// The delay may be another one in the next cycle.
+    pub moves: Signal<Out, Bit>,
     /// Tracked delay, in sixteenths of a system clock cycle.
     pub phase: Signal<Out, Bits<15>>,
     place: Reg<Bits<24>>,
@@ -84,6 +86,7 @@ impl PhaseTracker {
             fixed_delay: Default::default(),
             delay_places: Default::default(),
             past_half: Default::default(),
+            moves: Default::default(),
             phase: Default::default(),
             place: Default::default(),
             take: Default::default(),
@@ -153,6 +156,7 @@ impl Logic for PhaseTracker {
             self.place.d.next = bit_cast::<24, 12>(self.measured_places.val()) << 12;
         }
 
+        self.moves.next = self.take.q.val() | self.acquired.val() | self.is_fixed.val();
         self.past_half.next = self.place.q.val().get_bit(11);
         self.delay_places.next = self.place.q.val().get_bits::<12>(12);
         self.phase.next = self.place.q.val().get_bits::<15>(8);

@@ -14,9 +14,9 @@
 //! with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC looks at the word where it
 //! then stands, and for as long as it stands there: what is published is what was checked.
 //!
-//! `cells_left` counts down to the end of the frame. The clock generator stops when as many pulses are outstanding: so
-//! the encoder sees exactly the rising edges it needs, and never more than the shortest answer while its start bit
-//! may still be on the cable.
+//! `left` counts cells down to the end of the frame, `pulses_left` the clock pulses that they need. The clock generator stops when
+//! none is left: so the encoder sees exactly the rising edges it needs, and never more than the shortest answer while its start bit
+//! may still be on the cable. Both counts and that of the pulses under way meet at the end of the frame, unless one was upset.
 
 use crate::channel::Features;
 use crate::crc5::{Crc5Check, Crc5Serial, ORDER_OF_X};
@@ -66,6 +66,8 @@ pub struct Receiver {
     pub acquire: Signal<In, Bit>,
     /// Strobe of each rising clock edge.
     pub rise: Signal<In, Bit>,
+    /// Strobe: a clock pulse is sent that the answer needs.
+    pub pulse: Signal<In, Bit>,
     /// Strobe: sample `level`.
     pub sample: Signal<In, Bit>,
     /// The data line.
@@ -102,8 +104,8 @@ pub struct Receiver {
     pub start_refused: Signal<Out, Bit>,
     /// The start bit has been taken.
     pub started: Signal<Out, Bit>,
-    /// Cells still to come, this one included.
-    pub cells_left: Signal<Out, Bits<7>>,
+    /// Clock pulses still to be sent.
+    pub pulses_left: Signal<Out, Bits<7>>,
     /// Strobe: payload, error bits, CRC and verdict of the answer without additional information are valid.
     pub done: Signal<Out, Bit>,
     /// Strobe: payload and verdict of an additional information are valid.
@@ -142,6 +144,7 @@ pub struct Receiver {
     serial: Crc5Serial,
     field: Reg<Field>,
     left: Reg<Bits<7>>,
+    to_send: Reg<Bits<7>>,
     word: Reg<Bits<50>>,
     covered: Reg<Bits<4>>,
     f1_bit: Reg<Bit>,
@@ -200,6 +203,8 @@ pub struct Receiver {
     start_sample: Signal<Local, Bit>,
     separator: Signal<Local, Bit>,
     shifted: Signal<Local, Bits<50>>,
+    one_more: Signal<Local, Bit>,
+    one_less: Signal<Local, Bit>,
     width: Signal<Local, Bits<6>>,
     cells_after: Signal<Local, Bits<7>>,
     cells_around: Signal<Local, Bits<7>>,
@@ -217,6 +222,7 @@ impl Receiver {
             abort: Default::default(),
             acquire: Default::default(),
             rise: Default::default(),
+            pulse: Default::default(),
             sample: Default::default(),
             level: Default::default(),
             edge_in_window: Default::default(),
@@ -235,7 +241,7 @@ impl Receiver {
             start_found: Default::default(),
             start_refused: Default::default(),
             started: Default::default(),
-            cells_left: Default::default(),
+            pulses_left: Default::default(),
             done: Default::default(),
             info_done: Default::default(),
             separated: Default::default(),
@@ -257,6 +263,7 @@ impl Receiver {
             serial: Default::default(),
             field: Reg::new(Field::Done),
             left: Default::default(),
+            to_send: Default::default(),
             word: Default::default(),
             covered: Default::default(),
             f1_bit: Default::default(),
@@ -322,6 +329,8 @@ impl Receiver {
             start_sample: Default::default(),
             separator: Default::default(),
             shifted: Default::default(),
+            one_more: Default::default(),
+            one_less: Default::default(),
             width: Default::default(),
             cells_after: Default::default(),
             cells_around: Default::default(),
@@ -332,7 +341,9 @@ impl Receiver {
 impl Logic for Receiver {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, field, left, word, covered, f1_bit, f2_bit, crc_bits, crc_calc);
+        dff_setup!(
+            self, clock, field, left, to_send, word, covered, f1_bit, f2_bit, crc_bits, crc_calc
+        );
         dff_setup!(
             self,
             clock,
@@ -361,6 +372,7 @@ impl Logic for Receiver {
         self.new_block.reset.next = self.reset.val();
         self.field.reset.next = self.reset.val();
         self.left.reset.next = self.reset.val();
+        self.to_send.reset.next = self.reset.val();
         self.word.reset.next = self.reset.val();
         self.covered.reset.next = self.reset.val();
         self.f1_bit.reset.next = self.reset.val();
@@ -464,6 +476,16 @@ impl Logic for Receiver {
             & (self.field.q.val() != Field::Start)
         {
             self.left.d.next = self.left.q.val() - 1;
+        }
+        // Each cell has its pulse. How many cells there are before the start bit is not known: each of them is one pulse more.
+        self.one_more.next = self.sample.val() & (self.field.q.val() == Field::Start);
+        self.one_less.next = self.pulse.val()
+            | (self.acquire.val() & self.rise.val() & (self.field.q.val() == Field::Skip));
+        if self.one_more.val() & !self.one_less.val() {
+            self.to_send.d.next = self.to_send.q.val() + 1;
+        }
+        if self.one_less.val() & !self.one_more.val() {
+            self.to_send.d.next = self.to_send.q.val() - 1;
         }
         match self.field.q.val() {
             Field::Skip => {
@@ -700,6 +722,8 @@ impl Logic for Receiver {
         if self.start.val() {
             self.field.d.next = Field::Skip;
             self.left.d.next = bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_around.val();
+            self.to_send.d.next =
+                bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_around.val();
             self.word.d.next = 0.into();
             // Skipped cells take the counter to 0, where the covered bits start from.
             self.covered.d.next = self.skip_from.val();
@@ -742,6 +766,7 @@ impl Logic for Receiver {
         if self.start_supplement.val() & self.has_all.val() {
             self.field.d.next = Field::Supplement;
             self.left.d.next = self.supplement_cells.val();
+            self.to_send.d.next = self.supplement_cells.val();
         }
 
         self.skipping.next =
@@ -754,7 +779,7 @@ impl Logic for Receiver {
         self.started_now.d.next =
             (self.field.q.val() != Field::Skip) & (self.field.q.val() != Field::Start);
         self.started.next = self.started_now.q.val();
-        self.cells_left.next = self.left.q.val();
+        self.pulses_left.next = self.to_send.q.val();
         self.done.next = self.done_now.q.val();
         self.info_done.next = false;
         self.separated.next = false;

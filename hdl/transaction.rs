@@ -28,6 +28,7 @@ pub mod verdict;
 
 use crate::line_health::LineHealth;
 use crate::reg::Reg;
+use crate::sure_bit::SureBit;
 use rust_hdl::prelude::*;
 use verdict::Verdict;
 
@@ -129,8 +130,10 @@ pub struct Transaction {
     pub will_rise: Signal<In, Bit>,
     /// Clock pulses whose cell has not ended.
     pub outstanding: Signal<In, Bits<7>>,
-    /// Cells still to come.
-    pub cells_left: Signal<In, Bits<7>>,
+    /// Clock pulses still to be sent.
+    pub pulses_left: Signal<In, Bits<7>>,
+    /// The tracked delay is not what was measured.
+    pub delay_upset: Signal<In, Bit>,
     /// How much longer than half a period the first low phase is; 0, or at least 4 cycles.
     pub first_low_extra_cycles: Signal<In, Bits<11>>,
     /// Longest wait for the start bit after the turnaround.
@@ -251,13 +254,16 @@ pub struct Transaction {
     late: Reg<Bit>,
     probing: Reg<Bit>,
     settling: Reg<Bit>,
-    going: Reg<Bit>,
+    runs: Vec<SureBit>,
+    going: Signal<Local, Bit>,
+    _runs: usize,
     leaving: Reg<Bit>,
     cleared: Reg<Bit>,
     high_at_tick: Reg<Bit>,
     owing: Reg<Bit>,
     measuring: Reg<Bit>,
     once_more: Reg<Bit>,
+    under_way: Reg<Bit>,
     limit: Signal<Local, Bits<16>>,
     running: Signal<Local, Bit>,
     in_us: Signal<Local, Bit>,
@@ -287,6 +293,8 @@ pub struct Transaction {
     owed: Signal<Local, Bit>,
     proof: Signal<Local, Bit>,
     plugged: Signal<Local, Bit>,
+    all_used: Signal<Local, Bit>,
+    vanished: Signal<Local, Bit>,
 }
 
 impl Logic for Transaction {
@@ -323,7 +331,6 @@ impl Logic for Transaction {
             late,
             probing,
             settling,
-            going,
             leaving,
             slow_now,
             passes,
@@ -336,8 +343,10 @@ impl Logic for Transaction {
             high_at_tick,
             owing,
             measuring,
-            once_more
+            once_more,
+            under_way
         );
+        self.under_way.reset.next = self.reset.val();
         self.measuring.reset.next = self.reset.val();
         self.once_more.reset.next = self.reset.val();
         self.cleared.reset.next = self.reset.val();
@@ -372,7 +381,6 @@ impl Logic for Transaction {
         self.late.reset.next = self.reset.val();
         self.probing.reset.next = self.reset.val();
         self.settling.reset.next = self.reset.val();
-        self.going.reset.next = self.reset.val();
         self.leaving.reset.next = self.reset.val();
         self.health.reset.next = self.reset.val();
         self.verdict.reset.next = self.reset.val();
@@ -419,6 +427,15 @@ impl Logic for Transaction {
             self.no_start.next = self.no_start_bit.val() | self.stuck_low.val();
         }
         self.running.next = false;
+        // With the last cell's sample. With two clocks in a bit the next cell has begun.
+        self.all_used.next = (self.outstanding.val() == 1) & !self.pulses_left.val().any();
+        if self.has_double.val() {
+            self.all_used.next =
+                !self.outstanding.val().get_bits::<6>(1).any() & !self.pulses_left.val().any();
+        }
+        // A frame that has vanished: a register was upset.
+        self.vanished.next =
+            (self.owing.q.val() & !self.once_more.q.val()) | self.under_way.q.val();
 
         match self.phase.q.val() {
             Phase::NotReady => {
@@ -437,8 +454,7 @@ impl Logic for Transaction {
                         self.give_up.next = true;
                     }
                 }
-                // A frame that has vanished without a result: a register was upset.
-                if self.owing.q.val() & !self.once_more.q.val() {
+                if self.vanished.val() {
                     self.found.next = self.upset.val();
                     self.give_up.next = true;
                 }
@@ -475,7 +491,7 @@ impl Logic for Transaction {
                         self.refuse.next = true;
                     }
                 }
-                if self.owing.q.val() & !self.once_more.q.val() {
+                if self.vanished.val() {
                     self.found.next = self.upset.val();
                     self.give_up.next = true;
                 }
@@ -544,7 +560,7 @@ impl Logic for Transaction {
                     self.give_up.next = true;
                     self.found_late.next = true;
                 }
-                if self.finished.val() & !self.going.q.val() {
+                if self.finished.val() & !self.going.val() {
                     self.phase.d.next = Phase::Tail;
                     if self.has_all.val() & self.has_supplement.val() & !self.in_supplement.q.val()
                     {
@@ -563,6 +579,10 @@ impl Logic for Transaction {
                     self.timer_clear.next = true;
                     self.in_supplement.d.next = true;
                     self.supplement_now.d.next = true;
+                    if self.outstanding.val().any() | self.pulses_left.val().any() {
+                        self.found.next = self.upset.val();
+                        self.give_up.next = true;
+                    }
                 }
                 if !self.has_all.val() {
                     self.give_up.next = true;
@@ -607,12 +627,8 @@ impl Logic for Transaction {
                         self.give_up.next = true;
                     }
                 }
-                // Each cell had its pulse, but for one whose count was upset. (With two clocks in a bit the next cell has begun.)
-                if self.sample.val()
-                    & !self.tail_sampled.q.val()
-                    & !self.has_double.val()
-                    & (self.outstanding.val() != 1)
-                {
+                // Each cell had its pulse, but for one whose count was upset.
+                if self.sample.val() & !self.tail_sampled.q.val() & !self.all_used.val() {
                     self.found.next = self.upset.val();
                     self.give_up.next = true;
                     self.proof.next = false;
@@ -661,7 +677,7 @@ impl Logic for Transaction {
             self.give_up.next = true;
         }
         // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
-        self.leave.next = self.going.q.val()
+        self.leave.next = self.going.val()
             & self.gap_good.val()
             & (!self.continuous.val()
                 | self.line_wanted.val()
@@ -670,7 +686,7 @@ impl Logic for Transaction {
         if self.leave.val() {
             self.normal_end.next = true;
         }
-        if (self.proof.val() & !self.going.q.val()) | self.announce.val() {
+        if (self.proof.val() & !self.going.val()) | self.announce.val() {
             self.answered.d.next = true;
         }
         if self.announce.val() {
@@ -678,6 +694,7 @@ impl Logic for Transaction {
         }
         if self.normal_end.val() {
             self.answered.d.next = false;
+            self.under_way.d.next = self.going.val() & !self.leave.val();
         }
         // Giving up takes effect one cycle later, which keeps the decision out of the longest paths.
         if self.verdict.gave_up.val() {
@@ -692,6 +709,7 @@ impl Logic for Transaction {
             self.answered.d.next = false;
             self.is_calibrated.d.next = false;
             self.late.d.next = false;
+            self.under_way.d.next = false;
         }
 
         self.was_hunting.d.next = self.hunting.val();
@@ -720,14 +738,14 @@ impl Logic for Transaction {
         }
 
         // Pulses: never more on the cable than the answer needs.
-        self.all_sent.d.next = self.outstanding.val() == self.cells_left.val();
+        self.all_sent.d.next = !self.pulses_left.val().any();
         // With two system clock cycles in a bit there is no time to count this pulse.
         if self.has_double.val() {
-            self.one_left.d.next = (self.outstanding.val() + 1) == self.cells_left.val();
-            self.all_sent.d.next = (self.outstanding.val() == self.cells_left.val())
-                | (self.one_left.q.val() & self.will_rise.val());
+            self.one_left.d.next = self.pulses_left.val() == 1;
+            self.all_sent.d.next =
+                !self.pulses_left.val().any() | (self.one_left.q.val() & self.will_rise.val());
         }
-        if self.all_sent.q.val() & !self.started.val() & !self.going.q.val() {
+        if self.all_sent.q.val() & !self.started.val() & !self.going.val() {
             self.stalled.d.next = true;
         }
         if !self.outstanding.val().any() {
@@ -738,13 +756,13 @@ impl Logic for Transaction {
         self.verdict.answer_taken.next = self.answer_taken.val();
         self.verdict.prove.next = self.proof.val();
         self.verdict.is_measuring.next = self.measuring.q.val();
-        self.verdict.settings_upset.next = self.settings_upset.val();
+        self.verdict.settings_upset.next = self.settings_upset.val() | self.delay_upset.val();
         self.verdict.give_up.next = self.give_up.val();
         self.verdict.is_late.next = self.answered.q.val() | self.found_late.val();
         self.verdict.refuse.next = self.refuse.val();
         self.verdict.announce.next = self.announce.val();
         self.verdict.normal_end.next = self.normal_end.val();
-        self.verdict.is_going.next = self.going.q.val();
+        self.verdict.is_going.next = self.going.val();
         self.verdict.is_own.next = self.own.val();
         self.verdict.serial_ok.next = self.serial_ok.val();
         self.verdict.parallel_ok.next = self.parallel_ok.val();
@@ -754,7 +772,10 @@ impl Logic for Transaction {
         self.verdict.recovery_cycles.next = self.recovery.q.val();
         self.verdict.recovery_min_cycles.next = self.recovery_min_cycles.val();
         // The mean over several frames, if it is taken; the last of them makes the delay known.
-        if self.verdict.is_received.val() & !(self.has_alignment.val() & self.is_fixed.val()) {
+        if self.verdict.is_received.val()
+            & self.measuring.q.val()
+            & !(self.has_alignment.val() & self.is_fixed.val())
+        {
             self.is_calibrated.d.next = true;
             if self.has_alignment.val() & self.slow_now.q.val() {
                 self.passes.d.next = self.passes.q.val() + 1;
@@ -762,11 +783,11 @@ impl Logic for Transaction {
             }
         }
         // A delay that is wrong by whole periods is not seen at the start edge. A run finds each start bit anew, and ends as it is told to.
-        if self.verdict.is_doubtful.val() & !self.going.q.val() {
+        if self.verdict.is_doubtful.val() & !self.going.val() {
             self.is_calibrated.d.next = false;
         }
         self.lost.next = self.trigger.val()
-            & !self.going.q.val()
+            & !self.going.val()
             & ((!self.accept.val() & !self.idle.val())
                 | (self.accept.val() & (self.own.val() | self.once_more.q.val())));
         self.verdict.lost.next = self.lost.val();
@@ -792,6 +813,7 @@ impl Logic for Transaction {
         }
         if self.accept.val() {
             self.measuring.d.next = !self.known.val();
+            self.under_way.d.next = true;
             self.answered.d.next = false;
             self.in_supplement.d.next = false;
             self.acquiring.d.next =
@@ -799,18 +821,21 @@ impl Logic for Transaction {
             self.slow_now.d.next = !self.known.val();
             self.tail_sampled.d.next = false;
             self.late.d.next = false;
-            self.going.d.next = self.has_continuous.val()
-                & self.continuous.val()
-                & self.known.val()
-                & !self.own.val();
+        }
+        self.going.next = false;
+        for i in 0..self._runs {
+            self.runs[i].clock.next = self.clock.val();
+            self.runs[i].reset.next = self.reset.val();
+            self.runs[i].set.next =
+                self.accept.val() & self.continuous.val() & self.known.val() & !self.own.val();
+            self.runs[i].clear.next =
+                self.leave.val() | self.verdict.gave_up.val() | self.accept.val();
+            self.going.next = self.runs[i].is_set.val();
         }
         if self.leave.val() {
             self.phase.d.next = Phase::Abort;
             self.timer_clear.next = true;
             self.leaving.d.next = true;
-        }
-        if self.leave.val() | self.verdict.gave_up.val() {
-            self.going.d.next = false;
         }
         if self.verdict.gave_up.val() {
             self.leaving.d.next = false;
@@ -824,12 +849,14 @@ impl Logic for Transaction {
         // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
         if self.calibrate.val()
             | self.plugged.val()
+            | self.delay_upset.val()
             | (self.has_alignment.val() & self.is_fixed.val())
         {
             self.is_calibrated.d.next = false;
         }
         if self.calibrate.val()
             | self.plugged.val()
+            | self.delay_upset.val()
             | self.verdict.gave_up.val()
             | self.verdict.is_doubtful.val()
         {
@@ -841,7 +868,7 @@ impl Logic for Transaction {
         self.start.next = self.start_now.q.val();
         self.abort.next = self.verdict.gave_up.val();
         // Taking the start bit ends its cell; `started` comes when the comparison knows that.
-        self.sent.next = self.all_sent.q.val() & self.started.val() & !self.going.q.val();
+        self.sent.next = self.all_sent.q.val() & self.started.val() & !self.going.val();
         self.parking.next = false;
         if self.has_all.val() & self.has_supplement.val() & !self.in_supplement.q.val() {
             self.parking.next = (self.sent.val() & (self.phase.q.val() == Phase::Frame))
@@ -850,8 +877,7 @@ impl Logic for Transaction {
         }
         self.hold.d.next =
             (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val() | self.parking.val();
-        if self.has_double.val() & self.all_sent.q.val() & !self.started.val() & !self.going.q.val()
-        {
+        if self.has_double.val() & self.all_sent.q.val() & !self.started.val() & !self.going.val() {
             self.hold.d.next = true;
         }
         self.hold_low.next = self.hold.q.val();
@@ -894,13 +920,13 @@ impl Logic for Transaction {
         }
         self.is_probed.next =
             (self.probing.q.val() | self.settling.q.val()) & self.has_diagnosis.val();
-        self.going_on.next = self.going.q.val();
+        self.going_on.next = self.going.val();
 
         self.health.tick_us.next = self.tick_us.val();
         self.health.level.next = self.level.val();
         self.health.start.next = self.start_now.q.val();
         self.health.under_way.next =
-            self.watched.val() & !self.has_parameter.val() & !self.going.q.val();
+            self.watched.val() & !self.has_parameter.val() & !self.going.val();
         self.health.watchdog_us.next = self.watchdog_us.val();
         self.health.probed.next = self.probed.val();
         self.health.is_ready.next = self.phase.q.val() == Phase::Ready;

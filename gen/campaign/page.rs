@@ -29,6 +29,7 @@ Beside its class, a case may have these marks:
 | mark | |
 |---|---|
 | pulses | the encoder saw a wrong number of clock pulses, and no cause in that frame or the next |
+| again | a whole frame more than the trigger needs was sent, and no cause |
 | rules | another rule of the encoder was broken, and no cause |
 | conflict | for more than a bit time after the frame the driver was against the encoder's |
 | next | the next frame was not good |

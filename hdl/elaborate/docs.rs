@@ -36,6 +36,7 @@ pub const SOURCES: &[&str] = &[
     include_str!("../line_monitor.rs"),
     include_str!("../phase_tracker.rs"),
     include_str!("../line_health.rs"),
+    include_str!("../sure_bit.rs"),
     include_str!("../memory.rs"),
     include_str!("../receiver.rs"),
     include_str!("../reg.rs"),

@@ -7,6 +7,7 @@ use super::{
 };
 use crate::channel::{Features, FixedTimes};
 use crate::reg::Reg;
+use crate::several::each;
 use crate::timing;
 use rust_hdl::prelude::*;
 
@@ -51,7 +52,8 @@ impl Transaction {
             f2: Default::default(),
             will_rise: Default::default(),
             outstanding: Default::default(),
-            cells_left: Default::default(),
+            pulses_left: Default::default(),
+            delay_upset: Default::default(),
             first_low_extra_cycles: Default::default(),
             start_timeout_us: Default::default(),
             recovery_limit_cycles: Default::default(),
@@ -140,13 +142,16 @@ impl Transaction {
             late: Default::default(),
             probing: Default::default(),
             settling: Default::default(),
+            runs: each(usize::from(features.continuous)),
             going: Default::default(),
+            _runs: features.continuous.into(),
             leaving: Default::default(),
             cleared: Reg::new(true),
             high_at_tick: Default::default(),
             owing: Default::default(),
             measuring: Default::default(),
             once_more: Default::default(),
+            under_way: Default::default(),
             limit: Default::default(),
             running: Default::default(),
             in_us: Default::default(),
@@ -176,6 +181,8 @@ impl Transaction {
             owed: Default::default(),
             proof: Default::default(),
             plugged: Default::default(),
+            all_used: Default::default(),
+            vanished: Default::default(),
         }
     }
 }

@@ -90,7 +90,7 @@ fn settings_that_change_in_a_frame_count_for_the_next_one() {
 }
 
 /// A channel whose registers can be reached.
-fn open_engine() -> Compiled {
+pub fn open_engine() -> Compiled {
     let times = FixedTimes {
         abort_us: ABORT_US,
         ..FixedTimes::at(CARD.0)
@@ -102,13 +102,13 @@ fn open_engine() -> Compiled {
 }
 
 /// Bits of a register, by its name.
-fn register(engine: &Compiled, name: &str) -> (usize, usize) {
+pub fn register(engine: &Compiled, name: &str) -> (usize, usize) {
     let net = engine.nets().position(|n| n == name);
     let net = net.unwrap_or_else(|| panic!("no register {name}"));
     (net, engine.width_bits(net))
 }
 
-fn open_rig() -> Rig {
+pub fn open_rig() -> Rig {
     let setup = Setup::card();
     let mut rig = setup.on(open_engine());
     good_frame(&mut rig);

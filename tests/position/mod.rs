@@ -8,6 +8,7 @@ mod doubt;
 mod faults;
 mod frame_timing;
 mod interrupted;
+mod pulses;
 mod random;
 mod result_fields;
 pub mod rig;

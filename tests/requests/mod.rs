@@ -8,4 +8,5 @@ mod infos;
 pub mod lanes;
 mod record;
 mod rig;
+mod unasked;
 mod upsets;

@@ -52,6 +52,8 @@ impl Class {
 pub enum Mark {
     /// A wrong number of clock pulses, and no cause in that frame or the next.
     Pulses,
+    /// A whole frame more than the trigger needs, and no cause.
+    Again,
     /// Another rule of the encoder broken, and no cause.
     Rules,
     /// The driver is against the encoder's for more than a bit time after the frame.
@@ -72,8 +74,9 @@ pub enum Mark {
 
 impl Mark {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Pulses,
+        Self::Again,
         Self::Rules,
         Self::Conflict,
         Self::Next,
@@ -88,6 +91,7 @@ impl Mark {
     pub fn name(self) -> &'static str {
         match self {
             Self::Pulses => "pulses",
+            Self::Again => "again",
             Self::Rules => "rules",
             Self::Conflict => "conflict",
             Self::Next => "next",
@@ -121,6 +125,7 @@ pub(in crate::campaign) struct Reading {
     pub others_right: bool,
     /// What the encoder complains of, since the trigger.
     pub pulses: bool,
+    pub again: bool,
     pub rules: bool,
     pub conflict: bool,
 }
@@ -195,6 +200,9 @@ impl Outcome {
         }
         self.open_pulses = is_silent && reading.pulses;
         self.open_rules = is_silent && reading.rules;
+        if is_silent && reading.again {
+            self.mark(Mark::Again);
+        }
         if reading.conflict {
             self.mark(Mark::Conflict);
         }
@@ -272,12 +280,14 @@ pub(super) fn is_count(violation: &Violation) -> bool {
     )
 }
 
-/// Whether the frames of a trigger have all their pulses: none, or one at the full clock with those before it that measured the delay.
-pub(super) fn is_whole_answer(frames: &[FrameLog]) -> bool {
-    let Some((last, before)) = frames.split_last() else {
-        return true;
-    };
-    frames.iter().all(FrameLog::is_whole) && before.iter().all(|f| f.measures_for(last))
+/// Whether each of these frames has all its pulses.
+pub(super) fn are_whole(frames: &[FrameLog]) -> bool {
+    frames.iter().all(FrameLog::is_whole)
+}
+
+/// Whether a trigger needs no more than these: none, or one at the full clock with those before it that measured the delay.
+pub(super) fn are_needed(frames: &[FrameLog]) -> bool {
+    (frames.split_last()).is_none_or(|(last, before)| before.iter().all(|f| f.measures_for(last)))
 }
 
 #[cfg(test)]

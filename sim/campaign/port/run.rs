@@ -1,6 +1,6 @@
 //! One batch: the frame with the mishaps, one in each lane, and as many frames after it as it takes.
 
-use super::judge::{is_count, is_whole_answer, Mark, Outcome, Reading};
+use super::judge::{are_needed, are_whole, is_count, Mark, Outcome, Reading};
 use super::{
     begin, bits, cycles, FrameKind, Mishap, Ready, BIT, HANG_US, LEAD, SLOW_US, SYSTEM_HZ,
 };
@@ -344,7 +344,6 @@ impl Run<'_> {
         let is_jitter = matches!(self.mishaps[index], Mishap::Jitter(..));
         let violations = &link.encoder().violations()[lane.violations..];
         let counts = violations.iter().any(|v| is_count(&v.1));
-        let is_one = is_run || is_whole_answer(frames);
         let system_ps = |cycle: u64| cycle * PER_SECOND / SYSTEM_HZ;
         let idle = system_ps(lane.idle_since.max(lane.begun));
         let conflicts = link.line().conflicts(self.bench.now());
@@ -362,7 +361,8 @@ impl Run<'_> {
             sent,
             was_sent: before.iter().any(|f| f.position == position),
             others_right,
-            pulses: counts || !is_one,
+            pulses: counts || !is_run && !are_whole(frames),
+            again: !is_run && !are_needed(frames),
             // Jitter makes pulses that the encoder does not like; the port does not.
             rules: !is_jitter && violations.iter().any(|v| !is_count(&v.1)),
             conflict: conflicts.iter().any(outlasts),

@@ -1,0 +1,93 @@
+//! Sure bit: a flag that one upset does not set.
+//!
+//! ```text
+//! set      __/\__________________
+//! clear    ____________/\________
+//! yes      ____/~~~~~~~~~\_______
+//! no       ~~~~\_________/~~~~~~~
+//! is_set   ____/~~~~~~~~~\_______    yes and not no; both alike: an upset, and it is clear again
+//! ```
+//!
+//! For what would begin something that nobody has asked for: a request sent once more, a clock that goes on.
+
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// A flag in two registers.
+#[derive(LogicBlock)]
+pub struct SureBit {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe: set it; stronger than `clear`.
+    pub set: Signal<In, Bit>,
+    /// Strobe: clear it.
+    pub clear: Signal<In, Bit>,
+    /// It is set.
+    pub is_set: Signal<Out, Bit>,
+    yes: Reg<Bit>,
+    no: Reg<Bit>,
+}
+
+impl Default for SureBit {
+    fn default() -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            set: Default::default(),
+            clear: Default::default(),
+            is_set: Default::default(),
+            yes: Default::default(),
+            no: Reg::new(true),
+        }
+    }
+}
+
+impl Logic for SureBit {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, yes, no);
+        self.yes.reset.next = self.reset.val();
+        self.no.reset.next = self.reset.val();
+        if self.clear.val() | (self.yes.q.val() == self.no.q.val()) {
+            self.yes.d.next = false;
+            self.no.d.next = true;
+        }
+        if self.set.val() {
+            self.yes.d.next = true;
+            self.no.d.next = false;
+        }
+        self.is_set.next = self.yes.q.val() & !self.no.q.val();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bit with these registers, one clock edge later.
+    fn after(yes: bool, no: bool, set: bool, clear: bool) -> (bool, bool) {
+        let mut block = SureBit::default();
+        block.connect_all();
+        block.yes.q.next = yes;
+        block.no.q.next = no;
+        block.set.next = set;
+        block.clear.next = clear;
+        block.update();
+        block.update();
+        (block.yes.d.val(), block.no.d.val())
+    }
+
+    #[test]
+    fn two_that_are_alike_are_clear() {
+        for (yes, no) in [(false, false), (true, true)] {
+            assert_eq!(after(yes, no, false, false), (false, true));
+            assert_eq!(after(yes, no, true, false), (true, false));
+        }
+        assert_eq!(after(true, false, false, false), (true, false));
+        assert_eq!(after(true, false, false, true), (false, true));
+        assert_eq!(after(true, false, true, true), (true, false));
+        assert_eq!(after(false, true, false, false), (false, true));
+    }
+}
