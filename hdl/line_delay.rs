@@ -428,7 +428,11 @@ impl Logic for LineDelay {
         if self.will_rise.val() & !self.sample_now.val() {
             self.pulses.d.next = self.pulses.q.val() + 1;
         }
-        if self.sample_now.val() & !self.will_rise.val() {
+        // With two system clock cycles in a bit cells go on until the end of the frame has been seen.
+        if self.sample_now.val()
+            & !self.will_rise.val()
+            & (!self.has_double.val() | self.pulses.q.val().any())
+        {
             self.pulses.d.next = self.pulses.q.val() - 1;
         }
         if self.acquire.val() & !self.cells_run.q.val() {

@@ -427,7 +427,7 @@ impl Logic for Transaction {
             self.no_start.next = self.no_start_bit.val() | self.stuck_low.val();
         }
         self.running.next = false;
-        // With the last cell's sample. With two clocks in a bit the next cell has begun.
+        // With the last cell's sample. With two clocks in a bit cells behind it have begun.
         self.all_used.next = (self.outstanding.val() == 1) & !self.pulses_left.val().any();
         if self.has_double.val() {
             self.all_used.next =

@@ -31,7 +31,11 @@ fn a_trigger_sends_no_other_command_than_those_for_a_position() {
         rig.bench.set("command", code.into());
         rig.bench.run_cycles(4);
         let over = rig.position();
-        assert_eq!(cause::name(over.cause), "unknown mode command", "{code:06b}");
+        assert_eq!(
+            cause::name(over.cause),
+            "unknown mode command",
+            "{code:06b}"
+        );
         assert_eq!(rig.bench.get("fresh"), 0, "{code:06b}");
     }
     assert_eq!(rig.bench.frames(0).len(), frames);
