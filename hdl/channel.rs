@@ -670,8 +670,12 @@ impl Logic for Channel {
                 self.receiver.serial_ok.val() & !self.forced.val().get_bit(2);
         }
         self.transaction.will_rise.next = self.clock_gen.will_rise.val();
-        self.transaction.outstanding.next = self.delay.outstanding.val();
-        self.transaction.pulses_left.next = self.receiver.pulses_left.val();
+        self.transaction.no_pulse_left.next = self.receiver.all_sent.val();
+        self.transaction.one_pulse_left.next = self.receiver.one_to_send.val();
+        self.transaction.none_under_way.next = self.receiver.none_under_way.val();
+        self.transaction.all_used.next = self.receiver.all_used.val();
+        self.transaction.all_ended.next = self.receiver.all_ended.val();
+        self.delay.none_under_way.next = self.receiver.none_under_way.val();
         self.transaction.delay_upset.next = self.delay.is_upset.val();
         self.transaction.first_low_extra_cycles.next =
             self.settings.first_low_extra_cycles_now.val();

@@ -11,8 +11,7 @@
 //! (`acquire`), and followed by one cycle per frame afterwards. Sampling from this tracked phase tolerates twice
 //! the jitter that sampling from the start edge of the same frame would.
 //!
-//! `outstanding` counts clock pulses whose cell has not yet ended. It tells which rising edge launched a bit, and
-//! so how many more pulses the encoder needs.
+//! A rising edge of the clock and the cell that it launched are a delay apart: `pulse` and `sample` say when each counts.
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual, propagation delay compensation; TI motor-control SDK, `endat_main.asm`.
 
@@ -22,7 +21,7 @@ use crate::phase_tracker::PhaseTracker;
 use crate::reg::Reg;
 use rust_hdl::prelude::*;
 
-/// Sample strobes, start edge window and pulses in flight of one channel.
+/// Sample strobes and start edge window of one channel.
 #[derive(LogicBlock)]
 pub struct LineDelay {
     /// System clock.
@@ -31,6 +30,8 @@ pub struct LineDelay {
     pub reset: Signal<In, Bit>,
     /// Low between frames: forgets everything but the delay.
     pub run: Signal<In, Bit>,
+    /// No clock pulse has been sent whose cell has not ended.
+    pub none_under_way: Signal<In, Bit>,
     /// The clock waits: when all cells have ended, a new burst of pulses begins.
     pub drain: Signal<In, Bit>,
     /// This frame measures the delay instead of using it.
@@ -75,8 +76,6 @@ pub struct LineDelay {
     pub pulse: Signal<Out, Bit>,
     /// The tracked delay is not what was measured: a register was upset. Until it is measured again.
     pub is_upset: Signal<Out, Bit>,
-    /// Clock pulses sent whose cell has not ended.
-    pub outstanding: Signal<Out, Bits<7>>,
     /// Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
     pub delay_cycles: Signal<Out, Bits<11>>,
     /// The same, mean of many edges, in sixteenths of a cycle (alignment only).
@@ -94,7 +93,6 @@ pub struct LineDelay {
     second_half: Reg<Bit>,
     sample_strobe: Reg<Bit>,
     center_strobe: Reg<Bit>,
-    pulses: Reg<Bits<7>>,
     center_seen: Reg<Bit>,
     not_yet: Reg<Bit>,
     afresh: Reg<Bit>,
@@ -161,6 +159,7 @@ impl LineDelay {
             clock: Default::default(),
             reset: Default::default(),
             run: Default::default(),
+            none_under_way: Default::default(),
             drain: Default::default(),
             acquire: Default::default(),
             last_cell: Default::default(),
@@ -183,7 +182,6 @@ impl LineDelay {
             edge_in_window: Default::default(),
             pulse: Default::default(),
             is_upset: Default::default(),
-            outstanding: Default::default(),
             delay_cycles: Default::default(),
             phase: Default::default(),
             measured: Default::default(),
@@ -197,7 +195,6 @@ impl LineDelay {
             second_half: Default::default(),
             sample_strobe: Default::default(),
             center_strobe: Default::default(),
-            pulses: Default::default(),
             center_seen: Default::default(),
             not_yet: Default::default(),
             afresh: Default::default(),
@@ -261,8 +258,7 @@ impl Logic for LineDelay {
             cells_run,
             second_half,
             sample_strobe,
-            center_strobe,
-            pulses
+            center_strobe
         );
         dff_setup!(
             self,
@@ -300,7 +296,6 @@ impl Logic for LineDelay {
         self.second_half.reset.next = self.reset.val();
         self.sample_strobe.reset.next = self.reset.val();
         self.center_strobe.reset.next = self.reset.val();
-        self.pulses.reset.next = self.reset.val();
         self.center_seen.reset.next = self.reset.val();
         self.not_yet.reset.next = self.reset.val();
         self.follow_now.reset.next = self.reset.val();
@@ -424,23 +419,9 @@ impl Logic for LineDelay {
             self.center_strobe.d.next = false;
         }
 
-        // Pulses whose cell has not ended. The edge that launched an acquired start bit is the only one.
-        if self.will_rise.val() & !self.sample_now.val() {
-            self.pulses.d.next = self.pulses.q.val() + 1;
-        }
-        // With two system clock cycles in a bit cells go on until the end of the frame has been seen.
-        if self.sample_now.val()
-            & !self.will_rise.val()
-            & (!self.has_double.val() | self.pulses.q.val().any())
-        {
-            self.pulses.d.next = self.pulses.q.val() - 1;
-        }
-        if self.acquire.val() & !self.cells_run.q.val() {
-            self.pulses.d.next = 0.into();
-        }
-        if self.acquired.val() {
-            self.pulses.d.next = 1.into();
-        }
+        // Of the edges before an acquired start bit that which launched it is the only one that counts.
+        self.pulse.next = self.acquired.val()
+            | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
 
         // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
         // is as good as one that is seen with it: the limits of the bit are as far from both.
@@ -558,7 +539,7 @@ impl Logic for LineDelay {
         }
 
         // All cells of a burst have ended: the next rising edge begins a new one.
-        self.over.next = !self.run.val() | (self.drain.val() & !self.pulses.q.val().any());
+        self.over.next = !self.run.val() | (self.drain.val() & self.none_under_way.val());
         self.afresh.d.next = self.over.val();
         if self.afresh.q.val() {
             self.cells_run.d.next = false;
@@ -568,7 +549,6 @@ impl Logic for LineDelay {
             self.was_over.d.next = false;
             self.sample_strobe.d.next = false;
             self.center_strobe.d.next = false;
-            self.pulses.d.next = 0.into();
         }
         self.not_yet.d.next = self.over.val() | (self.acquire.val() & !self.hunting.val());
         if self.sample_now.val() | self.not_yet.q.val() {
@@ -582,9 +562,6 @@ impl Logic for LineDelay {
         self.center.next = self.center_now.val();
         self.edge_in_window.next =
             self.edge_now.val() & (!self.edge_outside.q.val() | self.is_open.val());
-        self.pulse.next = (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()))
-            | self.acquired.val();
-        self.outstanding.next = self.pulses.q.val();
         self.sample_second.next = self.second.q.val();
         self.delay_cycles.next = self.delay_now.val();
         self.measured.next = self.measured_now.q.val();

@@ -14,9 +14,10 @@
 //! with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC looks at the word where it
 //! then stands, and for as long as it stands there: what is published is what was checked.
 //!
-//! `left` counts cells down to the end of the frame, `pulses_left` the clock pulses that they need. The clock generator stops when
-//! none is left: so the encoder sees exactly the rising edges it needs, and never more than the shortest answer while its start bit
-//! may still be on the cable. Both counts and that of the pulses under way meet at the end of the frame, unless one was upset.
+//! `left` counts cells down to the end of the frame, `to_send` the clock pulses that they need: the difference is under way. The
+//! clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
+//! shortest answer while its start bit may still be on the cable. `under_way` counts the difference once more: at the end of the
+//! frame all three agree, unless one was upset.
 
 use crate::channel::Features;
 use crate::crc5::{Crc5Check, Crc5Serial, ORDER_OF_X};
@@ -104,8 +105,16 @@ pub struct Receiver {
     pub start_refused: Signal<Out, Bit>,
     /// The start bit has been taken.
     pub started: Signal<Out, Bit>,
-    /// Clock pulses still to be sent.
-    pub pulses_left: Signal<Out, Bits<7>>,
+    /// All clock pulses have been sent.
+    pub all_sent: Signal<Out, Bit>,
+    /// All but one.
+    pub one_to_send: Signal<Out, Bit>,
+    /// The cell of each pulse that was sent has ended.
+    pub none_under_way: Signal<Out, Bit>,
+    /// The counts of cells and pulses agree that this cell is the last one.
+    pub all_used: Signal<Out, Bit>,
+    /// They agree that there is none left.
+    pub all_ended: Signal<Out, Bit>,
     /// Strobe: payload, error bits, CRC and verdict of the answer without additional information are valid.
     pub done: Signal<Out, Bit>,
     /// Strobe: payload and verdict of an additional information are valid.
@@ -145,6 +154,7 @@ pub struct Receiver {
     field: Reg<Field>,
     left: Reg<Bits<7>>,
     to_send: Reg<Bits<7>>,
+    under_way: Reg<Bits<3>>,
     word: Reg<Bits<50>>,
     covered: Reg<Bits<4>>,
     f1_bit: Reg<Bit>,
@@ -205,6 +215,7 @@ pub struct Receiver {
     shifted: Signal<Local, Bits<50>>,
     one_more: Signal<Local, Bit>,
     one_less: Signal<Local, Bit>,
+    counts: Signal<Local, Bit>,
     width: Signal<Local, Bits<6>>,
     cells_after: Signal<Local, Bits<7>>,
     cells_around: Signal<Local, Bits<7>>,
@@ -241,7 +252,11 @@ impl Receiver {
             start_found: Default::default(),
             start_refused: Default::default(),
             started: Default::default(),
-            pulses_left: Default::default(),
+            all_sent: Default::default(),
+            one_to_send: Default::default(),
+            none_under_way: Default::default(),
+            all_used: Default::default(),
+            all_ended: Default::default(),
             done: Default::default(),
             info_done: Default::default(),
             separated: Default::default(),
@@ -264,6 +279,7 @@ impl Receiver {
             field: Reg::new(Field::Done),
             left: Default::default(),
             to_send: Default::default(),
+            under_way: Default::default(),
             word: Default::default(),
             covered: Default::default(),
             f1_bit: Default::default(),
@@ -331,6 +347,7 @@ impl Receiver {
             shifted: Default::default(),
             one_more: Default::default(),
             one_less: Default::default(),
+            counts: Default::default(),
             width: Default::default(),
             cells_after: Default::default(),
             cells_around: Default::default(),
@@ -342,7 +359,8 @@ impl Logic for Receiver {
     #[hdl_gen]
     fn update(&mut self) {
         dff_setup!(
-            self, clock, field, left, to_send, word, covered, f1_bit, f2_bit, crc_bits, crc_calc
+            self, clock, field, left, to_send, under_way, word, covered, f1_bit, f2_bit, crc_bits,
+            crc_calc
         );
         dff_setup!(
             self,
@@ -373,6 +391,7 @@ impl Logic for Receiver {
         self.field.reset.next = self.reset.val();
         self.left.reset.next = self.reset.val();
         self.to_send.reset.next = self.reset.val();
+        self.under_way.reset.next = self.reset.val();
         self.word.reset.next = self.reset.val();
         self.covered.reset.next = self.reset.val();
         self.f1_bit.reset.next = self.reset.val();
@@ -471,7 +490,10 @@ impl Logic for Receiver {
         self.good_gap.d.next = false;
         self.again.next = false;
 
-        if self.sample.val()
+        // With two system clock cycles in a bit cells go on until the end of the frame has been seen.
+        self.counts.next =
+            self.sample.val() & !((self.field.q.val() == Field::Done) & (self.left.q.val() == 1));
+        if self.counts.val()
             & (self.field.q.val() != Field::Skip)
             & (self.field.q.val() != Field::Start)
         {
@@ -486,6 +508,13 @@ impl Logic for Receiver {
         }
         if self.one_less.val() & !self.one_more.val() {
             self.to_send.d.next = self.to_send.q.val() - 1;
+        }
+        // A third count, modulo 8, of the pulses that are on the cable.
+        if self.pulse.val() & !self.counts.val() {
+            self.under_way.d.next = self.under_way.q.val() + 1;
+        }
+        if self.counts.val() & !self.pulse.val() {
+            self.under_way.d.next = self.under_way.q.val() - 1;
         }
         match self.field.q.val() {
             Field::Skip => {
@@ -725,6 +754,7 @@ impl Logic for Receiver {
             self.to_send.d.next =
                 bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_around.val();
             self.word.d.next = 0.into();
+            self.under_way.d.next = 0.into();
             // Skipped cells take the counter to 0, where the covered bits start from.
             self.covered.d.next = self.skip_from.val();
             self.skip_rounds.d.next = 0.into();
@@ -767,6 +797,7 @@ impl Logic for Receiver {
             self.field.d.next = Field::Supplement;
             self.left.d.next = self.supplement_cells.val();
             self.to_send.d.next = self.supplement_cells.val();
+            self.under_way.d.next = 0.into();
         }
 
         self.skipping.next =
@@ -779,7 +810,13 @@ impl Logic for Receiver {
         self.started_now.d.next =
             (self.field.q.val() != Field::Skip) & (self.field.q.val() != Field::Start);
         self.started.next = self.started_now.q.val();
-        self.pulses_left.next = self.to_send.q.val();
+        self.all_sent.next = !self.to_send.q.val().any();
+        self.one_to_send.next = self.to_send.q.val() == 1;
+        self.none_under_way.next = self.to_send.q.val() == self.left.q.val();
+        self.all_used.next =
+            self.all_sent.val() & (self.left.q.val() == 1) & (self.under_way.q.val() == 1);
+        self.all_ended.next =
+            self.all_sent.val() & self.none_under_way.val() & !self.under_way.q.val().any();
         self.done.next = self.done_now.q.val();
         self.info_done.next = false;
         self.separated.next = false;

@@ -128,10 +128,16 @@ pub struct Transaction {
     pub f2: Signal<In, Bit>,
     /// Strobe one cycle before each rising clock edge.
     pub will_rise: Signal<In, Bit>,
-    /// Clock pulses whose cell has not ended.
-    pub outstanding: Signal<In, Bits<7>>,
-    /// Clock pulses still to be sent.
-    pub pulses_left: Signal<In, Bits<7>>,
+    /// All clock pulses have been sent.
+    pub no_pulse_left: Signal<In, Bit>,
+    /// All but one.
+    pub one_pulse_left: Signal<In, Bit>,
+    /// The cell of each pulse that was sent has ended.
+    pub none_under_way: Signal<In, Bit>,
+    /// This cell is the last one: all had their pulse, and every pulse its cell.
+    pub all_used: Signal<In, Bit>,
+    /// There is none left, of either.
+    pub all_ended: Signal<In, Bit>,
     /// The tracked delay is not what was measured.
     pub delay_upset: Signal<In, Bit>,
     /// How much longer than half a period the first low phase is; 0, or at least 4 cycles.
@@ -293,7 +299,6 @@ pub struct Transaction {
     owed: Signal<Local, Bit>,
     proof: Signal<Local, Bit>,
     plugged: Signal<Local, Bit>,
-    all_used: Signal<Local, Bit>,
     vanished: Signal<Local, Bit>,
 }
 
@@ -427,12 +432,6 @@ impl Logic for Transaction {
             self.no_start.next = self.no_start_bit.val() | self.stuck_low.val();
         }
         self.running.next = false;
-        // With the last cell's sample. With two clocks in a bit cells behind it have begun.
-        self.all_used.next = (self.outstanding.val() == 1) & !self.pulses_left.val().any();
-        if self.has_double.val() {
-            self.all_used.next =
-                !self.outstanding.val().get_bits::<6>(1).any() & !self.pulses_left.val().any();
-        }
         // A frame that has vanished: a register was upset.
         self.vanished.next =
             (self.owing.q.val() & !self.once_more.q.val()) | self.under_way.q.val();
@@ -579,7 +578,7 @@ impl Logic for Transaction {
                     self.timer_clear.next = true;
                     self.in_supplement.d.next = true;
                     self.supplement_now.d.next = true;
-                    if self.outstanding.val().any() | self.pulses_left.val().any() {
+                    if !self.all_ended.val() {
                         self.found.next = self.upset.val();
                         self.give_up.next = true;
                     }
@@ -738,17 +737,17 @@ impl Logic for Transaction {
         }
 
         // Pulses: never more on the cable than the answer needs.
-        self.all_sent.d.next = !self.pulses_left.val().any();
+        self.all_sent.d.next = self.no_pulse_left.val();
         // With two system clock cycles in a bit there is no time to count this pulse.
         if self.has_double.val() {
-            self.one_left.d.next = self.pulses_left.val() == 1;
+            self.one_left.d.next = self.one_pulse_left.val();
             self.all_sent.d.next =
-                !self.pulses_left.val().any() | (self.one_left.q.val() & self.will_rise.val());
+                self.no_pulse_left.val() | (self.one_left.q.val() & self.will_rise.val());
         }
         if self.all_sent.q.val() & !self.started.val() & !self.going.val() {
             self.stalled.d.next = true;
         }
-        if !self.outstanding.val().any() {
+        if self.none_under_way.val() {
             self.stalled.d.next = false;
         }
 

@@ -16,7 +16,7 @@ const TRANSACTION: &str = "transaction";
 const SETTINGS: &str = "frame_settings";
 
 /// All of them.
-pub const GUARDS: [Guard; 9] = [
+pub const GUARDS: [Guard; 10] = [
     Guard {
         name: "channel_without_restore",
         title: "a withdrawn position gives way to the one before, with its time stamp and CRC",
@@ -56,13 +56,18 @@ pub const GUARDS: [Guard; 9] = [
     },
     Guard {
         name: "channel_without_pulses",
-        title: "count of the clock pulses, looked at when the frame is over",
-        edits: &[(TRANSACTION, "!HAS_DOUBLE & (outstanding != 7'd1)", "1'b0")],
+        title: "the counts of clock pulses, compared when the frame is over",
+        edits: &[(TRANSACTION, "sample & !tail_sampled & !all_used", "1'b0")],
     },
     Guard {
         name: "channel_without_moment",
         title: "parity of the time stamp while the frame runs",
         edits: &[(SNAPSHOT, "moment_wrong = good &", "moment_wrong = 1'b0 &")],
+    },
+    Guard {
+        name: "channel_without_delay",
+        title: "parity of the tracked delay",
+        edits: &[("line_delay", "wrong_next = 1'b1", "wrong_next = 1'b0")],
     },
     Guard {
         name: "channel_without_limits",
@@ -96,11 +101,18 @@ pub const GUARDS: [Guard; 9] = [
     },
     Guard {
         name: "channel_without_owing",
-        title: "a result for each trigger, whatever becomes of its frame",
-        edits: &[(
-            TRANSACTION,
-            "if (accept & !own) begin\n            owing_next = 1'b1;",
-            "if (accept & !own) begin\n            owing_next = 1'b0;",
-        )],
+        title: "an end of each frame and a result for each trigger, whatever becomes of its state",
+        edits: &[
+            (
+                TRANSACTION,
+                "if (accept & !own) begin\n            owing_next = 1'b1;",
+                "if (accept & !own) begin\n            owing_next = 1'b0;",
+            ),
+            (
+                TRANSACTION,
+                "under_way_next = 1'b1",
+                "under_way_next = 1'b0",
+            ),
+        ],
     },
 ];

@@ -161,6 +161,8 @@ module s6_two_channel_channel (
     localparam   [5:0] TEST_VALUE_BITS = 6'd40;
     localparam  [10:0] CALIBRATION_PERIOD_CYCLES = 11'd500;
 
+    wire         own_wanted;
+    wire         ride_wanted;
     reg    [5:0] command_now;
     reg    [5:0] payload_bits;
     reg   [23:0] word;
@@ -182,14 +184,19 @@ module s6_two_channel_channel (
     wire         delay_sample;
     wire         delay_center;
     wire         delay_edge_in_window;
-    wire   [6:0] delay_outstanding;
+    wire         delay_pulse;
+    wire         delay_is_upset;
     reg          receiver_level;
     wire         receiver_skipping;
     wire         receiver_hunting;
     wire         receiver_start_found;
     wire         receiver_start_refused;
     wire         receiver_started;
-    wire   [6:0] receiver_cells_left;
+    wire         receiver_all_sent;
+    wire         receiver_one_to_send;
+    wire         receiver_none_under_way;
+    wire         receiver_all_used;
+    wire         receiver_all_ended;
     wire         receiver_done;
     wire         receiver_info_done;
     wire         receiver_separated;
@@ -236,6 +243,7 @@ module s6_two_channel_channel (
     wire         transaction_begun;
     wire         transaction_is_at_rest;
     wire         shape_is_known;
+    wire         shape_is_position;
     wire         shape_has_f1;
     wire         shape_has_f2;
     wire         shape_has_parameter;
@@ -243,6 +251,7 @@ module s6_two_channel_channel (
     wire         shape_has_supplement;
     reg    [5:0] wanted_shape_command;
     wire         wanted_shape_is_known;
+    wire         wanted_shape_is_position;
     wire         wanted_shape_has_f1;
     wire         wanted_shape_has_f2;
     wire         wanted_shape_has_parameter;
@@ -271,10 +280,6 @@ module s6_two_channel_channel (
     reg          data_pin_next;
     reg          oe_pin; initial oe_pin = 1'b0;
     reg          oe_pin_next;
-    reg          own_wanted; initial own_wanted = 1'b0;
-    reg          own_wanted_next;
-    reg          ride_wanted; initial ride_wanted = 1'b0;
-    reg          ride_wanted_next;
     reg    [5:0] frame_command; initial frame_command = 6'd0;
     reg    [5:0] frame_command_next;
     reg          frame_own; initial frame_own = 1'b0;
@@ -289,7 +294,7 @@ module s6_two_channel_channel (
     reg          reply_right_next;
     reg          reply_has_parameter; initial reply_has_parameter = 1'b0;
     reg          reply_has_parameter_next;
-    wire         _unused_ok = &{1'b0, shape_is_known, wanted_shape_has_f1, wanted_shape_has_f2, wanted_shape_has_parameter, wanted_shape_has_test_values, wanted_shape_has_supplement};
+    wire         _unused_ok = &{1'b0, request_ride, request_own, request_cancel, shape_is_known, shape_is_position, wanted_shape_has_f1, wanted_shape_has_f2, wanted_shape_has_parameter, wanted_shape_has_test_values, wanted_shape_has_supplement};
 
     s6_two_channel_input_filter u_filter (
         .clock(clock),
@@ -334,6 +339,7 @@ module s6_two_channel_channel (
         .clock(clock),
         .reset(reset),
         .run(transaction_run),
+        .none_under_way(receiver_none_under_way),
         .drain(transaction_drain),
         .acquire(transaction_acquire),
         .last_cell(transaction_last_cell),
@@ -354,7 +360,8 @@ module s6_two_channel_channel (
         .sample_second(sample_second),
         .center(delay_center),
         .edge_in_window(delay_edge_in_window),
-        .outstanding(delay_outstanding),
+        .pulse(delay_pulse),
+        .is_upset(delay_is_upset),
         .delay_cycles(delay_cycles),
         .phase(phase),
         .measured(edge_measured),
@@ -367,6 +374,7 @@ module s6_two_channel_channel (
         .abort(transaction_abort),
         .acquire(transaction_acquire),
         .rise(clock_gen_rise),
+        .pulse(delay_pulse),
         .sample(delay_sample),
         .level(receiver_level),
         .edge_in_window(delay_edge_in_window),
@@ -385,7 +393,11 @@ module s6_two_channel_channel (
         .start_found(receiver_start_found),
         .start_refused(receiver_start_refused),
         .started(receiver_started),
-        .cells_left(receiver_cells_left),
+        .all_sent(receiver_all_sent),
+        .one_to_send(receiver_one_to_send),
+        .none_under_way(receiver_none_under_way),
+        .all_used(receiver_all_used),
+        .all_ended(receiver_all_ended),
         .done(receiver_done),
         .info_done(receiver_info_done),
         .separated(receiver_separated),
@@ -441,8 +453,12 @@ module s6_two_channel_channel (
         .f1(transaction_f1),
         .f2(transaction_f2),
         .will_rise(clock_gen_will_rise),
-        .outstanding(delay_outstanding),
-        .cells_left(receiver_cells_left),
+        .no_pulse_left(receiver_all_sent),
+        .one_pulse_left(receiver_one_to_send),
+        .none_under_way(receiver_none_under_way),
+        .all_used(receiver_all_used),
+        .all_ended(receiver_all_ended),
+        .delay_upset(delay_is_upset),
         .first_low_extra_cycles(settings_first_low_extra_cycles_now),
         .start_timeout_us(settings_start_timeout_us_now),
         .recovery_limit_cycles(settings_recovery_limit_cycles_now),
@@ -514,6 +530,7 @@ module s6_two_channel_channel (
     s6_two_channel_command_shape u_shape (
         .command(command_now),
         .is_known(shape_is_known),
+        .is_position(shape_is_position),
         .has_f1(shape_has_f1),
         .has_f2(shape_has_f2),
         .has_parameter(shape_has_parameter),
@@ -523,6 +540,7 @@ module s6_two_channel_channel (
     s6_two_channel_command_shape u_wanted_shape (
         .command(wanted_shape_command),
         .is_known(wanted_shape_is_known),
+        .is_position(wanted_shape_is_position),
         .has_f1(wanted_shape_has_f1),
         .has_f2(wanted_shape_has_f2),
         .has_parameter(wanted_shape_has_parameter),
@@ -610,6 +628,8 @@ module s6_two_channel_channel (
         end
     end
     assign settings_frame_command = command_now;
+    assign own_wanted = 1'b0;
+    assign ride_wanted = 1'b0;
     assign sender_abort = transaction_abort | (!receiver_skipping & !transaction_start_supplement);
     assign delay_in_answer = receiver_started & !receiver_skipping;
 
@@ -627,39 +647,20 @@ module s6_two_channel_channel (
             wanted_shape_command = frame_command;
         end
     end
-    assign transaction_is_known = wanted_shape_is_known & (!NEEDS_FOUR | (|period_cycles[10:2]));
+    assign transaction_is_known = (wanted_shape_is_position | (wanted_shape_is_known & (frame_own | frame_ride))) & (!NEEDS_FOUR | (|period_cycles[10:2]));
     assign transaction_begin_own = frame_own & own_wanted;
 
     always @* begin
-        own_wanted_next = own_wanted;
-        ride_wanted_next = ride_wanted;
         frame_command_next = frame_command;
         frame_own_next = frame_own;
         frame_ride_next = frame_ride;
-        if (transaction_begun) begin
-            if (frame_own) begin
-                own_wanted_next = 1'b0;
-            end
-            if (frame_ride) begin
-                ride_wanted_next = 1'b0;
-            end
-        end else if (transaction_is_at_rest & HAS_REQUESTS) begin
+        if (!transaction_begun & transaction_is_at_rest & HAS_REQUESTS) begin
             frame_command_next = command;
             frame_own_next = own_wanted;
             frame_ride_next = ride_wanted & calibrated & !own_wanted;
             if (own_wanted | (ride_wanted & calibrated)) begin
                 frame_command_next = request_command;
             end
-        end
-        if (request_own & HAS_REQUESTS) begin
-            own_wanted_next = 1'b1;
-        end
-        if (request_ride & HAS_REQUESTS) begin
-            ride_wanted_next = 1'b1;
-        end
-        if (request_cancel) begin
-            own_wanted_next = 1'b0;
-            ride_wanted_next = 1'b0;
         end
     end
     assign transaction_continuous = continuous & shape_has_f1 & !shape_has_f2 & !shape_has_test_values;
@@ -786,8 +787,6 @@ module s6_two_channel_channel (
             clk_pin <= 1'b1;
             data_pin <= 1'b0;
             oe_pin <= 1'b0;
-            own_wanted <= 1'b0;
-            ride_wanted <= 1'b0;
             frame_command <= 6'd0;
             frame_own <= 1'b0;
             frame_ride <= 1'b0;
@@ -800,8 +799,6 @@ module s6_two_channel_channel (
             clk_pin <= clk_pin_next;
             data_pin <= data_pin_next;
             oe_pin <= oe_pin_next;
-            own_wanted <= own_wanted_next;
-            ride_wanted <= ride_wanted_next;
             frame_command <= frame_command_next;
             frame_own <= frame_own_next;
             frame_ride <= frame_ride_next;

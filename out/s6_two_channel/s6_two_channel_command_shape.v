@@ -10,6 +10,8 @@ module s6_two_channel_command_shape (
     input  wire   [5:0] command,
     // It is a mode command that this design sends.
     output reg          is_known,
+    // It is 000111 or 111000.
+    output wire         is_position,
     // The answer begins with F1.
     output reg          has_f1,
     // F2 follows F1; the selected additional information follows the position.
@@ -27,7 +29,6 @@ module s6_two_channel_command_shape (
     wire   [2:0] right;
     wire         is_same;
     wire         is_complement;
-    wire         is_position;
     wire         is_two;
 
     assign left = command[5:3];

@@ -4,7 +4,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Sample strobes, start edge window and pulses in flight of one channel.
+// Sample strobes and start edge window of one channel.
 module s6_two_channel_line_delay (
     // System clock.
     input  wire         clock,
@@ -12,6 +12,8 @@ module s6_two_channel_line_delay (
     input  wire         reset,
     // Low between frames: forgets everything but the delay.
     input  wire         run,
+    // No clock pulse has been sent whose cell has not ended.
+    input  wire         none_under_way,
     // The clock waits: when all cells have ended, a new burst of pulses begins.
     input  wire         drain,
     // This frame measures the delay instead of using it.
@@ -52,8 +54,10 @@ module s6_two_channel_line_delay (
     output wire         center,
     // A rising data edge lies within the window of this cell.
     output wire         edge_in_window,
-    // Clock pulses sent whose cell has not ended.
-    output wire   [6:0] outstanding,
+    // Strobe: a clock pulse is sent that the answer needs; not one before the start edge of a frame that measures.
+    output wire         pulse,
+    // The tracked delay is not what was measured: a register was upset. Until it is measured again.
+    output wire         is_upset,
     // Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
     output wire  [10:0] delay_cycles,
     // The same, mean of many edges, in sixteenths of a cycle (alignment only).
@@ -67,6 +71,7 @@ module s6_two_channel_line_delay (
     localparam         HAS_DOUBLE = 1'b0;
     localparam   [1:0] FRAME_MODE = 2'd2;
 
+    wire         parity_now;
     wire         first_rise;
     wire         acquired;
     wire         first_center;
@@ -109,8 +114,6 @@ module s6_two_channel_line_delay (
     reg          sample_strobe_next;
     reg          center_strobe; initial center_strobe = 1'b0;
     reg          center_strobe_next;
-    reg    [6:0] pulses; initial pulses = 7'd0;
-    reg    [6:0] pulses_next;
     reg          center_seen; initial center_seen = 1'b0;
     reg          center_seen_next;
     reg          not_yet; initial not_yet = 1'b0;
@@ -128,6 +131,11 @@ module s6_two_channel_line_delay (
     reg          shorten_next;
     reg          lengthen; initial lengthen = 1'b0;
     reg          lengthen_next;
+    reg          parity; initial parity = 1'b0;
+    reg          parity_next;
+    reg          moved; initial moved = 1'b0;
+    reg          wrong; initial wrong = 1'b0;
+    reg          wrong_next;
     reg    [7:0] offset_now; initial offset_now = 8'd0;
     reg    [7:0] offset_now_next;
     reg          measured_now; initial measured_now = 1'b0;
@@ -161,6 +169,8 @@ module s6_two_channel_line_delay (
             delay_now = places[11:1];
         end
     end
+    assign parity_now = ^places;
+    assign is_upset = wrong;
     assign is_later = 1'b0;
 
     always @* begin
@@ -170,6 +180,19 @@ module s6_two_channel_line_delay (
         end
     end
     assign acquired = acquire & hunting & data_edge & !cells_run;
+
+    always @* begin
+        parity_next = parity;
+        wrong_next = wrong;
+        if (moved) begin
+            parity_next = parity_now;
+        end else if (parity_now ^ parity) begin
+            wrong_next = 1'b1;
+        end
+        if (acquired) begin
+            wrong_next = 1'b0;
+        end
+    end
     assign first_center = acquired | (due & !cells_run & !acquire);
     assign is_frame = HAS_ALIGNMENT & (mode == FRAME_MODE);
     assign snap = is_frame & hunting & data_edge & !edge_seen & cells_run & !acquire;
@@ -187,7 +210,6 @@ module s6_two_channel_line_delay (
         timing_armed_next = timing_armed;
         cells_run_next = cells_run;
         second_half_next = second_half;
-        pulses_next = pulses;
         since_rise_next = since_rise + 11'd1;
         if (first_rise) begin
             timing_armed_next = 1'b1;
@@ -211,18 +233,6 @@ module s6_two_channel_line_delay (
             sample_strobe_next = 1'b0;
             center_strobe_next = 1'b0;
         end
-        if (will_rise & !sample_now) begin
-            pulses_next = pulses + 7'd1;
-        end
-        if (sample_now & !will_rise) begin
-            pulses_next = pulses - 7'd1;
-        end
-        if (acquire & !cells_run) begin
-            pulses_next = 7'd0;
-        end
-        if (acquired) begin
-            pulses_next = 7'd1;
-        end
         if (afresh) begin
             cells_run_next = 1'b0;
             second_half_next = 1'b0;
@@ -231,7 +241,6 @@ module s6_two_channel_line_delay (
             was_over_next = 1'b0;
             sample_strobe_next = 1'b0;
             center_strobe_next = 1'b0;
-            pulses_next = 7'd0;
         end
     end
 
@@ -251,6 +260,7 @@ module s6_two_channel_line_delay (
     end
     assign half_restart = !cells_run | last_cell | snap;
     assign half_began = acquired | snap;
+    assign pulse = acquired | (will_rise & (!acquire | cells_run));
     assign next_cell = HAS_DOUBLE & sample_now & edge_second & !second;
     assign edge_now = edge_seen | (data_edge & !next_cell);
 
@@ -351,11 +361,10 @@ module s6_two_channel_line_delay (
     end
     assign is_open = HAS_ALIGNMENT & slow;
     assign good_edge = HAS_ALIGNMENT & sample_now & edge_now & (!edge_outside | is_open) & (follow | (in_answer & !is_frame));
-    assign over = !run | (drain & !(|pulses));
+    assign over = !run | (drain & none_under_way);
     assign sample = sample_now;
     assign center = center_now;
     assign edge_in_window = edge_now & (!edge_outside | is_open);
-    assign outstanding = pulses;
     assign sample_second = second;
     assign delay_cycles = delay_now;
     assign measured = measured_now;
@@ -372,7 +381,6 @@ module s6_two_channel_line_delay (
             second_half <= 1'b0;
             sample_strobe <= 1'b0;
             center_strobe <= 1'b0;
-            pulses <= 7'd0;
             center_seen <= 1'b0;
             not_yet <= 1'b0;
             afresh <= 1'b0;
@@ -383,6 +391,9 @@ module s6_two_channel_line_delay (
             edge_outside <= 1'b0;
             shorten <= 1'b0;
             lengthen <= 1'b0;
+            parity <= 1'b0;
+            moved <= 1'b0;
+            wrong <= 1'b0;
             offset_now <= 8'd0;
             measured_now <= 1'b0;
             second <= 1'b0;
@@ -397,7 +408,6 @@ module s6_two_channel_line_delay (
             second_half <= second_half_next;
             sample_strobe <= sample_strobe_next;
             center_strobe <= center_strobe_next;
-            pulses <= pulses_next;
             center_seen <= center_seen_next;
             not_yet <= over | (acquire & !hunting);
             afresh <= over;
@@ -408,6 +418,9 @@ module s6_two_channel_line_delay (
             edge_outside <= edge_outside_next;
             shorten <= shorten_next;
             lengthen <= lengthen_next;
+            parity <= parity_next;
+            moved <= follow_now | acquired;
+            wrong <= wrong_next;
             offset_now <= offset_now_next;
             measured_now <= good_edge;
             second <= second_next;

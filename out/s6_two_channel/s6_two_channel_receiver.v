@@ -18,6 +18,8 @@ module s6_two_channel_receiver (
     input  wire         acquire,
     // Strobe of each rising clock edge.
     input  wire         rise,
+    // Strobe: a clock pulse is sent that the answer needs.
+    input  wire         pulse,
     // Strobe: sample level.
     input  wire         sample,
     // The data line.
@@ -54,8 +56,16 @@ module s6_two_channel_receiver (
     output wire         start_refused,
     // The start bit has been taken.
     output wire         started,
-    // Cells still to come, this one included.
-    output wire   [6:0] cells_left,
+    // All clock pulses have been sent.
+    output wire         all_sent,
+    // All but one.
+    output wire         one_to_send,
+    // The cell of each pulse that was sent has ended.
+    output wire         none_under_way,
+    // The counts of cells and pulses agree that this cell is the last one.
+    output wire         all_used,
+    // They agree that there is none left.
+    output wire         all_ended,
     // Strobe: payload, error bits, CRC and verdict of the answer without additional information are valid.
     output reg          done,
     // Strobe: payload and verdict of an additional information are valid.
@@ -129,6 +139,9 @@ module s6_two_channel_receiver (
     wire         start_sample;
     reg          separator;
     reg   [49:0] shifted;
+    wire         one_more;
+    wire         one_less;
+    wire         counts;
     reg    [5:0] width;
     reg    [6:0] cells_after;
     reg    [6:0] cells_around;
@@ -144,6 +157,10 @@ module s6_two_channel_receiver (
     reg    [3:0] field_next;
     reg    [6:0] left; initial left = 7'd0;
     reg    [6:0] left_next;
+    reg    [6:0] to_send; initial to_send = 7'd0;
+    reg    [6:0] to_send_next;
+    reg    [2:0] under_way; initial under_way = 3'd0;
+    reg    [2:0] under_way_next;
     reg   [49:0] word; initial word = 50'd0;
     reg   [49:0] word_next;
     reg    [3:0] covered; initial covered = 4'd0;
@@ -271,6 +288,9 @@ module s6_two_channel_receiver (
         end
     end
     assign start_sample = (field == FIELD_START) & sample & level;
+    assign counts = sample & !((field == FIELD_DONE) & (left == 7'd1));
+    assign one_more = sample & (field == FIELD_START);
+    assign one_less = pulse | (acquire & rise & (field == FIELD_SKIP));
     assign in5 = width <= 6'd3;
     assign in20 = (width <= 6'd18) & !in5;
     assign in35 = (width <= 6'd33) & !in5 & !in20;
@@ -343,6 +363,8 @@ module s6_two_channel_receiver (
     always @* begin
         field_next = field;
         left_next = left;
+        to_send_next = to_send;
+        under_way_next = under_way;
         word_next = word;
         covered_d = covered;
         f1_bit_next = f1_bit;
@@ -362,8 +384,20 @@ module s6_two_channel_receiver (
         high_gap_next = 1'b0;
         good_gap_next = 1'b0;
         again = 1'b0;
-        if (sample & (field != FIELD_SKIP) & (field != FIELD_START)) begin
+        if (counts & (field != FIELD_SKIP) & (field != FIELD_START)) begin
             left_next = left - 7'd1;
+        end
+        if (one_more & !one_less) begin
+            to_send_next = to_send + 7'd1;
+        end
+        if (one_less & !one_more) begin
+            to_send_next = to_send - 7'd1;
+        end
+        if (pulse & !counts) begin
+            under_way_next = under_way + 3'd1;
+        end
+        if (counts & !pulse) begin
+            under_way_next = under_way - 3'd1;
         end
         case (field)
             FIELD_SKIP: begin
@@ -497,7 +531,9 @@ module s6_two_channel_receiver (
         if (start) begin
             field_next = FIELD_SKIP;
             left_next = {1'b0, payload_bits} + cells_around;
+            to_send_next = {1'b0, payload_bits} + cells_around;
             word_next = 50'd0;
+            under_way_next = 3'd0;
             covered_d = SKIP_FROM;
             skip_rounds_next = 2'd0;
             f2_bit_next = 1'b1;
@@ -523,6 +559,8 @@ module s6_two_channel_receiver (
         if (start_supplement & HAS_ALL) begin
             field_next = FIELD_SUPPLEMENT;
             left_next = SUPPLEMENT_CELLS;
+            to_send_next = SUPPLEMENT_CELLS;
+            under_way_next = 3'd0;
         end
     end
 
@@ -555,7 +593,11 @@ module s6_two_channel_receiver (
     assign start_found = start_sample & edge_in_window;
     assign start_refused = refused;
     assign started = started_now;
-    assign cells_left = left;
+    assign all_sent = !(|to_send);
+    assign one_to_send = to_send == 7'd1;
+    assign none_under_way = to_send == left;
+    assign all_used = all_sent & (left == 7'd1) & (under_way == 3'd1);
+    assign all_ended = all_sent & none_under_way & !(|under_way);
 
     always @* begin
         done = done_now;
@@ -588,6 +630,8 @@ module s6_two_channel_receiver (
         if (reset) begin
             field <= FIELD_DONE;
             left <= 7'd0;
+            to_send <= 7'd0;
+            under_way <= 3'd0;
             word <= 50'd0;
             covered <= 4'd0;
             f1_bit <= 1'b0;
@@ -624,6 +668,8 @@ module s6_two_channel_receiver (
         end else begin
             field <= field_next;
             left <= left_next;
+            to_send <= to_send_next;
+            under_way <= under_way_next;
             word <= word_next;
             covered <= covered_d;
             f1_bit <= f1_bit_next;

@@ -78,10 +78,18 @@ module s6_two_channel_transaction (
     input  wire         f2,
     // Strobe one cycle before each rising clock edge.
     input  wire         will_rise,
-    // Clock pulses whose cell has not ended.
-    input  wire   [6:0] outstanding,
-    // Cells still to come.
-    input  wire   [6:0] cells_left,
+    // All clock pulses have been sent.
+    input  wire         no_pulse_left,
+    // All but one.
+    input  wire         one_pulse_left,
+    // The cell of each pulse that was sent has ended.
+    input  wire         none_under_way,
+    // This cell is the last one: all had their pulse, and every pulse its cell.
+    input  wire         all_used,
+    // There is none left, of either.
+    input  wire         all_ended,
+    // The tracked delay is not what was measured.
+    input  wire         delay_upset,
     // How much longer than half a period the first low phase is; 0, or at least 4 cycles.
     input  wire  [10:0] first_low_extra_cycles,
     // Longest wait for the start bit after the turnaround.
@@ -184,6 +192,7 @@ module s6_two_channel_transaction (
     localparam   [2:0] PHASE_ABORT = 3'd6; // Quiet after an aborted frame.
     localparam   [2:0] PHASE_PARK = 3'd7; // Clock LOW between answer and supplement.
 
+    wire         going;
     reg   [15:0] limit;
     reg          running;
     reg          in_us;
@@ -213,13 +222,16 @@ module s6_two_channel_transaction (
     wire         owed;
     reg          proof;
     reg          plugged;
+    wire         vanished;
     wire         health_under_way;
     wire         health_is_ready;
     wire         health_expired;
     wire         health_never_high;
     wire         health_is_open;
     wire         health_is_stuck;
+    wire         verdict_settings_upset;
     wire         verdict_is_late;
+    wire         verdict_is_going;
     wire         verdict_taken;
     wire         verdict_is_received;
     wire         verdict_is_doubtful;
@@ -272,8 +284,6 @@ module s6_two_channel_transaction (
     reg          probing_next;
     reg          settling; initial settling = 1'b0;
     reg          settling_next;
-    reg          going; initial going = 1'b0;
-    reg          going_next;
     reg          leaving; initial leaving = 1'b0;
     reg          leaving_next;
     reg          cleared; initial cleared = 1'b1;
@@ -286,6 +296,8 @@ module s6_two_channel_transaction (
     reg          measuring_next;
     reg          once_more; initial once_more = 1'b0;
     reg          once_more_next;
+    reg          under_way; initial under_way = 1'b0;
+    reg          under_way_next;
 
     s6_two_channel_line_health u_health (
         .clock(clock),
@@ -309,13 +321,13 @@ module s6_two_channel_transaction (
         .answer_taken(answer_taken),
         .prove(proof),
         .is_measuring(measuring),
-        .settings_upset(settings_upset),
+        .settings_upset(verdict_settings_upset),
         .give_up(give_up),
         .is_late(verdict_is_late),
         .refuse(refuse),
         .announce(announce),
         .normal_end(normal_end),
-        .is_going(going),
+        .is_going(verdict_is_going),
         .is_own(own),
         .lost(lost),
         .serial_ok(serial_ok),
@@ -344,21 +356,11 @@ module s6_two_channel_transaction (
     );
 
     always @* begin
-        stalled_next = stalled;
-        if (all_sent & !started & !going) begin
-            stalled_next = 1'b1;
-        end
-        if (!(|outstanding)) begin
-            stalled_next = 1'b0;
-        end
-    end
-
-    always @* begin
         one_left_next = one_left;
-        all_sent_next = outstanding == cells_left;
+        all_sent_next = no_pulse_left;
         if (HAS_DOUBLE) begin
-            one_left_next = (outstanding + 7'd1) == cells_left;
-            all_sent_next = (outstanding == cells_left) | (one_left & will_rise);
+            one_left_next = one_pulse_left;
+            all_sent_next = no_pulse_left | (one_left & will_rise);
         end
     end
     assign own = is_own & HAS_ALL;
@@ -383,8 +385,21 @@ module s6_two_channel_transaction (
             no_start = NO_START_BIT | STUCK_LOW;
         end
     end
+    assign vanished = (owing & !once_more) | under_way;
     assign last_cell = (phase == PHASE_TAIL) & was_center;
+    assign verdict_settings_upset = settings_upset | delay_upset;
     assign known = is_calibrated | (HAS_ALIGNMENT & is_fixed);
+    assign going = 1'b0;
+
+    always @* begin
+        stalled_next = stalled;
+        if (all_sent & !started & !going) begin
+            stalled_next = 1'b1;
+        end
+        if (none_under_way) begin
+            stalled_next = 1'b0;
+        end
+    end
     assign leave = going & gap_good & (!continuous | line_wanted | !known | (stop_at_error & verdict_is_bad));
 
     always @* begin
@@ -399,12 +414,12 @@ module s6_two_channel_transaction (
         late_next = late;
         probing_next = probing;
         settling_next = settling;
-        going_next = going;
         leaving_next = leaving;
         slow_now_next = slow_now;
         passes_next = passes;
         measuring_next = measuring;
         once_more_next = once_more;
+        under_way_next = under_way;
         proof = 1'b0;
         plugged = 1'b0;
         refuse = 1'b0;
@@ -442,7 +457,7 @@ module s6_two_channel_transaction (
                         give_up = 1'b1;
                     end
                 end
-                if (owing & !once_more) begin
+                if (vanished) begin
                     found = UPSET;
                     give_up = 1'b1;
                 end
@@ -474,7 +489,7 @@ module s6_two_channel_transaction (
                         refuse = 1'b1;
                     end
                 end
-                if (owing & !once_more) begin
+                if (vanished) begin
                     found = UPSET;
                     give_up = 1'b1;
                 end
@@ -556,6 +571,10 @@ module s6_two_channel_transaction (
                     timer_clear = 1'b1;
                     in_supplement_next = 1'b1;
                     supplement_now_next = 1'b1;
+                    if (!all_ended) begin
+                        found = UPSET;
+                        give_up = 1'b1;
+                    end
                 end
                 if (!HAS_ALL) begin
                     give_up = 1'b1;
@@ -595,7 +614,7 @@ module s6_two_channel_transaction (
                     found = NOT_FALLING;
                     give_up = 1'b1;
                 end
-                if (sample & !tail_sampled & !HAS_DOUBLE & (outstanding != 7'd1)) begin
+                if (sample & !tail_sampled & !all_used) begin
                     found = UPSET;
                     give_up = 1'b1;
                     proof = 1'b0;
@@ -653,6 +672,7 @@ module s6_two_channel_transaction (
         end
         if (normal_end) begin
             answered_next = 1'b0;
+            under_way_next = going & !leave;
         end
         if (abort) begin
             phase_next = PHASE_ABORT;
@@ -664,6 +684,7 @@ module s6_two_channel_transaction (
             answered_next = 1'b0;
             is_calibrated_next = 1'b0;
             late_next = 1'b0;
+            under_way_next = 1'b0;
         end
         if (timer_step) begin
             timer_next = timer + 16'd1;
@@ -681,7 +702,7 @@ module s6_two_channel_transaction (
             timer_next = 16'd2;
             cleared_next = 1'b1;
         end
-        if (verdict_is_received & !(HAS_ALIGNMENT & is_fixed)) begin
+        if (verdict_is_received & measuring & !(HAS_ALIGNMENT & is_fixed)) begin
             is_calibrated_next = 1'b1;
             if (HAS_ALIGNMENT & slow_now) begin
                 passes_next = passes + 2'd1;
@@ -700,31 +721,28 @@ module s6_two_channel_transaction (
         end
         if (accept) begin
             measuring_next = !known;
+            under_way_next = 1'b1;
             answered_next = 1'b0;
             in_supplement_next = 1'b0;
             acquiring_next = !known & !(HAS_ALIGNMENT & (|passes));
             slow_now_next = !known;
             tail_sampled_next = 1'b0;
             late_next = 1'b0;
-            going_next = HAS_CONTINUOUS & continuous & known & !own;
         end
         if (leave) begin
             phase_next = PHASE_ABORT;
             timer_clear = 1'b1;
             leaving_next = 1'b1;
         end
-        if (leave | abort) begin
-            going_next = 1'b0;
-        end
         if (abort) begin
             leaving_next = 1'b0;
             probing_next = 1'b0;
             settling_next = 1'b0;
         end
-        if (calibrate | plugged | (HAS_ALIGNMENT & is_fixed)) begin
+        if (calibrate | plugged | delay_upset | (HAS_ALIGNMENT & is_fixed)) begin
             is_calibrated_next = 1'b0;
         end
-        if (calibrate | plugged | abort | verdict_is_doubtful) begin
+        if (calibrate | plugged | delay_upset | abort | verdict_is_doubtful) begin
             passes_next = 2'd0;
         end
         if (reset) begin
@@ -746,6 +764,7 @@ module s6_two_channel_transaction (
         end
     end
     assign verdict_is_late = answered | found_late;
+    assign verdict_is_going = going;
     assign lost = trigger & !going & ((!accept & !idle) | (accept & (own | once_more)));
 
     always @* begin
@@ -827,13 +846,13 @@ module s6_two_channel_transaction (
             late <= 1'b0;
             probing <= 1'b0;
             settling <= 1'b0;
-            going <= 1'b0;
             leaving <= 1'b0;
             cleared <= 1'b1;
             high_at_tick <= 1'b0;
             owing <= 1'b0;
             measuring <= 1'b0;
             once_more <= 1'b0;
+            under_way <= 1'b0;
         end else begin
             timer <= timer_next;
             timer_limit <= limit;
@@ -861,13 +880,13 @@ module s6_two_channel_transaction (
             late <= late_next;
             probing <= probing_next;
             settling <= settling_next;
-            going <= going_next;
             leaving <= leaving_next;
             cleared <= cleared_next;
             high_at_tick <= high_at_tick_next;
             owing <= owing_next;
             measuring <= measuring_next;
             once_more <= once_more_next;
+            under_way <= under_way_next;
         end
     end
 endmodule

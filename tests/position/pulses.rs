@@ -12,7 +12,7 @@ use endat_sim::{encoder::FrameLog, Time, MS, NS, US};
 fn a_count_of_pulses_that_is_upset_is_told() {
     let mut rig = open_rig();
     let ready = rig.engine().clone();
-    for name in ["delay.pulses", "receiver.left", "receiver.to_send"] {
+    for name in ["receiver.left", "receiver.to_send", "receiver.under_way"] {
         let (net, width) = register(&ready, name);
         let mut told = 0;
         for bit in 0..width {

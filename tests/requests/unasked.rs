@@ -36,6 +36,7 @@ fn a_trigger_sends_no_other_command_than_those_for_a_position() {
             "unknown mode command",
             "{code:06b}"
         );
+        rig.bench.run_cycles(4);
         assert_eq!(rig.bench.get("fresh"), 0, "{code:06b}");
     }
     assert_eq!(rig.bench.frames(0).len(), frames);

@@ -44,14 +44,14 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "one clock pulse fewer",
         "transaction",
-        "all_sent_next = outstanding == cells_left",
-        "all_sent_next = outstanding == cells_left - 7'd1",
+        "all_sent_next = !(|pulses_left)",
+        "all_sent_next = pulses_left == 7'd1",
     ),
     mutation(
         "clock pulses on the cable not counted",
-        "transaction",
-        "all_sent_next = outstanding == cells_left",
-        "all_sent_next = 7'd1 == cells_left",
+        "receiver",
+        "to_send_next = to_send - 7'd1",
+        "to_send_next = to_send",
     ),
     mutation(
         "driver never released",
