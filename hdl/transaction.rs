@@ -747,7 +747,7 @@ impl Logic for Transaction {
         if self.all_sent.q.val() & !self.started.val() & !self.going.val() {
             self.stalled.d.next = true;
         }
-        if self.none_under_way.val() {
+        if self.none_under_way.val() | !self.running.val() {
             self.stalled.d.next = false;
         }
 

@@ -390,16 +390,6 @@ module s6_two_channel_transaction (
     assign verdict_settings_upset = settings_upset | delay_upset;
     assign known = is_calibrated | (HAS_ALIGNMENT & is_fixed);
     assign going = 1'b0;
-
-    always @* begin
-        stalled_next = stalled;
-        if (all_sent & !started & !going) begin
-            stalled_next = 1'b1;
-        end
-        if (none_under_way) begin
-            stalled_next = 1'b0;
-        end
-    end
     assign leave = going & gap_good & (!continuous | line_wanted | !known | (stop_at_error & verdict_is_bad));
 
     always @* begin
@@ -764,6 +754,16 @@ module s6_two_channel_transaction (
         end
     end
     assign verdict_is_late = answered | found_late;
+
+    always @* begin
+        stalled_next = stalled;
+        if (all_sent & !started & !going) begin
+            stalled_next = 1'b1;
+        end
+        if (none_under_way | !running) begin
+            stalled_next = 1'b0;
+        end
+    end
     assign verdict_is_going = going;
     assign lost = trigger & !going & ((!accept & !idle) | (accept & (own | once_more)));
 

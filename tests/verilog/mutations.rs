@@ -43,9 +43,9 @@ pub const MUTATIONS: &[Mutation] = &[
     ),
     mutation(
         "one clock pulse fewer",
-        "transaction",
-        "all_sent_next = !(|pulses_left)",
-        "all_sent_next = pulses_left == 7'd1",
+        "receiver",
+        "all_sent = !(|to_send)",
+        "all_sent = to_send == 7'd1",
     ),
     mutation(
         "clock pulses on the cable not counted",
