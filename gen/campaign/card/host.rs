@@ -119,7 +119,9 @@ pub struct Seen {
 pub enum What {
     /// Everything is ready for the flip.
     Ready(Box<Known>),
-    /// What goes on when the flip comes has ended; results that came with it.
+    /// What goes on when the flip comes begins.
+    Begun,
+    /// It has ended; results that came with it.
     Acted(Option<Round>),
     /// A trigger, and what came of it.
     Round(Round),
@@ -193,21 +195,13 @@ impl Host {
         host
     }
 
-    /// Everything up to the flip, on a card that has just been switched on.
-    pub async fn prepare(mut self, kind: Kind, words: Vec<[u32; CONFIG_WORDS]>) {
+    /// Everything before a case, on a card that has just been switched on.
+    pub async fn prepare(mut self, pushes: bool, words: Vec<[u32; CONFIG_WORDS]>) {
         self.known.words = words;
-        self.known.pushes = kind == Kind::Stream;
+        self.known.pushes = pushes;
         self.open().await;
-        for _ in 0..6 {
+        for _ in 0..3 {
             let round = self.round().await;
-            if std::env::var("DBG").is_ok() {
-                eprintln!(
-                    "{} round {:?} {:?}",
-                    self.line.now(),
-                    round.results,
-                    round.sets
-                );
-            }
             self.tell(What::Round(round)).await;
         }
         for channel in 0..CHANNELS {
@@ -216,15 +210,16 @@ impl Host {
             assert!(area.is_some() && answer.is_some(), "a request, {channel}");
             self.known.answers[channel] = answer.unwrap_or_default();
         }
-        if kind == Kind::Read {
-            self.trigger().await;
-        }
         let known = Box::new(self.known.clone());
         self.tell(What::Ready(known)).await;
     }
 
-    /// A case, from the flip's kind on.
+    /// A case.
     pub async fn case(mut self, kind: Kind) {
+        if kind == Kind::Read {
+            self.trigger().await;
+        }
+        self.tell(What::Begun).await;
         let mut acted = None;
         match kind {
             Kind::Idle => self.line.until(self.line.now() + IDLE).await,
@@ -251,8 +246,11 @@ impl Host {
                 Verdict::GiveUp => return,
             }
         }
-        for channel in 0..CHANNELS {
-            self.ask(channel).await;
+        // In the other kinds the services have been left alone.
+        if matches!(kind, Kind::Idle | Kind::Request) {
+            for channel in 0..CHANNELS {
+                self.ask(channel).await;
+            }
         }
         let is_same = self.is_as_written().await;
         self.tell(What::End(is_same)).await;
@@ -431,22 +429,10 @@ impl Host {
                 break now;
             }
             if self.line.now() > end {
-                if std::env::var("DBG").is_ok() {
-                    eprintln!(
-                        "{} req {word:x} late {now:x} before {before:x}",
-                        self.line.now()
-                    );
-                }
                 self.write(base + at::CONTROL, &[4]);
                 return None;
             }
         };
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "{} req {word:x} state {state:x} before {before:x}",
-                self.line.now()
-            );
-        }
         if state >> 4 & 0xF != 0 {
             return None;
         }

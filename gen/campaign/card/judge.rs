@@ -103,7 +103,7 @@ impl Judge {
                 self.round(seen.is_told, round, noted, true);
                 return Verdict::Again;
             }
-            What::Acted(None) | What::Ready(_) | What::Note => {}
+            What::Acted(None) | What::Ready(_) | What::Begun | What::Note => {}
             What::Reopened => self.reopen(),
             What::WrongAnswer => self.class = self.class.max(Class::SilentOther),
             What::Stuck => self.class = Class::Hang,
@@ -166,12 +166,6 @@ impl Judge {
         }
         if round.sets.is_empty() {
             views.push(View::Lost);
-        }
-        if std::env::var("DBG").is_ok() && !views.iter().all(|v| *v == View::Good) {
-            eprintln!(
-                "{views:?} {:x?} {:x?} new {:x?} set_after {:x} seq {:x?}",
-                round.results, round.sets, noted, self.set_after, self.sequences
-            );
         }
         let is_told = is_told || views.contains(&View::Told);
         self.told(is_told);

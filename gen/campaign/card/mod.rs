@@ -39,6 +39,8 @@ const REQUEST_MS: u16 = 1;
 const NO_WAIT: u16 = u16::MAX;
 /// Cycles for which the trigger pin is held.
 const PULSE: u64 = 4;
+/// Of so many moments that the ports have, the card has one in each of its activities.
+const MOMENTS_SHARE: u64 = 5;
 /// A frame with a longer period measures the delay.
 const SLOW: Time = 500 * NS;
 /// A host that has not come to an end by then never will: many times what the longest one takes.
@@ -173,7 +175,8 @@ struct Lane {
     host: Host<Seen, Verdict>,
     judge: Judge,
     known: Option<Known>,
-    /// When what goes on at the flip had ended.
+    /// When what goes on at the flip began, and when it had ended.
+    begun: u64,
     acted: Option<u64>,
     wake_at: u64,
     is_done: bool,
@@ -185,6 +188,7 @@ impl Lane {
             host,
             judge,
             known: None,
+            begun: 0,
             acted: None,
             wake_at: 0,
             is_done: false,
@@ -204,6 +208,7 @@ impl Lane {
             let verdict = self.judge.take(&seen, noted);
             match seen.what {
                 What::Ready(known) => self.known = Some(*known),
+                What::Begun => self.begun = bench.cycle(),
                 What::Acted(_) => self.acted = self.acted.or(Some(bench.cycle())),
                 _ => {}
             }
@@ -216,8 +221,8 @@ impl Lane {
     }
 }
 
-/// Runs all lanes to their ends; flips are (cycle, lane, register, bit), in order.
-fn run(bench: &mut Bench, lanes: &mut [Lane], flips: &[(u64, usize, usize, usize)]) {
+/// Runs all lanes to their ends, with flips in order.
+fn run(bench: &mut Bench, lanes: &mut [Lane], flips: &[Flip]) {
     let end = bench.cycle() + LONGEST;
     let mut flips = flips.iter().peekable();
     let mut wake = 0;
@@ -256,78 +261,80 @@ fn run(bench: &mut Bench, lanes: &mut [Lane], flips: &[(u64, usize, usize, usize
     }
 }
 
-/// Cards that are all about to be upset in the same activity.
+/// Cards with which a host works, all alike up to here.
 struct Ready {
     bench: Bench,
     known: Known,
     judge: Judge,
-    span_cycles: u64,
 }
 
 impl Ready {
-    fn new(kind: Kind, engine: Lanes, card: &CardConfig) -> Self {
-        let words: Vec<_> = std::iter::once(None)
-            .chain((0..CHANNELS).map(Some))
-            .map(|block| config_words(card, block))
-            .collect();
+    fn new(pushes: bool, engine: Lanes, card: &CardConfig) -> Self {
+        let blocks = std::iter::once(None).chain((0..CHANNELS).map(Some));
+        let words: Vec<_> = blocks.map(|block| config_words(card, block)).collect();
         let mut bench = Bench::new(engine);
         (0..32 * (ABORT_US + 10)).for_each(|_| bench.tick());
         let lane = |_| {
             let words = words.clone();
             let program = |line| async move {
                 let host = host::Host::new(line, Known::default());
-                host.prepare(kind, words).await;
+                host.prepare(pushes, words).await;
             };
             Lane::new(Host::new(program), Judge::default())
         };
         let mut lanes: Vec<Lane> = (0..LANES).map(lane).collect();
         run(&mut bench, &mut lanes, &[]);
-        let first = &mut lanes[0];
-        let mut ready = Self {
-            known: first.known.take().unwrap_or_default(),
-            judge: first.judge.clone(),
+        let first = lanes.swap_remove(0);
+        let mut judge = first.judge;
+        judge.begin();
+        Self {
+            known: first.known.unwrap_or_default(),
+            judge,
             bench,
-            span_cycles: 0,
-        };
-        let (outcome, span_cycles) = ready.all(kind, 1, &[]).remove(0);
-        let marks: Vec<&str> = outcome.marks().map(Mark::name).collect();
-        assert_eq!((outcome.class, marks), (Class::Masked, vec![]), "{kind:?}");
-        ready.span_cycles = span_cycles;
-        ready
+        }
     }
 
-    /// What becomes of so many lanes with these flips, and how long it took what went on.
-    fn all(
-        &self,
-        kind: Kind,
-        count: usize,
-        flips: &[(u64, usize, usize, usize)],
-    ) -> Vec<(Judge, u64)> {
+    /// Runs so many lanes with these flips.
+    fn all(&self, kind: Kind, count: usize, flips: &[Flip]) -> Vec<Lane> {
         let mut bench = self.bench.clone();
         let start = bench.cycle();
-        let mut judge = self.judge.clone();
-        judge.begin();
         let lane = |_| {
             let known = self.known.clone();
             let program = |line| host::Host::new(line, known).case(kind);
-            Lane::new(Host::new(program), judge.clone())
+            Lane::new(Host::new(program), self.judge.clone())
         };
         let mut lanes: Vec<Lane> = (0..count).map(lane).collect();
         let mut flips = flips.to_vec();
         flips.iter_mut().for_each(|f| f.0 += start);
         flips.sort_unstable();
         run(&mut bench, &mut lanes, &flips);
-        if std::env::var("DBG").is_ok() {
-            eprintln!("batch {kind:?} {} cycles", bench.cycle() - start);
-        }
-        let ended = |lane: Lane| (lane.judge, lane.acted.unwrap_or(start) - start);
-        lanes.into_iter().map(ended).collect()
+        lanes
+    }
+
+    /// From when to when what a kind is of goes on, without a flip.
+    fn window(&self, kind: Kind) -> (u64, u64) {
+        let lane = self.all(kind, 1, &[]).remove(0);
+        let marks: Vec<&str> = lane.judge.marks().map(Mark::name).collect();
+        assert_eq!(
+            (lane.judge.class, marks),
+            (Class::Masked, vec![]),
+            "{kind:?}"
+        );
+        let from = self.bench.cycle();
+        (
+            lane.begun - from,
+            lane.acted.unwrap_or(lane.begun) - lane.begun,
+        )
     }
 }
 
+/// Cycle, lane, register and bit.
+type Flip = (u64, usize, usize, usize);
+
 struct Group {
     kind: Kind,
-    ready: OnceLock<Ready>,
+    /// When it begins, and how long it lasts.
+    window: OnceLock<(u64, u64)>,
     cases: u64,
 }
 
@@ -335,6 +342,8 @@ struct Group {
 pub struct CardUpsets {
     card: CardConfig,
     engine: Lanes,
+    /// Without and with a stream that is pushed.
+    ready: [OnceLock<Ready>; 2],
     flops: Flops,
     groups: Vec<Group>,
     draw: Draw,
@@ -350,6 +359,13 @@ fn is_of_port(name: &str) -> bool {
 impl CardUpsets {
     /// Upsets of registers whose hierarchical name begins with `only`.
     pub fn new(draw: Draw, seed: u64, only: &str) -> Result<Self, GenError> {
+        // It is large, and its cases are long.
+        let draw = match draw {
+            Draw::Grid { moments } => Draw::Grid {
+                moments: moments.div_ceil(MOMENTS_SHARE),
+            },
+            random => random,
+        };
         let card = configuration()?;
         let design = design(&card)?;
         let engine = Lanes::new(&design, Keep::Registers, LaneWords::Two)
@@ -359,7 +375,7 @@ impl CardUpsets {
         let count = Kind::ALL.len() as u64;
         let group = |(index, kind): (usize, Kind)| Group {
             kind,
-            ready: OnceLock::new(),
+            window: OnceLock::new(),
             cases: flops.cases(match draw {
                 Draw::Random { cases } => Draw::Random {
                     cases: cases / count + u64::from((index as u64) < cases % count),
@@ -372,6 +388,7 @@ impl CardUpsets {
             digest: digest(&design),
             card,
             engine,
+            ready: [OnceLock::new(), OnceLock::new()],
             flops,
             draw,
             seed,
@@ -391,23 +408,22 @@ impl Campaign for CardUpsets {
     fn run(&self, group: usize, cases: Range<u64>) -> Tally {
         let group = &self.groups[group];
         let kind = group.kind;
-        let ready = group
-            .ready
-            .get_or_init(|| Ready::new(kind, self.engine.clone(), &self.card));
+        let pushes = kind == Kind::Stream;
+        let ready = self.ready[usize::from(pushes)]
+            .get_or_init(|| Ready::new(pushes, self.engine.clone(), &self.card));
+        let (begun, span) = *group.window.get_or_init(|| ready.window(kind));
         let label = format!("{SUBJECT} {}", kind.name());
-        let case = |number| {
-            let span = ready.span_cycles;
-            self.flops.case(self.draw, self.seed, &label, span, number)
-        };
+        let case = |number| self.flops.case(self.draw, self.seed, &label, span, number);
         let drawn: Vec<(usize, u64)> = cases.map(case).collect();
         let flip = |(lane, (index, cycle)): (usize, &(usize, u64))| {
             let (register, bit) = self.flops.bits[*index];
-            (*cycle, lane, register, bit)
+            (begun + cycle, lane, register, bit)
         };
         let flips: Vec<_> = drawn.iter().enumerate().map(flip).collect();
         let mut tally = Tally::default();
         let outcomes = ready.all(kind, drawn.len(), &flips);
-        for ((index, _), (judge, _)) in drawn.iter().zip(outcomes) {
+        for ((index, _), lane) in drawn.iter().zip(outcomes) {
+            let judge = lane.judge;
             let mut add = |class: &str| {
                 let row = Row {
                     subject: SUBJECT.into(),
