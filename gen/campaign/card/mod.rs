@@ -33,8 +33,8 @@ const CONFIGURATION: &str = include_str!("card.toml");
 const SYSTEM_HZ: u64 = 32_000_000;
 const CYCLE: Time = 31_250;
 const LANES: usize = 128;
-/// Longest wait of a request for its frame.
-const REQUEST_MS: u16 = 1;
+/// Longest wait of a request for its frame: one at least, as milliseconds are counted.
+const REQUEST_MS: u16 = 2;
 /// The service waits for one millisecond more than it is told: with this one for none.
 const NO_WAIT: u16 = u16::MAX;
 /// Cycles for which the trigger pin is held.
