@@ -385,11 +385,11 @@ impl Host {
             self.is_told = true;
             return true;
         };
-        let blocks = self.known.words.iter().enumerate();
+        let mut blocks = self.known.words.iter().enumerate();
         let same = |(n, block): (usize, &[u32; CONFIG_WORDS])| {
             words[n * CONFIG_STRIDE..][..CONFIG_WORDS] == block[..]
         };
-        blocks.map(same).all(|is_same| is_same) && control == [self.control()]
+        blocks.all(same) && control == [self.control()]
     }
 
     /// A request whose answer is known. What fails is tried again; then the connection is opened anew.
