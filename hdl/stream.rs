@@ -347,6 +347,10 @@ impl Logic for Stream {
         if self.push_take.val() {
             self.pushing.d.next = self.more.val();
         }
+        // An upset: nothing is left of a frame, and answers would wait for its end for ever.
+        if self.pushing.q.val() & !self.buffer.waiting_bytes.val().any() {
+            self.pushing.d.next = false;
+        }
         if !self.pushing.q.val() & !self.buffer.waiting_bytes.val().any() {
             self.flush.d.next = false;
         }

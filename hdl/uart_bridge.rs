@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
-//! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then.
+//! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
 //!
 //! Between answers it pushes the frames of a [`crate::stream::Stream`], each in one piece; an answer then begins with 0xFF.
 //!
@@ -333,7 +333,8 @@ impl Logic for UartBridge {
                 }
             }
             BridgeState::Read => {
-                self.stop_timer.d.next = true;
+                // An answer that stands still would stand for ever: a byte of it that is lost in here never comes again.
+                self.stop_timer.d.next = self.transmitter.accept.val();
                 if self.sent.q.val() {
                     self.next_lane.next = true;
                     self.word_end.d.next = self.last_lane.val();
@@ -418,7 +419,8 @@ impl Logic for UartBridge {
         if self.done.val() & (self.state.q.val() == BridgeState::Read) {
             self.byte_ready.d.next = true;
         }
-        if self.answer_sent.val() {
+        // What is left of an answer that was given up is not the beginning of the next one.
+        if self.answer_sent.val() | (self.state.q.val() != BridgeState::Read) {
             self.byte_ready.d.next = false;
         }
 

@@ -47,12 +47,16 @@ fn is_crc_or_silent(row: &Row) -> bool {
     !is_setting(row) && (row.class == "silent" || row.class == "cause_4")
 }
 
+fn is_card(row: &Row) -> bool {
+    row.subject == super::card::SUBJECT
+}
+
 fn is_setting(row: &Row) -> bool {
     row.kind.starts_with("setting")
 }
 
 /// All of them.
-pub const BUDGETS: [Budget; 18] = [
+pub const BUDGETS: [Budget; 20] = [
     Budget {
         campaign: "upsets",
         what: "wrong positions told as good",
@@ -75,6 +79,22 @@ pub const BUDGETS: [Budget; 18] = [
         bad: |r| r.class == "hang",
         of: is_case,
         limit_per_mille: 0.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "upsets",
+        what: "hangs of the card",
+        bad: |r| r.class == "hang" && is_card(r),
+        of: |r| is_case(r) && is_card(r),
+        limit_per_mille: 0.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "upsets",
+        what: "wrong positions of the card told as good",
+        bad: |r| r.class == "silent" && is_card(r),
+        of: |r| is_case(r) && is_card(r),
+        limit_per_mille: 5.0,
         is_asserted: false,
     },
     Budget {

@@ -1,6 +1,7 @@
 //! What campaigns leave: parts that are put together, tables, budgets, the page.
 
 pub mod budget;
+pub mod card;
 pub mod configurations;
 pub mod page;
 pub mod part;

@@ -9,7 +9,7 @@ use std::fmt::Write;
 /// Where the page, the results and the command that makes both are told.
 const HEAD: &str = "# Reliability
 
-What becomes of a port when something goes wrong. Every figure here is counted by a campaign in simulation: encoder models on lines, an own \
+What becomes of a port, and of a whole card, when something goes wrong. Every figure here is counted by a campaign in simulation: encoder models on lines, an own \
 mishap in each frame. `campaigns/run` runs them and writes this page; the results are in `campaigns/results/`, a test compares the page \
 with them, and another one runs some of the cases again. How campaigns are run, on one machine or many: [campaigns.md](campaigns.md).
 
@@ -36,15 +36,39 @@ Beside its class, a case may have these marks:
 | held_wrong | with a cause: the position that is held is none that the encoder sent |
 | triggers_2, triggers_3, triggers_more | which trigger after the frame was the first that is good |
 | slow | busy for longer than the timers allow, but not for ever |
+| config | of a card: its configuration is not what the host wrote, and nothing has said so |
+| reopened | of a card: the host had to open the connection anew |
 
 Results are read just before the next trigger, as a host does that reads late. Blocks are those of [ARCHITECTURE.md](../ARCHITECTURE.md); words in block RAM are \
 not flip-flops, and are not inverted.
+
+**The card** has two channels with requests and diagnosis, a stream and the link with a UART; it is made of the same blocks as what is emitted. The flip-flops of \
+the channels themselves are those of the ports and are not inverted again; all others are: link, register bank, held results, ring of configuration, \
+triggers, time base, services and stream. Beside it runs a host that sends and takes bits of the line, knows the card from [host-link.md](host-link.md), \
+[stream.md](stream.md) and [programming.md](programming.md) only, and decodes with the host's library, which checks positions against their CRC once more. The flip comes \
+in one of six activities:
+
+| activity | |
+|---|---|
+| idle | between two triggers |
+| frame | a trigger, the frames of both channels, their set of the stream |
+| read | results are read, and the set from `stream_data` |
+| write | configuration words are written and read back |
+| stream | a trigger; results are read while its set is pushed |
+| request | a parameter of the encoder is asked for |
+
+After it the host goes on: a trigger at the pin, results of both channels, their set, until two rounds in a row are good; at the end it reads the configuration back, and after idle \
+and request asks both services for a parameter. What it is told counts as detected: a cause, no answer, bytes that nobody asked for, a CRC that does not fit, a damaged or missing \
+frame of the stream, a result that is stale, a number that is skipped, a request that is refused. Lost is a trigger without a result, or without a set; silent_other is a wrong time \
+stamp, a wrong answer, a configuration that is another one. After four triggers without two good ones, or three reads without an answer, the host opens the connection anew, as \
+[stream.md](stream.md) says, and writes its configuration again; a hang is no good result in 8 triggers after that, or a service that fulfils no request.
+Ages, evidence and delays are not compared. The clocks are fast and pauses short: 8 cycles to a bit of the link, commands forgotten after 100 us. Of five moments of a port the card has one in each activity.
 ";
 
 /// What stands above the tables of a campaign.
 fn title(campaign: &str) -> Option<(&'static str, &'static str)> {
     Some(match campaign {
-        "upsets" => ("Upsets", "Every flip-flop inverted, at so many moments of every kind of frame; system clock 32 MHz, 8 cycles to a bit, 25 bits, 20 m."),
+        "upsets" => ("Upsets", "Every flip-flop inverted, at so many moments of every kind of frame; system clock 32 MHz, 8 cycles to a bit, 25 bits, 20 m; of the card in every activity."),
         "faults" => ("Faults of the line", "Each begins in the frame and ends behind it, or ends in it, at every quarter of a bit; with each recovery time tm (000111: from 10 us) and cable."),
         "garbage" => ("Spoilt frames", "One in each case, at random. A word is taken by a CRC of 5 bits with 1 in 32, with F1 and F2 besides with 1 in 128."),
         "accept" => ("Accept set", "Every word that encoders of 1 to 13 bits can send, error bits and CRC included, against a predicate that shares no code with the core."),

@@ -153,6 +153,8 @@ mod own {
     pub const PATIENCE: u8 = FIRST + 56;
     /// How often the initialisation is still begun again.
     pub const ROUNDS: u8 = FIRST + 57;
+    /// The period that the initialisation has found; 0 = the configured one.
+    pub const PERIOD: u8 = FIRST + 58;
 }
 
 /// Low half of a host word.
@@ -215,6 +217,7 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
         own::FOUND,
         own::STAGE,
         own::LEVELS,
+        own::PERIOD,
         low(word::STATE),
         low(word::REQUEST_STATE),
         low(word::PROGRESS),
@@ -289,6 +292,7 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(low(word::FORCE)).out(output::FORCE);
     a.ld(own::LEVELS).out(output::CONTROL);
     a.ld(own::FOUND).out(output::FOUND);
+    a.ld(own::PERIOD).out(output::PERIOD);
     if times.diagnosis {
         a.ld(low(word::LIMITS)).out(output::WATCHDOG);
         a.ld(high(word::LIMITS)).out(output::RECOVERY_MIN);

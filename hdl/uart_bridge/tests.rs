@@ -19,6 +19,8 @@ struct Link {
     cycle: u64,
     /// Access under way: cycles left.
     busy: u64,
+    /// Accesses until one whose end is lost.
+    left: Option<u64>,
 }
 
 impl Link {
@@ -34,6 +36,7 @@ impl Link {
             levels: Vec::new(),
             cycle: 0,
             busy: 0,
+            left: None,
         }
     }
 
@@ -66,6 +69,10 @@ impl Link {
                 uut.read_byte.next = u64::from(byte).into();
             }
             self.busy = 40;
+            self.left = self.left.map(|left| left.wrapping_sub(1));
+            if self.left == Some(0) {
+                self.busy = 0;
+            }
         }
         tick(uut, |u, level| u.clock.next = level.into());
         self.levels.push(uut.tx.val());
@@ -219,6 +226,21 @@ fn a_framing_error_in_a_command_discards_it_until_the_time_out() {
         link.send(&whole);
         link.idle(100);
         assert_eq!(link.writes.len(), 1, "bad byte {bad}");
+    }
+}
+
+/// As after an upset: nothing else would ever bring the link back.
+#[test]
+fn an_answer_that_stands_still_is_given_up_after_the_time_out() {
+    for lost in 1..=5 {
+        let mut link = Link::new();
+        link.words.insert(5, 0x0102_0304);
+        link.left = Some(lost);
+        let begun = link.exchange(&[2, 2, 0, 0, 0, 5]);
+        assert_eq!(begun.len() as u64, lost - 1, "{begun:?}");
+        link.idle((TIMEOUT + 2) * MICROSECOND);
+        let answer = link.exchange(&[2, 1, 0, 0, 0, 5]);
+        assert_eq!(answer, [1, 2, 3, 4], "byte {lost}");
     }
 }
 

@@ -311,6 +311,9 @@ module s6_two_channel_stream (
         if (push_take) begin
             pushing_next = more;
         end
+        if (pushing & !(|buffer_waiting_bytes)) begin
+            pushing_next = 1'b0;
+        end
     end
 
     always @(posedge clock) begin

@@ -173,7 +173,7 @@ module s6_two_channel_uart_bridge (
         if (done & (state == BRIDGE_STATE_READ)) begin
             byte_ready_next = 1'b1;
         end
-        if (answer_sent) begin
+        if (answer_sent | (state != BRIDGE_STATE_READ)) begin
             byte_ready_next = 1'b0;
         end
     end
@@ -260,7 +260,7 @@ module s6_two_channel_uart_bridge (
                 end
             end
             BRIDGE_STATE_READ: begin
-                stop_timer_next = 1'b1;
+                stop_timer_next = transmitter_accept;
                 if (sent) begin
                     next_lane = 1'b1;
                     word_end_next = last_lane;

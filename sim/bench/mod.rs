@@ -6,6 +6,7 @@
 
 #[cfg(test)]
 mod command_tests;
+mod lane_uart;
 mod lanes;
 mod link;
 mod pins;
@@ -17,6 +18,7 @@ mod t_format;
 mod tests;
 mod uart;
 
+pub use lane_uart::LaneUart;
 pub use lanes::LaneBench;
 pub use link::{Link, LinkTrace};
 pub use pins::PinNames;

@@ -17,4 +17,4 @@ pub use case::{Case, Traces, SAMPLE_LATENCY_CYCLES};
 pub use list::{random, sweep, Story, ABORT_US, CABLES_M, RATES};
 pub use run::{run, CampaignError, Outcome, RunOptions};
 pub use tally::{Row, Shard, Tally};
-pub use work::{count, run_shard, Campaign, Joined};
+pub use work::{count, digest, run_shard, Campaign, Joined};

@@ -23,7 +23,7 @@ pub enum Draw {
 }
 
 /// The flip-flops of a design.
-pub(super) struct Flops {
+pub struct Flops {
     /// Register and bit of each.
     pub bits: Vec<(usize, usize)>,
     /// Hierarchical name of its register.
@@ -33,9 +33,14 @@ pub(super) struct Flops {
 impl Flops {
     /// Those of registers whose name begins with `only`.
     pub fn new(engine: &Lanes, only: &str) -> Self {
+        Self::filtered(engine, |name| name.starts_with(only))
+    }
+
+    /// Those of registers whose names are chosen.
+    pub fn filtered(engine: &Lanes, choose: impl Fn(&str) -> bool) -> Self {
         let all: Vec<&str> = engine.nets().collect();
         let (mut bits, mut names) = (vec![], vec![]);
-        for register in engine.registers().filter(|r| all[*r].starts_with(only)) {
+        for register in engine.registers().filter(|r| choose(all[*r])) {
             for bit in 0..engine.width_bits(register) {
                 bits.push((register, bit));
                 names.push(all[register].to_owned());

@@ -54,8 +54,8 @@ pub(super) fn hash(text: &str) -> u64 {
     })
 }
 
-/// The same for a design.
-pub(super) fn digest(design: &Design) -> u64 {
+/// A number that tells a design from others.
+pub fn digest(design: &Design) -> u64 {
     hash(&format!("{design:?}"))
 }
 

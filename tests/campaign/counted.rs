@@ -2,6 +2,7 @@
 
 use super::run;
 use endat_gen::campaign::budget;
+use endat_gen::campaign::card::CardUpsets;
 use endat_gen::campaign::part::Part;
 use endat_sim::campaign::port::Port;
 use endat_sim::campaign::upsets::{Draw, Upsets};
@@ -31,6 +32,15 @@ fn any_split_gives_byte_for_byte_what_one_run_gives_and_a_lost_part_is_run_again
         &["upsets", "--subject", "port_all", "--cases", "700"][..],
         &["faults", "--subject", "port", "--step", "150"],
         &["garbage", "--subject", "port_double_edge", "--cases", "400"],
+        &[
+            "upsets",
+            "--subject",
+            "card",
+            "--only",
+            "core.stream_0.l",
+            "--cases",
+            "200",
+        ],
     ] {
         let campaign = [&["campaign"], campaign].concat();
         let whole = done(&folder, &campaign, "whole.csv");
@@ -123,6 +133,44 @@ fn a_flip_that_must_be_seen_is_seen() {
         moved, 0,
         "the CRC that is shown moves no position: {stamp:?}"
     );
+}
+
+fn card(only: &str, moments: u64) -> Tally {
+    let campaign = CardUpsets::new(Draw::Grid { moments }, 1, only).unwrap();
+    let tally = run_shard(&campaign, Shard::WHOLE, 0, |_| {});
+    assert_eq!(tally.count(budget::is_case), count(&campaign));
+    assert!(count(&campaign) > 0, "{only}");
+    tally
+}
+
+/// The host must notice what it can, and the judge what it cannot.
+#[test]
+fn upsets_of_the_card_that_must_be_seen_are_seen() {
+    let of = |tally: &Tally, class: &str| tally.count(|r| r.class == class);
+    let ring = card("core.registers_1.ring.w2", 5);
+    assert!(of(&ring, "config") > 100, "{ring:?}");
+    let time = card("core.timebase.cycles", 5);
+    assert!(of(&time, "silent_other") > 100, "{time:?}");
+    // Either side of a bit: the stream's CRC, the position's own.
+    let held = card("core.registers_0.held_1", 5);
+    assert_eq!(of(&held, "silent"), 0, "{held:?}");
+    assert!(of(&held, "detected") > 0, "{held:?}");
+}
+
+/// Found by the campaign: a byte of an answer that was lost inside, a level that nobody wrote again, a frame without an end.
+#[test]
+fn neither_the_link_nor_a_slower_clock_stands_for_ever() {
+    for only in [
+        "bridge.byte_ready",
+        "bridge.sent",
+        "core.port_0.served_0.out_period",
+        "core.stream_0.pushing",
+    ] {
+        let tally = card(only, 40);
+        // A request that runs with a clock far too slow is another matter.
+        let hangs = tally.count(|r| r.class == "hang" && r.kind != "request");
+        assert_eq!(hangs, 0, "{only}: {tally:?}");
+    }
 }
 
 /// The budgets that are asserted hold in a small part of each campaign.

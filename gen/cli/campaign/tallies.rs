@@ -1,6 +1,7 @@
 //! Campaigns that count what becomes of each case: parts, tables, budgets.
 
 use super::{fault, CampaignArgs, Name};
+use crate::campaign::card::{self, CardUpsets};
 use crate::campaign::configurations::Configurations;
 use crate::campaign::part::{merge, shard, Identity, Part};
 use crate::campaign::{budget, page, reference, report};
@@ -66,7 +67,7 @@ fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
         }
         _ => {
             let (name, plan, campaign) = chosen(arguments, seed)?;
-            (name, plan, campaign.map_err(|e| fault(&e))?)
+            (name, plan, campaign?)
         }
     };
     let start = Instant::now();
@@ -145,29 +146,53 @@ fn merged(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
     Ok(summary(&whole))
 }
 
-type Made = Result<Box<dyn Campaign>, CampaignError>;
+type Made = Result<Box<dyn Campaign>, GenError>;
 
 fn boxed<C: Campaign + 'static>(made: Result<C, CampaignError>) -> Made {
-    made.map(|campaign| Box::new(campaign) as Box<dyn Campaign>)
+    let made = made.map_err(|e| fault(&e))?;
+    Ok(Box::new(made) as Box<dyn Campaign>)
 }
 
-/// Upsets of these ports, and of the T-format port; at random, an eighth of the cases is its.
-fn upsets(ports: &[Port], is_t_format: bool, draw: Draw, seed: u64, only: &str) -> Made {
-    let share = |is_t_format_too: bool| match draw {
-        Draw::Random { cases } if is_t_format && !ports.is_empty() => Draw::Random {
-            cases: match is_t_format_too {
-                true => cases / 8,
-                false => cases - cases / 8,
-            },
+/// What upsets are of.
+struct Subjects {
+    ports: Vec<Port>,
+    is_t_format: bool,
+    is_card: bool,
+}
+
+/// Of the random cases, the T-format port and the card have an eighth each, if others are there.
+const SHARE: u64 = 8;
+
+/// Upsets of these subjects.
+fn upsets(subjects: &Subjects, draw: Draw, seed: u64, only: &str) -> Made {
+    let Subjects {
+        ports,
+        is_t_format,
+        is_card,
+    } = subjects;
+    let flags = [!ports.is_empty(), *is_t_format, *is_card];
+    let count = flags.into_iter().filter(|is_there| *is_there).count() as u64;
+    let share = |cases: u64, index: usize| match (count, flags) {
+        (1, _) => cases,
+        // The first one there has the rest.
+        (_, flags) if !flags[..index].contains(&true) => cases - (count - 1) * (cases / SHARE),
+        _ => cases / SHARE,
+    };
+    let drawn = |index: usize| match draw {
+        Draw::Random { cases } => Draw::Random {
+            cases: share(cases, index),
         },
-        draw => draw,
+        grid => grid,
     };
     let mut joined = vec![];
     if !ports.is_empty() {
-        joined.push(boxed(Upsets::new(ports, share(false), seed, only))?);
+        joined.push(boxed(Upsets::new(ports, drawn(0), seed, only))?);
     }
-    if is_t_format {
-        joined.push(boxed(TFormatUpsets::new(share(true), seed, only))?);
+    if *is_t_format {
+        joined.push(boxed(TFormatUpsets::new(drawn(1), seed, only))?);
+    }
+    if *is_card {
+        joined.push(Box::new(CardUpsets::new(drawn(2), seed, only)?));
     }
     Ok(Box::new(Joined(joined)))
 }
@@ -176,15 +201,17 @@ fn upsets(ports: &[Port], is_t_format: bool, draw: Draw, seed: u64, only: &str) 
 fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, Made), GenError> {
     let chosen = arguments.subject.as_deref();
     let is_t_format = chosen.is_none_or(|name| name == t_format::SUBJECT);
+    let is_card = chosen.is_none_or(|name| name == card::SUBJECT);
     let of_name = |port: &Port| chosen.is_none_or(|name| name == port.name());
     let ports: Vec<Port> = Port::ALL.into_iter().filter(of_name).collect();
     let is_upsets = matches!(arguments.name, Name::Upsets);
-    if ports.is_empty() && !(is_upsets && is_t_format) {
+    if ports.is_empty() && !(is_upsets && (is_t_format || is_card)) {
         let names = Port::ALL.map(Port::name).join(", ");
         return Err(GenError::input(format!(
-            "--subject = {}: is no port of a campaign; take one of {names}, and of upsets {}",
+            "--subject = {}: is no port of a campaign; take one of {names}, and of upsets {}, {}",
             shown(chosen.unwrap_or_default()),
-            t_format::SUBJECT
+            t_format::SUBJECT,
+            card::SUBJECT
         )));
     }
     let subject = arguments.subject.as_deref().unwrap_or("all");
@@ -231,11 +258,13 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
                 "{how}; seed {seed}; subject {subject}; only {}*",
                 arguments.only
             );
-            (
-                "upsets",
-                plan,
-                upsets(&ports, is_t_format, draw, seed, &arguments.only),
-            )
+            let subjects = Subjects {
+                ports,
+                is_t_format,
+                is_card,
+            };
+            let made = upsets(&subjects, draw, seed, &arguments.only);
+            ("upsets", plan, made)
         }
     })
 }

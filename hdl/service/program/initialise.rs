@@ -119,7 +119,8 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     let running = a.here();
     a.call("look");
     a.inp(input::STATUS).andi(status::REQUEST_RUNS).jnz(running);
-    a.out(output::FOUND).out(output::PERIOD).st(own::FOUND);
+    a.out(output::FOUND).out(output::PERIOD);
+    a.st(own::FOUND).st(own::PERIOD);
     a.st(low(word::PROGRESS)).st(high(word::PROGRESS));
     a.ld(low(word::STATE))
         .andi(state::ALARM | state::POSITION_2)
@@ -168,7 +169,7 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
 
     let answered = a.label();
     a.place("step_failed");
-    a.ldi(0).st(own::FOUND);
+    a.ldi(0).st(own::FOUND).st(own::PERIOD);
     a.out(output::FOUND).out(output::PERIOD);
     a.ld(low(word::PROGRESS)).st(high(word::PROGRESS));
     // The line was never LOW: the next time it is, there is an encoder.
@@ -273,7 +274,7 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::REST + 1).sbc(own::ZERO).st(own::REST + 1);
     a.jnc(more);
     a.inp(input::PERIOD).sub(own::COUNT).jnc(unknown);
-    a.ld(own::COUNT).out(output::PERIOD);
+    a.ld(own::COUNT).st(own::PERIOD).out(output::PERIOD);
     set_bits(a, low(word::STATE), state::SLOWER);
     a.place(unknown).ret();
 

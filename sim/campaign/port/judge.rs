@@ -70,11 +70,15 @@ pub enum Mark {
     TriggersMore,
     /// Busy for longer than the timers allow, but not for ever.
     Slow,
+    /// Of a card: its configuration is not what the host wrote, and nothing has said so.
+    Config,
+    /// Of a card: the host had to open the connection anew.
+    Reopened,
 }
 
 impl Mark {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Pulses,
         Self::Again,
         Self::Rules,
@@ -85,6 +89,8 @@ impl Mark {
         Self::Triggers3,
         Self::TriggersMore,
         Self::Slow,
+        Self::Config,
+        Self::Reopened,
     ];
 
     /// Its name in tables.
@@ -100,6 +106,8 @@ impl Mark {
             Self::Triggers3 => "triggers_3",
             Self::TriggersMore => "triggers_more",
             Self::Slow => "slow",
+            Self::Config => "config",
+            Self::Reopened => "reopened",
         }
     }
 }
@@ -270,7 +278,7 @@ impl Outcome {
 }
 
 /// Whether the encoder saw another number of pulses than there should be.
-pub(super) fn is_count(violation: &Violation) -> bool {
+pub fn is_count(violation: &Violation) -> bool {
     matches!(
         violation,
         Violation::TooFewPulses { .. }

@@ -6,7 +6,7 @@
 mod judge;
 mod run;
 
-pub use judge::{Class, Mark, TRIGGERS_MAX};
+pub use judge::{is_count, Class, Mark, TRIGGERS_MAX};
 pub(super) use judge::{Outcome, Reading};
 
 use crate::{

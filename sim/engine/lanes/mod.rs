@@ -54,6 +54,20 @@ pub struct Lanes {
     has_fallen: bool,
 }
 
+/// Bit j of word i becomes bit i of word j.
+fn transpose(words: &mut [u64; 64]) {
+    let (mut step, mut mask) = (32, 0x0000_0000_FFFF_FFFF_u64);
+    while step > 0 {
+        for first in (0..64).filter(|i| i & step == 0) {
+            let moved = (words[first] >> step ^ words[first + step]) & mask;
+            words[first] ^= moved << step;
+            words[first + step] ^= moved;
+        }
+        step /= 2;
+        mask ^= mask << step;
+    }
+}
+
 impl Lanes {
     /// Compiles a design; `keep` says what can be seen. All lanes start alike, at power-up.
     ///
@@ -302,12 +316,14 @@ impl Lanes {
     fn gather(&self, net: usize, part: usize, first_bit: usize) -> [u64; 64] {
         let place = self.layout.place(net) + part;
         let mut values = [0; 64];
-        for bit in first_bit..self.form.nets[net].width_bits.min(first_bit + 64) {
-            let word = self.state[place + bit * self.words];
-            for (lane, value) in values.iter_mut().enumerate() {
-                *value |= (word >> lane & 1) << (bit - first_bit);
-            }
+        let last = self.form.nets[net].width_bits.min(first_bit + 64);
+        if last <= first_bit {
+            return values;
         }
+        for (value, bit) in values.iter_mut().zip(first_bit..last) {
+            *value = self.state[place + bit * self.words];
+        }
+        transpose(&mut values);
         values
     }
 
@@ -315,11 +331,10 @@ impl Lanes {
     fn scatter(&mut self, net: usize, part: usize, first_bit: usize, values: &[u64; 64]) {
         let place = self.layout.place(net) + part;
         let mut is_changed = false;
-        for bit in first_bit..self.form.nets[net].width_bits.min(first_bit + 64) {
-            let bits = values.iter().enumerate();
-            let new = bits.fold(0, |word, (lane, value)| {
-                word | (value >> (bit - first_bit) & 1) << lane
-            });
+        let mut rows = *values;
+        transpose(&mut rows);
+        let last = self.form.nets[net].width_bits.min(first_bit + 64);
+        for (new, bit) in rows.into_iter().zip(first_bit..last) {
             is_changed |= std::mem::replace(&mut self.state[place + bit * self.words], new) != new;
         }
         if is_changed {
@@ -363,7 +378,8 @@ impl Lanes {
                 self.layout.mark_memory(&mut self.state, index);
             }
         }
-        for first_bit in [0, 64] {
+        let width_bits = form.nets[nets.read_data].width_bits;
+        for first_bit in [0, 64].into_iter().filter(|bit| *bit < width_bits) {
             let values = words.map(|word| (word >> first_bit) as u64);
             self.scatter(nets.read_data, part, first_bit, &values);
         }
