@@ -22,10 +22,11 @@ use crate::channel_trigger::ChannelTrigger;
 use crate::config::{CardConfig, ChannelConfig};
 use crate::direct::DirectOutput;
 use crate::encoder_port::EncoderPort;
+use crate::frame_infos::FrameInfos;
 use crate::interrupt::Interrupt;
 use crate::register_bank::RegisterBank;
 use crate::service::{program::ServiceTimes, Service, CHANNELS_SERVED};
-use crate::stream::{channel::SetChannel, Stream};
+use crate::stream::{buffer::SetParts, channel::SetChannel, run::RunChannel, Stream};
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
 use rust_hdl::prelude::*;
@@ -105,6 +106,9 @@ pub struct CardCore {
     bank: RegisterBank,
     registers: Vec<ChannelRegisters>,
     port: Vec<EncoderPort>,
+    infos: Vec<FrameInfos>,
+    info_byte: Vec<Signal<Local, Bits<8>>>,
+    info_open: Vec<Signal<Local, Bit>>,
     service: Vec<Service>,
     stream: Vec<Stream>,
     set: Vec<SetChannel>,
@@ -114,6 +118,13 @@ pub struct CardCore {
     set_taken: Vec<Signal<Local, Bit>>,
     set_block: Vec<Signal<Local, Bits<4>>>,
     set_byte_at: Vec<Signal<Local, Bits<3>>>,
+    run: Vec<RunChannel>,
+    run_ready: Vec<Signal<Local, Bit>>,
+    run_sequence: Vec<Signal<Local, Bits<16>>>,
+    run_moment: Vec<Signal<Local, Bits<32>>>,
+    run_head: Vec<Signal<Local, Bits<8>>>,
+    run_place: Vec<Signal<Local, Bits<7>>>,
+    run_lost: Vec<Signal<Local, Bit>>,
     direct: Vec<DirectOutput>,
     interrupt: Vec<Interrupt>,
     direct_byte: Vec<Signal<Local, Bits<8>>>,
@@ -144,6 +155,15 @@ pub struct CardCore {
     _streams: usize,
     _sets: usize,
     _set_links: usize,
+    _infos: usize,
+    _info_links: usize,
+    _info_channels: usize,
+    _info_ends: usize,
+    _set_infos: usize,
+    _plain_sets: usize,
+    _runs: usize,
+    _run_sets: usize,
+    _run_links: usize,
     _directs: usize,
     _direct_links: usize,
     _direct_ports: usize,
@@ -256,6 +276,13 @@ impl CardCore {
         let served = served_channels(config);
         let services = services(config);
         let places = services * CHANNELS_SERVED;
+        let parts = SetParts {
+            informations: config.stream.informations,
+            runs: config.service.continuous && streams != 0,
+        };
+        let runs = if parts.runs { served } else { 0 };
+        let set_infos = if parts.informations { served } else { 0 };
+        let plain_sets = if parts.informations { sets } else { 0 };
         Self {
             clk_i: Default::default(),
             rst_i: Default::default(),
@@ -303,6 +330,9 @@ impl CardCore {
                 .map(|i| ChannelRegisters::new(config, i))
                 .collect(),
             port: (0..channels).map(|i| port(config, i, service)).collect(),
+            infos: (0..served).map(FrameInfos::new).collect(),
+            info_byte: each(served + 1),
+            info_open: each(served + 1),
             service: (0..services)
                 .map(|i| Service::new(service, served - i * CHANNELS_SERVED))
                 .collect(),
@@ -310,11 +340,11 @@ impl CardCore {
                 .map(|_| {
                     let start = config.stream.start;
                     let (collect, push) = (start.collects(), start.pushes());
-                    Stream::new(config.stream.fifo_bytes, channels, collect, push)
+                    Stream::new(config.stream.fifo_bytes, channels, collect, push, parts)
                 })
                 .collect(),
             set: (0..sets)
-                .map(|i| SetChannel::new(i, own_triggers != 0))
+                .map(|i| SetChannel::new(i, own_triggers != 0, parts))
                 .collect(),
             set_byte: each(sets + streams),
             set_owes: each(sets + streams),
@@ -322,6 +352,13 @@ impl CardCore {
             set_taken: each(streams),
             set_block: each(streams),
             set_byte_at: each(streams),
+            run: (0..runs).map(RunChannel::new).collect(),
+            run_ready: each(runs + 1),
+            run_sequence: each(runs + 1),
+            run_moment: each(runs + 1),
+            run_head: each(runs + 1),
+            run_place: each(runs + 1),
+            run_lost: each(runs + 1),
             direct: (0..directs)
                 .map(|i| DirectOutput::new(i, config.channels[i].position_bits))
                 .collect(),
@@ -354,6 +391,15 @@ impl CardCore {
             _streams: streams,
             _sets: sets,
             _set_links: sets + streams,
+            _infos: served,
+            _info_channels: channels,
+            _info_ends: if served == 0 { channels } else { channels + 1 },
+            _info_links: if served == 0 { 0 } else { served + 1 },
+            _set_infos: set_infos,
+            _plain_sets: plain_sets,
+            _runs: runs,
+            _run_sets: if parts.runs { sets } else { 0 },
+            _run_links: if runs == 0 { 0 } else { runs + 1 },
             _directs: directs,
             _direct_links: directs + 1,
             _direct_ports: direct_ports,
@@ -675,6 +721,93 @@ impl Logic for CardCore {
         }
         self.bank.part_byte.next =
             self.part_byte[0].val() | self.part_byte[1].val() | self.direct_byte[0].val();
+
+        // Informations of the results. While one is open the results of its trigger are not whole.
+        for i in 0..self._infos {
+            self.infos[i].clock.next = self.clk_i.val();
+            self.infos[i].reset.next = self.rst_i.val();
+            self.infos[i].taken.next = self.registers[i].taken.val();
+            self.infos[i].result_strobe.next = self.port[i].result_strobe.val();
+            self.infos[i].fresh.next = self.port[i].fresh.val();
+            self.infos[i].has_f2.next = self.port[i].position_has_f2.val();
+            self.infos[i].over.next = self.port[i].over.val();
+            self.infos[i].info_active.next = self.port[i].info_active.val();
+            self.infos[i].info_1.next = self.port[i].info_1.val();
+            self.infos[i].info_2.next = self.port[i].info_2.val();
+            self.infos[i].info_came.next = self.port[i].info_came.val();
+            self.infos[i].info_good.next = self.port[i].info_good.val();
+            self.infos[i].load.next = self.bank.load.val();
+            self.infos[i].word_address.next = self.bank.address.val();
+            self.infos[i].in_range.next = self.bank.is_inside.val();
+            self.infos[i].lane.next = self.lane.val();
+            self.info_byte[i].next = self.info_byte[i + 1].val() | self.infos[i].read_byte.val();
+            self.info_open[i].next = self.info_open[i + 1].val() | self.infos[i].is_open.val();
+        }
+        for i in self._infos..self._info_links {
+            self.info_byte[i].next = 0.into();
+            self.info_open[i].next = false;
+            self.bank.part_byte.next = self.part_byte[0].val()
+                | self.part_byte[1].val()
+                | self.direct_byte[0].val()
+                | self.info_byte[0].val();
+        }
+        for i in self._info_channels..self._info_ends {
+            self.bank.owes.next = self.owes[i].val() | self.info_open[0].val();
+            self.bank.brought.next = self.brought[i].val() | self.info_open[0].val();
+        }
+        for i in 0..self._set_infos {
+            self.set[i].word_1[0].next = self.infos[i].word_1.val();
+            self.set[i].word_2[0].next = self.infos[i].word_2.val();
+            self.set_owes[i].next =
+                self.set_owes[i + 1].val() | self.set[i].owes.val() | self.infos[i].is_open.val();
+        }
+        for i in self._set_infos..self._plain_sets {
+            self.set[i].word_1[0].next = 0.into();
+            self.set[i].word_2[0].next = 0.into();
+        }
+        for i in 0..self._plain_sets {
+            self.set[i].second[0].next = self.stream[0].second[0].val();
+        }
+
+        // Positions of running clocks.
+        for i in 0..self._runs {
+            self.run[i].clock.next = self.clk_i.val();
+            self.run[i].reset.next = self.rst_i.val();
+            self.run[i].collects.next = self.stream[0].collects[0].val();
+            self.run[i].taken.next = self.registers[i].taken.val();
+            self.run[i].result_strobe.next = self.port[i].result_strobe.val();
+            self.run[i].sequence.next = self.port[i].sequence.val();
+            self.run[i].first_fall_timestamp.next = self.port[i].first_fall_timestamp.val();
+            self.run[i].turn.next = self.stream[0].run_turn[0].val();
+            self.run[i].take.next = self.stream[0].run_take[0].val();
+            self.run[i].counted.next =
+                self.stream[0].run_counted[0].val() & !self.run_lost[i + 1].val();
+            self.set[i].take_run[0].next = self.run[i].take_run.val();
+            self.run_ready[i].next = self.run_ready[i + 1].val() | self.run[i].ready.val();
+            self.run_sequence[i].next =
+                self.run_sequence[i + 1].val() | self.run[i].ready_sequence.val();
+            self.run_moment[i].next = self.run_moment[i + 1].val() | self.run[i].ready_moment.val();
+            self.run_head[i].next = self.run_head[i + 1].val() | self.run[i].ready_head.val();
+            self.run_place[i].next = self.run_place[i + 1].val() | self.run[i].ready_place.val();
+            self.run_lost[i].next = self.run_lost[i + 1].val() | self.run[i].lost.val();
+        }
+        for i in self._runs..self._run_links {
+            self.run_ready[i].next = false;
+            self.run_sequence[i].next = 0.into();
+            self.run_moment[i].next = 0.into();
+            self.run_head[i].next = 0.into();
+            self.run_place[i].next = 0.into();
+            self.run_lost[i].next = false;
+            self.stream[0].run_ready[0].next = self.run_ready[0].val();
+            self.stream[0].run_sequence[0].next = self.run_sequence[0].val();
+            self.stream[0].run_moment[0].next = self.run_moment[0].val();
+            self.stream[0].run_head[0].next = self.run_head[0].val();
+            self.stream[0].run_place[0].next = self.run_place[0].val();
+            self.stream[0].run_lost[0].next = self.run_lost[0].val();
+        }
+        for i in self._runs..self._run_sets {
+            self.set[i].take_run[0].next = false;
+        }
     }
 }
 
