@@ -22,13 +22,13 @@ use crate::channel_trigger::ChannelTrigger;
 use crate::config::{CardConfig, ChannelConfig};
 use crate::direct::DirectOutput;
 use crate::encoder_port::EncoderPort;
-use crate::frame_infos::FrameInfos;
 use crate::interrupt::Interrupt;
 use crate::register_bank::RegisterBank;
 use crate::service::{program::ServiceTimes, Service, CHANNELS_SERVED};
 use crate::stream::{buffer::SetParts, channel::SetChannel, run::RunChannel, Stream};
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
+use crate::whole_result::WholeResult;
 use rust_hdl::prelude::*;
 
 pub use uart::Card;
@@ -106,9 +106,9 @@ pub struct CardCore {
     bank: RegisterBank,
     registers: Vec<ChannelRegisters>,
     port: Vec<EncoderPort>,
-    infos: Vec<FrameInfos>,
+    whole: Vec<WholeResult>,
     info_byte: Vec<Signal<Local, Bits<8>>>,
-    info_open: Vec<Signal<Local, Bit>>,
+    set_open: Vec<Signal<Local, Bit>>,
     service: Vec<Service>,
     stream: Vec<Stream>,
     set: Vec<SetChannel>,
@@ -157,8 +157,8 @@ pub struct CardCore {
     _set_links: usize,
     _infos: usize,
     _info_links: usize,
-    _info_channels: usize,
-    _info_ends: usize,
+    _set_ends: usize,
+    _info_interrupts: usize,
     _set_infos: usize,
     _plain_sets: usize,
     _runs: usize,
@@ -330,9 +330,11 @@ impl CardCore {
                 .map(|i| ChannelRegisters::new(config, i))
                 .collect(),
             port: (0..channels).map(|i| port(config, i, service)).collect(),
-            infos: (0..served).map(FrameInfos::new).collect(),
+            whole: (0..served)
+                .map(|i| WholeResult::new(i, config.channels[i].t_format.is_none()))
+                .collect(),
             info_byte: each(served + 1),
-            info_open: each(served + 1),
+            set_open: each(set_infos + 1),
             service: (0..services)
                 .map(|i| Service::new(service, served - i * CHANNELS_SERVED))
                 .collect(),
@@ -392,8 +394,8 @@ impl CardCore {
             _sets: sets,
             _set_links: sets + streams,
             _infos: served,
-            _info_channels: channels,
-            _info_ends: if served == 0 { channels } else { channels + 1 },
+            _set_ends: if set_infos == 0 { 0 } else { set_infos + 1 },
+            _info_interrupts: served * interrupts,
             _info_links: if served == 0 { 0 } else { served + 1 },
             _set_infos: set_infos,
             _plain_sets: plain_sets,
@@ -722,44 +724,74 @@ impl Logic for CardCore {
         self.bank.part_byte.next =
             self.part_byte[0].val() | self.part_byte[1].val() | self.direct_byte[0].val();
 
-        // Informations of the results. While one is open the results of its trigger are not whole.
+        // Channels with requests: the registers see a result when its informations are there, too.
         for i in 0..self._infos {
-            self.infos[i].clock.next = self.clk_i.val();
-            self.infos[i].reset.next = self.rst_i.val();
-            self.infos[i].taken.next = self.registers[i].taken.val();
-            self.infos[i].result_strobe.next = self.port[i].result_strobe.val();
-            self.infos[i].fresh.next = self.port[i].fresh.val();
-            self.infos[i].has_f2.next = self.port[i].position_has_f2.val();
-            self.infos[i].over.next = self.port[i].over.val();
-            self.infos[i].info_active.next = self.port[i].info_active.val();
-            self.infos[i].info_1.next = self.port[i].info_1.val();
-            self.infos[i].info_2.next = self.port[i].info_2.val();
-            self.infos[i].info_came.next = self.port[i].info_came.val();
-            self.infos[i].info_good.next = self.port[i].info_good.val();
-            self.infos[i].load.next = self.bank.load.val();
-            self.infos[i].word_address.next = self.bank.address.val();
-            self.infos[i].in_range.next = self.bank.is_inside.val();
-            self.infos[i].lane.next = self.lane.val();
-            self.info_byte[i].next = self.info_byte[i + 1].val() | self.infos[i].read_byte.val();
-            self.info_open[i].next = self.info_open[i + 1].val() | self.infos[i].is_open.val();
+            self.whole[i].clock.next = self.clk_i.val();
+            self.whole[i].reset.next = self.rst_i.val();
+            self.whole[i].tick_us.next = self.timebase.tick_us.val();
+            self.whole[i].taken.next = self.registers[i].taken.val();
+            self.whole[i].strobe_in.next = self.port[i].result_strobe.val();
+            self.whole[i].age_in.next = self.port[i].age_us.val();
+            self.whole[i].position_in.next = self.port[i].position.val();
+            self.whole[i].position_valid_in.next = self.port[i].position_valid.val();
+            self.whole[i].fresh_in.next = self.port[i].fresh.val();
+            self.whole[i].sequence_in.next = self.port[i].sequence.val();
+            self.whole[i].first_fall_timestamp_in.next = self.port[i].first_fall_timestamp.val();
+            self.whole[i].cause_in.next = self.port[i].cause.val();
+            self.whole[i].flags_in.next = self.port[i].flags.val();
+            self.whole[i].crc_received_in.next = self.port[i].crc_received.val();
+            self.whole[i].crc_computed_in.next = self.port[i].crc_computed.val();
+            self.whole[i].position_crc_in.next = self.port[i].position_crc.val();
+            self.whole[i].position_width_in.next = self.port[i].position_width.val();
+            self.whole[i].position_has_f2_in.next = self.port[i].position_has_f2.val();
+            self.whole[i].recovery_cycles_in.next = self.port[i].recovery_cycles.val();
+            self.whole[i].delay_cycles_in.next = self.port[i].delay_cycles.val();
+            self.whole[i].over.next = self.port[i].over.val();
+            self.whole[i].info_active.next = self.port[i].info_active.val();
+            self.whole[i].info_1.next = self.port[i].info_1.val();
+            self.whole[i].info_2.next = self.port[i].info_2.val();
+            self.whole[i].info_came.next = self.port[i].info_came.val();
+            self.whole[i].info_good.next = self.port[i].info_good.val();
+            self.registers[i].result_strobe.next = self.whole[i].result_strobe.val();
+            self.registers[i].age_us.next = self.whole[i].age_us.val();
+            self.registers[i].position.next = self.whole[i].position.val();
+            self.registers[i].position_valid.next = self.whole[i].position_valid.val();
+            self.registers[i].fresh.next = self.whole[i].fresh.val();
+            self.registers[i].sequence.next = self.whole[i].sequence.val();
+            self.registers[i].first_fall_timestamp.next = self.whole[i].first_fall_timestamp.val();
+            self.registers[i].cause.next = self.whole[i].cause.val();
+            self.registers[i].flags.next = self.whole[i].flags.val();
+            self.registers[i].crc_received.next = self.whole[i].crc_received.val();
+            self.registers[i].crc_computed.next = self.whole[i].crc_computed.val();
+            self.registers[i].position_crc.next = self.whole[i].position_crc.val();
+            self.registers[i].position_width.next = self.whole[i].position_width.val();
+            self.registers[i].position_has_f2.next = self.whole[i].position_has_f2.val();
+            self.registers[i].recovery_cycles.next = self.whole[i].recovery_cycles.val();
+            self.registers[i].delay_cycles.next = self.whole[i].delay_cycles.val();
+            self.whole[i].load.next = self.bank.load.val();
+            self.whole[i].word_address.next = self.bank.address.val();
+            self.whole[i].in_range.next = self.bank.is_inside.val();
+            self.whole[i].lane.next = self.lane.val();
+            self.info_byte[i].next = self.info_byte[i + 1].val() | self.whole[i].read_byte.val();
+        }
+        for i in 0..self._info_interrupts {
+            self.interrupt[0].result[i].next = self.whole[i].result_strobe.val();
         }
         for i in self._infos..self._info_links {
             self.info_byte[i].next = 0.into();
-            self.info_open[i].next = false;
             self.bank.part_byte.next = self.part_byte[0].val()
                 | self.part_byte[1].val()
                 | self.direct_byte[0].val()
                 | self.info_byte[0].val();
         }
-        for i in self._info_channels..self._info_ends {
-            self.bank.owes.next = self.owes[i].val() | self.info_open[0].val();
-            self.bank.brought.next = self.brought[i].val() | self.info_open[0].val();
-        }
         for i in 0..self._set_infos {
-            self.set[i].word_1[0].next = self.infos[i].word_1.val();
-            self.set[i].word_2[0].next = self.infos[i].word_2.val();
-            self.set_owes[i].next =
-                self.set_owes[i + 1].val() | self.set[i].owes.val() | self.infos[i].is_open.val();
+            self.set[i].word_1[0].next = self.whole[i].word_1.val();
+            self.set[i].word_2[0].next = self.whole[i].word_2.val();
+            self.set_open[i].next = self.set_open[i + 1].val() | self.whole[i].is_open.val();
+        }
+        for i in self._set_infos..self._set_ends {
+            self.set_open[i].next = false;
+            self.stream[0].owes.next = self.set_owes[0].val() | self.set_open[0].val();
         }
         for i in self._set_infos..self._plain_sets {
             self.set[i].word_1[0].next = 0.into();

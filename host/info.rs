@@ -7,7 +7,7 @@ pub struct Info {
     pub came: bool,
     /// Its CRC is right; content and status are 0 otherwise.
     pub good: bool,
-    /// The frame was not over: it may still come.
+    /// The frame was not over when its set was closed: it may have come since. Never in a result.
     pub due: bool,
     /// WRN, RM, Busy, I4..I0.
     pub status: u8,

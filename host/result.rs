@@ -88,7 +88,7 @@ impl Reading {
             infos: ["info_1", "info_2"].map(|name| {
                 let word = words[usize::from(Place::at("result", name, 0).register.offset)];
                 let bit = |name_of| field(name, name_of) != 0;
-                Info::new(word & 0xFF_FFFF, bit("came"), bit("good"), bit("due"))
+                Info::new(word & 0xFF_FFFF, bit("came"), bit("good"), false)
             }),
         }
     }

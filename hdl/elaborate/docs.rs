@@ -28,7 +28,6 @@ pub const SOURCES: &[&str] = &[
     include_str!("../crc5.rs"),
     include_str!("../direct.rs"),
     include_str!("../encoder_port.rs"),
-    include_str!("../frame_infos.rs"),
     include_str!("../frame_settings.rs"),
     include_str!("../half_period.rs"),
     include_str!("../input_filter.rs"),
@@ -66,6 +65,7 @@ pub const SOURCES: &[&str] = &[
     include_str!("../trigger.rs"),
     include_str!("../uart.rs"),
     include_str!("../uart_bridge.rs"),
+    include_str!("../whole_result.rs"),
 ];
 
 /// A struct or enum of the sources.

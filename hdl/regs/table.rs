@@ -5,8 +5,8 @@ use super::{
     word, zero, Access, Block, Field, BLOCK_STRIDE, CONFIG_BASE, ID, RESULT_BASE, VERSION,
 };
 use crate::config::{CardConfig, ChannelConfig, OwnTrigger};
-use crate::frame_infos::INFO_OFFSET;
 use crate::protocol::MAX_POSITION_BITS;
+use crate::whole_result::INFO_OFFSET;
 use Access::{ReadOnly, ReadWrite, Strobe};
 
 /// A field with a value of its own after reset.
@@ -452,15 +452,32 @@ pub const CHANNEL_CONFIG: Block = Block {
 /// Offset of the first of the two words that cards with requests have.
 pub(super) const INFO_FIRST: u8 = INFO_OFFSET as u8;
 
-const INFO: [Field; 8] = [
+const INFO: [Field; 7] = [
     super::field("content", 0, 16, "", "What it says; 0 unless good"),
-    super::field("sign", 16, 5, "", "I4..I0: which one it is; I4 = 0 information 1, 1 information 2"),
+    super::field(
+        "sign",
+        16,
+        5,
+        "",
+        "I4..I0: which one it is; I4 = 0 information 1, 1 information 2",
+    ),
     super::field("busy", 21, 1, "", "The encoder is busy with a request"),
-    super::field("reference_mark", 22, 1, "", "RM: the reference mark has been passed"),
-    super::field("warning", 23, 1, "", "WRN: one of the encoder's warnings is set"),
+    super::field(
+        "reference_mark",
+        22,
+        1,
+        "",
+        "RM: the reference mark has been passed",
+    ),
+    super::field(
+        "warning",
+        23,
+        1,
+        "",
+        "WRN: one of the encoder's warnings is set",
+    ),
     super::field("came", 24, 1, "", "The frame brought it"),
     super::field("good", 25, 1, "", "Its CRC is right"),
-    super::field("due", 26, 1, "", "The frame is not over, the information may still come; only where two triggers have come without it"),
 ];
 
 /// Result of a channel; all words of all channels change together and never within a read command.

@@ -96,13 +96,16 @@
 #define S6_TWO_CHANNEL_CARD_CONFIGURATION_HASH_VALUE_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_CONFIGURATION_HASH_VALUE_MASK 0xFFFFFFFFu
 
-/* ro: Which channels speak another protocol than EnDat. */
+/* ro: Which channels speak another protocol than EnDat, and what sets of the stream have. */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_WORD 0x005u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_BYTE 0x0014u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_RESET 0x00000000u
 /* t_format: T-format: bit n for channel n */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_T_FORMAT_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_T_FORMAT_MASK 0x000000FFu
+/* stream_informations: 1: sets of the stream have the additional informations */
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_INFORMATIONS_SHIFT 8u
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_INFORMATIONS_MASK 0x00000100u
 
 /* ro: Triggers since reset; stands still with the results (see hold). */
 #define S6_TWO_CHANNEL_CARD_TRIGGER_COUNT_WORD 0x008u
