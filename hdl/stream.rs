@@ -323,8 +323,8 @@ impl Logic for Stream {
             self.is_run[i].d.next = self.is_run[i].q.val();
             self.head_taken[i].d.next = self.head_taken[i].q.val();
             self.place_taken[i].d.next = self.place_taken[i].q.val();
-            // A position that finds no room waits without keeping the others from being counted.
-            if self.buffer.idle.val() {
+            // Whose turn it is keeps it until it is taken: otherwise the first one behind the turns of no channel would have most of the room.
+            if self.run_now[i].val() | !self.run_ready[i].val() {
                 self.turn[i].d.next = self.turn[i].q.val() + 1;
             }
             if self.take_now.val() {

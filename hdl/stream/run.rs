@@ -99,14 +99,12 @@ impl Logic for RunChannel {
         self.waits.reset.next = self.reset.val();
         self.dropped.reset.next = self.reset.val();
 
-        // In the cycle of a result what is shown is no longer what waits.
-        self.ready_now.next =
-            self.waits.q.val() & !self.result_strobe.val() & (self.turn.val() == self.number.val());
+        // In the cycle of a result what is shown is the new one.
+        self.ready_now.next = self.waits.q.val()
+            & !(self.result_strobe.val() & self.asked.q.val())
+            & (self.turn.val() == self.number.val());
         if self.counted.val() {
             self.dropped.d.next = false;
-        }
-        if self.ready_now.val() & self.take.val() {
-            self.waits.d.next = false;
         }
         if self.result_strobe.val() {
             self.asked.d.next = false;
@@ -114,6 +112,9 @@ impl Logic for RunChannel {
             if self.waits.q.val() {
                 self.dropped.d.next = true;
             }
+        }
+        if self.ready_now.val() & self.take.val() {
+            self.waits.d.next = false;
         }
         if self.taken.val() {
             self.asked.d.next = true;
