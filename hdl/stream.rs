@@ -315,7 +315,7 @@ impl Logic for Stream {
             self.place_taken[i].reset.next = self.reset.val();
             self.run_now[i].next = self.run_ready[i].val()
                 & self.buffer.idle.val()
-                & self.buffer.room.val()
+                & self.buffer.single_room[i].val()
                 & !self.wanted.val()
                 & !self.trigger.val()
                 & !self.run_lost[i].val();

@@ -65,6 +65,8 @@ pub struct FrameBuffer {
     pub idle: Signal<Out, Bit>,
     /// A whole frame fits.
     pub room: Signal<Out, Bit>,
+    /// And behind a single one another frame, so that the sets of triggers keep their place.
+    pub single_room: Vec<Signal<Out, Bit>>,
     /// Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
     pub block: Signal<Out, Bits<4>>,
     /// Which of them.
@@ -108,6 +110,7 @@ pub struct FrameBuffer {
     fits: Reg<Bit>,
     took: Reg<Bit>,
     in_second: Vec<Reg<Bit>>,
+    single_fits: Vec<Reg<Bit>>,
     run_high: Vec<Reg<Bit>>,
     block_ends: Vec<Signal<Local, Bit>>,
     bit_index: Signal<Local, Bits<3>>,
@@ -150,6 +153,7 @@ impl FrameBuffer {
             byte_at: Default::default(),
             second: each(seconds),
             single: each(singles),
+            single_room: each(singles),
             single_place: each(singles),
             set_byte: Default::default(),
             waiting_bytes: Default::default(),
@@ -179,6 +183,7 @@ impl FrameBuffer {
             fits: Reg::new(true),
             took: Default::default(),
             in_second: each(seconds),
+            single_fits: each(singles),
             run_high: each(seconds),
             block_ends: each(seconds.max(singles)),
             bit_index: Default::default(),
@@ -348,6 +353,13 @@ impl Logic for FrameBuffer {
         self.used.d.next = (self.start_at.q.val() - self.read_at.q.val()) & self.mask.val();
         self.fits.d.next = self.used.q.val() <= self.most_used.val();
         self.room.next = self.fits.q.val();
+        for i in 0..self._singles {
+            self.single_fits[i].clock.next = self.clock.val();
+            self.single_fits[i].reset.next = self.reset.val();
+            // More than the longest frame.
+            self.single_fits[i].d.next = self.used.q.val() <= (self.most_used.val() - 144);
+            self.single_room[i].next = self.single_fits[i].q.val();
+        }
         self.waiting_bytes.next = bit_cast::<16, 13>(self.used.q.val());
         self.ready.next = self.used.q.val().any() & !self.took.q.val();
 
