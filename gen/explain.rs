@@ -292,7 +292,7 @@ pub fn report(project: &Project) -> Report {
         link: (project.bus == HostBus::Uart).then(|| LinkReport {
             baud: Rate::new(card.baud, card.actual_baud()),
             read_hz: card.read_hz,
-            bytes_per_read: read_bytes(card.channels.len()),
+            bytes_per_read: read_bytes(card.channels.len(), card.service.requests),
             needed_baud,
             used_percent: needed_baud as f64 * 100.0 / card.actual_baud(),
             highest_read_hz: card.highest_read_hz(),

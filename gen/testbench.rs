@@ -290,7 +290,10 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     });
     // The first of the four events of each channel is a new result.
     let results: u32 = (0..card.channels.len()).map(|n| 1 << (4 * n)).sum();
+    // Cards without requests have no informations in their results.
+    let has_infos = card.service.requests;
     let context = context! {
+        result_words => if has_infos { 8 } else { 6 },
         without_list => !program.is_empty() && !card.service.initialise,
         program,
         power_up,
@@ -325,11 +328,11 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         abort_ns => whole(1_000 * abort_us.unwrap_or(0) + MARGIN_NS),
         overrun_ns => whole(cycles_to_ns(shortest_frame.unwrap_or(0) / 2, hz)),
         trigger_cycles_max => TRIGGER_CYCLES_MAX,
-        words => Serde(blocks.into_iter().flat_map(words).collect::<Vec<_>>()),
+        words => Serde(blocks.into_iter().flat_map(words).filter(|w| has_infos || !w.name.starts_with("RESULT_INFO_")).collect::<Vec<_>>()),
         has_irq => project.bus != HostBus::Uart,
         interrupt => card.outputs.interrupt.then(|| format!("{results:08X}")),
         direct => card.outputs.position,
-        fields => Serde([CARD_CONFIG, RESULT, DIRECT].iter().flat_map(fields).collect::<Vec<_>>()),
+        fields => Serde([CARD_CONFIG, RESULT, DIRECT].iter().flat_map(fields).filter(|f| has_infos || !f.name.starts_with("INFO_")).collect::<Vec<_>>()),
         block_stride => BLOCK_STRIDE,
         causes,
         identification,

@@ -25,10 +25,11 @@ use crate::encoder_port::EncoderPort;
 use crate::interrupt::Interrupt;
 use crate::register_bank::RegisterBank;
 use crate::service::{program::ServiceTimes, Service, CHANNELS_SERVED};
-pub(crate) use crate::several::each;
-use crate::stream::{channel::SetChannel, Stream};
+use crate::several::each;
+use crate::stream::{buffer::SetParts, channel::SetChannel, run::RunChannel, Stream};
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
+use crate::whole_result::WholeResult;
 use rust_hdl::prelude::*;
 
 pub use uart::Card;
@@ -106,6 +107,9 @@ pub struct CardCore {
     bank: RegisterBank,
     registers: Vec<ChannelRegisters>,
     port: Vec<EncoderPort>,
+    whole: Vec<WholeResult>,
+    info_byte: Vec<Signal<Local, Bits<8>>>,
+    set_open: Vec<Signal<Local, Bit>>,
     service: Vec<Service>,
     stream: Vec<Stream>,
     set: Vec<SetChannel>,
@@ -115,6 +119,13 @@ pub struct CardCore {
     set_taken: Vec<Signal<Local, Bit>>,
     set_block: Vec<Signal<Local, Bits<4>>>,
     set_byte_at: Vec<Signal<Local, Bits<3>>>,
+    run: Vec<RunChannel>,
+    run_ready: Vec<Signal<Local, Bit>>,
+    run_sequence: Vec<Signal<Local, Bits<16>>>,
+    run_moment: Vec<Signal<Local, Bits<32>>>,
+    run_head: Vec<Signal<Local, Bits<8>>>,
+    run_place: Vec<Signal<Local, Bits<7>>>,
+    run_lost: Vec<Signal<Local, Bit>>,
     direct: Vec<DirectOutput>,
     interrupt: Vec<Interrupt>,
     direct_byte: Vec<Signal<Local, Bits<8>>>,
@@ -145,6 +156,15 @@ pub struct CardCore {
     _streams: usize,
     _sets: usize,
     _set_links: usize,
+    _infos: usize,
+    _info_links: usize,
+    _set_ends: usize,
+    _info_interrupts: usize,
+    _set_infos: usize,
+    _plain_sets: usize,
+    _runs: usize,
+    _run_sets: usize,
+    _run_links: usize,
     _directs: usize,
     _direct_links: usize,
     _direct_ports: usize,
@@ -252,6 +272,13 @@ impl CardCore {
         let served = served_channels(config);
         let services = services(config);
         let places = services * CHANNELS_SERVED;
+        let parts = SetParts {
+            informations: config.stream.informations,
+            runs: config.service.continuous && streams != 0,
+        };
+        let runs = if parts.runs { served } else { 0 };
+        let set_infos = if parts.informations { served } else { 0 };
+        let plain_sets = if parts.informations { sets } else { 0 };
         Self {
             clk_i: Default::default(),
             rst_i: Default::default(),
@@ -299,6 +326,11 @@ impl CardCore {
                 .map(|i| ChannelRegisters::new(config, i))
                 .collect(),
             port: (0..channels).map(|i| port(config, i, service)).collect(),
+            whole: (0..served)
+                .map(|i| WholeResult::new(i, config.channels[i].t_format.is_none()))
+                .collect(),
+            info_byte: each(served + 1),
+            set_open: each(set_infos + 1),
             service: (0..services)
                 .map(|i| Service::new(service, served - i * CHANNELS_SERVED))
                 .collect(),
@@ -306,11 +338,11 @@ impl CardCore {
                 .map(|_| {
                     let start = config.stream.start;
                     let (collect, push) = (start.collects(), start.pushes());
-                    Stream::new(config.stream.fifo_bytes, channels, collect, push)
+                    Stream::new(config.stream.fifo_bytes, channels, collect, push, parts)
                 })
                 .collect(),
             set: (0..sets)
-                .map(|i| SetChannel::new(i, own_triggers != 0))
+                .map(|i| SetChannel::new(i, own_triggers != 0, parts))
                 .collect(),
             set_byte: each(sets + streams),
             set_owes: each(sets + streams),
@@ -318,6 +350,13 @@ impl CardCore {
             set_taken: each(streams),
             set_block: each(streams),
             set_byte_at: each(streams),
+            run: (0..runs).map(RunChannel::new).collect(),
+            run_ready: each(runs + 1),
+            run_sequence: each(runs + 1),
+            run_moment: each(runs + 1),
+            run_head: each(runs + 1),
+            run_place: each(runs + 1),
+            run_lost: each(runs + 1),
             direct: (0..directs)
                 .map(|i| DirectOutput::new(i, config.channels[i].position_bits))
                 .collect(),
@@ -350,6 +389,15 @@ impl CardCore {
             _streams: streams,
             _sets: sets,
             _set_links: sets + streams,
+            _infos: served,
+            _set_ends: if set_infos == 0 { 0 } else { set_infos + 1 },
+            _info_interrupts: served * interrupts,
+            _info_links: if served == 0 { 0 } else { served + 1 },
+            _set_infos: set_infos,
+            _plain_sets: plain_sets,
+            _runs: runs,
+            _run_sets: if parts.runs { sets } else { 0 },
+            _run_links: if runs == 0 { 0 } else { runs + 1 },
             _directs: directs,
             _direct_links: directs + 1,
             _direct_ports: direct_ports,
@@ -671,6 +719,123 @@ impl Logic for CardCore {
         }
         self.bank.part_byte.next =
             self.part_byte[0].val() | self.part_byte[1].val() | self.direct_byte[0].val();
+
+        // Channels with requests: the registers see a result when its informations are there, too.
+        for i in 0..self._infos {
+            self.whole[i].clock.next = self.clk_i.val();
+            self.whole[i].reset.next = self.rst_i.val();
+            self.whole[i].tick_us.next = self.timebase.tick_us.val();
+            self.whole[i].taken.next = self.registers[i].taken.val();
+            self.whole[i].strobe_in.next = self.port[i].result_strobe.val();
+            self.whole[i].age_in.next = self.port[i].age_us.val();
+            self.whole[i].position_in.next = self.port[i].position.val();
+            self.whole[i].position_valid_in.next = self.port[i].position_valid.val();
+            self.whole[i].fresh_in.next = self.port[i].fresh.val();
+            self.whole[i].sequence_in.next = self.port[i].sequence.val();
+            self.whole[i].first_fall_timestamp_in.next = self.port[i].first_fall_timestamp.val();
+            self.whole[i].cause_in.next = self.port[i].cause.val();
+            self.whole[i].flags_in.next = self.port[i].flags.val();
+            self.whole[i].crc_received_in.next = self.port[i].crc_received.val();
+            self.whole[i].crc_computed_in.next = self.port[i].crc_computed.val();
+            self.whole[i].position_crc_in.next = self.port[i].position_crc.val();
+            self.whole[i].position_width_in.next = self.port[i].position_width.val();
+            self.whole[i].position_has_f2_in.next = self.port[i].position_has_f2.val();
+            self.whole[i].recovery_cycles_in.next = self.port[i].recovery_cycles.val();
+            self.whole[i].delay_cycles_in.next = self.port[i].delay_cycles.val();
+            self.whole[i].over.next = self.port[i].over.val();
+            self.whole[i].info_active.next = self.port[i].info_active.val();
+            self.whole[i].info_1.next = self.port[i].info_1.val();
+            self.whole[i].info_2.next = self.port[i].info_2.val();
+            self.whole[i].info_came.next = self.port[i].info_came.val();
+            self.whole[i].info_good.next = self.port[i].info_good.val();
+            self.registers[i].result_strobe.next = self.whole[i].result_strobe.val();
+            self.registers[i].age_us.next = self.whole[i].age_us.val();
+            self.registers[i].position.next = self.whole[i].position.val();
+            self.registers[i].position_valid.next = self.whole[i].position_valid.val();
+            self.registers[i].fresh.next = self.whole[i].fresh.val();
+            self.registers[i].sequence.next = self.whole[i].sequence.val();
+            self.registers[i].first_fall_timestamp.next = self.whole[i].first_fall_timestamp.val();
+            self.registers[i].cause.next = self.whole[i].cause.val();
+            self.registers[i].flags.next = self.whole[i].flags.val();
+            self.registers[i].crc_received.next = self.whole[i].crc_received.val();
+            self.registers[i].crc_computed.next = self.whole[i].crc_computed.val();
+            self.registers[i].position_crc.next = self.whole[i].position_crc.val();
+            self.registers[i].position_width.next = self.whole[i].position_width.val();
+            self.registers[i].position_has_f2.next = self.whole[i].position_has_f2.val();
+            self.registers[i].recovery_cycles.next = self.whole[i].recovery_cycles.val();
+            self.registers[i].delay_cycles.next = self.whole[i].delay_cycles.val();
+            self.whole[i].load.next = self.bank.load.val();
+            self.whole[i].word_address.next = self.bank.address.val();
+            self.whole[i].in_range.next = self.bank.is_inside.val();
+            self.whole[i].lane.next = self.lane.val();
+            self.info_byte[i].next = self.info_byte[i + 1].val() | self.whole[i].read_byte.val();
+        }
+        for i in 0..self._info_interrupts {
+            self.interrupt[0].result[i].next = self.whole[i].result_strobe.val();
+        }
+        for i in self._infos..self._info_links {
+            self.info_byte[i].next = 0.into();
+            self.bank.part_byte.next = self.part_byte[0].val()
+                | self.part_byte[1].val()
+                | self.direct_byte[0].val()
+                | self.info_byte[0].val();
+        }
+        for i in 0..self._set_infos {
+            self.set[i].word_1[0].next = self.whole[i].word_1.val();
+            self.set[i].word_2[0].next = self.whole[i].word_2.val();
+            self.set_open[i].next = self.set_open[i + 1].val() | self.whole[i].is_open.val();
+        }
+        for i in self._set_infos..self._set_ends {
+            self.set_open[i].next = false;
+            self.stream[0].owes.next = self.set_owes[0].val() | self.set_open[0].val();
+        }
+        for i in self._set_infos..self._plain_sets {
+            self.set[i].word_1[0].next = 0.into();
+            self.set[i].word_2[0].next = 0.into();
+        }
+        for i in 0..self._plain_sets {
+            self.set[i].second[0].next = self.stream[0].second[0].val();
+        }
+
+        // Positions of running clocks.
+        for i in 0..self._runs {
+            self.run[i].clock.next = self.clk_i.val();
+            self.run[i].reset.next = self.rst_i.val();
+            self.run[i].collects.next = self.stream[0].collects[0].val();
+            self.run[i].taken.next = self.registers[i].taken.val();
+            self.run[i].result_strobe.next = self.port[i].result_strobe.val();
+            self.run[i].sequence.next = self.port[i].sequence.val();
+            self.run[i].first_fall_timestamp.next = self.port[i].first_fall_timestamp.val();
+            self.run[i].turn.next = self.stream[0].run_turn[0].val();
+            self.run[i].take.next = self.stream[0].run_take[0].val();
+            self.run[i].counted.next =
+                self.stream[0].run_counted[0].val() & !self.run_lost[i + 1].val();
+            self.set[i].take_run[0].next = self.run[i].take_run.val();
+            self.run_ready[i].next = self.run_ready[i + 1].val() | self.run[i].ready.val();
+            self.run_sequence[i].next =
+                self.run_sequence[i + 1].val() | self.run[i].ready_sequence.val();
+            self.run_moment[i].next = self.run_moment[i + 1].val() | self.run[i].ready_moment.val();
+            self.run_head[i].next = self.run_head[i + 1].val() | self.run[i].ready_head.val();
+            self.run_place[i].next = self.run_place[i + 1].val() | self.run[i].ready_place.val();
+            self.run_lost[i].next = self.run_lost[i + 1].val() | self.run[i].lost.val();
+        }
+        for i in self._runs..self._run_links {
+            self.run_ready[i].next = false;
+            self.run_sequence[i].next = 0.into();
+            self.run_moment[i].next = 0.into();
+            self.run_head[i].next = 0.into();
+            self.run_place[i].next = 0.into();
+            self.run_lost[i].next = false;
+            self.stream[0].run_ready[0].next = self.run_ready[0].val();
+            self.stream[0].run_sequence[0].next = self.run_sequence[0].val();
+            self.stream[0].run_moment[0].next = self.run_moment[0].val();
+            self.stream[0].run_head[0].next = self.run_head[0].val();
+            self.stream[0].run_place[0].next = self.run_place[0].val();
+            self.stream[0].run_lost[0].next = self.run_lost[0].val();
+        }
+        for i in self._runs..self._run_sets {
+            self.set[i].take_run[0].next = false;
+        }
     }
 }
 

@@ -10,11 +10,11 @@
 //!
 //! For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
 
-use crate::card::each;
 use crate::channel::{Channel, Features, FixedTimes};
 use crate::line_monitor::{LineMonitor, LineStart};
 use crate::service::program::ServiceTimes;
 use crate::service::{channel::ServiceChannel, Service};
+use crate::several::each;
 use crate::t_format::port::TFormatPort;
 use crate::transaction::cause;
 use rust_hdl::prelude::*;

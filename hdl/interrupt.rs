@@ -6,9 +6,9 @@
 //!
 //! An event that comes in the cycle of its clear is not lost.
 
-use crate::card::each;
 use crate::reg::Reg;
 use crate::regs::INTERRUPT;
+use crate::several::each;
 use rust_hdl::prelude::*;
 
 /// Status, mask and line.

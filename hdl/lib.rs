@@ -56,3 +56,4 @@ pub mod transaction;
 pub mod trigger;
 pub mod uart;
 pub mod uart_bridge;
+pub mod whole_result;

@@ -490,9 +490,9 @@ impl Logic for Receiver {
         self.good_gap.d.next = false;
         self.again.next = false;
 
-        // With two system clock cycles in a bit cells go on until the end of the frame has been seen.
-        self.counts.next =
-            self.sample.val() & !((self.field.q.val() == Field::Done) & (self.left.q.val() == 1));
+        // Where a bit has few system clock cycles cells go on until the end has been seen.
+        self.counts.next = self.sample.val()
+            & ((self.field.q.val() != Field::Done) | self.left.q.val().get_bits::<6>(1).any());
         if self.counts.val()
             & (self.field.q.val() != Field::Skip)
             & (self.field.q.val() != Field::Start)

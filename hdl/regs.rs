@@ -6,7 +6,7 @@
 //! 0x080  direct: 2 words of channel n at 0x080 + 8 n
 //! 0x0C0  t_format: 4 words of channel n at 0x0C0 + 8 n
 //! 0x100  configuration: 3 words of the card, then 3 words of channel n at 0x108 + 8 n
-//! 0x180  results: 6 words of channel n at 0x180 + 8 n
+//! 0x180  results: 6 words of channel n at 0x180 + 8 n, 8 with requests
 //! 0x200  line: 64 words of channel n at 0x200 + 64 n
 //! 0x400  service: 128 words of channel n at 0x400 + 128 n
 //! ```
@@ -34,7 +34,7 @@ use crate::transaction::cause;
 use values::Values;
 
 /// Major, minor and patch version of the register map.
-pub const VERSION: [u8; 3] = [0, 8, 0];
+pub const VERSION: [u8; 3] = [0, 9, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the interrupt.
@@ -59,10 +59,15 @@ pub const BLOCK_STRIDE: u16 = 8;
 pub const CHANNELS_MAX: usize = 8;
 
 /// Words of the burst that gives the results of all channels of one moment, from [`RESULT_BASE`] on; the words between
-/// two blocks are read too.
-pub const fn result_words(channels: usize) -> u64 {
+/// two blocks are read too. With requests each result has its informations.
+pub const fn result_words(channels: usize, requests: bool) -> u64 {
     let blocks_before = channels.saturating_sub(1) as u64;
-    BLOCK_STRIDE as u64 * blocks_before + RESULT.registers.len() as u64
+    let words = if requests {
+        RESULT.registers.len()
+    } else {
+        table::INFO_FIRST as usize
+    };
+    BLOCK_STRIDE as u64 * blocks_before + words as u64
 }
 
 /// What a host may do with a word.
@@ -266,6 +271,9 @@ impl Block {
         self.registers.iter().filter(move |register| {
             if base == CARD.base {
                 return stream || register.offset < u16::from(table::STREAM_FIRST);
+            }
+            if base == RESULT_BASE {
+                return parts.requests || register.offset < u16::from(table::INFO_FIRST);
             }
             if base == LINE_BASE {
                 return margin || line::is_setting(register.offset);

@@ -12,11 +12,13 @@
 //! time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 
 use crate::reg::Reg;
-use buffer::FrameBuffer;
+use crate::several::each;
+use buffer::{FrameBuffer, SetParts};
 use rust_hdl::prelude::*;
 
 pub mod buffer;
 pub mod channel;
+pub mod run;
 
 /// Collector, buffer and their registers.
 #[derive(LogicBlock)]
@@ -41,6 +43,28 @@ pub struct Stream {
     pub block: Signal<Out, Bits<4>>,
     /// Which of them.
     pub byte_at: Signal<Out, Bits<3>>,
+    /// Of channel n its other 8 bytes: the informations, where sets have them.
+    pub second: Vec<Signal<Out, Bit>>,
+    /// Sets are collected; where a running clock makes sets of its own, as the next eight.
+    pub collects: Vec<Signal<Out, Bit>>,
+    /// The channel whose turn it is.
+    pub run_turn: Vec<Signal<Out, Bits<3>>>,
+    /// A position of its running clock waits.
+    pub run_ready: Vec<Signal<In, Bit>>,
+    /// Number of its result.
+    pub run_sequence: Vec<Signal<In, Bits<16>>>,
+    /// Its moment.
+    pub run_moment: Vec<Signal<In, Bits<32>>>,
+    /// First byte of its set.
+    pub run_head: Vec<Signal<In, Bits<8>>>,
+    /// Place of its channel in a set.
+    pub run_place: Vec<Signal<In, Bits<7>>>,
+    /// Strobe: it is taken.
+    pub run_take: Vec<Signal<Out, Bit>>,
+    /// A position of a running clock has been lost.
+    pub run_lost: Vec<Signal<In, Bit>>,
+    /// Strobe: one of those has been counted.
+    pub run_counted: Vec<Signal<Out, Bit>>,
     /// That byte of the channels.
     pub channel_byte: Signal<In, Bits<8>>,
     /// The word that is accessed is one of the stream's.
@@ -86,6 +110,12 @@ pub struct Stream {
     flush: Reg<Bit>,
     mid_frame: Reg<Bit>,
     pushing: Reg<Bit>,
+    turn: Vec<Reg<Bits<3>>>,
+    is_run: Vec<Reg<Bit>>,
+    head_taken: Vec<Reg<Bits<8>>>,
+    place_taken: Vec<Reg<Bits<7>>>,
+    run_now: Vec<Signal<Local, Bit>>,
+    run_counts: Vec<Signal<Local, Bit>>,
     wanted: Signal<Local, Bit>,
     good: Signal<Local, Bit>,
     take_now: Signal<Local, Bit>,
@@ -99,15 +129,27 @@ pub struct Stream {
     more: Signal<Local, Bit>,
     clear: Signal<Local, Bit>,
     head: Constant<Bits<8>>,
+    _seconds: usize,
+    _runs: usize,
 }
 
 /// Type of a set of positions, in the upper half of its first byte.
 pub const SET_TYPE: u64 = 1;
+/// Type of one with informations.
+pub const INFO_SET_TYPE: u64 = 2;
+/// Type of one with a position of a running clock.
+pub const RUN_SET_TYPE: u64 = 3;
 
 impl Stream {
     /// A stream with a buffer of `bytes` bytes (one of [`buffer::BUFFER_BYTES`]) for `channels` channels, with `collect` and `push` as
-    /// they are after reset.
-    pub fn new(bytes: u64, channels: usize, collect: bool, push: bool) -> Self {
+    /// they are after reset; `parts` is what sets have.
+    pub fn new(bytes: u64, channels: usize, collect: bool, push: bool, parts: SetParts) -> Self {
+        let (seconds, runs) = (usize::from(parts.informations), usize::from(parts.runs));
+        let set_type = if parts.informations {
+            INFO_SET_TYPE
+        } else {
+            SET_TYPE
+        };
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -119,6 +161,17 @@ impl Stream {
             take_set: Default::default(),
             block: Default::default(),
             byte_at: Default::default(),
+            second: each(seconds),
+            collects: each(runs),
+            run_turn: each(runs),
+            run_ready: each(runs),
+            run_sequence: each(runs),
+            run_moment: each(runs),
+            run_head: each(runs),
+            run_place: each(runs),
+            run_take: each(runs),
+            run_lost: each(runs),
+            run_counted: each(runs),
             channel_byte: Default::default(),
             selected: Default::default(),
             word: Default::default(),
@@ -132,7 +185,7 @@ impl Stream {
             push_valid: Default::default(),
             push_byte: Default::default(),
             push_take: Default::default(),
-            buffer: FrameBuffer::new(bytes, channels),
+            buffer: FrameBuffer::new(bytes, channels, parts),
             collect: Reg::new(collect),
             push_on: Reg::new(push),
             open: Default::default(),
@@ -151,6 +204,12 @@ impl Stream {
             flush: Default::default(),
             mid_frame: Default::default(),
             pushing: Default::default(),
+            turn: each(runs),
+            is_run: each(runs),
+            head_taken: each(runs),
+            place_taken: each(runs),
+            run_now: each(runs),
+            run_counts: each(runs),
             wanted: Default::default(),
             good: Default::default(),
             take_now: Default::default(),
@@ -163,7 +222,9 @@ impl Stream {
             take: Default::default(),
             more: Default::default(),
             clear: Default::default(),
-            head: Constant::new((SET_TYPE << 4 | channels as u64).into()),
+            head: Constant::new((set_type << 4 | channels as u64).into()),
+            _seconds: seconds,
+            _runs: runs,
         }
     }
 }
@@ -242,6 +303,64 @@ impl Logic for Stream {
             self.lost_all.d.next = self.lost_all.q.val() + 1;
         }
 
+        // A position of a running clock, when no set of a trigger wants the buffer, one channel after the other.
+        for i in 0..self._runs {
+            self.turn[i].clock.next = self.clock.val();
+            self.turn[i].reset.next = self.reset.val();
+            self.is_run[i].clock.next = self.clock.val();
+            self.is_run[i].reset.next = self.reset.val();
+            self.head_taken[i].clock.next = self.clock.val();
+            self.head_taken[i].reset.next = self.reset.val();
+            self.place_taken[i].clock.next = self.clock.val();
+            self.place_taken[i].reset.next = self.reset.val();
+            self.run_now[i].next = self.run_ready[i].val()
+                & self.buffer.idle.val()
+                & self.buffer.single_room[i].val()
+                & !self.wanted.val()
+                & !self.trigger.val()
+                & !self.run_lost[i].val();
+            self.turn[i].d.next = self.turn[i].q.val();
+            self.is_run[i].d.next = self.is_run[i].q.val();
+            self.head_taken[i].d.next = self.head_taken[i].q.val();
+            self.place_taken[i].d.next = self.place_taken[i].q.val();
+            // Whose turn it is keeps it until it is taken: otherwise the first one behind the turns of no channel would have most of the room.
+            if self.run_now[i].val() | !self.run_ready[i].val() {
+                self.turn[i].d.next = self.turn[i].q.val() + 1;
+            }
+            if self.take_now.val() {
+                self.is_run[i].d.next = false;
+            }
+            self.lost_before.reset.next =
+                self.reset.val() | self.clear.val() | self.take_now.val() | self.run_now[i].val();
+            if self.run_now[i].val() {
+                self.is_run[i].d.next = true;
+                self.head_taken[i].d.next = self.run_head[i].val();
+                self.place_taken[i].d.next = self.run_place[i].val();
+                self.sequence_taken.d.next = self.run_sequence[i].val();
+                self.moment_taken.d.next = self.run_moment[i].val();
+                self.lost_taken.d.next = self.lost_before.q.val();
+            }
+            // One is counted in a cycle.
+            self.run_counts[i].next =
+                self.run_lost[i].val() & !self.lost_now.val() & !self.take_now.val();
+            if self.run_counts[i].val() & !self.lost_before.q.val().all() {
+                self.lost_before.d.next = self.lost_before.q.val() + 1;
+            }
+            if self.run_counts[i].val() & !self.lost_all.q.val().all() {
+                self.lost_all.d.next = self.lost_all.q.val() + 1;
+            }
+            self.buffer.start.next = self.take_now.val() | self.run_now[i].val();
+            self.buffer.single[i].next = self.is_run[i].q.val();
+            self.buffer.single_place[i].next = self.place_taken[i].q.val();
+            self.collects[i].next = self.collect.q.val();
+            self.run_turn[i].next = self.turn[i].q.val();
+            self.run_take[i].next = self.run_now[i].val();
+            self.run_counted[i].next = self.run_counts[i].val();
+        }
+        for i in 0..self._seconds {
+            self.second[i].next = self.buffer.second[i].val();
+        }
+
         // Its bytes.
         self.block.next = self.buffer.block.val();
         self.byte_at.next = self.buffer.byte_at.val();
@@ -270,6 +389,11 @@ impl Logic for Stream {
             }
             _ => {
                 self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(24);
+            }
+        }
+        for i in 0..self._runs {
+            if self.is_run[i].q.val() & !self.buffer.byte_at.val().any() {
+                self.head_byte.d.next = self.head_taken[i].q.val();
             }
         }
         self.buffer.set_byte.next = self.head_byte.q.val() | self.channel_byte.val();

@@ -4,7 +4,7 @@ use crate::bridge::Bridge;
 use crate::map;
 use crate::name_plate::NamePlate;
 use crate::registers::{Access, Place, Values};
-use crate::result::{Reading, STRIDE, WORDS};
+use crate::result::{Reading, STRIDE, WORDS, WORDS_WITHOUT_INFOS};
 use crate::transport::Transport;
 use crate::HostError;
 use std::time::Duration;
@@ -33,6 +33,8 @@ pub struct Identity {
     pub configuration_hash: u32,
     /// Channels that speak T-format: bit n for channel n.
     pub t_format_channels: u32,
+    /// Sets of the stream have the additional informations.
+    pub stream_informations: bool,
 }
 
 impl Identity {
@@ -122,6 +124,7 @@ impl<T: Transport> Card<T> {
             configuration_hash: words[4],
             // 0 on cards with an older map: absent words read 0.
             t_format_channels: words[5] & 0xFF,
+            stream_informations: words[5] >> 8 & 1 == 1,
         };
         Ok(Self {
             bridge,
@@ -244,11 +247,15 @@ impl<T: Transport> Card<T> {
 
     fn read_results(&mut self) -> Result<Results, HostError> {
         let first = Place::at("result", "status", 0).address();
-        let count = STRIDE * (self.identity.channels - 1) + WORDS;
+        let of_each = match self.identity.has("requests") {
+            true => WORDS,
+            false => WORDS_WITHOUT_INFOS,
+        };
+        let count = STRIDE * (self.identity.channels - 1) + of_each;
         let words = self.bridge.read(first, count)?;
         let one = |channel: usize| {
             let mut of_one = [0; WORDS];
-            of_one.copy_from_slice(&words[STRIDE * channel..][..WORDS]);
+            of_one[..of_each].copy_from_slice(&words[STRIDE * channel..][..of_each]);
             Reading::new(&of_one)
         };
         Ok(Results {

@@ -2,8 +2,10 @@
 
 use crate::card::Card;
 use crate::causes;
+use crate::info::Info;
 use crate::registers::Place;
 use crate::result::Reading;
+use crate::stream::SampleSet;
 use crate::transport::Transport;
 use crate::HostError;
 use std::collections::VecDeque;
@@ -25,11 +27,15 @@ pub struct Cell {
     pub fresh: bool,
     /// Name of the cause, or [`NOT_TAKEN`], [`TOO_LATE`], [`LATE`].
     pub cause: &'static str,
+    /// Additional informations 1 and 2 of the same frame, those that came with a right CRC.
+    pub infos: [Option<Info>; 2],
 }
 
-/// What a trigger brought.
+/// What a trigger brought; or one position of a running clock.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
+    /// The channel whose running clock brought the position; its `trigger` is the last one before it.
+    pub run: Option<usize>,
     /// Number of the trigger, not wrapping.
     pub trigger: u64,
     /// System clock cycles since the first row, not wrapping.
@@ -44,6 +50,8 @@ pub struct Row {
 #[derive(Clone, Debug, Default)]
 struct Clock {
     last: Option<(u16, u32)>,
+    /// A running clock's position since the last trigger, and its place in time.
+    passed: Option<(u32, u64)>,
     trigger: u64,
     cycles: u64,
 }
@@ -59,13 +67,36 @@ impl Clock {
             Some((last_sequence, last_timestamp)) => {
                 let steps = u64::from(sequence.wrapping_sub(last_sequence));
                 self.trigger += steps;
-                self.cycles += u64::from(timestamp.wrapping_sub(last_timestamp));
+                self.cycles = match self.passed {
+                    None => self.cycles + u64::from(timestamp.wrapping_sub(last_timestamp)),
+                    Some(passed) => near(passed, timestamp),
+                };
                 steps.saturating_sub(1)
             }
         };
         self.last = Some((sequence, timestamp));
+        self.passed = None;
         missing
     }
+
+    /// Takes the moment of a running clock's position; gives its place in time.
+    fn pass(&mut self, timestamp: u32) -> u64 {
+        let known = self
+            .passed
+            .or(self.last.map(|(_, last)| (last, self.cycles)));
+        let known = known.unwrap_or((timestamp, self.cycles));
+        let cycles = near(known, timestamp);
+        if cycles >= known.1 {
+            self.passed = Some((timestamp, cycles));
+        }
+        cycles
+    }
+}
+
+/// The place in time of a moment shortly before or after one whose place is known.
+fn near((known, cycles): (u32, u64), timestamp: u32) -> u64 {
+    let since = timestamp.wrapping_sub(known) as i32;
+    cycles.saturating_add_signed(since.into())
 }
 
 /// Bits of `card.stream_control`: collect and push.
@@ -124,11 +155,38 @@ impl Feed {
     fn row(&mut self, sequence: u16, timestamp: u32, cells: Vec<Cell>) -> Row {
         let missing = self.clock.step(sequence, timestamp);
         Row {
+            run: None,
             trigger: self.clock.trigger,
             cycles: self.clock.cycles,
             missing,
             cells,
         }
+    }
+
+    /// The row of a running clock's position; the other channels have nothing to do with it.
+    fn of_run(&mut self, set: &SampleSet, channel: usize, channels: usize) -> Option<Row> {
+        let sample = set.channels.first()?;
+        let cells = (0..channels).map(|n| match n == channel {
+            true => Cell {
+                position: sample.valid.then_some(sample.position),
+                fresh: sample.fresh,
+                cause: sample.cause_name(),
+                infos: [None; 2],
+            },
+            false => Cell {
+                position: None,
+                fresh: false,
+                cause: causes::name(0),
+                infos: [None; 2],
+            },
+        });
+        Some(Row {
+            run: Some(channel),
+            trigger: self.clock.trigger,
+            cycles: self.clock.pass(set.timestamp),
+            missing: 0,
+            cells: cells.collect(),
+        })
     }
 
     /// The row of these results; none if no channel has brought anything since the last one. Channels may take triggers of their own: the
@@ -157,6 +215,10 @@ impl Feed {
                 0 => NOT_TAKEN,
                 _ => causes::name(r.cause),
             },
+            infos: match steps {
+                0 => [None; 2],
+                _ => r.infos.map(Info::good),
+            },
         });
         let cells = cells.collect();
         let moment = timestamp.wrapping_add(later as u32);
@@ -181,7 +243,12 @@ impl Feed {
             }
             for set in sets {
                 self.lost_in_card += u64::from(set.lost);
+                if let Some(channel) = set.run {
+                    rows.extend(self.of_run(&set, channel, card.identity().channels));
+                    continue;
+                }
                 let cells = set.channels.iter().map(|s| Cell {
+                    infos: s.infos.map_or([None; 2], |i| i.map(Info::good)),
                     position: s.valid.then_some(s.position),
                     fresh: s.fresh && !s.is_late(),
                     cause: match (s.taken, s.missing) {
@@ -236,6 +303,23 @@ mod tests {
         assert_eq!(row([0, 4], [0, 25]), Some((4, 0, 20, [false, true])));
         assert_eq!(row([1, 7], [45, 85]), Some((7, 2, 80, [true, true])));
         assert_eq!(row([1, 8], [45, 105]), Some((8, 0, 100, [false, true])));
+    }
+
+    #[test]
+    fn positions_of_a_running_clock_stand_between_the_triggers() {
+        let mut clock = Clock::default();
+        clock.step(7, 0xFFFF_FF00);
+        assert_eq!([0xFFFF_FFF0, 0x10].map(|t| clock.pass(t)), [0xF0, 0x110]);
+        // Each channel has its own delay until its position is sent.
+        assert_eq!(clock.pass(8), 0x108);
+        // The trigger was before the position that came last.
+        assert_eq!((clock.step(8, 0xC), clock.cycles), (0, 0x10C));
+        // A run of many seconds.
+        for n in 1..20u32 {
+            clock.pass(n.wrapping_mul(1 << 30));
+        }
+        assert_eq!((clock.step(9, 0xC), clock.trigger), (0, 9));
+        assert_eq!(clock.cycles, 0x100 + (5 << 32) + 0xC);
     }
 
     #[test]

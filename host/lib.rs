@@ -19,6 +19,7 @@ pub mod causes;
 pub mod did_you_mean;
 mod error;
 pub mod feed;
+pub mod info;
 #[rustfmt::skip]
 pub mod map;
 pub mod mailbox;

@@ -5,7 +5,7 @@
 use crate::registers::{Access, Block, Field, Limits, Named, Register, Values};
 
 /// Major, minor and patch version of the map.
-pub const VERSION: [u8; 3] = [0, 8, 0];
+pub const VERSION: [u8; 3] = [0, 9, 0];
 
 /// All blocks, lowest base first.
 pub const BLOCKS: &[Block] = &[
@@ -29,8 +29,9 @@ pub const BLOCKS: &[Block] = &[
         Register { name: "configuration_hash", offset: 4, access: Access::ReadOnly, meaning: "Tells which configuration the card was generated from.", fields: &[
             Field { name: "value", lsb: 0, width: 32, unit: "", meaning: "First 8 digits of the hash that stands in the generated files", values: Values::Plain, limits: Limits::ANY },
         ] },
-        Register { name: "protocols", offset: 5, access: Access::ReadOnly, meaning: "Which channels speak another protocol than EnDat.", fields: &[
+        Register { name: "protocols", offset: 5, access: Access::ReadOnly, meaning: "Which channels speak another protocol than EnDat, and what sets of the stream have.", fields: &[
             Field { name: "t_format", lsb: 0, width: 8, unit: "", meaning: "T-format: bit n for channel n", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "stream_informations", lsb: 8, width: 1, unit: "", meaning: "1: sets of the stream have the additional informations", values: Values::Plain, limits: Limits::ANY },
         ] },
         Register { name: "trigger_count", offset: 8, access: Access::ReadOnly, meaning: "Triggers since reset; stands still with the results (see hold).", fields: &[
             Field { name: "value", lsb: 0, width: 32, unit: "", meaning: "Wraps", values: Values::Plain, limits: Limits::ANY },
@@ -190,6 +191,24 @@ pub const BLOCKS: &[Block] = &[
             Field { name: "recovery_cycles", lsb: 16, width: 13, unit: "cycles", meaning: "Recovery time tm of the last frame", values: Values::Plain, limits: Limits::ANY },
             Field { name: "delay_high", lsb: 29, width: 1, unit: "", meaning: "Bit 10 of delay_cycles", values: Values::Plain, limits: Limits::ANY },
             Field { name: "stale", lsb: 30, width: 1, unit: "", meaning: "A trigger of this channel has come since this result", values: Values::Plain, limits: Limits::ANY },
+        ] },
+        Register { name: "info_1", offset: 6, access: Access::ReadOnly, meaning: "Additional information 1 of the frame of this result.", fields: &[
+            Field { name: "content", lsb: 0, width: 16, unit: "", meaning: "What it says; 0 unless good", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "sign", lsb: 16, width: 5, unit: "", meaning: "I4..I0: which one it is; I4 = 0 information 1, 1 information 2", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "busy", lsb: 21, width: 1, unit: "", meaning: "The encoder is busy with a request", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "reference_mark", lsb: 22, width: 1, unit: "", meaning: "RM: the reference mark has been passed", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "warning", lsb: 23, width: 1, unit: "", meaning: "WRN: one of the encoder's warnings is set", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "came", lsb: 24, width: 1, unit: "", meaning: "The frame brought it", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "good", lsb: 25, width: 1, unit: "", meaning: "Its CRC is right", values: Values::Plain, limits: Limits::ANY },
+        ] },
+        Register { name: "info_2", offset: 7, access: Access::ReadOnly, meaning: "Additional information 2 of the frame of this result.", fields: &[
+            Field { name: "content", lsb: 0, width: 16, unit: "", meaning: "What it says; 0 unless good", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "sign", lsb: 16, width: 5, unit: "", meaning: "I4..I0: which one it is; I4 = 0 information 1, 1 information 2", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "busy", lsb: 21, width: 1, unit: "", meaning: "The encoder is busy with a request", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "reference_mark", lsb: 22, width: 1, unit: "", meaning: "RM: the reference mark has been passed", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "warning", lsb: 23, width: 1, unit: "", meaning: "WRN: one of the encoder's warnings is set", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "came", lsb: 24, width: 1, unit: "", meaning: "The frame brought it", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "good", lsb: 25, width: 1, unit: "", meaning: "Its CRC is right", values: Values::Plain, limits: Limits::ANY },
         ] },
     ] },
     Block { name: "line", base: 0x200, stride: 64, per_channel: true, meaning: "Phase of the samples, and how much margin they have. A place is a system clock cycle, or half of one with double_edge; offsets are signed.", registers: &[

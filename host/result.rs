@@ -1,10 +1,13 @@
 //! The result of a channel, out of its words.
 
 use crate::causes;
+use crate::info::Info;
 use crate::registers::Place;
 
 /// Words of a result.
-pub const WORDS: usize = 6;
+pub const WORDS: usize = 8;
+/// Words of one on a card without requests.
+pub const WORDS_WITHOUT_INFOS: usize = 6;
 /// Words from one channel's result to the next one's.
 pub const STRIDE: usize = 8;
 
@@ -35,6 +38,8 @@ pub struct Reading {
     pub recovery_cycles: u16,
     /// The position as it was read fits the CRC that the encoder sent with it, or there is nothing to check.
     pub fits: bool,
+    /// Additional informations 1 and 2 of the same frame; none came on a card without requests.
+    pub infos: [Info; 2],
 }
 
 /// CRC5 of EnDat over these bits, in the order received; bit by bit, since answers are no whole bytes.
@@ -80,6 +85,11 @@ impl Reading {
             stale: field("age_recovery", "stale") != 0,
             recovery_cycles: field("age_recovery", "recovery_cycles") as u16,
             fits,
+            infos: ["info_1", "info_2"].map(|name| {
+                let word = words[usize::from(Place::at("result", name, 0).register.offset)];
+                let bit = |name_of| field(name, name_of) != 0;
+                Info::new(word & 0xFF_FFFF, bit("came"), bit("good"), false)
+            }),
         }
     }
 
@@ -126,6 +136,8 @@ mod tests {
             77,
             (0x155 << 10) | (0x0A << 5) | 0x15,
             (1 << 30) | (1 << 29) | (0x123 << 16) | 500,
+            0x0324_1234,
+            0x0100_0000,
         ];
         let reading = Reading::new(&words);
         assert_eq!(
@@ -143,8 +155,22 @@ mod tests {
                 stale: true,
                 recovery_cycles: 0x123,
                 fits: true,
+                infos: [
+                    Info {
+                        came: true,
+                        good: true,
+                        due: false,
+                        status: 0x24,
+                        content: 0x1234,
+                    },
+                    Info {
+                        came: true,
+                        ..Info::default()
+                    },
+                ],
             }
         );
+        assert_eq!(reading.infos[0].number(), 4);
         assert_eq!(reading.cause_name(), "none");
         assert_eq!(reading.checked(), reading);
         for bit in 0..36 {

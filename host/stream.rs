@@ -1,6 +1,7 @@
 //! Sample sets out of the stream of bytes: COBS frames with a CRC-16, found again after any garbage.
 
 use crate::causes;
+use crate::info::Info;
 use crc::{Crc, CRC_16_IBM_3740};
 use std::mem;
 
@@ -8,16 +9,23 @@ use std::mem;
 const CHECK: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
 /// Type of a frame with a sample set, in bits 7..4 of its first byte.
 const SAMPLE_SET: u8 = 1;
+/// The same with additional informations.
+const INFO_SET: u8 = 2;
+/// A position of a running clock; bits 3..0 are its channel.
+const RUN_SET: u8 = 3;
 /// Bytes before the channels.
 const HEAD_BYTES: usize = 8;
 /// Bytes of a channel.
 const CHANNEL_BYTES: usize = 8;
+/// Bytes of its informations.
+const INFO_BYTES: usize = 8;
 /// Most channels of a card.
 const CHANNELS_MAX: usize = 8;
 /// Bytes of the check sum.
 const CHECK_BYTES: usize = 2;
 /// Longest frame, COBS included; what is longer is garbage.
-const ENCODED_MAX: usize = HEAD_BYTES + CHANNELS_MAX * CHANNEL_BYTES + CHECK_BYTES + 1;
+const ENCODED_MAX: usize =
+    HEAD_BYTES + CHANNELS_MAX * (CHANNEL_BYTES + INFO_BYTES) + CHECK_BYTES + 1;
 
 /// A channel's part of a sample set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +44,8 @@ pub struct Sample {
     pub missing: bool,
     /// Raw flags of the line: bit k stands for cause k + 11.
     pub line: u8,
+    /// Additional informations 1 and 2 of the same frame, if sets have them.
+    pub infos: Option<[Info; 2]>,
 }
 
 impl Sample {
@@ -50,14 +60,16 @@ impl Sample {
     }
 }
 
-/// What one trigger brought.
+/// What one trigger brought; or one position of a running clock.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SampleSet {
+    /// The channel whose running clock brought its only sample, which no trigger asked for.
+    pub run: Option<usize>,
     /// Sample sets that the card dropped just before this one; 255 = that many or more.
     pub lost: u8,
-    /// Number of the trigger, wrapping.
+    /// Number of the trigger, wrapping; of a running clock: of the channel's result.
     pub sequence: u16,
-    /// System clock cycle of the trigger, wrapping.
+    /// System clock cycle of the trigger, wrapping; of a running clock: of the position.
     pub timestamp: u32,
     /// One for each channel.
     pub channels: Vec<Sample>,
@@ -81,14 +93,28 @@ mod status {
     pub const MISSING: u16 = 1 << 15;
 }
 
+/// The informations of a channel out of their bytes.
+fn infos(bytes: &[u8]) -> [Info; 2] {
+    [0, 1].map(|n: usize| {
+        let word = u32::from_le_bytes([bytes[3 * n], bytes[3 * n + 1], bytes[3 * n + 2], 0]);
+        let state = bytes[6] >> (2 * n);
+        Info::new(word, state & 1 != 0, state & 2 != 0, bytes[6] & 0x10 != 0)
+    })
+}
+
 impl SampleSet {
     /// A frame without COBS; none if it is no sample set, or damaged.
     fn new(frame: &[u8]) -> Option<Self> {
         let (body, check) = frame.split_at_checked(frame.len().checked_sub(CHECK_BYTES)?)?;
-        let channels = usize::from(body.first()? & 0xF);
-        let is_whole = body[0] >> 4 == SAMPLE_SET
-            && (1..=CHANNELS_MAX).contains(&channels)
-            && body.len() == HEAD_BYTES + CHANNEL_BYTES * channels
+        let (kind, low) = (body.first()? >> 4, usize::from(body[0] & 0xF));
+        let (channels, of_each) = match kind {
+            SAMPLE_SET => (low, CHANNEL_BYTES),
+            INFO_SET => (low, CHANNEL_BYTES + INFO_BYTES),
+            RUN_SET if low < CHANNELS_MAX => (1, CHANNEL_BYTES),
+            _ => return None,
+        };
+        let is_whole = (1..=CHANNELS_MAX).contains(&channels)
+            && body.len() == HEAD_BYTES + of_each * channels
             && check == CHECK.checksum(body).to_le_bytes();
         if !is_whole {
             return None;
@@ -105,14 +131,18 @@ impl SampleSet {
                 taken: status & status::TAKEN != 0,
                 missing: status & status::MISSING != 0,
                 line: (status >> status::LINE_LSB & status::LINE) as u8,
+                infos: bytes
+                    .get(CHANNEL_BYTES..CHANNEL_BYTES + INFO_BYTES)
+                    .map(infos),
             }
         };
         Some(Self {
+            run: (kind == RUN_SET).then_some(low),
             lost: body[1],
             sequence: u16::from_le_bytes([body[2], body[3]]),
             timestamp: u32::from_le_bytes([body[4], body[5], body[6], body[7]]),
             channels: body[HEAD_BYTES..]
-                .chunks_exact(CHANNEL_BYTES)
+                .chunks_exact(of_each)
                 .map(sample)
                 .collect(),
         })
@@ -175,6 +205,10 @@ impl Decoder {
     fn note(&mut self, set: SampleSet) {
         self.counts.sets += 1;
         self.counts.lost_in_card += u64::from(set.lost);
+        if set.run.is_some() {
+            self.sets.push(set);
+            return;
+        }
         if let Some(last) = self.last_sequence {
             self.counts.missing += u64::from(set.sequence.wrapping_sub(last).wrapping_sub(1));
         }
@@ -229,7 +263,12 @@ mod tests {
     }
 
     fn encode(set: &SampleSet) -> Vec<u8> {
-        let mut body = vec![0x10 | set.channels.len() as u8, set.lost];
+        let head = match (set.run, set.channels[0].infos) {
+            (Some(channel), _) => 0x30 | channel as u8,
+            (_, Some(_)) => 0x20 | set.channels.len() as u8,
+            _ => 0x10 | set.channels.len() as u8,
+        };
+        let mut body = vec![head, set.lost];
         body.extend(set.sequence.to_le_bytes());
         body.extend(set.timestamp.to_le_bytes());
         for c in &set.channels {
@@ -241,6 +280,14 @@ mod tests {
                 | u16::from(c.line) << 8
                 | u16::from(c.missing) << 15;
             body.extend(status.to_le_bytes());
+            let Some(infos) = c.infos else { continue };
+            let mut state = u8::from(infos[0].due) << 4;
+            for (n, info) in infos.iter().enumerate() {
+                body.extend(info.content.to_le_bytes());
+                body.push(info.status);
+                state |= (u8::from(info.came) | u8::from(info.good) << 1) << (2 * n);
+            }
+            body.extend([state, 0]);
         }
         body.extend(CHECK.checksum(&body).to_le_bytes());
         let mut frame = cobs::encode_vec(&body);
@@ -281,6 +328,7 @@ mod tests {
             ..Sample::default()
         };
         let expected = SampleSet {
+            run: None,
             lost: 0,
             sequence: 0x1234,
             timestamp: 0x00AB_CDEF,
@@ -351,15 +399,20 @@ mod tests {
     proptest! {
         #[test]
         fn any_set_comes_back(
-            channels in prop::collection::vec((0u64..1 << 48, 0u8..32, any::<[bool; 4]>(), 0u8..128), 1..=8),
-            lost: u8, sequence: u16, timestamp: u32,
+            channels in prop::collection::vec((0u64..1 << 48, 0u8..32, any::<[bool; 4]>(), 0u8..128, any::<[(u8, u16, bool, bool); 2]>()), 1..=8),
+            lost: u8, sequence: u16, timestamp: u32, due: bool, kind in 0..3,
         ) {
-            let channels = channels.into_iter().map(|(position, cause, flags, line)| Sample {
-                position, cause, line, taken: flags[0], valid: flags[1], fresh: flags[2], missing: flags[3],
+            let run = (kind == 2).then_some(channels.len() - 1);
+            let infos = |infos: [(u8, u16, bool, bool); 2]| (kind == 1).then_some(
+                infos.map(|(status, content, came, good)| Info { came, good, due, status, content })
+            );
+            let count = if kind == 2 { 1 } else { channels.len() };
+            let channels = channels.into_iter().take(count).map(|(position, cause, flags, line, of)| Sample {
+                position, cause, line, taken: flags[0], valid: flags[1], fresh: flags[2], missing: flags[3], infos: infos(of),
             });
-            let set = SampleSet { lost, sequence, timestamp, channels: channels.collect() };
+            let set = SampleSet { run, lost, sequence, timestamp, channels: channels.collect() };
             let frame = encode(&set);
-            prop_assert!(frame[0] <= 75 && !frame[..frame.len() - 1].contains(&0));
+            prop_assert!(frame[0] <= 139 && !frame[..frame.len() - 1].contains(&0));
             prop_assert_eq!(decode(&frame).0, vec![set]);
         }
     }

@@ -78,14 +78,14 @@ fn the_burst_in_the_host_link_page_is_the_one_that_is_counted() {
     let table = page.split_once("| channels |").unwrap().1;
     for channels in CHANNELS {
         let figures = [
-            result_words(channels),
-            read_bytes(channels),
-            2_000_000 / needed_baud(1, channels),
+            result_words(channels, false),
+            read_bytes(channels, false),
+            2_000_000 / needed_baud(1, channels, false),
         ];
         let cells = row(table, &format!("| {channels} |"));
         assert_eq!(cells[1..], figures.map(|n| n.to_string()));
     }
-    assert!(page.contains(&format!("02 {:02X} 00 00 01 80", result_words(2))));
+    assert!(page.contains(&format!("02 {:02X} 00 00 01 80", result_words(2, false))));
 }
 
 #[test]

@@ -21,7 +21,7 @@ use endat_hdl::line_monitor::LineStart;
 use endat_hdl::receiver::Receiver;
 use endat_hdl::service::program::ServiceTimes;
 use endat_hdl::snapshot::Snapshot;
-use endat_hdl::stream::{channel::SetChannel, Stream};
+use endat_hdl::stream::{buffer::SetParts, channel::SetChannel, Stream};
 use endat_hdl::t_format::{
     channel::TFormatChannel,
     dsp::{AsyncDsp, TFormatStart},
@@ -108,7 +108,8 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
     };
     let full = load_preset("s6_two_channel_service")?.card;
     let mixed = load_preset("mixed_protocols")?.card;
-    let mut subjects = vec![
+    let mut subjects =
+        vec![
         Subject::new("card_service", "the card with everything", Card::new(&full))?,
         Subject::new(
             "card",
@@ -219,12 +220,12 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "stream",
             "stream with a buffer of 2048 bytes, without the channels' parts",
-            Stream::new(streaming.stream.fifo_bytes, 2, false, false),
+            Stream::new(streaming.stream.fifo_bytes, 2, false, false, SetParts::default()),
         )?,
         Subject::new(
             "set_channel",
             "a channel's part of it",
-            SetChannel::new(0, false),
+            SetChannel::new(0, false, SetParts::default()),
         )?,
         Subject::new(
             "direct_output",

@@ -218,6 +218,11 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
                 (Section::Stream, "fifo_bytes", line(&stream.fifo_bytes)),
                 (
                     Section::Stream,
+                    "informations",
+                    stream.informations.as_ref().map_or(0, |i| i.line),
+                ),
+                (
+                    Section::Stream,
                     "start",
                     stream.start.as_ref().map_or(0, |s| s.line),
                 ),
@@ -331,6 +336,9 @@ fn canonical(
             card.stream.fifo_bytes,
             stream::start_name(card.stream.start)
         ));
+        if card.stream.informations {
+            lines.push("stream informations true".into());
+        }
     }
     if card.service.requests {
         let parts = card.service;

@@ -8,6 +8,7 @@ use endat_hdl::stream::buffer::BUFFER_BYTES;
 pub struct Written {
     pub fifo_bytes: Option<At<u64>>,
     pub start: Option<At<String>>,
+    pub informations: Option<At<bool>>,
     /// As far as it could be read.
     pub parts: StreamParts,
 }
@@ -29,11 +30,13 @@ pub fn start_name(start: StreamStart) -> &'static str {
 pub fn read(table: &Table<'_, '_>) -> Written {
     let fifo_bytes = table.integer("fifo_bytes", &limits("fifo_bytes", None));
     table.offer([0].iter().chain(&BUFFER_BYTES));
+    let informations = table.boolean("informations");
     let start = table.string("start");
     table.offer(STARTS.map(|(name, _)| name));
     let mut parts = StreamParts {
         fifo_bytes: fifo_bytes.as_ref().map_or(0, |b| b.value),
         start: StreamStart::Off,
+        informations: informations.as_ref().is_some_and(|i| i.value),
     };
     if let Some(word) = &start {
         match STARTS.iter().find(|(name, _)| *name == word.value) {
@@ -53,6 +56,7 @@ pub fn read(table: &Table<'_, '_>) -> Written {
     Written {
         fifo_bytes,
         start,
+        informations,
         parts,
     }
 }

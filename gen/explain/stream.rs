@@ -41,11 +41,13 @@ impl StreamReport {
         let bytes = card.stream.fifo_bytes;
         let channels = card.channels.len();
         let sets_per_second = card.actual_sample_hz();
-        let set_bits = stream_baud(1, channels) as f64;
+        let informations = card.stream.informations;
+        let set_bits = stream_baud(1, channels, informations) as f64;
+        let frame_bytes = frame_bytes(channels, informations);
         (bytes != 0).then(|| Self {
             fifo_bytes: bytes,
-            frame_bytes: frame_bytes(channels),
-            buffered_sets: (bytes - 1) / frame_bytes(channels),
+            frame_bytes,
+            buffered_sets: (bytes - 1) / frame_bytes,
             start: start_name(card.stream.start),
             sets_per_second,
             line: has_uart.then(|| StreamLine {

@@ -12,9 +12,10 @@
 //! Ref: ARM IHI 0024B, AMBA 3 APB Protocol v1.0.
 
 use super::word_access::WordAccess;
-use crate::card::{each, CardCore};
+use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::Reg;
+use crate::several::each;
 use rust_hdl::prelude::*;
 
 /// APB3 slave in front of the register bank.

@@ -14,9 +14,10 @@
 //! Ref: ARM IHI 0022E, AMBA AXI4-Lite, chapter B1.
 
 use super::word_access::WordAccess;
-use crate::card::{each, CardCore};
+use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::Reg;
+use crate::several::each;
 use rust_hdl::prelude::*;
 
 /// AXI4-Lite slave in front of the register bank.

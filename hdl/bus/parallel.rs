@@ -18,9 +18,10 @@
 
 use super::strobes::BusStrobes;
 use super::word_access::WordAccess;
-use crate::card::{each, CardCore};
+use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::Reg;
+use crate::several::each;
 use rust_hdl::prelude::*;
 
 /// Eight registers of 16 bits in front of the register bank.

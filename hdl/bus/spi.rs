@@ -12,9 +12,10 @@
 //! if the host's clock does not, the check sum of its answer is wrong.
 
 use super::word_access::WordAccess;
-use crate::card::{each, CardCore};
+use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::{Reg, SyncReg};
+use crate::several::each;
 use rust_hdl::prelude::*;
 
 /// System clock cycles in the shortest period of the serial clock.

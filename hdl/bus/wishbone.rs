@@ -11,9 +11,10 @@
 //! Ref: OpenCores, Wishbone B4, chapter 3 (classic cycles), 32-bit port, granularity 8 bits.
 
 use super::word_access::WordAccess;
-use crate::card::{each, CardCore};
+use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::Reg;
+use crate::several::each;
 use rust_hdl::prelude::*;
 
 /// Wishbone slave in front of the register bank.

@@ -4,9 +4,10 @@
 //! uart_rx_i, uart_tx_o <-> UartBridge <-> CardCore <-> trigger_i, endat_*, led_*
 //! ```
 
-use super::{each, service_times, CardCore};
+use super::{service_times, CardCore};
 use crate::config::CardConfig;
 use crate::service::program::ServiceTimes;
+use crate::several::each;
 use crate::uart_bridge::{UartBridge, TIMEOUT_US};
 use rust_hdl::prelude::*;
 

@@ -224,13 +224,14 @@ impl CardDraft {
             );
         }
         if let (Some(read_hz), Some(channels)) = (read_hz, channels) {
-            let needed = needed_baud(read_hz, channels);
+            let requests = self.service.requests;
+            let needed = needed_baud(read_hz, channels, requests);
             if needed > baud {
-                let most = baud / needed_baud(1, channels);
+                let most = baud / needed_baud(1, channels, requests);
                 check.fail(
                     "baud",
                     baud,
-                    format!("the link is too slow: reading {} bytes {read_hz} times a second takes {needed} bit/s; raise baud, or set link.read_hz to {most} or less", read_bytes(channels)),
+                    format!("the link is too slow: reading {} bytes {read_hz} times a second takes {needed} bit/s; raise baud, or set link.read_hz to {most} or less", read_bytes(channels, requests)),
                 );
             }
         }
@@ -251,6 +252,14 @@ impl CardDraft {
             section: Section::Stream,
             problems,
         };
+        if self.stream.informations && !self.service.requests {
+            let text = "a card without requests has no additional informations; add \"requests\" to service.parts, or set stream.informations = false";
+            check.fail("informations", true, text.into());
+        }
+        if self.stream.informations && bytes == 0 {
+            let text = "a stream without a buffer; set stream.fifo_bytes = 2048, or stream.informations = false";
+            check.fail("informations", true, text.into());
+        }
         if bytes == 0 {
             if self.stream.start.collects() {
                 let start = if self.stream.start.pushes() {
@@ -277,9 +286,11 @@ impl CardDraft {
             check.fail("start", "\"push\"", text.into());
         }
         let (sample_hz, baud, channels) = (self.sample_hz?, self.baud?, channels?);
-        let (frame, needed) = (frame_bytes(channels), stream_baud(sample_hz, channels));
+        let informations = self.stream.informations;
+        let frame = frame_bytes(channels, informations);
+        let needed = stream_baud(sample_hz, channels, informations);
         if needed > baud && !self.without_uart {
-            let most = baud / stream_baud(1, channels);
+            let most = baud / stream_baud(1, channels, informations);
             check.section = Section::Trigger;
             check.fail(
                 "sample_hz",
@@ -287,7 +298,7 @@ impl CardDraft {
                 format!("the stream does not fit: {sample_hz} sets a second of {frame} bytes take {needed} bit/s, link.baud is {baud}; lower it to {most} or less, raise link.baud to {needed}, or set stream.fifo_bytes = 0"),
             );
         }
-        let cycles = frame_cycles(channels);
+        let cycles = frame_cycles(channels, informations);
         if sample_hz.saturating_mul(cycles) > system_hz {
             let most = system_hz / cycles;
             check.section = Section::Trigger;
@@ -387,27 +398,27 @@ impl CardConfig {
 
     /// UART rate that reading every channel `read_hz` times a second takes, in bit/s.
     pub fn needed_baud(&self) -> u64 {
-        needed_baud(self.read_hz, self.channels.len())
+        needed_baud(self.read_hz, self.channels.len(), self.service.requests)
     }
 
     /// How often the host can read every channel over this link, in hertz.
     pub fn highest_read_hz(&self) -> f64 {
-        self.actual_baud() / needed_baud(1, self.channels.len()) as f64
+        self.actual_baud() / needed_baud(1, self.channels.len(), self.service.requests) as f64
     }
 }
 
 /// Bytes on the line when a host reads the results of all channels in one burst: request, then every word from the
 /// first result to the last (`docs/host-link.md`).
-pub const fn read_bytes(channels: usize) -> u64 {
-    READ_REQUEST_BYTES + 4 * result_words(channels)
+pub const fn read_bytes(channels: usize, requests: bool) -> u64 {
+    READ_REQUEST_BYTES + 4 * result_words(channels, requests)
 }
 
 /// Bits per second of `read_hz` such reads, request and answer one after the other.
-pub const fn needed_baud(read_hz: u64, channels: usize) -> u64 {
-    read_hz.saturating_mul(read_bytes(channels) * UART_BITS_PER_BYTE)
+pub const fn needed_baud(read_hz: u64, channels: usize, requests: bool) -> u64 {
+    read_hz.saturating_mul(read_bytes(channels, requests) * UART_BITS_PER_BYTE)
 }
 
 /// Bits per second of `sample_hz` frames of the stream.
-pub const fn stream_baud(sample_hz: u64, channels: usize) -> u64 {
-    sample_hz.saturating_mul(frame_bytes(channels) * UART_BITS_PER_BYTE)
+pub const fn stream_baud(sample_hz: u64, channels: usize, informations: bool) -> u64 {
+    sample_hz.saturating_mul(frame_bytes(channels, informations) * UART_BITS_PER_BYTE)
 }

@@ -196,6 +196,8 @@ pub struct StreamParts {
     pub fifo_bytes: u64,
     /// What it does after reset.
     pub start: StreamStart,
+    /// Sets have the additional informations, too.
+    pub informations: bool,
 }
 
 /// What a stream does after reset; the host can change it.

@@ -48,6 +48,7 @@ pub const SOURCES: &[&str] = &[
     include_str!("../stream.rs"),
     include_str!("../stream/buffer.rs"),
     include_str!("../stream/channel.rs"),
+    include_str!("../stream/run.rs"),
     include_str!("../t_format/bit_grid.rs"),
     include_str!("../t_format/channel.rs"),
     include_str!("../t_format/dsp.rs"),
@@ -65,6 +66,7 @@ pub const SOURCES: &[&str] = &[
     include_str!("../trigger.rs"),
     include_str!("../uart.rs"),
     include_str!("../uart_bridge.rs"),
+    include_str!("../whole_result.rs"),
 ];
 
 /// A struct or enum of the sources.

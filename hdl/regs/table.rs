@@ -6,6 +6,7 @@ use super::{
 };
 use crate::config::{CardConfig, ChannelConfig, OwnTrigger};
 use crate::protocol::MAX_POSITION_BITS;
+use crate::whole_result::INFO_OFFSET;
 use Access::{ReadOnly, ReadWrite, Strobe};
 
 /// A field with a value of its own after reset.
@@ -126,15 +127,25 @@ pub const CARD: Block = Block {
             "protocols",
             5,
             ReadOnly,
-            "Which channels speak another protocol than EnDat.",
-            &[field(
-                "t_format",
-                0,
-                8,
-                "",
-                "T-format: bit n for channel n",
-                |s, _| s.t_format_channels(),
-            )],
+            "Which channels speak another protocol than EnDat, and what sets of the stream have.",
+            &[
+                field(
+                    "t_format",
+                    0,
+                    8,
+                    "",
+                    "T-format: bit n for channel n",
+                    |s, _| s.t_format_channels(),
+                ),
+                field(
+                    "stream_informations",
+                    8,
+                    1,
+                    "",
+                    "1: sets of the stream have the additional informations",
+                    |s, _| s.stream.informations as u64,
+                ),
+            ],
         ),
         word(
             "trigger_count",
@@ -438,6 +449,37 @@ pub const CHANNEL_CONFIG: Block = Block {
     ],
 };
 
+/// Offset of the first of the two words that cards with requests have.
+pub(super) const INFO_FIRST: u8 = INFO_OFFSET as u8;
+
+const INFO: [Field; 7] = [
+    super::field("content", 0, 16, "", "What it says; 0 unless good"),
+    super::field(
+        "sign",
+        16,
+        5,
+        "",
+        "I4..I0: which one it is; I4 = 0 information 1, 1 information 2",
+    ),
+    super::field("busy", 21, 1, "", "The encoder is busy with a request"),
+    super::field(
+        "reference_mark",
+        22,
+        1,
+        "",
+        "RM: the reference mark has been passed",
+    ),
+    super::field(
+        "warning",
+        23,
+        1,
+        "",
+        "WRN: one of the encoder's warnings is set",
+    ),
+    super::field("came", 24, 1, "", "The frame brought it"),
+    super::field("good", 25, 1, "", "Its CRC is right"),
+];
+
 /// Result of a channel; all words of all channels change together and never within a read command.
 pub const RESULT: Block = Block {
     name: "result",
@@ -478,5 +520,7 @@ pub const RESULT: Block = Block {
             field("delay_high", 29, 1, "", "Bit 10 of delay_cycles", zero),
             field("stale", 30, 1, "", "A trigger of this channel has come since this result", zero),
         ]),
+        word("info_1", INFO_FIRST, ReadOnly, "Additional information 1 of the frame of this result.", &INFO),
+        word("info_2", INFO_FIRST + 1, ReadOnly, "Additional information 2 of the frame of this result.", &INFO),
     ],
 };

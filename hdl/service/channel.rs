@@ -6,8 +6,8 @@
 //! ```
 
 use super::map::input;
-use crate::card::each;
 use crate::reg::Reg;
+use crate::several::each;
 use rust_hdl::prelude::*;
 
 /// A channel's part of the service.

@@ -16,6 +16,7 @@
 
 use crate::memory::Memory;
 use crate::reg::Reg;
+use crate::several::each;
 use rust_hdl::prelude::*;
 
 /// Sizes that a buffer can have, in bytes.
@@ -27,19 +28,28 @@ const CRC16_POLYNOMIAL: u64 = 0x1021;
 /// Start value of the CRC (CRC-16/IBM-3740).
 const CRC16_PRESET: u64 = 0xFFFF;
 
-/// Bytes of a set of `channels` channels, CRC included.
-pub const fn set_bytes(channels: usize) -> u64 {
-    8 + 8 * channels as u64 + 2
+/// Bytes of a set of `channels` channels, with `informations` or without, CRC included.
+pub const fn set_bytes(channels: usize, informations: bool) -> u64 {
+    8 + 8 * channels as u64 * (1 + informations as u64) + 2
 }
 
 /// Bytes of its frame: COBS takes one, the end another.
-pub const fn frame_bytes(channels: usize) -> u64 {
-    set_bytes(channels) + 2
+pub const fn frame_bytes(channels: usize, informations: bool) -> u64 {
+    set_bytes(channels, informations) + 2
 }
 
 /// System clock cycles from the moment when a set is closed until the next one can be.
-pub const fn frame_cycles(channels: usize) -> u64 {
-    BYTE_CYCLES * (set_bytes(channels) + 3) + 2
+pub const fn frame_cycles(channels: usize, informations: bool) -> u64 {
+    BYTE_CYCLES * (set_bytes(channels, informations) + 3) + 2
+}
+
+/// What sets have besides the positions of triggers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SetParts {
+    /// Additional informations.
+    pub informations: bool,
+    /// Positions of a running clock, each in a set of its own.
+    pub runs: bool,
 }
 
 /// Encoder and buffer.
@@ -55,10 +65,18 @@ pub struct FrameBuffer {
     pub idle: Signal<Out, Bit>,
     /// A whole frame fits.
     pub room: Signal<Out, Bit>,
+    /// And behind a single one another frame, so that the sets of triggers keep their place.
+    pub single_room: Vec<Signal<Out, Bit>>,
     /// Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
     pub block: Signal<Out, Bits<4>>,
     /// Which of them.
     pub byte_at: Signal<Out, Bits<3>>,
+    /// Of channel n its other 8 bytes: the informations.
+    pub second: Vec<Signal<Out, Bit>>,
+    /// The set has but one channel and no informations; stays put while it is written, as the next one.
+    pub single: Vec<Signal<In, Bit>>,
+    /// Place of that channel: 8 times its block.
+    pub single_place: Vec<Signal<In, Bits<7>>>,
     /// That byte, at most 4 cycles later; 0 if there is no such block.
     pub set_byte: Signal<In, Bits<8>>,
     /// Bytes that wait; a frame counts when it is whole.
@@ -91,6 +109,10 @@ pub struct FrameBuffer {
     used: Reg<Bits<13>>,
     fits: Reg<Bit>,
     took: Reg<Bit>,
+    in_second: Vec<Reg<Bit>>,
+    single_fits: Vec<Reg<Bit>>,
+    run_high: Vec<Reg<Bit>>,
+    block_ends: Vec<Signal<Local, Bit>>,
     bit_index: Signal<Local, Bits<3>>,
     feedback: Signal<Local, Bit>,
     advance: Signal<Local, Bit>,
@@ -106,14 +128,19 @@ pub struct FrameBuffer {
     _ram2k: usize,
     _ram4k: usize,
     _ram8k: usize,
+    _seconds: usize,
+    _singles: usize,
+    _block_ends: usize,
 }
 
 impl FrameBuffer {
-    /// A buffer of `bytes` bytes, one of [`BUFFER_BYTES`], for sets of `channels` channels.
+    /// A buffer of `bytes` bytes, one of [`BUFFER_BYTES`], for sets of `channels` channels; with informations, and single positions of a running
+    /// clock among them, if the parts say so.
     ///
     /// # Panics
     /// If there is no such buffer.
-    pub fn new(bytes: u64, channels: usize) -> Self {
+    pub fn new(bytes: u64, channels: usize, parts: SetParts) -> Self {
+        let (seconds, singles) = (usize::from(parts.informations), usize::from(parts.runs));
         assert!(BUFFER_BYTES.contains(&bytes), "buffer of {bytes} bytes");
         let of = |size: usize| usize::from(BUFFER_BYTES[size] == bytes);
         Self {
@@ -124,6 +151,10 @@ impl FrameBuffer {
             room: Default::default(),
             block: Default::default(),
             byte_at: Default::default(),
+            second: each(seconds),
+            single: each(singles),
+            single_room: each(singles),
+            single_place: each(singles),
             set_byte: Default::default(),
             waiting_bytes: Default::default(),
             ready: Default::default(),
@@ -151,6 +182,10 @@ impl FrameBuffer {
             used: Default::default(),
             fits: Reg::new(true),
             took: Default::default(),
+            in_second: each(seconds),
+            single_fits: each(singles),
+            run_high: each(seconds),
+            block_ends: each(seconds.max(singles)),
             bit_index: Default::default(),
             feedback: Default::default(),
             advance: Default::default(),
@@ -161,12 +196,17 @@ impl FrameBuffer {
             tail_block: Constant::new((channels as u64 + 1).into()),
             mask: Constant::new((bytes - 1).into()),
             // One place stays free: full is not empty.
-            most_used: Constant::new((bytes - 1 - frame_bytes(channels)).into()),
+            most_used: Constant::new(
+                (bytes - 1 - frame_bytes(channels, parts.informations)).into(),
+            ),
             polynomial: Constant::new(CRC16_POLYNOMIAL.into()),
             _ram1k: of(0),
             _ram2k: of(1),
             _ram4k: of(2),
             _ram8k: of(3),
+            _seconds: seconds,
+            _singles: singles,
+            _block_ends: seconds.max(singles),
         }
     }
 }
@@ -203,6 +243,39 @@ impl Logic for FrameBuffer {
         self.byte_end.d.next = self.writing.q.val() & (self.cycle_at.q.val() == 14);
         if self.byte_end.q.val() {
             self.at.d.next = self.at.q.val() + 1;
+        }
+        // Two blocks of a channel have one number; a single one is followed by the tail.
+        for i in 0..self._block_ends {
+            self.block_ends[i].next =
+                self.byte_end.q.val() & self.at.q.val().get_bits::<3>(0).all();
+        }
+        for i in 0..self._seconds {
+            self.in_second[i].clock.next = self.clock.val();
+            self.in_second[i].reset.next = !self.writing.q.val();
+            self.in_second[i].d.next = self.in_second[i].q.val();
+            if self.block_ends[i].val() {
+                self.in_second[i].d.next =
+                    self.at.q.val().get_bits::<4>(3).any() & !self.in_second[i].q.val();
+                if self.at.q.val().get_bits::<4>(3).any() & !self.in_second[i].q.val() {
+                    self.at.d.next = self.at.q.val() & 0x78;
+                }
+            }
+            self.second[i].next = self.in_second[i].q.val();
+            self.run_high[i].clock.next = self.clock.val();
+            self.run_high[i].reset.next =
+                !self.writing.q.val() | (self.byte_end.q.val() & self.is_zero.q.val());
+            self.run_high[i].d.next = self.run_high[i].q.val();
+            if self.byte_end.q.val() & self.run.q.val().all() {
+                self.run_high[i].d.next = true;
+            }
+        }
+        for i in 0..self._singles {
+            if self.block_ends[i].val() & self.single[i].val() {
+                self.at.d.next = bit_cast::<7, 4>(self.tail_block.val()) << 3;
+                if !self.at.q.val().get_bits::<4>(3).any() {
+                    self.at.d.next = self.single_place[i].val();
+                }
+            }
         }
         if !self.writing.q.val() {
             self.cycle_at.d.next = 0.into();
@@ -252,6 +325,11 @@ impl Logic for FrameBuffer {
         if self.is_zero.q.val() {
             self.write_address.next = self.code_at.q.val();
             self.write_byte.next = bit_cast::<8, 7>(self.run.q.val());
+            for i in 0..self._seconds {
+                if self.run_high[i].q.val() {
+                    self.write_byte.next = bit_cast::<8, 7>(self.run.q.val()) | 0x80;
+                }
+            }
         }
         if self.is_end.q.val() {
             self.write_byte.next = 0.into();
@@ -275,6 +353,13 @@ impl Logic for FrameBuffer {
         self.used.d.next = (self.start_at.q.val() - self.read_at.q.val()) & self.mask.val();
         self.fits.d.next = self.used.q.val() <= self.most_used.val();
         self.room.next = self.fits.q.val();
+        for i in 0..self._singles {
+            self.single_fits[i].clock.next = self.clock.val();
+            self.single_fits[i].reset.next = self.reset.val();
+            // More than the longest frame.
+            self.single_fits[i].d.next = self.used.q.val() <= (self.most_used.val() - 144);
+            self.single_room[i].next = self.single_fits[i].q.val();
+        }
         self.waiting_bytes.next = bit_cast::<16, 13>(self.used.q.val());
         self.ready.next = self.used.q.val().any() & !self.took.q.val();
 

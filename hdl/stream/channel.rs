@@ -9,7 +9,9 @@
 //! Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own, one of them may
 //! be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty place in the next one.
 
+use super::buffer::SetParts;
 use crate::reg::Reg;
+use crate::several::each;
 use rust_hdl::prelude::*;
 
 /// A channel's place in a set.
@@ -37,6 +39,14 @@ pub struct SetChannel {
     pub flags: Signal<In, Bits<20>>,
     /// Strobe: the set is closed, its content is what is there now.
     pub take: Signal<In, Bit>,
+    /// Strobe, never with `take`: a position of a running clock is taken, for a set of its own.
+    pub take_run: Vec<Signal<In, Bit>>,
+    /// Information 1 of the result: 24 bits, came, good, due; where sets have informations, as the next two.
+    pub word_1: Vec<Signal<In, Bits<27>>>,
+    /// Information 2 of it.
+    pub word_2: Vec<Signal<In, Bits<27>>>,
+    /// Its other 8 bytes are asked for.
+    pub second: Vec<Signal<In, Bit>>,
     /// Which 8 bytes of the set are asked for: channel n has number n + 1.
     pub block: Signal<In, Bits<4>>,
     /// Which of them: 0 = least significant byte of the position, 6 and 7 = status.
@@ -58,15 +68,23 @@ pub struct SetChannel {
     took_taken: Reg<Bit>,
     missing_taken: Reg<Bit>,
     byte_now: Reg<Bits<8>>,
+    info_1: Vec<Reg<Bits<24>>>,
+    info_2: Vec<Reg<Bits<24>>>,
+    info_state: Vec<Reg<Bits<8>>>,
+    state_now: Vec<Signal<Local, Bits<8>>>,
+    info_byte: Vec<Reg<Bits<8>>>,
     open: Signal<Local, Bit>,
     status: Signal<Local, Bits<16>>,
     number: Constant<Bits<4>>,
     takes_late: Constant<Bit>,
+    _runs: usize,
+    _infos: usize,
 }
 
 impl SetChannel {
-    /// The place of channel `channel`, for late results too if `takes_late`.
-    pub fn new(channel: usize, takes_late: bool) -> Self {
+    /// The place of channel `channel`, for late results too if `takes_late`, and for what else sets have.
+    pub fn new(channel: usize, takes_late: bool, parts: SetParts) -> Self {
+        let (runs, infos) = (usize::from(parts.runs), usize::from(parts.informations));
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -79,6 +97,10 @@ impl SetChannel {
             cause: Default::default(),
             flags: Default::default(),
             take: Default::default(),
+            take_run: each(runs),
+            word_1: each(infos),
+            word_2: each(infos),
+            second: each(infos),
             block: Default::default(),
             byte_at: Default::default(),
             set_byte: Default::default(),
@@ -95,10 +117,17 @@ impl SetChannel {
             took_taken: Default::default(),
             missing_taken: Default::default(),
             byte_now: Default::default(),
+            info_1: each(infos),
+            info_2: each(infos),
+            info_state: each(infos),
+            state_now: each(infos),
+            info_byte: each(infos),
             open: Default::default(),
             status: Default::default(),
             number: Constant::new((channel as u64 + 1).into()),
             takes_late: Constant::new(takes_late),
+            _runs: runs,
+            _infos: infos,
         }
     }
 }
@@ -161,6 +190,14 @@ impl Logic for SetChannel {
             self.took_taken.d.next = self.took.q.val();
             self.missing_taken.d.next = self.open.val();
         }
+        for i in 0..self._runs {
+            if self.take_run[i].val() {
+                self.position_taken.d.next = self.position.val();
+                self.status_taken.d.next = self.status.val();
+                self.took_taken.d.next = true;
+                self.missing_taken.d.next = false;
+            }
+        }
 
         // A reset by deselection alone takes no logic.
         self.byte_now.reset.next = self.block.val() != self.number.val();
@@ -193,5 +230,71 @@ impl Logic for SetChannel {
             }
         }
         self.set_byte.next = self.byte_now.q.val();
+        for i in 0..self._infos {
+            self.info_1[i].clock.next = self.clock.val();
+            self.info_2[i].clock.next = self.clock.val();
+            self.info_state[i].clock.next = self.clock.val();
+            self.info_byte[i].clock.next = self.clock.val();
+            self.info_1[i].d.next = self.info_1[i].q.val();
+            self.info_2[i].d.next = self.info_2[i].q.val();
+            self.info_state[i].d.next = self.info_state[i].q.val();
+            self.state_now[i].next = 0.into();
+            if self.word_1[i].val().get_bit(24) {
+                self.state_now[i].next = self.state_now[i].val() | 1;
+            }
+            if self.word_1[i].val().get_bit(25) {
+                self.state_now[i].next = self.state_now[i].val() | 2;
+            }
+            if self.word_2[i].val().get_bit(24) {
+                self.state_now[i].next = self.state_now[i].val() | 4;
+            }
+            if self.word_2[i].val().get_bit(25) {
+                self.state_now[i].next = self.state_now[i].val() | 8;
+            }
+            if self.word_1[i].val().get_bit(26) {
+                self.state_now[i].next = self.state_now[i].val() | 16;
+            }
+            // They belong to the result, or there is none.
+            self.info_1[i].reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
+            self.info_2[i].reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
+            self.info_state[i].reset.next =
+                self.take.val() & !self.is_own.val() & !self.late_now.val();
+            if self.take.val() {
+                self.info_1[i].d.next = self.word_1[i].val().get_bits::<24>(0);
+                self.info_2[i].d.next = self.word_2[i].val().get_bits::<24>(0);
+                self.info_state[i].d.next = self.state_now[i].val();
+            }
+            self.byte_now.reset.next =
+                (self.block.val() != self.number.val()) | self.second[i].val();
+            self.info_byte[i].reset.next =
+                (self.block.val() != self.number.val()) | !self.second[i].val();
+            match self.byte_at.val().index() {
+                0 => {
+                    self.info_byte[i].d.next = self.info_1[i].q.val().get_bits::<8>(0);
+                }
+                1 => {
+                    self.info_byte[i].d.next = self.info_1[i].q.val().get_bits::<8>(8);
+                }
+                2 => {
+                    self.info_byte[i].d.next = self.info_1[i].q.val().get_bits::<8>(16);
+                }
+                3 => {
+                    self.info_byte[i].d.next = self.info_2[i].q.val().get_bits::<8>(0);
+                }
+                4 => {
+                    self.info_byte[i].d.next = self.info_2[i].q.val().get_bits::<8>(8);
+                }
+                5 => {
+                    self.info_byte[i].d.next = self.info_2[i].q.val().get_bits::<8>(16);
+                }
+                6 => {
+                    self.info_byte[i].d.next = self.info_state[i].q.val();
+                }
+                _ => {
+                    self.info_byte[i].d.next = 0.into();
+                }
+            }
+            self.set_byte.next = self.byte_now.q.val() | self.info_byte[i].q.val();
+        }
     }
 }

@@ -279,7 +279,7 @@ mod tests {
 
     fn columns() -> Vec<Column> {
         let scales = [Scale::singleturn(29), Scale::Linear { step_nm: 10.0 }];
-        Column::all(100_000_000, &scales)
+        Column::all(100_000_000, &scales, false)
     }
 
     /// Catches a server that tells nothing, on which the EPICS driver dies, or tells the same again.

@@ -147,11 +147,12 @@ mod tests {
     use std::time::Duration;
 
     fn columns() -> Vec<Column> {
-        Column::all(100, &[Scale::singleturn(4)])
+        Column::all(100, &[Scale::singleturn(4)], false)
     }
 
     fn row() -> Row {
         Row {
+            run: None,
             trigger: 7,
             cycles: 50,
             missing: 0,
@@ -159,6 +160,7 @@ mod tests {
                 position: Some(8),
                 fresh: true,
                 cause: "none",
+                infos: [None; 2],
             }],
         }
     }

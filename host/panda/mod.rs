@@ -38,6 +38,7 @@ enum What {
     Position(usize),
     Fresh(usize),
     Cause(usize),
+    Info(usize, usize),
 }
 
 /// What a feed says instead of a cause, from the first number behind those of causes on.
@@ -53,8 +54,8 @@ fn code(cause: &str) -> i64 {
 }
 
 impl Column {
-    /// The columns of a card.
-    pub fn all(system_hz: u32, scales: &[Scale]) -> Vec<Self> {
+    /// The columns of a card; `informations`: its rows have them.
+    pub fn all(system_hz: u32, scales: &[Scale], informations: bool) -> Vec<Self> {
         let mut columns = vec![
             Self {
                 name: "PCAP.TS_TRIG".into(),
@@ -99,6 +100,14 @@ impl Column {
                 meaning: "Why it did not, as in the register map, 0 = none; 32: trigger not taken, 33: result too late, 34: the late result of an earlier trigger",
                 what: What::Cause(channel),
             });
+            let infos = if informations { 2 } else { 0 };
+            columns.extend((0..infos).map(|info| Self {
+                name: format!("INENC{}.INFO{}", channel + 1, info + 1),
+                scale: 1.0,
+                unit: "",
+                meaning: "Additional information of the same frame: bits 23..16 WRN, RM, Busy, I4..I0, bits 15..0 what it says; -1: none came with a right CRC",
+                what: What::Info(channel, info),
+            }));
         }
         columns
     }
@@ -111,6 +120,10 @@ impl Column {
             What::Position(n) => cell(n).and_then(|c| c.position).unwrap_or(0) as i64,
             What::Fresh(n) => cell(n).is_some_and(|c| c.fresh).into(),
             What::Cause(n) => cell(n).map_or(0, |c| code(c.cause)),
+            What::Info(n, info) => {
+                let good = cell(n).and_then(|c| c.infos[info]);
+                good.map_or(-1, |i| i64::from(i.status) << 16 | i64::from(i.content))
+            }
         }
     }
 }

@@ -281,7 +281,8 @@ impl<'c, T: Transport> Server<'c, T> {
         };
         let mut queue = VecDeque::new();
         acquisition.feed.fill(self.card, &mut queue, SLICE)?;
-        let mut rows: Vec<Row> = queue.into();
+        // A row of PandABlocks is a trigger's.
+        let mut rows: Vec<Row> = queue.into_iter().filter(|r| r.run.is_none()).collect();
         // Rows behind a gap do not belong to this acquisition.
         let gap = rows
             .iter()

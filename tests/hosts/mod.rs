@@ -2,7 +2,7 @@
 
 mod clients;
 mod commands;
-mod desk;
+pub mod desk;
 mod disturbed;
 mod few_cycles;
 mod logs;

@@ -79,6 +79,9 @@ impl Word {
                 let has_stream = config.stream.fifo_bytes != 0;
                 let registers = block.registers.iter();
                 let registers = registers.filter(|r| has_stream || !r.name.starts_with("stream_"));
+                // Nor one without requests those of the informations.
+                let has_infos = config.service.requests || block.name != "result";
+                let registers = registers.filter(|r| has_infos || !r.name.starts_with("info_"));
                 words.extend(registers.map(|register| Self {
                     block,
                     register,

@@ -35,7 +35,7 @@ fn read_bytes(rig: &mut Rig, lane: &mut u8, count: usize) -> Vec<u8> {
 #[test]
 fn what_does_not_fit_is_dropped_whole_at_every_fill_level() {
     for n in [1, 2, 8] {
-        let frame = frame_bytes(n) as usize;
+        let frame = frame_bytes(n, false) as usize;
         let mut rig = Rig::new(1024, n, true, false);
         // The reader stops at every place of a frame, so the buffer is at every level when a set comes.
         for taken in 0..=frame {

@@ -76,6 +76,7 @@ pub fn card(system_hz: u64, sample_hz: u64, baud: u64, start: StreamStart) -> Ca
         stream: StreamParts {
             fifo_bytes: 2048,
             start,
+            informations: false,
         },
         outputs: Default::default(),
     })

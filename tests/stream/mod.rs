@@ -2,8 +2,10 @@
 
 mod buffer;
 mod card;
+mod infos;
 mod line;
 mod refusals;
 pub mod rig;
+mod runs;
 mod sets;
 mod three_ways;

@@ -32,6 +32,10 @@ fn a_stream_that_cannot_fit_is_refused() {
             "stream.start = \"push\": a stream without a buffer; set stream.fifo_bytes = 2048",
         ),
         (
+            &[("start = \"off\"", "informations = true\nstart = \"off\"")],
+            "trigger.sample_hz = 10000: the stream does not fit: 10000 sets a second of 44 bytes take 4400000 bit/s, link.baud is 3000000; lower it to 6818 or less",
+        ),
+        (
             &[("start = \"off\"", "start = \"on\"")],
             "stream.start = \"on\": unknown; use off, collect, push",
         ),

@@ -4,7 +4,7 @@ use crate::three_way::Stimulus;
 use crc::{Crc, CRC_16_IBM_3740};
 use endat_hdl::{
     elaborate::elaborate,
-    stream::{channel::SetChannel, Stream},
+    stream::{buffer::SetParts, channel::SetChannel, Stream},
 };
 use endat_sim::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
@@ -177,9 +177,17 @@ pub struct Rig {
 impl Rig {
     pub fn new(bytes: u64, channels: usize, collect: bool, push: bool) -> Self {
         Self {
-            stream: Named::new(Stream::new(bytes, channels, collect, push), "stream"),
+            stream: Named::new(
+                Stream::new(bytes, channels, collect, push, SetParts::default()),
+                "stream",
+            ),
             set: (0..channels)
-                .map(|n| Named::new(SetChannel::new(n, false), "set_channel"))
+                .map(|n| {
+                    Named::new(
+                        SetChannel::new(n, false, SetParts::default()),
+                        "set_channel",
+                    )
+                })
                 .collect(),
             channel: vec![Channel::default(); channels],
             trigger: false,
@@ -358,6 +366,6 @@ impl Rig {
 
     /// Long enough for a set to be written.
     pub fn written(&mut self) {
-        self.run(endat_hdl::stream::buffer::frame_cycles(self.set.len()) + 4);
+        self.run(endat_hdl::stream::buffer::frame_cycles(self.set.len(), false) + 4);
     }
 }

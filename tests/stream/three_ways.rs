@@ -4,7 +4,7 @@ use super::rig::{Access, Channel, Rig};
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::{
     elaborate::elaborate,
-    stream::{channel::SetChannel, Stream},
+    stream::{buffer::SetParts, channel::SetChannel, Stream},
 };
 use endat_sim::kernel_engine;
 use rust_hdl::prelude::Block;
@@ -58,7 +58,7 @@ fn recorded() -> (Stimulus, Stimulus) {
 #[test]
 fn stream_and_channel_agree_in_kernels_engines_and_verilog() {
     let (stream, channel) = recorded();
-    let mut block = Stream::new(1024, 1, true, false);
+    let mut block = Stream::new(1024, 1, true, false, SetParts::default());
     block.connect_all();
     let design = elaborate(&block, "stream").unwrap();
     let mut kernel = kernel_engine!(block; clock;
@@ -70,7 +70,7 @@ fn stream_and_channel_agree_in_kernels_engines_and_verilog() {
     assert!(pushed.contains(&0x11), "the head of a set");
     assert!(recording.output("take_set").iter().sum::<u128>() > 5);
 
-    let mut block = SetChannel::new(0, false);
+    let mut block = SetChannel::new(0, false, SetParts::default());
     block.connect_all();
     let design = elaborate(&block, "set_channel").unwrap();
     let mut kernel = kernel_engine!(block; clock;

@@ -101,6 +101,14 @@ fn screen(
             ns(r.delay_cycles),
             ns(r.recovery_cycles) / 1e3
         );
+        let good = r.infos.iter().enumerate();
+        let good = good.filter_map(|(n, info)| Some((n + 1, info.good()?)));
+        let infos: Vec<String> = good
+            .map(|(n, info)| format!("{n}: 0x{:04X} (status 0x{:02X})", info.content, info.status))
+            .collect();
+        if !infos.is_empty() {
+            let _ = writeln!(text, "           informations {}", infos.join(", "));
+        }
         if let Some((first, words)) = places.frames {
             let words = card
                 .bridge()

@@ -76,10 +76,11 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     }
     let is_good = results.channels.iter().all(|r| r.fresh && !is_old(r));
     let each = results.channels.iter().zip(&scales).enumerate();
+    let has_infos = card.identity().has("requests");
     let stdout = if arguments.json {
         let objects = each.map(|(channel, (r, scale))| {
             let units = scale.convert(r.position);
-            json!({
+            let mut object = json!({
                 "channel": channel,
                 "position": r.valid.then_some(r.position),
                 "value": r.valid.then_some(units.value),
@@ -92,7 +93,13 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
                 "age_us": r.age_us,
                 "stale": r.stale,
                 "delay_cycles": r.delay_cycles,
-            })
+            });
+            for (n, info) in r.infos.iter().enumerate().filter(|_| has_infos) {
+                let good = info.good();
+                let good = good.map(|i| json!({ "status": i.status, "content": i.content }));
+                object[format!("info_{}", n + 1)] = json!(good);
+            }
+            object
         });
         to_json(&objects.collect::<Vec<_>>())?
     } else {

@@ -94,6 +94,7 @@ mod tests {
             position: Some(5),
             fresh,
             cause,
+            infos: [None; 2],
         };
         for (own_triggers, told) in [
             (
@@ -114,6 +115,7 @@ mod tests {
                 vec![cell("recovery_too_short", true), cell("late", false)],
             ] {
                 count.note(&Row {
+                    run: None,
                     trigger: 0,
                     cycles: 0,
                     missing: 0,

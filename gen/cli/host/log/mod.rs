@@ -105,7 +105,9 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     let failed =
         |e: io::Error| GenError::input(format!("{name}: cannot write: {e}; is the disk full?"));
     let system_hz = f64::from(card.identity().system_hz.max(1));
-    let mut sheet = Sheet::new(arguments.format, out, scales, system_hz).map_err(failed)?;
+    let informations = card.identity().stream_informations;
+    let mut sheet =
+        Sheet::new(arguments.format, out, scales, system_hz, informations).map_err(failed)?;
     let mut drawing = arguments.svg.clone().map(|path| File {
         option: "--svg",
         path,

@@ -24,6 +24,8 @@ pub struct Sheet<W: Write> {
     pub out: W,
     scales: Vec<Scale>,
     system_hz: f64,
+    /// Rows have additional informations.
+    informations: bool,
     /// Time of the last row.
     pub span_s: f64,
     judge: Judge,
@@ -32,12 +34,19 @@ pub struct Sheet<W: Write> {
 }
 
 impl<W: Write> Sheet<W> {
-    pub fn new(format: Format, out: W, scales: Vec<Scale>, system_hz: f64) -> io::Result<Self> {
+    pub fn new(
+        format: Format,
+        out: W,
+        scales: Vec<Scale>,
+        system_hz: f64,
+        informations: bool,
+    ) -> io::Result<Self> {
         let mut sheet = Self {
             format,
             out,
             scales,
             system_hz,
+            informations,
             span_s: 0.0,
             judge: Judge::default(),
             plot: None,
@@ -49,6 +58,10 @@ impl<W: Write> Sheet<W> {
                 names.extend(
                     ["raw", unit, "turns", "fresh", "cause"].map(|name| format!("ch{n}_{name}")),
                 );
+                if informations {
+                    let of = ["info_1", "info_1_status", "info_2", "info_2_status"];
+                    names.extend(of.map(|name| format!("ch{n}_{name}")));
+                }
             }
             sheet.record(&names)?;
         }
@@ -101,7 +114,8 @@ impl<W: Write> Sheet<W> {
         match self.format {
             Format::Csv => {
                 let mut fields = vec![
-                    row.trigger.to_string(),
+                    // No trigger asked for a position of a running clock.
+                    row.run.map_or(row.trigger.to_string(), |_| String::new()),
                     format!("{:.9}", time_s),
                     row.missing.to_string(),
                 ];
@@ -115,23 +129,33 @@ impl<W: Write> Sheet<W> {
                     fields.push(text(units.and_then(|u| u.turns).map(|t| t.to_string())));
                     fields.push(u8::from(cell.fresh).to_string());
                     fields.push(cell.cause.to_owned());
+                    for info in cell.infos.iter().filter(|_| self.informations) {
+                        fields.push(text(info.map(|i| i.content.to_string())));
+                        fields.push(text(info.map(|i| i.status.to_string())));
+                    }
                 }
                 self.record(&fields)
             }
             Format::Jsonl => {
                 let cells = row.cells.iter().zip(&self.scales).map(|(cell, scale)| {
                     let units = cell.position.map(|p| scale.convert(p));
-                    json!({
+                    let mut object = json!({
                         "raw": cell.position,
                         "value": units.map(|u| u.value),
                         "unit": scale.convert(0).unit,
                         "turns": units.and_then(|u| u.turns),
                         "fresh": cell.fresh,
                         "cause": cell.cause,
-                    })
+                    });
+                    for (n, info) in cell.infos.iter().enumerate().filter(|_| self.informations) {
+                        let good =
+                            info.map(|i| json!({ "status": i.status, "content": i.content }));
+                        object[format!("info_{}", n + 1)] = json!(good);
+                    }
+                    object
                 });
                 let object = json!({
-                    "trigger": row.trigger,
+                    "trigger": row.run.is_none().then_some(row.trigger),
                     "time_s": time_s,
                     "missing": row.missing,
                     "channels": cells.collect::<Vec<_>>(),
@@ -224,26 +248,37 @@ impl<W: Write> Write for Lines<W> {
 mod tests {
     use super::*;
     use endat_host::feed::Cell;
+    use endat_host::info::Info;
 
     fn cells(position: u64) -> Vec<Cell> {
+        let info = Info {
+            came: true,
+            good: true,
+            status: 0x4C,
+            content: 4660,
+            ..Info::default()
+        };
         let good = Cell {
             position: Some(position),
             fresh: true,
             cause: "none",
+            infos: [Some(info), None],
         };
         let none = Cell {
             position: None,
             fresh: false,
             cause: "crc",
+            infos: [None; 2],
         };
         vec![good, none]
     }
 
-    fn written(format: Format) -> String {
+    fn written(format: Format, informations: bool) -> String {
         let scales = vec![Scale::singleturn(8), Scale::Linear { step_nm: 10.0 }];
-        let mut sheet = Sheet::new(format, Vec::new(), scales, 32.0).unwrap();
+        let mut sheet = Sheet::new(format, Vec::new(), scales, 32.0, informations).unwrap();
         for (trigger, cycles, missing) in [(65_534, 0, 0), (65_535, 32, 0), (65_538, 64, 2)] {
             let row = Row {
+                run: None,
                 trigger,
                 cycles,
                 missing,
@@ -257,12 +292,41 @@ mod tests {
     #[test]
     fn csv_has_units_and_no_position_where_there_is_none() {
         assert_eq!(
-            written(Format::Csv),
+            written(Format::Csv, false),
             "trigger,time_s,missing,ch0_raw,ch0_deg,ch0_turns,ch0_fresh,ch0_cause,ch1_raw,ch1_mm,ch1_turns,ch1_fresh,ch1_cause\n\
              65534,0.000000000,0,64,90,0,1,none,,,,0,crc\n\
              65535,1.000000000,0,64,90,0,1,none,,,,0,crc\n\
              65538,2.000000000,2,64,90,0,1,none,,,,0,crc\n"
         );
+    }
+
+    #[test]
+    fn informations_have_columns_and_a_running_clock_no_trigger() {
+        let text = written(Format::Csv, true);
+        let mut lines = text.lines();
+        let head = lines.next().unwrap();
+        assert!(
+            head.contains(",ch0_cause,ch0_info_1,ch0_info_1_status,ch0_info_2,"),
+            "{head}"
+        );
+        assert_eq!(
+            lines.next().unwrap(),
+            "65534,0.000000000,0,64,90,0,1,none,4660,76,,,,,,0,crc,,,,"
+        );
+        let scales = vec![Scale::singleturn(8), Scale::singleturn(8)];
+        let mut sheet = Sheet::new(Format::Jsonl, Vec::new(), scales, 32.0, true).unwrap();
+        let row = Row {
+            run: Some(0),
+            trigger: 7,
+            cycles: 8,
+            missing: 0,
+            cells: cells(64),
+        };
+        sheet.row(&row).unwrap();
+        let line: serde_json::Value = serde_json::from_slice(&sheet.out).unwrap();
+        assert!(line["trigger"].is_null());
+        assert_eq!(line["channels"][0]["info_1"]["content"], 4660);
+        assert!(line["channels"][0]["info_2"].is_null());
     }
 
     /// A disk with room for so many bytes.
@@ -309,7 +373,7 @@ mod tests {
 
     #[test]
     fn json_lines_have_the_same() {
-        let text = written(Format::Jsonl);
+        let text = written(Format::Jsonl, false);
         let rows: Vec<serde_json::Value> = text
             .lines()
             .map(|l| serde_json::from_str(l).unwrap())

@@ -1,0 +1,137 @@
+//! Positions of a running clock, of one channel: those that no trigger asked for wait for a set of their own.
+//!
+//! ```text
+//! trigger taken  _/\______________________________
+//! result         ________/\______/\______/\_______    the first one is the trigger's
+//! waits          _________________/~~\____/~~\____    until the stream takes it
+//! ```
+//!
+//! What is taken is what the channel shows in that cycle, which is one result; the next one takes the place of one that still waits, and that
+//! one is lost.
+
+use super::RUN_SET_TYPE;
+use crate::reg::Reg;
+use rust_hdl::prelude::*;
+
+/// Running clock of one channel.
+#[derive(LogicBlock)]
+pub struct RunChannel {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Sets are collected.
+    pub collects: Signal<In, Bit>,
+    /// Strobe: the channel takes a trigger.
+    pub taken: Signal<In, Bit>,
+    /// Strobe: a new result is there.
+    pub result_strobe: Signal<In, Bit>,
+    /// Number of results.
+    pub sequence: Signal<In, Bits<16>>,
+    /// Moment of the position.
+    pub first_fall_timestamp: Signal<In, Bits<32>>,
+    /// The channel whose turn it is.
+    pub turn: Signal<In, Bits<3>>,
+    /// It is this one's turn, and a position waits.
+    pub ready: Signal<Out, Bit>,
+    /// With `ready` the number of its result, else 0.
+    pub ready_sequence: Signal<Out, Bits<16>>,
+    /// With `ready` its moment, else 0.
+    pub ready_moment: Signal<Out, Bits<32>>,
+    /// With `ready` the first byte of its set, else 0.
+    pub ready_head: Signal<Out, Bits<8>>,
+    /// With `ready` the place of the channel in a set, else 0.
+    pub ready_place: Signal<Out, Bits<7>>,
+    /// Strobe: the position of the channel with `ready` is taken.
+    pub take: Signal<In, Bit>,
+    /// Strobe: this one is taken.
+    pub take_run: Signal<Out, Bit>,
+    /// A position has been lost.
+    pub lost: Signal<Out, Bit>,
+    /// Strobe: it has been counted.
+    pub counted: Signal<In, Bit>,
+    asked: Reg<Bit>,
+    waits: Reg<Bit>,
+    dropped: Reg<Bit>,
+    ready_now: Signal<Local, Bit>,
+    number: Constant<Bits<3>>,
+    head: Constant<Bits<8>>,
+    place: Constant<Bits<7>>,
+}
+
+impl RunChannel {
+    /// That of channel `channel`.
+    pub fn new(channel: usize) -> Self {
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            collects: Default::default(),
+            taken: Default::default(),
+            result_strobe: Default::default(),
+            sequence: Default::default(),
+            first_fall_timestamp: Default::default(),
+            turn: Default::default(),
+            ready: Default::default(),
+            ready_sequence: Default::default(),
+            ready_moment: Default::default(),
+            ready_head: Default::default(),
+            ready_place: Default::default(),
+            take: Default::default(),
+            take_run: Default::default(),
+            lost: Default::default(),
+            counted: Default::default(),
+            asked: Default::default(),
+            waits: Default::default(),
+            dropped: Default::default(),
+            ready_now: Default::default(),
+            number: Constant::new((channel as u64).into()),
+            head: Constant::new((RUN_SET_TYPE << 4 | channel as u64).into()),
+            place: Constant::new((8 * (channel as u64 + 1)).into()),
+        }
+    }
+}
+
+impl Logic for RunChannel {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(self, clock, asked, waits, dropped);
+        self.asked.reset.next = self.reset.val();
+        self.waits.reset.next = self.reset.val();
+        self.dropped.reset.next = self.reset.val();
+
+        // In the cycle of a result what is shown is the new one.
+        self.ready_now.next = self.waits.q.val()
+            & !(self.result_strobe.val() & self.asked.q.val())
+            & (self.turn.val() == self.number.val());
+        if self.counted.val() {
+            self.dropped.d.next = false;
+        }
+        if self.result_strobe.val() {
+            self.asked.d.next = false;
+            self.waits.d.next = !self.asked.q.val() & self.collects.val();
+            if self.waits.q.val() {
+                self.dropped.d.next = true;
+            }
+        }
+        if self.ready_now.val() & self.take.val() {
+            self.waits.d.next = false;
+        }
+        if self.taken.val() {
+            self.asked.d.next = true;
+        }
+
+        self.ready.next = self.ready_now.val();
+        self.take_run.next = self.ready_now.val() & self.take.val();
+        self.ready_sequence.next = 0.into();
+        self.ready_moment.next = 0.into();
+        self.ready_head.next = 0.into();
+        self.ready_place.next = 0.into();
+        if self.ready_now.val() {
+            self.ready_sequence.next = self.sequence.val();
+            self.ready_moment.next = self.first_fall_timestamp.val();
+            self.ready_head.next = self.head.val();
+            self.ready_place.next = self.place.val();
+        }
+        self.lost.next = self.dropped.q.val();
+    }
+}

@@ -1,0 +1,452 @@
+//! Whole result: result and informations of one frame, for the registers of a channel with requests.
+//!
+//! ```text
+//! frame       command  position  info 2  info 1 ~~~tm~~~\_________ next one
+//! result_in   _______________/\___________________________________
+//! is_open     _______________/~~~~~~~~~~~~~~~~~~~~~~~~~~~~\_______
+//! over        ____________________________________________/\______    informations are captured here, once
+//! outputs     the result before, its informations         | this frame's, both
+//! ```
+//!
+//! The outputs follow the result, but not from its publication until its frame is over: then they and the informations change in one cycle. So
+//! whoever looks never mixes two frames, and none is waited for that never comes: each frame has an end. Frames that measure the delay and frames
+//! of requests end without a result of their own, and change nothing.
+//!
+//! The stream does not wait so long for the position: it takes the result from the channel and the informations, or that they are still due, from here.
+//!
+//! Without the additional informations (T-format) all of it is wires.
+
+use crate::reg::Reg;
+use crate::regs::{BLOCK_STRIDE, RESULT_BASE};
+use rust_hdl::prelude::*;
+
+/// Place of the first of the two words in a result.
+pub const INFO_OFFSET: u16 = 6;
+
+/// Result and informations of one channel.
+#[derive(LogicBlock)]
+pub struct WholeResult {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// Strobe: the channel takes a trigger.
+    pub taken: Signal<In, Bit>,
+    /// Strobe: a new result is there.
+    pub strobe_in: Signal<In, Bit>,
+    /// Age of the position, in microseconds.
+    pub age_in: Signal<In, Bits<16>>,
+    /// Last good position.
+    pub position_in: Signal<In, Bits<48>>,
+    /// There is a good position.
+    pub position_valid_in: Signal<In, Bit>,
+    /// The result brought the position.
+    pub fresh_in: Signal<In, Bit>,
+    /// Number of results.
+    pub sequence_in: Signal<In, Bits<16>>,
+    /// First falling clock edge of the position's frame.
+    pub first_fall_timestamp_in: Signal<In, Bits<32>>,
+    /// Primary cause.
+    pub cause_in: Signal<In, Bits<5>>,
+    /// Raw flags.
+    pub flags_in: Signal<In, Bits<20>>,
+    /// CRC as received.
+    pub crc_received_in: Signal<In, Bits<5>>,
+    /// CRC as computed.
+    pub crc_computed_in: Signal<In, Bits<5>>,
+    /// CRC that came with the position.
+    pub position_crc_in: Signal<In, Bits<5>>,
+    /// Width of the position.
+    pub position_width_in: Signal<In, Bits<6>>,
+    /// The position came with F2.
+    pub position_has_f2_in: Signal<In, Bit>,
+    /// Recovery time, in system clock cycles.
+    pub recovery_cycles_in: Signal<In, Bits<13>>,
+    /// Tracked line delay, in system clock cycles.
+    pub delay_cycles_in: Signal<In, Bits<11>>,
+    /// Strobe: a frame has ended.
+    pub over: Signal<In, Bit>,
+    /// The encoder sends after each EnDat 2.2 position: bit 0 information 1, bit 1 information 2.
+    pub info_active: Signal<In, Bits<2>>,
+    /// Information 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
+    pub info_1: Signal<In, Bits<24>>,
+    /// Information 2 as it came last.
+    pub info_2: Signal<In, Bits<24>>,
+    /// The frame brought: bit 0 information 1, bit 1 information 2.
+    pub info_came: Signal<In, Bits<2>>,
+    /// Their CRCs are right.
+    pub info_good: Signal<In, Bits<2>>,
+    /// The frame of the newest result is not over: informations may still come.
+    pub is_open: Signal<Out, Bit>,
+    /// Information 1 of the newest result's frame: 24 bits, came, good, due.
+    pub word_1: Signal<Out, Bits<27>>,
+    /// Information 2 of it.
+    pub word_2: Signal<Out, Bits<27>>,
+    /// Strobe: a new whole result is there; all that follows is of it.
+    pub result_strobe: Signal<Out, Bit>,
+    /// Age of the position, in microseconds.
+    pub age_us: Signal<Out, Bits<16>>,
+    /// Last good position.
+    pub position: Signal<Out, Bits<48>>,
+    /// There is a good position.
+    pub position_valid: Signal<Out, Bit>,
+    /// The result brought the position.
+    pub fresh: Signal<Out, Bit>,
+    /// Number of results.
+    pub sequence: Signal<Out, Bits<16>>,
+    /// First falling clock edge of the position's frame.
+    pub first_fall_timestamp: Signal<Out, Bits<32>>,
+    /// Primary cause.
+    pub cause: Signal<Out, Bits<5>>,
+    /// Raw flags.
+    pub flags: Signal<Out, Bits<20>>,
+    /// CRC as received.
+    pub crc_received: Signal<Out, Bits<5>>,
+    /// CRC as computed.
+    pub crc_computed: Signal<Out, Bits<5>>,
+    /// CRC that came with the position.
+    pub position_crc: Signal<Out, Bits<5>>,
+    /// Width of the position.
+    pub position_width: Signal<Out, Bits<6>>,
+    /// The position came with F2.
+    pub position_has_f2: Signal<Out, Bit>,
+    /// Recovery time, in system clock cycles.
+    pub recovery_cycles: Signal<Out, Bits<13>>,
+    /// Tracked line delay, in system clock cycles.
+    pub delay_cycles: Signal<Out, Bits<11>>,
+    /// The held words follow.
+    pub load: Signal<In, Bit>,
+    /// Word address of the access.
+    pub word_address: Signal<In, Bits<11>>,
+    /// It is one of the register map.
+    pub in_range: Signal<In, Bit>,
+    /// Byte of the word, 0 = most significant.
+    pub lane: Signal<In, Bits<2>>,
+    /// The byte of the held informations, 1 cycle later; 0 if another word is read.
+    pub read_byte: Signal<Out, Bits<8>>,
+    open: Reg<Bit>,
+    past: Reg<Bit>,
+    whole: Reg<Bit>,
+    first: Reg<Bits<26>>,
+    second: Reg<Bits<26>>,
+    age: Reg<Bits<16>>,
+    position_kept: Reg<Bits<48>>,
+    position_valid_kept: Reg<Bit>,
+    fresh_kept: Reg<Bit>,
+    sequence_kept: Reg<Bits<16>>,
+    first_fall_timestamp_kept: Reg<Bits<32>>,
+    cause_kept: Reg<Bits<5>>,
+    flags_kept: Reg<Bits<20>>,
+    crc_received_kept: Reg<Bits<5>>,
+    crc_computed_kept: Reg<Bits<5>>,
+    position_crc_kept: Reg<Bits<5>>,
+    position_width_kept: Reg<Bits<6>>,
+    position_has_f2_kept: Reg<Bit>,
+    recovery_cycles_kept: Reg<Bits<13>>,
+    delay_cycles_kept: Reg<Bits<11>>,
+    held_first: Reg<Bits<26>>,
+    held_second: Reg<Bits<26>>,
+    byte_read: Reg<Bits<8>>,
+    opens: Signal<Local, Bit>,
+    open_now: Signal<Local, Bit>,
+    closes: Signal<Local, Bit>,
+    follows: Signal<Local, Bit>,
+    filled_1: Signal<Local, Bits<26>>,
+    filled_2: Signal<Local, Bits<26>>,
+    selected: Signal<Local, Bit>,
+    word: Signal<Local, Bits<32>>,
+    pair: Constant<Bits<10>>,
+    has_infos: Constant<Bit>,
+}
+
+impl WholeResult {
+    /// That of channel `channel`, which has informations or not.
+    pub fn new(channel: usize, has_infos: bool) -> Self {
+        let first = RESULT_BASE + BLOCK_STRIDE * channel as u16 + INFO_OFFSET;
+        Self {
+            clock: Default::default(),
+            reset: Default::default(),
+            tick_us: Default::default(),
+            taken: Default::default(),
+            strobe_in: Default::default(),
+            age_in: Default::default(),
+            position_in: Default::default(),
+            position_valid_in: Default::default(),
+            fresh_in: Default::default(),
+            sequence_in: Default::default(),
+            first_fall_timestamp_in: Default::default(),
+            cause_in: Default::default(),
+            flags_in: Default::default(),
+            crc_received_in: Default::default(),
+            crc_computed_in: Default::default(),
+            position_crc_in: Default::default(),
+            position_width_in: Default::default(),
+            position_has_f2_in: Default::default(),
+            recovery_cycles_in: Default::default(),
+            delay_cycles_in: Default::default(),
+            over: Default::default(),
+            info_active: Default::default(),
+            info_1: Default::default(),
+            info_2: Default::default(),
+            info_came: Default::default(),
+            info_good: Default::default(),
+            is_open: Default::default(),
+            word_1: Default::default(),
+            word_2: Default::default(),
+            result_strobe: Default::default(),
+            age_us: Default::default(),
+            position: Default::default(),
+            position_valid: Default::default(),
+            fresh: Default::default(),
+            sequence: Default::default(),
+            first_fall_timestamp: Default::default(),
+            cause: Default::default(),
+            flags: Default::default(),
+            crc_received: Default::default(),
+            crc_computed: Default::default(),
+            position_crc: Default::default(),
+            position_width: Default::default(),
+            position_has_f2: Default::default(),
+            recovery_cycles: Default::default(),
+            delay_cycles: Default::default(),
+            load: Default::default(),
+            word_address: Default::default(),
+            in_range: Default::default(),
+            lane: Default::default(),
+            read_byte: Default::default(),
+            open: Default::default(),
+            past: Default::default(),
+            whole: Default::default(),
+            first: Default::default(),
+            second: Default::default(),
+            age: Default::default(),
+            position_kept: Default::default(),
+            position_valid_kept: Default::default(),
+            fresh_kept: Default::default(),
+            sequence_kept: Default::default(),
+            first_fall_timestamp_kept: Default::default(),
+            cause_kept: Default::default(),
+            flags_kept: Default::default(),
+            crc_received_kept: Default::default(),
+            crc_computed_kept: Default::default(),
+            position_crc_kept: Default::default(),
+            position_width_kept: Default::default(),
+            position_has_f2_kept: Default::default(),
+            recovery_cycles_kept: Default::default(),
+            delay_cycles_kept: Default::default(),
+            held_first: Default::default(),
+            held_second: Default::default(),
+            byte_read: Default::default(),
+            opens: Default::default(),
+            open_now: Default::default(),
+            closes: Default::default(),
+            follows: Default::default(),
+            filled_1: Default::default(),
+            filled_2: Default::default(),
+            selected: Default::default(),
+            word: Default::default(),
+            pair: Constant::new(u64::from(first / 2).into()),
+            has_infos: Constant::new(has_infos),
+        }
+    }
+}
+
+impl Logic for WholeResult {
+    #[hdl_gen]
+    fn update(&mut self) {
+        dff_setup!(
+            self,
+            clock,
+            open,
+            past,
+            whole,
+            first,
+            second,
+            age,
+            held_first,
+            held_second,
+            byte_read
+        );
+        dff_setup!(
+            self,
+            clock,
+            position_kept,
+            position_valid_kept,
+            fresh_kept,
+            sequence_kept,
+            first_fall_timestamp_kept,
+            cause_kept,
+            flags_kept
+        );
+        dff_setup!(
+            self,
+            clock,
+            crc_received_kept,
+            crc_computed_kept,
+            position_crc_kept,
+            position_width_kept,
+            position_has_f2_kept,
+            recovery_cycles_kept,
+            delay_cycles_kept
+        );
+        self.open.reset.next = self.reset.val();
+        self.past.reset.next = self.reset.val();
+        self.whole.reset.next = self.reset.val();
+        self.first.reset.next = self.reset.val();
+        self.second.reset.next = self.reset.val();
+        self.age.reset.next = self.reset.val();
+        self.position_kept.reset.next = self.reset.val();
+        self.position_valid_kept.reset.next = self.reset.val();
+        self.fresh_kept.reset.next = self.reset.val();
+        self.sequence_kept.reset.next = self.reset.val();
+        self.first_fall_timestamp_kept.reset.next = self.reset.val();
+        self.cause_kept.reset.next = self.reset.val();
+        self.flags_kept.reset.next = self.reset.val();
+        self.crc_received_kept.reset.next = self.reset.val();
+        self.crc_computed_kept.reset.next = self.reset.val();
+        self.position_crc_kept.reset.next = self.reset.val();
+        self.position_width_kept.reset.next = self.reset.val();
+        self.position_has_f2_kept.reset.next = self.reset.val();
+        self.recovery_cycles_kept.reset.next = self.reset.val();
+        self.delay_cycles_kept.reset.next = self.reset.val();
+        self.held_first.reset.next = self.reset.val();
+        self.held_second.reset.next = self.reset.val();
+
+        // A frame that is given up before its position ends a cycle before its result is there; one that withdraws its position changes the
+        // result a cycle after its end.
+        self.past.d.next = self.over.val();
+        self.opens.next = self.strobe_in.val()
+            & !self.past.q.val()
+            & self.info_active.val().any()
+            & (self.position_has_f2_in.val() | !self.fresh_in.val());
+        self.open_now.next = self.open.q.val() | self.opens.val();
+        // The next frame: that of the result must have ended.
+        self.closes.next = self.open.q.val() & (self.past.q.val() | self.taken.val());
+        self.open.d.next = self.open_now.val() & !self.closes.val();
+        self.is_open.next = self.open_now.val();
+
+        // The content counts if its CRC is right.
+        self.filled_1.next = bit_cast::<26, 1>(self.info_came.val().get_bits::<1>(0)) << 24;
+        if self.info_came.val().get_bit(0) & self.info_good.val().get_bit(0) {
+            self.filled_1.next =
+                bit_cast::<26, 24>(self.info_1.val()) | (bit_cast::<26, 2>(3.into()) << 24);
+        }
+        self.filled_2.next = bit_cast::<26, 1>(self.info_came.val().get_bits::<1>(1)) << 24;
+        if self.info_came.val().get_bit(1) & self.info_good.val().get_bit(1) {
+            self.filled_2.next =
+                bit_cast::<26, 24>(self.info_2.val()) | (bit_cast::<26, 2>(3.into()) << 24);
+        }
+
+        // While nothing is open the result may still change: its cause when the frame ends, an upset at any time.
+        self.follows.next = !self.open_now.val() | self.closes.val();
+        self.whole.d.next = (self.strobe_in.val() & !self.opens.val()) | self.closes.val();
+        self.age.d.next = self.age.q.val();
+        if self.tick_us.val() & !self.age.q.val().all() {
+            self.age.d.next = self.age.q.val() + 1;
+        }
+        if self.follows.val() {
+            self.age.d.next = self.age_in.val();
+            self.position_kept.d.next = self.position_in.val();
+            self.position_valid_kept.d.next = self.position_valid_in.val();
+            self.fresh_kept.d.next = self.fresh_in.val();
+            self.sequence_kept.d.next = self.sequence_in.val();
+            self.first_fall_timestamp_kept.d.next = self.first_fall_timestamp_in.val();
+            self.cause_kept.d.next = self.cause_in.val();
+            self.flags_kept.d.next = self.flags_in.val();
+            self.crc_received_kept.d.next = self.crc_received_in.val();
+            self.crc_computed_kept.d.next = self.crc_computed_in.val();
+            self.position_crc_kept.d.next = self.position_crc_in.val();
+            self.position_width_kept.d.next = self.position_width_in.val();
+            self.position_has_f2_kept.d.next = self.position_has_f2_in.val();
+            self.recovery_cycles_kept.d.next = self.recovery_cycles_in.val();
+            self.delay_cycles_kept.d.next = self.delay_cycles_in.val();
+        }
+        if self.strobe_in.val() & !self.opens.val() {
+            self.first.d.next = 0.into();
+            self.second.d.next = 0.into();
+        }
+        if self.closes.val() {
+            self.first.d.next = self.filled_1.val();
+            self.second.d.next = self.filled_2.val();
+        }
+        self.result_strobe.next = self.strobe_in.val();
+        self.age_us.next = self.age_in.val();
+        self.position.next = self.position_in.val();
+        self.position_valid.next = self.position_valid_in.val();
+        self.fresh.next = self.fresh_in.val();
+        self.sequence.next = self.sequence_in.val();
+        self.first_fall_timestamp.next = self.first_fall_timestamp_in.val();
+        self.cause.next = self.cause_in.val();
+        self.flags.next = self.flags_in.val();
+        self.crc_received.next = self.crc_received_in.val();
+        self.crc_computed.next = self.crc_computed_in.val();
+        self.position_crc.next = self.position_crc_in.val();
+        self.position_width.next = self.position_width_in.val();
+        self.position_has_f2.next = self.position_has_f2_in.val();
+        self.recovery_cycles.next = self.recovery_cycles_in.val();
+        self.delay_cycles.next = self.delay_cycles_in.val();
+        if self.has_infos.val() {
+            self.result_strobe.next = self.whole.q.val();
+            self.age_us.next = self.age.q.val();
+            self.position.next = self.position_kept.q.val();
+            self.position_valid.next = self.position_valid_kept.q.val();
+            self.fresh.next = self.fresh_kept.q.val();
+            self.sequence.next = self.sequence_kept.q.val();
+            self.first_fall_timestamp.next = self.first_fall_timestamp_kept.q.val();
+            self.cause.next = self.cause_kept.q.val();
+            self.flags.next = self.flags_kept.q.val();
+            self.crc_received.next = self.crc_received_kept.q.val();
+            self.crc_computed.next = self.crc_computed_kept.q.val();
+            self.position_crc.next = self.position_crc_kept.q.val();
+            self.position_width.next = self.position_width_kept.q.val();
+            self.position_has_f2.next = self.position_has_f2_kept.q.val();
+            self.recovery_cycles.next = self.recovery_cycles_kept.q.val();
+            self.delay_cycles.next = self.delay_cycles_kept.q.val();
+        }
+
+        // For the stream: what is there may be of the result before.
+        self.word_1.next = 0.into();
+        self.word_2.next = 0.into();
+        if self.open_now.val() {
+            self.word_1.next = bit_cast::<27, 1>(1.into()) << 26;
+            self.word_2.next = bit_cast::<27, 1>(1.into()) << 26;
+        } else {
+            if !self.strobe_in.val() {
+                self.word_1.next = bit_cast::<27, 26>(self.first.q.val());
+                self.word_2.next = bit_cast::<27, 26>(self.second.q.val());
+            }
+        }
+
+        // The host's words.
+        if self.load.val() {
+            self.held_first.d.next = self.first.q.val();
+            self.held_second.d.next = self.second.q.val();
+        }
+        self.selected.next = self.has_infos.val()
+            & self.in_range.val()
+            & (self.word_address.val().get_bits::<10>(1) == self.pair.val());
+        self.word.next = bit_cast::<32, 26>(self.held_first.q.val());
+        if self.word_address.val().get_bit(0) {
+            self.word.next = bit_cast::<32, 26>(self.held_second.q.val());
+        }
+        // A reset by deselection takes no logic.
+        self.byte_read.reset.next = !self.selected.val();
+        match self.lane.val().index() {
+            0 => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(24);
+            }
+            1 => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(16);
+            }
+            2 => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(8);
+            }
+            _ => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(0);
+            }
+        }
+        self.read_byte.next = self.byte_read.q.val();
+    }
+}

@@ -1,0 +1,277 @@
+//! Informations of one frame with its position: in the results, and in the sets of the stream.
+
+use crate::hosts::desk::Desk;
+use endat_gen::config::{parse, preset, Project};
+use endat_gen::virtual_card::VirtualConfig;
+use endat_host::info::Info;
+use endat_host::stream::SampleSet;
+use endat_sim::{encoder::Defect, US};
+use std::time::Duration;
+
+/// Position 2, low word, which is here the low word of the position; and the encoder's clock: other ones in each frame.
+const INFOS: &str = "\ninfos = [0x42, 0x5B]";
+
+/// The card with service, these keys replaced.
+pub fn project(changes: &[(&str, &str)]) -> Project {
+    let mut text = preset("s6_two_channel_service").unwrap().to_owned();
+    let parts = "parts = [\"requests\", \"diagnosis\", \"continuous\", \"initialise\"]";
+    assert!(text.contains(parts));
+    text = text.replacen(parts, &format!("{parts}{INFOS} #"), 1);
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replacen(from, to, 1);
+    }
+    parse("card.toml", &text).unwrap()
+}
+
+/// A card at rest whose encoders are known, and send both informations with each frame.
+pub fn desk(project: &Project) -> Desk {
+    let config = VirtualConfig {
+        speed: 40.0,
+        ..VirtualConfig::default()
+    };
+    let mut desk = Desk::new(project, &config);
+    for _ in 0..200 {
+        desk.run_ms(1);
+        let results = desk.card.results().unwrap().channels;
+        if results.iter().all(|r| r.infos.iter().all(|i| i.good)) {
+            return desk;
+        }
+    }
+    panic!("the informations never come");
+}
+
+/// Informations 1 and 2 of the encoder's frame with this position, one of its last 60; and how many of its frames were later.
+fn sent(desk: &mut Desk, channel: usize, position: u64) -> ([u16; 2], usize) {
+    let bench = desk.card.bridge().transport().bench();
+    let frames = bench.frames(channel);
+    let mut last = frames.iter().rev().take(60).enumerate();
+    let (ago, frame) = last
+        .find(|(_, f)| f.position == position)
+        .unwrap_or_else(|| panic!("channel {channel}: no frame had {position:#x}"));
+    let [second, first] = &frame.infos[..] else {
+        panic!("{frame:?}");
+    };
+    assert_eq!([first.0.code, second.0.code], [0x42, 0x5B]);
+    ([first.0.content, second.0.content], ago)
+}
+
+fn good(info: Info) -> u16 {
+    assert!(info.came && info.good && !info.due, "{info:?}");
+    info.content
+}
+
+/// Catches a snapshot that takes the position of one frame and an information of another one.
+#[test]
+fn position_and_both_informations_of_a_result_are_of_one_frame() {
+    // At rest between frames, and one frame after the other with triggers that are lost.
+    for period in [10_000, 2_900] {
+        let mut desk = desk(&project(&[("start = \"off\"", "start = \"off\"")]));
+        desk.set("card_config.trigger_sources.timer", 0);
+        desk.set("card_config.trigger_period", period);
+        desk.set("card_config.trigger_sources.timer", 1);
+        desk.run_ms(1);
+        let mut state = 0x1234_5678_9abc_def1u64;
+        let mut seen = std::collections::BTreeSet::new();
+        for n in 0..200 {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            desk.card.bridge().transport().run(state % 20_000);
+            let hold = n % 4 == 0;
+            if hold {
+                desk.set("card_config.hold.hold", 1);
+            }
+            let results = desk.card.results().unwrap().channels;
+            let stamps: Vec<u32> = results.iter().map(|r| r.timestamp).collect();
+            // Where triggers are lost each channel takes its own.
+            if period == 10_000 {
+                assert_eq!(stamps[0], stamps[1], "both of one trigger");
+            }
+            for (channel, result) in results.iter().enumerate() {
+                assert!(result.fresh, "{result:?}");
+                let (infos, ago) = sent(&mut desk, channel, result.position);
+                assert_eq!(result.infos.map(good), infos, "{n} {channel} {result:?}");
+                // An answer of the link takes seven triggers.
+                assert!(ago < 40, "{ago}");
+                seen.insert(result.position);
+            }
+            if hold {
+                desk.card.bridge().transport().run(state % 20_000);
+                let again = desk.card.results().unwrap().channels;
+                for (before, now) in results.iter().zip(&again) {
+                    assert_eq!((now.position, now.infos), (before.position, before.infos));
+                }
+                desk.set("card_config.hold.hold", 0);
+            }
+        }
+        assert!(seen.len() > 300, "{}", seen.len());
+    }
+}
+
+/// Catches a result that shows what an earlier frame brought, or the frame of a request after it.
+#[test]
+fn a_result_has_no_information_of_another_frame() {
+    let mut desk = desk(&project(&[]));
+    // One trigger at a time.
+    desk.set("card_config.trigger_sources", 4);
+    desk.run_ms(1);
+    let trigger = |desk: &mut Desk| {
+        desk.set("card.trigger_now", 1);
+        desk.run_ms(1);
+        desk.card.results().unwrap().channels[0]
+    };
+    let before = trigger(&mut desk);
+    assert!(before.infos.iter().all(|i| i.good));
+    // A request of its own has a frame of its own, which brings none.
+    desk.send(0, 0x0E, 0xA1, 0);
+    assert_eq!(desk.card.results().unwrap().channels[0].infos, before.infos);
+    let spoil = |desk: &mut Desk, defect| {
+        let bench = desk.card.bridge().transport().bench();
+        bench.link_mut(0).encoder_mut().spoil_next(defect);
+    };
+    // One with a wrong CRC, and the other one of the same frame.
+    for info in [1, 2] {
+        spoil(&mut desk, Defect::InfoCrcXor { info, xor: 0b10 });
+        let result = trigger(&mut desk);
+        assert!(result.fresh, "{result:?}");
+        let (infos, _) = sent(&mut desk, 0, result.position);
+        for (n, (shown, sent)) in result.infos.into_iter().zip(infos).enumerate() {
+            match n + 1 == usize::from(info) {
+                true => assert_eq!(
+                    shown,
+                    Info {
+                        came: true,
+                        ..Info::default()
+                    }
+                ),
+                false => assert_eq!(good(shown), sent),
+            }
+        }
+    }
+    // No answer at all: position and informations are not of that frame. (A lost delay is measured again, with a pause before that.)
+    spoil(&mut desk, Defect::NoStartBit);
+    let result = trigger(&mut desk);
+    assert!(!result.fresh, "{result:?}");
+    assert_eq!(result.infos, [Info::default(); 2]);
+    desk.run_ms(40);
+    // The frame that measures brings informations, too: those of the position are of the frame behind it.
+    let result = trigger(&mut desk);
+    assert!(result.fresh, "{result:?}");
+    let (infos, _) = sent(&mut desk, 0, result.position);
+    assert_eq!(result.infos.map(good), infos);
+    // An encoder that has forgotten them.
+    let bench = desk.card.bridge().transport().bench();
+    let now = bench.now();
+    bench
+        .link_mut(0)
+        .encoder_mut()
+        .unplug(now + US, now + 2 * US);
+    desk.run_ms(3);
+    let result = trigger(&mut desk);
+    assert_eq!(result.infos.map(|i| i.came), [false; 2], "{result:?}");
+    let result = trigger(&mut desk);
+    assert_eq!(result.infos, [Info::default(); 2], "{result:?}");
+}
+
+/// Sets that have been pushed in so many milliseconds.
+pub fn pushed(desk: &mut Desk, ms: u64) -> Vec<SampleSet> {
+    let mut sets = Vec::new();
+    for _ in 0..2 * ms {
+        desk.card.bridge().transport().run(50_000);
+        let new = desk.card.bridge().pushed(Duration::from_micros(1)).unwrap();
+        sets.extend(new);
+    }
+    sets
+}
+
+/// The stream begins, and pushes.
+pub fn push(desk: &mut Desk) {
+    desk.set("card.stream_clear", 1);
+    desk.set("card.stream_control", 3);
+    desk.card.bridge().set_pushes(true);
+}
+
+fn streaming() -> Project {
+    project(&[
+        ("sample_hz = 10_000", "sample_hz = 5_000"),
+        ("start = \"off\"", "informations = true\nstart = \"off\""),
+    ])
+}
+
+/// Catches a set that is closed before its informations are there, and one that mixes two frames.
+#[test]
+fn sets_have_both_informations_of_their_frame() {
+    let mut desk = desk(&streaming());
+    assert!(desk.card.identity().stream_informations);
+    push(&mut desk);
+    let mut count = 0;
+    let mut last = None;
+    for _ in 0..20 {
+        for set in pushed(&mut desk, 2) {
+            assert_eq!((set.run, set.lost, set.channels.len()), (None, 0, 2));
+            assert!(last.is_none_or(|last: u16| set.sequence == last.wrapping_add(1)));
+            last = Some(set.sequence);
+            for (channel, sample) in set.channels.iter().enumerate() {
+                assert!(sample.fresh && sample.taken && !sample.missing);
+                let (infos, _) = sent(&mut desk, channel, sample.position);
+                assert_eq!(sample.infos.unwrap().map(good), infos);
+            }
+            count += 1;
+        }
+    }
+    assert!(count > 150, "{count} sets");
+    assert_eq!(desk.card.bridge().decoder().damaged(), 0);
+}
+
+#[test]
+fn sets_tell_an_information_that_is_missing_or_wrong() {
+    let mut desk = desk(&streaming());
+    push(&mut desk);
+    pushed(&mut desk, 2);
+    for info in [1u8, 2] {
+        let bench = desk.card.bridge().transport().bench();
+        let encoder = bench.link_mut(1).encoder_mut();
+        encoder.spoil_next(Defect::InfoCrcXor { info, xor: 0b10 });
+        let sets = pushed(&mut desk, 3);
+        let wrong = |s: &&SampleSet| !s.channels[1].infos.unwrap()[usize::from(info) - 1].good;
+        let all: Vec<&SampleSet> = sets.iter().filter(wrong).collect();
+        assert_eq!(all.len(), 1, "{sets:?}");
+        let infos = all[0].channels[1].infos.unwrap();
+        let spoilt = Info {
+            came: true,
+            ..Info::default()
+        };
+        assert_eq!(infos[usize::from(info) - 1], spoilt);
+        let (sent, _) = sent(&mut desk, 1, all[0].channels[1].position);
+        let other = usize::from(2 - info);
+        assert_eq!(good(infos[other]), sent[other]);
+        assert!(all[0].channels[0].infos.unwrap().iter().all(|i| i.good));
+    }
+    // The encoder forgets what it was asked to send.
+    let bench = desk.card.bridge().transport().bench();
+    let now = bench.now();
+    bench.link_mut(1).encoder_mut().unplug(now, now + 2 * US);
+    let sets = pushed(&mut desk, 60);
+    let without = |s: &&SampleSet| s.channels[1].infos.unwrap().iter().all(|i| !i.came);
+    let all: Vec<&SampleSet> = sets.iter().filter(without).collect();
+    assert!(all.len() > 10, "{}", all.len());
+    for set in &all {
+        let (sample, infos) = (&set.channels[1], set.channels[1].infos.unwrap());
+        assert_eq!(infos, [Info::default(); 2], "{sample:?}");
+        // Late, not there, or without informations in good order once that is known.
+        let frames = desk.card.bridge().transport().bench().frames(1);
+        let brought = frames
+            .iter()
+            .rev()
+            .take(400)
+            .find(|f| f.position == sample.position);
+        assert!(!sample.fresh || brought.unwrap().infos.is_empty());
+    }
+    // Frames that were given up are among them.
+    assert!(all.iter().any(|s| !s.channels[1].fresh));
+    let whole = sets
+        .iter()
+        .filter(|s| s.channels[0].infos.unwrap().iter().all(|i| i.good));
+    assert!(whole.count() > sets.len() - 2);
+}
