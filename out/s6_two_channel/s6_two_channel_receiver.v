@@ -288,7 +288,7 @@ module s6_two_channel_receiver (
         end
     end
     assign start_sample = (field == FIELD_START) & sample & level;
-    assign counts = sample & !((field == FIELD_DONE) & (left == 7'd1));
+    assign counts = sample & ((field != FIELD_DONE) | (|left[6:1]));
     assign one_more = sample & (field == FIELD_START);
     assign one_less = pulse | (acquire & rise & (field == FIELD_SKIP));
     assign in5 = width <= 6'd3;
