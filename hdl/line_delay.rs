@@ -345,7 +345,10 @@ impl Logic for LineDelay {
                 self.wrong.d.next = true;
             }
         }
-        if self.acquired.val() {
+        // One from a register is not measured.
+        if self.acquired.val()
+            | (self.has_alignment.val() & (self.mode.val() == self.fixed_mode.val()))
+        {
             self.wrong.d.next = false;
         }
         self.is_upset.next = self.wrong.q.val();

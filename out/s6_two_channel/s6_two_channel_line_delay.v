@@ -70,6 +70,7 @@ module s6_two_channel_line_delay (
     localparam         HAS_ALIGNMENT = 1'b0;
     localparam         HAS_DOUBLE = 1'b0;
     localparam   [1:0] FRAME_MODE = 2'd2;
+    localparam   [1:0] FIXED_MODE = 2'd1;
 
     wire         parity_now;
     wire         first_rise;
@@ -189,7 +190,7 @@ module s6_two_channel_line_delay (
         end else if (parity_now ^ parity) begin
             wrong_next = 1'b1;
         end
-        if (acquired) begin
+        if (acquired | (HAS_ALIGNMENT & (mode == FIXED_MODE))) begin
             wrong_next = 1'b0;
         end
     end

@@ -135,6 +135,8 @@ fn the_host_chooses_where_the_phase_comes_from() {
     let modes = [
         (mode::FRAME, 0, true),
         (mode::FIXED, tracked, true),
+        (mode::FIXED, tracked + 16, true),
+        (mode::FIXED, tracked + 2 * 16, true),
         // Half a bit of 32 cycles off: on the edges.
         (mode::FIXED, tracked + 16 * 16, false),
         (mode::FIXED, tracked - 10 * 16, true),
