@@ -36,6 +36,14 @@ fn a_stream_that_cannot_fit_is_refused() {
             "trigger.sample_hz = 10000: the stream does not fit: 10000 sets a second of 44 bytes take 4400000 bit/s, link.baud is 3000000; lower it to 6818 or less",
         ),
         (
+            &[("fifo_bytes = 2_048", "fifo_bytes = 0"), ("start = \"off\"", "informations = true\nstart = \"off\"")],
+            "stream.informations = true: a stream without a buffer; set stream.fifo_bytes = 2048, or stream.informations = false",
+        ),
+        (
+            &[(r#"parts = ["requests", "diagnosis", "continuous", "initialise"]"#, "parts = []"), ("start = \"off\"", "informations = true\nstart = \"off\"")],
+            "stream.informations = true: a card without requests has no additional informations; add \"requests\" to service.parts, or set stream.informations = false",
+        ),
+        (
             &[("start = \"off\"", "start = \"on\"")],
             "stream.start = \"on\": unknown; use off, collect, push",
         ),

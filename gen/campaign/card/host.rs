@@ -2,8 +2,11 @@
 //! else helps, as the pages on the link and on the stream say.
 
 use super::line::Line;
+use super::told::{Kind, Known, Round, Seen, Verdict, What};
+use endat_hdl::regs::{BLOCK_STRIDE, CARD, CONFIG_BASE, RESULT_BASE, SERVICE, SERVICE_BASE};
+use endat_hdl::service::map::{control, word};
 use endat_host::result::{Reading, STRIDE, WORDS};
-use endat_host::stream::{Decoder, SampleSet};
+use endat_host::stream::SampleSet;
 use std::collections::VecDeque;
 
 /// Channels of the card.
@@ -35,129 +38,13 @@ const PATIENCE: u64 = 80_000;
 const SEND_PARAMETER: u32 = 0x230D_0000;
 const SELECT_MEMORY: u32 = 0x0EA1_0000;
 
-/// Where words are.
-mod at {
-    pub const STREAM_CONTROL: u16 = 0x00C;
-    pub const STREAM_DATA: u16 = 0x00E;
-    pub const STREAM_CLEAR: u16 = 0x00F;
-    pub const CONFIG: u16 = 0x100;
-    pub const RESULT: u16 = 0x180;
-    pub const SERVICE: u16 = 0x400;
-    pub const SERVICE_STRIDE: u16 = 0x80;
-    pub const REQUEST_STATE: u16 = 1;
-    pub const ANSWER: u16 = 2;
-    pub const CONTROL: u16 = 5;
-}
+/// Configuration words of the card, and of each channel.
+pub const CONFIG_WORDS: usize = 3;
 
-/// Configuration words: three of the card and of each channel, and where they are.
-const CONFIG_WORDS: usize = 3;
-const CONFIG_STRIDE: usize = 8;
-
-/// What is going on when the flip comes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Between two triggers.
-    Idle,
-    /// A trigger, the frames of both channels, their set.
-    Frame,
-    /// Results, and the set from its register.
-    Read,
-    /// Configuration words are written and read back.
-    Write,
-    /// A trigger; its set is pushed, results are read between.
-    Stream,
-    /// A parameter is asked for.
-    Request,
-}
-
-impl Kind {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Idle,
-        Self::Frame,
-        Self::Read,
-        Self::Write,
-        Self::Stream,
-        Self::Request,
-    ];
-
-    /// Its name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Idle => "idle",
-            Self::Frame => "frame",
-            Self::Read => "read",
-            Self::Write => "write",
-            Self::Stream => "stream",
-            Self::Request => "request",
-        }
-    }
-}
-
-/// What the host knows of its card before the flip.
-#[derive(Clone, Default)]
-pub struct Known {
-    /// What it wrote.
-    words: Vec<[u32; CONFIG_WORDS]>,
-    pushes: bool,
-    decoder: Decoder,
-    /// Answers to its requests.
-    answers: [u64; CHANNELS],
-}
-
-/// What it has seen since the last time.
-#[derive(Default)]
-pub struct Seen {
-    /// What kind of thing.
-    pub what: What,
-    /// Something was wrong on the link, or refused, and the host knows.
-    pub is_told: bool,
-}
-
-/// Of what it tells.
-#[derive(Default)]
-pub enum What {
-    /// Everything is ready for the flip.
-    Ready(Box<Known>),
-    /// What goes on when the flip comes begins.
-    Begun,
-    /// It has ended; results that came with it.
-    Acted(Option<Round>),
-    /// A trigger, and what came of it.
-    Round(Round),
-    /// The answer to a request is another one than before.
-    WrongAnswer,
-    /// Something else.
-    #[default]
-    Note,
-    /// The connection has been opened anew.
-    Reopened,
-    /// No request is fulfilled any more.
-    Stuck,
-    /// The end: whether the configuration is what was written.
-    End(bool),
-}
-
-/// What came of a trigger.
-#[derive(Default)]
-pub struct Round {
-    /// Results of the registers; none if there was no answer.
-    pub results: Option<Vec<Reading>>,
-    /// Sets of the stream.
-    pub sets: Vec<SampleSet>,
-}
-
-/// What to do next.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// The same again.
-    Again,
-    /// Opens the connection anew.
-    Reopen,
-    /// All is well: asks for the last things.
-    End,
-    /// Gives up.
-    GiveUp,
+/// Address of a word of the card.
+fn card_word(name: &str) -> u16 {
+    let found = CARD.registers.iter().find(|r| r.name == name);
+    CARD.address(found.expect("a word of the card"), 0)
 }
 
 /// The host's program.
@@ -302,14 +189,14 @@ impl Host {
         if self.silent_rounds == 2 {
             self.is_told = true;
             self.silent_rounds = 0;
-            self.write(at::STREAM_CONTROL, &[self.control()]);
+            self.write(card_word("stream_control"), &[self.control()]);
         }
         Round { results, sets }
     }
 
     async fn read_results(&mut self) -> Option<Vec<Reading>> {
         let count = STRIDE * (CHANNELS - 1) + WORDS;
-        let words = self.read(2, at::RESULT, count).await?;
+        let words = self.read(2, RESULT_BASE, count).await?;
         let one = |channel: usize| {
             let mut of_one = [0; WORDS];
             of_one.copy_from_slice(&words[STRIDE * channel..][..WORDS]);
@@ -320,7 +207,7 @@ impl Host {
 
     async fn read_stream(&mut self) {
         for _ in 0..4 {
-            let Some(words) = self.read(4, at::STREAM_DATA, FRAME_WORDS).await else {
+            let Some(words) = self.read(4, card_word("stream_data"), FRAME_WORDS).await else {
                 return;
             };
             let bytes = words.iter().flat_map(|w| w.to_be_bytes());
@@ -373,21 +260,21 @@ impl Host {
     }
 
     fn block_at(&self, block: usize) -> u16 {
-        at::CONFIG + (block * CONFIG_STRIDE) as u16
+        CONFIG_BASE + block as u16 * BLOCK_STRIDE
     }
 
     async fn is_as_written(&mut self) -> bool {
-        let count = CHANNELS * CONFIG_STRIDE + CONFIG_WORDS;
+        let count = CHANNELS * usize::from(BLOCK_STRIDE) + CONFIG_WORDS;
         let (Some(words), Some(control)) = (
-            self.read(2, at::CONFIG, count).await,
-            self.read(2, at::STREAM_CONTROL, 1).await,
+            self.read(2, CONFIG_BASE, count).await,
+            self.read(2, card_word("stream_control"), 1).await,
         ) else {
             self.is_told = true;
             return true;
         };
         let mut blocks = self.known.words.iter().enumerate();
         let same = |(n, block): (usize, &[u32; CONFIG_WORDS])| {
-            words[n * CONFIG_STRIDE..][..CONFIG_WORDS] == block[..]
+            words[n * usize::from(BLOCK_STRIDE)..][..CONFIG_WORDS] == block[..]
         };
         blocks.all(same) && control == [self.control()]
     }
@@ -413,11 +300,14 @@ impl Host {
 
     /// A request, as the library sends one; none if it is refused.
     async fn request(&mut self, channel: usize, word: u32) -> Option<u64> {
-        let base = at::SERVICE + at::SERVICE_STRIDE * channel as u16;
-        let state = base + at::REQUEST_STATE;
+        let base = SERVICE_BASE + SERVICE.stride * channel as u16;
+        let state = base + u16::from(word::REQUEST_STATE);
         let before = self.read(2, state, 1).await?[0];
         if before & 1 == 1 {
-            self.write(base + at::CONTROL, &[4]);
+            self.write(
+                base + u16::from(word::CONTROL),
+                &[u32::from(control::CANCEL)],
+            );
             self.line.until(self.line.now() + PATIENCE).await;
             return None;
         }
@@ -429,14 +319,17 @@ impl Host {
                 break now;
             }
             if self.line.now() > end {
-                self.write(base + at::CONTROL, &[4]);
+                self.write(
+                    base + u16::from(word::CONTROL),
+                    &[u32::from(control::CANCEL)],
+                );
                 return None;
             }
         };
         if state >> 4 & 0xF != 0 {
             return None;
         }
-        let answer = self.read(2, base + at::ANSWER, 2).await?;
+        let answer = self.read(2, base + u16::from(word::ANSWER), 2).await?;
         Some(u64::from(answer[1] & 0xFFFF) << 32 | u64::from(answer[0]))
     }
 
@@ -445,7 +338,7 @@ impl Host {
         self.is_marked = false;
         self.known.decoder.forget();
         self.settle().await;
-        self.write(at::STREAM_CONTROL, &[0]);
+        self.write(card_word("stream_control"), &[0]);
         self.settle().await;
         self.send(&[2, 1, 0, 0, 0, 0]);
         self.settle().await;
@@ -453,8 +346,8 @@ impl Host {
             let words = self.known.words[block];
             self.write(self.block_at(block), &words);
         }
-        self.write(at::STREAM_CLEAR, &[1]);
-        self.write(at::STREAM_CONTROL, &[self.control()]);
+        self.write(card_word("stream_clear"), &[1]);
+        self.write(card_word("stream_control"), &[self.control()]);
         self.is_marked = self.known.pushes;
         self.at_boundary = true;
         self.line.until(self.sent + BYTE).await;

@@ -4,6 +4,7 @@
 mod host;
 mod judge;
 mod line;
+mod told;
 
 use crate::config;
 use crate::error::GenError;
@@ -20,12 +21,13 @@ use endat_sim::encoder::{AnswerKind, Encoder, EncoderConfig};
 use endat_sim::engine::{Keep, LaneWords, Lanes};
 use endat_sim::line::LineConfig;
 use endat_sim::{Time, NS};
-use host::{Kind, Known, Seen, Verdict, What, BIT_CYCLES, CHANNELS, TIMEOUT_US};
+use host::{BIT_CYCLES, CHANNELS, TIMEOUT_US};
 use judge::{Judge, Noted, Shot};
 use line::Host;
 use rust_hdl::prelude::Block;
 use std::ops::Range;
 use std::sync::OnceLock;
+use told::{Kind, Known, Seen, Verdict, What};
 
 /// Its name in tables.
 pub const SUBJECT: &str = "card";
