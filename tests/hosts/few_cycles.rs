@@ -13,8 +13,8 @@ fn text(system_hz: u64, clock_hz: u64, line_parts: &str, service_parts: &str) ->
     format!(
         "name = \"few\"\n[clock]\nsystem_hz = {system_hz}\n[endat]\nclock_hz = {clock_hz}\ncable_m = 20\n\
          [[channel]]\nposition_bits = 37\ncommand = \"111000\"\n[[channel]]\nposition_bits = 25\ncommand = \"111000\"\n\
-         [trigger]\nsample_hz = 2_500\n[line]\nparts = [{line_parts}]\n\
-         [service]\nparts = [{service_parts}]\n[link]\nbaud = 2_000_000\n[board]\nname = \"papilio_pro\"\n"
+         [trigger]\nsample_hz = 3_000\n[line]\nparts = [{line_parts}]\n\
+         [service]\nparts = [{service_parts}]\n[link]\nbaud = 2_000_000\nread_hz = 2_500\n[board]\nname = \"papilio_pro\"\n"
     )
 }
 

@@ -40,7 +40,7 @@ fn a_stream_that_cannot_fit_is_refused() {
             "stream.informations = true: a stream without a buffer; set stream.fifo_bytes = 2048, or stream.informations = false",
         ),
         (
-            &[(r#"parts = ["requests", "diagnosis", "continuous", "initialise"]"#, "parts = []"), ("start = \"off\"", "informations = true\nstart = \"off\"")],
+            &[(r#"parts = ["requests", "diagnosis", "continuous", "initialise"]"#, "parts = []"), ("sample_hz = 10_000", "sample_hz = 5_000"), ("start = \"off\"", "informations = true\nstart = \"off\"")],
             "stream.informations = true: a card without requests has no additional informations; add \"requests\" to service.parts, or set stream.informations = false",
         ),
         (
