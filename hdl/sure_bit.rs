@@ -65,6 +65,7 @@ impl Logic for SureBit {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::testing::settle;
 
     /// A bit with these registers, one clock edge later.
     fn after(yes: bool, no: bool, set: bool, clear: bool) -> (bool, bool) {
@@ -74,8 +75,7 @@ mod tests {
         block.no.q.next = no;
         block.set.next = set;
         block.clear.next = clear;
-        block.update();
-        block.update();
+        settle(&mut block);
         (block.yes.d.val(), block.no.d.val())
     }
 
