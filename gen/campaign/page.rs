@@ -44,8 +44,8 @@ not flip-flops, and are not inverted.
 
 **The card** has two channels with requests and diagnosis, a stream and the link with a UART; it is made of the same blocks as what is emitted. The flip-flops of \
 the channels themselves are those of the ports and are not inverted again; all others are: link, register bank, held results, ring of configuration, \
-triggers, time base, services and stream. Beside it runs a host that sends and takes bits of the line, knows the card from [host-link.md](host-link.md), \
-[stream.md](stream.md) and [programming.md](programming.md) only, and decodes with the host's library, which checks positions against their CRC once more. The flip comes \
+triggers, time base, services and stream. Beside it runs a host that sends and takes bits of the line, does what [host-link.md](host-link.md), \
+[stream.md](stream.md) and [programming.md](programming.md) say, and decodes with the host's library, which checks positions against their CRC once more. The flip comes \
 in one of six activities:
 
 | activity | |

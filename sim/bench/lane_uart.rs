@@ -1,6 +1,6 @@
 //! Hosts' ends of the serial lines of many cards, one in each lane, bit by bit in system clock cycles; as [`super::Uart`] is for one.
 
-use super::LaneBench;
+use super::{bits, LaneBench};
 use crate::engine::PortId;
 use std::collections::VecDeque;
 
@@ -37,15 +37,6 @@ pub struct LaneUart {
     next_bit: u64,
     next_sample: u64,
     received: Vec<(usize, u8)>,
-}
-
-/// The numbers of the bits that are set.
-fn bits(mut word: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let bit = (word != 0).then(|| word.trailing_zeros() as usize);
-        word &= word.wrapping_sub(1);
-        bit
-    })
 }
 
 impl LaneUart {

@@ -19,6 +19,7 @@ mod tests;
 mod uart;
 
 pub use lane_uart::LaneUart;
+pub(crate) use lanes::bits;
 pub use lanes::LaneBench;
 pub use link::{Link, LinkTrace};
 pub use pins::PinNames;

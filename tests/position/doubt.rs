@@ -90,7 +90,7 @@ fn settings_that_change_in_a_frame_count_for_the_next_one() {
 }
 
 /// A channel whose registers can be reached.
-pub fn open_engine() -> Compiled {
+fn open_engine() -> Compiled {
     let times = FixedTimes {
         abort_us: ABORT_US,
         ..FixedTimes::at(CARD.0)

@@ -3,8 +3,11 @@
 
 use super::line::Line;
 use super::told::{Kind, Known, Round, Seen, Verdict, What};
+use super::CYCLES_PER_US;
+use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{BLOCK_STRIDE, CARD, CONFIG_BASE, RESULT_BASE, SERVICE, SERVICE_BASE};
-use endat_hdl::service::map::{control, word};
+use endat_hdl::service::map::{control, request_state, word};
+use endat_hdl::stream::buffer::frame_bytes;
 use endat_host::result::{Reading, STRIDE, WORDS};
 use endat_host::stream::SampleSet;
 use std::collections::VecDeque;
@@ -17,7 +20,7 @@ const BYTE: u64 = 10 * BIT_CYCLES;
 /// The card forgets a command that pauses for so long; real ones after 100 ms.
 pub const TIMEOUT_US: u64 = 100;
 /// As long as the host waits for that.
-const FORGET: u64 = 32 * (TIMEOUT_US + TIMEOUT_US / 10);
+const FORGET: u64 = CYCLES_PER_US * (TIMEOUT_US + TIMEOUT_US / 10);
 /// A line that is never quiet is given up after this.
 const SETTLE_MAX: u64 = 10 * FORGET;
 /// From a trigger until both results and their set are there.
@@ -27,19 +30,23 @@ const IDLE: u64 = 1_500;
 /// How often a read is tried.
 const TRIES: u32 = 3;
 /// A frame of the stream.
-const FRAME_BYTES: u64 = 28;
+const FRAME_BYTES: u64 = frame_bytes(CHANNELS, false);
 /// Words that hold one and its end.
-const FRAME_WORDS: usize = 8;
+const FRAME_WORDS: usize = FRAME_BYTES as usize / 4 + 1;
 /// Comes before an answer while the card pushes.
 const ANSWER: u8 = 0xFF;
 /// Longest wait for a request: longer than the card's own.
 const PATIENCE: u64 = 80_000;
 /// Send parameter, address 0x0D; and select memory area 0xA1.
-const SEND_PARAMETER: u32 = 0x230D_0000;
-const SELECT_MEMORY: u32 = 0x0EA1_0000;
+const SEND_PARAMETER: u32 = request_word(ModeCommand::SendParameter, 0x0D);
+const SELECT_MEMORY: u32 = request_word(ModeCommand::SelectMemory, 0xA1);
 
 /// Configuration words of the card, and of each channel.
 pub const CONFIG_WORDS: usize = 3;
+
+const fn request_word(command: ModeCommand, address: u32) -> u32 {
+    (command.code() as u32) << 24 | address << 16
+}
 
 /// Address of a word of the card.
 fn card_word(name: &str) -> u16 {
@@ -302,12 +309,10 @@ impl Host {
     async fn request(&mut self, channel: usize, word: u32) -> Option<u64> {
         let base = SERVICE_BASE + SERVICE.stride * channel as u16;
         let state = base + u16::from(word::REQUEST_STATE);
+        let (busy, cancel) = (u32::from(request_state::BUSY), [control::CANCEL.into()]);
         let before = self.read(2, state, 1).await?[0];
-        if before & 1 == 1 {
-            self.write(
-                base + u16::from(word::CONTROL),
-                &[u32::from(control::CANCEL)],
-            );
+        if before & busy != 0 {
+            self.write(base + u16::from(word::CONTROL), &cancel);
             self.line.until(self.line.now() + PATIENCE).await;
             return None;
         }
@@ -315,18 +320,15 @@ impl Host {
         let end = self.line.now() + PATIENCE;
         let state = loop {
             let now = self.read(2, state, 1).await?[0];
-            if now >> 16 != before >> 16 && now & 1 == 0 {
+            if now >> 16 != before >> 16 && now & busy == 0 {
                 break now;
             }
             if self.line.now() > end {
-                self.write(
-                    base + u16::from(word::CONTROL),
-                    &[u32::from(control::CANCEL)],
-                );
+                self.write(base + u16::from(word::CONTROL), &cancel);
                 return None;
             }
         };
-        if state >> 4 & 0xF != 0 {
+        if state >> request_state::ERROR_SHIFT & 0xF != 0 {
             return None;
         }
         let answer = self.read(2, base + u16::from(word::ANSWER), 2).await?;

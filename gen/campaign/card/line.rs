@@ -8,7 +8,6 @@ use std::rc::Rc;
 use std::task::{Context, Poll, Waker};
 
 /// What the host and the simulation hand each other.
-#[derive(Default)]
 struct Shelf<S, V> {
     now: u64,
     inbox: VecDeque<u8>,

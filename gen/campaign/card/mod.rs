@@ -20,7 +20,7 @@ use endat_sim::campaign::{digest, Campaign, Row, Tally, ABORT_US};
 use endat_sim::encoder::{AnswerKind, Encoder, EncoderConfig};
 use endat_sim::engine::{Keep, LaneWords, Lanes};
 use endat_sim::line::LineConfig;
-use endat_sim::{Time, NS};
+use endat_sim::{Time, NS, US};
 use host::{BIT_CYCLES, CHANNELS, TIMEOUT_US};
 use judge::{Judge, Noted, Shot};
 use line::Host;
@@ -33,7 +33,8 @@ use told::{Kind, Known, Seen, Verdict, What};
 pub const SUBJECT: &str = "card";
 const CONFIGURATION: &str = include_str!("card.toml");
 const SYSTEM_HZ: u64 = 32_000_000;
-const CYCLE: Time = 31_250;
+const CYCLES_PER_US: u64 = SYSTEM_HZ / 1_000_000;
+const CYCLE: Time = US / CYCLES_PER_US;
 const LANES: usize = 128;
 /// Longest wait of a request for its frame: one at least, as milliseconds are counted.
 const REQUEST_MS: u16 = 2;
@@ -275,7 +276,7 @@ impl Ready {
         let blocks = std::iter::once(None).chain((0..CHANNELS).map(Some));
         let words: Vec<_> = blocks.map(|block| config_words(card, block)).collect();
         let mut bench = Bench::new(engine);
-        (0..32 * (ABORT_US + 10)).for_each(|_| bench.tick());
+        (0..CYCLES_PER_US * (ABORT_US + 10)).for_each(|_| bench.tick());
         let lane = |_| {
             let words = words.clone();
             let program = |line| async move {

@@ -224,15 +224,6 @@ fn cycles(us: u64) -> u64 {
     us * (SYSTEM_HZ / 1_000_000)
 }
 
-/// The numbers of the bits that are set.
-fn bits(mut word: u64) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let bit = (word != 0).then(|| word.trailing_zeros() as usize);
-        word &= word.wrapping_sub(1);
-        bit
-    })
-}
-
 /// Outputs that a reader looks at.
 #[derive(Clone)]
 struct Outputs {

@@ -1,11 +1,9 @@
 //! One batch: the frame with the mishaps, one in each lane, and as many frames after it as it takes.
 
 use super::judge::{are_needed, are_whole, is_count, Mark, Outcome, Reading};
-use super::{
-    begin, bits, cycles, FrameKind, Mishap, Ready, BIT, HANG_US, LEAD, SLOW_US, SYSTEM_HZ,
-};
+use super::{begin, cycles, FrameKind, Mishap, Ready, BIT, HANG_US, LEAD, SLOW_US, SYSTEM_HZ};
 use crate::{
-    bench::{ChannelResult, LaneBench, Link},
+    bench::{bits, ChannelResult, LaneBench, Link},
     engine::PortId,
     line::{Conflict, Jitter, LineFault},
     US,
