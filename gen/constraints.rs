@@ -8,6 +8,7 @@ use crate::error::GenError;
 use crate::explain;
 use crate::template;
 use endat_hdl::bus::HostBus;
+use endat_hdl::timing::ABORT_US;
 use endat_sim::decimal;
 use minijinja::context;
 use minijinja::value::{Serde, Value};
@@ -180,6 +181,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
             channels => project.card.channels.len(),
             protocols => project.protocols(),
             t_format => project.card.t_format_numbers().collect::<Vec<_>>(),
+            quiet_ms => ABORT_US / 1_000,
             timing => explain::report(project).to_string(),
         };
         let text = include_str!("../constraints/templates/readme_bus.md.jinja");

@@ -337,6 +337,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         causes,
         identification,
         timer => card.sources.timer,
+        requests => card.service.requests,
         every_trigger => frames.collect::<Vec<_>>(),
     };
     let text = template::render(

@@ -131,7 +131,7 @@ pub struct CardCore {
     direct_byte: Vec<Signal<Local, Bits<8>>>,
     part_byte: Vec<Signal<Local, Bits<8>>>,
     part_write: Signal<Local, Bit>,
-    ring_link: Vec<Signal<Local, Bits<8>>>,
+    ring_link: Vec<Signal<Local, Bits<9>>>,
     read_link: Vec<Signal<Local, Bits<8>>>,
     service_link: Vec<Signal<Local, Bits<32>>>,
     selected: Vec<Signal<Local, Bits<32>>>,
@@ -532,6 +532,7 @@ impl Logic for CardCore {
             self.read_link[i + 1].next = self.registers[i].read_out.val();
             self.registers[i].ring_turn.next = self.bank.ring_turn.val();
             self.registers[i].ring_home.next = self.bank.ring_home.val();
+            self.registers[i].card_damaged.next = self.bank.is_damaged.val();
             self.registers[i].ring_in.next = self.ring_link[i + 1].val();
             self.ring_link[i].next = self.registers[i].ring_out.val();
             self.taken[i + 1].next = self.taken[i].val() | self.registers[i].taken.val();

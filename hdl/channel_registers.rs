@@ -3,6 +3,7 @@
 //! ```text
 //! channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
 //! ring block of the channel --(ring stands still, channel not busy)--> configuration of the channel
+//!                           \--(its parity is wrong)--> no command
 //! ```
 //!
 //! The held words of all channels are loaded by the same signal, so they belong together: [`crate::register_bank`] says when. What stands for longer
@@ -89,10 +90,12 @@ pub struct ChannelRegisters {
     pub ring_turn: Signal<In, Bit>,
     /// The configuration ring stands still, its words are in place.
     pub ring_home: Signal<In, Bit>,
-    /// Byte from the ring block behind.
-    pub ring_in: Signal<In, Bits<8>>,
+    /// Byte from the ring block behind, its parity in bit 8.
+    pub ring_in: Signal<In, Bits<9>>,
     /// Byte to the ring block in front.
-    pub ring_out: Signal<Out, Bits<8>>,
+    pub ring_out: Signal<Out, Bits<9>>,
+    /// The card's own settings are not what was written.
+    pub card_damaged: Signal<In, Bit>,
     /// Triggers left out after each that the channel takes; this and the next one as they stand on the ring.
     pub trigger_skip: Signal<Out, Bits<5>>,
     /// Trigger sources that are not for this channel.
@@ -185,6 +188,7 @@ impl ChannelRegisters {
             ring_home: Default::default(),
             ring_in: Default::default(),
             ring_out: Default::default(),
+            card_damaged: Default::default(),
             trigger_skip: Default::default(),
             ignored_sources: Default::default(),
             period_cycles: Default::default(),
@@ -354,15 +358,21 @@ impl Logic for ChannelRegisters {
             | (bit_cast::<3, 1>(self.ring.word0.val().get_bit(30).into()) << 2);
         self.period_cycles.next = self.config0.q.val().get_bits::<11>(0);
         self.position_bits.next = self.config0.q.val().get_bits::<6>(16);
-        self.command.next = self.config0.q.val().get_bits::<6>(24);
         self.first_low_extra_cycles.next = self.config1.q.val().get_bits::<11>(0);
         self.start_window_cycles.next = self.config1.q.val().get_bits::<6>(16);
         self.filter_cycles.next = self.config1.q.val().get_bits::<4>(24);
         self.filter_half.next = self.config1.q.val().get_bit(23);
-        self.request_id.next = self.config1.q.val().get_bits::<4>(28);
         self.field_gap_us.next = self.config2.q.val().get_bits::<3>(29);
         self.start_timeout_us.next = self.config2.q.val().get_bits::<12>(0);
         self.recovery_limit_cycles.next = self.config2.q.val().get_bits::<13>(16);
+
+        // With settings that nobody wrote nothing goes out: these are no commands.
+        self.command.next = self.config0.q.val().get_bits::<6>(24);
+        self.request_id.next = self.config1.q.val().get_bits::<4>(28);
+        if self.ring.is_damaged.val() | self.card_damaged.val() {
+            self.command.next = 0.into();
+            self.request_id.next = 15.into();
+        }
     }
 }
 

@@ -8,6 +8,8 @@
 //!
 //! A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
 //! in place only while the ring stands still, so the blocks work from copies that are taken then.
+//!
+//! Each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is written again.
 
 use crate::reg::Reg;
 use rust_hdl::prelude::*;
@@ -26,25 +28,31 @@ pub struct ConfigRing {
     pub reset: Signal<In, Bit>,
     /// The ring moves on by one byte.
     pub turn: Signal<In, Bit>,
-    /// Byte from the block behind.
-    pub byte_in: Signal<In, Bits<8>>,
+    /// Byte from the block behind, its parity in bit 8.
+    pub byte_in: Signal<In, Bits<9>>,
     /// Byte that goes to the block in front: the most significant one of word 0.
-    pub byte_out: Signal<Out, Bits<8>>,
+    pub byte_out: Signal<Out, Bits<9>>,
     /// Word 0, while the ring stands still.
     pub word0: Signal<Out, Bits<32>>,
     /// Word 1, while the ring stands still.
     pub word1: Signal<Out, Bits<32>>,
     /// Word 2, while the ring stands still.
     pub word2: Signal<Out, Bits<32>>,
+    /// The words are not what was written, as of the last cycle in which the ring stood still.
+    pub is_damaged: Signal<Out, Bit>,
     w0: Reg<Bits<32>>,
     w1: Reg<Bits<32>>,
     w2: Reg<Bits<32>>,
+    parities: Reg<Bits<12>>,
+    damaged: Reg<Bit>,
 }
 
 impl ConfigRing {
     /// A block that holds `start` after reset.
     pub fn new(start: [u32; RING_WORDS]) -> Self {
         let word = |value: u32| Reg::new(u64::from(value).into());
+        let bytes = start.into_iter().flat_map(u32::to_be_bytes);
+        let parities = bytes.fold(0, |all, byte| all << 1 | u64::from(byte.count_ones() & 1));
         Self {
             clock: Default::default(),
             reset: Default::default(),
@@ -54,9 +62,12 @@ impl ConfigRing {
             word0: Default::default(),
             word1: Default::default(),
             word2: Default::default(),
+            is_damaged: Default::default(),
             w0: word(start[0]),
             w1: word(start[1]),
             w2: word(start[2]),
+            parities: Reg::new(parities.into()),
+            damaged: Default::default(),
         }
     }
 }
@@ -64,18 +75,30 @@ impl ConfigRing {
 impl Logic for ConfigRing {
     #[hdl_gen]
     fn update(&mut self) {
-        dff_setup!(self, clock, w0, w1, w2);
+        dff_setup!(self, clock, w0, w1, w2, parities, damaged);
         self.w0.reset.next = self.reset.val();
         self.w1.reset.next = self.reset.val();
         self.w2.reset.next = self.reset.val();
+        self.parities.reset.next = self.reset.val();
+        self.damaged.reset.next = self.reset.val();
         if self.turn.val() {
             self.w0.d.next =
                 (self.w0.q.val() << 8) | bit_cast::<32, 8>(self.w1.q.val().get_bits::<8>(24));
             self.w1.d.next =
                 (self.w1.q.val() << 8) | bit_cast::<32, 8>(self.w2.q.val().get_bits::<8>(24));
-            self.w2.d.next = (self.w2.q.val() << 8) | bit_cast::<32, 8>(self.byte_in.val());
+            self.w2.d.next =
+                (self.w2.q.val() << 8) | bit_cast::<32, 8>(self.byte_in.val().get_bits::<8>(0));
+            self.parities.d.next = (self.parities.q.val() << 1)
+                | bit_cast::<12, 1>(self.byte_in.val().get_bits::<1>(8));
+        } else {
+            self.damaged.d.next = self.w0.q.val().xor()
+                ^ self.w1.q.val().xor()
+                ^ self.w2.q.val().xor()
+                ^ self.parities.q.val().xor();
         }
-        self.byte_out.next = self.w0.q.val().get_bits::<8>(24);
+        self.is_damaged.next = self.damaged.q.val();
+        self.byte_out.next = bit_cast::<9, 8>(self.w0.q.val().get_bits::<8>(24))
+            | (bit_cast::<9, 1>(self.parities.q.val().get_bits::<1>(11)) << 8);
         self.word0.next = self.w0.q.val();
         self.word1.next = self.w1.q.val();
         self.word2.next = self.w2.q.val();

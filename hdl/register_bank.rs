@@ -81,10 +81,12 @@ pub struct RegisterBank {
     pub ring_turn: Signal<Out, Bit>,
     /// The configuration ring stands still.
     pub ring_home: Signal<Out, Bit>,
-    /// Byte from the first channel's ring block.
-    pub ring_in: Signal<In, Bits<8>>,
+    /// Byte from the first channel's ring block, its parity in bit 8.
+    pub ring_in: Signal<In, Bits<9>>,
     /// Byte to the last channel's ring block.
-    pub ring_out: Signal<Out, Bits<8>>,
+    pub ring_out: Signal<Out, Bits<9>>,
+    /// The card's own settings are not what was written.
+    pub is_damaged: Signal<Out, Bit>,
     /// The word is one of a line monitor or a T-format port, not of a service.
     pub service_line: Signal<Out, Bit>,
     /// Word of a service's RAM, a line monitor or a T-format port.
@@ -173,7 +175,8 @@ pub struct RegisterBank {
     card_page: Signal<Local, Bit>,
     strobe: Signal<Local, Bit>,
     result_page: Signal<Local, Bit>,
-    head: Signal<Local, Bits<8>>,
+    written: Signal<Local, Bits<8>>,
+    head: Signal<Local, Bits<9>>,
     rom_word: Signal<Local, Bits<32>>,
     has_service: Constant<Bit>,
     has_line: Constant<Bit>,
@@ -248,6 +251,8 @@ impl RegisterBank {
             ring_home: Default::default(),
             ring_in: Default::default(),
             ring_out: Default::default(),
+            is_damaged: Default::default(),
+            written: Default::default(),
             service_line: Default::default(),
             service_address: Default::default(),
             service_channels: Default::default(),
@@ -498,21 +503,24 @@ impl Logic for RegisterBank {
         self.passes.d.next = self.at_word.val();
         self.byte_passes.d.next =
             self.at_word.val() & (self.byte_at.q.val().get_bits::<2>(0) == self.lane.val());
+        self.written.next = self.write_data.val().get_bits::<8>(24);
         self.head.next = self.ring.byte_out.val();
         if self.passes.q.val() & self.write_now.q.val() {
-            self.head.next = self.write_data.val().get_bits::<8>(24);
+            self.head.next = bit_cast::<9, 8>(self.written.val())
+                | (bit_cast::<9, 1>(self.written.val().xor().into()) << 8);
         }
         if self.byte_passes.q.val() {
-            self.ring_byte.d.next = self.ring.byte_out.val();
+            self.ring_byte.d.next = self.ring.byte_out.val().get_bits::<8>(0);
         }
         if self.starts.val() {
             self.ring_byte.d.next = 0.into();
         }
         self.take_byte.next = self.passes.q.val();
-        self.passing_byte.next = self.ring.byte_out.val();
+        self.passing_byte.next = self.ring.byte_out.val().get_bits::<8>(0);
         self.ring.turn.next = self.turn.q.val();
         self.ring.byte_in.next = self.ring_in.val();
         self.ring_out.next = self.head.val();
+        self.is_damaged.next = self.ring.is_damaged.val();
 
         // The card's own words.
         self.card_page.next = self.low_page.val() & !self.word_address.val().get_bits::<5>(4).any();

@@ -13,6 +13,8 @@
 //! Where things stand is in [`map`], what is done in [`program`], what a channel has of it in [`channel`].
 //!
 //! Two channels share a machine: each has its own run of the program, its own RAM and ports, and an instruction takes four cycles instead of three.
+//!
+//! A program that does not show for long that it goes its round has gone astray, by an upset: everything begins anew.
 
 pub mod channel;
 pub mod map;
@@ -20,6 +22,8 @@ pub mod program;
 
 use crate::reg::Reg;
 use crate::sequencer::Sequencer;
+use crate::several::each;
+use map::output;
 use program::ServiceTimes;
 use rust_hdl::prelude::*;
 
@@ -67,25 +71,33 @@ pub struct Service {
     time_ms: Reg<Bits<16>>,
     seen_us: Reg<Bits<16>>,
     seen_ms: Reg<Bits<16>>,
+    /// Milliseconds for which each run of the program has not shown that it is alive.
+    silent_ms: Vec<Reg<Bits<6>>>,
     is_time: Signal<Local, Bit>,
     second_in: Signal<Local, Bits<16>>,
+    is_millisecond: Signal<Local, Bit>,
+    lives: Signal<Local, Bits<2>>,
+    alive_port: Constant<Bits<5>>,
+    is_stuck: Signal<Local, Bit>,
+    stuck_ms: Constant<Bits<6>>,
     _seconds: usize,
+    _runs: usize,
 }
 
 impl Service {
     /// A service that runs the program for these times, for this many channels: one, or [`CHANNELS_SERVED`].
     pub fn new(times: &ServiceTimes, channels: usize) -> Self {
         let is_shared = channels > 1;
-        let each = 1 + usize::from(is_shared);
+        let runs = 1 + usize::from(is_shared);
         Self {
             clock: Default::default(),
             reset: Default::default(),
             tick_us: Default::default(),
             io_address: Default::default(),
-            io_read: (0..each).map(|_| Default::default()).collect(),
-            io_in: (0..each).map(|_| Default::default()).collect(),
+            io_read: (0..runs).map(|_| Default::default()).collect(),
+            io_in: (0..runs).map(|_| Default::default()).collect(),
             io_out: Default::default(),
-            io_write: (0..each).map(|_| Default::default()).collect(),
+            io_write: (0..runs).map(|_| Default::default()).collect(),
             host_address: Default::default(),
             host_second: Default::default(),
             host_read: Default::default(),
@@ -101,8 +113,15 @@ impl Service {
             is_time: Default::default(),
             seen_us: Default::default(),
             seen_ms: Default::default(),
+            silent_ms: each(runs),
             second_in: Default::default(),
+            is_millisecond: Default::default(),
+            lives: Default::default(),
+            alive_port: Constant::new(u64::from(output::ALIVE).into()),
+            is_stuck: Default::default(),
+            stuck_ms: Constant::new(u64::from(times.stuck_ms).into()),
             _seconds: usize::from(is_shared),
+            _runs: runs,
         }
     }
 }
@@ -116,16 +135,41 @@ impl Logic for Service {
         self.us_in_ms.reset.next = self.reset.val();
         self.time_ms.reset.next = self.reset.val();
         self.sequencer.reset.next = self.reset.val();
-        self.sequencer.restart.next = false;
 
+        self.is_millisecond.next = self.tick_us.val() & (self.us_in_ms.q.val() == 999);
         if self.tick_us.val() {
             self.time_us.d.next = self.time_us.q.val() + 1;
             self.us_in_ms.d.next = self.us_in_ms.q.val() + 1;
-            if self.us_in_ms.q.val() == 999 {
-                self.us_in_ms.d.next = 0.into();
-                self.time_ms.d.next = self.time_ms.q.val() + 1;
+        }
+        if self.is_millisecond.val() {
+            self.us_in_ms.d.next = 0.into();
+            self.time_ms.d.next = self.time_ms.q.val() + 1;
+        }
+
+        self.lives.next = 0.into();
+        if self.sequencer.port_write.val()
+            & (self.sequencer.port_address.val() == self.alive_port.val())
+        {
+            self.lives.next = 1.into();
+            if self.sequencer.port_second.val() {
+                self.lives.next = 2.into();
             }
         }
+        self.is_stuck.next = false;
+        for i in 0..self._runs {
+            self.is_stuck.next =
+                self.is_stuck.val() | (self.silent_ms[i].q.val() == self.stuck_ms.val());
+        }
+        for i in 0..self._runs {
+            self.silent_ms[i].clock.next = self.clock.val();
+            self.silent_ms[i].reset.next =
+                self.reset.val() | self.is_stuck.val() | self.lives.val().get_bit(i);
+            self.silent_ms[i].d.next = self.silent_ms[i].q.val();
+            if self.is_millisecond.val() {
+                self.silent_ms[i].d.next = self.silent_ms[i].q.val() + 1;
+            }
+        }
+        self.sequencer.restart.next = self.is_stuck.val();
 
         // Ports 24 and above are the same for all channels: the times.
         self.is_time.next = self.sequencer.port_read.val()

@@ -5,7 +5,7 @@ use crate::causes;
 use crate::info::Info;
 use crate::registers::Place;
 use crate::result::Reading;
-use crate::stream::SampleSet;
+use crate::stream::{Sample, SampleSet};
 use crate::transport::Transport;
 use crate::HostError;
 use std::collections::VecDeque;
@@ -15,8 +15,23 @@ use std::time::{Duration, Instant};
 pub const NOT_TAKEN: &str = "not_taken";
 /// Its result has not come in time.
 pub const TOO_LATE: &str = "too_late";
-/// This is what came for the last [`TOO_LATE`].
+/// This is what came for the last [`TOO_LATE`], with a position.
 pub const LATE: &str = "late";
+
+/// What stands in a row where a cause would, and what it means.
+pub const NO_CAUSES: [(&str, &str); 3] = [
+    (
+        NOT_TAKEN,
+        "the channel took no part in this trigger: it was busy, it is not for it, or it is quiet for 30 ms behind an aborted frame \
+         or a reset. The row in which that began has the cause; service<n>.frames_... have counted it",
+    ),
+    (
+        TOO_LATE,
+        "the result had not come when the next trigger did: the frame took longer than the triggers are apart, as one that measures \
+         the line delay does",
+    ),
+    (LATE, "the position that came for the last too_late, a trigger or more after its own"),
+];
 
 /// A channel of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +44,26 @@ pub struct Cell {
     pub cause: &'static str,
     /// Additional informations 1 and 2 of the same frame, those that came with a right CRC.
     pub infos: [Option<Info>; 2],
+}
+
+impl Cell {
+    /// What a set of the stream says of a channel.
+    fn of(sample: &Sample) -> Self {
+        let cause = match (sample.taken, sample.missing) {
+            // What went wrong is told, however late.
+            _ if sample.is_late() && !sample.fresh && sample.cause != 0 => sample.cause_name(),
+            _ if sample.is_late() => LATE,
+            (false, _) => NOT_TAKEN,
+            (_, true) => TOO_LATE,
+            _ => sample.cause_name(),
+        };
+        Self {
+            position: sample.valid.then_some(sample.position),
+            fresh: sample.fresh && !sample.is_late(),
+            cause,
+            infos: sample.infos.map_or([None; 2], |i| i.map(Info::good)),
+        }
+    }
 }
 
 /// What a trigger brought; or one position of a running clock.
@@ -247,18 +282,7 @@ impl Feed {
                     rows.extend(self.of_run(&set, channel, card.identity().channels));
                     continue;
                 }
-                let cells = set.channels.iter().map(|s| Cell {
-                    infos: s.infos.map_or([None; 2], |i| i.map(Info::good)),
-                    position: s.valid.then_some(s.position),
-                    fresh: s.fresh && !s.is_late(),
-                    cause: match (s.taken, s.missing) {
-                        _ if s.is_late() => LATE,
-                        (false, _) => NOT_TAKEN,
-                        (_, true) => TOO_LATE,
-                        _ => s.cause_name(),
-                    },
-                });
-                let cells = cells.collect();
+                let cells = set.channels.iter().map(Cell::of).collect();
                 rows.push_back(self.row(set.sequence, set.timestamp, cells));
             }
             return Ok(());
@@ -274,6 +298,24 @@ impl Feed {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_late_result_says_what_was_wrong_with_it() {
+        let sample = |fresh, cause| Sample {
+            missing: true,
+            taken: true,
+            valid: true,
+            fresh,
+            cause,
+            ..Sample::default()
+        };
+        let crc = causes::all().iter().find(|c| c.name == "crc");
+        let crc = crc.expect("a cause").number as u8;
+        for (sample, cause) in [(sample(true, 0), LATE), (sample(false, crc), "crc")] {
+            let cell = Cell::of(&sample);
+            assert_eq!((cell.cause, cell.fresh), (cause, false), "{sample:?}");
+        }
+    }
 
     #[test]
     fn a_channel_that_takes_no_trigger_does_not_stop_the_others() {

@@ -393,6 +393,7 @@ pub const BLOCKS: &[Block] = &[
             Field { name: "slower", lsb: 5, width: 1, unit: "", meaning: "The encoder takes only a slower clock than configured; that is used", values: Values::Plain, limits: Limits::ANY },
             Field { name: "unplugged", lsb: 6, width: 1, unit: "", meaning: "DATA has been HIGH for long: no encoder, or an open line", values: Values::Plain, limits: Limits::ANY },
             Field { name: "initialising", lsb: 7, width: 1, unit: "", meaning: "power-up sequence or initialisation is under way; triggers are lost", values: Values::Plain, limits: Limits::ANY },
+            Field { name: "starts", lsb: 16, width: 16, unit: "", meaning: "How often the program has begun since power-up, wrapping: one more after each reset, and after an upset that led it astray", values: Values::Plain, limits: Limits::ANY },
         ] },
         Register { name: "lost", offset: 9, access: Access::ReadOnly, meaning: "What did not get its turn.", fields: &[
             Field { name: "triggers", lsb: 0, width: 16, unit: "", meaning: "Triggers that came while the line was not free, wrapping", values: Values::Plain, limits: Limits::ANY },

@@ -609,3 +609,12 @@ fn single_brackets_and_the_bus_of_a_receiver_are_called_what_they_are() {
         .iter()
         .all(|d| !d.text.contains("unknown key; known keys here: channel")));
 }
+
+#[test]
+fn two_channels_in_single_brackets_are_told_how_to_write_them() {
+    let text = PRESET.replace("\n[[channel]]", "\n[channel]");
+    assert_ne!(text, PRESET);
+    let found = refuse(&text);
+    let told = found.iter().any(|d| d.text.contains("write [[channel]]"));
+    assert!(told, "{found:#?}");
+}

@@ -288,3 +288,30 @@ fn the_table_for_artinchip_s_drivers_tells_where_the_watchdog_differs() {
         assert!(row.contains(word), "{word}: {row}");
     }
 }
+
+/// The first block behind these words, as it stands.
+fn block<'p>(page: &'p str, words: &str) -> &'p str {
+    let behind = page.split_once(words).expect(words).1;
+    let block = behind.split_once("```toml\n").expect("a block").1;
+    block.split_once("```").expect("its end").0
+}
+
+#[test]
+fn the_whole_card_on_the_page_on_buses_is_one() {
+    let page = include_str!("../docs/bus.md");
+    let text = block(page, "A whole card behind a bus");
+    let project = endat_gen::config::parse("page.toml", text).unwrap();
+    let files = endat_gen::emit(&project).unwrap();
+    assert!(files.iter().any(|f| f.path.ends_with("my_card_tb.v")));
+    let names = |name: &str, address: u16| {
+        let of = |block: &endat_hdl::regs::Block| {
+            let found = block.registers.iter().find(|r| r.name == name);
+            found.map(|r| block.address(r, 0))
+        };
+        assert_eq!(of(&CARD).or(of(&RESULT)), Some(address), "{name}");
+        assert!(page.contains(&format!("0x{address:03X}")), "{name}");
+    };
+    names("trigger_now", 0x009);
+    names("status", 0x180);
+    names("position_low", 0x181);
+}

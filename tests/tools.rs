@@ -67,6 +67,18 @@ pub fn folder(name: &str) -> PathBuf {
 
 /// Runs a tool in a folder; its two outputs, and whether it was content.
 pub fn run(tool: &str, folder: &Path, arguments: &[&str]) -> (bool, String) {
+    let (good, text) = run_once(tool, folder, arguments);
+    if good || !text.contains(ABC_ABORTED) {
+        return (good, text);
+    }
+    let _ = writeln!(std::io::stderr(), "{tool}: its ABC aborted; once more");
+    run_once(tool, folder, arguments)
+}
+
+/// Debian's ABC has aborted now and then on input that it takes the next time.
+const ABC_ABORTED: &str = "failed: return code 134";
+
+fn run_once(tool: &str, folder: &Path, arguments: &[&str]) -> (bool, String) {
     let output = Command::new(tool)
         .current_dir(folder)
         .args(arguments)

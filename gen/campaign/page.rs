@@ -35,7 +35,7 @@ Beside its class, a case may have these marks:
 | next | the next frame was not good |
 | held_wrong | with a cause: the position that is held is none that the encoder sent |
 | triggers_2, triggers_3, triggers_more | which trigger after the frame was the first that is good |
-| slow | busy for longer than the timers allow, but not for ever |
+| slow | busy for longer than the timers allow, but not for ever; of a card: a service answered only after 60 ms of rest |
 | config | of a card: its configuration is not what the host wrote, and nothing has said so |
 | reopened | of a card: the host had to open the connection anew |
 
@@ -61,8 +61,8 @@ After it the host goes on: a trigger at the pin, results of both channels, their
 and request asks both services for a parameter. What it is told counts as detected: a cause, no answer, bytes that nobody asked for, a CRC that does not fit, a damaged or missing \
 frame of the stream, a result that is stale, a number that is skipped, a request that is refused. Lost is a trigger without a result, or without a set; silent_other is a wrong time \
 stamp, a wrong answer, a configuration that is another one. After four triggers without two good ones, or three reads without an answer, the host opens the connection anew, as \
-[stream.md](stream.md) says, and writes its configuration again; a hang is no good result in 8 triggers after that, or a service that fulfils no request.
-Ages, evidence and delays are not compared. The clocks are fast and pauses short: 8 cycles to a bit of the link, commands forgotten after 100 us. Of five moments of a port the card has one in each activity.
+[stream.md](stream.md) says, and writes its configuration again, settings of the services among it; a hang is no good result in 8 triggers after that, or a service that fulfils no request, four times, and then once more after 60 ms.
+Ages, evidence and delays are not compared. The clocks are fast and pauses short: 8 cycles to a bit of the link, commands forgotten after 100 us, the longest wait of a service 16 ms. Of five moments of a port the card has one in each activity.
 ";
 
 /// What stands above the tables of a campaign.

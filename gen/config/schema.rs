@@ -278,6 +278,9 @@ pub(crate) fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize
         () if digits && value.starts_with('0') => {
             format!("put it in quotes: {} = \"{value}\"", key.trim())
         }
+        () if written.is_some_and(|l| l.trim_start().starts_with("[channel]")) => {
+            "there is one for each channel: write [[channel]]".into()
+        }
         () if message.contains("duplicate key") => {
             let span = error.span().and_then(|span| source.text().get(span));
             format!("{} stands twice, remove one", span.unwrap_or(key).trim())

@@ -1,11 +1,16 @@
-//! What the published systems are for, as far as a card has it: usual clock rates, cropped positions, selected causes, the watchdog.
+//! What the published systems are for, as far as a card has it: usual clock rates, cropped positions, selected causes, the
+//! watchdog, requests, continuous clock.
 
-use super::{clock_ns, cycle_ns, is_own_trigger, real, whole, Port};
+use super::{clock_ns, cycle_ns, fields, is_own_trigger, longest_ns, real, whole, Port};
 use crate::error::GenError;
 use crate::template;
+use endat_hdl::card::services;
 use endat_hdl::config::{CardConfig, ChannelConfig, ChannelRequest};
+use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{CHANNEL_CONFIG, SERVICE};
-use endat_hdl::timing::{cycles_to_ns, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS};
+use endat_hdl::timing::{
+    cycles_to_ns, PARAMETER_GAP_MS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
+};
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 
@@ -15,6 +20,12 @@ const RATES_HZ: [u64; 7] = [
 ];
 /// Rates below this take a simulator long.
 const SLOW_HZ: u64 = 1_000_000;
+/// Fields of a request that the bench uses.
+const REQUEST_FIELDS: [&str; 3] = [
+    "REQUEST_COMMAND",
+    "REQUEST_ADDRESS",
+    "REQUEST_STATE_FINISHED",
+];
 /// Clock periods until the mode command is out.
 const FRAME_EDGES: u64 = 10;
 /// What the watchdog leaves a frame beyond its mode command, in microseconds.
@@ -26,35 +37,41 @@ pub(super) struct Parts {
     pub(super) tasks: String,
 }
 
-/// The card with another EnDat clock on all EnDat channels, if its system clock makes that rate and everything else fits it.
+/// The card with other settings on all EnDat channels, if they fit it.
+fn changed(
+    card: &CardConfig,
+    change: impl Fn(&ChannelRequest) -> ChannelRequest,
+) -> Option<CardConfig> {
+    let mut card = card.clone();
+    let (system_hz, double_edge) = (card.system_hz, card.line.double_edge);
+    for (index, channel) in card.channels.iter_mut().enumerate() {
+        if channel.t_format.is_none() {
+            let request = change(&channel.request);
+            *channel = ChannelConfig::resolve(&request, system_hz, double_edge, index).ok()?;
+        }
+    }
+    Some(card)
+}
+
+/// The card with another EnDat clock, if its system clock makes that rate.
 fn at_rate(card: &CardConfig, clock_hz: u64) -> Option<CardConfig> {
     if !card.system_hz.is_multiple_of(clock_hz) {
         return None;
     }
-    let mut card = card.clone();
-    let (system_hz, double_edge) = (card.system_hz, card.line.double_edge);
-    for (index, channel) in card.channels.iter_mut().enumerate() {
-        if channel.t_format.is_some() {
-            continue;
-        }
-        let recovery_min_ns = match clock_hz > SLOW_HZ {
-            true => channel.request.recovery_min_ns,
-            false => channel.request.recovery_min_ns.max(RECOVERY_MIN_NS),
-        };
-        let request = ChannelRequest {
-            clock_hz,
-            tst_ns: if clock_hz >= TST_FROM_HZ {
-                TST_USUAL_NS
-            } else {
-                0
-            },
-            start_window_ns: (250_000_000 / clock_hz).min(300),
-            recovery_min_ns,
-            ..channel.request.clone()
-        };
-        *channel = ChannelConfig::resolve(&request, system_hz, double_edge, index).ok()?;
-    }
-    Some(card)
+    changed(card, |request| ChannelRequest {
+        clock_hz,
+        tst_ns: if clock_hz >= TST_FROM_HZ {
+            TST_USUAL_NS
+        } else {
+            0
+        },
+        start_window_ns: (250_000_000 / clock_hz).min(300),
+        recovery_min_ns: match clock_hz > SLOW_HZ {
+            true => request.recovery_min_ns,
+            false => request.recovery_min_ns.max(RECOVERY_MIN_NS),
+        },
+        ..request.clone()
+    })
 }
 
 /// What a host writes to give the channels the settings of a card; they take every trigger.
@@ -106,13 +123,83 @@ fn watched(card: &CardConfig) -> Vec<Value> {
     channels.collect()
 }
 
+/// Frames that fit into each half of a run of continuous clock.
+const RUN_FRAMES: u64 = 3;
+
+/// The card with the command of the continuous clock on its EnDat channels, if it has one.
+fn running(card: &CardConfig) -> Option<CardConfig> {
+    let command = ModeCommand::SendPosition;
+    let run = |request: &ChannelRequest| ChannelRequest {
+        command,
+        recovery_min_ns: request.recovery_min_ns.max(RECOVERY_MIN_NS),
+        ..request.clone()
+    };
+    changed(card, run).filter(|_| card.service.continuous)
+}
+
+/// Channels of that card: where the clock is told to go on.
+fn runs(card: &CardConfig) -> Vec<Value> {
+    let word = SERVICE.register("continuous").into_iter();
+    let channels = word.flat_map(|r| card.endat_channels().map(move |c| (r, c)));
+    let channels = channels.map(|(r, (n, c))| {
+        context! {
+            index => n,
+            address => format!("{:03X}", SERVICE.address(r, n)),
+            flip => (1u64 << c.position_bits) - 1,
+        }
+    });
+    channels.collect()
+}
+
+/// Clock periods that command and answer of a request may have more than those of a position.
+const REQUEST_MORE_PERIODS: u64 = 2 * 24;
+
+/// Channels whose service takes requests: where they are written, and what is asked for.
+fn requests(card: &CardConfig) -> Vec<Value> {
+    if !card.service.requests {
+        return vec![];
+    }
+    let at = |name: &str, channel| {
+        let register = SERVICE.register(name).expect("a word of every service");
+        format!("{:03X}", SERVICE.address(register, channel))
+    };
+    let channels = card.endat_channels().map(|(n, _)| {
+        context! {
+            index => n,
+            request => at("request", n),
+            state => at("request_state", n),
+            answer => at("answer", n),
+            // Both levels of every bit.
+            addresses => [format!("{:02X}", 0x0D + n), format!("{:02X}", !(0x0D + n) & 0xFF)],
+        }
+    });
+    channels.collect()
+}
+
+/// Such a request takes no longer than this, in nanoseconds.
+fn request_ns(card: &CardConfig) -> u64 {
+    let more = longest_ns(card, |c| REQUEST_MORE_PERIODS * c.period_cycles);
+    cycle_ns(card) + more
+}
+
 impl Parts {
     pub(super) fn new(card: &CardConfig, ports: &[Port]) -> Result<Self, GenError> {
+        let run = running(card);
         let context = context! {
             rates => rates(card),
             own_rate => writes(card),
             direct => card.outputs.position,
             watchdog => watched(card),
+            requests => requests(card),
+            request_fields => Serde(fields(&SERVICE).filter(|f| REQUEST_FIELDS.contains(&f.name.as_str())).collect::<Vec<_>>()),
+            runs => run.iter().flat_map(runs).collect::<Vec<_>>(),
+            run_writes => run.iter().flat_map(writes).collect::<Vec<_>>(),
+            run_ns => whole(RUN_FRAMES * cycle_ns(card)),
+            run_frames => 2 * RUN_FRAMES - 1,
+            send_parameter => ModeCommand::SendParameter.code(),
+            request_ns => whole(request_ns(card)),
+            gap_ms => 2 + PARAMETER_GAP_MS,
+            services => services(card),
             power_up => card.service.initialise,
             channels => Serde(ports),
         };

@@ -133,17 +133,14 @@ fn output(uut: &ChannelRegisters, field: &str) -> u64 {
     }
 }
 
+/// A byte with its parity.
+fn guarded(byte: u8) -> Bits<9> {
+    (u64::from(byte.count_ones() % 2) << 8 | u64::from(byte)).into()
+}
+
 /// Turns new words into the ring block, most significant byte of word 0 first.
 fn turn_in(uut: &mut ChannelRegisters, words: [u32; 3]) {
-    uut.ring_turn.next = true;
-    uut.ring_home.next = false;
-    for byte in words.iter().flat_map(|w| w.to_be_bytes()) {
-        uut.ring_in.next = u64::from(byte).into();
-        step(uut);
-    }
-    uut.ring_turn.next = false;
-    uut.ring_home.next = true;
-    step(uut);
+    turn_in_spoilt(uut, words, [0; 3]);
 }
 
 #[test]
@@ -180,6 +177,41 @@ fn every_configuration_field_is_where_the_table_says() {
                 field.name
             );
         }
+    }
+}
+
+/// The words of a block, as they stand on the ring after a turn with `spoilt` bits inverted on the way in.
+fn turn_in_spoilt(uut: &mut ChannelRegisters, words: [u32; 3], spoilt: [u32; 3]) {
+    uut.ring_turn.next = true;
+    uut.ring_home.next = false;
+    let bytes = |words: [u32; 3]| words.into_iter().flat_map(u32::to_be_bytes);
+    for (byte, spoilt) in bytes(words).zip(bytes(spoilt)) {
+        uut.ring_in.next = guarded(byte) ^ Bits::<9>::from(u64::from(spoilt));
+        step(uut);
+    }
+    uut.ring_turn.next = false;
+    uut.ring_home.next = true;
+    step(uut);
+}
+
+#[test]
+fn nothing_goes_out_with_settings_that_nobody_wrote() {
+    let words = config_words(&test_config(), Some(0));
+    let start = new();
+    let right = ["command", "request_id", "period_cycles"].map(|f| output(&start, f));
+    for bit in 0..96 {
+        let mut uut = new();
+        let mut spoilt = [0; 3];
+        spoilt[bit / 32] = 1 << (bit % 32);
+        turn_in_spoilt(&mut uut, words, spoilt);
+        assert_eq!(output(&uut, "command"), 0, "bit {bit}");
+        assert_eq!(output(&uut, "request_id"), 15, "bit {bit}");
+        turn_in(&mut uut, words);
+        let now = ["command", "request_id", "period_cycles"].map(|f| output(&uut, f));
+        assert_eq!(now, right, "bit {bit}, written again");
+        uut.card_damaged.next = true;
+        step(&mut uut);
+        assert_eq!(output(&uut, "command"), 0, "the card's own settings");
     }
 }
 

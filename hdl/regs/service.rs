@@ -111,6 +111,7 @@ pub const SERVICE: Block = Block {
             field("slower", 5, 1, "", "The encoder takes only a slower clock than configured; that is used"),
             field("unplugged", 6, 1, "", "DATA has been HIGH for long: no encoder, or an open line"),
             field("initialising", 7, 1, "", "power-up sequence or initialisation is under way; triggers are lost"),
+            field("starts", 16, 16, "", "How often the program has begun since power-up, wrapping: one more after each reset, and after an upset that led it astray"),
         ]),
         word("lost", at::LOST, ReadOnly, "What did not get its turn.", &[
             field("triggers", 0, 16, "", "Triggers that came while the line was not free, wrapping"),

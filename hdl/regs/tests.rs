@@ -580,6 +580,7 @@ state other_width 4:4
 state slower 5:5
 state unplugged 6:6
 state initialising 7:7
+state starts 31:16
 lost triggers 15:0
 lost ends 31:16
 threshold n 15:0

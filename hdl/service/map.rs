@@ -126,6 +126,8 @@ pub mod output {
     pub const RECOVERY_MIN: u8 = 10;
     /// Continuous clock: as [`super::word::CONTINUOUS`].
     pub const CONTINUOUS: u8 = 11;
+    /// Whatever is written: the program goes its round, or waits for something that has an end.
+    pub const ALIVE: u8 = 12;
 }
 
 /// Words of 32 bits in RAM, as the host counts them; the program's word is twice that, plus one for the high half.
@@ -147,7 +149,7 @@ pub mod word {
     pub const FORCE: u8 = 6;
     /// Initialisation: step under way (15..0, 0 = none), step that failed (31..16, 0 = none).
     pub const PROGRESS: u8 = 7;
-    /// What is known and what is wrong.
+    /// What is known and what is wrong (15..0), how often the program has begun (31..16).
     pub const STATE: u8 = 8;
     /// Triggers lost (15..0), ends of frames not looked at (31..16).
     pub const LOST: u8 = 9;

@@ -54,6 +54,10 @@ pub struct ServiceTimes {
     pub wait_ms: u16,
     /// DATA must be HIGH for so long to be taken for an open line.
     pub unplugged_ms: u16,
+    /// A program that has not shown for so long that it is alive begins anew, 63 at most.
+    pub stuck_ms: u16,
+    /// The longest wait, whoever asks for it, and one: a mask. A jump astray into a wait costs no more.
+    pub wait_mask: u16,
     /// System clock in kHz.
     pub system_khz: u32,
 }
@@ -75,6 +79,9 @@ impl ServiceTimes {
             request_ms: 200,
             wait_ms: timing::REQUEST_WAIT_MS,
             unplugged_ms: 5,
+            // Longest it computes: a division of 2047 rounds, 48 cycles each, 13 ms at the slowest clock.
+            stuck_ms: 32,
+            wait_mask: WAIT_MASK,
             system_khz: (system_hz / 1_000) as u32,
         }
     }
@@ -155,7 +162,17 @@ mod own {
     pub const ROUNDS: u8 = FIRST + 57;
     /// The period that the initialisation has found; 0 = the configured one.
     pub const PERIOD: u8 = FIRST + 58;
+    /// Words that decide what goes out as long as nobody writes them again, and where the complement of each stands.
+    pub const KEPT: [(u8, u8); 3] = [
+        (LEVELS, FIRST + 59),
+        (FOUND, FIRST + 60),
+        (PERIOD, FIRST + 61),
+    ];
 }
+
+/// 4 seconds.
+const WAIT_MASK: u16 = 0x0FFF;
+const _: () = assert!(timing::AFTER_PULSE_MS < WAIT_MASK && timing::POWER_UP_MS < WAIT_MASK);
 
 /// Low half of a host word.
 const fn low(word: u8) -> u8 {
@@ -180,6 +197,19 @@ fn set(a: &mut Assembler, address: u8, value: u16) {
 /// Adds bits to a RAM word, whether they are there or not.
 fn set_bits(a: &mut Assembler, address: u8, bits: u16) {
     a.ld(address).andi(!bits).addi(bits).st(address);
+}
+
+/// Stores A in one of [`own::KEPT`]. The main loop begins anew where an upset, or a jump astray, has changed it alone.
+fn keep(a: &mut Assembler, address: u8) {
+    let inverse = own::KEPT.iter().find(|(kept, _)| *kept == address);
+    let (_, inverse) = inverse.expect("a word that is kept");
+    a.st(address).xori(u16::MAX).st(*inverse).xori(u16::MAX);
+}
+
+/// Adds bits to one of [`own::KEPT`], whether they are there or not.
+fn keep_bits(a: &mut Assembler, address: u8, bits: u16) {
+    a.ld(address).andi(!bits).addi(bits);
+    keep(a, address);
 }
 
 /// The program.
@@ -207,17 +237,15 @@ pub fn program(times: &ServiceTimes) -> Vec<u32> {
 }
 
 fn start(a: &mut Assembler, times: &ServiceTimes) {
-    a.ldi(0);
+    a.place("start");
+    // Each with a zero of its own: who comes astray into their middle spoils one of them.
     for word in [
         own::ZERO,
         own::MAILBOX,
         own::IS_HIGH,
         own::WINDOW,
         own::TURN,
-        own::FOUND,
         own::STAGE,
-        own::LEVELS,
-        own::PERIOD,
         low(word::STATE),
         low(word::REQUEST_STATE),
         low(word::PROGRESS),
@@ -225,9 +253,14 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
         low(word::LIMITS),
         low(word::CONTINUOUS),
     ] {
-        a.st(word);
+        set(a, word, 0);
     }
-    a.out(output::FOUND).out(output::PERIOD);
+    for (word, inverse) in own::KEPT {
+        set(a, word, 0);
+        set(a, inverse, u16::MAX);
+    }
+    a.ldi(0).out(output::FOUND).out(output::PERIOD);
+    a.ld(high(word::STATE)).addi(1).st(high(word::STATE));
     let infos = times.infos.into_iter().filter(|code| *code != 0);
     let mut length = 0;
     for code in infos {
@@ -254,10 +287,13 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
 fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     a.place("main");
     let (free, acts, waits, levels) = (a.label(), a.label(), a.label(), a.label());
+    let (nobody, idle) = (a.label(), a.label());
     let (no_clear, no_control) = (a.label(), a.label());
+    a.out(output::ALIVE);
     a.call("look");
     // One request at a time: the next one waits at the door, and so does the control word.
     a.ld(own::MAILBOX).jz(free);
+    a.xori(requests::mailbox::OWN).jz(nobody);
     a.inp(input::STATUS)
         .andi(status::REQUEST_RUNS | status::EVENT)
         .jnz(levels);
@@ -272,6 +308,12 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(request_state::NO_TRIGGER).call("give_up");
     a.jmp(levels);
     a.place(free);
+    // What is under way and waits for no frame of a trigger is not worked on here: an upset has led the program out of it.
+    a.ld(low(word::REQUEST_STATE)).andi(request_state::BUSY);
+    a.jz(idle);
+    a.place(nobody);
+    a.ldi(request_state::FRAME).call("finish");
+    a.place(idle);
     a.inp(input::STATUS).andi(status::CONTROL).jz(no_control);
     // Before the next request, which a cancel is not meant for.
     a.place(acts);
@@ -288,6 +330,11 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     a.inp(input::STATUS).andi(status::MAILBOX).jnz("mailbox");
     a.place(levels);
     a.inp(input::DISPLACED).st(low(word::LOST));
+    for (word, inverse) in own::KEPT {
+        a.ld(word).xori(u16::MAX).sub(inverse).jnz("start");
+    }
+    // Nothing else is left on here.
+    a.ld(own::LEVELS).andi(!level::ALARM).jnz("start");
     // Levels are written again and again: an upset of one does not last.
     a.ld(low(word::FORCE)).out(output::FORCE);
     a.ld(own::LEVELS).out(output::CONTROL);
@@ -370,15 +417,22 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
         a.ret();
     }
 
-    // Waits for A milliseconds at least.
-    a.place("wait").addi(1).st(own::WAIT_MS);
+    // Waits for A milliseconds at least; whatever A is, not for minutes.
+    a.place("wait")
+        .addi(1)
+        .andi(times.wait_mask)
+        .st(own::WAIT_MS);
     a.link().st(own::FROM_WAIT);
     a.inp(input::TIME_MS).st(own::WAIT_FROM);
-    let again = a.here();
+    let (again, over) = (a.here(), a.label());
+    a.out(output::ALIVE);
     a.call("look");
     a.inp(input::TIME_MS).sub(own::WAIT_FROM).sub(own::WAIT_MS);
-    a.jc(again);
-    a.ld(own::FROM_WAIT).jmpa();
+    a.jnc(over);
+    // The word itself may have been upset.
+    a.inp(input::TIME_MS).sub(own::WAIT_FROM);
+    a.addi(minus(times.wait_mask)).jnc(again);
+    a.place(over).ld(own::FROM_WAIT).jmpa();
 
     // All counters and what is latched.
     a.place("clear");
@@ -399,7 +453,8 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(low(word::STATE));
     a.andi(!(state::ALARM | state::POSITION_2))
         .st(low(word::STATE));
-    a.ld(own::LEVELS).andi(!level::ALARM).st(own::LEVELS);
+    a.ld(own::LEVELS).andi(!level::ALARM);
+    keep(a, own::LEVELS);
     a.out(output::CONTROL).ret();
 
     // Two to the position's width.

@@ -93,9 +93,9 @@ module s6_two_channel_card_core (
     wire   [7:0] direct_byte_0;
     wire   [7:0] part_byte_0;
     wire   [7:0] part_byte_1;
-    wire   [7:0] ring_link_0;
-    wire   [7:0] ring_link_1;
-    wire   [7:0] ring_link_2;
+    wire   [8:0] ring_link_0;
+    wire   [8:0] ring_link_1;
+    wire   [8:0] ring_link_2;
     wire   [7:0] read_link_0;
     wire   [7:0] read_link_1;
     wire   [7:0] read_link_2;
@@ -130,7 +130,8 @@ module s6_two_channel_card_core (
     wire   [7:0] bank_channel_skip;
     wire         bank_ring_turn;
     wire         bank_ring_home;
-    wire   [7:0] bank_ring_in;
+    wire   [8:0] bank_ring_in;
+    wire         bank_is_damaged;
     wire         bank_service_line;
     wire   [6:0] bank_service_address;
     wire   [7:0] bank_service_channels;
@@ -151,7 +152,7 @@ module s6_two_channel_card_core (
     wire         registers_0_taken;
     wire         registers_0_owes;
     wire         registers_0_brought;
-    wire   [7:0] registers_0_ring_in;
+    wire   [8:0] registers_0_ring_in;
     wire   [4:0] registers_0_trigger_skip;
     wire   [2:0] registers_0_ignored_sources;
     wire  [10:0] registers_0_period_cycles;
@@ -169,7 +170,7 @@ module s6_two_channel_card_core (
     wire         registers_1_taken;
     wire         registers_1_owes;
     wire         registers_1_brought;
-    wire   [7:0] registers_1_ring_in;
+    wire   [8:0] registers_1_ring_in;
     wire   [4:0] registers_1_trigger_skip;
     wire   [2:0] registers_1_ignored_sources;
     wire  [10:0] registers_1_period_cycles;
@@ -312,6 +313,7 @@ module s6_two_channel_card_core (
         .ring_home(bank_ring_home),
         .ring_in(bank_ring_in),
         .ring_out(ring_link_2),
+        .is_damaged(bank_is_damaged),
         .service_line(bank_service_line),
         .service_address(bank_service_address),
         .service_channels(bank_service_channels),
@@ -368,6 +370,7 @@ module s6_two_channel_card_core (
         .ring_home(bank_ring_home),
         .ring_in(registers_0_ring_in),
         .ring_out(ring_link_0),
+        .card_damaged(bank_is_damaged),
         .trigger_skip(registers_0_trigger_skip),
         .ignored_sources(registers_0_ignored_sources),
         .period_cycles(registers_0_period_cycles),
@@ -419,6 +422,7 @@ module s6_two_channel_card_core (
         .ring_home(bank_ring_home),
         .ring_in(registers_1_ring_in),
         .ring_out(ring_link_1),
+        .card_damaged(bank_is_damaged),
         .trigger_skip(registers_1_trigger_skip),
         .ignored_sources(registers_1_ignored_sources),
         .period_cycles(registers_1_period_cycles),

@@ -74,10 +74,12 @@ module s6_two_channel_channel_registers (
     input  wire         ring_turn,
     // The configuration ring stands still, its words are in place.
     input  wire         ring_home,
-    // Byte from the ring block behind.
-    input  wire   [7:0] ring_in,
+    // Byte from the ring block behind, its parity in bit 8.
+    input  wire   [8:0] ring_in,
     // Byte to the ring block in front.
-    output wire   [7:0] ring_out,
+    output wire   [8:0] ring_out,
+    // The card's own settings are not what was written.
+    input  wire         card_damaged,
     // Triggers left out after each that the channel takes; this and the next one as they stand on the ring.
     output wire   [4:0] trigger_skip,
     // Trigger sources that are not for this channel.
@@ -87,7 +89,7 @@ module s6_two_channel_channel_registers (
     // First low phase minus half a period, in system clock cycles.
     output wire  [10:0] first_low_extra_cycles,
     // Mode command.
-    output wire   [5:0] command,
+    output reg    [5:0] command,
     // Position width.
     output wire   [5:0] position_bits,
     // Input filter, in system clock cycles.
@@ -97,7 +99,7 @@ module s6_two_channel_channel_registers (
     // Half width of the start window, in system clock cycles.
     output wire   [5:0] start_window_cycles,
     // T-format: request ID of a trigger.
-    output wire   [3:0] request_id,
+    output reg    [3:0] request_id,
     // T-format: longest pause between two fields, in microseconds.
     output wire   [2:0] field_gap_us,
     // Longest wait for the start bit, or for a reply of T-format, in microseconds.
@@ -166,6 +168,7 @@ module s6_two_channel_channel_registers (
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
     wire  [31:0] ring_word2;
+    wire         ring_is_damaged;
     reg   [31:0] config0; initial config0 = 32'h381d0020;
     reg   [31:0] config0_next;
     reg   [31:0] config1; initial config1 = 32'h20800b8;
@@ -181,7 +184,8 @@ module s6_two_channel_channel_registers (
         .byte_out(ring_out),
         .word0(ring_word0),
         .word1(ring_word1),
-        .word2(ring_word2)
+        .word2(ring_word2),
+        .is_damaged(ring_is_damaged)
     );
 
     always @* begin
@@ -390,15 +394,22 @@ module s6_two_channel_channel_registers (
     assign ignored_sources = {1'b0, ring_word0[23:22]} | ({2'd0, ring_word0[30]} << 2'd2);
     assign period_cycles = config0[10:0];
     assign position_bits = config0[21:16];
-    assign command = config0[29:24];
     assign first_low_extra_cycles = config1[10:0];
     assign start_window_cycles = config1[21:16];
     assign filter_cycles = config1[27:24];
     assign filter_half = config1[23];
-    assign request_id = config1[31:28];
     assign field_gap_us = config2[31:29];
     assign start_timeout_us = config2[11:0];
     assign recovery_limit_cycles = config2[28:16];
+
+    always @* begin
+        command = config0[29:24];
+        request_id = config1[31:28];
+        if (ring_is_damaged | card_damaged) begin
+            command = 6'd0;
+            request_id = 4'd15;
+        end
+    end
     assign byte_0_reset = word_skip[0];
     assign byte_1_reset = word_skip[1];
     assign byte_2_reset = word_skip[2];

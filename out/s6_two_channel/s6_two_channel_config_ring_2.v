@@ -12,16 +12,18 @@ module s6_two_channel_config_ring_2 (
     input  wire         reset,
     // The ring moves on by one byte.
     input  wire         turn,
-    // Byte from the block behind.
-    input  wire   [7:0] byte_in,
+    // Byte from the block behind, its parity in bit 8.
+    input  wire   [8:0] byte_in,
     // Byte that goes to the block in front: the most significant one of word 0.
-    output wire   [7:0] byte_out,
+    output wire   [8:0] byte_out,
     // Word 0, while the ring stands still.
     output wire  [31:0] word0,
     // Word 1, while the ring stands still.
     output wire  [31:0] word1,
     // Word 2, while the ring stands still.
-    output wire  [31:0] word2
+    output wire  [31:0] word2,
+    // The words are not what was written, as of the last cycle in which the ring stood still.
+    output wire         is_damaged
 );
     reg   [31:0] w0; initial w0 = 32'h381d0020;
     reg   [31:0] w0_next;
@@ -29,18 +31,28 @@ module s6_two_channel_config_ring_2 (
     reg   [31:0] w1_next;
     reg   [31:0] w2; initial w2 = 32'hc500012;
     reg   [31:0] w2_next;
+    reg   [11:0] parities; initial parities = 12'h9c0;
+    reg   [11:0] parities_next;
+    reg          damaged; initial damaged = 1'b0;
+    reg          damaged_next;
 
     always @* begin
         w0_next = w0;
         w1_next = w1;
         w2_next = w2;
+        parities_next = parities;
+        damaged_next = damaged;
         if (turn) begin
             w0_next = (w0 << 4'd8) | {24'd0, w1[31:24]};
             w1_next = (w1 << 4'd8) | {24'd0, w2[31:24]};
-            w2_next = (w2 << 4'd8) | {24'd0, byte_in};
+            w2_next = (w2 << 4'd8) | {24'd0, byte_in[7:0]};
+            parities_next = (parities << 1'b1) | {11'd0, byte_in[8]};
+        end else begin
+            damaged_next = (^w0) ^ (^w1) ^ (^w2) ^ (^parities);
         end
     end
-    assign byte_out = w0[31:24];
+    assign is_damaged = damaged;
+    assign byte_out = {1'b0, w0[31:24]} | ({8'd0, parities[11]} << 4'd8);
     assign word0 = w0;
     assign word1 = w1;
     assign word2 = w2;
@@ -50,10 +62,14 @@ module s6_two_channel_config_ring_2 (
             w0 <= 32'h381d0020;
             w1 <= 32'h20800b8;
             w2 <= 32'hc500012;
+            parities <= 12'h9c0;
+            damaged <= 1'b0;
         end else begin
             w0 <= w0_next;
             w1 <= w1_next;
             w2 <= w2_next;
+            parities <= parities_next;
+            damaged <= damaged_next;
         end
     end
 endmodule

@@ -58,10 +58,12 @@ module s6_two_channel_register_bank (
     output wire         ring_turn,
     // The configuration ring stands still.
     output wire         ring_home,
-    // Byte from the first channel's ring block.
-    input  wire   [7:0] ring_in,
+    // Byte from the first channel's ring block, its parity in bit 8.
+    input  wire   [8:0] ring_in,
     // Byte to the last channel's ring block.
-    output wire   [7:0] ring_out,
+    output wire   [8:0] ring_out,
+    // The card's own settings are not what was written.
+    output wire         is_damaged,
     // The word is one of a line monitor or a T-format port, not of a service.
     output wire         service_line,
     // Word of a service's RAM, a line monitor or a T-format port.
@@ -130,13 +132,15 @@ module s6_two_channel_register_bank (
     wire         card_page;
     wire         strobe;
     wire         result_page;
-    reg    [7:0] head;
+    wire   [7:0] written;
+    reg    [8:0] head;
     reg   [31:0] rom_word;
     wire         line_page;
     wire         t_format_page;
     wire         word_page;
     reg    [7:0] selected;
     reg    [2:0] service_channel;
+    wire   [8:0] ring_byte_out;
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
     wire  [31:0] ring_word2;
@@ -206,10 +210,11 @@ module s6_two_channel_register_bank (
         .reset(reset),
         .turn(turn),
         .byte_in(ring_in),
-        .byte_out(passing_byte),
+        .byte_out(ring_byte_out),
         .word0(ring_word0),
         .word1(ring_word1),
-        .word2(ring_word2)
+        .word2(ring_word2),
+        .is_damaged(is_damaged)
     );
 
     always @* begin
@@ -255,7 +260,7 @@ module s6_two_channel_register_bank (
     always @* begin
         ring_byte_next = ring_byte;
         if (byte_passes) begin
-            ring_byte_next = passing_byte;
+            ring_byte_next = ring_byte_out[7:0];
         end
         if (starts) begin
             ring_byte_next = 8'd0;
@@ -310,14 +315,16 @@ module s6_two_channel_register_bank (
     end
     assign low_address = word_address[8:0];
     assign at_word = turning & config_page & (block_at == held_address[6:3]) & (byte_at[3:2] == held_address[1:0]);
+    assign written = write_data[31:24];
 
     always @* begin
-        head = passing_byte;
+        head = ring_byte_out;
         if (passes & write_now) begin
-            head = write_data[31:24];
+            head = {1'b0, written} | ({8'd0, ^written} << 4'd8);
         end
     end
     assign take_byte = passes;
+    assign passing_byte = ring_byte_out[7:0];
     assign ring_out = head;
     assign card_page = low_page & !(|word_address[8:4]);
     assign stream_selected = card_page & (&word_address[3:2]);

@@ -13,11 +13,14 @@
 // Values are compared at one width; narrower ones get zeros in front, as Verilog has it.
 /* verilator lint_off WIDTH */
 
-// An encoder: counts clock edges, reads the mode command, answers with its position, waits its recovery time.
+// An encoder: counts clock edges, reads the mode command, answers with its position, waits its recovery time. Asked for a parameter
+// (100011, address, 16 more bits) it answers with the address and with it twice, once inverted. Where the clock may go on, the falling edge
+// behind the answer takes the next position, and DATA is LOW for one period at least before its start bit.
 module s6_two_channel_tb_encoder #(
     parameter integer CHANNEL = 0,
     parameter [5:0] COMMAND = 6'b111000,
     parameter integer HAS_F2 = 1,
+    parameter integer HAS_PARAMETERS = 0,
     parameter integer POSITION_BITS = 29,
     parameter real TCAL_NS = 5000.0,
     parameter real TM_NS = 15000.0
@@ -31,6 +34,7 @@ module s6_two_channel_tb_encoder #(
     input wire spoil_crc,
     input wire no_start,
     input wire stay_high, // never falls after the frame
+    input wire goes_on, // the mode command is 000111, and the clock may go on behind the position
     output reg oe,
     output reg data,
     output reg [4:0] crc, // of the last answer, as sent
@@ -38,8 +42,10 @@ module s6_two_channel_tb_encoder #(
     output reg [31:0] errors
 );
     localparam [1:0] IDLE = 2'd0, LEAD = 2'd1, SEND = 2'd2, RECOVERY = 2'd3;
-    localparam integer COVERED = 1 + HAS_F2 + POSITION_BITS;
-    localparam integer ANSWER_BITS = 1 + COVERED + 5;
+    localparam [5:0] SEND_PARAMETER = 6'b100011;
+    localparam [5:0] SEND_POSITION = 6'b000111;
+    localparam integer RUN_RISES = 9; // where the count of rising edges goes on in a run: LOW at the next, a start bit behind it
+    localparam integer PARAMETER_BITS = 24; // address and data, in command and answer
     localparam real RELEASE_NS = 20.0; // from the first falling edge to the driver being off
     localparam real LAUNCH_NS = 12.0; // from a rising edge to the data
     localparam real STOPPED_NS = 12000.0; // the clock high for longer than this ends any frame
@@ -47,6 +53,10 @@ module s6_two_channel_tb_encoder #(
     reg [1:0] phase;
     reg [55:0] answer; // bit 0 goes first
     reg [5:0] command;
+    reg [PARAMETER_BITS-1:0] asked;
+    integer covered; // bits under the CRC
+    integer later; // clock periods that a parameter delays everything behind the mode command
+    reg is_run; // the clock has gone on
     reg silent;
     reg stuck;
     integer falls;
@@ -55,7 +65,8 @@ module s6_two_channel_tb_encoder #(
     integer i;
     real first_fall;
     real last_rise;
-    event frame_end;
+    integer ended; // recovery times that have begun, and the last one that is over
+    integer recovered;
 
     task complain(input [8*40-1:0] what, input integer number);
         begin
@@ -75,18 +86,42 @@ module s6_two_channel_tb_encoder #(
             answer = 56'd0;
             answer[0] = 1'b1;
             answer[1] = f1;
-            if (HAS_F2 != 0)
+            covered = 1;
+            if (HAS_F2 != 0 && !goes_on) begin
                 answer[2] = f2;
+                covered = 2;
+            end
             for (i = 0; i < POSITION_BITS; i = i + 1)
-                answer[2 + HAS_F2 + i] = position[i];
+                answer[1 + covered + i] = position[i];
+            covered = covered + POSITION_BITS;
+            close_answer;
+            silent = no_start;
+            stuck = stay_high;
+        end
+    endtask
+
+    task prepare_parameter;
+        begin
+            answer = 56'd1;
+            for (i = 0; i < 8; i = i + 1) begin
+                answer[1 + i] = asked[PARAMETER_BITS-1-i];
+                answer[9 + i] = ~asked[PARAMETER_BITS-1-i];
+                answer[17 + i] = asked[PARAMETER_BITS-1-i];
+            end
+            covered = PARAMETER_BITS;
+            close_answer;
+        end
+    endtask
+
+    // The CRC behind it.
+    task close_answer;
+        begin
             crc = 5'b11111;
-            for (i = 1; i <= COVERED; i = i + 1)
+            for (i = 1; i <= covered; i = i + 1)
                 crc = crc_step(crc, answer[i]);
             crc = ~crc ^ {4'd0, spoil_crc};
             for (i = 0; i < 5; i = i + 1)
-                answer[1 + COVERED + i] = crc[4 - i];
-            silent = no_start;
-            stuck = stay_high;
+                answer[1 + covered + i] = crc[4 - i];
         end
     endtask
 
@@ -95,6 +130,11 @@ module s6_two_channel_tb_encoder #(
         oe = 1'b1;
         data = 1'b0;
         crc = 5'd0;
+        later = 0;
+        covered = 0;
+        is_run = 1'b0;
+        ended = 0;
+        recovered = 0;
         frames = 0;
         errors = 0;
         first_fall = 0.0;
@@ -107,16 +147,27 @@ module s6_two_channel_tb_encoder #(
                 phase = LEAD;
                 falls = 1;
                 rises = 0;
+                later = 0;
+                is_run = 1'b0;
                 first_fall = $realtime;
                 prepare;
                 oe <= #(RELEASE_NS) 1'b0;
                 data <= #(RELEASE_NS) 1'b0;
             end
-            RECOVERY: complain("a clock edge within the recovery time", falls);
+            RECOVERY:
+                if (goes_on) begin
+                    frames = frames + 1;
+                    phase = LEAD;
+                    is_run = 1'b1;
+                    rises = RUN_RISES;
+                    first_fall = $realtime;
+                    prepare;
+                end else
+                    complain("a clock edge within the recovery time", falls);
             default: begin
                 falls = falls + 1;
                 // One period after the receiver's driver has to be off.
-                if (falls == 10)
+                if (falls == 10 + later)
                     oe = 1'b1;
             end
         endcase
@@ -125,28 +176,38 @@ module s6_two_channel_tb_encoder #(
         last_rise = $realtime;
         if (phase != IDLE) begin
             rises = rises + 1;
-            if (driver_oe !== (rises >= 2 && rises <= 8))
-                complain("receiver's driver wrong at rising edge", rises);
             if (rises >= 3 && rises <= 8)
                 command = {command[4:0], driver_data};
-            if (rises == 9 && command !== COMMAND)
+            if (HAS_PARAMETERS != 0 && rises == 8 && command === SEND_PARAMETER)
+                later = PARAMETER_BITS;
+            if (driver_oe !== (rises >= 2 && rises <= 8 + later && !is_run))
+                complain("receiver's driver wrong at rising edge", rises);
+            if (rises == 9 && command !== (goes_on ? SEND_POSITION : COMMAND) && later == 0)
                 complain("not the mode command", command);
+            if (rises >= 9 && rises <= 8 + later) begin
+                asked = {asked[PARAMETER_BITS-2:0], driver_data};
+                if (rises == 8 + later)
+                    prepare_parameter;
+            end
         end
         case (phase)
             LEAD:
-                if (rises >= 11 && $realtime - first_fall >= TCAL_NS && !silent) begin
+                if (is_run && rises == RUN_RISES + 1)
+                    data <= #(LAUNCH_NS) 1'b0;
+                else if (rises >= 11 + later && $realtime - first_fall >= TCAL_NS && !silent) begin
                     data <= #(LAUNCH_NS) answer[0];
                     sent = 1;
                     phase = SEND;
                 end
             SEND:
-                if (sent < ANSWER_BITS) begin
+                if (sent < 1 + covered + 5) begin
                     data <= #(LAUNCH_NS) answer[sent];
                     sent = sent + 1;
                 end else begin
                     data <= #(LAUNCH_NS) 1'b1;
                     phase = RECOVERY;
-                    -> frame_end;
+                    ended = ended + 1;
+                    recovered <= #(TM_NS) ended;
                 end
             RECOVERY: complain("a clock edge too many", rises);
             default:
@@ -156,18 +217,19 @@ module s6_two_channel_tb_encoder #(
         endcase
     end
 
-    always @(frame_end) begin
-        #(TM_NS);
-        if (!stuck)
-            data = 1'b0;
-        frames = frames + 1;
-        phase = IDLE;
-    end
+    always @(recovered)
+        if (phase == RECOVERY && recovered == ended && recovered != 0) begin
+            if (!stuck)
+                data = 1'b0;
+            frames = frames + 1;
+            phase = IDLE;
+        end
 
     always begin
         #1000.0;
         if ((phase == LEAD || phase == SEND) && clk === 1'b1 && $realtime - last_rise > STOPPED_NS && rises > 0) begin
-            if (!silent || driver_oe)
+            // A run may end before the next start bit.
+            if ((!silent || driver_oe) && !(is_run && phase == LEAD))
                 complain("the clock stopped early, rising edges", rises);
             oe = 1'b1;
             data = 1'b0;
@@ -410,7 +472,7 @@ module s6_two_channel_tb;
     wire [CHANNELS-1:0] line_far = (encoder_oe & encoder_data) | (~encoder_oe & (data_far | ~oe_far));
     assign endat_data_i = (endat_data_oe & endat_data_o) | (~endat_data_oe & line_near);
     reg [48*CHANNELS-1:0] position;
-    reg [CHANNELS-1:0] f1, f2, spoil_crc, no_start, stay_high;
+    reg [CHANNELS-1:0] f1, f2, spoil_crc, no_start, stay_high, goes_on;
     wire [5*CHANNELS-1:0] encoder_crc;
     wire [32*CHANNELS-1:0] encoder_frames, encoder_errors;
     real first_fall [0:CHANNELS-1];
@@ -435,6 +497,7 @@ module s6_two_channel_tb;
         .spoil_crc(spoil_crc[0]),
         .no_start(no_start[0]),
         .stay_high(stay_high[0]),
+        .goes_on(goes_on[0]),
         .oe(encoder_oe[0]),
         .data(encoder_data[0]),
         .crc(encoder_crc[5*0 +: 5]),
@@ -470,6 +533,7 @@ module s6_two_channel_tb;
         .spoil_crc(spoil_crc[1]),
         .no_start(no_start[1]),
         .stay_high(stay_high[1]),
+        .goes_on(goes_on[1]),
         .oe(encoder_oe[1]),
         .data(encoder_data[1]),
         .crc(encoder_crc[5*1 +: 5]),
@@ -711,6 +775,7 @@ module s6_two_channel_tb;
         line_near = ~ENDAT;
         want_position = 0;
         is_measuring = 1'b0;
+        goes_on = {CHANNELS{1'b0}};
         errors = 0;
         trigger_count = 0;
         step = 0;

@@ -81,7 +81,7 @@ impl Spoilt {
             Self::Line(kind) => {
                 let from = rng.in_range(0, 20 * US);
                 let until = match kind {
-                    FaultKind::Noise | FaultKind::Glitches => from + rng.in_range(US / 4, LONG),
+                    FaultKind::Noise | FaultKind::Glitches => rng.in_range(from + US / 4, LONG),
                     _ => LONG,
                 };
                 Mishap::Fault {

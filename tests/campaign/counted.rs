@@ -69,6 +69,20 @@ fn any_split_gives_byte_for_byte_what_one_run_gives_and_a_lost_part_is_run_again
     }
 }
 
+/// Catches a service that waits for minutes because the word that says how long was upset: a hang breaks a budget that is asserted.
+#[test]
+fn an_upset_of_what_the_service_reads_leads_into_no_endless_wait() {
+    let folder = crate::tools::folder("campaign_wait");
+    let only = "core.port_0.served_0.seen_17";
+    let card = ["campaign", "upsets", "--subject", "card", "--only", only];
+    let results = done(
+        &folder,
+        &[&card[..], &["--moments", "65"]].concat(),
+        "w.csv",
+    );
+    assert!(String::from_utf8(results).unwrap().contains(",request,"));
+}
+
 #[test]
 fn bad_arguments_of_parts_are_refused_with_their_limits() {
     let upsets = ["campaign", "upsets"];
@@ -147,8 +161,12 @@ fn card(only: &str, moments: u64) -> Tally {
 #[test]
 fn upsets_of_the_card_that_must_be_seen_are_seen() {
     let of = |tally: &Tally, class: &str| tally.count(|r| r.class == class);
-    let ring = card("core.registers_1.ring.w2", 5);
-    assert!(of(&ring, "config") > 100, "{ring:?}");
+    // Nothing goes out with them, and the host writes them again.
+    for only in ["core.registers_1.ring.w2", "core.bank.ring.w1"] {
+        let ring = card(only, 5);
+        let told = of(&ring, "detected");
+        assert!(told > 100 && of(&ring, "config") * 20 < told, "{ring:?}");
+    }
     let time = card("core.timebase.cycles", 5);
     assert!(of(&time, "silent_other") > 100, "{time:?}");
     // Either side of a bit: the stream's CRC, the position's own.

@@ -180,3 +180,23 @@ fn a_full_stdout_is_no_success() {
         "{told}"
     );
 }
+
+/// Before anything is written: the plot would take the place of the rows.
+#[test]
+fn rows_and_plot_are_two_files() {
+    let file = tools::folder("log-same").join("same.csv");
+    let file = file.to_str().unwrap();
+    let outcome = run(&["log", "--port", "virtual", "--out", file, "--svg", file]);
+    assert_eq!(outcome.exit_code, 2, "{outcome:?}");
+    assert!(!std::path::Path::new(file).exists());
+}
+
+/// What stands in a row instead of a cause can be asked for, too.
+#[test]
+fn every_word_of_a_row_is_explained() {
+    for (name, means) in endat_host::feed::NO_CAUSES {
+        let outcome = run(&["explain", name]);
+        assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+        assert!(outcome.stdout.contains(means), "{outcome:?}");
+    }
+}

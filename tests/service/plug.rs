@@ -30,6 +30,8 @@ pub(super) const PERIOD: Time = 150 * US;
 const PULLED_FROM: Time = 3 * MS;
 /// Ticks of a millisecond for which DATA must be HIGH to be taken for an open line.
 const UNPLUGGED_MS: u16 = 2;
+/// A program that is quiet for so long begins anew.
+pub(super) const STUCK_MS: u16 = 2;
 
 pub(super) fn encoder() -> EncoderConfig {
     let mut encoder = quick(EncoderConfig::endat22(POSITION_BITS));
@@ -56,6 +58,7 @@ fn engine(initialise: bool) -> Lanes {
         gap_ms: 0,
         busy_ms: 2,
         unplugged_ms: UNPLUGGED_MS,
+        stuck_ms: STUCK_MS,
         system_khz: (SYSTEM_HZ / 1_000) as u32,
         ..times(initialise)
     };
@@ -109,7 +112,7 @@ impl Hosts {
         (0..self.rig.used).map(&mut get).collect()
     }
 
-    fn write(&mut self, word: u8, value: u32) {
+    pub fn write(&mut self, word: u8, value: u32) {
         self.rig.bench.set_all("host_address", word.into());
         for half in [1, 0] {
             self.rig.bench.set_all("host_half", half);

@@ -1,10 +1,10 @@
 //! Upsets of the registers by which service and channel, and host and service, tell each other what there is to do.
 
-use super::plug::{encoder, ready, Hosts, PERIOD};
+use super::plug::{encoder, ready, Hosts, PERIOD, STUCK_MS};
 use crate::requests::lanes::{self, Rig, LANES};
 use endat_hdl::{
     protocol::ModeCommand::*,
-    service::map::{request_state, word},
+    service::map::{control, request_state, word},
 };
 use endat_sim::{rng::Rng, Time, MS, US};
 
@@ -89,4 +89,48 @@ fn an_upset_of_a_handshake_loses_a_request_at_most_and_the_next_one_is_fulfilled
         }
     }
     assert!(waiting.is_empty(), "{waiting:#?}");
+}
+
+/// Where the program is, or where it returns to, at moments of its main loop's round: some of these jumps end in a loop.
+#[test]
+fn a_program_that_goes_astray_begins_anew() {
+    let ready = ready(false);
+    let names: Vec<String> = ready.nets().map(Into::into).collect();
+    let mut upsets = vec![];
+    for name in ["counter", "link"] {
+        let full = format!("service_0.sequencer.{name}");
+        let net = names.iter().position(|n| *n == full).expect("a register");
+        for bit in 0..11 {
+            for moment in 0..MOMENTS {
+                let cycle = 23 * moment + bit as u64;
+                upsets.push((net, bit, cycle, format!("{name} bit {bit}, cycle {cycle}")));
+            }
+        }
+    }
+    let mut most_starts = 0;
+    for upsets in upsets.chunks(LANES) {
+        let what: Vec<String> = upsets.iter().map(|u| u.3.clone()).collect();
+        let links = vec![(encoder(), lanes::line()); upsets.len()];
+        let mut hosts = Hosts {
+            rig: Rig::on(ready.clone(), &links),
+            next_trigger: 50 * US,
+        };
+        hosts.run_for(PERIOD);
+        hosts.good(PositionSelectMemory, 0x4C);
+        let last = upsets.iter().map(|u| u.2).max().unwrap_or(0);
+        for cycle in 0..=last {
+            for (lane, upset) in upsets.iter().enumerate().filter(|(_, u)| u.2 == cycle) {
+                hosts.rig.bench.engine().flip(upset.0, upset.1, lane);
+            }
+            hosts.tick();
+        }
+        hosts.run_for(Time::from(STUCK_MS + 5) * MS);
+        hosts.write(word::CONTROL, control::CANCEL.into());
+        hosts.run_for(MS);
+        hosts.assert_never_wrong(&what);
+        hosts.good(PositionSelectMemory, 0x4D);
+        let starts = hosts.read(word::STATE).into_iter().map(|s| s >> 16);
+        most_starts = most_starts.max(starts.max().unwrap_or(0));
+    }
+    assert!(most_starts > 1, "none of them was led into a loop");
 }

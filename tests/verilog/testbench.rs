@@ -96,9 +96,9 @@ fn bench_passes_on_a_card_with_all_line_parts() {
 #[test]
 fn bench_passes_on_a_card_with_requests() {
     if tools::require("iverilog", "emitted test bench") {
-        let text = preset("s6_two_channel").unwrap();
-        let text = text.replacen("parts = []", "parts = [\"requests\"]", 1);
-        let files = endat_gen::emit(&parse("requests.toml", &text).unwrap()).unwrap();
+        let mut project = quick_project();
+        project.card.service.requests = true;
+        let files = endat_gen::emit(&project).unwrap();
         assert!(has_block(&files, "service"));
         assert_passes(&run_bench("requests", &files, &[]));
     }

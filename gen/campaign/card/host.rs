@@ -8,6 +8,7 @@ use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{BLOCK_STRIDE, CARD, CONFIG_BASE, RESULT_BASE, SERVICE, SERVICE_BASE};
 use endat_hdl::service::map::{control, request_state, word};
 use endat_hdl::stream::buffer::frame_bytes;
+use endat_hdl::timing::PARAMETER_TIMEOUT_US;
 use endat_host::result::{Reading, STRIDE, WORDS};
 use endat_host::stream::SampleSet;
 use std::collections::VecDeque;
@@ -37,12 +38,17 @@ const FRAME_WORDS: usize = FRAME_BYTES as usize / 4 + 1;
 const ANSWER: u8 = 0xFF;
 /// Longest wait for a request: longer than the card's own.
 const PATIENCE: u64 = 80_000;
+/// A command with a parameter that the encoder refuses has ended by then: the channel waits so long for its answer, the service no more.
+const REFUSED: u64 = CYCLES_PER_US * (PARAMETER_TIMEOUT_US + 10_000);
 /// Send parameter, address 0x0D; and select memory area 0xA1.
 const SEND_PARAMETER: u32 = request_word(ModeCommand::SendParameter, 0x0D);
 const SELECT_MEMORY: u32 = request_word(ModeCommand::SelectMemory, 0xA1);
 
 /// Configuration words of the card, and of each channel.
 pub const CONFIG_WORDS: usize = 3;
+
+/// Settings of a service that decide what becomes of positions.
+pub const SERVICE_WORDS: [u8; 3] = [word::FORCE, word::LIMITS, word::CONTINUOUS];
 
 const fn request_word(command: ModeCommand, address: u32) -> u32 {
     (command.code() as u32) << 24 | address << 16
@@ -52,6 +58,11 @@ const fn request_word(command: ModeCommand, address: u32) -> u32 {
 fn card_word(name: &str) -> u16 {
     let found = CARD.registers.iter().find(|r| r.name == name);
     CARD.address(found.expect("a word of the card"), 0)
+}
+
+/// Address of a word of a channel's service.
+fn service_word(channel: usize, word: u8) -> u16 {
+    SERVICE_BASE + SERVICE.stride * channel as u16 + u16::from(word)
 }
 
 /// The host's program.
@@ -93,6 +104,12 @@ impl Host {
     pub async fn prepare(mut self, pushes: bool, words: Vec<[u32; CONFIG_WORDS]>) {
         self.known.words = words;
         self.known.pushes = pushes;
+        for channel in 0..CHANNELS {
+            for (index, word) in SERVICE_WORDS.into_iter().enumerate() {
+                let read = self.read(2, service_word(channel, word), 1).await;
+                self.known.services[channel][index] = read.expect("an answer")[0];
+            }
+        }
         self.open().await;
         for _ in 0..3 {
             let round = self.round().await;
@@ -288,10 +305,12 @@ impl Host {
 
     /// A request whose answer is known. What fails is tried again; then the connection is opened anew.
     async fn ask(&mut self, channel: usize) {
-        for attempt in 0..4 {
+        for attempt in 0..5 {
             if attempt == 2 {
                 self.open().await;
                 self.tell(What::Reopened).await;
+                // Another command than the one that was meant may have gone out, and the encoder has forgotten its area.
+                self.request(channel, SELECT_MEMORY).await;
             }
             match self.request(channel, SEND_PARAMETER).await {
                 Some(answer) if answer != self.known.answers[channel] => {
@@ -301,22 +320,26 @@ impl Host {
                 Some(_) => return,
                 None => self.is_told = true,
             }
+            if attempt == 3 {
+                self.tell(What::Slow).await;
+                self.line.until(self.line.now() + REFUSED).await;
+            }
         }
         self.tell(What::Stuck).await;
     }
 
     /// A request, as the library sends one; none if it is refused.
     async fn request(&mut self, channel: usize, word: u32) -> Option<u64> {
-        let base = SERVICE_BASE + SERVICE.stride * channel as u16;
-        let state = base + u16::from(word::REQUEST_STATE);
+        let at = |word| service_word(channel, word);
+        let state = at(word::REQUEST_STATE);
         let (busy, cancel) = (u32::from(request_state::BUSY), [control::CANCEL.into()]);
         let before = self.read(2, state, 1).await?[0];
         if before & busy != 0 {
-            self.write(base + u16::from(word::CONTROL), &cancel);
+            self.write(at(word::CONTROL), &cancel);
             self.line.until(self.line.now() + PATIENCE).await;
             return None;
         }
-        self.write(base, &[word]);
+        self.write(at(word::REQUEST), &[word]);
         let end = self.line.now() + PATIENCE;
         let state = loop {
             let now = self.read(2, state, 1).await?[0];
@@ -324,14 +347,14 @@ impl Host {
                 break now;
             }
             if self.line.now() > end {
-                self.write(base + u16::from(word::CONTROL), &cancel);
+                self.write(at(word::CONTROL), &cancel);
                 return None;
             }
         };
         if state >> request_state::ERROR_SHIFT & 0xF != 0 {
             return None;
         }
-        let answer = self.read(2, base + u16::from(word::ANSWER), 2).await?;
+        let answer = self.read(2, at(word::ANSWER), 2).await?;
         Some(u64::from(answer[1] & 0xFFFF) << 32 | u64::from(answer[0]))
     }
 
@@ -347,6 +370,11 @@ impl Host {
         for block in 0..=CHANNELS {
             let words = self.known.words[block];
             self.write(self.block_at(block), &words);
+        }
+        for (channel, values) in self.known.services.into_iter().enumerate() {
+            for (word, value) in SERVICE_WORDS.into_iter().zip(values) {
+                self.write(service_word(channel, word), &[value]);
+            }
         }
         self.write(card_word("stream_clear"), &[1]);
         self.write(card_word("stream_control"), &[self.control()]);

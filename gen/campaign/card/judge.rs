@@ -107,6 +107,7 @@ impl Judge {
             What::Acted(None) | What::Ready(_) | What::Begun | What::Note => {}
             What::Reopened => self.reopen(),
             What::WrongAnswer => self.class = self.class.max(Class::SilentOther),
+            What::Slow => self.mark(Mark::Slow),
             What::Stuck => self.class = Class::Hang,
             What::End(is_same) => {
                 self.told(seen.is_told);

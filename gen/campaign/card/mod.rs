@@ -40,6 +40,8 @@ const LANES: usize = 128;
 const REQUEST_MS: u16 = 2;
 /// The service waits for one millisecond more than it is told: with this one for none.
 const NO_WAIT: u16 = u16::MAX;
+/// And the longest wait is 16 ms.
+const WAIT_MASK: u16 = 0x000F;
 /// Cycles for which the trigger pin is held.
 const PULSE: u64 = 4;
 /// Of so many moments that the ports have, the card has one in each of its activities.
@@ -47,7 +49,7 @@ const MOMENTS_SHARE: u64 = 5;
 /// A frame with a longer period measures the delay.
 const SLOW: Time = 500 * NS;
 /// A host that has not come to an end by then never will: many times what the longest one takes.
-const LONGEST: u64 = 3_000_000;
+const LONGEST: u64 = 8_000_000;
 
 /// The card's configuration.
 fn configuration() -> Result<CardConfig, GenError> {
@@ -67,8 +69,11 @@ fn design(card: &CardConfig) -> Result<Design, GenError> {
     let times = ServiceTimes {
         request_ms: REQUEST_MS,
         busy_ms: REQUEST_MS,
+        reset_ms: NO_WAIT,
         write_ms: NO_WAIT,
         gap_ms: NO_WAIT,
+        stuck_ms: REQUEST_MS,
+        wait_mask: WAIT_MASK,
         ..service_times(card)
     };
     let mut block = Card::with_times(card, TIMEOUT_US, &times);

@@ -1,6 +1,6 @@
 //! What the host tells the judge, and what it is told to do.
 
-use super::host::{CHANNELS, CONFIG_WORDS};
+use super::host::{CHANNELS, CONFIG_WORDS, SERVICE_WORDS};
 use endat_host::result::Reading;
 use endat_host::stream::{Decoder, SampleSet};
 
@@ -50,6 +50,8 @@ impl Kind {
 pub struct Known {
     /// What it wrote.
     pub words: Vec<[u32; CONFIG_WORDS]>,
+    /// Settings of the services, as they stood at the beginning.
+    pub services: [[u32; SERVICE_WORDS.len()]; CHANNELS],
     pub pushes: bool,
     pub decoder: Decoder,
     /// Answers to its requests.
@@ -83,6 +85,8 @@ pub enum What {
     Note,
     /// The connection has been opened anew.
     Reopened,
+    /// One that takes longer than any that was meant is waited for.
+    Slow,
     /// No request is fulfilled any more.
     Stuck,
     /// The end: whether the configuration is what was written.

@@ -2,6 +2,7 @@
 
 use crate::error::{shown, GenError};
 use endat_host::causes;
+use endat_host::feed::NO_CAUSES;
 use endat_host::map::BLOCKS;
 use endat_host::registers::{Access, Block, Field, Register, Values};
 use std::fmt::Write;
@@ -37,6 +38,9 @@ pub fn text(typed: &str) -> Result<String, GenError> {
                 "  counted in service<n>.{counter}, on cards with the part requests"
             );
         }
+    }
+    for (_, means) in NO_CAUSES.iter().filter(|(n, _)| *n == name) {
+        let _ = writeln!(text, "in rows of log and serve, {name}: {means}");
     }
     let parts: Vec<&str> = name.split('.').collect();
     for block in BLOCKS {

@@ -1,7 +1,7 @@
 //! The end of a frame: counters, threshold, additional informations, what they say about the request, the next selection.
 
 use super::requests::{self, mailbox, ANSWERED};
-use super::{high, low, minus, own, set, set_bits, ServiceTimes};
+use super::{high, keep_bits, low, minus, own, set, set_bits, ServiceTimes};
 use crate::protocol::ModeCommand;
 use crate::sequencer::assembler::Assembler;
 use crate::service::map::{
@@ -183,7 +183,7 @@ fn turn(a: &mut Assembler) {
     a.jmp("event_done");
 
     a.place("alarm");
-    set_bits(a, own::LEVELS, level::ALARM);
+    keep_bits(a, own::LEVELS, level::ALARM);
     a.out(output::CONTROL).ret();
 }
 

@@ -1,7 +1,7 @@
 //! Initialisation: a table of steps, each a request with a frame of its own at the calibration clock.
 
 use super::requests::{code, NEVER_BEGAN};
-use super::{high, low, minus, own, set, set_bits, ServiceTimes};
+use super::{high, keep, keep_bits, low, minus, own, set, set_bits, ServiceTimes};
 use crate::config::PERIOD_BITS;
 use crate::protocol::{ModeCommand, MAX_POSITION_BITS};
 use crate::sequencer::assembler::Assembler;
@@ -95,7 +95,7 @@ pub fn step_name(step: Step) -> String {
 pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     a.place("power_up").link().st(own::FROM_INITIALISE);
     set_bits(a, low(word::STATE), state::INITIALISING);
-    set_bits(a, own::LEVELS, level::HOLD_OFF);
+    keep_bits(a, own::LEVELS, level::HOLD_OFF);
     a.out(output::CONTROL);
     a.ldi(times.power_up_ms).call("wait");
     a.ld(own::LEVELS).addi(level::CLOCK_LOW);
@@ -110,17 +110,19 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     a.jmp("begin");
 
     a.place("initialise").link().st(own::FROM_INITIALISE);
-    set_bits(a, own::LEVELS, level::HOLD_OFF);
+    keep_bits(a, own::LEVELS, level::HOLD_OFF);
     a.out(output::CONTROL);
     a.place("begin");
     set(a, own::ROUNDS, ROUNDS);
     a.place("round");
     a.ldi(go::CANCEL).out(output::GO);
     let running = a.here();
+    a.out(output::ALIVE);
     a.call("look");
     a.inp(input::STATUS).andi(status::REQUEST_RUNS).jnz(running);
     a.out(output::FOUND).out(output::PERIOD);
-    a.st(own::FOUND).st(own::PERIOD);
+    keep(a, own::FOUND);
+    keep(a, own::PERIOD);
     a.st(low(word::PROGRESS)).st(high(word::PROGRESS));
     a.ld(low(word::STATE))
         .andi(state::ALARM | state::POSITION_2)
@@ -162,14 +164,17 @@ pub(super) fn initialise(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(0).st(low(word::PROGRESS));
     a.ld(low(word::STATE)).andi(!state::INITIALISING);
     a.st(low(word::STATE));
-    a.ld(own::LEVELS).andi(!level::HOLD_OFF).st(own::LEVELS);
+    a.ld(own::LEVELS).andi(!level::HOLD_OFF);
+    keep(a, own::LEVELS);
     a.out(output::CONTROL);
     a.call("modulus");
     a.ld(own::FROM_INITIALISE).jmpa();
 
     let answered = a.label();
     a.place("step_failed");
-    a.ldi(0).st(own::FOUND).st(own::PERIOD);
+    a.ldi(0);
+    keep(a, own::FOUND);
+    keep(a, own::PERIOD);
     a.out(output::FOUND).out(output::PERIOD);
     a.ld(low(word::PROGRESS)).st(high(word::PROGRESS));
     // The line was never LOW: the next time it is, there is an encoder.
@@ -230,7 +235,8 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     let same = a.label();
     a.place("step_width");
     counted(a);
-    a.ld(low(plate("position_bits"))).andi(63).st(own::FOUND);
+    a.ld(low(plate("position_bits"))).andi(63);
+    keep(a, own::FOUND);
     a.jz("step_failed");
     a.addi(minus(MAX_POSITION_BITS as u16 + 1))
         .jc("step_failed");
@@ -245,7 +251,8 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     a.place("step_endat22");
     counted(a);
     a.ld(low(plate("commands"))).andi(3).xori(1).jz(is_endat22);
-    a.ld(own::FOUND).addi(1 << 6).st(own::FOUND);
+    a.ld(own::FOUND).addi(1 << 6);
+    keep(a, own::FOUND);
     if times.diagnosis {
         a.call("recovery_long");
     }
@@ -274,7 +281,9 @@ fn findings(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::REST + 1).sbc(own::ZERO).st(own::REST + 1);
     a.jnc(more);
     a.inp(input::PERIOD).sub(own::COUNT).jnc(unknown);
-    a.ld(own::COUNT).st(own::PERIOD).out(output::PERIOD);
+    a.ld(own::COUNT);
+    keep(a, own::PERIOD);
+    a.out(output::PERIOD);
     set_bits(a, low(word::STATE), state::SLOWER);
     a.place(unknown).ret();
 

@@ -149,6 +149,7 @@ pub(super) fn own_frame(a: &mut Assembler, times: &ServiceTimes) {
     a.inp(input::TIME_MS).st(own::OWN_FROM);
     a.ld(own::GO).out(output::GO);
     a.place(again);
+    a.out(output::ALIVE);
     a.inp(input::STATUS).andi(status::EVENT).jz(none);
     a.inp(input::STATUS).andi(status::IS_REQUEST).jnz(mine);
     a.call("event");

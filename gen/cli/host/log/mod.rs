@@ -7,7 +7,7 @@ use super::super::number::{decimal_if, number_if};
 use super::super::pictures::{check_all, write_all, File};
 use super::super::Outcome;
 use super::{interrupted, place, scales, settled, told, AnyCard, PortArgs};
-use crate::error::GenError;
+use crate::error::{shown, GenError};
 use clap::Args;
 use count::{Count, Judge};
 use endat_host::feed::Feed;
@@ -86,6 +86,24 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         )]));
     }
     let scales = scales(&mut card)?;
+    let mut drawing = arguments.svg.clone().map(|path| File {
+        option: "--svg",
+        path,
+        text: String::new(),
+        is_ours: is_drawing,
+    });
+    if let Some(path) = arguments
+        .svg
+        .as_ref()
+        .filter(|svg| arguments.out.as_ref() == Some(*svg))
+    {
+        return Err(GenError::input(format!(
+            "--svg = {}: is the file of --out, too; give the drawing another name",
+            shown(&path.display().to_string())
+        )));
+    }
+    // Refused before the first sample, not after the last.
+    check_all(&drawing.iter().collect::<Vec<_>>())?;
     let (out, name): (Box<dyn Write>, String) = match &arguments.out {
         None => (Box::new(Lines::to(Box::new(io::stdout()))), "stdout".into()),
         Some(path) => {
@@ -108,14 +126,6 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     let informations = card.identity().stream_informations;
     let mut sheet =
         Sheet::new(arguments.format, out, scales, system_hz, informations).map_err(failed)?;
-    let mut drawing = arguments.svg.clone().map(|path| File {
-        option: "--svg",
-        path,
-        text: String::new(),
-        is_ours: is_drawing,
-    });
-    // Refused before the first sample, not after the last.
-    check_all(&drawing.iter().collect::<Vec<_>>())?;
     let judge = Judge {
         own_triggers: card.identity().has("own_trigger"),
     };
