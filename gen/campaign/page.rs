@@ -62,13 +62,13 @@ and request asks both services for a parameter. What it is told counts as detect
 frame of the stream, a result that is stale, a number that is skipped, a request that is refused. Lost is a trigger without a result, or without a set; silent_other is a wrong time \
 stamp, a wrong answer, a configuration that is another one. After four triggers without two good ones, or three reads without an answer, the host opens the connection anew, as \
 [stream.md](stream.md) says, and writes its configuration again, settings of the services among it; a hang is no good result in 8 triggers after that, or a service that fulfils no request, four times, and then once more after 60 ms.
-Ages, evidence and delays are not compared. The clocks are fast and pauses short: 8 cycles to a bit of the link, commands forgotten after 100 us, the longest wait of a service 16 ms. Of five moments of a port the card has one in each activity.
+Ages, evidence and delays are not compared. The clocks are fast and pauses short: 8 cycles to a bit of the link, commands forgotten after 100 us, the longest wait of a service 16 ms.
 ";
 
 /// What stands above the tables of a campaign.
 fn title(campaign: &str) -> Option<(&'static str, &'static str)> {
     Some(match campaign {
-        "upsets" => ("Upsets", "Every flip-flop inverted, at so many moments of every kind of frame; system clock 32 MHz, 8 cycles to a bit, 25 bits, 20 m; of the card in every activity."),
+        "upsets" => ("Upsets", "Every flip-flop inverted, at so many moments of every kind of frame, and of the card of every activity; system clock 32 MHz, 8 cycles to a bit, 25 bits, 20 m."),
         "faults" => ("Faults of the line", "Each begins in the frame and ends behind it, or ends in it, at every quarter of a bit; with each recovery time tm (000111: from 10 us) and cable."),
         "garbage" => ("Spoilt frames", "One in each case, at random. A word is taken by a CRC of 5 bits with 1 in 32, with F1 and F2 besides with 1 in 128."),
         "accept" => ("Accept set", "Every word that encoders of 1 to 13 bits can send, error bits and CRC included, against a predicate that shares no code with the core."),

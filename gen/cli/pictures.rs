@@ -152,7 +152,7 @@ pub fn write_all(files: &[File]) -> Result<Vec<String>, GenError> {
 }
 
 /// Refuses two files in one place: the layout of the waveforms, too, has one.
-fn check_places(files: &[&File]) -> Result<(), GenError> {
+pub fn check_places(files: &[&File]) -> Result<(), GenError> {
     for (index, file) in files.iter().enumerate() {
         for other in &files[..index] {
             if place(&file.path) == place(&other.path) {

@@ -103,20 +103,23 @@ fn rates(card: &CardConfig) -> Vec<Value> {
     rates.collect()
 }
 
+/// Where a word of a channel's service stands.
+fn service_address(name: &str, channel: usize) -> String {
+    let register = SERVICE.register(name).expect("a word of every service");
+    format!("{:03X}", SERVICE.address(register, channel))
+}
+
 /// Channels with a watchdog: where it is set, and a time in which the mode command is out and no answer has come.
 fn watched(card: &CardConfig) -> Vec<Value> {
-    let limits = SERVICE
-        .register("limits")
-        .filter(|_| card.service.diagnosis);
-    let channels = limits
-        .into_iter()
-        .flat_map(|r| card.endat_channels().map(move |c| (r, c)));
-    let channels = channels.map(|(r, (n, c))| {
+    if !card.service.diagnosis {
+        return vec![];
+    }
+    let channels = card.endat_channels().map(|(n, c)| {
         let command = c.first_low_extra_cycles + FRAME_EDGES * c.period_cycles;
         let command_us = cycles_to_ns(command, card.system_hz).div_ceil(1_000);
         context! {
             index => n,
-            address => format!("{:03X}", SERVICE.address(r, n)),
+            address => service_address("limits", n),
             limit_us => command_us + WATCHED_US,
         }
     });
@@ -139,12 +142,10 @@ fn running(card: &CardConfig) -> Option<CardConfig> {
 
 /// Channels of that card: where the clock is told to go on.
 fn runs(card: &CardConfig) -> Vec<Value> {
-    let word = SERVICE.register("continuous").into_iter();
-    let channels = word.flat_map(|r| card.endat_channels().map(move |c| (r, c)));
-    let channels = channels.map(|(r, (n, c))| {
+    let channels = card.endat_channels().map(|(n, c)| {
         context! {
             index => n,
-            address => format!("{:03X}", SERVICE.address(r, n)),
+            address => service_address("continuous", n),
             flip => (1u64 << c.position_bits) - 1,
         }
     });
@@ -159,16 +160,12 @@ fn requests(card: &CardConfig) -> Vec<Value> {
     if !card.service.requests {
         return vec![];
     }
-    let at = |name: &str, channel| {
-        let register = SERVICE.register(name).expect("a word of every service");
-        format!("{:03X}", SERVICE.address(register, channel))
-    };
     let channels = card.endat_channels().map(|(n, _)| {
         context! {
             index => n,
-            request => at("request", n),
-            state => at("request_state", n),
-            answer => at("answer", n),
+            request => service_address("request", n),
+            state => service_address("request_state", n),
+            answer => service_address("answer", n),
             // Both levels of every bit.
             addresses => [format!("{:02X}", 0x0D + n), format!("{:02X}", !(0x0D + n) & 0xFF)],
         }

@@ -44,8 +44,6 @@ const NO_WAIT: u16 = u16::MAX;
 const WAIT_MASK: u16 = 0x000F;
 /// Cycles for which the trigger pin is held.
 const PULSE: u64 = 4;
-/// Of so many moments that the ports have, the card has one in each of its activities.
-const MOMENTS_SHARE: u64 = 5;
 /// A frame with a longer period measures the delay.
 const SLOW: Time = 500 * NS;
 /// A host that has not come to an end by then never will: many times what the longest one takes.
@@ -367,13 +365,6 @@ fn is_of_port(name: &str) -> bool {
 impl CardUpsets {
     /// Upsets of registers whose hierarchical name begins with `only`.
     pub fn new(draw: Draw, seed: u64, only: &str) -> Result<Self, GenError> {
-        // It is large, and its cases are long.
-        let draw = match draw {
-            Draw::Grid { moments } => Draw::Grid {
-                moments: moments.div_ceil(MOMENTS_SHARE),
-            },
-            random => random,
-        };
         let card = configuration()?;
         let design = design(&card)?;
         let engine = Lanes::new(&design, Keep::Registers, LaneWords::Two)

@@ -4,10 +4,10 @@ mod count;
 mod sheet;
 
 use super::super::number::{decimal_if, number_if};
-use super::super::pictures::{check_all, write_all, File};
+use super::super::pictures::{check_all, check_places, write_all, File};
 use super::super::Outcome;
 use super::{interrupted, place, scales, settled, told, AnyCard, PortArgs};
-use crate::error::{shown, GenError};
+use crate::error::GenError;
 use clap::Args;
 use count::{Count, Judge};
 use endat_host::feed::Feed;
@@ -92,17 +92,15 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         text: String::new(),
         is_ours: is_drawing,
     });
-    if let Some(path) = arguments
-        .svg
-        .as_ref()
-        .filter(|svg| arguments.out.as_ref() == Some(*svg))
-    {
-        return Err(GenError::input(format!(
-            "--svg = {}: is the file of --out, too; give the drawing another name",
-            shown(&path.display().to_string())
-        )));
-    }
     // Refused before the first sample, not after the last.
+    let rows = arguments.out.clone().map(|path| File {
+        option: "--out",
+        path,
+        text: String::new(),
+        // What may be replaced is for --force to say.
+        is_ours: |_| true,
+    });
+    check_places(&rows.iter().chain(&drawing).collect::<Vec<_>>())?;
     check_all(&drawing.iter().collect::<Vec<_>>())?;
     let (out, name): (Box<dyn Write>, String) = match &arguments.out {
         None => (Box::new(Lines::to(Box::new(io::stdout()))), "stdout".into()),
