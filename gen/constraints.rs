@@ -7,7 +7,9 @@ use crate::config::{Kind, Project};
 use crate::error::GenError;
 use crate::explain;
 use crate::template;
+use crate::testbench::RESET_CYCLES;
 use endat_hdl::bus::HostBus;
+use endat_hdl::service::program::CLEAR_CYCLES;
 use endat_hdl::timing::ABORT_US;
 use endat_sim::decimal;
 use minijinja::context;
@@ -182,6 +184,9 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
             protocols => project.protocols(),
             t_format => project.card.t_format_numbers().collect::<Vec<_>>(),
             quiet_ms => ABORT_US / 1_000,
+            initial_values => project.card.initial_values,
+            reset_cycles => RESET_CYCLES,
+            clear_cycles => project.card.service.requests.then_some(CLEAR_CYCLES),
             timing => explain::report(project).to_string(),
         };
         let text = include_str!("../constraints/templates/readme_bus.md.jinja");
@@ -198,6 +203,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         name => project.name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
+        initial_values => project.card.initial_values,
         board => context! { title => board.title.as_str(), name => board.name.as_str(), part => board.part.as_str() },
         iostandard => board.iostandard.as_str(),
         ports => ports,

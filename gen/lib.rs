@@ -66,7 +66,7 @@ pub fn design(project: &Project) -> Result<Design, GenError> {
         })
     }
     let (card, name) = (&project.card, &project.name);
-    match project.bus {
+    let design = match project.bus {
         HostBus::Uart => of(Card::new(card), name),
         HostBus::Apb => of(ApbCard::new(card), name),
         HostBus::Wishbone => of(WishboneCard::new(card), name),
@@ -74,7 +74,11 @@ pub fn design(project: &Project) -> Result<Design, GenError> {
         HostBus::Spi => of(SpiCard::new(card), name),
         HostBus::Parallel => of(ParallelCard::new(card), name),
         HostBus::Bare => of(bare_port(card), name),
-    }
+    }?;
+    Ok(Design {
+        has_initial_values: card.initial_values,
+        ..design
+    })
 }
 
 /// The card as Verilog, and its register map in every format.

@@ -15,9 +15,10 @@ use endat_hdl::card::{service_times, services};
 use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig, LIST};
 use endat_hdl::regs::{
-    Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, RESULT,
+    Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, LINE, RESULT,
+    SERVICE,
 };
-use endat_hdl::service::program::{program, ServiceTimes};
+use endat_hdl::service::program::{program, ServiceTimes, CLEAR_CYCLES};
 use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
 use endat_hdl::transaction::cause;
 use minijinja::context;
@@ -147,6 +148,7 @@ fn program_text(card: &CardConfig) -> Result<String, GenError> {
     let without = match times.initialise {
         true => ServiceTimes {
             initialise: false,
+            clears_ram: times.clears_ram,
             ..ServiceTimes::at(card.system_hz)
         },
         false => ServiceTimes {
@@ -161,7 +163,7 @@ fn program_text(card: &CardConfig) -> Result<String, GenError> {
     template::render(
         "bench_program",
         include_str!("templates/bench_program.v.jinja"),
-        &context! { program, services => services(card) },
+        &context! { program, services => services(card), initial_values => card.initial_values },
     )
 }
 
@@ -194,6 +196,33 @@ fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String,
     )
 }
 
+/// Words of RAM of each channel that are 0 after the reset of a card without initial values.
+fn cleared(card: &CardConfig) -> Vec<Value> {
+    let parts: [(bool, &Block, [&str; 2]); 2] = [
+        (card.line.margin, &LINE, ["edges_0", "edges_31"]),
+        (
+            card.service.requests,
+            &SERVICE,
+            ["frames_good", "bad_infos"],
+        ),
+    ];
+    let is_anything = |has_part| has_part && !card.initial_values;
+    let words = parts
+        .into_iter()
+        .filter(|(has_part, ..)| is_anything(*has_part));
+    let words = words.flat_map(|(_, block, names)| names.map(|name| (block, name)));
+    let words =
+        words.flat_map(|(block, name)| card.endat_channels().map(move |(n, _)| (block, name, n)));
+    let words = words.filter_map(|(block, name, n)| {
+        let address = block.address(block.register(name)?, n);
+        Some(context! { name, address => format!("{address:03X}") })
+    });
+    words.collect()
+}
+
+/// A reset of so many cycles brings a card from anything to its start values.
+pub const RESET_CYCLES: u64 = 16;
+
 /// From a trigger to the end of everything, in ns.
 fn cycle_ns(card: &CardConfig) -> u64 {
     let hz = card.system_hz;
@@ -220,7 +249,8 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     };
     let hz = card.system_hz;
     let t_format: Vec<usize> = card.t_format_numbers().collect();
-    let parts = t_format::Parts::new(&project.name, card, card.service.initialise)?;
+    let sleeps = card.service.initialise || !card.initial_values;
+    let parts = t_format::Parts::new(&project.name, card, sleeps)?;
     let cycle_ns = cycle_ns(card);
     let after_frame = |c: &ChannelConfig| c.cycle_max_cycles(hz) - c.frame_time(hz).frame_cycles;
     let calibration_ns =
@@ -297,6 +327,12 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         without_list => !program.is_empty() && !card.service.initialise,
         program,
         power_up,
+        sleeps,
+        initial_values => card.initial_values,
+        reset_cycles => RESET_CYCLES,
+        cleared => cleared(card),
+        clear_cycles => CLEAR_CYCLES,
+        services => services(card),
         purpose => purpose.steps,
         purpose_tasks => purpose.tasks,
         tell => tell(&project.name, "", "")?,

@@ -23,6 +23,7 @@ use crate::config::{CardConfig, ChannelConfig};
 use crate::direct::DirectOutput;
 use crate::encoder_port::EncoderPort;
 use crate::interrupt::Interrupt;
+use crate::line_monitor::LineStart;
 use crate::register_bank::RegisterBank;
 use crate::service::{program::ServiceTimes, Service, CHANNELS_SERVED};
 use crate::several::each;
@@ -201,6 +202,13 @@ fn line(card: &CardConfig) -> Features {
     }
 }
 
+fn line_start(card: &CardConfig) -> LineStart {
+    LineStart {
+        clears: !card.initial_values,
+        ..card.line.start(card.system_hz)
+    }
+}
+
 /// Parts and waits of a card's services.
 pub fn service_times(config: &CardConfig) -> ServiceTimes {
     ServiceTimes {
@@ -208,6 +216,7 @@ pub fn service_times(config: &CardConfig) -> ServiceTimes {
         diagnosis: config.service.diagnosis,
         continuous: config.service.continuous,
         infos: config.service.infos,
+        clears_ram: !config.initial_values,
         ..ServiceTimes::at(config.system_hz)
     }
 }
@@ -235,7 +244,7 @@ fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort 
         service,
         channel.wants_short_recovery(),
         line(card),
-        card.line.start(card.system_hz),
+        line_start(card),
     )
 }
 
@@ -250,7 +259,7 @@ pub fn bare_port(card: &CardConfig) -> EncoderPort {
         card.service.requests.then_some(&service),
         channel.wants_short_recovery(),
         line(card),
-        card.line.start(card.system_hz),
+        line_start(card),
     )
 }
 

@@ -53,6 +53,8 @@ pub struct LineStart {
     pub drift_limit: u64,
     /// Offset that gives alarm, in places (7 bits); 0 = none.
     pub offset_limit: u64,
+    /// The histogram is cleared after reset: it may begin with anything.
+    pub clears: bool,
 }
 
 /// Settings and margin of one channel.
@@ -199,7 +201,7 @@ impl LineMonitor {
             bad_frames: Default::default(),
             frames: Default::default(),
             clear: Default::default(),
-            clearing: Default::default(),
+            clearing: Reg::new(start.clears & features.margin),
             bin: Default::default(),
             step: Default::default(),
             histogram: (0..histograms).map(|_| Default::default()).collect(),

@@ -36,6 +36,14 @@ const CABLE_M: u64 = 100;
 /// Where a key of the resolved request was written: path and line.
 type Places = BTreeMap<&'static str, (String, usize)>;
 
+/// What the resolved configuration says of a device that has no initial values.
+pub const NO_INITIAL_VALUES: &str = "device initial_values false";
+
+/// The key of the table `[device]`.
+pub fn read_initial_values(table: &Table<'_, '_>) -> bool {
+    table.boolean("initial_values").is_none_or(|at| at.value)
+}
+
 /// A channel as read, with the places of its keys.
 struct Channel {
     request: ChannelRequest,
@@ -115,6 +123,8 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
     let parts = service::read(&service);
     let outputs_table = root.table("outputs", &empty);
     let outputs = outputs::read(&outputs_table, bus, has_board);
+    let device = root.table("device", &empty);
+    let initial_values = read_initial_values(&device);
     let stream_table = root.table("stream", &empty);
     let stream = stream::read(&stream_table);
     let pins = root.table("pins", &empty);
@@ -148,6 +158,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         &line_table,
         &stream_table,
         &outputs_table,
+        &device,
         &root,
     ]) {
         table.finish();
@@ -203,6 +214,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         line: line_parts.unwrap_or_default(),
         stream: stream.parts,
         outputs: outputs.unwrap_or_default(),
+        initial_values,
         without_uart: !has_uart,
     };
     let channels = channels.unwrap_or_default();
@@ -332,6 +344,9 @@ fn canonical(
             "outputs position {} interrupt {}",
             outputs.position, outputs.interrupt
         ));
+    }
+    if !card.initial_values {
+        lines.push(NO_INITIAL_VALUES.into());
     }
     if card.stream.fifo_bytes != 0 {
         lines.push(format!(

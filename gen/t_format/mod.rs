@@ -32,6 +32,8 @@ pub struct Receiver {
     pub encoder: String,
     /// What it starts with.
     pub start: TFormatStart,
+    /// The device gives registers their start values when it is configured.
+    pub initial_values: bool,
     /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
     pub hash: String,
 }
@@ -40,7 +42,11 @@ pub struct Receiver {
 pub fn design(receiver: &Receiver) -> Result<Design, GenError> {
     let mut block = AsyncDsp::new(&receiver.start);
     block.connect_all();
-    elaborate(&block, &receiver.name).map_err(|e| GenError::fault("design", &e))
+    let design = elaborate(&block, &receiver.name).map_err(|e| GenError::fault("design", &e))?;
+    Ok(Design {
+        has_initial_values: receiver.initial_values,
+        ..design
+    })
 }
 
 /// All files of a receiver, the MANIFEST last.

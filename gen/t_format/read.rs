@@ -4,7 +4,7 @@ use super::Receiver;
 use crate::config::check_name;
 use crate::config::protocol::{read_bit_hz, read_request, T_FORMAT};
 use crate::config::reader::{Source, Table};
-use crate::config::schema::{not_toml, read_encoder};
+use crate::config::schema::{not_toml, read_encoder, read_initial_values, NO_INITIAL_VALUES};
 use endat_hdl::config::limits;
 use endat_hdl::t_format::dsp::TFormatStart;
 use endat_hdl::t_format::protocol::FAST_BIT_HZ;
@@ -63,20 +63,26 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
         let text = "is a table of cards, and host.bus = \"dsp\" makes this a T-format receiver; remove it, or choose another host.bus";
         root.refuse_table(key, text);
     }
-    for table in channels.iter().chain([&host, &root]) {
+    let device = root.table("device", &empty);
+    let initial_values = read_initial_values(&device);
+    for table in channels.iter().chain([&host, &device, &root]) {
         table.finish();
     }
     let (encoder, start) = channel?;
-    let canonical = format!(
+    let mut canonical = format!(
         "t_format settings {} request {}",
         start.word(),
         start.request_id
     );
+    if !initial_values {
+        canonical += &format!("\n{NO_INITIAL_VALUES}");
+    }
     let digest = Sha256::digest(canonical);
     Some(Receiver {
         name: name?.value,
         encoder,
         start,
+        initial_values,
         hash: digest[..6].iter().map(|b| format!("{b:02x}")).collect(),
     })
 }

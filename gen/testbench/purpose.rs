@@ -198,6 +198,7 @@ impl Parts {
             gap_ms => 2 + PARAMETER_GAP_MS,
             services => services(card),
             power_up => card.service.initialise,
+            initial_values => card.initial_values,
             channels => Serde(ports),
         };
         let steps = include_str!("../templates/bench_purpose.v.jinja");

@@ -74,6 +74,10 @@ impl ModulePrinter<'_> {
         let (clock, read_data) = (name(memory.clock), name(memory.read_data));
         let read_address = name(memory.read_address);
         let word = &memory.name;
+        let docs = comment(&memory.docs, INDENT);
+        if !self.design.has_initial_values && memory.write.is_none() {
+            return self.table(memory, &docs);
+        }
         let write = memory.write.map_or(String::new(), |port| {
             let (enable, address, data) = (name(port.enable), name(port.address), name(port.data));
             format!(
@@ -90,17 +94,43 @@ impl ModulePrinter<'_> {
             })
             .collect();
         let (counter, zeros) = self.zero_words(memory);
+        let initial = match self.design.has_initial_values {
+            true => format!("{counter}    initial begin\n{start}{zeros}    end\n"),
+            false => String::new(),
+        };
         let vector = vector(memory.width_bits);
-        let docs = comment(&memory.docs, INDENT);
         format!(
             "\n{docs}    reg {vector} {word} [0:{last}];
-{counter}    initial begin
-{start}{zeros}    end
-    always @(posedge {clock}) begin
+{initial}    always @(posedge {clock}) begin
 {write}        {read_data} <= {word}[{read_address}];
     end
 ",
             last = memory.words - 1
+        )
+    }
+
+    /// Memory that is only read, where no device fills it: a table that synthesis makes logic of, or a memory in its own way.
+    fn table(&self, memory: &Memory, docs: &str) -> String {
+        let name = |net: NetId| &self.module.nets[net].name;
+        let (clock, read_data) = (name(memory.clock), name(memory.read_data));
+        let read_address = name(memory.read_address);
+        let address_bits = self.module.nets[memory.read_address].width_bits;
+        let words: String = (memory.start.iter().enumerate())
+            .map(|(index, value)| {
+                let (index, value) = (
+                    literal(index as u128, address_bits),
+                    bits(*value, memory.width_bits),
+                );
+                format!("            {index}: {read_data} <= {value};\n")
+            })
+            .collect();
+        let zero = literal(0, memory.width_bits);
+        format!(
+            "\n{docs}    always @(posedge {clock})
+        case ({read_address})
+{words}            default: {read_data} <= {zero};
+        endcase
+"
         )
     }
 

@@ -244,9 +244,11 @@ impl<'a> ModulePrinter<'a> {
                         false => String::new(),
                     };
                     let name = &net.name;
-                    format!(
-                        "{attributes}{INDENT}reg  {vector:>7} {name}; initial {name} = {start};\n"
-                    )
+                    let initial = match self.design.has_initial_values {
+                        true => format!(" initial {name} = {start};"),
+                        false => String::new(),
+                    };
+                    format!("{attributes}{INDENT}reg  {vector:>7} {name};{initial}\n")
                 }
                 None if in_always.contains(&id) => {
                     format!("{INDENT}reg  {vector:>7} {};\n", net.name)

@@ -129,6 +129,7 @@ impl CardDraft {
                     line,
                     stream,
                     outputs,
+                    initial_values,
                     ..
                 },
             ) if whole && problems.is_empty() => Ok(CardConfig {
@@ -144,6 +145,7 @@ impl CardDraft {
                 line,
                 stream,
                 outputs,
+                initial_values,
                 hash: 0,
             }),
             _ => Err(problems),

@@ -169,6 +169,7 @@ impl LineParts {
             majority: self.samples == 3,
             drift_limit: sixteenths(self.drift_limit_ns, system_hz),
             offset_limit: 0,
+            clears: false,
         }
     }
 }
@@ -264,6 +265,8 @@ pub struct CardDraft {
     pub stream: StreamParts,
     /// Outputs to logic in the same device.
     pub outputs: OutputParts,
+    /// See [`CardConfig::initial_values`].
+    pub initial_values: bool,
     /// The host has another bus than a UART; the numbers of the UART mean nothing.
     pub without_uart: bool,
 }
@@ -282,6 +285,7 @@ impl From<&CardRequest> for CardDraft {
             line: request.line,
             stream: request.stream,
             outputs: request.outputs,
+            initial_values: true,
             without_uart: false,
         }
     }
@@ -437,6 +441,8 @@ pub struct CardConfig {
     pub stream: StreamParts,
     /// Outputs to logic in the same device.
     pub outputs: OutputParts,
+    /// The device gives registers and RAM their start values when it is configured; otherwise a reset does, and RAM is cleared after it.
+    pub initial_values: bool,
     /// First 48 bits of the SHA-256 of the canonical configuration (0 until a generator sets it).
     pub hash: u64,
 }

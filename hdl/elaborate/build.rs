@@ -20,6 +20,7 @@ pub(super) fn build(top: &BlockNode) -> Result<(Design, ModuleId)> {
         design: Design {
             modules: vec![],
             enums: vec![],
+            has_initial_values: true,
         },
         through: vec![],
     };

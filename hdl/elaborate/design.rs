@@ -29,6 +29,9 @@ pub struct Design {
     pub modules: Vec<Module>,
     /// Every enum type that a net has.
     pub enums: Vec<EnumType>,
+    /// Registers and RAM hold their start values before the first reset. Otherwise that is not asked of the device: a register has its
+    /// start value after a reset, RAM holds anything.
+    pub has_initial_values: bool,
 }
 
 impl Design {

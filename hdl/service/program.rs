@@ -22,7 +22,7 @@ use super::map::{
     request_state, state, word, COUNTER_BAD_INFOS,
 };
 use crate::config::LIST;
-use crate::sequencer::assembler::Assembler;
+use crate::sequencer::{assembler::Assembler, RAM_WORDS, SHARED_CYCLES};
 use crate::timing;
 
 /// Times of a service, and what it does by itself.
@@ -58,6 +58,8 @@ pub struct ServiceTimes {
     pub stuck_ms: u16,
     /// The longest wait, whoever asks for it, and one: a mask. A jump astray into a wait costs no more.
     pub wait_mask: u16,
+    /// After a reset RAM may hold anything, and is cleared.
+    pub clears_ram: bool,
     /// System clock in kHz.
     pub system_khz: u32,
 }
@@ -82,6 +84,7 @@ impl ServiceTimes {
             // Longest it computes: a division of 2047 rounds, 48 cycles each, 13 ms at the slowest clock.
             stuck_ms: 32,
             wait_mask: WAIT_MASK,
+            clears_ram: false,
             system_khz: (system_hz / 1_000) as u32,
         }
     }
@@ -168,6 +171,8 @@ mod own {
         (FOUND, FIRST + 60),
         (PERIOD, FIRST + 61),
     ];
+    /// RAM has been cleared: two words that it hardly holds by chance.
+    pub const CLEARED: [(u8, u16); 2] = [(FIRST + 62, 0xE2DA), (FIRST + 63, 0x1D25)];
 }
 
 /// 4 seconds.
@@ -236,7 +241,30 @@ pub fn program(times: &ServiceTimes) -> Vec<u32> {
     }
 }
 
+/// Cycles after which a service that clears its RAM has done so: seven instructions to a word.
+pub const CLEAR_CYCLES: u64 = (7 * RAM_WORDS as u64 + 50) * SHARED_CYCLES;
+
+/// Clears RAM, once after power-up.
+fn clear_ram(a: &mut Assembler) {
+    let (cold, more, half, warm) = (a.label(), a.label(), a.label(), a.label());
+    let [(first, one), (second, other)] = own::CLEARED;
+    // Who comes to no decision, as a simulator with unknown values, clears.
+    a.ld(first).xori(one).jz(half);
+    a.place(cold).ldi(u16::from(u8::MAX));
+    // The first word counts, and is the last.
+    a.place(more).st(0).tax().ldi(0).st_x(0);
+    a.ld(0).addi(minus(1)).jnz(more).st(0);
+    set(a, first, one);
+    set(a, second, other);
+    a.jmp(warm);
+    a.place(half).ld(second).xori(other).jnz(cold);
+    a.place(warm);
+}
+
 fn start(a: &mut Assembler, times: &ServiceTimes) {
+    if times.clears_ram {
+        clear_ram(a);
+    }
     a.place("start");
     // Each with a zero of its own: who comes astray into their middle spoils one of them.
     for word in [

@@ -254,6 +254,7 @@ fn design(seed: u64) -> Design {
     Design {
         modules: vec![m.module],
         enums: vec![],
+        has_initial_values: true,
     }
 }
 

@@ -104,6 +104,58 @@ fn bench_of_a_card_with_services_passes_only_as_it_stands() {
     }
 }
 
+/// Of a device that gives nothing a start value: seen by unknown values, of which this simulator's registers and RAM are full.
+const BROKEN_START: &[Mutation] = &[
+    mutation(
+        "the histogram is not cleared",
+        "line_monitor",
+        "clearing <= 1'b1;",
+        "clearing <= 1'b0;",
+    ),
+    mutation(
+        "only some of the services' RAM is cleared",
+        "sequencer",
+        "program_read_data <= 20'hff;",
+        "program_read_data <= 20'h7;",
+    ),
+    mutation(
+        "a register that no reset sets",
+        "trigger",
+        "count <= 32'd0;",
+        "",
+    ),
+];
+
+/// Catches what only start values bring to life, and a bench that does not see it.
+#[test]
+fn a_card_without_initial_values_comes_to_life_by_its_reset() {
+    if !tools::require("iverilog", "emitted test bench") {
+        return;
+    }
+    let card = |parts: &str| {
+        let more = format!(
+            "[service]\nparts = [{parts}]\n[line]\nparts = [\"alignment\", \"margin\"]\n\
+             [outputs]\nparts = [\"interrupt\"]\n[device]\ninitial_values = false\n"
+        );
+        let text =
+            crate::bus::text(HostBus::Wishbone, &more).replace("= [\"register\"]", "= [\"pin\"]");
+        let card = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
+        for file in card
+            .iter()
+            .filter(|f| f.path.ends_with(".v") && !f.path.contains("_tb"))
+        {
+            assert!(!file.text.contains("initial "), "{}", file.path);
+        }
+        card
+    };
+    check_mutations("start", &card("\"requests\", \"diagnosis\""), BROKEN_START);
+    // Where the bench gives the services another program.
+    let list = card("\"requests\"]\ninfos = [0x4C");
+    assert_passes(&run_bench("start-list", &list, &[]));
+    let initialise = card("\"requests\", \"initialise\"");
+    assert_passes(&run_bench("start-initialise", &initialise, &[]));
+}
+
 /// Catches a bench that leaves out what a published system is for.
 #[test]
 fn benches_of_the_published_systems_do_what_those_are_for() {
