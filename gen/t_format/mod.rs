@@ -16,6 +16,7 @@ use crate::artifact::{self, Artifact};
 use crate::error::GenError;
 use crate::integration;
 use crate::template::render;
+use crate::testbench::RESET_CYCLES;
 use crate::verilog::{print_files, source_files, source_list, Header};
 use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
@@ -87,6 +88,8 @@ pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
         hash => receiver.hash.as_str(),
         clocks_mhz => SYSTEM_HZ.map(|hz| hz / 1_000_000).to_vec(),
         timing => report,
+        initial_values => receiver.initial_values,
+        reset_cycles => RESET_CYCLES,
     };
     let readme = include_str!("../templates/receiver_readme.md.jinja");
     artifacts.push(Artifact::new(

@@ -120,8 +120,8 @@ const BROKEN_START: &[Mutation] = &[
     ),
     mutation(
         "a register that no reset sets",
-        "trigger",
-        "count <= 32'd0;",
+        "timebase",
+        "cycles <= 32'd0;",
         "",
     ),
 ];
