@@ -204,6 +204,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
         initial_values => project.card.initial_values,
+        reset_cycles => RESET_CYCLES,
         board => context! { title => board.title.as_str(), name => board.name.as_str(), part => board.part.as_str() },
         iostandard => board.iostandard.as_str(),
         ports => ports,

@@ -220,8 +220,8 @@ fn cleared(card: &CardConfig) -> Vec<Value> {
     words.collect()
 }
 
-/// A reset of so many cycles brings a card from anything to its start values.
-pub const RESET_CYCLES: u64 = 16;
+/// A reset of so many cycles brings a card from anything to its start values; a board top's is as long.
+pub const RESET_CYCLES: u64 = 4;
 
 /// From a trigger to the end of everything, in ns.
 fn cycle_ns(card: &CardConfig) -> u64 {

@@ -13,6 +13,15 @@ pub fn closest<T>(
     if typed.len() > NAME_MAX {
         return found;
     }
+    let names: Vec<T> = names.into_iter().collect();
+    let is_begun = |name: &T| {
+        let rest = text(name).strip_prefix(typed);
+        rest.is_some_and(|rest| !typed.is_empty() && rest.starts_with('_'))
+    };
+    // The rest of a name is left out, its unit mostly.
+    if names.iter().filter(|name| is_begun(name)).count() == 1 {
+        return names.into_iter().filter(is_begun).collect();
+    }
     // One slip, and one more for each four letters; two letters that have changed places are one.
     let mut least = 1 + typed.len() / 4;
     for name in names {
@@ -38,9 +47,18 @@ mod tests {
         assert_eq!(closest("clok_hz"), ["clock_hz"]);
         assert_eq!(closest("clcok_hz"), ["clock_hz"]);
         assert_eq!(closest("tts_n"), ["tst_ns"]);
+        assert_eq!(closest("cable"), ["cable_m"]);
         assert!(closest("colour").is_empty());
         assert!(closest("").is_empty());
         assert!(closest(&"clock_hz".repeat(9)).is_empty());
+    }
+
+    #[test]
+    fn the_beginning_of_a_name_is_closer_than_another_word() {
+        let names = ["bus", "base_address", "frames_good", "frames_crc"];
+        let closest = |typed| closest(typed, names, |name| name);
+        assert_eq!(closest("base"), ["base_address"]);
+        assert_eq!(closest("frames"), [] as [&str; 0]);
     }
 
     #[test]

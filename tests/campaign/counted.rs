@@ -95,6 +95,10 @@ fn bad_arguments_of_parts_are_refused_with_their_limits() {
             "--subject = x: is no port of a campaign; take one of port, ",
         ),
         (&["a.csv"], "a.csv: a campaign reads no file"),
+        (
+            &["--subject", "port", "--only", "bridge."],
+            "--only = bridge.: no register of --subject port begins like this",
+        ),
     ] {
         let outcome = run(&[&upsets[..], arguments].concat());
         assert_eq!(outcome.exit_code, 2, "{arguments:?}");

@@ -8,7 +8,7 @@ use crate::campaign::{budget, page, reference, report};
 use crate::cli::number::number;
 use crate::cli::work::progress;
 use crate::cli::Outcome;
-use crate::error::{shown, GenError};
+use crate::error::{shorten, shown, GenError};
 use endat_sim::campaign::faults::Faults;
 use endat_sim::campaign::garbage::{AcceptSet, Garbage, WIDEST_BITS};
 use endat_sim::campaign::port::Port;
@@ -264,6 +264,13 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
                 is_card,
             };
             let made = upsets(&subjects, draw, seed, &arguments.only);
+            let made = made.and_then(|made| match count(made.as_ref()) {
+                0 => Err(GenError::input(format!(
+                    "--only = {}: no register of --subject {subject} begins like this; `campaign upsets` prints their blocks, or leave it out",
+                    shorten(&arguments.only)
+                ))),
+                _ => Ok(made),
+            });
             ("upsets", plan, made)
         }
     })
