@@ -198,24 +198,23 @@ fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String,
 
 /// Words of RAM of each channel that are 0 after the reset of a card without initial values.
 fn cleared(card: &CardConfig) -> Vec<Value> {
-    let parts: [(bool, &Block, [&str; 2]); 2] = [
-        (card.line.margin, &LINE, ["edges_0", "edges_31"]),
-        (
-            card.service.requests,
-            &SERVICE,
-            ["frames_good", "bad_infos"],
-        ),
+    if card.initial_values {
+        return vec![];
+    }
+    let words = [
+        (card.line.margin, &LINE, "edges_0"),
+        (card.line.margin, &LINE, "edges_31"),
+        (card.service.requests, &SERVICE, "frames_good"),
+        (card.service.requests, &SERVICE, "bad_infos"),
     ];
-    let is_anything = |has_part| has_part && !card.initial_values;
-    let words = parts
-        .into_iter()
-        .filter(|(has_part, ..)| is_anything(*has_part));
-    let words = words.flat_map(|(_, block, names)| names.map(|name| (block, name)));
-    let words =
-        words.flat_map(|(block, name)| card.endat_channels().map(move |(n, _)| (block, name, n)));
-    let words = words.filter_map(|(block, name, n)| {
-        let address = block.address(block.register(name)?, n);
-        Some(context! { name, address => format!("{address:03X}") })
+    let words = words.into_iter().filter(|(has_part, ..)| *has_part);
+    let words = words.flat_map(|(_, block, name)| {
+        let register = block.register(name).expect("a word of the block");
+        let channels = card.endat_channels();
+        channels.map(move |(n, _)| {
+            let address = format!("{:03X}", block.address(register, n));
+            context! { name, address }
+        })
     });
     words.collect()
 }
