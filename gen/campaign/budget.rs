@@ -235,10 +235,12 @@ pub fn lines(campaign: &str, tally: &Tally) -> (String, bool) {
     for budget in of(campaign) {
         let ((bad, cases), holds) = (budget.found(tally), budget.holds(tally));
         all_hold &= holds || !budget.is_asserted;
-        let verdict = match (holds, budget.is_asserted) {
-            (true, _) => "holds",
-            (false, true) => "BROKEN",
-            (false, false) => "wanted",
+        let verdict = match (cases, holds, budget.is_asserted) {
+            // Nothing was tried that could break it.
+            (0, ..) => "-",
+            (_, true, _) => "holds",
+            (_, false, true) => "BROKEN",
+            (_, false, false) => "wanted",
         };
         let _ = writeln!(
             text,

@@ -34,7 +34,7 @@ Beside its class, a case may have these marks:
 | conflict | for more than a bit time after the frame the driver was against the encoder's |
 | next | the next frame was not good |
 | held_wrong | with a cause: the position that is held is none that the encoder sent |
-| triggers_2, triggers_3, triggers_more | which trigger after the frame was the first that is good |
+| triggers_2, triggers_3, triggers_more | which trigger after the frame was the first of two good ones in a row, if not the next; so a case may be here without `next`: good, bad, good, good |
 | slow | busy for longer than the timers allow, but not for ever; of a card: a service answered only after 60 ms of rest |
 | config | of a card: its configuration is not what the host wrote, and nothing has said so |
 | reopened | of a card: the host had to open the connection anew |

@@ -18,6 +18,11 @@ pub struct ThreadsArgs {
 }
 
 impl ThreadsArgs {
+    /// Whether somebody has chosen.
+    pub fn is_given(&self) -> bool {
+        self.threads.is_some()
+    }
+
     /// Their number; 0 = one for each processor.
     pub fn count(&self) -> Result<usize, GenError> {
         match &self.threads {

@@ -92,9 +92,20 @@ fn bad_arguments_of_parts_are_refused_with_their_limits() {
         (&["--moments", "0"], "--moments = 0: outside 1..1000000"),
         (
             &["--subject", "x"],
-            "--subject = x: is no port of a campaign; take one of port, ",
+            "--subject = x: is no subject of this campaign; take one of port, ",
         ),
-        (&["a.csv"], "a.csv: a campaign reads no file"),
+        (
+            &["a.csv"],
+            "campaign upsets: PART: is only of merge, page; leave it out",
+        ),
+        (
+            &["--step", "2"],
+            "campaign upsets: --step: is only of faults; leave it out",
+        ),
+        (
+            &["--json"],
+            "campaign upsets: --json: is only of sweep, random; leave it out",
+        ),
         (
             &["--subject", "port", "--only", "bridge."],
             "--only = bridge.: no register of --subject port begins like this",

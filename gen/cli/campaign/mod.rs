@@ -1,5 +1,6 @@
 //! `campaign`: thousands of cases in lanes; one of them again, alone, with waveforms and a drawing.
 
+mod options;
 mod tallies;
 
 use crate::cli::number::number;
@@ -25,36 +26,26 @@ pub struct CampaignArgs {
     /// Number of random cases [default: random 10000; upsets: every flip-flop in turn; garbage 1000000; configurations 5000, and 2000 spoilt ones]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     cases: Option<String>,
-    /// Of upsets: moments of each kind of frame at which every flip-flop is inverted
+    /// Of upsets: moments of each kind of frame at which every flip-flop is inverted [default: 65]
     #[arg(
         long,
         value_name = "N",
-        default_value = "65",
-        allow_negative_numbers = true
+        allow_negative_numbers = true,
+        conflicts_with = "cases"
     )]
-    moments: String,
-    /// Of faults: at every N-th quarter of a bit
-    #[arg(
-        long,
-        value_name = "N",
-        default_value = "1",
-        allow_negative_numbers = true
-    )]
-    step: String,
-    /// Of upsets, faults, garbage: only this port [default: all]
+    moments: Option<String>,
+    /// Of faults: at every N-th quarter of a bit [default: 1]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    step: Option<String>,
+    /// Of upsets, faults, garbage: only this port; of upsets also t_format_port, card [default: all]
     #[arg(long, value_name = "NAME")]
     subject: Option<String>,
     /// Of upsets: only registers whose hierarchical name begins so
-    #[arg(long, value_name = "NAME", default_value = "")]
-    only: String,
-    /// Seed of the random cases
-    #[arg(
-        long,
-        value_name = "S",
-        default_value = "1",
-        allow_negative_numbers = true
-    )]
-    seed: String,
+    #[arg(long, value_name = "NAME")]
+    only: Option<String>,
+    /// Seed of the random cases [default: 1]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    seed: Option<String>,
     /// Of those that count: a small part of the cases, in seconds
     #[arg(long, conflicts_with_all = ["cases", "moments", "step"])]
     quick: bool,
@@ -80,7 +71,7 @@ pub struct CampaignArgs {
     json: bool,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Name {
     /// Every width, position command, rate and cable
     Sweep,
@@ -113,11 +104,16 @@ impl CampaignArgs {
     fn cases(&self) -> &str {
         self.cases.as_deref().unwrap_or(CASES_USUAL)
     }
+
+    fn seed(&self) -> &str {
+        self.seed.as_deref().unwrap_or("1")
+    }
 }
 
 /// Runs the command.
 pub fn run(arguments: &CampaignArgs) -> Result<Outcome, GenError> {
-    let seed = number("--seed", &arguments.seed, 0..=u64::MAX)?;
+    arguments.check_options()?;
+    let seed = number("--seed", arguments.seed(), 0..=u64::MAX)?;
     if !matches!(arguments.name, Name::Sweep | Name::Random) {
         return tallies::run(arguments, seed);
     }
@@ -141,7 +137,7 @@ fn fault(e: &dyn std::fmt::Display) -> GenError {
 
 /// What to type to see one case alone.
 fn replay(arguments: &CampaignArgs, index: usize) -> String {
-    let random = format!(" --cases {} --seed {}", arguments.cases(), arguments.seed);
+    let random = format!(" --cases {} --seed {}", arguments.cases(), arguments.seed());
     let (name, random) = match arguments.name {
         Name::Random => ("random", random.as_str()),
         _ => ("sweep", ""),

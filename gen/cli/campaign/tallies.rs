@@ -5,7 +5,7 @@ use crate::campaign::card::{self, CardUpsets};
 use crate::campaign::configurations::Configurations;
 use crate::campaign::part::{merge, shard, Identity, Part};
 use crate::campaign::{budget, page, reference, report};
-use crate::cli::number::number;
+use crate::cli::number::{number, number_if};
 use crate::cli::work::progress;
 use crate::cli::Outcome;
 use crate::error::{shorten, shown, GenError};
@@ -21,6 +21,8 @@ use std::time::Instant;
 const MOMENTS_MAX: u64 = 1_000_000;
 /// Most cases of a campaign.
 const CASES_MAX: u64 = 1_000_000_000_000;
+/// Moments of each kind of frame, if not told.
+const MOMENTS_USUAL: u64 = 65;
 /// Cases of `garbage`, if not told.
 const GARBAGE_USUAL: &str = "1000000";
 /// Valid configurations of `configurations`, if not told.
@@ -47,12 +49,6 @@ pub fn run(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
 
 /// Runs a part of a campaign, or all of it.
 fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
-    if let Some(path) = arguments.parts.first() {
-        return Err(GenError::input(format!(
-            "{}: a campaign reads no file; leave it out, or write campaign merge",
-            path.display()
-        )));
-    }
     let part = arguments.shard.as_deref().map(shard).transpose();
     let part = part.map_err(|e| GenError::input(format!("--shard = {e}")))?;
     let threads = arguments.threads.count()?;
@@ -100,12 +96,6 @@ fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
 
 /// The campaign over configurations that is asked for.
 fn configurations(arguments: &CampaignArgs, seed: u64) -> Result<Configurations, GenError> {
-    if let Some(subject) = &arguments.subject {
-        return Err(GenError::input(format!(
-            "--subject = {}: configurations have no ports; leave it out",
-            shown(subject)
-        )));
-    }
     let told = arguments.cases.as_deref().unwrap_or(CONFIGURATIONS_USUAL);
     let valid = match arguments.quick {
         true => QUICK_CONFIGURATIONS,
@@ -206,12 +196,14 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
     let ports: Vec<Port> = Port::ALL.into_iter().filter(of_name).collect();
     let is_upsets = matches!(arguments.name, Name::Upsets);
     if ports.is_empty() && !(is_upsets && (is_t_format || is_card)) {
-        let names = Port::ALL.map(Port::name).join(", ");
+        let mut names: Vec<&str> = Port::ALL.map(Port::name).to_vec();
+        if is_upsets {
+            names.extend([t_format::SUBJECT, card::SUBJECT]);
+        }
         return Err(GenError::input(format!(
-            "--subject = {}: is no port of a campaign; take one of {names}, and of upsets {}, {}",
+            "--subject = {}: is no subject of this campaign; take one of {}",
             shown(chosen.unwrap_or_default()),
-            t_format::SUBJECT,
-            card::SUBJECT
+            names.join(", ")
         )));
     }
     let subject = arguments.subject.as_deref().unwrap_or("all");
@@ -223,9 +215,10 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
     };
     Ok(match arguments.name {
         Name::Faults => {
-            let step = match arguments.quick {
-                true => QUICK_STEP,
-                false => number("--step", &arguments.step, 1..=MOMENTS_MAX)?,
+            let step = match (arguments.quick, &arguments.step) {
+                (true, _) => QUICK_STEP,
+                (_, Some(step)) => number("--step", step, 1..=MOMENTS_MAX)?,
+                _ => 1,
             };
             let plan = format!("step {step}; seed {seed}; subject {subject}");
             ("faults", plan, boxed(Faults::new(&ports, step, seed)))
@@ -247,27 +240,26 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
             let draw = match cases(None)? {
                 Some(cases) => Draw::Random { cases },
                 None => Draw::Grid {
-                    moments: number("--moments", &arguments.moments, 1..=MOMENTS_MAX)?,
+                    moments: number_if("--moments", &arguments.moments, 1..=MOMENTS_MAX)?
+                        .unwrap_or(MOMENTS_USUAL),
                 },
             };
+            let only = arguments.only.as_deref().unwrap_or_default();
             let how = match draw {
                 Draw::Random { .. } => "random".to_owned(),
                 Draw::Grid { moments } => format!("moments {moments}"),
             };
-            let plan = format!(
-                "{how}; seed {seed}; subject {subject}; only {}*",
-                arguments.only
-            );
+            let plan = format!("{how}; seed {seed}; subject {subject}; only {only}*");
             let subjects = Subjects {
                 ports,
                 is_t_format,
                 is_card,
             };
-            let made = upsets(&subjects, draw, seed, &arguments.only);
+            let made = upsets(&subjects, draw, seed, only);
             let made = made.and_then(|made| match count(made.as_ref()) {
                 0 => Err(GenError::input(format!(
                     "--only = {}: no register of --subject {subject} begins like this; `campaign upsets` prints their blocks, or leave it out",
-                    shorten(&arguments.only)
+                    shorten(only)
                 ))),
                 _ => Ok(made),
             });

@@ -62,7 +62,7 @@ pub enum Mark {
     Next,
     /// With a cause: the position that is held is none that the encoder sent.
     HeldWrong,
-    /// The second trigger after the frame is the first that is good.
+    /// The second trigger after the frame is the first of two good ones in a row.
     Triggers2,
     /// The third one.
     Triggers3,
