@@ -255,6 +255,53 @@ fn what_is_no_regular_file_is_neither_read_nor_replaced() {
     bad(&["emit", "--config", &config, "--out", &out], 2);
 }
 
+/// Nothing is recorded that could not be kept, and no port is opened for it.
+#[cfg(unix)]
+#[test]
+fn places_of_a_recording_are_looked_at_before_the_port() {
+    let dir = Dir::new("recording");
+    let rows = dir.path("rows.csv");
+    let (link, below) = (dir.path("link.svg"), dir.path("rows.csv/x.svg"));
+    std::os::unix::fs::symlink(&rows, &link).unwrap();
+    let folder = dir.0.display().to_string();
+    let text = dir.write("notes.txt", b"mine");
+    let (nowhere, in_text) = ("/proc/x.svg".to_owned(), format!("{text}/deep/x.svg"));
+    let other = std::env::temp_dir().join("other.svg").display().to_string();
+    for (out, svg, told) in [
+        (&rows, &link, "--svg = "),
+        (
+            &rows,
+            &rows,
+            "is the place of a file of --out; give another file",
+        ),
+        (&rows, &below, "below the other; give another file"),
+        (
+            &folder,
+            &other,
+            "is a folder, not a file; give another file",
+        ),
+        (&rows, &nowhere, "no file can be made in /proc: "),
+        (&rows, &in_text, "no file can be made in "),
+        (&in_text, &other, "--out = "),
+        (
+            &rows,
+            &text,
+            "holds something else; only files of this program are replaced",
+        ),
+        // Nothing is wrong with them, so the port is next.
+        (
+            &dir.path("a/b/rows.csv"),
+            &dir.path("c/x.svg"),
+            "/none/port: ",
+        ),
+    ] {
+        let log = ["log", "--port", "/none/port", "--out", out, "--svg", svg];
+        let message = bad(&log, 2);
+        assert!(message.contains(told), "{log:?}: {message}");
+        assert_eq!(message.contains("/none/port"), told == "/none/port: ");
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_link_to_a_file_stays_a_link() {

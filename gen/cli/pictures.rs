@@ -138,7 +138,10 @@ fn wires(bench: &Bench<Compiled>, out: &mut Vec<u8>) -> std::io::Result<()> {
 /// Refuses files that cannot be written, or would replace something else.
 pub fn check_all(files: &[&File]) -> Result<(), GenError> {
     check_places(files)?;
-    files.iter().try_for_each(|file| check_owner(file))
+    files.iter().try_for_each(|file| {
+        check_owner(file)?;
+        check_writable(file)
+    })
 }
 
 /// Writes files, unless one of them would replace something else; returns one message for each.
@@ -152,10 +155,17 @@ pub fn write_all(files: &[File]) -> Result<Vec<String>, GenError> {
 }
 
 /// Refuses two files in one place: the layout of the waveforms, too, has one.
-pub fn check_places(files: &[&File]) -> Result<(), GenError> {
+fn check_places(files: &[&File]) -> Result<(), GenError> {
     for (index, file) in files.iter().enumerate() {
         for other in &files[..index] {
-            if place(&file.path) == place(&other.path) {
+            let (this, that) = (place(&file.path), place(&other.path));
+            if this != that && (this.starts_with(&that) || that.starts_with(&this)) {
+                return Err(file.refused(&format!(
+                    "one of it and the file of {} is below the other; give another file",
+                    other.option
+                )));
+            }
+            if this == that {
                 return Err(file.refused(&if file.option == other.option {
                     "is the name of the layout beside it; give a name that ends in .vcd".into()
                 } else {
@@ -170,12 +180,34 @@ pub fn check_places(files: &[&File]) -> Result<(), GenError> {
     Ok(())
 }
 
-/// Refuses to replace a file that the program cannot have written. What is neither file nor folder is left to the writing.
+/// Refuses a place that no file can be made in: missing folders are made, so the nearest that is there counts.
+fn check_writable(file: &File) -> Result<(), GenError> {
+    if file.path.exists() && !file.path.is_file() {
+        return Ok(());
+    }
+    let mut folders = folder(&file.path).ancestors();
+    // The last one of a relative path is empty.
+    let nearest = folders.find(|f| f.as_os_str().is_empty() || f.symlink_metadata().is_ok());
+    let nearest = nearest.filter(|f| !f.as_os_str().is_empty());
+    let nearest = nearest.unwrap_or(Path::new("."));
+    let made = tempfile::tempfile_in(nearest);
+    made.map(drop).map_err(|e| {
+        file.refused(&format!(
+            "no file can be made in {}: {e}; give another file",
+            nearest.display()
+        ))
+    })
+}
+
+/// Refuses to replace a file that the program cannot have written, and what is no file unless anything may be written over.
 fn check_owner(file: &File) -> Result<(), GenError> {
     match std::fs::metadata(&file.path) {
         Ok(there) if there.is_file() => {}
         Ok(there) if there.is_dir() => {
             return Err(file.refused("is a folder, not a file; give another file"));
+        }
+        Ok(_) if !(file.is_ours)("") => {
+            return Err(file.refused("is not a regular file; give another file"));
         }
         _ => return Ok(()),
     }
@@ -198,7 +230,8 @@ impl File {
     }
 }
 
-fn folder(path: &Path) -> &Path {
+/// The folder that a file is in.
+pub fn folder(path: &Path) -> &Path {
     let parent = path.parent().filter(|p| !p.as_os_str().is_empty());
     parent.unwrap_or(Path::new("."))
 }
@@ -207,8 +240,13 @@ fn folder(path: &Path) -> &Path {
 fn place(path: &Path) -> PathBuf {
     let whole = std::fs::canonicalize(path);
     whole.unwrap_or_else(|_| {
+        // A link to a file that is not there yet.
+        let to = std::fs::read_link(path).map(|to| folder(path).join(to));
+        let path = to.as_deref().unwrap_or(path);
         let folder = folder(path);
-        let folder = std::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
+        let folder = std::fs::canonicalize(folder)
+            .or_else(|_| std::path::absolute(folder))
+            .unwrap_or_else(|_| folder.to_owned());
         folder.join(path.file_name().unwrap_or_default())
     })
 }

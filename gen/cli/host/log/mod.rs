@@ -4,7 +4,7 @@ mod count;
 mod sheet;
 
 use super::super::number::{decimal_if, number_if};
-use super::super::pictures::{check_all, check_places, write_all, File};
+use super::super::pictures::{check_all, folder, write_all, File};
 use super::super::Outcome;
 use super::{interrupted, place, scales, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
@@ -76,6 +76,21 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     };
     let bad_max = decimal_if("--bad-max", &arguments.bad_max, 0.0..=100.0)?;
     let bad_max = bad_max.unwrap_or(BAD_MAX_PERCENT);
+    let mut drawing = arguments.svg.clone().map(|path| File {
+        option: "--svg",
+        path,
+        text: String::new(),
+        is_ours: is_drawing,
+    });
+    let rows = arguments.out.clone().map(|path| File {
+        option: "--out",
+        path,
+        text: String::new(),
+        // What may be replaced is for --force to say.
+        is_ours: |_| true,
+    });
+    // Refused before the first sample, not after the last.
+    check_all(&rows.iter().chain(&drawing).collect::<Vec<_>>())?;
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
     let sources = place(&card, "card_config.trigger_sources")?;
@@ -86,22 +101,6 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         )]));
     }
     let scales = scales(&mut card)?;
-    let mut drawing = arguments.svg.clone().map(|path| File {
-        option: "--svg",
-        path,
-        text: String::new(),
-        is_ours: is_drawing,
-    });
-    // Refused before the first sample, not after the last.
-    let rows = arguments.out.clone().map(|path| File {
-        option: "--out",
-        path,
-        text: String::new(),
-        // What may be replaced is for --force to say.
-        is_ours: |_| true,
-    });
-    check_places(&rows.iter().chain(&drawing).collect::<Vec<_>>())?;
-    check_all(&drawing.iter().collect::<Vec<_>>())?;
     let (out, name): (Box<dyn Write>, String) = match &arguments.out {
         None => (Box::new(Lines::to(Box::new(io::stdout()))), "stdout".into()),
         Some(path) => {
@@ -111,10 +110,16 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
                 true => options.create(true).truncate(true),
                 false => options.create_new(true),
             };
-            let remedy = "give another file with --out, or replace it with --force";
-            let file = options
-                .open(path)
-                .map_err(|e| GenError::io("write", path, &e, remedy))?;
+            let file = fs::create_dir_all(folder(path)).and_then(|()| options.open(path));
+            let file = file.map_err(|e| {
+                let remedy = match e.kind() {
+                    io::ErrorKind::AlreadyExists => {
+                        "give another file with --out, or replace it with --force"
+                    }
+                    _ => "give another file with --out",
+                };
+                GenError::io("write", path, &e, remedy)
+            })?;
             (Box::new(Lines::file(file)), path.display().to_string())
         }
     };
