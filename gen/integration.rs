@@ -9,6 +9,7 @@ use crate::config::Project;
 use crate::error::GenError;
 use crate::t_format::Receiver;
 use crate::template::render;
+use crate::testbench::RESET_CYCLES;
 use endat_hdl::bus::HostBus;
 use endat_hdl::elaborate::{Design, Direction};
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
@@ -120,6 +121,8 @@ pub struct Core<'a> {
     pub has_bench: bool,
     /// What stands between its registers and the host.
     bus: HostBus,
+    /// Registers have start values.
+    initial_values: bool,
     /// It asks for a processor's attention.
     has_interrupt: bool,
     /// What the templates of a card's own files need besides.
@@ -149,6 +152,7 @@ impl<'a> Core<'a> {
             sources,
             has_bench,
             bus: project.bus,
+            initial_values: project.card.initial_values,
             has_interrupt: project.card.outputs.interrupt,
             card: context! {
                 channels,
@@ -173,6 +177,7 @@ impl<'a> Core<'a> {
             has_bench: true,
             // Its bus is an asynchronous one.
             bus: HostBus::Parallel,
+            initial_values: receiver.initial_values,
             has_interrupt: false,
             card: context! { board => (), base_address => 0 },
         }
@@ -239,6 +244,8 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
         clock => clock.unwrap_or_default(),
         reset => reset.map(|p| p.name.clone()).unwrap_or_default(),
         ports => Value::from(Serde(&ports)),
+        initial_values => core.initial_values,
+        reset_cycles => RESET_CYCLES,
         ..core.card.clone()
     };
     let wanted = TEMPLATES

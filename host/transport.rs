@@ -105,6 +105,21 @@ fn open_once(address: &str, baud: u32) -> io::Result<Box<dyn Transport>> {
     Ok(Box::new(Serial(port.map_err(io::Error::from)?)))
 }
 
+/// What helps where this could not be opened.
+fn remedy(address: &str) -> &'static str {
+    let has_port = |socket: &str| {
+        let port = socket.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
+        matches!(port, Some(Ok(1..)))
+    };
+    match address.strip_prefix("tcp:") {
+        Some(socket) if !has_port(socket) => {
+            "write tcp:HOST:PORT, with a number from 1 to 65535 as PORT"
+        }
+        None if has_port(address) => "write tcp: before it, or give the card's serial port",
+        _ => "give the card's serial port, or tcp:HOST:PORT",
+    }
+}
+
 /// A port that is opened again when it was unplugged and has come back.
 pub struct Port {
     address: String,
@@ -120,7 +135,7 @@ impl Port {
             address: address.to_owned(),
             action: "cannot be opened",
             error,
-            remedy: "give the card's serial port, or tcp:HOST:PORT",
+            remedy: remedy(address),
         })?;
         Ok(Self {
             address: address.to_owned(),
@@ -178,6 +193,27 @@ impl Transport for Port {
             if count > 0 || Instant::now() >= end {
                 return Ok(count);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::remedy;
+
+    #[test]
+    fn an_address_that_is_nearly_one_is_mended() {
+        let plain = remedy("/dev/ttyUSB0");
+        for (address, told) in [
+            ("127.0.0.1:5000", "write tcp: before it"),
+            ("tcp:card", "write tcp:HOST:PORT"),
+            ("tcp:card:99999", "write tcp:HOST:PORT"),
+            ("tcp:card:0", "write tcp:HOST:PORT"),
+            ("tcp:card:5000", plain),
+            ("tcp:[::1]:5000", plain),
+            ("COM3", plain),
+        ] {
+            assert!(remedy(address).starts_with(told), "{address}");
         }
     }
 }

@@ -72,7 +72,10 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("baud = ", "colour = 7\nbaud = ", "link.colour: unknown key; known keys here: baud, read_hz"),
         ("name = \"s6", "names = 1\nname = \"s6", "names: unknown key; did you mean name?"),
         ("[board]", "[colour]\nx = 1\n[board]", "colour: unknown key; known keys here: board, channel"),
-        ("encoder = ", "phase = 1\nencoder = ", "channel[0].phase: unknown key"),
+        ("encoder = ", "phase = 1\nencoder = ", "channel[0].phase: unknown key; it belongs to [line]"),
+        ("[board]", "cable_m = 3\n[board]", "cable_m: unknown key; it belongs to [[channel]] or to [endat]"),
+        ("[board]", "[host]\ninitial_values = false\n[board]", "host.initial_values: unknown key; it belongs to [device]"),
+        ("system_hz = 100", "family = 1\nsystem_hz = 100", "clock.family: unknown key; known keys here: system_hz"),
         // types
         ("system_hz = 100_000_000", "system_hz = \"fast\"", "clock.system_hz = \"fast\": is a string, must be a whole number"),
         ("system_hz = 100_000_000", "system_hz = 1e8", "clock.system_hz = 1e8: is a float, must be a whole number"),

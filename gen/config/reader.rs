@@ -19,6 +19,17 @@ pub struct Source<'t> {
     text: &'t str,
     diagnostics: RefCell<Vec<Diagnostic>>,
     asked: RefCell<Vec<Asked>>,
+    strays: RefCell<Vec<Stray>>,
+}
+
+/// A key that its table has not.
+struct Stray {
+    line: usize,
+    key: String,
+    /// With its table.
+    name: String,
+    /// Keys of its table.
+    known: Vec<&'static str>,
 }
 
 impl<'t> Source<'t> {
@@ -29,6 +40,7 @@ impl<'t> Source<'t> {
             text,
             diagnostics: RefCell::default(),
             asked: RefCell::default(),
+            strays: RefCell::default(),
         }
     }
 
@@ -60,21 +72,56 @@ impl<'t> Source<'t> {
 
     /// Whether nothing is wrong so far.
     pub fn is_good(&self) -> bool {
-        self.diagnostics.borrow().is_empty()
+        self.diagnostics.borrow().is_empty() && self.strays.borrow().is_empty()
     }
 
     /// All that was asked for, and all complaints, in the order of the lines.
     pub fn into_asked(self) -> (Vec<Asked>, Vec<Diagnostic>) {
-        (self.asked.take(), self.into_diagnostics())
+        let asked = self.asked.borrow().clone();
+        (asked, self.into_diagnostics())
     }
 
     /// All complaints, in the order of the lines.
     pub fn into_diagnostics(self) -> Vec<Diagnostic> {
+        // Only now all tables have been read: a key may belong to another one.
+        for stray in self.strays.take() {
+            let text = self.stray(&stray);
+            self.complain_line(stray.line, text);
+        }
         let mut all = self.diagnostics.into_inner();
         all.sort_by_key(|d| d.line);
         let mut seen = BTreeSet::new();
         all.retain(|d| seen.insert((d.line, d.text.clone())));
         all
+    }
+
+    /// What is said of such a key: what it may have been meant to be, or where it belongs.
+    fn stray(&self, stray: &Stray) -> String {
+        let Stray { key, known, .. } = stray;
+        let asked = self.asked.borrow();
+        let homes = asked.iter().filter(|a| a.key == key);
+        let homes: BTreeSet<&str> = homes
+            .map(|a| a.table.split('[').next().unwrap_or_default())
+            .collect();
+        let near = closest(key, known, |known| known);
+        let hint = match near.first() {
+            Some(near) => format!("did you mean {near}?"),
+            None if !homes.is_empty() => {
+                let homes: Vec<String> = homes.into_iter().map(home).collect();
+                format!("it belongs {}", homes.join(" or "))
+            }
+            None => format!("known keys here: {}", known.join(", ")),
+        };
+        format!("{}: unknown key; {hint}", shorten(&stray.name))
+    }
+}
+
+/// Where a key of this table stands.
+fn home(table: &str) -> String {
+    match table {
+        "" => "to the top of the file, above all tables".into(),
+        "channel" => "to [[channel]]".into(),
+        table => format!("to [{table}]"),
     }
 }
 
@@ -418,17 +465,12 @@ impl<'s, 't> Table<'s, 't> {
             if known.contains(key.get_ref().as_ref()) {
                 continue;
             }
-            let list = known.iter().copied().collect::<Vec<_>>().join(", ");
-            let near = closest(key.get_ref(), known.iter(), |known| known);
-            let hint = match near.first() {
-                Some(near) => format!("did you mean {near}?"),
-                None => format!("known keys here: {list}"),
-            };
-            let text = format!(
-                "{}: unknown key; {hint}",
-                shorten(&self.name(key.get_ref()))
-            );
-            self.source.complain(&key.span(), text);
+            self.source.strays.borrow_mut().push(Stray {
+                line: self.source.line(key.span().start),
+                key: key.get_ref().to_string(),
+                name: self.name(key.get_ref()),
+                known: known.iter().copied().collect(),
+            });
         }
     }
 }

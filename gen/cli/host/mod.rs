@@ -63,6 +63,11 @@ impl PortArgs {
     pub fn open(&self) -> Result<AnyCard, GenError> {
         let baud = number_if("--baud", &self.baud, 300..=12_000_000)?;
         let baud = baud.map_or(BAUD, |n| n as u32);
+        if self.port.is_empty() {
+            return Err(GenError::input(
+                "--port = \"\": is empty; give the card's serial port, tcp:HOST:PORT or virtual",
+            ));
+        }
         let transport: Box<dyn Transport> = match self.port.strip_prefix("virtual") {
             Some("") => virtual_card(DEFAULT_PRESET)?,
             Some(rest) if rest.starts_with(':') => virtual_card(&rest[1..])?,
