@@ -21,10 +21,11 @@
 //! Ref: TI motor-control SDK, `endat_drv.c` (order, selection); HEIDENHAIN EnDat FAQ (end of selection).
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Record of selections and contents of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct AddInfo {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -89,64 +90,15 @@ pub struct AddInfo {
 impl AddInfo {
     /// A record that looks for an information so many system clock cycles (1..=255) after the edge behind an answer.
     pub fn new(separator_cycles: u64) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            start: Default::default(),
-            center: Default::default(),
-            sample: Default::default(),
-            answer_done: Default::default(),
-            has_f2: Default::default(),
-            has_supplement: Default::default(),
-            command: Default::default(),
-            mrs: Default::default(),
-            info_done: Default::default(),
-            crc_ok: Default::default(),
-            word: Default::default(),
-            over: Default::default(),
-            flags: Default::default(),
-            active: Default::default(),
-            infos: Default::default(),
-            look: Default::default(),
-            info_1: Default::default(),
-            info_2: Default::default(),
-            came: Default::default(),
-            good: Default::default(),
-            selected: Default::default(),
-            first: Default::default(),
-            second: Default::default(),
-            seen: Default::default(),
-            right: Default::default(),
-            answered: Default::default(),
-            trusted: Default::default(),
-            remaining: Default::default(),
-            look_now: Default::default(),
+        Self::from_parts(AddInfoParts {
             separator_cycles: Constant::new(separator_cycles.into()),
-            is_second: Default::default(),
-            is_sent: Default::default(),
-            is_selection: Default::default(),
-            is_off: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for AddInfo {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self, clock, selected, first, second, seen, right, answered, trusted, remaining,
-            look_now
-        );
-        self.answered.reset.next = self.reset.val();
-        self.trusted.reset.next = self.reset.val();
-        self.remaining.reset.next = self.reset.val();
-        self.look_now.reset.next = self.reset.val();
-        self.selected.reset.next = self.reset.val();
-        self.first.reset.next = self.reset.val();
-        self.second.reset.next = self.reset.val();
-        self.seen.reset.next = self.reset.val();
-        self.right.reset.next = self.reset.val();
-
         // A sample that comes first leaves nothing to look for.
         self.look_now.d.next = (self.remaining.q.val() == 1) & !self.sample.val();
         if self.remaining.q.val().any() {

@@ -31,12 +31,13 @@ use crate::stream::{buffer::SetParts, channel::SetChannel, run::RunChannel, Stre
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
 use crate::whole_result::WholeResult;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 pub use uart::Card;
 
 /// The card but for its front; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct CardCore {
     /// System clock.
     pub clk_i: Signal<In, Clock>,
@@ -288,37 +289,15 @@ impl CardCore {
         let runs = if parts.runs { served } else { 0 };
         let set_infos = if parts.informations { served } else { 0 };
         let plain_sets = if parts.informations { sets } else { 0 };
-        Self {
-            clk_i: Default::default(),
-            rst_i: Default::default(),
-            trigger_i: Default::default(),
-            tick_us: Default::default(),
-            word_address: Default::default(),
-            in_range: Default::default(),
-            lane: Default::default(),
-            access: Default::default(),
-            write: Default::default(),
-            write_data: Default::default(),
-            reading: Default::default(),
-            take_byte: Default::default(),
-            passing_byte: Default::default(),
-            read_byte: Default::default(),
-            done: Default::default(),
-            push: Default::default(),
-            in_frame: Default::default(),
-            push_valid: Default::default(),
-            push_byte: Default::default(),
-            push_take: Default::default(),
+        Self::from_parts(CardCoreParts {
             direct_position_o: each(direct_ports),
             direct_valid_o: each(direct_ports),
             direct_fresh_o: each(direct_ports),
             direct_error_o: each(direct_ports),
-            irq_o: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
             endat_data_i: each(channels),
-            led_status_o: Default::default(),
             led_channel_o: each(channels),
             timebase: Timebase::new(config.system_hz),
             trigger: Default::default(),
@@ -372,7 +351,6 @@ impl CardCore {
             interrupt: (0..interrupts).map(|_| Interrupt::new(channels)).collect(),
             direct_byte: each(directs + 1),
             part_byte: each(2),
-            part_write: Default::default(),
             ring_link: each(channels + 1),
             read_link: each(channels + 1),
             service_link: each(channels + 1),
@@ -383,12 +361,9 @@ impl CardCore {
             io_out: each(places),
             io_write: each(served),
             word_link: each(services + 1),
-            service_reads: Default::default(),
-            service_writes: Default::default(),
             taken: each(channels + 1),
             owes: each(channels + 1),
             brought: each(channels + 1),
-            new_set: Default::default(),
             faulty: each(channels + 1),
             slow_bit: Constant::new(blink_bit(config.system_hz, 1).into()),
             quick_bit: Constant::new(blink_bit(config.system_hz, 8).into()),
@@ -416,12 +391,12 @@ impl CardCore {
             _pairs: served / CHANNELS_SERVED,
             _service_links: services + 1,
             _interrupt_channels: channels * interrupts,
-        }
+        })
     }
 }
 
 impl Logic for CardCore {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.timebase.clock.next = self.clk_i.val();
         self.timebase.reset.next = self.rst_i.val();

@@ -30,6 +30,7 @@ use crate::snapshot::Snapshot;
 use crate::sure_bit::SureBit;
 use crate::timing;
 use crate::transaction::Transaction;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// From the cycle with the trigger strobe to the first cycle with the EnDat clock low, at every width and rate.
@@ -45,7 +46,7 @@ pub const DELAY_OFFSET_CYCLES: u64 = 4;
 pub const CALIBRATION_FRAMES: usize = 4;
 
 /// One EnDat port.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Channel {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -204,6 +205,7 @@ pub struct Channel {
     wanted_shape: CommandShape,
     add_info: AddInfo,
     settings: FrameSettings,
+    #[start(true)]
     clk_pin: Reg<Bit>,
     data_pin: Reg<Bit>,
     oe_pin: Reg<Bit>,
@@ -327,80 +329,7 @@ impl Channel {
     /// A channel with these fixed times and features.
     pub fn with(times: FixedTimes, features: Features) -> Self {
         let requests = usize::from(features.requests);
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            timestamp: Default::default(),
-            trigger: Default::default(),
-            calibrate: Default::default(),
-            data_i: Default::default(),
-            period_cycles: Default::default(),
-            first_low_extra_cycles: Default::default(),
-            command: Default::default(),
-            request_command: Default::default(),
-            request_parameter: Default::default(),
-            request_ride: Default::default(),
-            request_own: Default::default(),
-            request_cancel: Default::default(),
-            hold_off: Default::default(),
-            clock_low: Default::default(),
-            forced: Default::default(),
-            position_bits: Default::default(),
-            filter_cycles: Default::default(),
-            filter_half: Default::default(),
-            phase_mode: Default::default(),
-            fixed_delay: Default::default(),
-            majority: Default::default(),
-            start_window_cycles: Default::default(),
-            start_timeout_us: Default::default(),
-            recovery_limit_cycles: Default::default(),
-            recovery_min_cycles: Default::default(),
-            watchdog_us: Default::default(),
-            continuous: Default::default(),
-            stop_at_error: Default::default(),
-            endat_clk: Default::default(),
-            data_o: Default::default(),
-            data_oe: Default::default(),
-            result_strobe: Default::default(),
-            position: Default::default(),
-            position_valid: Default::default(),
-            fresh: Default::default(),
-            sequence: Default::default(),
-            first_fall_timestamp: Default::default(),
-            age_us: Default::default(),
-            cause: Default::default(),
-            flags: Default::default(),
-            crc_received: Default::default(),
-            crc_computed: Default::default(),
-            position_crc: Default::default(),
-            position_width: Default::default(),
-            position_has_f2: Default::default(),
-            recovery_cycles: Default::default(),
-            delay_cycles: Default::default(),
-            phase: Default::default(),
-            edge_measured: Default::default(),
-            edge_offset: Default::default(),
-            glitch: Default::default(),
-            busy: Default::default(),
-            request_runs: Default::default(),
-            line_high: Default::default(),
-            displaced: Default::default(),
-            over: Default::default(),
-            over_request: Default::default(),
-            over_cause: Default::default(),
-            over_flags: Default::default(),
-            reply: Default::default(),
-            answer: Default::default(),
-            reply_good: Default::default(),
-            info_active: Default::default(),
-            info_1: Default::default(),
-            info_2: Default::default(),
-            info_came: Default::default(),
-            info_good: Default::default(),
-            calibrated: Default::default(),
-            sample_strobe: Default::default(),
-            sample_second: Default::default(),
+        Self::from_parts(ChannelParts {
             filter: InputFilter::new(features),
             clock_gen: ClockGen::new(features),
             sender: CommandSender::new(features.requests),
@@ -412,43 +341,23 @@ impl Channel {
             wanted_shape: CommandShape::new(features.requests),
             add_info: AddInfo::new(times.separator_cycles),
             settings: Default::default(),
-            clk_pin: Reg::new(true),
-            data_pin: Default::default(),
-            oe_pin: Default::default(),
             own_asked: each(requests),
             ride_asked: each(requests),
-            own_wanted: Default::default(),
-            ride_wanted: Default::default(),
             _requests: requests,
-            frame_command: Default::default(),
-            frame_own: Default::default(),
-            frame_ride: Default::default(),
-            info_taken: Default::default(),
-            reply_taken: Default::default(),
-            reply_word: Default::default(),
-            reply_right: Default::default(),
-            reply_has_parameter: Default::default(),
             has_requests: Constant::new(features.requests),
             has_double: Constant::new(features.double_edge),
             needs_four: Constant::new(features.double_edge && features.requests),
             fixed_mode: Constant::new(line_delay::mode::FIXED.into()),
             parameter_bits: Constant::new(u64::from(PARAMETER_BITS).into()),
             test_value_bits: Constant::new(u64::from(TEST_VALUE_BITS).into()),
-            command_now: Default::default(),
-            payload_bits: Default::default(),
-            word: Default::default(),
-            turned: Default::default(),
-            crc_ok: Default::default(),
-            period: Default::default(),
             calibration_period_cycles: Constant::new(times.calibration_period_cycles.into()),
-        }
+        })
     }
 }
 
 impl Logic for Channel {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, clk_pin, data_pin, oe_pin);
         clock!(
             self,
             clock,
@@ -463,30 +372,7 @@ impl Logic for Channel {
             settings
         );
         self.settings.reset.next = self.reset.val();
-        dff_setup!(
-            self,
-            clock,
-            frame_command,
-            frame_own,
-            frame_ride,
-            info_taken,
-            reply_taken,
-            reply_word,
-            reply_right,
-            reply_has_parameter
-        );
-        self.frame_command.reset.next = self.reset.val();
-        self.frame_own.reset.next = self.reset.val();
-        self.frame_ride.reset.next = self.reset.val();
-        self.info_taken.reset.next = self.reset.val();
-        self.reply_taken.reset.next = self.reset.val();
-        self.reply_word.reset.next = self.reset.val();
-        self.reply_right.reset.next = self.reset.val();
-        self.reply_has_parameter.reset.next = self.reset.val();
         self.add_info.reset.next = self.reset.val();
-        self.clk_pin.reset.next = self.reset.val();
-        self.data_pin.reset.next = self.reset.val();
-        self.oe_pin.reset.next = self.reset.val();
         self.filter.reset.next = self.reset.val();
         self.clock_gen.reset.next = self.reset.val();
         self.sender.reset.next = self.reset.val();

@@ -14,13 +14,14 @@ use crate::config::CardConfig;
 use crate::config_ring::ConfigRing;
 use crate::reg::Reg;
 use crate::regs::config_words;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Words of a result.
 pub const RESULT_WORDS: usize = 6;
 
 /// Host side of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct ChannelRegisters {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -140,8 +141,11 @@ pub struct ChannelRegisters {
     byte: Vec<Reg<Bits<8>>>,
     read_byte: Reg<Bits<8>>,
     ring: ConfigRing,
+    #[given]
     config0: Reg<Bits<32>>,
+    #[given]
     config1: Reg<Bits<32>>,
+    #[given]
     config2: Reg<Bits<32>>,
     _words: usize,
 }
@@ -151,108 +155,24 @@ impl ChannelRegisters {
     pub fn new(config: &CardConfig, channel: usize) -> Self {
         let words = config_words(config, Some(channel));
         let active = |i: usize| Reg::new(u64::from(words[i]).into());
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            trigger: Default::default(),
-            new_set: Default::default(),
-            busy: Default::default(),
-            result_strobe: Default::default(),
-            position: Default::default(),
-            position_valid: Default::default(),
-            fresh: Default::default(),
-            sequence: Default::default(),
-            first_fall_timestamp: Default::default(),
-            age_us: Default::default(),
-            cause: Default::default(),
-            flags: Default::default(),
-            crc_received: Default::default(),
-            crc_computed: Default::default(),
-            position_crc: Default::default(),
-            position_width: Default::default(),
-            position_has_f2: Default::default(),
-            recovery_cycles: Default::default(),
-            delay_cycles: Default::default(),
-            taken: Default::default(),
-            owes: Default::default(),
-            brought: Default::default(),
-            load: Default::default(),
-            show: Default::default(),
-            word_skip: Default::default(),
-            lane: Default::default(),
-            skip: Default::default(),
-            read_in: Default::default(),
-            read_out: Default::default(),
-            ring_turn: Default::default(),
-            ring_home: Default::default(),
-            ring_in: Default::default(),
-            ring_out: Default::default(),
-            card_damaged: Default::default(),
-            trigger_skip: Default::default(),
-            ignored_sources: Default::default(),
-            period_cycles: Default::default(),
-            first_low_extra_cycles: Default::default(),
-            command: Default::default(),
-            position_bits: Default::default(),
-            filter_cycles: Default::default(),
-            filter_half: Default::default(),
-            request_id: Default::default(),
-            field_gap_us: Default::default(),
-            start_window_cycles: Default::default(),
-            start_timeout_us: Default::default(),
-            recovery_limit_cycles: Default::default(),
-            waiting: Default::default(),
-            behind: Default::default(),
-            behind_now: Default::default(),
-            stale: Default::default(),
-            stale_now: Default::default(),
-            stale_shown: Default::default(),
-            age: Default::default(),
-            age_base: Default::default(),
-            age_tick: Default::default(),
-            age_now: Default::default(),
-            age_full: Default::default(),
-            age_shown: Default::default(),
+        Self::from_parts(ChannelRegistersParts {
             held: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
             word: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
             shown: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
             byte: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
-            read_byte: Default::default(),
             ring: ConfigRing::new(words),
             config0: active(0),
             config1: active(1),
             config2: active(2),
             _words: RESULT_WORDS,
-        }
+        })
     }
 }
 
 impl Logic for ChannelRegisters {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, waiting, read_byte, config0, config1, config2);
-        dff_setup!(
-            self,
-            clock,
-            behind,
-            stale,
-            stale_shown,
-            age,
-            age_full,
-            age_shown
-        );
         clock!(self, clock, ring);
-        self.waiting.reset.next = self.reset.val();
-        self.behind.reset.next = self.reset.val();
-        self.stale.reset.next = self.reset.val();
-        self.stale_shown.reset.next = self.reset.val();
-        self.age.reset.next = self.reset.val();
-        self.age_full.reset.next = self.reset.val();
-        self.age_shown.reset.next = self.reset.val();
-        self.config0.reset.next = self.reset.val();
-        self.config1.reset.next = self.reset.val();
-        self.config2.reset.next = self.reset.val();
         self.ring.reset.next = self.reset.val();
 
         // A trigger that the channel does not take gives no result of its own.

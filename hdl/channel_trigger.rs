@@ -9,13 +9,14 @@
 //! these settings starts the count of all channels anew. The strobe is in the cycle of the card's.
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Bits of `skip`.
 pub const SKIP_BITS: u32 = 5;
 
 /// Trigger of a channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct ChannelTrigger {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -37,8 +38,11 @@ pub struct ChannelTrigger {
     pub trigger: Signal<Out, Bit>,
     /// The channel takes no trigger.
     pub disabled: Signal<Out, Bit>,
+    #[given]
     ignored: Reg<Bits<3>>,
+    #[given]
     skipped: Reg<Bits<5>>,
+    #[given]
     is_off: Reg<Bit>,
     left: Reg<Bits<5>>,
     strobe: Reg<Bit>,
@@ -49,37 +53,18 @@ pub struct ChannelTrigger {
 impl ChannelTrigger {
     /// With these settings after reset, as the inputs of the same names.
     pub fn new(ignored_sources: u64, skip: u64, off: bool) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            hits: Default::default(),
-            home: Default::default(),
-            ignored_sources: Default::default(),
-            skip: Default::default(),
-            off: Default::default(),
-            restart: Default::default(),
-            trigger: Default::default(),
-            disabled: Default::default(),
+        Self::from_parts(ChannelTriggerParts {
             ignored: Reg::new(ignored_sources.into()),
             skipped: Reg::new(skip.into()),
             is_off: Reg::new(off),
-            left: Default::default(),
-            strobe: Default::default(),
-            own: Default::default(),
-            is_due: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for ChannelTrigger {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, ignored, skipped, is_off, left, strobe);
-        self.ignored.reset.next = self.reset.val();
-        self.skipped.reset.next = self.reset.val();
-        self.is_off.reset.next = self.reset.val();
         self.left.reset.next = self.reset.val() | self.restart.val();
-        self.strobe.reset.next = self.reset.val();
 
         if self.home.val() {
             self.ignored.d.next = self.ignored_sources.val();

@@ -14,10 +14,11 @@
 use crate::channel::Features;
 use crate::half_period::HalfPeriod;
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// EnDat clock generator of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct ClockGen {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -40,6 +41,7 @@ pub struct ClockGen {
     /// High in the last cycle before a falling edge.
     pub fall: Signal<Out, Bit>,
     half: HalfPeriod,
+    #[start(true)]
     level: Reg<Bit>,
     risen: Reg<Bit>,
     rise_now: Signal<Local, Bit>,
@@ -50,34 +52,16 @@ pub struct ClockGen {
 impl ClockGen {
     /// A clock generator with these features.
     pub fn new(features: Features) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            start: Default::default(),
-            hold_low: Default::default(),
-            stop: Default::default(),
-            period_cycles: Default::default(),
-            endat_clk: Default::default(),
-            will_rise: Default::default(),
-            rise: Default::default(),
-            fall: Default::default(),
+        Self::from_parts(ClockGenParts {
             half: HalfPeriod::new(false, features.double_edge),
-            level: Reg::new(true),
-            risen: Default::default(),
-            rise_now: Default::default(),
-            fall_now: Default::default(),
-            held: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for ClockGen {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, level, risen);
         clock!(self, clock, half);
-        self.level.reset.next = self.reset.val();
-        self.risen.reset.next = self.reset.val();
         self.half.reset.next = self.reset.val();
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.level.q.val();

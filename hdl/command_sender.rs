@@ -18,10 +18,11 @@
 
 use crate::protocol::PARAMETER_BITS;
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Sends what the receiver has to say, MSB first, on falling clock edges.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct CommandSender {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -58,37 +59,16 @@ pub struct CommandSender {
 impl CommandSender {
     /// A sender of everything, or of mode commands only.
     pub fn new(has_all: bool) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            start: Default::default(),
-            start_supplement: Default::default(),
-            fall: Default::default(),
-            abort: Default::default(),
-            command: Default::default(),
-            has_parameter: Default::default(),
-            parameter_word: Default::default(),
-            data: Default::default(),
-            oe: Default::default(),
+        Self::from_parts(CommandSenderParts {
             has_all: Constant::new(has_all),
             parameter_bits: Constant::new(u64::from(PARAMETER_BITS).into()),
-            cells_left: Default::default(),
-            bits_left: Default::default(),
-            in_supplement: Default::default(),
-            cells: Default::default(),
-            cell_now: Default::default(),
-            bits: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for CommandSender {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, cells_left, bits_left, in_supplement);
-        self.cells_left.reset.next = self.reset.val();
-        self.bits_left.reset.next = self.reset.val();
-        self.in_supplement.reset.next = self.reset.val();
         // Cells in falling order: 7 = the lead-in 0 at F2, 6..1 = the command, 8 and 0 = driver off.
         self.cells.next = bit_cast::<8, 6>(self.command.val()) << 1;
         // 9 = driver off until F'1, 8..2 = zeros, 1 = the start bit.

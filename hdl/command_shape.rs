@@ -12,10 +12,11 @@
 //!
 //! Ref: [`crate::protocol::ModeCommand`].
 
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Decoder of a mode command.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct CommandShape {
     /// Mode command.
     pub command: Signal<In, Bits<6>>,
@@ -44,27 +45,14 @@ pub struct CommandShape {
 impl CommandShape {
     /// A decoder of all commands, or of 000111 and 111000 only.
     pub fn new(has_all: bool) -> Self {
-        Self {
-            command: Default::default(),
-            is_known: Default::default(),
-            has_f1: Default::default(),
-            has_f2: Default::default(),
-            has_parameter: Default::default(),
-            has_test_values: Default::default(),
-            has_supplement: Default::default(),
+        Self::from_parts(CommandShapeParts {
             has_all: Constant::new(has_all),
-            left: Default::default(),
-            right: Default::default(),
-            is_same: Default::default(),
-            is_complement: Default::default(),
-            is_position: Default::default(),
-            is_two: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for CommandShape {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.left.next = self.command.val().get_bits::<3>(3);
         self.right.next = self.command.val().get_bits::<3>(0);

@@ -12,6 +12,7 @@
 //! Each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is written again.
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Words in a block.
@@ -20,7 +21,7 @@ pub const RING_WORDS: usize = 3;
 pub const RING_BYTES: usize = 4 * RING_WORDS;
 
 /// Three configuration words on the byte ring.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct ConfigRing {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -40,9 +41,13 @@ pub struct ConfigRing {
     pub word2: Signal<Out, Bits<32>>,
     /// The words are not what was written, as of the last cycle in which the ring stood still.
     pub is_damaged: Signal<Out, Bit>,
+    #[given]
     w0: Reg<Bits<32>>,
+    #[given]
     w1: Reg<Bits<32>>,
+    #[given]
     w2: Reg<Bits<32>>,
+    #[given]
     parities: Reg<Bits<12>>,
     damaged: Reg<Bit>,
 }
@@ -53,34 +58,18 @@ impl ConfigRing {
         let word = |value: u32| Reg::new(u64::from(value).into());
         let bytes = start.into_iter().flat_map(u32::to_be_bytes);
         let parities = bytes.fold(0, |all, byte| all << 1 | u64::from(byte.count_ones() & 1));
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            turn: Default::default(),
-            byte_in: Default::default(),
-            byte_out: Default::default(),
-            word0: Default::default(),
-            word1: Default::default(),
-            word2: Default::default(),
-            is_damaged: Default::default(),
+        Self::from_parts(ConfigRingParts {
+            parities: Reg::new(parities.into()),
             w0: word(start[0]),
             w1: word(start[1]),
             w2: word(start[2]),
-            parities: Reg::new(parities.into()),
-            damaged: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for ConfigRing {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, w0, w1, w2, parities, damaged);
-        self.w0.reset.next = self.reset.val();
-        self.w1.reset.next = self.reset.val();
-        self.w2.reset.next = self.reset.val();
-        self.parities.reset.next = self.reset.val();
-        self.damaged.reset.next = self.reset.val();
         if self.turn.val() {
             self.w0.d.next =
                 (self.w0.q.val() << 8) | bit_cast::<32, 8>(self.w1.q.val().get_bits::<8>(24));

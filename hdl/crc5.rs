@@ -10,6 +10,7 @@
 
 use crate::protocol::{CRC5_POLYNOMIAL, CRC5_PRESET};
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// The smallest `k > 0` with `x^k = 1` modulo the generator.
@@ -60,7 +61,7 @@ pub fn parity_mask(crc_bit: usize, width: usize) -> u128 {
 /// A CRC counts distances from the last bit, the word from the first one. So both sides of the equation are divided by the power of x
 /// that lies between: the word's side becomes five fixed parities (folded to 15 bits, the order of x), and what the received CRC bits
 /// are worth is added up as they come, with a power of 1/x that goes on with each bit of the answer.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Crc5Check {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -86,6 +87,7 @@ pub struct Crc5Check {
     pub f2: Signal<In, Bit>,
     /// Word, error bits and received CRC fit each other.
     pub is_ok: Signal<Out, Bit>,
+    #[start(1.into())]
     power: Reg<Bits<5>>,
     received: Reg<Bits<5>>,
     mask: Vec<Constant<Bits<15>>>,
@@ -111,21 +113,7 @@ impl Default for Crc5Check {
             Constant::new(bits.fold(0u64, |mask, i| mask | 1 << i).into())
         };
         let constant = |value: u8| Constant::new(u64::from(value).into());
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            clear: Default::default(),
-            word_bit: Default::default(),
-            crc_bit: Default::default(),
-            bit: Default::default(),
-            word: Default::default(),
-            has_f1: Default::default(),
-            has_f2: Default::default(),
-            f1: Default::default(),
-            f2: Default::default(),
-            is_ok: Default::default(),
-            power: Reg::new(1.into()),
-            received: Default::default(),
+        Self::from_parts(Crc5CheckParts {
             mask: (0..5).map(mask).collect(),
             weight: crc_bit_weights(),
             // The preset in front of the error bits, of which there are 0, 1 or 2.
@@ -136,18 +124,13 @@ impl Default for Crc5Check {
             second: constant(times_x_power(1, 2)),
             step: constant(divided_by_x_power(1, 1)),
             one: constant(1),
-            folded: Default::default(),
-            sum: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for Crc5Check {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, power, received);
-        self.power.reset.next = self.reset.val();
-        self.received.reset.next = self.reset.val();
         if self.word_bit.val() | self.crc_bit.val() {
             self.power.d.next = self.power.q.val() >> 1;
             if self.power.q.val().get_bit(0) {
@@ -197,7 +180,7 @@ fn crc_bit_weights() -> Vec<Constant<Bits<5>>> {
 }
 
 /// Parallel CRC5 of exactly `N` bits: five XOR equations.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Crc5Fixed<const N: usize> {
     /// The covered bits; the top one was received first, as the published equations have it.
     pub word: Signal<In, Bits<N>>,
@@ -218,19 +201,16 @@ impl<const N: usize> Default for Crc5Fixed<N> {
             }
             Constant::new(bits)
         };
-        Self {
-            word: Default::default(),
-            crc: Default::default(),
+        Self::from_parts(Crc5FixedParts {
             mask: (0..5).map(mask).collect(),
             weight: crc_bit_weights(),
             constant: Constant::new(u64::from(constant_term(N)).into()),
-            sum: Default::default(),
-        }
+        })
     }
 }
 
 impl<const N: usize> Logic for Crc5Fixed<N> {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.sum.next = self.constant.val();
         for i in 0..5 {
@@ -243,7 +223,7 @@ impl<const N: usize> Logic for Crc5Fixed<N> {
 }
 
 /// Serial CRC5 register: takes the covered bits and then the received CRC itself.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Crc5Serial {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -259,6 +239,7 @@ pub struct Crc5Serial {
     pub residue_ok: Signal<Out, Bit>,
     /// CRC of the bits taken so far, as it would be sent; bit 4 goes first.
     pub crc: Signal<Out, Bits<5>>,
+    #[start(u64::from(CRC5_PRESET).into())]
     register: Reg<Bits<5>>,
     shifted: Signal<Local, Bits<5>>,
     polynomial: Constant<Bits<5>>,
@@ -267,27 +248,16 @@ pub struct Crc5Serial {
 
 impl Default for Crc5Serial {
     fn default() -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            clear: Default::default(),
-            enable: Default::default(),
-            bit: Default::default(),
-            residue_ok: Default::default(),
-            crc: Default::default(),
-            register: Reg::new(u64::from(CRC5_PRESET).into()),
-            shifted: Default::default(),
+        Self::from_parts(Crc5SerialParts {
             polynomial: Constant::new(u64::from(CRC5_POLYNOMIAL).into()),
             residue: Constant::new(u64::from(crate::protocol::CRC5_RESIDUE).into()),
-        }
+        })
     }
 }
 
 impl Logic for Crc5Serial {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, register);
-        self.register.reset.next = self.reset.val();
         self.shifted.next = self.register.q.val() << 1;
         if self.enable.val() {
             self.register.d.next = self.shifted.val();

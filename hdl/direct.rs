@@ -10,6 +10,7 @@
 
 use crate::reg::Reg;
 use crate::regs::DIRECT;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Cycles from a result's strobe to its cropped position.
@@ -18,7 +19,7 @@ pub const CROP_CYCLES: u64 = 33;
 pub const ERROR_CAUSES: u32 = !1;
 
 /// Direct outputs of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct DirectOutput {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -55,7 +56,9 @@ pub struct DirectOutput {
     /// The last result's cause is one of the selected ones, or the alarm is selected and on.
     pub direct_error: Signal<Out, Bit>,
     first_bit: Reg<Bits<6>>,
+    #[given]
     length_bits: Reg<Bits<6>>,
+    #[start(u64::from(ERROR_CAUSES).into())]
     error_causes: Reg<Bits<32>>,
     byte_read: Reg<Bits<8>>,
     bits: Reg<Bits<32>>,
@@ -78,77 +81,16 @@ impl DirectOutput {
     /// That of channel `channel`, whose positions have `position_bits` bits.
     pub fn new(channel: usize, position_bits: u32) -> Self {
         let first_word = DIRECT.base + DIRECT.stride * channel as u16;
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            result_strobe: Default::default(),
-            position: Default::default(),
-            fresh: Default::default(),
-            cause: Default::default(),
-            alarm: Default::default(),
-            word_address: Default::default(),
-            in_range: Default::default(),
-            lane: Default::default(),
-            write: Default::default(),
-            write_data: Default::default(),
-            read_byte: Default::default(),
-            direct_position: Default::default(),
-            direct_valid: Default::default(),
-            direct_fresh: Default::default(),
-            direct_error: Default::default(),
-            first_bit: Default::default(),
+        Self::from_parts(DirectOutputParts {
             length_bits: Reg::new(u64::from(position_bits.min(32)).into()),
-            error_causes: Reg::new(u64::from(ERROR_CAUSES).into()),
-            byte_read: Default::default(),
-            bits: Default::default(),
-            shown: Default::default(),
-            at: Default::default(),
-            taken: Default::default(),
-            running: Default::default(),
-            cropped: Default::default(),
-            strobe: Default::default(),
-            error: Default::default(),
-            wide: Default::default(),
-            next_bit: Default::default(),
-            shifted: Default::default(),
-            selected: Default::default(),
-            word: Default::default(),
             pair: Constant::new(u64::from(first_word >> 1).into()),
-        }
+        })
     }
 }
 
 impl Logic for DirectOutput {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            first_bit,
-            length_bits,
-            error_causes,
-            byte_read,
-            bits,
-            shown,
-            at,
-            taken,
-            running,
-            cropped,
-            strobe,
-            error
-        );
-        self.first_bit.reset.next = self.reset.val();
-        self.length_bits.reset.next = self.reset.val();
-        self.error_causes.reset.next = self.reset.val();
-        self.bits.reset.next = self.reset.val();
-        self.shown.reset.next = self.reset.val();
-        self.at.reset.next = self.reset.val();
-        self.taken.reset.next = self.reset.val();
-        self.running.reset.next = self.reset.val();
-        self.cropped.reset.next = self.reset.val();
-        self.strobe.reset.next = self.reset.val();
-        self.error.reset.next = self.reset.val();
-
         // Two words: where the position is cropped, and what is an error.
         self.selected.next =
             self.in_range.val() & (self.word_address.val().get_bits::<10>(1) == self.pair.val());

@@ -17,10 +17,11 @@ use crate::service::{channel::ServiceChannel, Service};
 use crate::several::each;
 use crate::t_format::port::TFormatPort;
 use crate::transaction::cause;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// One encoder.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct EncoderPort {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -242,69 +243,7 @@ impl EncoderPort {
         has_io: bool,
     ) -> Self {
         let ios = usize::from(has_io);
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            timestamp: Default::default(),
-            trigger: Default::default(),
-            calibrate: Default::default(),
-            data_i: Default::default(),
-            period_cycles: Default::default(),
-            first_low_extra_cycles: Default::default(),
-            command: Default::default(),
-            position_bits: Default::default(),
-            filter_cycles: Default::default(),
-            filter_half: Default::default(),
-            start_window_cycles: Default::default(),
-            start_timeout_us: Default::default(),
-            recovery_limit_cycles: Default::default(),
-            request_id: Default::default(),
-            field_gap_us: Default::default(),
-            endat_clk: Default::default(),
-            data_o: Default::default(),
-            data_oe: Default::default(),
-            result_strobe: Default::default(),
-            position: Default::default(),
-            position_valid: Default::default(),
-            fresh: Default::default(),
-            sequence: Default::default(),
-            first_fall_timestamp: Default::default(),
-            age_us: Default::default(),
-            cause: Default::default(),
-            flags: Default::default(),
-            crc_received: Default::default(),
-            crc_computed: Default::default(),
-            position_crc: Default::default(),
-            position_width: Default::default(),
-            position_has_f2: Default::default(),
-            recovery_cycles: Default::default(),
-            delay_cycles: Default::default(),
-            busy: Default::default(),
-            request_runs: Default::default(),
-            line_high: Default::default(),
-            displaced: Default::default(),
-            over: Default::default(),
-            over_request: Default::default(),
-            over_cause: Default::default(),
-            over_flags: Default::default(),
-            reply: Default::default(),
-            reply_good: Default::default(),
-            info_active: Default::default(),
-            info_1: Default::default(),
-            info_2: Default::default(),
-            info_came: Default::default(),
-            info_good: Default::default(),
-            calibrated: Default::default(),
-            sample_strobe: Default::default(),
-            alarm: Default::default(),
-            host_address: Default::default(),
-            host_line: Default::default(),
-            host_read: Default::default(),
-            host_word: Default::default(),
-            host_write: Default::default(),
-            host_half: Default::default(),
-            host_data: Default::default(),
+        Self::from_parts(EncoderPortParts {
             io_address: each(ios),
             io_read: each(ios),
             io_in: each(ios),
@@ -325,12 +264,12 @@ impl EncoderPort {
             trigger_overrun: Constant::new(cause::TRIGGER_OVERRUN.into()),
             info_missing: Constant::new(cause::INFO_MISSING.into()),
             recovery_too_short: Constant::new(cause::RECOVERY_TOO_SHORT.into()),
-        }
+        })
     }
 }
 
 impl Logic for EncoderPort {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         for i in 0..self._channels {
             self.channel[i].clock.next = self.clock.val();

@@ -10,10 +10,11 @@
 //! What decides where a position stands in the answer, command and width, is guarded: its parity is taken as the frame begins.
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Settings of one channel's frames.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct FrameSettings {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -87,37 +88,8 @@ pub struct FrameSettings {
 }
 
 impl Logic for FrameSettings {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            period_held,
-            first_low_extra_held,
-            command_held,
-            position_held,
-            filter_held,
-            start_window_held,
-            start_timeout_held,
-            recovery_limit_held,
-            recovery_min_held,
-            watchdog_held,
-            filter_half_held,
-            parity
-        );
-        self.period_held.reset.next = self.reset.val();
-        self.first_low_extra_held.reset.next = self.reset.val();
-        self.command_held.reset.next = self.reset.val();
-        self.position_held.reset.next = self.reset.val();
-        self.filter_held.reset.next = self.reset.val();
-        self.start_window_held.reset.next = self.reset.val();
-        self.start_timeout_held.reset.next = self.reset.val();
-        self.recovery_limit_held.reset.next = self.reset.val();
-        self.recovery_min_held.reset.next = self.reset.val();
-        self.watchdog_held.reset.next = self.reset.val();
-        self.filter_half_held.reset.next = self.reset.val();
-        self.parity.reset.next = self.reset.val();
-
         if self.is_at_rest.val() {
             self.period_held.d.next = self.period_cycles.val();
             self.first_low_extra_held.d.next = self.first_low_extra_cycles.val();

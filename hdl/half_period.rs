@@ -10,10 +10,11 @@
 //! is why the counter starts at 2.
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Marks the last cycle of each half of a clock period.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct HalfPeriod {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -35,6 +36,7 @@ pub struct HalfPeriod {
     pub tick: Signal<Out, Bit>,
     /// Cycles until `tick` and one more: 1 with `tick`.
     pub left_cycles: Signal<Out, Bits<10>>,
+    #[start(2.into())]
     count: Reg<Bits<10>>,
     hit: Reg<Bit>,
     hit_late: Reg<Bit>,
@@ -48,36 +50,16 @@ pub struct HalfPeriod {
 impl HalfPeriod {
     /// A timer for halves of at least two cycles, of one if `has_one`; `began` may come with halves of two cycles if `has_snap`.
     pub fn new(has_snap: bool, has_one: bool) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            restart: Default::default(),
-            began: Default::default(),
-            second: Default::default(),
-            shorten: Default::default(),
-            lengthen: Default::default(),
-            period_cycles: Default::default(),
-            tick: Default::default(),
-            left_cycles: Default::default(),
-            count: Reg::new(2.into()),
-            hit: Default::default(),
-            hit_late: Default::default(),
-            half_cycles: Default::default(),
-            tick_now: Default::default(),
-            is_one: Default::default(),
+        Self::from_parts(HalfPeriodParts {
             has_snap: Constant::new(has_snap),
             has_one: Constant::new(has_one),
-        }
+        })
     }
 }
 
 impl Logic for HalfPeriod {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, count, hit, hit_late);
-        self.count.reset.next = self.reset.val();
-        self.hit.reset.next = self.reset.val();
-        self.hit_late.reset.next = self.reset.val();
         self.half_cycles.next = self.period_cycles.val().get_bits::<10>(1);
         self.tick_now.next = self.hit.q.val();
         if self.second.val() & self.period_cycles.val().get_bit(0) {

@@ -9,10 +9,11 @@
 
 use crate::channel::Features;
 use crate::reg::{FallReg, Reg, SyncReg};
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Synchroniser of three stages and a run-time filter for one input pin.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct InputFilter {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -71,67 +72,21 @@ impl InputFilter {
     /// A filter with these features.
     pub fn new(features: Features) -> Self {
         let doubles = usize::from(features.double_edge);
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            pin: Default::default(),
-            filter_cycles: Default::default(),
-            filter_half: Default::default(),
-            majority: Default::default(),
-            both_edges: Default::default(),
-            level: Default::default(),
-            level_first: Default::default(),
-            edge_strobe: Default::default(),
-            edge_second: Default::default(),
-            glitch: Default::default(),
-            sync1: Default::default(),
-            sync2: Default::default(),
-            sync3: Default::default(),
+        Self::from_parts(InputFilterParts {
             fall1: (0..doubles).map(|_| Default::default()).collect(),
             fall2: (0..doubles).map(|_| Default::default()).collect(),
             fall3: (0..doubles).map(|_| Default::default()).collect(),
             fall4: (0..doubles).map(|_| Default::default()).collect(),
-            earlier: Default::default(),
-            earlier_first: Default::default(),
-            different: Default::default(),
-            level_now: Default::default(),
-            first_now: Default::default(),
-            edge_now: Default::default(),
-            second_now: Default::default(),
-            removed: Default::default(),
             has_alignment: Constant::new(features.alignment),
             has_double: Constant::new(features.double_edge),
-            limit: Default::default(),
-            first: Default::default(),
-            sample_first: Default::default(),
-            sample: Default::default(),
-            middle: Default::default(),
-            middle_different: Default::default(),
-            settled: Default::default(),
-            both: Default::default(),
-            edge_first: Default::default(),
             _doubles: doubles,
-        }
+        })
     }
 }
 
 impl Logic for InputFilter {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        clock!(self, clock, sync1, sync2, sync3);
-        dff_setup!(self, clock, earlier, earlier_first, different, level_now);
-        dff_setup!(self, clock, first_now, edge_now, second_now, removed);
-        self.sync1.reset.next = self.reset.val();
-        self.sync2.reset.next = self.reset.val();
-        self.sync3.reset.next = self.reset.val();
-        self.earlier.reset.next = self.reset.val();
-        self.earlier_first.reset.next = self.reset.val();
-        self.different.reset.next = self.reset.val();
-        self.level_now.reset.next = self.reset.val();
-        self.first_now.reset.next = self.reset.val();
-        self.edge_now.reset.next = self.reset.val();
-        self.second_now.reset.next = self.reset.val();
-        self.removed.reset.next = self.reset.val();
         self.sync1.d.next = self.pin.val();
         self.sync2.d.next = self.sync1.q.val();
         self.sync3.d.next = self.sync2.q.val();

@@ -9,10 +9,11 @@
 use crate::reg::Reg;
 use crate::regs::INTERRUPT;
 use crate::several::each;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Status, mask and line.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Interrupt {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -63,24 +64,11 @@ pub struct Interrupt {
 impl Interrupt {
     /// That of a card with `channels` channels.
     pub fn new(channels: usize) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
+        Self::from_parts(InterruptParts {
             result: each(channels),
             error: each(channels),
             alarm: each(channels),
             request: each(channels),
-            word_address: Default::default(),
-            in_range: Default::default(),
-            lane: Default::default(),
-            write: Default::default(),
-            write_data: Default::default(),
-            read_byte: Default::default(),
-            irq: Default::default(),
-            status: Default::default(),
-            mask: Default::default(),
-            wants: Default::default(),
-            byte_read: Default::default(),
             had_result: each(channels),
             had_error: each(channels),
             had_alarm: each(channels),
@@ -89,23 +77,16 @@ impl Interrupt {
             two: each(channels),
             four: each(channels),
             eight: each(channels),
-            selected: Default::default(),
-            word: Default::default(),
             words: Constant::new(u64::from(INTERRUPT.base >> 2).into()),
             _channels: channels,
             _links: channels + 1,
-        }
+        })
     }
 }
 
 impl Logic for Interrupt {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, status, mask, wants, byte_read);
-        self.status.reset.next = self.reset.val();
-        self.mask.reset.next = self.reset.val();
-        self.wants.reset.next = self.reset.val();
-
         for i in 0..self._channels {
             self.had_result[i].clock.next = self.clock.val();
             self.had_result[i].reset.next = self.reset.val();

@@ -19,10 +19,11 @@ use crate::channel::Features;
 use crate::half_period::HalfPeriod;
 use crate::phase_tracker::PhaseTracker;
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Sample strobes and start edge window of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct LineDelay {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -155,163 +156,23 @@ impl LineDelay {
     /// A line delay with these features.
     pub fn new(features: Features) -> Self {
         let trackers = usize::from(features.alignment);
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            run: Default::default(),
-            none_under_way: Default::default(),
-            drain: Default::default(),
-            acquire: Default::default(),
-            last_cell: Default::default(),
-            hunting: Default::default(),
-            will_rise: Default::default(),
-            rise: Default::default(),
-            data_edge: Default::default(),
-            edge_second: Default::default(),
-            in_answer: Default::default(),
-            slow: Default::default(),
-            mode: Default::default(),
-            fixed_delay: Default::default(),
-            follow: Default::default(),
-            going_on: Default::default(),
-            period_cycles: Default::default(),
-            start_window_cycles: Default::default(),
-            sample: Default::default(),
-            sample_second: Default::default(),
-            center: Default::default(),
-            edge_in_window: Default::default(),
-            pulse: Default::default(),
-            is_upset: Default::default(),
-            delay_cycles: Default::default(),
-            phase: Default::default(),
-            measured: Default::default(),
-            offset: Default::default(),
+        Self::from_parts(LineDelayParts {
             half: HalfPeriod::new(features.alignment, features.double_edge),
-            delay: Default::default(),
-            since_rise: Default::default(),
-            timing_armed: Default::default(),
-            delay_over: Default::default(),
-            cells_run: Default::default(),
-            second_half: Default::default(),
-            sample_strobe: Default::default(),
-            center_strobe: Default::default(),
-            center_seen: Default::default(),
-            not_yet: Default::default(),
-            afresh: Default::default(),
-            follow_now: Default::default(),
-            edge_seen: Default::default(),
-            edge_late: Default::default(),
-            edge_error: Default::default(),
-            edge_outside: Default::default(),
-            shorten: Default::default(),
-            lengthen: Default::default(),
-            parity: Default::default(),
-            moved: Default::default(),
-            wrong: Default::default(),
-            parity_now: Default::default(),
-            first_rise: Default::default(),
-            acquired: Default::default(),
-            first_center: Default::default(),
-            center_now: Default::default(),
-            sample_now: Default::default(),
-            step: Default::default(),
-            edge_now: Default::default(),
-            over: Default::default(),
             tracker: (0..trackers).map(|_| PhaseTracker::new(features)).collect(),
-            offset_now: Default::default(),
-            measured_now: Default::default(),
-            second: Default::default(),
-            edge_place: Default::default(),
             has_alignment: Constant::new(features.alignment),
             has_double: Constant::new(features.double_edge),
             frame_mode: Constant::new(mode::FRAME.into()),
             fixed_mode: Constant::new(mode::FIXED.into()),
-            places: Default::default(),
-            delay_now: Default::default(),
-            is_frame: Default::default(),
-            snap: Default::default(),
-            next_cell: Default::default(),
-            late_now: Default::default(),
-            place_now: Default::default(),
-            center_place: Default::default(),
-            distance: Default::default(),
-            good_edge: Default::default(),
-            is_open: Default::default(),
-            is_later: Default::default(),
-            due: Default::default(),
-            was_over: Default::default(),
             _trackers: trackers,
-        }
+        })
     }
 }
 
 impl Logic for LineDelay {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            delay,
-            since_rise,
-            timing_armed,
-            delay_over,
-            cells_run,
-            second_half,
-            sample_strobe,
-            center_strobe
-        );
-        dff_setup!(
-            self,
-            clock,
-            center_seen,
-            edge_seen,
-            edge_late,
-            edge_error,
-            edge_outside,
-            shorten,
-            lengthen
-        );
-        dff_setup!(
-            self,
-            clock,
-            offset_now,
-            measured_now,
-            second,
-            edge_place,
-            was_over,
-            parity,
-            moved,
-            wrong
-        );
-        self.parity.reset.next = self.reset.val();
-        self.moved.reset.next = self.reset.val();
-        self.wrong.reset.next = self.reset.val();
-        self.was_over.reset.next = self.reset.val();
         clock!(self, clock, half);
-        self.delay.reset.next = self.reset.val();
-        self.since_rise.reset.next = self.reset.val();
-        self.timing_armed.reset.next = self.reset.val();
-        self.delay_over.reset.next = self.reset.val();
-        self.cells_run.reset.next = self.reset.val();
-        self.second_half.reset.next = self.reset.val();
-        self.sample_strobe.reset.next = self.reset.val();
-        self.center_strobe.reset.next = self.reset.val();
-        self.center_seen.reset.next = self.reset.val();
-        self.not_yet.reset.next = self.reset.val();
-        self.follow_now.reset.next = self.reset.val();
-        self.afresh.reset.next = self.reset.val();
-        clock!(self, clock, afresh, not_yet, follow_now);
-        self.edge_seen.reset.next = self.reset.val();
-        self.edge_late.reset.next = self.reset.val();
-        self.edge_error.reset.next = self.reset.val();
-        self.edge_outside.reset.next = self.reset.val();
         self.half.reset.next = self.reset.val();
-        self.shorten.reset.next = self.reset.val();
-        self.lengthen.reset.next = self.reset.val();
-        self.offset_now.reset.next = self.reset.val();
-        self.measured_now.reset.next = self.reset.val();
-        self.second.reset.next = self.reset.val();
-        self.edge_place.reset.next = self.reset.val();
 
         // tD from the first rising edge of a burst to the first cell; in an acquiring frame from every rising edge.
         self.first_rise.next = self.rise.val() & (self.acquire.val() | !self.timing_armed.q.val());

@@ -14,10 +14,11 @@
 //! This asks for a transceiver that keeps listening while it sends.
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Stuck lines, absent encoders and the watchdog of one channel.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct LineHealth {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -53,15 +54,8 @@ pub struct LineHealth {
 }
 
 impl Logic for LineHealth {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, passed_us, over, was_high, open, stuck);
-        self.passed_us.reset.next = self.reset.val();
-        self.over.reset.next = self.reset.val();
-        self.was_high.reset.next = self.reset.val();
-        self.open.reset.next = self.reset.val();
-        self.stuck.reset.next = self.reset.val();
-
         if self.tick_us.val() {
             self.passed_us.d.next = self.passed_us.q.val() + 1;
         }

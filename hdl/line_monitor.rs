@@ -14,6 +14,7 @@
 use crate::channel::Features;
 use crate::memory::Memory;
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Where the words of a monitor are, see [`crate::regs::LINE`].
@@ -58,7 +59,7 @@ pub struct LineStart {
 }
 
 /// Settings and margin of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct LineMonitor {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -100,14 +101,22 @@ pub struct LineMonitor {
     pub host_half: Signal<In, Bit>,
     /// What to write.
     pub host_data: Signal<In, Bits<16>>,
+    #[given]
     wanted_mode: Reg<Bits<2>>,
+    #[given]
     wanted_majority: Reg<Bit>,
     bin_shift: Reg<Bits<2>>,
+    #[given]
     wanted_delay: Reg<Bits<15>>,
+    #[given]
     drift_limit: Reg<Bits<12>>,
+    #[given]
     offset_limit: Reg<Bits<7>>,
+    #[given]
     mode: Reg<Bits<2>>,
+    #[given]
     uses_majority: Reg<Bit>,
+    #[given]
     delay: Reg<Bits<15>>,
     word: Reg<Bits<32>>,
     read_wanted: Reg<Bit>,
@@ -115,6 +124,7 @@ pub struct LineMonitor {
     earliest: Reg<Bits<8>>,
     latest: Reg<Bits<8>>,
     start: Reg<Bits<8>>,
+    #[start(true)]
     is_first: Reg<Bit>,
     told_earliest: Reg<Bits<8>>,
     told_latest: Reg<Bits<8>>,
@@ -131,6 +141,7 @@ pub struct LineMonitor {
     bad_frames: Reg<Bits<16>>,
     frames: Reg<Bits<32>>,
     clear: Reg<Bit>,
+    #[given]
     clearing: Reg<Bit>,
     bin: Reg<Bits<5>>,
     step: Reg<Bits<2>>,
@@ -149,158 +160,26 @@ impl LineMonitor {
     /// A monitor with these features and settings.
     pub fn new(features: Features, start: LineStart) -> Self {
         let histograms = usize::from(features.margin);
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            busy: Default::default(),
-            edge_measured: Default::default(),
-            edge_offset: Default::default(),
-            over: Default::default(),
-            over_bad: Default::default(),
-            glitch: Default::default(),
-            phase: Default::default(),
-            calibrated: Default::default(),
-            phase_mode: Default::default(),
-            fixed_delay: Default::default(),
-            majority: Default::default(),
-            alarm: Default::default(),
-            host_address: Default::default(),
-            host_read: Default::default(),
-            host_word: Default::default(),
-            host_write: Default::default(),
-            host_half: Default::default(),
-            host_data: Default::default(),
+        Self::from_parts(LineMonitorParts {
             wanted_mode: Reg::new(start.phase_mode.into()),
             wanted_majority: Reg::new(start.majority),
-            bin_shift: Default::default(),
             wanted_delay: Reg::new(start.fixed_delay.into()),
             drift_limit: Reg::new(start.drift_limit.into()),
             offset_limit: Reg::new(start.offset_limit.into()),
             mode: Reg::new(start.phase_mode.into()),
             uses_majority: Reg::new(start.majority),
             delay: Reg::new(start.fixed_delay.into()),
-            word: Default::default(),
-            read_wanted: Default::default(),
-            read_ram: Default::default(),
-            earliest: Default::default(),
-            latest: Default::default(),
-            start: Default::default(),
-            is_first: Reg::new(true),
-            told_earliest: Default::default(),
-            told_latest: Default::default(),
-            told_start: Default::default(),
-            worst_earliest: Default::default(),
-            worst_latest: Default::default(),
-            has_worst: Default::default(),
-            reference: Default::default(),
-            was_calibrated: Default::default(),
-            drift: Default::default(),
-            drift_alarm: Default::default(),
-            offset_alarm: Default::default(),
-            glitches: Default::default(),
-            bad_frames: Default::default(),
-            frames: Default::default(),
-            clear: Default::default(),
             clearing: Reg::new(start.clears & features.margin),
-            bin: Default::default(),
-            step: Default::default(),
             histogram: (0..histograms).map(|_| Default::default()).collect(),
-            at: Default::default(),
-            shown: Default::default(),
-            biased: Default::default(),
-            scaled: Default::default(),
-            next_bin: Default::default(),
-            size: Default::default(),
             has_margin: Constant::new(features.margin),
             _histograms: histograms,
-        }
+        })
     }
 }
 
 impl Logic for LineMonitor {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            wanted_mode,
-            wanted_majority,
-            bin_shift,
-            wanted_delay,
-            drift_limit,
-            offset_limit,
-            mode,
-            uses_majority,
-            delay,
-            word,
-            read_wanted,
-            read_ram
-        );
-        dff_setup!(
-            self,
-            clock,
-            earliest,
-            latest,
-            start,
-            is_first,
-            told_earliest,
-            told_latest,
-            told_start,
-            worst_earliest,
-            worst_latest,
-            has_worst
-        );
-        dff_setup!(
-            self,
-            clock,
-            reference,
-            was_calibrated,
-            drift,
-            drift_alarm,
-            offset_alarm,
-            glitches,
-            bad_frames,
-            frames,
-            clear,
-            clearing,
-            bin,
-            step
-        );
-        self.wanted_mode.reset.next = self.reset.val();
-        self.wanted_majority.reset.next = self.reset.val();
-        self.bin_shift.reset.next = self.reset.val();
-        self.wanted_delay.reset.next = self.reset.val();
-        self.drift_limit.reset.next = self.reset.val();
-        self.offset_limit.reset.next = self.reset.val();
-        self.mode.reset.next = self.reset.val();
-        self.uses_majority.reset.next = self.reset.val();
-        self.delay.reset.next = self.reset.val();
-        self.word.reset.next = self.reset.val();
-        self.read_wanted.reset.next = self.reset.val();
-        self.read_ram.reset.next = self.reset.val();
-        self.earliest.reset.next = self.reset.val();
-        self.latest.reset.next = self.reset.val();
-        self.start.reset.next = self.reset.val();
-        self.is_first.reset.next = self.reset.val();
-        self.told_earliest.reset.next = self.reset.val();
-        self.told_latest.reset.next = self.reset.val();
-        self.told_start.reset.next = self.reset.val();
-        self.worst_earliest.reset.next = self.reset.val();
-        self.worst_latest.reset.next = self.reset.val();
-        self.has_worst.reset.next = self.reset.val();
-        self.reference.reset.next = self.reset.val();
-        self.was_calibrated.reset.next = self.reset.val();
-        self.drift.reset.next = self.reset.val();
-        self.drift_alarm.reset.next = self.reset.val();
-        self.offset_alarm.reset.next = self.reset.val();
-        self.glitches.reset.next = self.reset.val();
-        self.bad_frames.reset.next = self.reset.val();
-        self.frames.reset.next = self.reset.val();
-        self.clear.reset.next = self.reset.val();
-        self.clearing.reset.next = self.reset.val();
-        self.bin.reset.next = self.reset.val();
-        self.step.reset.next = self.reset.val();
-
         // Settings: written in halves, taken over between two frames.
         self.at.next = self.host_address.val();
         self.clear.d.next = false;

@@ -14,13 +14,14 @@
 
 use crate::channel::Features;
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Bits of the phase behind the point.
 pub const FRACTION_BITS: u32 = 12;
 
 /// Mean place of the data edges of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct PhaseTracker {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -71,47 +72,17 @@ pub struct PhaseTracker {
 impl PhaseTracker {
     /// A tracker with these features.
     pub fn new(features: Features) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            acquired: Default::default(),
-            measured_places: Default::default(),
-            starts: Default::default(),
-            is_later: Default::default(),
-            edge_strobe: Default::default(),
-            offset: Default::default(),
-            acquire: Default::default(),
-            quick: Default::default(),
-            is_fixed: Default::default(),
-            fixed_delay: Default::default(),
-            delay_places: Default::default(),
-            past_half: Default::default(),
-            moves: Default::default(),
-            phase: Default::default(),
-            place: Default::default(),
-            take: Default::default(),
-            by: Default::default(),
-            middle: Default::default(),
+        Self::from_parts(PhaseTrackerParts {
             has_double: Constant::new(features.double_edge),
             negative: Constant::new(0xFFF0_0000u64.into()),
             top: Constant::new(0x80_0000u64.into()),
-            innovation: Default::default(),
-            step: Default::default(),
-            moved: Default::default(),
-            moved_by: Default::default(),
-            distance: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for PhaseTracker {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, place, take, by, middle);
-        self.middle.reset.next = self.reset.val();
-        self.place.reset.next = self.reset.val();
-        self.take.reset.next = self.reset.val();
-        self.by.reset.next = self.reset.val();
         self.take.d.next = self.edge_strobe.val() & !self.is_fixed.val();
         self.by.d.next = self.offset.val();
 

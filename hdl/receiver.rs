@@ -23,6 +23,7 @@ use crate::channel::Features;
 use crate::crc5::{Crc5Check, Crc5Serial, ORDER_OF_X};
 use crate::protocol;
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// What the next sample is.
@@ -53,7 +54,7 @@ pub enum Field {
 }
 
 /// Receiver of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Receiver {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -151,6 +152,7 @@ pub struct Receiver {
     pub parallel_ok: Signal<Out, Bit>,
     check: Crc5Check,
     serial: Crc5Serial,
+    #[start(Field::Done)]
     field: Reg<Field>,
     left: Reg<Bits<7>>,
     to_send: Reg<Bits<7>>,
@@ -158,6 +160,7 @@ pub struct Receiver {
     word: Reg<Bits<50>>,
     covered: Reg<Bits<4>>,
     f1_bit: Reg<Bit>,
+    #[start(true)]
     f2_bit: Reg<Bit>,
     crc_bits: Reg<Bits<5>>,
     crc_calc: Reg<Bits<5>>,
@@ -226,93 +229,9 @@ impl Receiver {
     pub fn new(features: Features) -> Self {
         let lead = u64::from(protocol::LEAD_PULSES);
         let order = ORDER_OF_X as u64;
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            start: Default::default(),
-            abort: Default::default(),
-            acquire: Default::default(),
-            rise: Default::default(),
-            pulse: Default::default(),
-            sample: Default::default(),
-            level: Default::default(),
-            edge_in_window: Default::default(),
-            payload_bits: Default::default(),
-            has_f1: Default::default(),
-            has_f2: Default::default(),
-            has_parameter: Default::default(),
-            has_supplement: Default::default(),
-            infos: Default::default(),
-            look: Default::default(),
-            start_supplement: Default::default(),
-            going_on: Default::default(),
-            command: Default::default(),
-            skipping: Default::default(),
-            hunting: Default::default(),
-            start_found: Default::default(),
-            start_refused: Default::default(),
-            started: Default::default(),
-            all_sent: Default::default(),
-            one_to_send: Default::default(),
-            none_under_way: Default::default(),
-            all_used: Default::default(),
-            all_ended: Default::default(),
-            done: Default::default(),
-            info_done: Default::default(),
-            separated: Default::default(),
-            info_missing: Default::default(),
-            finished: Default::default(),
-            gap_good: Default::default(),
-            gap_low: Default::default(),
-            gap_high: Default::default(),
-            latched: Default::default(),
-            is_echo: Default::default(),
-            payload: Default::default(),
-            f1: Default::default(),
-            f2: Default::default(),
-            crc_received: Default::default(),
-            crc_computed: Default::default(),
-            serial_ok: Default::default(),
-            parallel_ok: Default::default(),
+        Self::from_parts(ReceiverParts {
             check: Default::default(),
             serial: Default::default(),
-            field: Reg::new(Field::Done),
-            left: Default::default(),
-            to_send: Default::default(),
-            under_way: Default::default(),
-            word: Default::default(),
-            covered: Default::default(),
-            f1_bit: Default::default(),
-            f2_bit: Reg::new(true),
-            crc_bits: Default::default(),
-            crc_calc: Default::default(),
-            take_crc: Default::default(),
-            align: Default::default(),
-            align_first: Default::default(),
-            last_taken: Default::default(),
-            waiting: Default::default(),
-            done_now: Default::default(),
-            parallel_equal: Default::default(),
-            serial_good: Default::default(),
-            refused: Default::default(),
-            shift_now: Default::default(),
-            bit_now: Default::default(),
-            last_payload: Default::default(),
-            hunting_now: Default::default(),
-            started_now: Default::default(),
-            skip_rounds: Default::default(),
-            infos_left: Default::default(),
-            in_info: Default::default(),
-            missing: Default::default(),
-            supplement_over: Default::default(),
-            low_gap: Default::default(),
-            high_gap: Default::default(),
-            good_gap: Default::default(),
-            low_separator: Default::default(),
-            separator_then: Default::default(),
-            new_block: Default::default(),
-            heard: Default::default(),
-            echo: Default::default(),
             has_all: Constant::new(features.requests),
             has_diagnosis: Constant::new(features.diagnosis),
             has_continuous: Constant::new(features.continuous),
@@ -330,120 +249,15 @@ impl Receiver {
             cells_from_start: Constant::new(
                 u64::from(protocol::START_BITS + 1 + protocol::CRC_BITS).into(),
             ),
-            again: Default::default(),
-            skip_step: Default::default(),
-            covered_bit: Default::default(),
-            shift: Default::default(),
-            bit_in: Default::default(),
-            in50: Default::default(),
-            in35: Default::default(),
-            in20: Default::default(),
-            in5: Default::default(),
-            aligned_at: Default::default(),
-            covered_next: Default::default(),
-            crc_bit: Default::default(),
-            start_sample: Default::default(),
-            separator: Default::default(),
-            shifted: Default::default(),
-            one_more: Default::default(),
-            one_less: Default::default(),
-            counts: Default::default(),
-            width: Default::default(),
-            cells_after: Default::default(),
-            cells_around: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for Receiver {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self, clock, field, left, to_send, under_way, word, covered, f1_bit, f2_bit, crc_bits,
-            crc_calc
-        );
-        dff_setup!(
-            self,
-            clock,
-            take_crc,
-            align,
-            align_first,
-            last_taken,
-            waiting,
-            done_now,
-            parallel_equal,
-            serial_good
-        );
         clock!(self, clock, serial, check);
-        dff_setup!(
-            self,
-            clock,
-            good_gap,
-            low_separator,
-            separator_then,
-            new_block
-        );
         self.check.reset.next = self.reset.val();
-        self.good_gap.reset.next = self.reset.val();
-        self.low_separator.reset.next = self.reset.val();
-        self.separator_then.reset.next = self.reset.val();
-        self.new_block.reset.next = self.reset.val();
-        self.field.reset.next = self.reset.val();
-        self.left.reset.next = self.reset.val();
-        self.to_send.reset.next = self.reset.val();
-        self.under_way.reset.next = self.reset.val();
-        self.word.reset.next = self.reset.val();
-        self.covered.reset.next = self.reset.val();
-        self.f1_bit.reset.next = self.reset.val();
-        self.f2_bit.reset.next = self.reset.val();
-        self.crc_bits.reset.next = self.reset.val();
-        self.crc_calc.reset.next = self.reset.val();
-        self.take_crc.reset.next = self.reset.val();
-        self.align.reset.next = self.reset.val();
-        self.align_first.reset.next = self.reset.val();
-        self.last_taken.reset.next = self.reset.val();
-        self.done_now.reset.next = self.reset.val();
-        self.waiting.reset.next = self.reset.val();
-        self.parallel_equal.reset.next = self.reset.val();
-        self.serial_good.reset.next = self.reset.val();
-        self.refused.reset.next = self.reset.val();
-        self.hunting_now.reset.next = self.reset.val();
-        self.started_now.reset.next = self.reset.val();
-        self.shift_now.reset.next = self.reset.val();
-        self.bit_now.reset.next = self.reset.val();
-        self.last_payload.reset.next = self.reset.val();
-        clock!(
-            self,
-            clock,
-            shift_now,
-            bit_now,
-            last_payload,
-            refused,
-            hunting_now,
-            started_now
-        );
-        dff_setup!(
-            self,
-            clock,
-            skip_rounds,
-            infos_left,
-            in_info,
-            missing,
-            supplement_over,
-            low_gap,
-            high_gap,
-            heard,
-            echo
-        );
-        self.skip_rounds.reset.next = self.reset.val();
-        self.infos_left.reset.next = self.reset.val();
-        self.in_info.reset.next = self.reset.val();
-        self.missing.reset.next = self.reset.val();
-        self.supplement_over.reset.next = self.reset.val();
-        self.low_gap.reset.next = self.reset.val();
-        self.high_gap.reset.next = self.reset.val();
-        self.heard.reset.next = self.reset.val();
-        self.echo.reset.next = self.reset.val();
         self.serial.reset.next = self.reset.val();
 
         // Cells behind this CRC: the edge that ends the frame, 30 for each additional information.

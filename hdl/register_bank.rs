@@ -24,10 +24,11 @@ use crate::config::CardConfig;
 use crate::config_ring::{ConfigRing, RING_BYTES};
 use crate::reg::Reg;
 use crate::regs::{config_words, CARD};
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Decoder and card registers.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct RegisterBank {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -137,9 +138,13 @@ pub struct RegisterBank {
     done_now: Reg<Bit>,
     write_now: Reg<Bit>,
     config_page: Reg<Bit>,
+    #[start(0x3fu64.into())]
     skipped_words: Reg<Bits<6>>,
+    #[start(0xffu64.into())]
     skipped_channels: Reg<Bits<8>>,
+    #[start(true)]
     rom_skip: Reg<Bit>,
+    #[start(true)]
     count_skip: Reg<Bit>,
     rom_byte: Reg<Bits<8>>,
     count_held: Reg<Bits<32>>,
@@ -148,10 +153,14 @@ pub struct RegisterBank {
     byte: Reg<Bits<8>>,
     trigger_strobe: Reg<Bit>,
     calibrate_strobe: Reg<Bits<8>>,
+    #[given]
     active_sources: Reg<Bits<3>>,
+    #[given]
     active_period: Reg<Bits<24>>,
     hold: Reg<Bit>,
+    #[start(true)]
     blocked: Reg<Bit>,
+    #[start(true)]
     read_before: Reg<Bit>,
     mixed: Reg<Bit>,
     one_gone: Reg<Bit>,
@@ -159,6 +168,7 @@ pub struct RegisterBank {
     blocked_now: Signal<Local, Bit>,
     mixed_now: Signal<Local, Bit>,
     load_now: Signal<Local, Bit>,
+    #[start(true)]
     service_skip: Reg<Bit>,
     service_byte: Reg<Bits<8>>,
     service_selected: Reg<Bits<8>>,
@@ -222,120 +232,16 @@ impl RegisterBank {
     pub fn new(config: &CardConfig) -> Self {
         let words = config_words(config, None);
         let t_format_channels = config.t_format_channels();
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            word_address: Default::default(),
-            in_range: Default::default(),
-            lane: Default::default(),
-            access: Default::default(),
-            begins: Default::default(),
-            address: Default::default(),
-            is_inside: Default::default(),
-            write: Default::default(),
-            write_data: Default::default(),
-            take_byte: Default::default(),
-            passing_byte: Default::default(),
-            read_byte: Default::default(),
-            done: Default::default(),
-            reading: Default::default(),
-            taken: Default::default(),
-            owes: Default::default(),
-            brought: Default::default(),
-            load: Default::default(),
-            show: Default::default(),
-            word_skip: Default::default(),
-            channel_skip: Default::default(),
-            channel_byte: Default::default(),
-            ring_turn: Default::default(),
-            ring_home: Default::default(),
-            ring_in: Default::default(),
-            ring_out: Default::default(),
-            is_damaged: Default::default(),
-            written: Default::default(),
-            service_line: Default::default(),
-            service_address: Default::default(),
-            service_channels: Default::default(),
-            service_clear: Default::default(),
-            service_read: Default::default(),
-            service_word: Default::default(),
-            service_write: Default::default(),
-            service_half: Default::default(),
-            service_data: Default::default(),
-            stream_selected: Default::default(),
-            part_byte: Default::default(),
-            trigger_count: Default::default(),
-            trigger_now: Default::default(),
-            calibrate: Default::default(),
-            sources: Default::default(),
-            disabled: Default::default(),
-            restart: Default::default(),
-            period_cycles: Default::default(),
-            ring: ConfigRing::new(words),
-            held_address: Default::default(),
-            held_inside: Default::default(),
-            line_selected: Default::default(),
-            turning: Default::default(),
-            byte_at: Default::default(),
-            block_at: Default::default(),
-            turn: Default::default(),
-            passes: Default::default(),
-            byte_passes: Default::default(),
-            ended: Default::default(),
-            done_now: Default::default(),
-            write_now: Default::default(),
-            config_page: Default::default(),
-            skipped_words: Reg::new(0x3fu64.into()),
-            skipped_channels: Reg::new(0xffu64.into()),
-            rom_skip: Reg::new(true),
-            count_skip: Reg::new(true),
-            rom_byte: Default::default(),
-            count_held: Default::default(),
-            count_byte: Default::default(),
-            ring_byte: Default::default(),
-            byte: Default::default(),
-            trigger_strobe: Default::default(),
-            calibrate_strobe: Default::default(),
+        Self::from_parts(RegisterBankParts {
             active_sources: Reg::new(u64::from(words[0] & 7).into()),
             active_period: Reg::new(u64::from(words[1]).into()),
-            hold: Default::default(),
-            blocked: Reg::new(true),
-            read_before: Reg::new(true),
-            mixed: Default::default(),
-            one_gone: Default::default(),
-            overdue: Default::default(),
-            blocked_now: Default::default(),
-            mixed_now: Default::default(),
-            load_now: Default::default(),
-            service_skip: Reg::new(true),
-            service_byte: Default::default(),
-            service_selected: Default::default(),
-            service_first: Default::default(),
-            busy: Default::default(),
-            starts: Default::default(),
-            low_page: Default::default(),
-            low_address: Default::default(),
-            service_page: Default::default(),
-            at_end: Default::default(),
-            whole_turn: Default::default(),
-            at_word: Default::default(),
-            block_end: Default::default(),
-            card_page: Default::default(),
-            strobe: Default::default(),
-            result_page: Default::default(),
-            head: Default::default(),
-            rom_word: Default::default(),
+            ring: ConfigRing::new(words),
             has_service: Constant::new(config.service.requests),
             has_line: Constant::new(config.line.alignment),
             has_t_format: Constant::new(t_format_channels != 0),
             t_format_channels: Constant::new(t_format_channels.into()),
             endat_channels: Constant::new((!t_format_channels & 0xff).into()),
-            line_page: Default::default(),
-            t_format_page: Default::default(),
-            word_page: Default::default(),
-            selected: Default::default(),
             protocols: card_word(config, "protocols"),
-            service_channel: Default::default(),
             id: card_word(config, "id"),
             version: card_word(config, "version"),
             capabilities: card_word(config, "capabilities"),
@@ -345,102 +251,21 @@ impl RegisterBank {
             trigger_count_at: card_address("trigger_count"),
             trigger_now_at: card_address("trigger_now"),
             calibrate_at: card_address("calibrate"),
-        }
+        })
     }
 }
 
 impl Logic for RegisterBank {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            byte_at,
-            block_at,
-            turn,
-            passes,
-            byte_passes,
-            ended
-        );
-        dff_setup!(self, clock, turning, done_now, write_now, config_page);
-        dff_setup!(
-            self,
-            clock,
-            skipped_words,
-            skipped_channels,
-            rom_byte,
-            count_held,
-            count_byte
-        );
-        dff_setup!(
-            self,
-            clock,
-            ring_byte,
-            byte,
-            trigger_strobe,
-            calibrate_strobe
-        );
-        dff_setup!(
-            self,
-            clock,
-            active_sources,
-            active_period,
-            hold,
-            rom_skip,
-            count_skip,
-            blocked
-        );
-        dff_setup!(self, clock, read_before, mixed, one_gone, overdue);
         clock!(self, clock, ring);
         self.ring.reset.next = self.reset.val();
-        self.turning.reset.next = self.reset.val();
-        self.byte_at.reset.next = self.reset.val();
-        self.block_at.reset.next = self.reset.val();
-        self.turn.reset.next = self.reset.val();
-        self.passes.reset.next = self.reset.val();
-        self.byte_passes.reset.next = self.reset.val();
-        self.ended.reset.next = self.reset.val();
-        self.done_now.reset.next = self.reset.val();
-        self.write_now.reset.next = self.reset.val();
-        self.config_page.reset.next = self.reset.val();
-        self.skipped_words.reset.next = self.reset.val();
-        self.skipped_channels.reset.next = self.reset.val();
-        self.rom_skip.reset.next = self.reset.val();
-        self.count_skip.reset.next = self.reset.val();
         // A reset by deselection takes no logic.
         self.rom_byte.reset.next = self.rom_skip.q.val();
-        self.count_held.reset.next = self.reset.val();
         self.count_byte.reset.next = self.count_skip.q.val();
-        self.ring_byte.reset.next = self.reset.val();
-        self.byte.reset.next = self.reset.val();
-        self.trigger_strobe.reset.next = self.reset.val();
-        self.calibrate_strobe.reset.next = self.reset.val();
-        self.active_sources.reset.next = self.reset.val();
-        self.active_period.reset.next = self.reset.val();
-        self.hold.reset.next = self.reset.val();
-        self.blocked.reset.next = self.reset.val();
-        self.read_before.reset.next = self.reset.val();
-        self.mixed.reset.next = self.reset.val();
-        self.one_gone.reset.next = self.reset.val();
-        self.overdue.reset.next = self.reset.val();
-        dff_setup!(
-            self,
-            clock,
-            service_skip,
-            service_byte,
-            service_selected,
-            service_first
-        );
-        self.service_skip.reset.next = self.reset.val();
-        self.service_selected.reset.next = self.reset.val();
-        self.service_first.reset.next = self.reset.val();
         self.service_byte.reset.next = self.service_skip.q.val();
 
         // What an access is stands from its begin to its end, whatever the front shows.
-        dff_setup!(self, clock, held_address, held_inside, line_selected);
-        self.held_address.reset.next = self.reset.val();
-        self.held_inside.reset.next = self.reset.val();
-        self.line_selected.reset.next = self.reset.val();
         self.busy.next = self.turning.q.val() | self.ended.q.val();
         self.starts.next = self.access.val() & !self.busy.val();
         if !self.busy.val() {

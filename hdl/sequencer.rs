@@ -52,12 +52,12 @@
 pub mod assembler;
 #[cfg(test)]
 mod model;
-mod new;
 #[cfg(test)]
 mod tests;
 
 use crate::memory::{Memory, Rom};
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Words of a program.
@@ -83,7 +83,7 @@ pub enum Cycle {
 }
 
 /// Accumulator machine of 16 bits with its program and 128 words of 32 bits that it shares with a host.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Sequencer {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -127,6 +127,7 @@ pub struct Sequencer {
     low: Memory<16, 8>,
     /// Odd words of RAM.
     high: Memory<16, 8>,
+    #[start(Cycle::Fetch)]
     cycle: Reg<Cycle>,
     counter: Reg<Bits<11>>,
     link: Reg<Bits<11>>,
@@ -192,46 +193,29 @@ pub struct Sequencer {
     is_shared: Constant<Bit>,
 }
 
+/// J 0: what stands behind the end of a program.
+const START_AGAIN: u64 = 13 << 16;
+
+impl Sequencer {
+    /// A machine that runs `program`, from its first word on, once or, if it is shared, twice; see [`super::assembler`].
+    ///
+    /// # Panics
+    /// If it has more than [`PROGRAM_WORDS`] words, or one has more than 20 bits.
+    pub fn new(program: &[u32], is_shared: bool) -> Self {
+        let mut words: Vec<u64> = program.iter().copied().map(u64::from).collect();
+        words.resize(words.len().max(PROGRAM_WORDS), START_AGAIN);
+        Self::from_parts(SequencerParts {
+            program: Rom::new(&words),
+            low: Default::default(),
+            high: Default::default(),
+            is_shared: Constant::new(is_shared),
+        })
+    }
+}
+
 impl Logic for Sequencer {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            cycle,
-            counter,
-            link,
-            accumulator,
-            is_zero,
-            carry,
-            index,
-            address,
-            value,
-            takes_memory,
-            base,
-            inverts,
-            carry_in,
-            shifted_out,
-            loads_carry,
-            stores,
-            writes_port,
-            way,
-            is_astray,
-            read_pending,
-            write_pending,
-            is_for_host,
-            word
-        );
-        dff_setup!(
-            self,
-            clock,
-            is_second,
-            other_counter,
-            other_link,
-            other_accumulator,
-            other_carry,
-            other_index
-        );
         clock!(self, clock, program, low, high);
         self.is_execute.next = self.cycle.q.val() == Cycle::Execute;
         self.cycle.reset.next = self.reset.val() | self.restart.val();
@@ -241,29 +225,6 @@ impl Logic for Sequencer {
             | (self.goes_astray.val() & !self.is_shared.val());
         self.other_counter.reset.next =
             self.reset.val() | self.restart.val() | self.goes_astray.val();
-        self.is_second.reset.next = self.reset.val();
-        self.other_link.reset.next = self.reset.val();
-        self.other_accumulator.reset.next = self.reset.val();
-        self.other_carry.reset.next = self.reset.val();
-        self.other_index.reset.next = self.reset.val();
-        self.way.reset.next = self.reset.val();
-        self.is_astray.reset.next = self.reset.val();
-        self.link.reset.next = self.reset.val();
-        self.accumulator.reset.next = self.reset.val();
-        self.is_zero.reset.next = self.reset.val();
-        self.carry.reset.next = self.reset.val();
-        self.index.reset.next = self.reset.val();
-        self.address.reset.next = self.reset.val();
-        self.takes_memory.reset.next = self.reset.val();
-        self.inverts.reset.next = self.reset.val();
-        self.carry_in.reset.next = self.reset.val();
-        self.shifted_out.reset.next = self.reset.val();
-        self.loads_carry.reset.next = self.reset.val();
-        self.stores.reset.next = self.reset.val();
-        self.writes_port.reset.next = self.reset.val();
-        self.read_pending.reset.next = self.reset.val();
-        self.write_pending.reset.next = self.reset.val();
-        self.is_for_host.reset.next = self.reset.val();
         self.word.reset.next = self.reset.val() | self.host_clear.val();
 
         self.cycle.d.next = Cycle::Fetch;

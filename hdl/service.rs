@@ -23,6 +23,7 @@ pub mod program;
 use crate::reg::Reg;
 use crate::sequencer::Sequencer;
 use crate::several::each;
+use endat_macros::{kernel, Block};
 use map::output;
 use program::ServiceTimes;
 use rust_hdl::prelude::*;
@@ -31,7 +32,7 @@ use rust_hdl::prelude::*;
 pub const CHANNELS_SERVED: usize = 2;
 
 /// Service of one channel or two.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Service {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -89,51 +90,24 @@ impl Service {
     pub fn new(times: &ServiceTimes, channels: usize) -> Self {
         let is_shared = channels > 1;
         let runs = 1 + usize::from(is_shared);
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            io_address: Default::default(),
+        Self::from_parts(ServiceParts {
             io_read: (0..runs).map(|_| Default::default()).collect(),
             io_in: (0..runs).map(|_| Default::default()).collect(),
-            io_out: Default::default(),
             io_write: (0..runs).map(|_| Default::default()).collect(),
-            host_address: Default::default(),
-            host_second: Default::default(),
-            host_read: Default::default(),
-            host_clear: Default::default(),
-            host_word: Default::default(),
-            host_write: Default::default(),
-            host_half: Default::default(),
-            host_data: Default::default(),
             sequencer: Sequencer::new(&program::program(times), is_shared),
-            time_us: Default::default(),
-            us_in_ms: Default::default(),
-            time_ms: Default::default(),
-            is_time: Default::default(),
-            seen_us: Default::default(),
-            seen_ms: Default::default(),
             silent_ms: each(runs),
-            second_in: Default::default(),
-            is_millisecond: Default::default(),
-            lives: Default::default(),
             alive_port: Constant::new(u64::from(output::ALIVE).into()),
-            is_stuck: Default::default(),
             stuck_ms: Constant::new(u64::from(times.stuck_ms).into()),
             _seconds: usize::from(is_shared),
             _runs: runs,
-        }
+        })
     }
 }
 
 impl Logic for Service {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, time_us, us_in_ms, time_ms, seen_us, seen_ms);
         clock!(self, clock, sequencer);
-        self.time_us.reset.next = self.reset.val();
-        self.us_in_ms.reset.next = self.reset.val();
-        self.time_ms.reset.next = self.reset.val();
         self.sequencer.reset.next = self.reset.val();
 
         self.is_millisecond.next = self.tick_us.val() & (self.us_in_ms.q.val() == 999);

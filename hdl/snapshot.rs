@@ -13,10 +13,11 @@
 
 use crate::reg::Reg;
 use crate::transaction::cause;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Result registers of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Snapshot {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -126,138 +127,16 @@ pub struct Snapshot {
 
 impl Default for Snapshot {
     fn default() -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            timestamp: Default::default(),
-            first_fall: Default::default(),
-            latched: Default::default(),
-            delay_cycles: Default::default(),
-            publish: Default::default(),
-            good: Default::default(),
-            late_fault: Default::default(),
-            withdraw: Default::default(),
-            confirm: Default::default(),
-            position_in: Default::default(),
-            width_in: Default::default(),
-            has_f2_in: Default::default(),
-            crc_received_in: Default::default(),
-            crc_computed_in: Default::default(),
-            cause_in: Default::default(),
-            flags_in: Default::default(),
-            result_strobe: Default::default(),
-            position: Default::default(),
-            position_valid: Default::default(),
-            fresh: Default::default(),
-            sequence: Default::default(),
-            first_fall_timestamp: Default::default(),
-            age_us: Default::default(),
-            cause: Default::default(),
-            flags: Default::default(),
-            crc_received: Default::default(),
-            crc_computed: Default::default(),
-            position_crc: Default::default(),
-            position_width: Default::default(),
-            position_has_f2: Default::default(),
-            strobe: Default::default(),
-            loaded: Default::default(),
-            held: Default::default(),
-            held_crc: Default::default(),
-            held_width: Default::default(),
-            held_f2: Default::default(),
-            earlier: Default::default(),
-            earlier_crc: Default::default(),
-            earlier_width: Default::default(),
-            earlier_f2: Default::default(),
-            earlier_stamp: Default::default(),
-            earlier_valid: Default::default(),
-            earlier_parity: Default::default(),
-            unconfirmed: Default::default(),
-            parity: Default::default(),
-            timed: Default::default(),
-            moment_parity: Default::default(),
-            is_upset: Default::default(),
-            age_shown: Default::default(),
-            valid: Default::default(),
-            is_fresh: Default::default(),
-            count: Default::default(),
-            moment: Default::default(),
-            stamp: Default::default(),
-            age: Default::default(),
-            age_full: Default::default(),
-            cause_held: Default::default(),
-            flags_held: Default::default(),
-            received: Default::default(),
-            computed: Default::default(),
-            take_good: Default::default(),
-            take_back: Default::default(),
-            parity_now: Default::default(),
-            upset_now: Default::default(),
-            moment_wrong: Default::default(),
-            ago: Default::default(),
+        Self::from_parts(SnapshotParts {
             upset_cause: Constant::new(cause::UPSET.into()),
             upset_flag: Constant::new(cause::flag(cause::UPSET).into()),
-        }
+        })
     }
 }
 
 impl Logic for Snapshot {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, strobe, held, valid, is_fresh, count, moment, stamp, age);
-        dff_setup!(self, clock, age_full, cause_held, flags_held, received, computed);
-        dff_setup!(
-            self,
-            clock,
-            loaded,
-            held_crc,
-            held_width,
-            held_f2,
-            earlier,
-            earlier_crc,
-            earlier_width,
-            earlier_f2,
-            earlier_stamp,
-            earlier_valid,
-            earlier_parity,
-            unconfirmed,
-            timed,
-            moment_parity,
-            parity,
-            is_upset,
-            age_shown
-        );
-        self.strobe.reset.next = self.reset.val();
-        self.loaded.reset.next = self.reset.val();
-        self.held.reset.next = self.reset.val();
-        self.held_crc.reset.next = self.reset.val();
-        self.held_width.reset.next = self.reset.val();
-        self.held_f2.reset.next = self.reset.val();
-        self.earlier.reset.next = self.reset.val();
-        self.earlier_crc.reset.next = self.reset.val();
-        self.earlier_width.reset.next = self.reset.val();
-        self.earlier_f2.reset.next = self.reset.val();
-        self.earlier_stamp.reset.next = self.reset.val();
-        self.earlier_valid.reset.next = self.reset.val();
-        self.earlier_parity.reset.next = self.reset.val();
-        self.unconfirmed.reset.next = self.reset.val();
-        self.parity.reset.next = self.reset.val();
-        self.timed.reset.next = self.reset.val();
-        self.moment_parity.reset.next = self.reset.val();
-        self.is_upset.reset.next = self.reset.val();
-        self.valid.reset.next = self.reset.val();
-        self.is_fresh.reset.next = self.reset.val();
-        self.count.reset.next = self.reset.val();
-        self.moment.reset.next = self.reset.val();
-        self.stamp.reset.next = self.reset.val();
-        self.age_full.reset.next = self.reset.val();
-        self.age.reset.next = self.reset.val();
-        self.cause_held.reset.next = self.reset.val();
-        self.flags_held.reset.next = self.reset.val();
-        self.received.reset.next = self.reset.val();
-        self.computed.reset.next = self.reset.val();
-
         // The time stamp waits for its position as long as a frame lasts: it is guarded, too.
         self.timed.d.next = self.first_fall.val() | self.latched.val();
         if self.timed.q.val() {

@@ -14,6 +14,7 @@
 use crate::reg::Reg;
 use crate::several::each;
 use buffer::{FrameBuffer, SetParts};
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 pub mod buffer;
@@ -21,7 +22,7 @@ pub mod channel;
 pub mod run;
 
 /// Collector, buffer and their registers.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Stream {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -92,7 +93,9 @@ pub struct Stream {
     /// Strobe, with `push_valid` only: the byte is taken.
     pub push_take: Signal<In, Bit>,
     buffer: FrameBuffer,
+    #[given]
     collect: Reg<Bit>,
+    #[given]
     push_on: Reg<Bit>,
     open: Reg<Bit>,
     first: Reg<Bit>,
@@ -150,17 +153,9 @@ impl Stream {
         } else {
             SET_TYPE
         };
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            trigger: Default::default(),
-            trigger_count: Default::default(),
-            timestamp: Default::default(),
-            owes: Default::default(),
-            replaced: Default::default(),
-            take_set: Default::default(),
-            block: Default::default(),
-            byte_at: Default::default(),
+        Self::from_parts(StreamParts {
+            collect: Reg::new(collect),
+            push_on: Reg::new(push),
             second: each(seconds),
             collects: each(runs),
             run_turn: each(runs),
@@ -172,95 +167,28 @@ impl Stream {
             run_take: each(runs),
             run_lost: each(runs),
             run_counted: each(runs),
-            channel_byte: Default::default(),
-            selected: Default::default(),
-            word: Default::default(),
-            lane: Default::default(),
-            access: Default::default(),
-            write: Default::default(),
-            write_data: Default::default(),
-            read_byte: Default::default(),
-            push: Default::default(),
-            in_frame: Default::default(),
-            push_valid: Default::default(),
-            push_byte: Default::default(),
-            push_take: Default::default(),
             buffer: FrameBuffer::new(bytes, channels, parts),
-            collect: Reg::new(collect),
-            push_on: Reg::new(push),
-            open: Default::default(),
-            first: Default::default(),
-            spoilt: Default::default(),
-            sequence: Default::default(),
-            moment: Default::default(),
-            sequence_taken: Default::default(),
-            moment_taken: Default::default(),
-            lost_taken: Default::default(),
-            lost_before: Default::default(),
-            lost_all: Default::default(),
-            head_byte: Default::default(),
-            state_held: Default::default(),
-            byte_read: Default::default(),
-            flush: Default::default(),
-            mid_frame: Default::default(),
-            pushing: Default::default(),
             turn: each(runs),
             is_run: each(runs),
             head_taken: each(runs),
             place_taken: each(runs),
             run_now: each(runs),
             run_counts: each(runs),
-            wanted: Default::default(),
-            good: Default::default(),
-            take_now: Default::default(),
-            lost_now: Default::default(),
-            reads: Default::default(),
-            writes: Default::default(),
-            bus_may: Default::default(),
-            bus_take: Default::default(),
-            skip: Default::default(),
-            take: Default::default(),
-            more: Default::default(),
-            clear: Default::default(),
             head: Constant::new((set_type << 4 | channels as u64).into()),
             _seconds: seconds,
             _runs: runs,
-        }
+        })
     }
 }
 
 // rust-hdl's macro drops match guards.
 #[allow(clippy::collapsible_match)]
 impl Logic for Stream {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, buffer);
         self.buffer.reset.next = self.reset.val();
-        dff_setup!(self, clock, collect, push_on, open, first, spoilt, sequence, moment);
-        dff_setup!(
-            self,
-            clock,
-            sequence_taken,
-            moment_taken,
-            lost_taken,
-            lost_before,
-            lost_all
-        );
-        dff_setup!(self, clock, head_byte, state_held, byte_read, flush, mid_frame, pushing);
-        self.collect.reset.next = self.reset.val();
-        self.push_on.reset.next = self.reset.val();
-        self.open.reset.next = self.reset.val();
-        self.first.reset.next = self.reset.val();
         self.spoilt.reset.next = self.trigger.val();
-        self.sequence.reset.next = self.reset.val();
-        self.moment.reset.next = self.reset.val();
-        self.sequence_taken.reset.next = self.reset.val();
-        self.moment_taken.reset.next = self.reset.val();
-        self.lost_taken.reset.next = self.reset.val();
-        self.state_held.reset.next = self.reset.val();
-        self.flush.reset.next = self.reset.val();
-        self.mid_frame.reset.next = self.reset.val();
-        self.pushing.reset.next = self.reset.val();
 
         // The set under way. The number of its trigger is there a cycle after the trigger.
         self.first.d.next = self.trigger.val();

@@ -11,10 +11,11 @@
 //! For what would begin something that nobody has asked for: a request sent once more, a clock that goes on.
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// A flag in two registers.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct SureBit {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -27,29 +28,13 @@ pub struct SureBit {
     /// It is set.
     pub is_set: Signal<Out, Bit>,
     yes: Reg<Bit>,
+    #[start(true)]
     no: Reg<Bit>,
 }
 
-impl Default for SureBit {
-    fn default() -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            set: Default::default(),
-            clear: Default::default(),
-            is_set: Default::default(),
-            yes: Default::default(),
-            no: Reg::new(true),
-        }
-    }
-}
-
 impl Logic for SureBit {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, yes, no);
-        self.yes.reset.next = self.reset.val();
-        self.no.reset.next = self.reset.val();
         if self.clear.val() | (self.yes.q.val() == self.no.q.val()) {
             self.yes.d.next = false;
             self.no.d.next = true;

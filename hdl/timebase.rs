@@ -7,13 +7,14 @@
 //! ```
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Fastest system clock that the microsecond counter can divide, in hertz.
 pub const SYSTEM_HZ_MAX: u64 = 256_000_000;
 
 /// Microsecond strobe and time stamp counter.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Timebase {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -45,28 +46,15 @@ pub const fn cycles_per_us(system_hz: u64) -> u64 {
 impl Timebase {
     /// A time base for a system clock of `system_hz`.
     pub fn new(system_hz: u64) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            timestamp: Default::default(),
-            count: Default::default(),
-            tick: Default::default(),
-            cycles: Default::default(),
-            hit: Default::default(),
+        Self::from_parts(TimebaseParts {
             last_count: Constant::new((cycles_per_us(system_hz) - 1).into()),
-        }
+        })
     }
 }
 
 impl Logic for Timebase {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, count, tick, cycles);
-        self.count.reset.next = self.reset.val();
-        self.tick.reset.next = self.reset.val();
-        self.cycles.reset.next = self.reset.val();
-
         self.hit.next = self.count.q.val() == self.last_count.val();
         self.count.d.next = self.count.q.val() + 1;
         if self.hit.val() {

@@ -22,13 +22,17 @@
 //! Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
 
 pub mod cause;
-mod new;
 pub mod primary;
 pub mod verdict;
 
+use crate::channel::{Features, FixedTimes};
 use crate::line_health::LineHealth;
 use crate::reg::Reg;
+use crate::several::each;
 use crate::sure_bit::SureBit;
+use crate::timing;
+use cause::flag;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 use verdict::Verdict;
 
@@ -54,7 +58,7 @@ pub enum Phase {
 }
 
 /// Sequence, time-outs and verdict of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Transaction {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -242,6 +246,7 @@ pub struct Transaction {
     start_now: Reg<Bit>,
     run_now: Reg<Bit>,
     extra: Reg<Bit>,
+    #[start(true)]
     stop_now: Reg<Bit>,
     is_calibrated: Reg<Bit>,
     acquiring: Reg<Bit>,
@@ -264,6 +269,7 @@ pub struct Transaction {
     going: Signal<Local, Bit>,
     _runs: usize,
     leaving: Reg<Bit>,
+    #[start(true)]
     cleared: Reg<Bit>,
     high_at_tick: Reg<Bit>,
     owing: Reg<Bit>,
@@ -302,91 +308,51 @@ pub struct Transaction {
     vanished: Signal<Local, Bit>,
 }
 
+impl Transaction {
+    /// A transaction with these fixed times and features.
+    pub fn new(times: FixedTimes, features: Features) -> Self {
+        Self::from_parts(TransactionParts {
+            health: Default::default(),
+            verdict: Verdict::new(times, features),
+            has_all: Constant::new(features.requests),
+            has_diagnosis: Constant::new(features.diagnosis),
+            has_continuous: Constant::new(features.continuous),
+            has_alignment: Constant::new(features.alignment),
+            has_double: Constant::new(features.double_edge),
+            ready_low_cycles: Constant::new(times.ready_low_cycles.into()),
+            abort_us: Constant::new(times.abort_us.into()),
+            park_cycles: Constant::new(times.park_cycles.into()),
+            parameter_timeout_us: Constant::new(times.parameter_timeout_us.into()),
+            own_recovery_limit_cycles: Constant::new(times.own_recovery_limit_cycles.into()),
+            frame_us: Constant::new(times.frame_us.into()),
+            probe_us: Constant::new(timing::PROBE_US.into()),
+            settle_us: Constant::new(timing::SETTLE_US.into()),
+            leave_us: Constant::new(timing::LEAVE_US.into()),
+            data_not_low: Constant::new(flag(cause::DATA_NOT_LOW).into()),
+            no_encoder: Constant::new(flag(cause::NO_ENCODER).into()),
+            stuck_high: Constant::new(flag(cause::STUCK_HIGH).into()),
+            no_start_bit: Constant::new(flag(cause::NO_START_BIT).into()),
+            stuck_low: Constant::new(flag(cause::STUCK_LOW).into()),
+            late_start: Constant::new(flag(cause::LATE_START).into()),
+            start_window: Constant::new(flag(cause::START_WINDOW).into()),
+            unknown_command: Constant::new(flag(cause::UNKNOWN_COMMAND).into()),
+            info_not_there: Constant::new(flag(cause::INFO_MISSING).into()),
+            not_falling: Constant::new(flag(cause::DATA_NOT_FALLING).into()),
+            too_long: Constant::new(flag(cause::WATCHDOG).into()),
+            tail_low: Constant::new(flag::TAIL_LOW.into()),
+            upset: Constant::new(flag(cause::UPSET).into()),
+            runs: each(usize::from(features.continuous)),
+            _runs: features.continuous.into(),
+        })
+    }
+}
+
 impl Logic for Transaction {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            phase,
-            timer,
-            timer_limit,
-            timer_hit,
-            timer_step,
-            hold,
-            start_now,
-            run_now,
-            extra,
-            stop_now,
-            is_calibrated,
-            acquiring,
-            stalled,
-            all_sent
-        );
-        dff_setup!(
-            self,
-            clock,
-            tail_sampled,
-            recovery,
-            in_supplement,
-            supplement_now,
-            answered,
-            was_hunting,
-            was_center,
-            late,
-            probing,
-            settling,
-            leaving,
-            slow_now,
-            passes,
-            one_left
-        );
-        dff_setup!(
-            self,
-            clock,
-            cleared,
-            high_at_tick,
-            owing,
-            measuring,
-            once_more,
-            under_way
-        );
-        self.under_way.reset.next = self.reset.val();
-        self.measuring.reset.next = self.reset.val();
-        self.once_more.reset.next = self.reset.val();
-        self.cleared.reset.next = self.reset.val();
-        self.owing.reset.next = self.reset.val();
-        self.high_at_tick.reset.next = self.reset.val();
-        self.one_left.reset.next = self.reset.val();
         clock!(self, clock, health, verdict);
         self.phase.reset.next = false;
-        self.timer.reset.next = self.reset.val();
-        self.timer_step.reset.next = self.reset.val();
-        self.timer_hit.reset.next = self.reset.val();
-        self.timer_limit.reset.next = self.reset.val();
-        self.stop_now.reset.next = self.reset.val();
-        self.extra.reset.next = self.reset.val();
         self.extra.d.next = self.first_low_extra_cycles.val().any();
-        self.run_now.reset.next = self.reset.val();
-        self.start_now.reset.next = self.reset.val();
-        self.hold.reset.next = self.reset.val();
-        self.is_calibrated.reset.next = self.reset.val();
-        self.acquiring.reset.next = self.reset.val();
-        self.slow_now.reset.next = self.reset.val();
-        self.passes.reset.next = self.reset.val();
-        self.stalled.reset.next = self.reset.val();
-        self.all_sent.reset.next = self.reset.val();
-        self.tail_sampled.reset.next = self.reset.val();
-        self.recovery.reset.next = self.reset.val();
-        self.in_supplement.reset.next = self.reset.val();
-        self.supplement_now.reset.next = self.reset.val();
-        self.answered.reset.next = self.reset.val();
-        self.was_hunting.reset.next = self.reset.val();
-        self.was_center.reset.next = self.reset.val();
-        self.late.reset.next = self.reset.val();
-        self.probing.reset.next = self.reset.val();
-        self.settling.reset.next = self.reset.val();
-        self.leaving.reset.next = self.reset.val();
         self.health.reset.next = self.reset.val();
         self.verdict.reset.next = self.reset.val();
 

@@ -11,6 +11,7 @@
 //! first that sees the register strobe.
 
 use crate::reg::{Reg, SyncReg};
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Shortest period that the timer can make, in system clock cycles.
@@ -19,7 +20,7 @@ pub const PERIOD_CYCLES_MIN: u64 = 4;
 pub const PERIOD_BITS: usize = 24;
 
 /// Trigger sources of the card.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Trigger {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -39,9 +40,14 @@ pub struct Trigger {
     pub trigger: Signal<Out, Bit>,
     /// Triggers since reset, wrapping.
     pub trigger_count: Signal<Out, Bits<32>>,
+    // High, so that a pin that is high at power-up is not an edge.
+    #[start(true)]
     sync0: SyncReg<Bit>,
+    #[start(true)]
     sync1: SyncReg<Bit>,
+    #[start(true)]
     sync2: SyncReg<Bit>,
+    #[start(TIMER_FIRST.into())]
     timer: Reg<Bits<24>>,
     timer_hit_low: Reg<Bit>,
     timer_hit_high: Reg<Bit>,
@@ -58,57 +64,15 @@ const TIMER_FIRST: u64 = 2;
 
 impl Default for Trigger {
     fn default() -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            pin: Default::default(),
-            register: Default::default(),
-            sources: Default::default(),
-            period_cycles: Default::default(),
-            hits: Default::default(),
-            trigger: Default::default(),
-            trigger_count: Default::default(),
-            // High, so that a pin that is high at power-up is not an edge.
-            sync0: SyncReg::new(true),
-            sync1: SyncReg::new(true),
-            sync2: SyncReg::new(true),
-            timer: Reg::new(TIMER_FIRST.into()),
-            timer_hit_low: Default::default(),
-            timer_hit_high: Default::default(),
-            timer_hit: Default::default(),
-            pin_hit: Default::default(),
-            hit: Default::default(),
-            strobe: Default::default(),
-            count: Default::default(),
+        Self::from_parts(TriggerParts {
             timer_first: Constant::new(TIMER_FIRST.into()),
-        }
+        })
     }
 }
 
 impl Logic for Trigger {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            sync0,
-            sync1,
-            sync2,
-            timer,
-            timer_hit_low,
-            timer_hit_high,
-            strobe,
-            count
-        );
-        self.sync0.reset.next = self.reset.val();
-        self.sync1.reset.next = self.reset.val();
-        self.sync2.reset.next = self.reset.val();
-        self.timer.reset.next = self.reset.val();
-        self.timer_hit_low.reset.next = self.reset.val();
-        self.timer_hit_high.reset.next = self.reset.val();
-        self.strobe.reset.next = self.reset.val();
-        self.count.reset.next = self.reset.val();
-
         self.sync0.d.next = self.pin.val();
         self.sync1.d.next = self.sync0.q.val();
         self.sync2.d.next = self.sync1.q.val();

@@ -11,6 +11,7 @@
 //! dropped and reported as `framing_error`. A line that stays low (break) gives one framing error, no bytes.
 
 use crate::reg::{Reg, SyncReg};
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Fewest system clock cycles in a bit that the receiver can halve and sample.
@@ -36,7 +37,7 @@ pub fn baud_error_ppm(system_hz: u64, baud: u64, bit_cycles: u64) -> f64 {
 }
 
 /// UART receiver.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct UartReceiver {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -50,13 +51,17 @@ pub struct UartReceiver {
     pub strobe: Signal<Out, Bit>,
     /// High for one cycle: a byte ended with a low stop bit and was dropped.
     pub framing_error: Signal<Out, Bit>,
+    #[start(true)]
     sync0: SyncReg<Bit>,
+    #[start(true)]
     sync1: SyncReg<Bit>,
+    #[start(true)]
     previous: Reg<Bit>,
     active: Reg<Bit>,
     in_start_bit: Reg<Bit>,
     count: Reg<Bits<15>>,
     sample: Reg<Bit>,
+    #[start(MARKER.into())]
     shift: Reg<Bits<10>>,
     good: Reg<Bit>,
     bad: Reg<Bit>,
@@ -71,31 +76,12 @@ pub struct UartReceiver {
 impl UartReceiver {
     /// A receiver for bits of `bit_cycles` system clock cycles.
     pub fn new(bit_cycles: u64) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            rx: Default::default(),
-            data: Default::default(),
-            strobe: Default::default(),
-            framing_error: Default::default(),
-            sync0: SyncReg::new(true),
-            sync1: SyncReg::new(true),
-            previous: Reg::new(true),
-            active: Default::default(),
-            in_start_bit: Default::default(),
-            count: Default::default(),
-            sample: Default::default(),
-            shift: Reg::new(MARKER.into()),
-            good: Default::default(),
-            bad: Default::default(),
-            limit: Default::default(),
-            hit: Default::default(),
-            shifted: Default::default(),
+        Self::from_parts(UartReceiverParts {
             // Two cycles pass between the edge at the synchroniser and the first count, and from the last count to the sample.
             middle_count: Constant::new((bit_cycles / 2).saturating_sub(2).into()),
             last_count: Constant::new((bit_cycles - 1).into()),
             marker: Constant::new(MARKER.into()),
-        }
+        })
     }
 }
 
@@ -103,33 +89,8 @@ impl UartReceiver {
 const MARKER: u64 = 1 << 9;
 
 impl Logic for UartReceiver {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            sync0,
-            sync1,
-            previous,
-            active,
-            in_start_bit,
-            count,
-            sample,
-            shift,
-            good,
-            bad
-        );
-        self.sync0.reset.next = self.reset.val();
-        self.sync1.reset.next = self.reset.val();
-        self.previous.reset.next = self.reset.val();
-        self.active.reset.next = self.reset.val();
-        self.in_start_bit.reset.next = self.reset.val();
-        self.count.reset.next = self.reset.val();
-        self.sample.reset.next = self.reset.val();
-        self.shift.reset.next = self.reset.val();
-        self.good.reset.next = self.reset.val();
-        self.bad.reset.next = self.reset.val();
-
         self.sync0.d.next = self.rx.val();
         self.sync1.d.next = self.sync0.q.val();
         self.previous.d.next = self.sync1.q.val();
@@ -175,7 +136,7 @@ impl Logic for UartReceiver {
 }
 
 /// UART transmitter.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct UartTransmitter {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -191,7 +152,9 @@ pub struct UartTransmitter {
     pub tx: Signal<Out, Bit>,
     count: Reg<Bits<15>>,
     bit_end: Reg<Bit>,
+    #[start(1.into())]
     shift: Reg<Bits<10>>,
+    #[start(true)]
     empty: Reg<Bit>,
     hit: Signal<Local, Bit>,
     take: Signal<Local, Bit>,
@@ -202,34 +165,16 @@ pub struct UartTransmitter {
 impl UartTransmitter {
     /// A transmitter of bits of `bit_cycles` system clock cycles.
     pub fn new(bit_cycles: u64) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            data: Default::default(),
-            valid: Default::default(),
-            accept: Default::default(),
-            tx: Default::default(),
-            count: Default::default(),
-            bit_end: Default::default(),
-            shift: Reg::new(1.into()),
-            empty: Reg::new(true),
-            hit: Default::default(),
-            take: Default::default(),
+        Self::from_parts(UartTransmitterParts {
             last_count: Constant::new((bit_cycles - 1).into()),
             stop_bit: Constant::new((1u64 << 9).into()),
-        }
+        })
     }
 }
 
 impl Logic for UartTransmitter {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, count, bit_end, shift, empty);
-        self.count.reset.next = self.reset.val();
-        self.bit_end.reset.next = self.reset.val();
-        self.shift.reset.next = self.reset.val();
-        self.empty.reset.next = self.reset.val();
-
         // Bits begin on a fixed grid, so that a byte is loaded in the shift register's own step.
         self.hit.next = self.count.q.val() == self.last_count.val();
         self.count.d.next = self.count.q.val() + 1;

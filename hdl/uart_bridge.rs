@@ -20,6 +20,7 @@
 
 use crate::reg::Reg;
 use crate::uart::{UartReceiver, UartTransmitter};
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Longest pause within a command, in microseconds (LiteX: 100 ms).
@@ -45,7 +46,7 @@ pub enum BridgeState {
 }
 
 /// UART and UARTBone command interpreter.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct UartBridge {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -89,6 +90,7 @@ pub struct UartBridge {
     pub push_take: Signal<Out, Bit>,
     receiver: UartReceiver,
     transmitter: UartTransmitter,
+    #[start(BridgeState::Command)]
     state: Reg<BridgeState>,
     fixed: Reg<Bit>,
     writing: Reg<Bit>,
@@ -126,118 +128,20 @@ pub struct UartBridge {
 impl UartBridge {
     /// A bridge with bits of `bit_cycles` system clock cycles that forgets a command after a pause of `timeout_us`.
     pub fn new(bit_cycles: u64, timeout_us: u64) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            rx: Default::default(),
-            tx: Default::default(),
-            word_address: Default::default(),
-            in_range: Default::default(),
-            lane: Default::default(),
-            access: Default::default(),
-            write: Default::default(),
-            write_data: Default::default(),
-            take_byte: Default::default(),
-            read_byte: Default::default(),
-            done: Default::default(),
-            reading: Default::default(),
-            push: Default::default(),
-            in_frame: Default::default(),
-            push_valid: Default::default(),
-            push_byte: Default::default(),
-            push_take: Default::default(),
+        Self::from_parts(UartBridgeParts {
             receiver: UartReceiver::new(bit_cycles),
             transmitter: UartTransmitter::new(bit_cycles),
-            state: Reg::new(BridgeState::Command),
-            fixed: Default::default(),
-            writing: Default::default(),
-            words_left: Default::default(),
-            address: Default::default(),
-            out_of_range: Default::default(),
-            byte_lane: Default::default(),
-            data: Default::default(),
-            next_byte: Default::default(),
-            has_byte: Default::default(),
-            write_busy: Default::default(),
-            sent: Default::default(),
-            word_end: Default::default(),
-            last_word: Default::default(),
-            no_word: Default::default(),
-            step_address: Default::default(),
-            access_next: Default::default(),
-            access_now: Default::default(),
-            byte_ready: Default::default(),
-            idle_us: Default::default(),
-            expired: Default::default(),
-            stop_timer: Default::default(),
-            marked: Default::default(),
-            marker: Default::default(),
-            from_stream: Default::default(),
-            answer_sent: Default::default(),
-            last_lane: Default::default(),
-            next_lane: Default::default(),
-            next_address: Default::default(),
-            high_bits: Default::default(),
-            data_moves: Default::default(),
             timeout_us: Constant::new(timeout_us.into()),
-        }
+        })
     }
 }
 
 impl Logic for UartBridge {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            state,
-            fixed,
-            writing,
-            words_left,
-            address,
-            out_of_range
-        );
-        dff_setup!(self, clock, byte_lane, data, byte_ready, idle_us, expired, stop_timer);
-        dff_setup!(self, clock, marked, marker, next_byte, has_byte, write_busy);
-        self.next_byte.reset.next = self.reset.val();
-        self.has_byte.reset.next = self.reset.val();
-        self.write_busy.reset.next = self.reset.val();
-        self.marked.reset.next = self.reset.val();
-        self.marker.reset.next = self.reset.val();
-        dff_setup!(
-            self,
-            clock,
-            sent,
-            word_end,
-            last_word,
-            no_word,
-            step_address,
-            access_next,
-            access_now
-        );
         clock!(self, clock, receiver, transmitter);
         self.receiver.reset.next = self.reset.val();
         self.transmitter.reset.next = self.reset.val();
-        self.state.reset.next = self.reset.val();
-        self.fixed.reset.next = self.reset.val();
-        self.writing.reset.next = self.reset.val();
-        self.words_left.reset.next = self.reset.val();
-        self.address.reset.next = self.reset.val();
-        self.out_of_range.reset.next = self.reset.val();
-        self.byte_lane.reset.next = self.reset.val();
-        self.data.reset.next = self.reset.val();
-        self.sent.reset.next = self.reset.val();
-        self.word_end.reset.next = self.reset.val();
-        self.last_word.reset.next = self.reset.val();
-        self.no_word.reset.next = self.reset.val();
-        self.step_address.reset.next = self.reset.val();
-        self.access_next.reset.next = self.reset.val();
-        self.access_now.reset.next = self.reset.val();
-        self.byte_ready.reset.next = self.reset.val();
-        self.idle_us.reset.next = self.reset.val();
-        self.stop_timer.reset.next = self.reset.val();
-        self.expired.reset.next = self.reset.val();
 
         self.receiver.rx.next = self.rx.val();
         // A frame that has begun goes first; none begins while an answer is due.

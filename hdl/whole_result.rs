@@ -18,13 +18,14 @@
 
 use crate::reg::Reg;
 use crate::regs::{BLOCK_STRIDE, RESULT_BASE};
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Place of the first of the two words in a result.
 pub const INFO_OFFSET: u16 = 6;
 
 /// Result and informations of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct WholeResult {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -165,155 +166,16 @@ impl WholeResult {
     /// That of channel `channel`, which has informations or not.
     pub fn new(channel: usize, has_infos: bool) -> Self {
         let first = RESULT_BASE + BLOCK_STRIDE * channel as u16 + INFO_OFFSET;
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            taken: Default::default(),
-            strobe_in: Default::default(),
-            age_in: Default::default(),
-            position_in: Default::default(),
-            position_valid_in: Default::default(),
-            fresh_in: Default::default(),
-            sequence_in: Default::default(),
-            first_fall_timestamp_in: Default::default(),
-            cause_in: Default::default(),
-            flags_in: Default::default(),
-            crc_received_in: Default::default(),
-            crc_computed_in: Default::default(),
-            position_crc_in: Default::default(),
-            position_width_in: Default::default(),
-            position_has_f2_in: Default::default(),
-            recovery_cycles_in: Default::default(),
-            delay_cycles_in: Default::default(),
-            over: Default::default(),
-            info_active: Default::default(),
-            info_1: Default::default(),
-            info_2: Default::default(),
-            info_came: Default::default(),
-            info_good: Default::default(),
-            is_open: Default::default(),
-            word_1: Default::default(),
-            word_2: Default::default(),
-            result_strobe: Default::default(),
-            age_us: Default::default(),
-            position: Default::default(),
-            position_valid: Default::default(),
-            fresh: Default::default(),
-            sequence: Default::default(),
-            first_fall_timestamp: Default::default(),
-            cause: Default::default(),
-            flags: Default::default(),
-            crc_received: Default::default(),
-            crc_computed: Default::default(),
-            position_crc: Default::default(),
-            position_width: Default::default(),
-            position_has_f2: Default::default(),
-            recovery_cycles: Default::default(),
-            delay_cycles: Default::default(),
-            load: Default::default(),
-            word_address: Default::default(),
-            in_range: Default::default(),
-            lane: Default::default(),
-            read_byte: Default::default(),
-            open: Default::default(),
-            past: Default::default(),
-            whole: Default::default(),
-            first: Default::default(),
-            second: Default::default(),
-            age: Default::default(),
-            position_kept: Default::default(),
-            position_valid_kept: Default::default(),
-            fresh_kept: Default::default(),
-            sequence_kept: Default::default(),
-            first_fall_timestamp_kept: Default::default(),
-            cause_kept: Default::default(),
-            flags_kept: Default::default(),
-            crc_received_kept: Default::default(),
-            crc_computed_kept: Default::default(),
-            position_crc_kept: Default::default(),
-            position_width_kept: Default::default(),
-            position_has_f2_kept: Default::default(),
-            recovery_cycles_kept: Default::default(),
-            delay_cycles_kept: Default::default(),
-            held_first: Default::default(),
-            held_second: Default::default(),
-            byte_read: Default::default(),
-            opens: Default::default(),
-            open_now: Default::default(),
-            closes: Default::default(),
-            follows: Default::default(),
-            filled_1: Default::default(),
-            filled_2: Default::default(),
-            selected: Default::default(),
-            word: Default::default(),
+        Self::from_parts(WholeResultParts {
             pair: Constant::new(u64::from(first / 2).into()),
             has_infos: Constant::new(has_infos),
-        }
+        })
     }
 }
 
 impl Logic for WholeResult {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            open,
-            past,
-            whole,
-            first,
-            second,
-            age,
-            held_first,
-            held_second,
-            byte_read
-        );
-        dff_setup!(
-            self,
-            clock,
-            position_kept,
-            position_valid_kept,
-            fresh_kept,
-            sequence_kept,
-            first_fall_timestamp_kept,
-            cause_kept,
-            flags_kept
-        );
-        dff_setup!(
-            self,
-            clock,
-            crc_received_kept,
-            crc_computed_kept,
-            position_crc_kept,
-            position_width_kept,
-            position_has_f2_kept,
-            recovery_cycles_kept,
-            delay_cycles_kept
-        );
-        self.open.reset.next = self.reset.val();
-        self.past.reset.next = self.reset.val();
-        self.whole.reset.next = self.reset.val();
-        self.first.reset.next = self.reset.val();
-        self.second.reset.next = self.reset.val();
-        self.age.reset.next = self.reset.val();
-        self.position_kept.reset.next = self.reset.val();
-        self.position_valid_kept.reset.next = self.reset.val();
-        self.fresh_kept.reset.next = self.reset.val();
-        self.sequence_kept.reset.next = self.reset.val();
-        self.first_fall_timestamp_kept.reset.next = self.reset.val();
-        self.cause_kept.reset.next = self.reset.val();
-        self.flags_kept.reset.next = self.reset.val();
-        self.crc_received_kept.reset.next = self.reset.val();
-        self.crc_computed_kept.reset.next = self.reset.val();
-        self.position_crc_kept.reset.next = self.reset.val();
-        self.position_width_kept.reset.next = self.reset.val();
-        self.position_has_f2_kept.reset.next = self.reset.val();
-        self.recovery_cycles_kept.reset.next = self.reset.val();
-        self.delay_cycles_kept.reset.next = self.reset.val();
-        self.held_first.reset.next = self.reset.val();
-        self.held_second.reset.next = self.reset.val();
-
         // A frame that is given up before its position ends a cycle before its result is there; one that withdraws its position changes the
         // result a cycle after its end.
         self.past.d.next = self.over.val();

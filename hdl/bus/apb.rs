@@ -16,6 +16,7 @@ use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::Reg;
 use crate::several::each;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// APB3 slave in front of the register bank.
@@ -77,16 +78,8 @@ pub struct ApbFront {
 }
 
 impl Logic for ApbFront {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, busy, ready, error, request, abandoned, address, writing);
-        self.busy.reset.next = self.reset.val();
-        self.ready.reset.next = self.reset.val();
-        self.error.reset.next = self.reset.val();
-        self.request.reset.next = self.reset.val();
-        self.abandoned.reset.next = self.reset.val();
-        self.address.reset.next = self.reset.val();
-        self.writing.reset.next = self.reset.val();
         self.words.clock.next = self.clock.val();
         self.words.reset.next = self.reset.val();
         self.words.tick_us.next = self.tick_us.val();
@@ -142,7 +135,7 @@ impl Logic for ApbFront {
 }
 
 /// The whole core behind APB3; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct ApbCard {
     /// System clock.
     pub clk_i: Signal<In, Clock>,
@@ -199,39 +192,26 @@ impl ApbCard {
     pub fn new(config: &CardConfig) -> Self {
         let channels = config.channels.len();
         let direct_ports = channels * usize::from(config.outputs.position);
-        Self {
-            clk_i: Default::default(),
-            rst_i: Default::default(),
-            trigger_i: Default::default(),
-            s_apb_psel: Default::default(),
-            s_apb_penable: Default::default(),
-            s_apb_pwrite: Default::default(),
-            s_apb_paddr: Default::default(),
-            s_apb_pwdata: Default::default(),
-            s_apb_prdata: Default::default(),
-            s_apb_pready: Default::default(),
-            s_apb_pslverr: Default::default(),
+        Self::from_parts(ApbCardParts {
             direct_position_o: each(direct_ports),
             direct_valid_o: each(direct_ports),
             direct_fresh_o: each(direct_ports),
             direct_error_o: each(direct_ports),
-            irq_o: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
             endat_data_i: each(channels),
-            led_status_o: Default::default(),
             led_channel_o: each(channels),
             core: CardCore::new(config),
             front: Default::default(),
             _direct_ports: direct_ports,
             _channels: channels,
-        }
+        })
     }
 }
 
 impl Logic for ApbCard {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.core.clk_i.next = self.clk_i.val();
         self.core.rst_i.next = self.rst_i.val();

@@ -18,6 +18,7 @@ use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::Reg;
 use crate::several::each;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// AXI4-Lite slave in front of the register bank.
@@ -106,36 +107,8 @@ pub struct AxiLiteFront {
 }
 
 impl Logic for AxiLiteFront {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            has_aw,
-            write_address,
-            has_w,
-            data,
-            strobes,
-            has_ar,
-            read_address
-        );
-        dff_setup!(self, clock, has_b, error, has_r, answer, busy, request, address);
-        dff_setup!(self, clock, writing);
-        self.has_aw.reset.next = self.reset.val();
-        self.write_address.reset.next = self.reset.val();
-        self.has_w.reset.next = self.reset.val();
-        self.data.reset.next = self.reset.val();
-        self.strobes.reset.next = self.reset.val();
-        self.has_ar.reset.next = self.reset.val();
-        self.read_address.reset.next = self.reset.val();
-        self.has_b.reset.next = self.reset.val();
-        self.error.reset.next = self.reset.val();
-        self.has_r.reset.next = self.reset.val();
-        self.answer.reset.next = self.reset.val();
-        self.busy.reset.next = self.reset.val();
-        self.request.reset.next = self.reset.val();
-        self.address.reset.next = self.reset.val();
-        self.writing.reset.next = self.reset.val();
         self.words.clock.next = self.clock.val();
         self.words.reset.next = self.reset.val();
         self.words.tick_us.next = self.tick_us.val();
@@ -231,7 +204,7 @@ impl Logic for AxiLiteFront {
 }
 
 /// The whole core behind AXI4-Lite; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct AxiLiteCard {
     /// System clock.
     pub clk_i: Signal<In, Clock>,
@@ -306,48 +279,26 @@ impl AxiLiteCard {
     pub fn new(config: &CardConfig) -> Self {
         let channels = config.channels.len();
         let direct_ports = channels * usize::from(config.outputs.position);
-        Self {
-            clk_i: Default::default(),
-            rst_i: Default::default(),
-            trigger_i: Default::default(),
-            s_axi_awaddr: Default::default(),
-            s_axi_awvalid: Default::default(),
-            s_axi_awready: Default::default(),
-            s_axi_wdata: Default::default(),
-            s_axi_wstrb: Default::default(),
-            s_axi_wvalid: Default::default(),
-            s_axi_wready: Default::default(),
-            s_axi_bresp: Default::default(),
-            s_axi_bvalid: Default::default(),
-            s_axi_bready: Default::default(),
-            s_axi_araddr: Default::default(),
-            s_axi_arvalid: Default::default(),
-            s_axi_arready: Default::default(),
-            s_axi_rdata: Default::default(),
-            s_axi_rresp: Default::default(),
-            s_axi_rvalid: Default::default(),
-            s_axi_rready: Default::default(),
+        Self::from_parts(AxiLiteCardParts {
             direct_position_o: each(direct_ports),
             direct_valid_o: each(direct_ports),
             direct_fresh_o: each(direct_ports),
             direct_error_o: each(direct_ports),
-            irq_o: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
             endat_data_i: each(channels),
-            led_status_o: Default::default(),
             led_channel_o: each(channels),
             core: CardCore::new(config),
             front: Default::default(),
             _direct_ports: direct_ports,
             _channels: channels,
-        }
+        })
     }
 }
 
 impl Logic for AxiLiteCard {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.core.clk_i.next = self.clk_i.val();
         self.core.rst_i.next = self.rst_i.val();

@@ -22,6 +22,7 @@ use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::Reg;
 use crate::several::each;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Eight registers of 16 bits in front of the register bank.
@@ -100,58 +101,8 @@ pub struct ParallelFront {
 }
 
 impl Logic for ParallelFront {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            out_data,
-            was_first,
-            next_status,
-            next_low,
-            live_status,
-            live_position,
-            seen_status,
-            seen_position
-        );
-        dff_setup!(
-            self,
-            clock,
-            window_address,
-            channel,
-            window_low,
-            window_high,
-            wants_read,
-            wants_write,
-            settling
-        );
-        dff_setup!(self, clock, busy, request, address, writing, is_window, step, polled);
-        dff_setup!(self, clock, was_read, last_register, is_steady);
-        self.was_read.reset.next = self.reset.val();
-        self.last_register.reset.next = self.reset.val();
-        self.is_steady.reset.next = self.reset.val();
-        self.out_data.reset.next = self.reset.val();
-        self.was_first.reset.next = self.reset.val();
-        self.next_status.reset.next = self.reset.val();
-        self.next_low.reset.next = self.reset.val();
-        self.live_status.reset.next = self.reset.val();
-        self.live_position.reset.next = self.reset.val();
-        self.seen_status.reset.next = self.reset.val();
-        self.seen_position.reset.next = self.reset.val();
-        self.window_address.reset.next = self.reset.val();
-        self.channel.reset.next = self.reset.val();
-        self.window_low.reset.next = self.reset.val();
-        self.window_high.reset.next = self.reset.val();
-        self.wants_read.reset.next = self.reset.val();
-        self.wants_write.reset.next = self.reset.val();
-        self.settling.reset.next = self.reset.val();
-        self.busy.reset.next = self.reset.val();
-        self.request.reset.next = self.reset.val();
-        self.address.reset.next = self.reset.val();
-        self.writing.reset.next = self.reset.val();
-        self.is_window.reset.next = self.reset.val();
-        self.step.reset.next = self.reset.val();
-        self.polled.reset.next = self.reset.val();
         self.words.clock.next = self.clock.val();
         self.words.reset.next = self.reset.val();
         self.words.tick_us.next = self.tick_us.val();
@@ -309,7 +260,7 @@ impl Logic for ParallelFront {
 }
 
 /// The whole core behind a parallel bus; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct ParallelCard {
     /// System clock.
     pub clk_i: Signal<In, Clock>,
@@ -364,38 +315,26 @@ impl ParallelCard {
     pub fn new(config: &CardConfig) -> Self {
         let channels = config.channels.len();
         let direct_ports = channels * usize::from(config.outputs.position);
-        Self {
-            clk_i: Default::default(),
-            rst_i: Default::default(),
-            trigger_i: Default::default(),
-            bus_cs_n_i: Default::default(),
-            bus_rd_n_i: Default::default(),
-            bus_wr_n_i: Default::default(),
-            bus_address_i: Default::default(),
-            bus_data_i: Default::default(),
-            bus_data_o: Default::default(),
-            bus_data_oe: Default::default(),
+        Self::from_parts(ParallelCardParts {
             direct_position_o: each(direct_ports),
             direct_valid_o: each(direct_ports),
             direct_fresh_o: each(direct_ports),
             direct_error_o: each(direct_ports),
-            irq_o: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
             endat_data_i: each(channels),
-            led_status_o: Default::default(),
             led_channel_o: each(channels),
             core: CardCore::new(config),
             front: Default::default(),
             _direct_ports: direct_ports,
             _channels: channels,
-        }
+        })
     }
 }
 
 impl Logic for ParallelCard {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.core.clk_i.next = self.clk_i.val();
         self.core.rst_i.next = self.rst_i.val();

@@ -16,6 +16,7 @@ use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::{Reg, SyncReg};
 use crate::several::each;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// System clock cycles in the shortest period of the serial clock.
@@ -43,7 +44,7 @@ pub enum SpiState {
 }
 
 /// SPI slave in front of the register bank.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct SpiFront {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -91,11 +92,13 @@ pub struct SpiFront {
     cs_1: SyncReg<Bit>,
     mosi_0: SyncReg<Bit>,
     mosi_1: SyncReg<Bit>,
+    #[start(SpiState::Command)]
     state: Reg<SpiState>,
     bit_count: Reg<Bits<3>>,
     byte_in: Reg<Bits<8>>,
     byte_end: Reg<Bit>,
     byte_count: Reg<Bits<2>>,
+    #[start(0xffffu64.into())]
     crc: Reg<Bits<16>>,
     shift_out: Reg<Bits<32>>,
     load_word: Reg<Bit>,
@@ -130,120 +133,18 @@ pub struct SpiFront {
 
 impl Default for SpiFront {
     fn default() -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            sck: Default::default(),
-            cs_n: Default::default(),
-            mosi: Default::default(),
-            miso: Default::default(),
-            miso_enable: Default::default(),
-            in_range: Default::default(),
-            tick_us: Default::default(),
-            word_address: Default::default(),
-            lane: Default::default(),
-            access: Default::default(),
-            bank_write: Default::default(),
-            bank_data: Default::default(),
-            reading: Default::default(),
-            take_byte: Default::default(),
-            passing_byte: Default::default(),
-            read_byte: Default::default(),
-            done: Default::default(),
+        Self::from_parts(SpiFrontParts {
             words: Default::default(),
-            sck_0: Default::default(),
-            sck_1: Default::default(),
-            sck_2: Default::default(),
-            cs_0: Default::default(),
-            cs_1: Default::default(),
-            mosi_0: Default::default(),
-            mosi_1: Default::default(),
-            state: Reg::new(SpiState::Command),
-            bit_count: Default::default(),
-            byte_in: Default::default(),
-            byte_end: Default::default(),
-            byte_count: Default::default(),
-            crc: Reg::new(0xffffu64.into()),
-            shift_out: Default::default(),
-            load_word: Default::default(),
-            load_crc: Default::default(),
-            late: Default::default(),
-            writing: Default::default(),
-            words_left: Default::default(),
-            address: Default::default(),
-            out_of_range: Default::default(),
-            data: Default::default(),
-            asked: Default::default(),
-            busy: Default::default(),
-            request: Default::default(),
-            access_address: Default::default(),
-            access_outside: Default::default(),
-            access_writes: Default::default(),
-            refused: Default::default(),
-            selected: Default::default(),
-            rise: Default::default(),
-            fall: Default::default(),
-            crc_bit: Default::default(),
-            crc_runs: Default::default(),
-            step_address: Default::default(),
-            waits: Default::default(),
-            next_address: Default::default(),
-            last_word: Default::default(),
-            crc_sent: Default::default(),
             polynomial: Constant::new(0x1021u64.into()),
             accepted_word: Constant::new(0xa000_0000u64.into()),
             refused_word: Constant::new(0xa200_0000u64.into()),
-        }
+        })
     }
 }
 
 impl Logic for SpiFront {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, sck_0, sck_1, sck_2, cs_0, cs_1, mosi_0, mosi_1);
-        dff_setup!(self, clock, state, bit_count, byte_in, byte_end, byte_count, crc, shift_out);
-        dff_setup!(
-            self,
-            clock,
-            load_word,
-            load_crc,
-            late,
-            writing,
-            words_left,
-            address,
-            out_of_range
-        );
-        dff_setup!(self, clock, data, asked, busy, request, refused);
-        dff_setup!(self, clock, access_address, access_outside, access_writes);
-        self.asked.reset.next = self.reset.val();
-        self.access_address.reset.next = self.reset.val();
-        self.access_outside.reset.next = self.reset.val();
-        self.access_writes.reset.next = self.reset.val();
-        self.sck_0.reset.next = self.reset.val();
-        self.sck_1.reset.next = self.reset.val();
-        self.sck_2.reset.next = self.reset.val();
-        self.cs_0.reset.next = self.reset.val();
-        self.cs_1.reset.next = self.reset.val();
-        self.mosi_0.reset.next = self.reset.val();
-        self.mosi_1.reset.next = self.reset.val();
-        self.state.reset.next = self.reset.val();
-        self.bit_count.reset.next = self.reset.val();
-        self.byte_in.reset.next = self.reset.val();
-        self.byte_end.reset.next = self.reset.val();
-        self.byte_count.reset.next = self.reset.val();
-        self.crc.reset.next = self.reset.val();
-        self.shift_out.reset.next = self.reset.val();
-        self.load_word.reset.next = self.reset.val();
-        self.load_crc.reset.next = self.reset.val();
-        self.late.reset.next = self.reset.val();
-        self.writing.reset.next = self.reset.val();
-        self.words_left.reset.next = self.reset.val();
-        self.address.reset.next = self.reset.val();
-        self.out_of_range.reset.next = self.reset.val();
-        self.data.reset.next = self.reset.val();
-        self.busy.reset.next = self.reset.val();
-        self.request.reset.next = self.reset.val();
-        self.refused.reset.next = self.reset.val();
         self.words.clock.next = self.clock.val();
         self.words.reset.next = self.reset.val();
         self.words.tick_us.next = self.tick_us.val();
@@ -453,7 +354,7 @@ impl Logic for SpiFront {
 }
 
 /// The whole core behind SPI; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct SpiCard {
     /// System clock.
     pub clk_i: Signal<In, Clock>,
@@ -504,36 +405,26 @@ impl SpiCard {
     pub fn new(config: &CardConfig) -> Self {
         let channels = config.channels.len();
         let direct_ports = channels * usize::from(config.outputs.position);
-        Self {
-            clk_i: Default::default(),
-            rst_i: Default::default(),
-            trigger_i: Default::default(),
-            spi_sck_i: Default::default(),
-            spi_cs_n_i: Default::default(),
-            spi_mosi_i: Default::default(),
-            spi_miso_o: Default::default(),
-            spi_miso_oe: Default::default(),
+        Self::from_parts(SpiCardParts {
             direct_position_o: each(direct_ports),
             direct_valid_o: each(direct_ports),
             direct_fresh_o: each(direct_ports),
             direct_error_o: each(direct_ports),
-            irq_o: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
             endat_data_i: each(channels),
-            led_status_o: Default::default(),
             led_channel_o: each(channels),
             core: CardCore::new(config),
             front: Default::default(),
             _direct_ports: direct_ports,
             _channels: channels,
-        }
+        })
     }
 }
 
 impl Logic for SpiCard {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.core.clk_i.next = self.clk_i.val();
         self.core.rst_i.next = self.rst_i.val();

@@ -5,10 +5,11 @@
 //! ```
 
 use crate::reg::{Reg, SyncReg};
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Bus with chip select, read and write strobe, eight registers of 16 bits.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct BusStrobes {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -51,33 +52,8 @@ pub struct BusStrobes {
 }
 
 impl Logic for BusStrobes {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, cs_0, cs_1, rd_0, rd_1, wr_0, wr_1, register_0);
-        dff_setup!(
-            self,
-            clock,
-            register_1,
-            data_0,
-            data_1,
-            was_writing,
-            last_register,
-            last_data
-        );
-        self.cs_0.reset.next = self.reset.val();
-        self.cs_1.reset.next = self.reset.val();
-        self.rd_0.reset.next = self.reset.val();
-        self.rd_1.reset.next = self.reset.val();
-        self.wr_0.reset.next = self.reset.val();
-        self.wr_1.reset.next = self.reset.val();
-        self.register_0.reset.next = self.reset.val();
-        self.register_1.reset.next = self.reset.val();
-        self.data_0.reset.next = self.reset.val();
-        self.data_1.reset.next = self.reset.val();
-        self.was_writing.reset.next = self.reset.val();
-        self.last_register.reset.next = self.reset.val();
-        self.last_data.reset.next = self.reset.val();
-
         self.cs_0.d.next = !self.cs_n.val();
         self.cs_1.d.next = self.cs_0.q.val();
         self.rd_0.d.next = !self.rd_n.val();

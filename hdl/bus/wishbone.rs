@@ -15,6 +15,7 @@ use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::Reg;
 use crate::several::each;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Wishbone slave in front of the register bank.
@@ -78,26 +79,8 @@ pub struct WishboneFront {
 }
 
 impl Logic for WishboneFront {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            busy,
-            acknowledge,
-            error,
-            request,
-            abandoned,
-            address,
-            writing
-        );
-        self.busy.reset.next = self.reset.val();
-        self.acknowledge.reset.next = self.reset.val();
-        self.error.reset.next = self.reset.val();
-        self.request.reset.next = self.reset.val();
-        self.abandoned.reset.next = self.reset.val();
-        self.address.reset.next = self.reset.val();
-        self.writing.reset.next = self.reset.val();
         self.words.clock.next = self.clock.val();
         self.words.reset.next = self.reset.val();
         self.words.tick_us.next = self.tick_us.val();
@@ -153,7 +136,7 @@ impl Logic for WishboneFront {
 }
 
 /// The whole core behind Wishbone; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct WishboneCard {
     /// System clock.
     pub clk_i: Signal<In, Clock>,
@@ -212,40 +195,26 @@ impl WishboneCard {
     pub fn new(config: &CardConfig) -> Self {
         let channels = config.channels.len();
         let direct_ports = channels * usize::from(config.outputs.position);
-        Self {
-            clk_i: Default::default(),
-            rst_i: Default::default(),
-            trigger_i: Default::default(),
-            wb_cyc_i: Default::default(),
-            wb_stb_i: Default::default(),
-            wb_we_i: Default::default(),
-            wb_adr_i: Default::default(),
-            wb_dat_i: Default::default(),
-            wb_sel_i: Default::default(),
-            wb_dat_o: Default::default(),
-            wb_ack_o: Default::default(),
-            wb_err_o: Default::default(),
+        Self::from_parts(WishboneCardParts {
             direct_position_o: each(direct_ports),
             direct_valid_o: each(direct_ports),
             direct_fresh_o: each(direct_ports),
             direct_error_o: each(direct_ports),
-            irq_o: Default::default(),
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
             endat_data_i: each(channels),
-            led_status_o: Default::default(),
             led_channel_o: each(channels),
             core: CardCore::new(config),
             front: Default::default(),
             _direct_ports: direct_ports,
             _channels: channels,
-        }
+        })
     }
 }
 
 impl Logic for WishboneCard {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.core.clk_i.next = self.clk_i.val();
         self.core.rst_i.next = self.rst_i.val();

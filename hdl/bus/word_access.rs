@@ -15,13 +15,14 @@
 //! read or written, and for a word that is written to a service or line monitor.
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Bit of the microsecond counter that ends a moment.
 pub const QUIET_US: u64 = 8;
 
 /// A word in four bytes.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct WordAccess {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -76,20 +77,8 @@ pub struct WordAccess {
 }
 
 impl Logic for WordAccess {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, data, byte_lane, access_now, end_now, whole, settle, holding);
-        dff_setup!(self, clock, last_read, quiet_us);
-        self.data.reset.next = self.reset.val();
-        self.byte_lane.reset.next = self.reset.val();
-        self.access_now.reset.next = self.reset.val();
-        self.end_now.reset.next = self.reset.val();
-        self.whole.reset.next = self.reset.val();
-        self.settle.reset.next = self.reset.val();
-        self.holding.reset.next = self.reset.val();
-        self.last_read.reset.next = self.reset.val();
-        self.quiet_us.reset.next = self.reset.val();
-
         self.is_result.next = !self.write.val() & (self.word_address.val().get_bits::<4>(7) == 3);
         self.is_config.next =
             (self.word_address.val().get_bits::<4>(7) == 2) & !self.word_address.val().get_bit(2);

@@ -9,10 +9,11 @@ use crate::config::CardConfig;
 use crate::service::program::ServiceTimes;
 use crate::several::each;
 use crate::uart_bridge::{UartBridge, TIMEOUT_US};
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// The whole core with a UART to the host; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Card {
     /// System clock.
     pub clk_i: Signal<In, Clock>,
@@ -55,27 +56,21 @@ impl Card {
     /// A card with other waits, too.
     pub fn with_times(config: &CardConfig, timeout_us: u64, service: &ServiceTimes) -> Self {
         let channels = config.channels.len();
-        Self {
-            clk_i: Default::default(),
-            rst_i: Default::default(),
-            trigger_i: Default::default(),
-            uart_rx_i: Default::default(),
-            uart_tx_o: Default::default(),
+        Self::from_parts(CardParts {
             endat_clk_o: each(channels),
             endat_data_o: each(channels),
             endat_data_oe: each(channels),
             endat_data_i: each(channels),
-            led_status_o: Default::default(),
             led_channel_o: each(channels),
             core: CardCore::with_times(config, service),
             bridge: UartBridge::new(config.uart_bit_cycles, timeout_us),
             _channels: channels,
-        }
+        })
     }
 }
 
 impl Logic for Card {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.core.clk_i.next = self.clk_i.val();
         self.core.rst_i.next = self.rst_i.val();

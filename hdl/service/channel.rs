@@ -8,10 +8,11 @@
 use super::map::input;
 use crate::reg::Reg;
 use crate::several::each;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// A channel's part of the service.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct ServiceChannel {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -118,6 +119,8 @@ pub struct ServiceChannel {
     out_address: Reg<Bits<8>>,
     out_data: Reg<Bits<16>>,
     out_go: Reg<Bits<4>>,
+    // Until the program has begun, no trigger may get in its way.
+    #[given]
     out_control: Reg<Bits<3>>,
     out_force: Reg<Bits<3>>,
     out_found: Reg<Bits<7>>,
@@ -137,131 +140,18 @@ impl ServiceChannel {
     /// The side of a channel whose encoder gets the short recovery time if `wants_short`, and is initialised after reset if
     /// `initialise`.
     pub fn new(wants_short: bool, initialise: bool) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            over: Default::default(),
-            over_request: Default::default(),
-            over_cause: Default::default(),
-            reply: Default::default(),
-            reply_good: Default::default(),
-            info_active: Default::default(),
-            info_1: Default::default(),
-            info_2: Default::default(),
-            info_came: Default::default(),
-            info_good: Default::default(),
-            request_runs: Default::default(),
-            line_high: Default::default(),
-            displaced: Default::default(),
-            sequence: Default::default(),
-            position: Default::default(),
-            fresh: Default::default(),
-            delay_cycles: Default::default(),
-            period_cycles: Default::default(),
-            command: Default::default(),
-            position_bits: Default::default(),
-            period_now_cycles: Default::default(),
-            command_now: Default::default(),
-            position_bits_now: Default::default(),
-            request_command: Default::default(),
-            request_parameter: Default::default(),
-            request_ride: Default::default(),
-            request_own: Default::default(),
-            request_cancel: Default::default(),
-            calibrate: Default::default(),
-            hold_off: Default::default(),
-            clock_low: Default::default(),
-            alarm: Default::default(),
-            forced: Default::default(),
-            watchdog_us: Default::default(),
-            recovery_min_cycles: Default::default(),
-            continuous: Default::default(),
-            stop_at_error: Default::default(),
-            io_address: Default::default(),
-            io_read: Default::default(),
-            io_in: Default::default(),
-            io_out: Default::default(),
-            io_write: Default::default(),
-            host_address: Default::default(),
-            host_write: Default::default(),
-            host_half: Default::default(),
-            has_event: Default::default(),
-            missed: Default::default(),
-            event_request: Default::default(),
-            event_cause: Default::default(),
-            request_written: Default::default(),
-            control_written: Default::default(),
-            lost_count: Default::default(),
-            out_command: Default::default(),
-            out_address: Default::default(),
-            out_data: Default::default(),
-            out_go: Default::default(),
-            // Until the program has begun, no trigger may get in its way.
+        Self::from_parts(ServiceChannelParts {
             out_control: Reg::new(u64::from(initialise).into()),
-            out_force: Default::default(),
-            out_found: Default::default(),
-            out_period: Default::default(),
-            out_watchdog: Default::default(),
-            out_recovery: Default::default(),
-            out_continuous: Default::default(),
-            status: Default::default(),
-            turned: Default::default(),
-            chosen: Default::default(),
             seen: each(usize::from(input::WORDS)),
             _words: input::WORDS.into(),
             wants_short: Constant::new(wants_short),
-        }
+        })
     }
 }
 
 impl Logic for ServiceChannel {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            has_event,
-            missed,
-            event_request,
-            event_cause,
-            request_written,
-            control_written,
-            lost_count
-        );
-        dff_setup!(
-            self,
-            clock,
-            out_command,
-            out_address,
-            out_data,
-            out_go,
-            out_control,
-            out_force,
-            out_found,
-            out_period,
-            out_watchdog,
-            out_recovery,
-            out_continuous
-        );
-        self.has_event.reset.next = self.reset.val();
-        self.missed.reset.next = self.reset.val();
-        self.event_request.reset.next = self.reset.val();
-        self.event_cause.reset.next = self.reset.val();
-        self.request_written.reset.next = self.reset.val();
-        self.control_written.reset.next = self.reset.val();
-        self.lost_count.reset.next = self.reset.val();
-        self.out_command.reset.next = self.reset.val();
-        self.out_address.reset.next = self.reset.val();
-        self.out_data.reset.next = self.reset.val();
-        self.out_go.reset.next = self.reset.val();
-        self.out_control.reset.next = self.reset.val();
-        self.out_force.reset.next = self.reset.val();
-        self.out_found.reset.next = self.reset.val();
-        self.out_period.reset.next = self.reset.val();
-        self.out_watchdog.reset.next = self.reset.val();
-        self.out_recovery.reset.next = self.reset.val();
-        self.out_continuous.reset.next = self.reset.val();
-
         if self.displaced.val() {
             self.lost_count.d.next = self.lost_count.q.val() + 1;
         }

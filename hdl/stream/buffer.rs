@@ -17,6 +17,7 @@
 use crate::memory::Memory;
 use crate::reg::Reg;
 use crate::several::each;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Sizes that a buffer can have, in bytes.
@@ -53,7 +54,7 @@ pub struct SetParts {
 }
 
 /// Encoder and buffer.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct FrameBuffer {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -100,13 +101,16 @@ pub struct FrameBuffer {
     byte_now: Reg<Bits<8>>,
     is_zero: Reg<Bit>,
     byte_end: Reg<Bit>,
+    #[start(CRC16_PRESET.into())]
     crc: Reg<Bits<16>>,
+    #[start(1u64.into())]
     run: Reg<Bits<7>>,
     write_at: Reg<Bits<13>>,
     code_at: Reg<Bits<13>>,
     start_at: Reg<Bits<13>>,
     read_at: Reg<Bits<13>>,
     used: Reg<Bits<13>>,
+    #[start(true)]
     fits: Reg<Bit>,
     took: Reg<Bit>,
     in_second: Vec<Reg<Bit>>,
@@ -143,56 +147,19 @@ impl FrameBuffer {
         let (seconds, singles) = (usize::from(parts.informations), usize::from(parts.runs));
         assert!(BUFFER_BYTES.contains(&bytes), "buffer of {bytes} bytes");
         let of = |size: usize| usize::from(BUFFER_BYTES[size] == bytes);
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            start: Default::default(),
-            idle: Default::default(),
-            room: Default::default(),
-            block: Default::default(),
-            byte_at: Default::default(),
+        Self::from_parts(FrameBufferParts {
             second: each(seconds),
             single: each(singles),
             single_room: each(singles),
             single_place: each(singles),
-            set_byte: Default::default(),
-            waiting_bytes: Default::default(),
-            ready: Default::default(),
-            data: Default::default(),
-            take: Default::default(),
             ram1k: (0..of(0)).map(|_| Default::default()).collect(),
             ram2k: (0..of(1)).map(|_| Default::default()).collect(),
             ram4k: (0..of(2)).map(|_| Default::default()).collect(),
             ram8k: (0..of(3)).map(|_| Default::default()).collect(),
-            writing: Default::default(),
-            cycle_at: Default::default(),
-            at: Default::default(),
-            in_tail: Default::default(),
-            is_end: Default::default(),
-            is_past: Default::default(),
-            byte_now: Default::default(),
-            is_zero: Default::default(),
-            byte_end: Default::default(),
-            crc: Reg::new(CRC16_PRESET.into()),
-            run: Reg::new(1u64.into()),
-            write_at: Default::default(),
-            code_at: Default::default(),
-            start_at: Default::default(),
-            read_at: Default::default(),
-            used: Default::default(),
-            fits: Reg::new(true),
-            took: Default::default(),
             in_second: each(seconds),
             single_fits: each(singles),
             run_high: each(seconds),
             block_ends: each(seconds.max(singles)),
-            bit_index: Default::default(),
-            feedback: Default::default(),
-            advance: Default::default(),
-            write: Default::default(),
-            write_address: Default::default(),
-            write_byte: Default::default(),
-            read_byte: Default::default(),
             tail_block: Constant::new((channels as u64 + 1).into()),
             mask: Constant::new((bytes - 1).into()),
             // One place stays free: full is not empty.
@@ -207,31 +174,13 @@ impl FrameBuffer {
             _seconds: seconds,
             _singles: singles,
             _block_ends: seconds.max(singles),
-        }
+        })
     }
 }
 
 impl Logic for FrameBuffer {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, writing, cycle_at, at, in_tail, is_end, is_past, byte_now, is_zero);
-        dff_setup!(self, clock, byte_end, crc, run, write_at, code_at, start_at);
-        dff_setup!(self, clock, read_at, used, fits, took);
-        self.writing.reset.next = self.reset.val();
-        self.cycle_at.reset.next = self.reset.val();
-        self.in_tail.reset.next = self.reset.val();
-        self.is_end.reset.next = self.reset.val();
-        self.is_past.reset.next = self.reset.val();
-        self.byte_now.reset.next = self.reset.val();
-        self.is_zero.reset.next = self.reset.val();
-        self.byte_end.reset.next = self.reset.val();
-        self.write_at.reset.next = self.reset.val();
-        self.code_at.reset.next = self.reset.val();
-        self.start_at.reset.next = self.reset.val();
-        self.read_at.reset.next = self.reset.val();
-        self.used.reset.next = self.reset.val();
-        self.fits.reset.next = self.reset.val();
-        self.took.reset.next = self.reset.val();
         // Each frame begins anew.
         self.at.reset.next = !self.writing.q.val();
         self.crc.reset.next = !self.writing.q.val();

@@ -12,10 +12,11 @@
 use super::buffer::SetParts;
 use crate::reg::Reg;
 use crate::several::each;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// A channel's place in a set.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct SetChannel {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -85,76 +86,27 @@ impl SetChannel {
     /// The place of channel `channel`, for late results too if `takes_late`, and for what else sets have.
     pub fn new(channel: usize, takes_late: bool, parts: SetParts) -> Self {
         let (runs, infos) = (usize::from(parts.runs), usize::from(parts.informations));
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            trigger: Default::default(),
-            busy: Default::default(),
-            result_strobe: Default::default(),
-            position: Default::default(),
-            position_valid: Default::default(),
-            fresh: Default::default(),
-            cause: Default::default(),
-            flags: Default::default(),
-            take: Default::default(),
+        Self::from_parts(SetChannelParts {
             take_run: each(runs),
             word_1: each(infos),
             word_2: each(infos),
             second: each(infos),
-            block: Default::default(),
-            byte_at: Default::default(),
-            set_byte: Default::default(),
-            owes: Default::default(),
-            replaced: Default::default(),
-            took: Default::default(),
-            waiting: Default::default(),
-            owed: Default::default(),
-            late: Default::default(),
-            late_now: Default::default(),
-            is_own: Default::default(),
-            position_taken: Default::default(),
-            status_taken: Default::default(),
-            took_taken: Default::default(),
-            missing_taken: Default::default(),
-            byte_now: Default::default(),
             info_1: each(infos),
             info_2: each(infos),
             info_state: each(infos),
             state_now: each(infos),
             info_byte: each(infos),
-            open: Default::default(),
-            status: Default::default(),
             number: Constant::new((channel as u64 + 1).into()),
             takes_late: Constant::new(takes_late),
             _runs: runs,
             _infos: infos,
-        }
+        })
     }
 }
 
 impl Logic for SetChannel {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            took,
-            waiting,
-            owed,
-            late,
-            position_taken,
-            status_taken,
-            took_taken,
-            missing_taken,
-            byte_now
-        );
-        self.took.reset.next = self.reset.val();
-        self.waiting.reset.next = self.reset.val();
-        self.owed.reset.next = self.reset.val();
-        self.late.reset.next = self.reset.val();
-        self.took_taken.reset.next = self.reset.val();
-        self.missing_taken.reset.next = self.reset.val();
-
         if self.result_strobe.val() {
             self.waiting.d.next = false;
         }

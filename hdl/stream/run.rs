@@ -11,10 +11,11 @@
 
 use super::RUN_SET_TYPE;
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Running clock of one channel.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct RunChannel {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -62,43 +63,17 @@ pub struct RunChannel {
 impl RunChannel {
     /// That of channel `channel`.
     pub fn new(channel: usize) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            collects: Default::default(),
-            taken: Default::default(),
-            result_strobe: Default::default(),
-            sequence: Default::default(),
-            first_fall_timestamp: Default::default(),
-            turn: Default::default(),
-            ready: Default::default(),
-            ready_sequence: Default::default(),
-            ready_moment: Default::default(),
-            ready_head: Default::default(),
-            ready_place: Default::default(),
-            take: Default::default(),
-            take_run: Default::default(),
-            lost: Default::default(),
-            counted: Default::default(),
-            asked: Default::default(),
-            waits: Default::default(),
-            dropped: Default::default(),
-            ready_now: Default::default(),
+        Self::from_parts(RunChannelParts {
             number: Constant::new((channel as u64).into()),
             head: Constant::new((RUN_SET_TYPE << 4 | channel as u64).into()),
             place: Constant::new((8 * (channel as u64 + 1)).into()),
-        }
+        })
     }
 }
 
 impl Logic for RunChannel {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, asked, waits, dropped);
-        self.asked.reset.next = self.reset.val();
-        self.waits.reset.next = self.reset.val();
-        self.dropped.reset.next = self.reset.val();
-
         // In the cycle of a result what is shown is the new one.
         self.ready_now.next = self.waits.q.val()
             & !(self.result_strobe.val() & self.asked.q.val())

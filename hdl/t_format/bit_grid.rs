@@ -7,10 +7,11 @@
 //! ```
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Counter of system clock cycles in a bit.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct BitGrid {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -26,11 +27,8 @@ pub struct BitGrid {
 }
 
 impl Logic for BitGrid {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, left);
-        self.left.reset.next = self.reset.val();
-
         self.left.d.next = self.left.q.val() - 1;
         if self.left.q.val() == 1 {
             self.left.d.next = self.bit_cycles.val();

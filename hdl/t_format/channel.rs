@@ -11,10 +11,11 @@ use super::outcome::Outcome;
 use super::reply::Reply;
 use crate::channel::Features;
 use crate::input_filter::InputFilter;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Receiver of one T-format encoder.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct TFormatChannel {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -86,48 +87,17 @@ pub struct TFormatChannel {
 
 impl Default for TFormatChannel {
     fn default() -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            trigger: Default::default(),
-            request_id: Default::default(),
-            address: Default::default(),
-            data: Default::default(),
-            bit_cycles: Default::default(),
-            reply_gap_us: Default::default(),
-            field_gap_us: Default::default(),
-            filter_cycles: Default::default(),
-            rx: Default::default(),
-            tx: Default::default(),
-            driver: Default::default(),
-            busy: Default::default(),
-            result_strobe: Default::default(),
-            fresh: Default::default(),
-            sequence: Default::default(),
-            single_turn: Default::default(),
-            single_valid: Default::default(),
-            single_parity: Default::default(),
-            multi_turn: Default::default(),
-            multi_valid: Default::default(),
-            multi_parity: Default::default(),
-            encoder_id: Default::default(),
-            memory_data: Default::default(),
-            alarm: Default::default(),
-            status: Default::default(),
-            crc: Default::default(),
-            reply_id: Default::default(),
-            flags: Default::default(),
+        Self::from_parts(TFormatChannelParts {
             filter: InputFilter::new(Features::NONE),
             exchange: Default::default(),
             reply: Default::default(),
             outcome: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for TFormatChannel {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, filter, exchange, reply, outcome);
         self.filter.reset.next = self.reset.val();

@@ -27,6 +27,7 @@ use super::primary::LowestCause;
 use super::protocol::{BIT_HZ, FAST_BIT_HZ, SYSTEM_HZ};
 use crate::bus::strobes::BusStrobes;
 use crate::reg::{Reg, SyncReg};
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// What a T-format receiver starts with; all of it can be set by the processor.
@@ -67,7 +68,7 @@ impl TFormatStart {
 }
 
 /// Asynchronous receiver with its bus.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct AsyncDsp {
     /// System clock, 20 or 60 MHz.
     pub clk_i: Signal<In, Clock>,
@@ -104,15 +105,23 @@ pub struct AsyncDsp {
     primary: LowestCause,
     select_0: SyncReg<Bit>,
     select_1: SyncReg<Bit>,
+    // HIGH, so that a pin that is high at power-up is not an edge.
+    #[start(true)]
     trigger_0: SyncReg<Bit>,
+    #[start(true)]
     trigger_1: SyncReg<Bit>,
+    #[start(true)]
     trigger_2: SyncReg<Bit>,
     us_count: Reg<Bits<6>>,
     us_tick: Reg<Bit>,
     start: Reg<Bit>,
+    #[given]
     request_id: Reg<Bits<4>>,
+    #[given]
     settings: Reg<Bits<16>>,
     memory: Reg<Bits<16>>,
+    // Nothing to write yet.
+    #[start(true)]
     memory_sum: Reg<Bit>,
     armed: Reg<Bit>,
     was_first: Reg<Bit>,
@@ -152,125 +161,27 @@ impl AsyncDsp {
     pub fn new(start: &TFormatStart) -> Self {
         let cycles = |bit_hz: u64| SYSTEM_HZ.map(|hz| hz / bit_hz);
         let bits = [cycles(BIT_HZ), cycles(FAST_BIT_HZ)].concat();
-        Self {
-            clk_i: Default::default(),
-            rst_i: Default::default(),
-            clk_select_i: Default::default(),
-            trigger_i: Default::default(),
-            bus_cs_n_i: Default::default(),
-            bus_rd_n_i: Default::default(),
-            bus_wr_n_i: Default::default(),
-            bus_address_i: Default::default(),
-            bus_data_i: Default::default(),
-            bus_data_o: Default::default(),
-            bus_data_oe: Default::default(),
-            encoder_data_o: Default::default(),
-            encoder_data_oe: Default::default(),
-            encoder_data_i: Default::default(),
-            led_o: Default::default(),
+        Self::from_parts(AsyncDspParts {
+            request_id: Reg::new(u64::from(start.request_id).into()),
+            settings: Reg::new(start.word().into()),
             strobes: Default::default(),
             channel: Default::default(),
             primary: Default::default(),
-            select_0: Default::default(),
-            select_1: Default::default(),
-            // HIGH, so that a pin that is high at power-up is not an edge.
-            trigger_0: SyncReg::new(true),
-            trigger_1: SyncReg::new(true),
-            trigger_2: SyncReg::new(true),
-            us_count: Default::default(),
-            us_tick: Default::default(),
-            start: Default::default(),
-            request_id: Reg::new(u64::from(start.request_id).into()),
-            settings: Reg::new(start.word().into()),
-            memory: Default::default(),
-            // Nothing to write yet.
-            memory_sum: Reg::new(true),
-            armed: Default::default(),
-            was_first: Default::default(),
-            seen_fresh: Default::default(),
-            seen_valid: Default::default(),
-            seen_sums: Default::default(),
-            seen_id: Default::default(),
-            seen_flags: Default::default(),
-            seen_single: Default::default(),
-            seen_multi: Default::default(),
-            seen_identity: Default::default(),
-            seen_alarm: Default::default(),
-            seen_status: Default::default(),
-            seen_crc: Default::default(),
-            seen_memory: Default::default(),
-            chosen: Default::default(),
-            out_data: Default::default(),
-            is_first: Default::default(),
-            memory_fits: Default::default(),
-            single_fits: Default::default(),
-            multi_fits: Default::default(),
-            fits: Default::default(),
-            valid: Default::default(),
-            us_last: Default::default(),
-            can_write: Default::default(),
-            control: Default::default(),
-            repeats: Default::default(),
-            complains: Default::default(),
-            communication: Default::default(),
-            overrun: Default::default(),
             us_cycles: (SYSTEM_HZ.iter())
                 .map(|hz| Constant::new((hz / 1_000_000 - 1).into()))
                 .collect(),
             bit_cycles: bits.iter().map(|n| Constant::new((*n).into())).collect(),
-        }
+        })
     }
 }
 
 impl Logic for AsyncDsp {
-    #[hdl_gen]
+    #[kernel(clk_i, rst_i)]
     fn update(&mut self) {
         self.strobes.clock.next = self.clk_i.val();
         self.strobes.reset.next = self.rst_i.val();
         self.channel.clock.next = self.clk_i.val();
         self.channel.reset.next = self.rst_i.val();
-        dff_setup!(self, clk_i, select_0, select_1, trigger_0, trigger_1, trigger_2);
-        dff_setup!(self, clk_i, us_count, us_tick, start, request_id, settings, memory, was_first);
-        dff_setup!(self, clk_i, seen_fresh, seen_valid, seen_id, seen_flags);
-        dff_setup!(self, clk_i, memory_sum, armed, seen_sums);
-        dff_setup!(
-            self,
-            clk_i,
-            seen_single,
-            seen_multi,
-            seen_identity,
-            seen_alarm,
-            seen_status
-        );
-        dff_setup!(self, clk_i, seen_crc, seen_memory, chosen, out_data);
-        self.select_0.reset.next = self.rst_i.val();
-        self.select_1.reset.next = self.rst_i.val();
-        self.trigger_0.reset.next = self.rst_i.val();
-        self.trigger_1.reset.next = self.rst_i.val();
-        self.trigger_2.reset.next = self.rst_i.val();
-        self.us_count.reset.next = self.rst_i.val();
-        self.us_tick.reset.next = self.rst_i.val();
-        self.start.reset.next = self.rst_i.val();
-        self.request_id.reset.next = self.rst_i.val();
-        self.settings.reset.next = self.rst_i.val();
-        self.memory.reset.next = self.rst_i.val();
-        self.memory_sum.reset.next = self.rst_i.val();
-        self.armed.reset.next = self.rst_i.val();
-        self.seen_sums.reset.next = self.rst_i.val();
-        self.was_first.reset.next = self.rst_i.val();
-        self.seen_fresh.reset.next = self.rst_i.val();
-        self.seen_valid.reset.next = self.rst_i.val();
-        self.seen_id.reset.next = self.rst_i.val();
-        self.seen_flags.reset.next = self.rst_i.val();
-        self.seen_single.reset.next = self.rst_i.val();
-        self.seen_multi.reset.next = self.rst_i.val();
-        self.seen_identity.reset.next = self.rst_i.val();
-        self.seen_alarm.reset.next = self.rst_i.val();
-        self.seen_status.reset.next = self.rst_i.val();
-        self.seen_crc.reset.next = self.rst_i.val();
-        self.seen_memory.reset.next = self.rst_i.val();
-        self.chosen.reset.next = self.rst_i.val();
-        self.out_data.reset.next = self.rst_i.val();
 
         self.strobes.cs_n.next = self.bus_cs_n_i.val();
         self.strobes.rd_n.next = self.bus_rd_n_i.val();

@@ -21,6 +21,7 @@ use super::bit_grid::BitGrid;
 use super::field_order::FieldOrder;
 use super::request_bits::RequestBits;
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Where the exchange is.
@@ -41,7 +42,7 @@ pub enum Phase {
 }
 
 /// Order, timing and checks of an exchange.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Exchange {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -114,6 +115,7 @@ pub struct Exchange {
     index: Reg<Bits<4>>,
     timer: Reg<Bits<7>>,
     previous: Reg<Bit>,
+    #[start(true)]
     line: Reg<Bit>,
     drives: Reg<Bit>,
     enabled: Reg<Bit>,
@@ -168,139 +170,27 @@ pub struct Exchange {
 
 impl Default for Exchange {
     fn default() -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            trigger: Default::default(),
-            request_id: Default::default(),
-            address: Default::default(),
-            data: Default::default(),
-            bit_cycles: Default::default(),
-            reply_gap_us: Default::default(),
-            field_gap_us: Default::default(),
-            level: Default::default(),
-            status: Default::default(),
-            request_fits: Default::default(),
-            tx: Default::default(),
-            driver: Default::default(),
-            busy: Default::default(),
-            take: Default::default(),
-            is_status: Default::default(),
-            is_single: Default::default(),
-            is_multi: Default::default(),
-            is_byte: Default::default(),
-            is_alarm: Default::default(),
-            publish: Default::default(),
-            good: Default::default(),
-            flags: Default::default(),
-            reply_id: Default::default(),
-            crc: Default::default(),
-            has_single: Default::default(),
-            has_multi: Default::default(),
-            has_identity: Default::default(),
-            has_alarm: Default::default(),
-            is_memory: Default::default(),
+        Self::from_parts(ExchangeParts {
             grid: Default::default(),
             order: Default::default(),
             bits: Default::default(),
-            phase: Default::default(),
-            index: Default::default(),
-            timer: Default::default(),
-            previous: Default::default(),
-            line: Reg::new(true),
-            drives: Default::default(),
-            enabled: Default::default(),
-            run: Default::default(),
-            owed: Default::default(),
-            bits_mod_3: Default::default(),
-            unsettled: Default::default(),
-            check: Default::default(),
-            echo: Default::default(),
-            refused: Default::default(),
-            heard: Default::default(),
-            missed: Default::default(),
-            bad_parity: Default::default(),
-            bad_echo: Default::default(),
-            bad_delimiter: Default::default(),
-            bad_crc: Default::default(),
-            memory_busy: Default::default(),
-            overrun: Default::default(),
-            upset: Default::default(),
-            in_request: Default::default(),
-            turns: Default::default(),
-            half_bit: Default::default(),
-            too_soon: Default::default(),
-            alarms: Default::default(),
-            is_end: Default::default(),
-            in_field: Default::default(),
-            is_ended: Default::default(),
-            is_astray: Default::default(),
-            rising: Default::default(),
-            forget: Default::default(),
-            expired: Default::default(),
-            is_start: Default::default(),
-            is_bit: Default::default(),
-            in_sync: Default::default(),
-            retimed: Default::default(),
-            strobe: Default::default(),
-            sampled: Default::default(),
-            differs: Default::default(),
-            wire_bit: Default::default(),
-            summed: Default::default(),
-            is_unknown: Default::default(),
-            is_not_idle: Default::default(),
-            is_silent: Default::default(),
-            is_headless: Default::default(),
-            is_short: Default::default(),
-            rest_us: Default::default(),
-            request_us: Default::default(),
-            raised: Default::default(),
-            is_whole: Default::default(),
-            is_good: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for Exchange {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, phase, index, timer, previous, line, drives, unsettled, check);
-        dff_setup!(self, clock, echo, refused, heard, missed, bad_parity, bad_echo);
-        dff_setup!(
-            self,
-            clock,
-            bad_delimiter,
-            bad_crc,
-            memory_busy,
-            overrun,
-            enabled,
-            run,
-            upset
-        );
-        dff_setup!(self, clock, owed, bits_mod_3);
         clock!(self, clock, grid, order);
         // What was noted of an exchange goes when its result has been published.
         self.forget.next = self.reset.val() | (self.phase.q.val() == Phase::Rest);
         self.grid.reset.next = self.reset.val();
         self.order.reset.next = self.reset.val();
-        self.phase.reset.next = self.reset.val();
-        self.index.reset.next = self.reset.val();
-        self.timer.reset.next = self.reset.val();
-        self.previous.reset.next = self.reset.val();
-        self.line.reset.next = self.reset.val();
-        self.drives.reset.next = self.reset.val();
-        self.enabled.reset.next = self.reset.val();
-        self.run.reset.next = self.reset.val();
-        self.owed.reset.next = self.reset.val();
-        self.bits_mod_3.reset.next = self.reset.val();
         self.upset.reset.next = self.forget.val();
-        self.unsettled.reset.next = self.reset.val();
         // Between exchanges, and before the reply.
         self.check.reset.next =
             self.forget.val() | ((self.phase.q.val() == Phase::Wait) & self.order.is_control.val());
         self.echo.reset.next = self.forget.val();
-        self.refused.reset.next = self.reset.val();
         self.heard.reset.next = self.forget.val();
         self.missed.reset.next = self.forget.val();
         self.bad_parity.reset.next = self.forget.val();
@@ -308,7 +198,6 @@ impl Logic for Exchange {
         self.bad_delimiter.reset.next = self.forget.val();
         self.bad_crc.reset.next = self.forget.val();
         self.memory_busy.reset.next = self.forget.val();
-        self.overrun.reset.next = self.reset.val();
 
         self.grid.bit_cycles.next = self.bit_cycles.val();
         self.grid.restart.next = false;

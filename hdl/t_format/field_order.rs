@@ -10,6 +10,7 @@
 //! ```
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// The field under way.
@@ -44,7 +45,7 @@ pub enum FieldKind {
 }
 
 /// Field under way.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct FieldOrder {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -105,11 +106,8 @@ pub struct FieldOrder {
 }
 
 impl Logic for FieldOrder {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(self, clock, kind);
-        self.kind.reset.next = self.reset.val();
-
         self.is_known.next = true;
         self.is_write.next = false;
         self.memory.next = false;

@@ -1,10 +1,11 @@
 //! Outcome: the result registers, changed in one clock cycle, with the last good position held, and the parity that it came with.
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Result registers of one T-format channel.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct Outcome {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -100,59 +101,8 @@ pub struct Outcome {
 }
 
 impl Logic for Outcome {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            strobe,
-            is_fresh,
-            count,
-            single,
-            has_had_single,
-            multi
-        );
-        dff_setup!(
-            self,
-            clock,
-            has_had_multi,
-            identity,
-            memory,
-            alarms,
-            state,
-            received
-        );
-        dff_setup!(
-            self,
-            clock,
-            echo,
-            low_flags,
-            memory_busy,
-            overrun,
-            upset,
-            single_sum,
-            multi_sum
-        );
-        self.strobe.reset.next = self.reset.val();
-        self.is_fresh.reset.next = self.reset.val();
-        self.count.reset.next = self.reset.val();
-        self.single.reset.next = self.reset.val();
-        self.has_had_single.reset.next = self.reset.val();
-        self.multi.reset.next = self.reset.val();
-        self.has_had_multi.reset.next = self.reset.val();
-        self.identity.reset.next = self.reset.val();
-        self.memory.reset.next = self.reset.val();
-        self.alarms.reset.next = self.reset.val();
-        self.state.reset.next = self.reset.val();
-        self.received.reset.next = self.reset.val();
-        self.echo.reset.next = self.reset.val();
-        self.low_flags.reset.next = self.reset.val();
-        self.memory_busy.reset.next = self.reset.val();
-        self.upset.reset.next = self.reset.val();
-        self.overrun.reset.next = self.reset.val();
-        self.single_sum.reset.next = self.reset.val();
-        self.multi_sum.reset.next = self.reset.val();
-
         self.strobe.d.next = self.publish.val();
         self.take.next = self.publish.val() & self.good.val();
         if self.publish.val() {

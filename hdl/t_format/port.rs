@@ -17,6 +17,7 @@ use crate::channel::Features;
 use crate::input_filter::InputFilter;
 use crate::reg::Reg;
 use crate::snapshot::Snapshot;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Words that the host reaches, as `host_address` counts them.
@@ -32,7 +33,7 @@ pub mod word {
 }
 
 /// Port of one T-format encoder.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct TFormatPort {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -111,6 +112,8 @@ pub struct TFormatPort {
     send_id: Reg<Bits<4>>,
     send_address: Reg<Bits<7>>,
     send_data: Reg<Bits<8>>,
+    // Nothing to send yet.
+    #[start(true)]
     send_sum: Reg<Bit>,
     memory: Reg<Bits<8>>,
     echo: Reg<Bits<4>>,
@@ -148,144 +151,25 @@ pub struct TFormatPort {
 
 impl Default for TFormatPort {
     fn default() -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            tick_us: Default::default(),
-            timestamp: Default::default(),
-            trigger: Default::default(),
-            data_i: Default::default(),
-            request_id: Default::default(),
-            bit_cycles: Default::default(),
-            reply_gap_us: Default::default(),
-            field_gap_us: Default::default(),
-            filter_cycles: Default::default(),
-            data_o: Default::default(),
-            data_oe: Default::default(),
-            busy: Default::default(),
-            over: Default::default(),
-            over_request: Default::default(),
-            result_strobe: Default::default(),
-            position: Default::default(),
-            position_valid: Default::default(),
-            fresh: Default::default(),
-            sequence: Default::default(),
-            first_fall_timestamp: Default::default(),
-            age_us: Default::default(),
-            cause: Default::default(),
-            flags: Default::default(),
-            host_address: Default::default(),
-            host_read: Default::default(),
-            host_word: Default::default(),
-            host_write: Default::default(),
-            host_half: Default::default(),
-            host_data: Default::default(),
+        Self::from_parts(TFormatPortParts {
             filter: InputFilter::new(Features::NONE),
             exchange: Default::default(),
             reply: Default::default(),
             primary: Default::default(),
             snapshot: Default::default(),
-            rest: Default::default(),
-            started: Default::default(),
-            lost: Default::default(),
-            own: Default::default(),
-            own_too: Default::default(),
-            armed: Default::default(),
-            pending: Default::default(),
-            send_id: Default::default(),
-            send_address: Default::default(),
-            send_data: Default::default(),
-            // Nothing to send yet.
-            send_sum: Reg::new(true),
-            memory: Default::default(),
-            echo: Default::default(),
-            own_cause: Default::default(),
-            done: Default::default(),
-            status: Default::default(),
-            identity: Default::default(),
-            alarms: Default::default(),
-            crc: Default::default(),
-            has_had_single: Default::default(),
-            has_had_multi: Default::default(),
-            shown: Default::default(),
-            is_busy: Default::default(),
-            is_own: Default::default(),
-            is_torn: Default::default(),
-            send_sum_now: Default::default(),
-            send_fits: Default::default(),
-            reply_fits: Default::default(),
-            good: Default::default(),
-            own_busy: Default::default(),
-            own_start: Default::default(),
-            own_now: Default::default(),
-            begins: Default::default(),
-            sends: Default::default(),
-            takes: Default::default(),
-            overrun: Default::default(),
-            sum_flags: Default::default(),
-            flags_in: Default::default(),
-            code: Default::default(),
-            card_cause: Default::default(),
-            single: Default::default(),
-            multi: Default::default(),
-            chosen: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for TFormatPort {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         clock!(self, clock, filter, exchange, reply, snapshot);
-        dff_setup!(
-            self,
-            clock,
-            rest,
-            started,
-            lost,
-            own,
-            armed,
-            pending,
-            send_id,
-            send_address
-        );
-        dff_setup!(self, clock, send_data, memory, echo, own_cause, done, status, identity);
-        dff_setup!(
-            self,
-            clock,
-            alarms,
-            crc,
-            has_had_single,
-            has_had_multi,
-            shown
-        );
-        dff_setup!(self, clock, own_too, send_sum);
-        self.own_too.reset.next = self.reset.val();
-        self.send_sum.reset.next = self.reset.val();
         self.filter.reset.next = self.reset.val();
         self.exchange.reset.next = self.reset.val();
         self.reply.reset.next = self.reset.val();
         self.snapshot.reset.next = self.reset.val();
-        self.rest.reset.next = self.reset.val();
         self.started.reset.next = self.reset.val() | !self.exchange.busy.val();
-        self.lost.reset.next = self.reset.val();
-        self.own.reset.next = self.reset.val();
-        self.armed.reset.next = self.reset.val();
-        self.pending.reset.next = self.reset.val();
-        self.send_id.reset.next = self.reset.val();
-        self.send_address.reset.next = self.reset.val();
-        self.send_data.reset.next = self.reset.val();
-        self.memory.reset.next = self.reset.val();
-        self.echo.reset.next = self.reset.val();
-        self.own_cause.reset.next = self.reset.val();
-        self.done.reset.next = self.reset.val();
-        self.status.reset.next = self.reset.val();
-        self.identity.reset.next = self.reset.val();
-        self.alarms.reset.next = self.reset.val();
-        self.crc.reset.next = self.reset.val();
-        self.has_had_single.reset.next = self.reset.val();
-        self.has_had_multi.reset.next = self.reset.val();
-        self.shown.reset.next = self.reset.val();
 
         // Whose turn it is: a trigger's, or else the host's. Between two exchanges the encoder gets a rest.
         self.is_busy.next = self.exchange.busy.val() | self.rest.q.val().any();

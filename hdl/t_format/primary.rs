@@ -1,9 +1,10 @@
 //! Primary cause: the lowest of the raw flags, since causes are numbered so that the lowest explains the others.
 
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Picks the lowest flag.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct LowestCause {
     /// Raw flags, see [`super::cause`].
     pub flags: Signal<In, Bits<16>>,
@@ -12,7 +13,7 @@ pub struct LowestCause {
 }
 
 impl Logic for LowestCause {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.cause.next = 0.into();
         if self.flags.val().get_bit(15) {

@@ -2,10 +2,11 @@
 //! came, which go with them wherever they are kept.
 
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Fields of the reply under way.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct Reply {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -51,19 +52,8 @@ pub struct Reply {
 }
 
 impl Logic for Reply {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            status_bits,
-            single_bits,
-            multi_bits,
-            byte_bits,
-            alarm_bits,
-            single_sum,
-            multi_sum
-        );
         self.single_sum.reset.next = self.reset.val() | self.idle.val();
         self.multi_sum.reset.next = self.reset.val() | self.idle.val();
         self.status_bits.reset.next = self.reset.val() | self.idle.val();

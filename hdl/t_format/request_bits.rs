@@ -1,9 +1,10 @@
 //! Request bits: the bit of a field that is sent, or that a reply has to repeat.
 
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// One data bit of the control, address, data or CRC field.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct RequestBits {
     /// Request ID.
     pub request_id: Signal<In, Bits<4>>,
@@ -29,7 +30,7 @@ pub struct RequestBits {
 }
 
 impl Logic for RequestBits {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.parity.next = self.request_id.val().get_bit(0)
             ^ self.request_id.val().get_bit(1)

@@ -1,9 +1,10 @@
 //! Primary cause: one out of all the flags of a frame.
 
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Picks the cause that explains the others; what stands later wins.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct PrimaryCause {
     /// Raw flags, see [`super::cause::flag`](mod@super::cause::flag).
     pub flags: Signal<In, Bits<20>>,
@@ -12,7 +13,7 @@ pub struct PrimaryCause {
 }
 
 impl Logic for PrimaryCause {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
         self.cause.next = 0.into();
         if self.flags.val().get_bit(7) {

@@ -14,10 +14,11 @@ use super::cause::{self, flag};
 use super::primary::PrimaryCause;
 use crate::channel::{Features, FixedTimes};
 use crate::reg::Reg;
+use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Result, cause and flags of one channel's frames.
-#[derive(LogicBlock)]
+#[derive(LogicBlock, Block)]
 pub struct Verdict {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -162,45 +163,7 @@ fn possible(features: Features) -> u64 {
 impl Verdict {
     /// A verdict with these fixed times and features.
     pub fn new(times: FixedTimes, features: Features) -> Self {
-        Self {
-            clock: Default::default(),
-            reset: Default::default(),
-            found: Default::default(),
-            answer_taken: Default::default(),
-            prove: Default::default(),
-            is_measuring: Default::default(),
-            settings_upset: Default::default(),
-            give_up: Default::default(),
-            is_late: Default::default(),
-            refuse: Default::default(),
-            announce: Default::default(),
-            normal_end: Default::default(),
-            is_going: Default::default(),
-            is_own: Default::default(),
-            lost: Default::default(),
-            serial_ok: Default::default(),
-            parallel_ok: Default::default(),
-            f1: Default::default(),
-            f2: Default::default(),
-            is_echo: Default::default(),
-            recovery_cycles: Default::default(),
-            recovery_min_cycles: Default::default(),
-            taken: Default::default(),
-            is_received: Default::default(),
-            is_doubtful: Default::default(),
-            is_bad: Default::default(),
-            gave_up: Default::default(),
-            is_telling: Default::default(),
-            publish: Default::default(),
-            once_more: Default::default(),
-            good: Default::default(),
-            late_fault: Default::default(),
-            withdraw: Default::default(),
-            confirm: Default::default(),
-            over: Default::default(),
-            displaced: Default::default(),
-            cause: Default::default(),
-            flags: Default::default(),
+        Self::from_parts(VerdictParts {
             chooser: Default::default(),
             has_diagnosis: Constant::new(features.diagnosis),
             own_recovery_min_cycles: Constant::new(times.own_recovery_min_cycles.into()),
@@ -213,94 +176,13 @@ impl Verdict {
             trigger_overrun: Constant::new(flag(cause::TRIGGER_OVERRUN).into()),
             too_short: Constant::new(flag(cause::RECOVERY_TOO_SHORT).into()),
             stored_upset: Constant::new(flag(cause::UPSET).into()),
-            seen: Default::default(),
-            taken_now: Default::default(),
-            gave_up_now: Default::default(),
-            gave_up_late: Default::default(),
-            refused: Default::default(),
-            announced: Default::default(),
-            ended: Default::default(),
-            overrun: Default::default(),
-            was_bad: Default::default(),
-            publish_now: Default::default(),
-            good_now: Default::default(),
-            once_more_now: Default::default(),
-            is_silent: Default::default(),
-            pending: Default::default(),
-            withdraw_now: Default::default(),
-            confirm_now: Default::default(),
-            late_now: Default::default(),
-            over_now: Default::default(),
-            lost_now: Default::default(),
-            cause_now: Default::default(),
-            flags_now: Default::default(),
-            told: Default::default(),
-            crc_bad: Default::default(),
-            bad_now: Default::default(),
-            proven: Default::default(),
-            is_pending: Default::default(),
-            upset: Default::default(),
-            measured: Default::default(),
-            recovery_min: Default::default(),
-            early: Default::default(),
-        }
+        })
     }
 }
 
 impl Logic for Verdict {
-    #[hdl_gen]
+    #[kernel]
     fn update(&mut self) {
-        dff_setup!(
-            self,
-            clock,
-            seen,
-            taken_now,
-            gave_up_now,
-            gave_up_late,
-            refused,
-            announced,
-            ended,
-            overrun,
-            was_bad,
-            publish_now,
-            good_now,
-            late_now,
-            over_now,
-            lost_now,
-            cause_now,
-            flags_now
-        );
-        dff_setup!(
-            self,
-            clock,
-            pending,
-            once_more_now,
-            is_silent,
-            withdraw_now,
-            confirm_now
-        );
-        self.once_more_now.reset.next = self.reset.val();
-        self.is_silent.reset.next = self.reset.val();
-        self.pending.reset.next = self.reset.val();
-        self.withdraw_now.reset.next = self.reset.val();
-        self.confirm_now.reset.next = self.reset.val();
-        self.seen.reset.next = self.reset.val();
-        self.taken_now.reset.next = self.reset.val();
-        self.gave_up_now.reset.next = self.reset.val();
-        self.gave_up_late.reset.next = self.reset.val();
-        self.refused.reset.next = self.reset.val();
-        self.announced.reset.next = self.reset.val();
-        self.ended.reset.next = self.reset.val();
-        self.overrun.reset.next = self.reset.val();
-        self.was_bad.reset.next = self.reset.val();
-        self.publish_now.reset.next = self.reset.val();
-        self.good_now.reset.next = self.reset.val();
-        self.late_now.reset.next = self.reset.val();
-        self.over_now.reset.next = self.reset.val();
-        self.lost_now.reset.next = self.reset.val();
-        self.cause_now.reset.next = self.reset.val();
-        self.flags_now.reset.next = self.reset.val();
-
         // The frame's bits stay where they are until the verdict: an upset of one of them shows in its CRC.
         // Synthesis does not see by itself that some flags are never set.
         self.seen.d.next = self.found.val() & self.possible.val();

@@ -103,12 +103,12 @@ module s6_two_channel_add_info (
     assign is_off = &mrs[3:0];
 
     always @* begin
-        selected_next = selected;
-        first_next = first;
+        trusted_next = trusted;
         second_next = second;
         seen_next = seen;
+        first_next = first;
         right_next = right;
-        trusted_next = trusted;
+        selected_next = selected;
         if (answered) begin
             trusted_next = crc_ok;
         end

@@ -708,8 +708,8 @@ module s6_two_channel_channel (
 
     always @* begin
         reply_word_next = reply_word;
-        reply_right_next = reply_right;
         reply_has_parameter_next = reply_has_parameter;
+        reply_right_next = reply_right;
         if (reply_taken) begin
             reply_word_next = receiver_payload;
             reply_has_parameter_next = shape_has_parameter;

@@ -80,16 +80,6 @@ module s6_two_channel_frame_buffer (
     wire         _unused_ok = &{1'b0, write_address[12:11]};
 
     always @* begin
-        writing_next = writing;
-        if (start) begin
-            writing_next = 1'b1;
-        end
-        if (byte_end & is_past) begin
-            writing_next = 1'b0;
-        end
-    end
-
-    always @* begin
         at_next = at;
         if (byte_end) begin
             at_next = at + 7'd1;
@@ -100,6 +90,16 @@ module s6_two_channel_frame_buffer (
         run_next = run;
         if (byte_end) begin
             run_next = run + 7'd1;
+        end
+    end
+
+    always @* begin
+        writing_next = writing;
+        if (start) begin
+            writing_next = 1'b1;
+        end
+        if (byte_end & is_past) begin
+            writing_next = 1'b0;
         end
     end
 

@@ -209,8 +209,8 @@ module s6_two_channel_line_delay (
 
     always @* begin
         timing_armed_next = timing_armed;
-        cells_run_next = cells_run;
         second_half_next = second_half;
+        cells_run_next = cells_run;
         since_rise_next = since_rise + 11'd1;
         if (first_rise) begin
             timing_armed_next = 1'b1;
@@ -282,9 +282,9 @@ module s6_two_channel_line_delay (
     end
 
     always @* begin
-        delay_next = delay;
         shorten_next = shorten;
         lengthen_next = lengthen;
+        delay_next = delay;
         if (half_tick) begin
             shorten_next = 1'b0;
             lengthen_next = 1'b0;
@@ -318,9 +318,9 @@ module s6_two_channel_line_delay (
         center_seen_next = center_seen;
         edge_seen_next = edge_seen;
         edge_late_next = edge_late;
+        edge_place_next = edge_place;
         edge_error_next = edge_error;
         edge_outside_next = edge_outside;
-        edge_place_next = edge_place;
         if (center_now) begin
             center_seen_next = 1'b1;
         end

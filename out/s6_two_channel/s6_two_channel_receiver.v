@@ -361,17 +361,17 @@ module s6_two_channel_receiver (
     end
 
     always @* begin
-        field_next = field;
         left_next = left;
         to_send_next = to_send;
         under_way_next = under_way;
-        word_next = word;
-        covered_d = covered;
+        skip_rounds_next = skip_rounds;
+        field_next = field;
         f1_bit_next = f1_bit;
         f2_bit_next = f2_bit;
-        align_next = align;
-        skip_rounds_next = skip_rounds;
         infos_left_next = infos_left;
+        word_next = word;
+        covered_d = covered;
+        align_next = align;
         in_info_next = in_info;
         covered_bit = 1'b0;
         crc_bit = 1'b0;

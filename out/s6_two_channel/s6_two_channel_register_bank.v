@@ -397,13 +397,6 @@ module s6_two_channel_register_bank (
     assign load_now = !blocked & (!mixed_now | (blocked_now & overdue));
 
     always @* begin
-        count_held_next = count_held;
-        if (load_now) begin
-            count_held_next = trigger_count;
-        end
-    end
-
-    always @* begin
         one_gone_next = one_gone;
         overdue_next = overdue;
         if (load_now) begin
@@ -413,6 +406,13 @@ module s6_two_channel_register_bank (
         if (taken) begin
             one_gone_next = 1'b1;
             overdue_next = one_gone & !load_now;
+        end
+    end
+
+    always @* begin
+        count_held_next = count_held;
+        if (load_now) begin
+            count_held_next = trigger_count;
         end
     end
     assign load = load_now;
@@ -528,9 +528,9 @@ module s6_two_channel_register_bank (
     end
 
     always @* begin
+        line_selected_next = line_selected;
         service_skip_next = service_skip;
         service_selected_next = service_selected;
-        line_selected_next = line_selected;
         if (!busy) begin
             line_selected_next = line_page | t_format_page;
             service_skip_next = !word_page;

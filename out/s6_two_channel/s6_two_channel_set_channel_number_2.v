@@ -69,8 +69,8 @@ module s6_two_channel_set_channel_number_2 (
     wire         _unused_ok = &{1'b0, flags[11:0], flags[19]};
 
     always @* begin
-        took_next = took;
         waiting_next = waiting;
+        took_next = took;
         if (result_strobe) begin
             waiting_next = 1'b0;
         end

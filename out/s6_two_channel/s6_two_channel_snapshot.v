@@ -139,19 +139,19 @@ module s6_two_channel_snapshot (
     reg    [4:0] computed_next;
 
     always @* begin
+        moment_parity_next = moment_parity;
+        if (timed) begin
+            moment_parity_next = ^moment;
+        end
+    end
+
+    always @* begin
         age_next = age;
         if (tick_us & !age_full) begin
             age_next = age + 16'd1;
         end
         if (confirm & unconfirmed) begin
             age_next = 16'd0;
-        end
-    end
-
-    always @* begin
-        moment_parity_next = moment_parity;
-        if (timed) begin
-            moment_parity_next = ^moment;
         end
     end
     assign moment_wrong = good & !timed & ((^moment) ^ moment_parity);
@@ -186,18 +186,16 @@ module s6_two_channel_snapshot (
     assign upset_now = is_upset & !take_good & valid;
 
     always @* begin
-        held_next = held;
-        valid_next = valid;
         is_fresh_next = is_fresh;
         count_next = count;
-        stamp_next = stamp;
-        cause_held_next = cause_held;
-        flags_held_next = flags_held;
         received_next = received;
         computed_next = computed;
+        held_next = held;
         held_crc_next = held_crc;
         held_width_next = held_width;
         held_f2_next = held_f2;
+        stamp_next = stamp;
+        valid_next = valid;
         earlier_next = earlier;
         earlier_crc_next = earlier_crc;
         earlier_width_next = earlier_width;
@@ -206,6 +204,8 @@ module s6_two_channel_snapshot (
         earlier_valid_next = earlier_valid;
         earlier_parity_next = earlier_parity;
         parity_next = parity;
+        cause_held_next = cause_held;
+        flags_held_next = flags_held;
         if (publish) begin
             is_fresh_next = good & !moment_wrong;
             count_next = count + 16'd1;

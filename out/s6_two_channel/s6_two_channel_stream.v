@@ -129,9 +129,9 @@ module s6_two_channel_stream (
     );
 
     always @* begin
-        spoilt_next = spoilt;
-        if (replaced) begin
-            spoilt_next = 1'b1;
+        moment_next = moment;
+        if (trigger) begin
+            moment_next = timestamp;
         end
     end
 
@@ -143,9 +143,9 @@ module s6_two_channel_stream (
     end
 
     always @* begin
-        moment_next = moment;
-        if (trigger) begin
-            moment_next = timestamp;
+        spoilt_next = spoilt;
+        if (replaced) begin
+            spoilt_next = 1'b1;
         end
     end
 

@@ -394,22 +394,22 @@ module s6_two_channel_transaction (
 
     always @* begin
         phase_next = phase;
-        timer_next = timer;
-        is_calibrated_next = is_calibrated;
+        in_supplement_next = in_supplement;
         acquiring_next = acquiring;
+        slow_now_next = slow_now;
         tail_sampled_next = tail_sampled;
         recovery_next = recovery;
-        in_supplement_next = in_supplement;
+        leaving_next = leaving;
+        settling_next = settling;
+        probing_next = probing;
         answered_next = answered;
         late_next = late;
-        probing_next = probing;
-        settling_next = settling;
-        leaving_next = leaving;
-        slow_now_next = slow_now;
-        passes_next = passes;
-        measuring_next = measuring;
-        once_more_next = once_more;
         under_way_next = under_way;
+        is_calibrated_next = is_calibrated;
+        timer_next = timer;
+        passes_next = passes;
+        once_more_next = once_more;
+        measuring_next = measuring;
         proof = 1'b0;
         plugged = 1'b0;
         refuse = 1'b0;

@@ -132,6 +132,16 @@ module s6_two_channel_uart_bridge (
     );
 
     always @* begin
+        write_busy_next = write_busy;
+        if (access_now & writing) begin
+            write_busy_next = 1'b1;
+        end
+        if (done) begin
+            write_busy_next = 1'b0;
+        end
+    end
+
+    always @* begin
         idle_us_next = idle_us;
         expired_next = idle_us == TIMEOUT_US;
         if (tick_us) begin
@@ -140,16 +150,6 @@ module s6_two_channel_uart_bridge (
         if (stop_timer | expired) begin
             idle_us_next = 17'd0;
             expired_next = 1'b0;
-        end
-    end
-
-    always @* begin
-        write_busy_next = write_busy;
-        if (access_now & writing) begin
-            write_busy_next = 1'b1;
-        end
-        if (done) begin
-            write_busy_next = 1'b0;
         end
     end
     assign from_stream = in_frame | (state != BRIDGE_STATE_READ);
@@ -182,15 +182,15 @@ module s6_two_channel_uart_bridge (
     assign next_address = {1'b0, address} + 12'd1;
 
     always @* begin
-        state_next = state;
-        fixed_next = fixed;
-        writing_next = writing;
-        words_left_next = words_left;
-        address_next = address;
-        out_of_range_next = out_of_range;
-        byte_lane_next = byte_lane;
-        marked_next = marked;
         marker_next = marker;
+        marked_next = marked;
+        writing_next = writing;
+        fixed_next = fixed;
+        state_next = state;
+        words_left_next = words_left;
+        byte_lane_next = byte_lane;
+        out_of_range_next = out_of_range;
+        address_next = address;
         if (transmitter_accept & !from_stream) begin
             marker_next = 1'b0;
         end
@@ -326,8 +326,8 @@ module s6_two_channel_uart_bridge (
     assign data_moves = has_byte & !write_busy;
 
     always @* begin
-        next_byte_next = next_byte;
         has_byte_next = has_byte;
+        next_byte_next = next_byte;
         if (data_moves) begin
             has_byte_next = 1'b0;
         end

@@ -63,9 +63,9 @@ module s6_two_channel_uart_receiver (
     assign shifted = {1'b0, shift[9:1]} | ({9'd0, sync1} << 4'd9);
 
     always @* begin
-        active_next = active;
         in_start_bit_next = in_start_bit;
         shift_next = shift;
+        active_next = active;
         sample_next = hit & active;
         good_next = 1'b0;
         bad_next = 1'b0;

@@ -212,9 +212,9 @@ module s6_two_channel_verdict (
     end
 
     always @* begin
-        overrun_next = overrun;
-        cause_now_next = cause_now;
         flags_now_next = flags_now;
+        cause_now_next = cause_now;
+        overrun_next = overrun;
         if (proven | gave_up_now | refused | announced | early) begin
             flags_now_next = told;
             cause_now_next = chooser_cause;

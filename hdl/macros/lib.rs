@@ -1,0 +1,179 @@
+//! What a block would otherwise say again and again.
+//!
+//! [`macro@Block`] makes a block of its parts, so that its `new` names only those of which something is to be said. [`macro@kernel`] stands
+//! where rust-hdl has `#[hdl_gen]`, and connects clock and reset of every register that the kernel assigns.
+
+use proc_macro::TokenStream;
+use proc_macro2::Ident;
+use quote::{format_ident, quote};
+use std::collections::BTreeSet;
+use syn::punctuated::Punctuated;
+use syn::visit::{visit_expr_field, Visit};
+use syn::{
+    parse_macro_input, Data, DeriveInput, Expr, ExprField, Fields, ItemFn, Member, Token, Type,
+};
+
+/// The parts of a block: signals begin empty, registers with 0 or what `#[start(...)]` says. What else there is (constants,
+/// children, lists, and registers marked `#[given]`) must be given, by name and all of it, to `Self::from_parts`:
+///
+/// ```ignore
+/// #[derive(LogicBlock, Block)]
+/// struct Timer {
+///     clock: Signal<In, Clock>,
+///     #[start(true)]
+///     level: Reg<Bit>,
+///     last: Constant<Bits<8>>,
+/// }
+///
+/// Self::from_parts(TimerParts { last: Constant::new(last.into()) })
+/// ```
+///
+/// A block that needs nothing else has `Default` instead.
+#[proc_macro_derive(Block, attributes(start, given))]
+pub fn block(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    let name = &input.ident;
+    let (generics, arguments, bounds) = input.generics.split_for_impl();
+    let Data::Struct(data) = &input.data else {
+        return refuse(name, "a block is a struct");
+    };
+    let Fields::Named(fields) = &data.fields else {
+        return refuse(name, "the parts of a block have names");
+    };
+    let (mut own, mut given) = (vec![], vec![]);
+    for field in &fields.named {
+        let (part, kind) = (&field.ident, &field.ty);
+        let attribute = |name: &str| field.attrs.iter().find(|a| a.path().is_ident(name));
+        match attribute("start").map(|start| start.parse_args::<Expr>()) {
+            Some(Err(error)) => return error.into_compile_error().into(),
+            Some(Ok(start)) => own.push(quote!(#part: <#kind>::new(#start))),
+            None if attribute("given").is_none() && begins_empty(kind) => {
+                own.push(quote!(#part: ::core::default::Default::default()));
+            }
+            None => given.push((part, kind)),
+        }
+    }
+    if given.is_empty() {
+        return quote! {
+            impl #generics ::core::default::Default for #name #arguments #bounds {
+                fn default() -> Self {
+                    Self { #(#own),* }
+                }
+            }
+        }
+        .into();
+    }
+    let parts = format_ident!("{name}Parts");
+    let (names, kinds): (Vec<_>, Vec<_>) = given.into_iter().unzip();
+    quote! {
+        /// What is given to this block.
+        struct #parts #generics #bounds {
+            #(#names: #kinds),*
+        }
+
+        impl #generics #name #arguments #bounds {
+            fn from_parts(parts: #parts #arguments) -> Self {
+                Self { #(#names: parts.#names,)* #(#own),* }
+            }
+        }
+    }
+    .into()
+}
+
+/// Whether a part of this type needs nobody to say with what it begins: signals and registers.
+fn begins_empty(kind: &Type) -> bool {
+    let Type::Path(path) = kind else { return false };
+    let last = path.path.segments.last();
+    last.is_some_and(|last| {
+        ["Signal", "Reg", "SyncReg", "FallReg"]
+            .iter()
+            .any(|name| last.ident == name)
+    })
+}
+
+/// The kernel of a block: `#[hdl_gen]` of rust-hdl, in which each register that has its `d.next` assigned holds its value
+/// otherwise, has the block's clock, and, unless the kernel assigns its `reset.next`, the block's reset.
+///
+/// `#[kernel(clk_i, rst_i)]` where clock and reset have other names than `clock` and `reset`. Registers in lists are the kernel's.
+#[proc_macro_attribute]
+pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
+    let parser = Punctuated::<Ident, Token![,]>::parse_terminated;
+    let names = parse_macro_input!(arguments with parser);
+    let mut item = parse_macro_input!(item as ItemFn);
+    let usual = || ["clock", "reset"].map(|name| Ident::new(name, proc_macro2::Span::call_site()));
+    let names: Vec<Ident> = names.into_iter().collect();
+    let [clock, reset] = match &names[..] {
+        [] => usual(),
+        [clock, reset] => [clock.clone(), reset.clone()],
+        [one, ..] => return refuse(one, "kernel takes two names, of clock and reset"),
+    };
+    let mut found = Assigned::default();
+    found.visit_block(&item.block);
+    let Assigned {
+        registers, resets, ..
+    } = found;
+    let reset_here: Vec<&Ident> = registers.iter().filter(|r| !resets.contains(r)).collect();
+    let statements = &item.block.stmts;
+    let setup = match registers.is_empty() {
+        true => quote!(),
+        false => quote! {
+            dff_setup!(self, #clock, #(#registers),*);
+            #(self.#reset_here.reset.next = self.#reset.val();)*
+        },
+    };
+    *item.block = syn::parse_quote!({ #setup #(#statements)* });
+    quote!(#[hdl_gen] #item).into()
+}
+
+/// The registers that a kernel assigns, in the order in which it does.
+#[derive(Default)]
+struct Assigned {
+    registers: Vec<Ident>,
+    known: BTreeSet<String>,
+    /// Those whose reset it assigns itself.
+    resets: BTreeSet<Ident>,
+}
+
+impl<'ast> Visit<'ast> for Assigned {
+    fn visit_expr_field(&mut self, field: &'ast ExprField) {
+        if let Some((part, port)) = next_of(field) {
+            if port == "d" && self.known.insert(part.to_string()) {
+                self.registers.push(part.clone());
+            }
+            if port == "reset" {
+                self.resets.insert(part.clone());
+            }
+        }
+        visit_expr_field(self, field);
+    }
+}
+
+/// What a field is of, and its name.
+fn split(field: &ExprField) -> Option<(&Expr, &Ident)> {
+    match &field.member {
+        Member::Named(name) => Some((&field.base, name)),
+        Member::Unnamed(_) => None,
+    }
+}
+
+fn as_field(expr: &Expr) -> Option<&ExprField> {
+    match expr {
+        Expr::Field(field) => Some(field),
+        _ => None,
+    }
+}
+
+/// `self.part.port.next`: part and port.
+fn next_of(field: &ExprField) -> Option<(&Ident, &Ident)> {
+    let (port, next) = split(field)?;
+    let (part, port) = split(as_field(port)?)?;
+    let (block, part) = split(as_field(part)?)?;
+    let is_self = matches!(block, Expr::Path(path) if path.path.is_ident("self"));
+    (next == "next" && is_self).then_some((part, port))
+}
+
+fn refuse(place: &Ident, text: &str) -> TokenStream {
+    syn::Error::new(place.span(), text)
+        .into_compile_error()
+        .into()
+}
