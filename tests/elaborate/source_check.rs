@@ -28,7 +28,12 @@ struct Search<'a> {
 /// Finds kernels and looks into each.
 impl<'ast> Visit<'ast> for Search<'_> {
     fn visit_impl_item_fn(&mut self, function: &'ast syn::ImplItemFn) {
-        if function.attrs.iter().any(|a| a.path().is_ident("hdl_gen")) {
+        let is_kernel = |a: &syn::Attribute| {
+            ["hdl_gen", "kernel"]
+                .iter()
+                .any(|name| a.path().is_ident(name))
+        };
+        if function.attrs.iter().any(is_kernel) {
             Kernel(self).visit_block(&function.block);
         }
     }
@@ -182,7 +187,7 @@ fn no_kernel_of_the_core_uses_what_the_macro_erases() {
     let mut found = vec![];
     for path in files {
         let source = fs::read_to_string(&path).unwrap();
-        kernels += source.matches("#[hdl_gen]").count();
+        kernels += source.matches("#[kernel").count();
         let name = path.strip_prefix(root).unwrap().display().to_string();
         found.extend(check_source(&name, &source));
     }
