@@ -102,6 +102,7 @@ pub struct CardCore {
     /// The channel's last result is a good position.
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     timebase: Timebase,
+    #[start]
     trigger: Trigger,
     own_trigger: Vec<ChannelTrigger>,
     trigger_of: Vec<Signal<Local, Bit>>,
@@ -300,7 +301,6 @@ impl CardCore {
             endat_data_i: each(channels),
             led_channel_o: each(channels),
             timebase: Timebase::new(config.system_hz),
-            trigger: Default::default(),
             own_trigger: (config.channels.iter().take(own_triggers))
                 .map(|c| {
                     let own = c.request.trigger.unwrap_or_default();

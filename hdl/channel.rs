@@ -200,10 +200,12 @@ pub struct Channel {
     delay: LineDelay,
     receiver: Receiver,
     transaction: Transaction,
+    #[start]
     snapshot: Snapshot,
     shape: CommandShape,
     wanted_shape: CommandShape,
     add_info: AddInfo,
+    #[start]
     settings: FrameSettings,
     #[start(true)]
     clk_pin: Reg<Bit>,
@@ -336,11 +338,9 @@ impl Channel {
             delay: LineDelay::new(features),
             receiver: Receiver::new(features),
             transaction: Transaction::new(times, features),
-            snapshot: Default::default(),
             shape: CommandShape::new(features.requests),
             wanted_shape: CommandShape::new(features.requests),
             add_info: AddInfo::new(times.separator_cycles),
-            settings: Default::default(),
             own_asked: each(requests),
             ride_asked: each(requests),
             _requests: requests,

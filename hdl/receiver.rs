@@ -23,11 +23,11 @@ use crate::channel::Features;
 use crate::crc5::{Crc5Check, Crc5Serial, ORDER_OF_X};
 use crate::protocol;
 use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use endat_macros::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// What the next sample is.
-#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum Field {
     /// Cells before the earliest start bit: the line is undefined.
     Skip,
@@ -150,7 +150,9 @@ pub struct Receiver {
     pub serial_ok: Signal<Out, Bit>,
     /// The stored word fits the received CRC, now.
     pub parallel_ok: Signal<Out, Bit>,
+    #[start]
     check: Crc5Check,
+    #[start]
     serial: Crc5Serial,
     #[start(Field::Done)]
     field: Reg<Field>,
@@ -230,8 +232,6 @@ impl Receiver {
         let lead = u64::from(protocol::LEAD_PULSES);
         let order = ORDER_OF_X as u64;
         Self::from_parts(ReceiverParts {
-            check: Default::default(),
-            serial: Default::default(),
             has_all: Constant::new(features.requests),
             has_diagnosis: Constant::new(features.diagnosis),
             has_continuous: Constant::new(features.continuous),

@@ -57,7 +57,7 @@ mod tests;
 
 use crate::memory::{Memory, Rom};
 use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use endat_macros::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// Words of a program.
@@ -72,7 +72,7 @@ pub const INSTRUCTION_CYCLES: u64 = 3;
 pub const SHARED_CYCLES: u64 = 4;
 
 /// What the machine is doing.
-#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum Cycle {
     /// The program memory is read.
     Fetch,
@@ -124,8 +124,10 @@ pub struct Sequencer {
     /// The program.
     program: Rom<20, 11>,
     /// Even words of RAM; those of the second program in its upper half.
+    #[start]
     low: Memory<16, 8>,
     /// Odd words of RAM.
+    #[start]
     high: Memory<16, 8>,
     #[start(Cycle::Fetch)]
     cycle: Reg<Cycle>,
@@ -197,7 +199,7 @@ pub struct Sequencer {
 const START_AGAIN: u64 = 13 << 16;
 
 impl Sequencer {
-    /// A machine that runs `program`, from its first word on, once or, if it is shared, twice; see [`super::assembler`].
+    /// A machine that runs `program`, from its first word on, once or, if it is shared, twice; see [`assembler`].
     ///
     /// # Panics
     /// If it has more than [`PROGRAM_WORDS`] words, or one has more than 20 bits.
@@ -206,8 +208,6 @@ impl Sequencer {
         words.resize(words.len().max(PROGRAM_WORDS), START_AGAIN);
         Self::from_parts(SequencerParts {
             program: Rom::new(&words),
-            low: Default::default(),
-            high: Default::default(),
             is_shared: Constant::new(is_shared),
         })
     }

@@ -32,12 +32,12 @@ use crate::several::each;
 use crate::sure_bit::SureBit;
 use crate::timing;
 use cause::flag;
-use endat_macros::{kernel, Block};
+use endat_macros::{kernel, Block, States};
 use rust_hdl::prelude::*;
 use verdict::Verdict;
 
 /// What the wire is doing.
-#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum Phase {
     /// Idle, but data has not yet been low for tR.
     NotReady,
@@ -208,6 +208,7 @@ pub struct Transaction {
     pub flags: Signal<Out, Bits<20>>,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
+    #[start]
     health: LineHealth,
     verdict: Verdict,
     has_all: Constant<Bit>,
@@ -312,7 +313,6 @@ impl Transaction {
     /// A transaction with these fixed times and features.
     pub fn new(times: FixedTimes, features: Features) -> Self {
         Self::from_parts(TransactionParts {
-            health: Default::default(),
             verdict: Verdict::new(times, features),
             has_all: Constant::new(features.requests),
             has_diagnosis: Constant::new(features.diagnosis),

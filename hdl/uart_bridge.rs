@@ -20,7 +20,7 @@
 
 use crate::reg::Reg;
 use crate::uart::{UartReceiver, UartTransmitter};
-use endat_macros::{kernel, Block};
+use endat_macros::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// Longest pause within a command, in microseconds (LiteX: 100 ms).
@@ -29,7 +29,7 @@ pub const TIMEOUT_US: u64 = 100_000;
 pub const ADDRESS_BITS: u32 = 11;
 
 /// What the next byte means.
-#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum BridgeState {
     /// Command code.
     Command,

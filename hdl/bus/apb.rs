@@ -20,7 +20,7 @@ use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// APB3 slave in front of the register bank.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct ApbFront {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -64,6 +64,7 @@ pub struct ApbFront {
     pub read_byte: Signal<In, Bits<8>>,
     /// From the bank: the access has ended.
     pub done: Signal<In, Bit>,
+    #[start]
     words: WordAccess,
     busy: Reg<Bit>,
     ready: Reg<Bit>,
@@ -182,6 +183,7 @@ pub struct ApbCard {
     /// The channel's last result is a good position.
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     core: CardCore,
+    #[start]
     front: ApbFront,
     _direct_ports: usize,
     _channels: usize,
@@ -203,7 +205,6 @@ impl ApbCard {
             endat_data_i: each(channels),
             led_channel_o: each(channels),
             core: CardCore::new(config),
-            front: Default::default(),
             _direct_ports: direct_ports,
             _channels: channels,
         })

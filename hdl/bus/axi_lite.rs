@@ -22,7 +22,7 @@ use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// AXI4-Lite slave in front of the register bank.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct AxiLiteFront {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -84,6 +84,7 @@ pub struct AxiLiteFront {
     pub read_byte: Signal<In, Bits<8>>,
     /// From the bank: the access has ended.
     pub done: Signal<In, Bit>,
+    #[start]
     words: WordAccess,
     has_aw: Reg<Bit>,
     write_address: Reg<Bits<11>>,
@@ -269,6 +270,7 @@ pub struct AxiLiteCard {
     /// The channel's last result is a good position.
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     core: CardCore,
+    #[start]
     front: AxiLiteFront,
     _direct_ports: usize,
     _channels: usize,
@@ -290,7 +292,6 @@ impl AxiLiteCard {
             endat_data_i: each(channels),
             led_channel_o: each(channels),
             core: CardCore::new(config),
-            front: Default::default(),
             _direct_ports: direct_ports,
             _channels: channels,
         })

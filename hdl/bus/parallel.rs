@@ -26,7 +26,7 @@ use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Eight registers of 16 bits in front of the register bank.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct ParallelFront {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -68,7 +68,9 @@ pub struct ParallelFront {
     pub read_byte: Signal<In, Bits<8>>,
     /// From the bank: the access has ended.
     pub done: Signal<In, Bit>,
+    #[start]
     words: WordAccess,
+    #[start]
     strobes: BusStrobes,
     out_data: Reg<Bits<16>>,
     was_first: Reg<Bit>,
@@ -305,6 +307,7 @@ pub struct ParallelCard {
     /// The channel's last result is a good position.
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     core: CardCore,
+    #[start]
     front: ParallelFront,
     _direct_ports: usize,
     _channels: usize,
@@ -326,7 +329,6 @@ impl ParallelCard {
             endat_data_i: each(channels),
             led_channel_o: each(channels),
             core: CardCore::new(config),
-            front: Default::default(),
             _direct_ports: direct_ports,
             _channels: channels,
         })

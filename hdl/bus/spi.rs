@@ -16,14 +16,14 @@ use crate::card::CardCore;
 use crate::config::CardConfig;
 use crate::reg::{Reg, SyncReg};
 use crate::several::each;
-use endat_macros::{kernel, Block};
+use endat_macros::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// System clock cycles in the shortest period of the serial clock.
 pub const SCK_CYCLES_MIN: u64 = 8;
 
 /// What the byte means.
-#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum SpiState {
     /// 2 = write, 3 = read.
     Command,
@@ -84,6 +84,7 @@ pub struct SpiFront {
     pub read_byte: Signal<In, Bits<8>>,
     /// From the bank: the access has ended.
     pub done: Signal<In, Bit>,
+    #[start]
     words: WordAccess,
     sck_0: SyncReg<Bit>,
     sck_1: SyncReg<Bit>,
@@ -134,7 +135,6 @@ pub struct SpiFront {
 impl Default for SpiFront {
     fn default() -> Self {
         Self::from_parts(SpiFrontParts {
-            words: Default::default(),
             polynomial: Constant::new(0x1021u64.into()),
             accepted_word: Constant::new(0xa000_0000u64.into()),
             refused_word: Constant::new(0xa200_0000u64.into()),
@@ -395,6 +395,7 @@ pub struct SpiCard {
     /// The channel's last result is a good position.
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     core: CardCore,
+    #[start]
     front: SpiFront,
     _direct_ports: usize,
     _channels: usize,
@@ -416,7 +417,6 @@ impl SpiCard {
             endat_data_i: each(channels),
             led_channel_o: each(channels),
             core: CardCore::new(config),
-            front: Default::default(),
             _direct_ports: direct_ports,
             _channels: channels,
         })

@@ -19,7 +19,7 @@ use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Wishbone slave in front of the register bank.
-#[derive(LogicBlock, Default)]
+#[derive(LogicBlock, Block)]
 pub struct WishboneFront {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -65,6 +65,7 @@ pub struct WishboneFront {
     pub read_byte: Signal<In, Bits<8>>,
     /// From the bank: the access has ended.
     pub done: Signal<In, Bit>,
+    #[start]
     words: WordAccess,
     busy: Reg<Bit>,
     acknowledge: Reg<Bit>,
@@ -185,6 +186,7 @@ pub struct WishboneCard {
     /// The channel's last result is a good position.
     pub led_channel_o: Vec<Signal<Out, Bit>>,
     core: CardCore,
+    #[start]
     front: WishboneFront,
     _direct_ports: usize,
     _channels: usize,
@@ -206,7 +208,6 @@ impl WishboneCard {
             endat_data_i: each(channels),
             led_channel_o: each(channels),
             core: CardCore::new(config),
-            front: Default::default(),
             _direct_ports: direct_ports,
             _channels: channels,
         })

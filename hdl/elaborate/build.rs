@@ -1,12 +1,13 @@
 //! Modules from blocks: nets, registers, instances, and the processes of the kernel.
 
 use super::design::*;
+use super::docs::Docs;
 use super::draft::Draft;
 use super::names::verilog_name;
 use super::plan::{plan, Dependencies};
 use super::scope::{drop_replaced, Scope, Symbol};
 use super::tree::{AtomNode, BlockNode};
-use super::{docs, ElaborateError};
+use super::ElaborateError;
 use crate::memory::{MEMORY_TIMING, ROM_TIMING};
 use crate::reg::{FALL_REG_TIMING, REG_TIMING, SYNC_REG_TIMING};
 use rust_hdl::prelude::{clog2, AtomKind, TypeDescriptor, TypeKind, Verilog};
@@ -125,13 +126,7 @@ impl Builder {
     }
 
     fn draft<'a>(&mut self, block: &'a BlockNode) -> Result<Draft<'a>> {
-        let found = docs::find(block).map_err(|names| {
-            block.error(
-                "",
-                format!("has the same fields as {}", names.join(" and ")),
-                "give one of the types a field name of its own: types are told apart by their fields",
-            )
-        })?;
+        let found = block.docs.first();
         let mut draft = Draft {
             block,
             module: Module {
@@ -140,7 +135,7 @@ impl Builder {
                     Some(found) => found.name.clone(),
                     None => block.name.split('$').next().unwrap_or(&block.name).into(),
                 },
-                docs: found.map_or(vec![], |t| t.docs.clone()),
+                docs: found.map_or(vec![], |t| t.lines.clone()),
                 nets: vec![],
                 ports: vec![],
                 parameters: vec![],
@@ -151,14 +146,9 @@ impl Builder {
             },
             symbols: HashMap::new(),
             enums: vec![],
-            fields: found
-                .map(|t| {
-                    t.fields
-                        .iter()
-                        .map(|f| (f.name.as_str(), f.docs.as_slice()))
-                        .collect()
-                })
-                .unwrap_or_default(),
+            fields: (found.into_iter().flat_map(|t| &t.parts))
+                .map(|(name, lines)| (name.as_str(), lines.as_slice()))
+                .collect(),
             child_inputs: vec![],
             ports_of_child: vec![],
         };
@@ -171,7 +161,7 @@ impl Builder {
     fn atom(&mut self, draft: &mut Draft, atom: &AtomNode) -> Result<()> {
         let name = verilog_name(&atom.key);
         let docs = draft.docs(&atom.key);
-        let enum_id = self.intern_enums(&mut draft.enums, &atom.descriptor);
+        let enum_id = self.intern_enums(&mut draft.enums, &draft.block.docs, &atom.descriptor);
         let direction = match atom.kind {
             AtomKind::Constant => {
                 draft.module.parameters.push(Parameter {
@@ -223,6 +213,7 @@ impl Builder {
     fn intern_enums(
         &mut self,
         block_enums: &mut Vec<EnumId>,
+        docs: &[Docs],
         descriptor: &TypeDescriptor,
     ) -> Option<EnumId> {
         match &descriptor.kind {
@@ -237,13 +228,13 @@ impl Builder {
                     .iter()
                     .position(|e| e.name == descriptor.name && e.variants == variants);
                 let id = known.unwrap_or_else(|| {
-                    let found = docs::find_enum(&descriptor.name, &variants);
+                    let found = docs.iter().find(|t| t.name == descriptor.name);
                     self.design.enums.push(EnumType {
                         name: descriptor.name.clone(),
                         width_bits: clog2(variants.len()),
-                        docs: found.map_or(vec![], |t| t.docs.clone()),
+                        docs: found.map_or(vec![], |t| t.lines.clone()),
                         variant_docs: found.map_or(vec![], |t| {
-                            t.fields.iter().map(|f| f.docs.clone()).collect()
+                            t.parts.iter().map(|(_, lines)| lines.clone()).collect()
                         }),
                         variants,
                     });
@@ -256,7 +247,7 @@ impl Builder {
             }
             TypeKind::Composite(fields) => {
                 for field in fields {
-                    self.intern_enums(block_enums, &field.kind);
+                    self.intern_enums(block_enums, docs, &field.kind);
                 }
                 None
             }
@@ -280,7 +271,7 @@ impl Builder {
             ));
         };
         let name = verilog_name(&child.name);
-        let enum_id = self.intern_enums(&mut draft.enums, &d.descriptor);
+        let enum_id = self.intern_enums(&mut draft.enums, &draft.block.docs, &d.descriptor);
         let q = draft.net(name.clone(), d.width_bits, enum_id, draft.docs(&child.name));
         // What a flip-flop is given is called d where a field has the better name.
         let free_name = draft.free_name_of(["next", "d"].map(|end| format!("{name}_{end}")));
@@ -314,7 +305,7 @@ impl Builder {
         let mut nets = vec![];
         let ports = child.atoms.iter().filter(|atom| atom.kind.is_parameter());
         for (atom, port) in ports.zip(&self.design.modules[id].ports.clone()) {
-            let enum_id = self.intern_enums(&mut draft.enums, &atom.descriptor);
+            let enum_id = self.intern_enums(&mut draft.enums, &child.docs, &atom.descriptor);
             let net_name = draft.free_name(&format!("{name}_{}", verilog_name(&atom.key)));
             let net = draft.net(net_name, atom.width_bits, enum_id, vec![]);
             draft.child_port(&child.name, &atom.key, net, port.direction);

@@ -16,7 +16,7 @@ pub(super) struct Draft<'a> {
     pub module: Module,
     pub symbols: HashMap<String, Symbol>,
     pub enums: Vec<EnumId>,
-    pub fields: HashMap<&'static str, &'static [String]>,
+    pub fields: HashMap<&'a str, &'a [String]>,
     /// Nets that stand for an input of a child (or of a register), with what to call them in a message.
     pub child_inputs: Vec<(NetId, String)>,
     /// For each child block, the nets of its ports.

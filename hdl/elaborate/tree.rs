@@ -1,6 +1,7 @@
 //! The block tree, as rust-hdl's probe walks it, kept as plain data.
 
 use super::design::MAX_WIDTH_BITS;
+use super::docs::{self, Docs};
 use super::ElaborateError;
 use rust_hdl::prelude::*;
 
@@ -28,6 +29,8 @@ pub(super) struct BlockNode {
     pub fields: Vec<String>,
     pub hdl: Verilog,
     pub timing: Vec<TimingInfo>,
+    /// Of the block, if it has any, and of its enums.
+    pub docs: Vec<Docs>,
 }
 
 impl BlockNode {
@@ -39,6 +42,7 @@ impl BlockNode {
             children: vec![],
             fields: vec![],
             hdl: node.hdl(),
+            docs: docs::of(&node.timing()),
             timing: node.timing(),
         }
     }

@@ -4,17 +4,20 @@
 //! where rust-hdl has `#[hdl_gen]`, and connects clock and reset of every register that the kernel assigns.
 
 use proc_macro::TokenStream;
-use proc_macro2::Ident;
+use proc_macro2::{Ident, TokenStream as TokenStream2};
 use quote::{format_ident, quote};
 use std::collections::BTreeSet;
 use syn::punctuated::Punctuated;
-use syn::visit::{visit_expr_field, Visit};
+use syn::visit::{visit_angle_bracketed_generic_arguments, visit_expr_field, Visit};
 use syn::{
-    parse_macro_input, Data, DeriveInput, Expr, ExprField, Fields, ItemFn, Member, Token, Type,
+    parse_macro_input, AngleBracketedGenericArguments, Attribute, Data, DeriveInput, Expr,
+    ExprField, Field, Fields, GenericArgument, GenericParam, ItemFn, Lit, Member, Token, Type,
+    TypePath,
 };
 
-/// The parts of a block: signals begin empty, registers with 0 or what `#[start(...)]` says. What else there is (constants,
-/// children, lists, and registers marked `#[given]`) must be given, by name and all of it, to `Self::from_parts`:
+/// The parts of a block, and what is written about them. Signals begin empty, registers with 0 or what `#[start(...)]` says,
+/// children marked `#[start]` as they are by default. What else there is (constants, children, lists, and registers marked
+/// `#[given]`) must be given, by name and all of it, to `Self::from_parts`:
 ///
 /// ```ignore
 /// #[derive(LogicBlock, Block)]
@@ -40,21 +43,26 @@ pub fn block(input: TokenStream) -> TokenStream {
     let Fields::Named(fields) = &data.fields else {
         return refuse(name, "the parts of a block have names");
     };
+    let described = described(&input, &fields.named);
     let (mut own, mut given) = (vec![], vec![]);
     for field in &fields.named {
         let (part, kind) = (&field.ident, &field.ty);
         let attribute = |name: &str| field.attrs.iter().find(|a| a.path().is_ident(name));
-        match attribute("start").map(|start| start.parse_args::<Expr>()) {
-            Some(Err(error)) => return error.into_compile_error().into(),
-            Some(Ok(start)) => own.push(quote!(#part: <#kind>::new(#start))),
-            None if attribute("given").is_none() && begins_empty(kind) => {
-                own.push(quote!(#part: ::core::default::Default::default()));
+        match attribute("start") {
+            Some(start) if start.meta.require_path_only().is_err() => {
+                match start.parse_args::<Expr>() {
+                    Ok(start) => own.push(quote!(#part: <#kind>::new(#start))),
+                    Err(error) => return error.into_compile_error().into(),
+                }
             }
-            None => given.push((part, kind)),
+            None if attribute("given").is_some() || !begins_empty(kind) => given.push((part, kind)),
+            _ => own.push(quote!(#part: ::core::default::Default::default())),
         }
     }
     if given.is_empty() {
         return quote! {
+            #described
+
             impl #generics ::core::default::Default for #name #arguments #bounds {
                 fn default() -> Self {
                     Self { #(#own),* }
@@ -66,6 +74,8 @@ pub fn block(input: TokenStream) -> TokenStream {
     let parts = format_ident!("{name}Parts");
     let (names, kinds): (Vec<_>, Vec<_>) = given.into_iter().unzip();
     quote! {
+        #described
+
         /// What is given to this block.
         struct #parts #generics #bounds {
             #(#names: #kinds),*
@@ -80,6 +90,111 @@ pub fn block(input: TokenStream) -> TokenStream {
     .into()
 }
 
+/// What is written about an enum and its variants.
+#[proc_macro_derive(States)]
+pub fn states(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    match &input.data {
+        Data::Enum(data) => {
+            let states = data.variants.iter().map(|v| (&v.ident, &v.attrs[..]));
+            docs(&input, states, &[]).into()
+        }
+        _ => refuse(&input.ident, "states are those of an enum"),
+    }
+}
+
+/// The documentation of a block.
+fn described<'a>(
+    input: &'a DeriveInput,
+    fields: impl IntoIterator<Item = &'a Field> + Clone,
+) -> TokenStream2 {
+    let parameters = input.generics.params.iter();
+    let mut found = Enums {
+        parameters: parameters.filter_map(parameter).collect(),
+        enums: vec![],
+    };
+    for field in fields.clone() {
+        found.visit_type(&field.ty);
+    }
+    let named = fields
+        .into_iter()
+        .filter_map(|f| Some((f.ident.as_ref()?, &f.attrs[..])));
+    docs(input, named, &found.enums)
+}
+
+/// The documentation of a type, its parts and these enums.
+fn docs<'a>(
+    input: &DeriveInput,
+    parts: impl Iterator<Item = (&'a Ident, &'a [Attribute])>,
+    enums: &[&Ident],
+) -> TokenStream2 {
+    let name = &input.ident;
+    let (generics, arguments, bounds) = input.generics.split_for_impl();
+    let own = lines(&input.attrs);
+    let parts = parts.map(|(part, attributes)| {
+        let lines = lines(attributes);
+        quote!((stringify!(#part), &[#(#lines),*]))
+    });
+    quote! {
+        impl #generics crate::elaborate::docs::Described for #name #arguments #bounds {
+            const DOCS: crate::elaborate::docs::TypeDocs = crate::elaborate::docs::TypeDocs {
+                name: stringify!(#name),
+                lines: &[#(#own),*],
+                parts: &[#(#parts),*],
+                enums: &[#(&<#enums as crate::elaborate::docs::Described>::DOCS),*],
+            };
+        }
+    }
+}
+
+/// The lines of a documentation.
+fn lines(attributes: &[Attribute]) -> Vec<&Lit> {
+    let docs = attributes.iter().filter(|a| a.path().is_ident("doc"));
+    let values = docs.filter_map(|a| Some(&a.meta.require_name_value().ok()?.value));
+    values
+        .filter_map(|value| match value {
+            Expr::Lit(literal) => Some(&literal.lit),
+            _ => None,
+        })
+        .collect()
+}
+
+/// The name of a type or a number that a block is generic over.
+fn parameter(parameter: &GenericParam) -> Option<&Ident> {
+    match parameter {
+        GenericParam::Type(parameter) => Some(&parameter.ident),
+        GenericParam::Const(parameter) => Some(&parameter.ident),
+        GenericParam::Lifetime(_) => None,
+    }
+}
+
+/// Enums that signals and registers have as their type.
+struct Enums<'a> {
+    parameters: Vec<&'a Ident>,
+    enums: Vec<&'a Ident>,
+}
+
+impl<'a> Visit<'a> for Enums<'a> {
+    fn visit_angle_bracketed_generic_arguments(&mut self, all: &'a AngleBracketedGenericArguments) {
+        for argument in &all.args {
+            let GenericArgument::Type(Type::Path(TypePath { path, .. })) = argument else {
+                continue;
+            };
+            let Some(name) = path.get_ident() else {
+                continue;
+            };
+            let is_known = self.parameters.contains(&name) || self.enums.contains(&name);
+            if !is_known && NO_ENUMS.iter().all(|other| name != other) {
+                self.enums.push(name);
+            }
+        }
+        visit_angle_bracketed_generic_arguments(self, all);
+    }
+}
+
+/// Types of signals and directions that are no enums.
+const NO_ENUMS: [&str; 6] = ["In", "Out", "Local", "Bit", "bool", "Clock"];
+
 /// Whether a part of this type needs nobody to say with what it begins: signals and registers.
 fn begins_empty(kind: &Type) -> bool {
     let Type::Path(path) = kind else { return false };
@@ -93,6 +208,8 @@ fn begins_empty(kind: &Type) -> bool {
 
 /// The kernel of a block: `#[hdl_gen]` of rust-hdl, in which each register that has its `d.next` assigned holds its value
 /// otherwise, has the block's clock, and, unless the kernel assigns its `reset.next`, the block's reset.
+///
+/// It hands on what [`macro@Block`] knows.
 ///
 /// `#[kernel(clk_i, rst_i)]` where clock and reset have other names than `clock` and `reset`. Registers in lists are the kernel's.
 #[proc_macro_attribute]
@@ -122,7 +239,15 @@ pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
         },
     };
     *item.block = syn::parse_quote!({ #setup #(#statements)* });
-    quote!(#[hdl_gen] #item).into()
+    quote! {
+        #[hdl_gen]
+        #item
+
+        fn timing(&self) -> Vec<TimingInfo> {
+            crate::elaborate::docs::timing(&<Self as crate::elaborate::docs::Described>::DOCS)
+        }
+    }
+    .into()
 }
 
 /// The registers that a kernel assigns, in the order in which it does.

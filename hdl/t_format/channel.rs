@@ -80,8 +80,11 @@ pub struct TFormatChannel {
     /// Raw flags of the last exchange, see [`super::cause`].
     pub flags: Signal<Out, Bits<16>>,
     filter: InputFilter,
+    #[start]
     exchange: Exchange,
+    #[start]
     reply: Reply,
+    #[start]
     outcome: Outcome,
 }
 
@@ -89,9 +92,6 @@ impl Default for TFormatChannel {
     fn default() -> Self {
         Self::from_parts(TFormatChannelParts {
             filter: InputFilter::new(Features::NONE),
-            exchange: Default::default(),
-            reply: Default::default(),
-            outcome: Default::default(),
         })
     }
 }

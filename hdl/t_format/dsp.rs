@@ -100,8 +100,11 @@ pub struct AsyncDsp {
     pub encoder_data_i: Signal<In, Bit>,
     /// The last reply was good.
     pub led_o: Signal<Out, Bit>,
+    #[start]
     strobes: BusStrobes,
+    #[start]
     channel: TFormatChannel,
+    #[start]
     primary: LowestCause,
     select_0: SyncReg<Bit>,
     select_1: SyncReg<Bit>,
@@ -164,9 +167,6 @@ impl AsyncDsp {
         Self::from_parts(AsyncDspParts {
             request_id: Reg::new(u64::from(start.request_id).into()),
             settings: Reg::new(start.word().into()),
-            strobes: Default::default(),
-            channel: Default::default(),
-            primary: Default::default(),
             us_cycles: (SYSTEM_HZ.iter())
                 .map(|hz| Constant::new((hz / 1_000_000 - 1).into()))
                 .collect(),

@@ -21,11 +21,11 @@ use super::bit_grid::BitGrid;
 use super::field_order::FieldOrder;
 use super::request_bits::RequestBits;
 use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use endat_macros::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// Where the exchange is.
-#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum Phase {
     /// Nothing to do.
     Rest,
@@ -108,8 +108,11 @@ pub struct Exchange {
     pub has_alarm: Signal<Out, Bit>,
     /// They bring EEPROM data.
     pub is_memory: Signal<Out, Bit>,
+    #[start]
     grid: BitGrid,
+    #[start]
     order: FieldOrder,
+    #[start]
     bits: RequestBits,
     phase: Reg<Phase>,
     index: Reg<Bits<4>>,
@@ -166,16 +169,6 @@ pub struct Exchange {
     raised: Signal<Local, Bits<16>>,
     is_whole: Signal<Local, Bit>,
     is_good: Signal<Local, Bit>,
-}
-
-impl Default for Exchange {
-    fn default() -> Self {
-        Self::from_parts(ExchangeParts {
-            grid: Default::default(),
-            order: Default::default(),
-            bits: Default::default(),
-        })
-    }
 }
 
 impl Logic for Exchange {

@@ -10,11 +10,11 @@
 //! ```
 
 use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use endat_macros::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// The field under way.
-#[derive(Copy, Clone, PartialEq, Debug, LogicState)]
+#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum FieldKind {
     /// Control field.
     Control,

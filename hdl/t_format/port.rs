@@ -98,9 +98,13 @@ pub struct TFormatPort {
     /// What to write.
     pub host_data: Signal<In, Bits<16>>,
     filter: InputFilter,
+    #[start]
     exchange: Exchange,
+    #[start]
     reply: Reply,
+    #[start]
     primary: LowestCause,
+    #[start]
     snapshot: Snapshot,
     rest: Reg<Bits<2>>,
     started: Reg<Bit>,
@@ -153,10 +157,6 @@ impl Default for TFormatPort {
     fn default() -> Self {
         Self::from_parts(TFormatPortParts {
             filter: InputFilter::new(Features::NONE),
-            exchange: Default::default(),
-            reply: Default::default(),
-            primary: Default::default(),
-            snapshot: Default::default(),
         })
     }
 }

@@ -96,6 +96,7 @@ pub struct Verdict {
     pub cause: Signal<Out, Bits<5>>,
     /// Raw flags, see [`cause::flag`](mod@cause::flag).
     pub flags: Signal<Out, Bits<20>>,
+    #[start]
     chooser: PrimaryCause,
     has_diagnosis: Constant<Bit>,
     own_recovery_min_cycles: Constant<Bits<13>>,
@@ -164,7 +165,6 @@ impl Verdict {
     /// A verdict with these fixed times and features.
     pub fn new(times: FixedTimes, features: Features) -> Self {
         Self::from_parts(VerdictParts {
-            chooser: Default::default(),
             has_diagnosis: Constant::new(features.diagnosis),
             own_recovery_min_cycles: Constant::new(times.own_recovery_min_cycles.into()),
             possible: Constant::new(possible(features).into()),
