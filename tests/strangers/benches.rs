@@ -84,6 +84,7 @@ fn complaints(test: &str, cases: &[(u64, &str, Reader)]) -> Vec<String> {
         let files = card(*khz, bus)?;
         let (folder, _) = write(&format!("strangers-{test}-{index}"), &files);
         let (passes, text) = play(&folder, &files, *reader);
+        eprintln!("case {index}, {khz} kHz, {bus}, {reader:?}: {passes}");
         let _ = std::fs::remove_dir_all(folder);
         (!passes).then(|| format!("{khz} kHz, {bus}, {reader:?}: {text}"))
     })
@@ -102,7 +103,7 @@ fn every_language_bus_and_odd_clock_passes() {
     }
 }
 
-/// The full set: clock x bus x language. Some minutes; `cargo test every_clock_behind_every_bus -- --ignored`.
+/// The full set: clock x bus x language. Hours; `cargo test every_clock_behind_every_bus -- --ignored`.
 #[test]
 #[ignore = "some 480 simulations"]
 fn every_clock_behind_every_bus_in_every_language_passes() {

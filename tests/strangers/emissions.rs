@@ -117,6 +117,8 @@ fn every_emission_runs_in_every_language() {
             }
         }
         wrong.extend(cocotb(emission, folder, "-g2012"));
+        // It takes hours: what is known is told at once.
+        eprintln!("{}: {wrong:?}", emission.top());
         wrong
     });
 }
