@@ -7,19 +7,13 @@ use Name::{Accept, Configurations, Faults, Garbage, Merge, Page, Random, Sweep, 
 
 /// Those that count what becomes of each case.
 const COUNTING: &[Name] = &[Upsets, Faults, Garbage, Accept, Configurations];
+/// Those that have cases.
+#[rustfmt::skip]
+const RUNNING: &[Name] = &[Sweep, Random, Upsets, Faults, Garbage, Accept, Configurations];
 
 impl CampaignArgs {
     /// Each option that is not of every campaign: whether it is there, and whose it is.
     fn options(&self) -> [(&'static str, bool, &'static [Name]); 15] {
-        let threads = &[
-            Sweep,
-            Random,
-            Upsets,
-            Faults,
-            Garbage,
-            Accept,
-            Configurations,
-        ];
         [
             ("PART", !self.parts.is_empty(), &[Merge, Page]),
             (
@@ -47,7 +41,7 @@ impl CampaignArgs {
                 self.out.is_some(),
                 &[Upsets, Faults, Garbage, Accept, Configurations, Merge],
             ),
-            ("--threads", self.threads.is_given(), threads),
+            ("--threads", self.threads.is_given(), RUNNING),
             (
                 "--case",
                 self.case.is_some(),
