@@ -15,10 +15,61 @@ fn row<'p>(page: &'p str, head: &str) -> Vec<&'p str> {
     row.trim_matches('|').split('|').map(str::trim).collect()
 }
 
+/// A page with figures that come from elsewhere; `UPDATE_EXPECT=1` writes them into it.
+struct Figures {
+    path: std::path::PathBuf,
+    text: String,
+}
+
+impl Figures {
+    fn of(page: &str) -> Self {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
+        let text = std::fs::read_to_string(&path).unwrap();
+        Figures { path, text }
+    }
+
+    /// Cells of the row that begins with `head`, from its second on.
+    fn cells(&mut self, head: &str, cells: &[String]) {
+        let old = self.text.lines().find(|l| l.starts_with(head));
+        let old = old.unwrap_or_else(|| panic!("no row {head}")).to_owned();
+        let mut found: Vec<String> = old.split('|').map(str::to_owned).collect();
+        for (at, cell) in cells.iter().enumerate() {
+            found[at + 2] = format!(" {cell} ");
+        }
+        self.text = self.text.replacen(&old, &found.join("|"), 1);
+    }
+
+    /// The words between two others.
+    fn words(&mut self, before: &str, words: &str, behind: &str) {
+        let (head, tail) = self.text.split_once(before).unwrap();
+        let (_, tail) = tail.split_once(behind).unwrap();
+        self.text = format!("{head}{before}{words}{behind}{tail}");
+    }
+
+    fn check(self) {
+        if std::env::var_os("UPDATE_EXPECT").is_some() {
+            std::fs::write(&self.path, &self.text).unwrap();
+        }
+        let found = std::fs::read_to_string(&self.path).unwrap();
+        let rows = found.lines().zip(self.text.lines());
+        let wrong: Vec<_> = rows.filter(|(found, wanted)| found != wanted).collect();
+        assert!(
+            wrong.is_empty(),
+            "UPDATE_EXPECT=1 cargo test pages\n{wrong:#?}"
+        );
+    }
+}
+
+/// Figures of a subject for a family, of `tests/data/area.toml`.
+fn area(subject: &str, family: &str) -> [i64; 2] {
+    let text = Figures::of("tests/data/area.toml").text;
+    let table: toml::Table = text.parse().unwrap();
+    ["lut", "ff"].map(|kind| table[subject][family][kind].as_integer().unwrap())
+}
+
 #[test]
 fn the_sizes_in_the_readme_are_those_of_the_area_table() {
-    let table: toml::Table = include_str!("data/area.toml").parse().unwrap();
-    let figure = |subject: &str, kind: &str| table[subject][XC6S.name][kind].as_integer().unwrap();
+    let mut page = Figures::of("README.md");
     for (head, subject) in [
         ("| one port", "channel"),
         ("| the same with all mode commands", "channel_requests"),
@@ -42,34 +93,47 @@ fn the_sizes_in_the_readme_are_those_of_the_area_table() {
         ("| the same behind the parallel bus", "card_parallel"),
         ("| card with everything", "card_service"),
     ] {
-        let cells = row(README, head);
-        let wanted = ["lut", "ff"].map(|kind| figure(subject, kind).to_string());
-        assert_eq!(cells[1..3], wanted, "{head}");
+        page.cells(head, &area(subject, XC6S.name).map(|n| n.to_string()));
     }
-    // The receiver of T-format stands in a sentence.
-    let [lut, ff] = ["lut", "ff"].map(|kind| &table["t_format"][ICE40.name][kind]);
-    let text = format!("it takes {lut} LUTs of four inputs and {ff} flip-flops");
-    assert!(README.contains(&text), "{text}");
+    // The receiver of T-format has a sentence.
+    let [lut, ff] = area("t_format", ICE40.name);
+    page.words(
+        "short pulses, it takes ",
+        &lut.to_string(),
+        " LUTs of four inputs and",
+    );
+    page.words(" LUTs of four inputs and ", &ff.to_string(), " flip-flops");
     let peer: f64 = row(README, "| public peer")[1].parse().unwrap();
-    let ratio = figure("channel", "lut") as f64 / peer;
-    assert_eq!(row(README, "| one port")[3], format!("LUT {ratio:.2}"));
-    let share = figure("card", "lut") as f64 / 5720.0 * 100.0;
-    let share = format!("{share:.1} % of the LX9's 5720 LUTs");
-    assert_eq!(row(README, "| two-channel card")[3], share);
+    let share = |of: f64, lut: i64| lut as f64 / of;
+    let of_device = |lut| format!("{:.1} %", share(57.20, lut));
+    for (head, subject, third) in [
+        (
+            "| one port",
+            "channel",
+            &(|lut| format!("LUT {:.2}", share(peer, lut))) as &dyn Fn(i64) -> String,
+        ),
+        ("| two-channel card", "card", &|lut| {
+            of_device(lut) + " of the LX9's 5720 LUTs"
+        }),
+        ("| card with everything", "card_service", &of_device),
+    ] {
+        let [lut, ff] = area(subject, XC6S.name);
+        page.cells(head, &[lut.to_string(), ff.to_string(), third(lut)]);
+    }
+    page.check();
 }
 
 /// What synthesis saves without it.
 #[test]
 fn the_costs_of_the_guards_are_those_of_the_area_table() {
-    let page = include_str!("../ARCHITECTURE.md");
-    let table: toml::Table = include_str!("data/area.toml").parse().unwrap();
-    let figure = |subject: &str, kind: &str| table[subject][XC6S.name][kind].as_integer().unwrap();
+    let mut page = Figures::of("ARCHITECTURE.md");
+    let [lut, ff] = area("channel", XC6S.name);
     for guard in GUARDS {
-        let saved = |kind: &str| figure("channel", kind) - figure(guard.name, kind);
-        let cells = row(page, &format!("| {} |", guard.title));
-        let wanted = ["lut", "ff"].map(|kind| saved(kind).to_string());
-        assert_eq!(cells[1..3], wanted, "{}", guard.name);
+        let [less_lut, less_ff] = area(guard.name, XC6S.name);
+        let saved = [lut - less_lut, ff - less_ff].map(|n| n.to_string());
+        page.cells(&format!("| {} |", guard.title), &saved);
     }
+    page.check();
 }
 
 #[test]

@@ -144,7 +144,9 @@ pub fn synthesise(
     family: &Family,
 ) -> Result<Synthesis, GenError> {
     crate::artifact::write(folder, files, "make room there")?;
-    let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
+    // What comes out depends a little on the order of what goes in.
+    let mut names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
+    names.sort_unstable();
     let file = |end: &str| folder.join(format!("{}-{top}{end}", family.name));
     let local = |end: &str| format!("{}-{top}{end}", family.name);
     // nextpnr of some versions does not know $scopeinfo cells.

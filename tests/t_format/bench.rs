@@ -49,7 +49,7 @@ fn it_passes_on_receivers() {
 }
 
 const TOP: &str = "";
-const STROBES: &str = "strobes";
+const STROBES: &str = "bus_strobes";
 const EXCHANGE: &str = "exchange";
 const OUTCOME: &str = "outcome";
 
