@@ -99,7 +99,9 @@ const PARALLEL: &[(&str, &str)] = &[
     ("bus_data_o", "bus_data_from_card"),
     ("bus_data_oe", "bus_data_oe"),
 ];
-/// Tasks of hosts that move one word at a time.
+/// Tasks of every host, for what the bus of each does in `bus_write` and `bus_read`.
+const ACCESS: &str = include_str!("../templates/bench_host/access.v");
+/// What both are for hosts that move one word at a time.
 const WORDS: &str = include_str!("../templates/bench_host/words.v");
 
 /// Whether frames of the stream go out over the UART from the start.
@@ -141,7 +143,7 @@ pub fn host(bus: HostBus, card: &CardConfig) -> Result<Option<Host>, GenError> {
         access_cycles_max => access_cycles_max(card),
     };
     // Names stand before they are used.
-    let text = format!("{words}{own}");
+    let text = format!("{ACCESS}{words}{own}");
     Ok(Some(Host {
         text: template::render("bench_host", &text, &context)?,
         connections: (connections.iter())

@@ -70,13 +70,13 @@
         end
     endtask
 
-    task write_word(input [31:0] address, input [31:0] value);
+    task bus_write;
         begin
-            begin_frame(8'h02, address, 1);
-            send_byte(value[31:24]);
-            send_byte(value[23:16]);
-            send_byte(value[15:8]);
-            send_byte(value[7:0]);
+            begin_frame(8'h02, access_address, 1);
+            send_byte(access_value[31:24]);
+            send_byte(access_value[23:16]);
+            send_byte(access_value[15:8]);
+            send_byte(access_value[7:0]);
             // The sum is not part of itself.
             exchange_byte(crc_sum[15:8]);
             exchange_byte(crc_sum[7:0]);
@@ -85,12 +85,12 @@
         end
     endtask
 
-    task read_words(input [31:0] address, input integer words);
+    task bus_read;
         integer n, k;
         begin
-            begin_frame(8'h03, address, words);
+            begin_frame(8'h03, access_address, access_words);
             exchange_byte(8'h00);
-            for (n = 0; n < words; n = n + 1)
+            for (n = 0; n < access_words; n = n + 1)
                 for (k = 0; k < 4; k = k + 1) begin
                     receive_byte;
                     words_in[n] = {words_in[n][23:0], spi_byte};

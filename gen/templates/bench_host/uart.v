@@ -52,26 +52,26 @@
         end
     endtask
 
-    task write_word(input [31:0] address, input [31:0] value);
+    task bus_write;
         begin
-            send_command(8'h01, 1, address);
-            send_byte(value[31:24]);
-            send_byte(value[23:16]);
-            send_byte(value[15:8]);
-            send_byte(value[7:0]);
+            send_command(8'h01, 1, access_address);
+            send_byte(access_value[31:24]);
+            send_byte(access_value[23:16]);
+            send_byte(access_value[15:8]);
+            send_byte(access_value[7:0]);
         end
     endtask
 
     // Reads into the inbox; the answer has to come within twice its length on the line.
-    task read_words(input [31:0] address, input integer words);
+    task bus_read;
         integer k;
         begin
             received = 0;
-            send_command(8'h02, words, address);
-            for (k = 0; k < 80 * words + 400 && received < 4 * words; k = k + 1)
+            send_command(8'h02, access_words, access_address);
+            for (k = 0; k < 80 * access_words + 400 && received < 4 * access_words; k = k + 1)
                 #(UART_BIT_NS);
-            if (received < 4 * words)
-                complain("bytes of a UART answer", received, 4 * words);
+            if (received < 4 * access_words)
+                complain("bytes of a UART answer", received, 4 * access_words);
         end
     endtask
 
