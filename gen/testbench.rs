@@ -15,7 +15,7 @@ use endat_hdl::card::{service_times, services};
 use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig, LIST};
 use endat_hdl::regs::{
-    Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, LINE, RESULT,
+    start, Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, LINE, RESULT,
     SERVICE,
 };
 use endat_hdl::service::program::{program, ServiceTimes, CLEAR_CYCLES};
@@ -290,7 +290,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         .registers
         .iter()
         .take_while(|r| r.name != "trigger_count")
-        .map(|r| format!("{:08X}", r.start(card, 0)))
+        .map(|r| format!("{:08X}", start(&CARD, r, card, 0)))
         .collect();
     let encoder = template::render(
         "encoder",
@@ -313,7 +313,9 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let frames = frame.flat_map(|r| (0..card.channels.len()).map(move |n| (r, n)));
     let frames = frames.filter(|_| card.own_triggers()).map(|(r, n)| {
         let own = r.fields.iter().filter(|f| is_own_trigger(f.name));
-        let value = own.fold(r.start(card, n), |word, f| word & !f.mask());
+        let value = own.fold(start(&CHANNEL_CONFIG, r, card, n), |word, f| {
+            word & !f.mask()
+        });
         let address = CHANNEL_CONFIG.address(r, n);
         context! { address, value => format!("{value:08X}") }
     });

@@ -207,24 +207,34 @@ impl Logic for ChannelRegisters {
             self.age_shown.d.next = self.age_now.val();
         }
 
-        self.word[0].next = bit_cast::<32, 16>(self.sequence.val())
-            | (bit_cast::<32, 5>(self.cause.val()) << 16)
-            | (bit_cast::<32, 1>(self.position_valid.val().into()) << 22)
-            | (bit_cast::<32, 1>(self.fresh.val().into()) << 23)
-            | (bit_cast::<32, 8>(self.flags.val().get_bits::<8>(12)) << 24);
+        self.word[0].next = place!(self.sequence.val(), result.status.sequence)
+            | place!(self.cause.val(), result.status.cause)
+            | place!(self.position_valid.val(), result.status.valid)
+            | place!(self.fresh.val(), result.status.fresh)
+            | place!(self.flags.val().get_bits::<8>(12), result.status.line);
         self.word[1].next = self.position.val().get_bits::<32>(0);
         // A good position has F1 = 0, and F2 = 1 where there is one: that there is one says all.
-        self.word[2].next = bit_cast::<32, 16>(self.position.val().get_bits::<16>(32))
-            | (bit_cast::<32, 5>(self.position_crc.val()) << 16)
-            | (bit_cast::<32, 1>(self.position_has_f2.val().into()) << 22)
-            | (bit_cast::<32, 6>(self.position_width.val()) << 24);
+        self.word[2].next = place!(
+            self.position.val().get_bits::<16>(32),
+            result.position_high.value
+        ) | place!(self.position_crc.val(), result.position_high.crc)
+            | place!(self.position_has_f2.val(), result.position_high.f2)
+            | place!(self.position_width.val(), result.position_high.width);
         self.word[3].next = self.first_fall_timestamp.val();
-        self.word[4].next = bit_cast::<32, 5>(self.crc_received.val())
-            | (bit_cast::<32, 5>(self.crc_computed.val()) << 5)
-            | (bit_cast::<32, 10>(self.delay_cycles.val().get_bits::<10>(0)) << 10)
-            | (bit_cast::<32, 12>(self.flags.val().get_bits::<12>(0)) << 20);
-        self.word[5].next = (bit_cast::<32, 13>(self.recovery_cycles.val()) << 16)
-            | (bit_cast::<32, 1>(self.delay_cycles.val().get_bit(10).into()) << 29);
+        self.word[4].next = place!(self.crc_received.val(), result.evidence.crc_received)
+            | place!(self.crc_computed.val(), result.evidence.crc_computed)
+            | place!(
+                self.delay_cycles.val().get_bits::<10>(0),
+                result.evidence.delay_cycles
+            )
+            | place!(self.flags.val().get_bits::<12>(0), result.evidence.flags);
+        self.word[5].next = place!(
+            self.recovery_cycles.val(),
+            result.age_recovery.recovery_cycles
+        ) | place!(
+            self.delay_cycles.val().get_bit(10),
+            result.age_recovery.delay_high
+        );
         for i in 0..self._words {
             self.held[i].clock.next = self.clock.val();
             self.held[i].reset.next = self.reset.val();
@@ -235,8 +245,8 @@ impl Logic for ChannelRegisters {
             self.shown[i].next = self.held[i].q.val();
         }
         self.shown[5].next = self.held[5].q.val()
-            | bit_cast::<32, 16>(self.age_shown.q.val())
-            | (bit_cast::<32, 1>(self.stale_shown.q.val().into()) << 30);
+            | place!(self.age_shown.q.val(), result.age_recovery.age_us)
+            | place!(self.stale_shown.q.val(), result.age_recovery.stale);
         for i in 0..self._words {
             self.byte[i].clock.next = self.clock.val();
             // A reset by deselection alone takes no logic; what a reset of the card would clear is never shown.
@@ -273,22 +283,27 @@ impl Logic for ChannelRegisters {
             self.config1.d.next = self.ring.word1.val();
             self.config2.d.next = self.ring.word2.val();
         }
-        self.trigger_skip.next = self.ring.word0.val().get_bits::<5>(11);
+        self.trigger_skip.next = field!(self.ring.word0.val(), config.frame.skip);
         self.ignored_sources.next = bit_cast::<3, 2>(self.ring.word0.val().get_bits::<2>(22))
-            | (bit_cast::<3, 1>(self.ring.word0.val().get_bit(30).into()) << 2);
-        self.period_cycles.next = self.config0.q.val().get_bits::<11>(0);
-        self.position_bits.next = self.config0.q.val().get_bits::<6>(16);
-        self.first_low_extra_cycles.next = self.config1.q.val().get_bits::<11>(0);
-        self.start_window_cycles.next = self.config1.q.val().get_bits::<6>(16);
-        self.filter_cycles.next = self.config1.q.val().get_bits::<4>(24);
-        self.filter_half.next = self.config1.q.val().get_bit(23);
-        self.field_gap_us.next = self.config2.q.val().get_bits::<3>(29);
-        self.start_timeout_us.next = self.config2.q.val().get_bits::<12>(0);
-        self.recovery_limit_cycles.next = self.config2.q.val().get_bits::<13>(16);
+            | (bit_cast::<3, 1>(
+                field!(self.ring.word0.val(), config.frame.ignore_register).into(),
+            ) << 2);
+        self.period_cycles.next = field!(self.config0.q.val(), config.frame.period_cycles);
+        self.position_bits.next = field!(self.config0.q.val(), config.frame.position_bits);
+        self.first_low_extra_cycles.next =
+            field!(self.config1.q.val(), config.timing.first_low_extra_cycles);
+        self.start_window_cycles.next =
+            field!(self.config1.q.val(), config.timing.start_window_cycles);
+        self.filter_cycles.next = field!(self.config1.q.val(), config.timing.filter_cycles);
+        self.filter_half.next = field!(self.config1.q.val(), config.timing.filter_half);
+        self.field_gap_us.next = field!(self.config2.q.val(), config.limits.field_gap_us);
+        self.start_timeout_us.next = field!(self.config2.q.val(), config.limits.start_timeout_us);
+        self.recovery_limit_cycles.next =
+            field!(self.config2.q.val(), config.limits.recovery_limit_cycles);
 
         // With settings that nobody wrote nothing goes out: these are no commands.
-        self.command.next = self.config0.q.val().get_bits::<6>(24);
-        self.request_id.next = self.config1.q.val().get_bits::<4>(28);
+        self.command.next = field!(self.config0.q.val(), config.frame.command);
+        self.request_id.next = field!(self.config1.q.val(), config.timing.request_id);
         if self.ring.is_damaged.val() | self.card_damaged.val() {
             self.command.next = 0.into();
             self.request_id.next = 15.into();

@@ -9,14 +9,12 @@
 //! frame takes longer than 32 cycles, so none is overtaken by the next.
 
 use crate::reg::Reg;
-use crate::regs::DIRECT;
+use crate::regs::{DIRECT, ERROR_CAUSES};
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Cycles from a result's strobe to its cropped position.
 pub const CROP_CYCLES: u64 = 33;
-/// Causes that are errors after reset: all but 0, which is the alarm's.
-pub const ERROR_CAUSES: u32 = !1;
 
 /// Direct outputs of one channel.
 #[derive(LogicBlock, Block)]
@@ -94,8 +92,8 @@ impl Logic for DirectOutput {
         // Two words: where the position is cropped, and what is an error.
         self.selected.next =
             self.in_range.val() & (self.word_address.val().get_bits::<10>(1) == self.pair.val());
-        self.word.next = bit_cast::<32, 6>(self.first_bit.q.val())
-            | (bit_cast::<32, 6>(self.length_bits.q.val()) << 8);
+        self.word.next = place!(self.first_bit.q.val(), direct.crop.first_bit)
+            | place!(self.length_bits.q.val(), direct.crop.length_bits);
         if self.word_address.val().get_bit(0) {
             self.word.next = self.error_causes.q.val();
         }
@@ -103,8 +101,8 @@ impl Logic for DirectOutput {
             if self.word_address.val().get_bit(0) {
                 self.error_causes.d.next = self.write_data.val();
             } else {
-                self.first_bit.d.next = self.write_data.val().get_bits::<6>(0);
-                self.length_bits.d.next = self.write_data.val().get_bits::<6>(8);
+                self.first_bit.d.next = field!(self.write_data.val(), direct.crop.first_bit);
+                self.length_bits.d.next = field!(self.write_data.val(), direct.crop.length_bits);
             }
         }
         // A reset by deselection takes no logic.

@@ -36,7 +36,7 @@ pub mod line_health;
 pub mod line_monitor;
 pub mod memory;
 pub mod phase_tracker;
-pub mod protocol;
+pub use endat_regs::protocol;
 pub mod receiver;
 pub mod reg;
 pub mod register_bank;

@@ -142,15 +142,7 @@ pub struct LineDelay {
     _trackers: usize,
 }
 
-/// Where the phase of the cells comes from.
-pub mod mode {
-    /// The tracked delay.
-    pub const TRACKED: u64 = 0;
-    /// A register.
-    pub const FIXED: u64 = 1;
-    /// The start bit of each frame; the tracked delay tells its pulse.
-    pub const FRAME: u64 = 2;
-}
+pub use endat_regs::line::mode;
 
 impl LineDelay {
     /// A line delay with these features.

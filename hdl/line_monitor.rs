@@ -17,29 +17,7 @@ use crate::reg::Reg;
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Where the words of a monitor are, see [`crate::regs::LINE`].
-pub mod word {
-    /// Histogram of the offsets, -16 and before to 15 and after.
-    pub const HISTOGRAM: u8 = 0;
-    /// Source of the phase, majority, bin width.
-    pub const ALIGNMENT: u8 = 32;
-    /// Delay in mode `fixed`.
-    pub const FIXED_DELAY: u8 = 33;
-    /// Limits of the alarms.
-    pub const LIMITS: u8 = 34;
-    /// Clears.
-    pub const CLEAR: u8 = 35;
-    /// Offsets of the last frame.
-    pub const FRAME: u8 = 40;
-    /// Offsets since cleared, alarms.
-    pub const WORST: u8 = 41;
-    /// Tracked delay and its reference.
-    pub const PHASE: u8 = 42;
-    /// Glitches and bad frames.
-    pub const COUNTS: u8 = 43;
-    /// Frames.
-    pub const FRAMES: u8 = 44;
-}
+pub use endat_regs::line::word;
 
 /// What the settings are after reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -184,26 +162,26 @@ impl Logic for LineMonitor {
         self.at.next = self.host_address.val();
         self.clear.d.next = false;
         if self.host_write.val() & !self.host_half.val() {
-            if self.at.val() == 32 {
-                self.wanted_mode.d.next = self.host_data.val().get_bits::<2>(0);
-                self.wanted_majority.d.next = self.host_data.val().get_bit(4);
-                self.bin_shift.d.next = self.host_data.val().get_bits::<2>(8);
+            if self.at.val() == offset!(line.alignment) {
+                self.wanted_mode.d.next = half!(self.host_data.val(), line.alignment.mode);
+                self.wanted_majority.d.next = half!(self.host_data.val(), line.alignment.majority);
+                self.bin_shift.d.next = half!(self.host_data.val(), line.alignment.bin_shift);
             }
-            if self.at.val() == 33 {
-                self.wanted_delay.d.next = self.host_data.val().get_bits::<15>(0);
+            if self.at.val() == offset!(line.fixed_delay) {
+                self.wanted_delay.d.next = half!(self.host_data.val(), line.fixed_delay.value);
             }
-            if self.at.val() == 34 {
-                self.drift_limit.d.next = self.host_data.val().get_bits::<12>(0);
+            if self.at.val() == offset!(line.limits) {
+                self.drift_limit.d.next = half!(self.host_data.val(), line.limits.drift);
             }
-            if self.at.val() == 35 {
-                self.clear.d.next = self.host_data.val().get_bit(0);
-                if self.host_data.val().get_bit(1) {
+            if self.at.val() == offset!(line.clear) {
+                self.clear.d.next = half!(self.host_data.val(), line.clear.clear);
+                if half!(self.host_data.val(), line.clear.reference) {
                     self.reference.d.next = self.phase.val();
                 }
             }
         }
-        if self.host_write.val() & self.host_half.val() & (self.at.val() == 34) {
-            self.offset_limit.d.next = self.host_data.val().get_bits::<7>(0);
+        if self.host_write.val() & self.host_half.val() & (self.at.val() == offset!(line.limits)) {
+            self.offset_limit.d.next = half!(self.host_data.val(), line.limits.offset);
         }
         if !self.busy.val() {
             self.mode.d.next = self.wanted_mode.q.val();
@@ -321,39 +299,39 @@ impl Logic for LineMonitor {
         // Reading: the RAM is asked when it is not counting.
         self.shown.next = 0.into();
         match self.at.val().index() {
-            32 => {
-                self.shown.next = bit_cast::<32, 2>(self.wanted_mode.q.val())
-                    | (bit_cast::<32, 1>(self.wanted_majority.q.val().into()) << 4)
-                    | (bit_cast::<32, 2>(self.bin_shift.q.val()) << 8);
+            offset!(line.alignment) => {
+                self.shown.next = place!(self.wanted_mode.q.val(), line.alignment.mode)
+                    | place!(self.wanted_majority.q.val(), line.alignment.majority)
+                    | place!(self.bin_shift.q.val(), line.alignment.bin_shift);
             }
-            33 => {
-                self.shown.next = bit_cast::<32, 15>(self.wanted_delay.q.val());
+            offset!(line.fixed_delay) => {
+                self.shown.next = place!(self.wanted_delay.q.val(), line.fixed_delay.value);
             }
-            34 => {
-                self.shown.next = bit_cast::<32, 12>(self.drift_limit.q.val())
-                    | (bit_cast::<32, 7>(self.offset_limit.q.val()) << 16);
+            offset!(line.limits) => {
+                self.shown.next = place!(self.drift_limit.q.val(), line.limits.drift)
+                    | place!(self.offset_limit.q.val(), line.limits.offset);
             }
-            40 => {
-                self.shown.next = bit_cast::<32, 8>(self.told_earliest.q.val() ^ 0x80)
-                    | (bit_cast::<32, 8>(self.told_latest.q.val() ^ 0x80) << 8)
-                    | (bit_cast::<32, 8>(self.told_start.q.val() ^ 0x80) << 16);
+            offset!(line.frame) => {
+                self.shown.next = place!(self.told_earliest.q.val() ^ 0x80, line.frame.earliest)
+                    | place!(self.told_latest.q.val() ^ 0x80, line.frame.latest)
+                    | place!(self.told_start.q.val() ^ 0x80, line.frame.start);
             }
-            41 => {
-                self.shown.next = bit_cast::<32, 8>(self.worst_earliest.q.val() ^ 0x80)
-                    | (bit_cast::<32, 8>(self.worst_latest.q.val() ^ 0x80) << 8)
-                    | (bit_cast::<32, 1>(self.has_worst.q.val().into()) << 16)
-                    | (bit_cast::<32, 1>(self.drift_alarm.q.val().into()) << 24)
-                    | (bit_cast::<32, 1>(self.offset_alarm.q.val().into()) << 25);
+            offset!(line.worst) => {
+                self.shown.next = place!(self.worst_earliest.q.val() ^ 0x80, line.worst.earliest)
+                    | place!(self.worst_latest.q.val() ^ 0x80, line.worst.latest)
+                    | place!(self.has_worst.q.val(), line.worst.valid)
+                    | place!(self.drift_alarm.q.val(), line.worst.drift_alarm)
+                    | place!(self.offset_alarm.q.val(), line.worst.offset_alarm);
             }
-            42 => {
-                self.shown.next = bit_cast::<32, 15>(self.phase.val())
-                    | (bit_cast::<32, 15>(self.reference.q.val()) << 16);
+            offset!(line.phase) => {
+                self.shown.next = place!(self.phase.val(), line.phase.tracked)
+                    | place!(self.reference.q.val(), line.phase.reference);
             }
-            43 => {
-                self.shown.next = bit_cast::<32, 16>(self.glitches.q.val())
-                    | (bit_cast::<32, 16>(self.bad_frames.q.val()) << 16);
+            offset!(line.counts) => {
+                self.shown.next = place!(self.glitches.q.val(), line.counts.glitches)
+                    | place!(self.bad_frames.q.val(), line.counts.bad_frames);
             }
-            44 => {
+            offset!(line.frames) => {
                 self.shown.next = self.frames.q.val();
             }
             _ => {}

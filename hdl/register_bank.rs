@@ -23,7 +23,7 @@
 use crate::config::CardConfig;
 use crate::config_ring::{ConfigRing, RING_BYTES};
 use crate::reg::Reg;
-use crate::regs::{config_words, CARD};
+use crate::regs::{config_words, start, CARD};
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
@@ -217,7 +217,9 @@ pub const fn ring_bytes(channels: usize) -> usize {
 
 /// Start value of one of the card's words.
 fn card_word(config: &CardConfig, name: &str) -> Constant<Bits<32>> {
-    let value = CARD.register(name).map_or(0, |r| r.start(config, 0));
+    let value = CARD
+        .register(name)
+        .map_or(0, |r| start(&CARD, r, config, 0));
     Constant::new(u64::from(value).into())
 }
 
@@ -400,17 +402,18 @@ impl Logic for RegisterBank {
             & self.write_data.val().get_bit(0);
         self.calibrate_strobe.d.next = 0.into();
         if self.strobe.val() & (self.low_address.val() == self.calibrate_at.val()) {
-            self.calibrate_strobe.d.next = self.write_data.val().get_bits::<8>(0);
+            self.calibrate_strobe.d.next = field!(self.write_data.val(), card.calibrate.channels);
         }
         self.trigger_now.next = self.trigger_strobe.q.val();
         self.calibrate.next = self.calibrate_strobe.q.val();
         if !self.turn.q.val() {
             self.active_sources.d.next = self.ring.word0.val().get_bits::<3>(0);
-            self.active_period.d.next = self.ring.word1.val().get_bits::<24>(0);
-            self.hold.d.next = self.ring.word2.val().get_bit(0);
+            self.active_period.d.next =
+                field!(self.ring.word1.val(), card_config.trigger_period.value);
+            self.hold.d.next = field!(self.ring.word2.val(), card_config.hold.hold);
         }
         self.sources.next = self.active_sources.q.val();
-        self.disabled.next = self.ring.word0.val().get_bits::<8>(8);
+        self.disabled.next = field!(self.ring.word0.val(), card_config.trigger_sources.disabled);
         // In the cycle in which they are taken over: the first words of card and channels.
         self.restart.next = self.done_now.q.val()
             & self.write_now.q.val()

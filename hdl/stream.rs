@@ -332,8 +332,8 @@ impl Logic for Stream {
         self.clear.next =
             self.writes.val() & (self.word.val() == 3) & self.write_data.val().get_bit(0);
         if self.writes.val() & !self.word.val().any() {
-            self.collect.d.next = self.write_data.val().get_bit(0);
-            self.push_on.d.next = self.write_data.val().get_bit(1);
+            self.collect.d.next = field!(self.write_data.val(), card.stream_control.collect);
+            self.push_on.d.next = field!(self.write_data.val(), card.stream_control.push);
         }
         self.bus_may.next = self.buffer.ready.val()
             & !self.push_on.q.val()

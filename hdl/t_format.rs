@@ -10,7 +10,7 @@
 //! and checks), [`channel`], [`dsp`]; [`port`] is the same encoder as a channel of a card.
 
 pub mod bit_grid;
-pub mod cause;
+pub use endat_regs::causes::t_format as cause;
 pub mod channel;
 pub mod dsp;
 pub mod exchange;

@@ -21,7 +21,7 @@
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
 
-pub mod cause;
+pub use endat_regs::causes::endat as cause;
 pub mod primary;
 pub mod verdict;
 

@@ -17,12 +17,9 @@
 //! Without the additional informations (T-format) all of it is wires.
 
 use crate::reg::Reg;
-use crate::regs::{BLOCK_STRIDE, RESULT_BASE};
+use crate::regs::{BLOCK_STRIDE, INFO_FIRST, RESULT_BASE};
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
-
-/// Place of the first of the two words in a result.
-pub const INFO_OFFSET: u16 = 6;
 
 /// Result and informations of one channel.
 #[derive(LogicBlock, Block)]
@@ -165,7 +162,7 @@ pub struct WholeResult {
 impl WholeResult {
     /// That of channel `channel`, which has informations or not.
     pub fn new(channel: usize, has_infos: bool) -> Self {
-        let first = RESULT_BASE + BLOCK_STRIDE * channel as u16 + INFO_OFFSET;
+        let first = RESULT_BASE + BLOCK_STRIDE * channel as u16 + u16::from(INFO_FIRST);
         Self::from_parts(WholeResultParts {
             pair: Constant::new(u64::from(first / 2).into()),
             has_infos: Constant::new(has_infos),

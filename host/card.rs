@@ -1,16 +1,14 @@
 //! A card: who it is, its words by name, its results.
 
 use crate::bridge::Bridge;
-use crate::map;
 use crate::name_plate::NamePlate;
-use crate::registers::{Access, Place, Values};
-use crate::result::{Reading, STRIDE, WORDS, WORDS_WITHOUT_INFOS};
+use crate::registers::{Access, Place};
+use crate::result::Reading;
 use crate::transport::Transport;
 use crate::HostError;
+use endat_regs::{result_words, Part, ID, VERSION};
 use std::time::Duration;
 
-/// The ASCII letters EnDt.
-const ID: u32 = 0x456E_4474;
 /// Words that say who a card is.
 const IDENTITY_WORDS: usize = 6;
 /// How long a request may take, unless told otherwise: milliseconds on a real card, many seconds on a simulated one.
@@ -38,37 +36,21 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Names and meanings of the parts that it has.
-    pub fn parts(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        let features = self.features;
-        let field = Place::field_at("card", "capabilities", "features", 0).field;
-        let bits = match field.map(|f| f.values) {
-            Some(Values::Bits(bits)) => bits,
-            _ => &[],
-        };
-        bits.iter()
-            .filter(move |b| features >> b.number & 1 == 1)
-            .map(|b| (b.name, b.meaning))
+    /// The parts that it has.
+    pub fn parts(&self) -> impl Iterator<Item = Part> {
+        let identity = *self;
+        let all = Part::ALL.iter().copied();
+        all.filter(move |part| identity.has(*part))
     }
 
     /// Whether it has a part.
-    pub fn has(&self, part: &str) -> bool {
-        self.parts().any(|(name, _)| name == part)
+    pub fn has(&self, part: Part) -> bool {
+        self.features >> part as u32 & 1 == 1
     }
 
     /// Whether a channel speaks T-format.
     pub fn is_t_format(&self, channel: usize) -> bool {
         self.t_format_channels >> channel & 1 == 1
-    }
-
-    /// Whether it has a block of the map, and the channel.
-    pub fn has_block(&self, block: &str) -> bool {
-        match block {
-            "service" => self.has("requests"),
-            "line" => self.has("alignment"),
-            "t_format" => self.has("t_format"),
-            _ => true,
-        }
     }
 }
 
@@ -102,10 +84,10 @@ impl<T: Transport> Card<T> {
         }
         let [major, minor, ..] = words[1].to_be_bytes();
         let version = [major, minor, words[1] as u8];
-        if major != map::VERSION[0] {
+        if major != VERSION[0] {
             return Err(HostError::NoCard(format!(
                 "register map {major}.{minor}: this program knows {}.x; take the program that the card was emitted with",
-                map::VERSION[0]
+                VERSION[0]
             )));
         }
         let [high, low, bits, channels] = words[2].to_be_bytes();
@@ -156,15 +138,23 @@ impl<T: Transport> Card<T> {
     /// The place of that name on this card.
     pub fn place(&self, name: &str) -> Result<Place, HostError> {
         let place = Place::named(name, self.identity.channels)?;
-        if !self.identity.has_block(place.block.name) {
+        let lacks = |part: &Part| !self.identity.has(*part);
+        let word = place
+            .register
+            .part
+            .filter(lacks)
+            .map(|part| (part, place.to_string()));
+        let block = || {
+            Some((
+                place.block.part.filter(lacks)?,
+                format!("block {}", place.block.name),
+            ))
+        };
+        if let Some((part, what)) = block().or(word) {
             return Err(HostError::Name(format!(
-                "register = {name:?}: this card has no block {}; emit one that has the part ({})",
-                place.block.name,
-                match place.block.name {
-                    "line" => "[line] parts",
-                    "t_format" => "[[channel]] protocol = \"t_format\"",
-                    _ => "[service] parts",
-                }
+                "register = {name:?}: this card has no {what}; emit one that has the part {} ({})",
+                part.named().name,
+                part.switch()
             )));
         }
         let of_t_format = ["service", "line"].contains(&place.block.name);
@@ -247,19 +237,11 @@ impl<T: Transport> Card<T> {
 
     fn read_results(&mut self) -> Result<Results, HostError> {
         let first = Place::at("result", "status", 0).address();
-        let of_each = match self.identity.has("requests") {
-            true => WORDS,
-            false => WORDS_WITHOUT_INFOS,
-        };
-        let count = STRIDE * (self.identity.channels - 1) + of_each;
+        let has_infos = self.identity.has(Part::Requests);
+        let count = result_words(self.identity.channels, has_infos) as usize;
         let words = self.bridge.read(first, count)?;
-        let one = |channel: usize| {
-            let mut of_one = [0; WORDS];
-            of_one[..of_each].copy_from_slice(&words[STRIDE * channel..][..of_each]);
-            Reading::new(&of_one)
-        };
         Ok(Results {
-            channels: (0..self.identity.channels).map(one).collect(),
+            channels: Reading::of_burst(&words, self.identity.channels, has_infos),
         })
     }
 
@@ -267,7 +249,7 @@ impl<T: Transport> Card<T> {
     pub fn name_plate(&mut self, channel: usize) -> Result<NamePlate, HostError> {
         self.needs_endat("name plate", channel)?;
         self.needs_requests("name plate")?;
-        if !self.identity.has("initialise") {
+        if !self.identity.has(Part::Initialise) {
             return Err(HostError::Part {
                 what: "name plate",
                 part: "initialise",
@@ -307,7 +289,7 @@ impl<T: Transport> Card<T> {
     }
 
     pub(crate) fn needs_requests(&self, what: &'static str) -> Result<(), HostError> {
-        match self.identity.has("requests") {
+        match self.identity.has(Part::Requests) {
             true => Ok(()),
             false => Err(HostError::Part {
                 what,

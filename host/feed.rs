@@ -8,6 +8,7 @@ use crate::result::Reading;
 use crate::stream::{Sample, SampleSet};
 use crate::transport::Transport;
 use crate::HostError;
+use endat_regs::Part;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -153,7 +154,7 @@ const SILENCE: Duration = Duration::from_secs(1);
 impl Feed {
     /// Begins: from the stream if the card has one and `polls` does not forbid it.
     pub fn begin<T: Transport>(card: &mut Card<T>, polls: bool) -> Result<Self, HostError> {
-        let streams = card.identity().has("stream") && !polls;
+        let streams = card.identity().has(Part::Stream) && !polls;
         if streams {
             let at = |register| Place::at("card", register, 0);
             card.write(&at("stream_clear"), 1)?;

@@ -20,8 +20,6 @@ pub mod did_you_mean;
 mod error;
 pub mod feed;
 pub mod info;
-#[rustfmt::skip]
-pub mod map;
 pub mod mailbox;
 pub mod name_plate;
 pub mod panda;

@@ -5,11 +5,7 @@ use crate::info::Info;
 use crate::registers::Place;
 
 /// Words of a result.
-pub const WORDS: usize = 8;
-/// Words of one on a card without requests.
-pub const WORDS_WITHOUT_INFOS: usize = 6;
-/// Words from one channel's result to the next one's.
-pub const STRIDE: usize = 8;
+pub const WORDS: usize = endat_regs::RESULT.registers.len();
 
 /// What became of a channel's last trigger.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,6 +48,18 @@ fn crc5(bits: impl Iterator<Item = bool>) -> u32 {
 }
 
 impl Reading {
+    /// The results of all channels, out of the burst that reads them ([`endat_regs::result_words`]).
+    pub fn of_burst(words: &[u32], channels: usize, has_infos: bool) -> Vec<Self> {
+        let of_each = endat_regs::result_words(1, has_infos) as usize;
+        let one = |channel: usize| {
+            let mut own = [0; WORDS];
+            let first = usize::from(endat_regs::RESULT.stride) * channel;
+            own[..of_each].copy_from_slice(&words[first..][..of_each]);
+            Self::new(&own)
+        };
+        (0..channels).map(one).collect()
+    }
+
     /// Takes the words of a result apart.
     pub fn new(words: &[u32; WORDS]) -> Self {
         let field = |register: &str, field: &str| {

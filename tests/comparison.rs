@@ -4,10 +4,8 @@ use crate::program::good;
 use crate::tools;
 use endat_gen::area;
 use endat_gen::config::{load_preset, PRESETS};
-use endat_hdl::regs::blocks;
-use endat_hdl::regs::values::{
-    CAUSES, EVIDENCE_FLAGS, INTERRUPT_EVENTS, LINE_FLAGS, REQUEST_ERRORS,
-};
+use endat_hdl::regs::{blocks, present};
+use endat_regs::{causes, service::request_state, EVIDENCE_FLAGS, INTERRUPT_EVENTS, LINE_FLAGS};
 
 /// Catches a figure that was typed, and one that has changed since.
 #[test]
@@ -74,11 +72,11 @@ fn every_status_bit_of_the_peripheral_has_a_place_in_our_map() {
     let card = load_preset("artinchip_endat_if").unwrap().card;
     let blocks: Vec<_> = blocks(&card).collect();
     let words = [
-        &CAUSES[..],
-        &EVIDENCE_FLAGS,
-        &LINE_FLAGS,
-        &REQUEST_ERRORS,
-        &INTERRUPT_EVENTS,
+        causes::CARD,
+        EVIDENCE_FLAGS,
+        LINE_FLAGS,
+        request_state::ERRORS,
+        INTERRUPT_EVENTS,
     ]
     .concat();
     let known = |name: &str| match name.split('.').collect::<Vec<_>>()[..] {
@@ -89,7 +87,7 @@ fn every_status_bit_of_the_peripheral_has_a_place_in_our_map() {
         [block, register, field] => blocks
             .iter()
             .filter(|b| b.name == block)
-            .filter_map(|b| b.present(&card).find(|r| r.name == register))
+            .filter_map(|b| present(b, &card).find(|r| r.name == register))
             .any(|r| r.field(field).is_some()),
         _ => false,
     };

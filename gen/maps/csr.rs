@@ -4,7 +4,7 @@
 //! listed; it reads 0.
 
 use super::{Map, WORD_BYTES};
-use endat_hdl::regs::Access;
+use endat_regs::Access;
 use std::fmt::Write;
 
 /// The file; addresses count bytes.
@@ -14,8 +14,8 @@ pub fn write(map: &Map, system_hz: u64) -> String {
     for block in &map.blocks {
         for copy in 0..block.copies {
             let name = match block.block.per_channel {
-                true => format!("{}{copy}", block.id),
-                false => block.id.clone(),
+                true => format!("{}{copy}", block.block.name),
+                false => block.block.name.to_owned(),
             };
             let base = map.base_address + block.base_bytes() + copy * block.stride_bytes();
             // Writing to a String cannot fail.

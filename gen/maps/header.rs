@@ -1,7 +1,7 @@
 //! The register map as a header for C99 and C++: macros only, so that it asks for nothing and fits any way of access.
 
 use super::{with_unit, Map, MapBlock, MapRegister};
-use endat_hdl::regs::values::Values;
+use endat_regs::Values;
 use std::fmt::Write;
 
 /// The header.
@@ -57,8 +57,13 @@ fn preamble(map: &Map, prefix: &str) -> String {
 
 fn write_block(text: &mut String, block: &MapBlock, prefix: &str) {
     let (table, base_bytes) = (&block.block, block.base_bytes());
-    let name = format!("{prefix}_{}", block.id.to_ascii_uppercase());
-    let _ = writeln!(text, "\n/* ---- {} {} */\n", block.id, dashes(&block.id));
+    let name = format!("{prefix}_{}", block.block.name.to_ascii_uppercase());
+    let _ = writeln!(
+        text,
+        "\n/* ---- {} {} */\n",
+        block.block.name,
+        dashes(block.block.name)
+    );
     let _ = writeln!(text, "/* {} */", table.meaning);
     let _ = writeln!(text, "#define {name}_BASE_WORD 0x{:03X}u", table.base);
     let _ = writeln!(text, "#define {name}_BASE_BYTE 0x{base_bytes:04X}u");

@@ -1,8 +1,8 @@
 //! The register map as a Markdown page.
 
 use super::{listed, number, Map, MapBlock, UNLISTED};
-use endat_hdl::regs::values::{Named, Values};
-use endat_hdl::regs::Field;
+use endat_regs::Field;
+use endat_regs::{Named, Values};
 use std::fmt::Write;
 
 /// The page; addresses are words.

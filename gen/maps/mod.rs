@@ -1,12 +1,11 @@
 //! The register map of a card, written in several formats.
 //!
 //! ```text
-//! endat_hdl::regs (table) -> Map -> markdown.rs  for people
+//! endat_regs (table) -> Map -> markdown.rs  for people
 //!                                -> header.rs    C and C++
 //!                                -> svd.rs       CMSIS-SVD
 //!                                -> rdl.rs       SystemRDL
 //!                                -> csr.rs       LiteX
-//!                     (every part) -> host.rs      Rust, for the host library
 //! ```
 //!
 //! [`Map::new`] is the only walk over the table: what the card has, under which names, with which start values. A writer
@@ -14,7 +13,6 @@
 
 mod csr;
 mod header;
-pub mod host;
 mod markdown;
 mod rdl;
 mod svd;
@@ -22,8 +20,8 @@ mod svd;
 use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
-use endat_hdl::regs::values::{Named, Values};
-use endat_hdl::regs::{self, Block, Field, Register, CHANNELS_MAX, SERVICE, SERVICE_BASE};
+use endat_hdl::regs;
+use endat_regs::{Block, Field, Named, Register, Values, CHANNELS_MAX, SERVICE, SERVICE_BASE};
 
 /// Bytes of a word.
 pub const WORD_BYTES: u32 = 4;
@@ -54,10 +52,8 @@ pub struct Map {
 /// A block of the card, or one that each channel has.
 #[derive(Clone, Debug)]
 pub struct MapBlock {
-    /// Name, unique in the map.
-    pub id: String,
     /// Its place in the table.
-    pub block: Block,
+    pub block: &'static Block,
     /// How many there are, [`Block::stride`] words apart.
     pub copies: u32,
     /// Its words, lowest offset first.
@@ -77,23 +73,21 @@ impl Map {
     /// The map of a project.
     pub fn new(project: &Project) -> Self {
         let config = &project.card;
-        let blocks: Vec<Block> = regs::blocks(config).collect();
-        let map_block = |block: &Block| {
+        let map_block = |block: &'static Block| {
             let copies = if block.per_channel {
                 config.channels.len()
             } else {
                 1
             };
-            let registers = block.present(config).map(|register| MapRegister {
+            let registers = regs::present(block, config).map(|register| MapRegister {
                 register,
                 resets: (0..copies)
                     .filter(|_| !block.is_ram)
-                    .map(|channel| register.start(config, channel))
+                    .map(|channel| regs::start(block, register, config, channel))
                     .collect(),
             });
             MapBlock {
-                id: map_id(block, &blocks),
-                block: *block,
+                block,
                 copies: copies as u32,
                 registers: registers.collect(),
             }
@@ -109,7 +103,7 @@ impl Map {
             protocols: project.protocols(),
             channels: config.channels.len() as u32,
             base_address: project.base_address,
-            blocks: blocks.iter().map(map_block).collect(),
+            blocks: regs::blocks(config).map(map_block).collect(),
         }
     }
 
@@ -130,16 +124,6 @@ impl Map {
             self.protocols,
             self.version()
         )
-    }
-}
-
-/// Name of a block that is unique in a map: `config` is the card's and each channel's.
-fn map_id(block: &Block, blocks: &[Block]) -> String {
-    let twin = |b: &Block| b.name == block.name && b.per_channel;
-    if !block.per_channel && blocks.iter().any(twin) {
-        format!("card_{}", block.name)
-    } else {
-        block.name.to_owned()
     }
 }
 

@@ -1,8 +1,8 @@
 //! The register map as SystemRDL 2.0.
 
 use super::{listed, with_unit, Map, MapBlock, MapRegister, ADDRESSES, UNLISTED, WORD_BYTES};
-use endat_hdl::regs::values::{Named, Values};
-use endat_hdl::regs::{Access, Field};
+use endat_regs::{Access, Field};
+use endat_regs::{Named, Values};
 use std::fmt::Write;
 
 /// Words that SystemRDL keeps for itself (2.0, clause 4.4); as a name they get a backslash.
@@ -41,7 +41,7 @@ fn write_block(text: &mut String, block: &MapBlock, base_address: u32) {
     for entry in &block.registers {
         write_register(text, entry);
     }
-    let name = identifier(&block.id);
+    let name = identifier(block.block.name);
     // The outermost map has no address of its own: a system's stands at each block.
     let base = base_address + block.base_bytes();
     let _ = match block.block.per_channel {

@@ -6,8 +6,8 @@
 
 use super::{listed, with_unit, Map, MapBlock, MapRegister, ADDRESSES, UNLISTED, WORD_BYTES};
 use crate::error::GenError;
-use endat_hdl::regs::values::{Named, Values};
-use endat_hdl::regs::{Access as TableAccess, Field as TableField};
+use endat_regs::{Access as TableAccess, Field as TableField};
+use endat_regs::{Named, Values};
 use svd_encoder::encode;
 use svd_rs::{
     Access, AddressBlock, AddressBlockUsage, BitRange, BitRangeType, Cluster, ClusterInfo, Device,
@@ -63,7 +63,10 @@ fn peripheral(map: &Map) -> Result<Peripheral, SvdError> {
         .iter()
         .map(|block| cluster(block).map(RegisterCluster::Cluster))
         .collect();
-    let has_interrupt = map.blocks.iter().any(|block| block.id == "interrupt");
+    let has_interrupt = map
+        .blocks
+        .iter()
+        .any(|block| block.block.name == "interrupt");
     let interrupt = Interrupt::builder()
         .name(map.name.clone())
         .description(Some(
@@ -92,7 +95,7 @@ fn cluster(block: &MapBlock) -> Result<Cluster, SvdError> {
     let info = ClusterInfo::builder()
         .name(format!(
             "{}{}",
-            block.id,
+            block.block.name,
             if is_array { "[%s]" } else { "" }
         ))
         .description(Some(block.block.meaning.to_owned()))

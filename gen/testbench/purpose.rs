@@ -7,7 +7,7 @@ use crate::template;
 use endat_hdl::card::services;
 use endat_hdl::config::{CardConfig, ChannelConfig, ChannelRequest};
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::regs::{CHANNEL_CONFIG, SERVICE};
+use endat_hdl::regs::{start, CHANNEL_CONFIG, SERVICE};
 use endat_hdl::timing::{
     cycles_to_ns, PARAMETER_GAP_MS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
@@ -80,7 +80,9 @@ fn writes(card: &CardConfig) -> Vec<Value> {
     let words = channels.flat_map(|n| CHANNEL_CONFIG.registers.iter().map(move |r| (r, n)));
     let words = words.map(|(r, n)| {
         let own = r.fields.iter().filter(|f| is_own_trigger(f.name));
-        let value = own.fold(r.start(card, n), |word, f| word & !f.mask());
+        let value = own.fold(start(&CHANNEL_CONFIG, r, card, n), |word, f| {
+            word & !f.mask()
+        });
         let address = format!("{:03X}", CHANNEL_CONFIG.address(r, n));
         context! { address, value => format!("{value:08X}") }
     });

@@ -1,7 +1,7 @@
 use super::*;
 use crate::config::CardConfig;
 use crate::regs::tests::{mixed_config, test_config};
-use crate::regs::{blocks, Access, Block as RegisterBlock, CARD, CARD_CONFIG, RESULT, T_FORMAT};
+use crate::regs::{Access, Block as RegisterBlock, CARD, CARD_CONFIG, RESULT, T_FORMAT};
 use crate::t_format::cause;
 use crate::testing::tick;
 use rust_hdl::prelude::Block;
@@ -124,19 +124,10 @@ fn address(block: RegisterBlock, register: &str, channel: usize) -> u16 {
 /// Every word of the card: its address, access and start value.
 fn words() -> Vec<(u16, Access, u32)> {
     let config = test_config();
-    let mut words = Vec::new();
-    for block in blocks(&config) {
-        for channel in 0..if block.per_channel { 2 } else { 1 } {
-            for r in block.present(&config) {
-                words.push((
-                    block.address(r, channel),
-                    r.access,
-                    r.start(&config, channel),
-                ));
-            }
-        }
-    }
+    let words = crate::regs::words(&config).into_iter();
     words
+        .map(|w| (w.address, w.register.access, w.start))
+        .collect()
 }
 
 #[test]

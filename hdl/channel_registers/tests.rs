@@ -153,10 +153,11 @@ fn every_configuration_field_is_where_the_table_says() {
             .iter()
             .flat_map(|r| r.fields.iter().map(move |f| (r, f)))
     };
-    for (_, field) in fields() {
+    let words = config_words(&config, Some(0));
+    for (register, field) in fields() {
         assert_eq!(
             output(&uut, field.name),
-            (field.start)(&config, 0),
+            u64::from(field.of(words[usize::from(register.offset)])),
             "{} after reset",
             field.name
         );

@@ -3,6 +3,8 @@
 //! [`macro@Block`] makes a block of its parts, so that its `new` names only those of which something is to be said. [`macro@kernel`] stands
 //! where rust-hdl has `#[hdl_gen]`, and connects clock and reset of every register that the kernel assigns.
 
+mod places;
+
 use proc_macro::TokenStream;
 use proc_macro2::{Ident, TokenStream as TokenStream2};
 use quote::{format_ident, quote};
@@ -209,7 +211,8 @@ fn begins_empty(kind: &Type) -> bool {
 /// The kernel of a block: `#[hdl_gen]` of rust-hdl, in which each register that has its `d.next` assigned holds its value
 /// otherwise, has the block's clock, and, unless the kernel assigns its `reset.next`, the block's reset.
 ///
-/// It hands on what [`macro@Block`] knows.
+/// It hands on what [`macro@Block`] knows, and knows the register table by name: `field!(word, config.frame.skip)` is a field of a word
+/// (a bit, where it is one), `place!(value, config.frame.skip)` a word of 32 bits in which the value stands there.
 ///
 /// `#[kernel(clk_i, rst_i)]` where clock and reset have other names than `clock` and `reset`. Registers in lists are the kernel's.
 #[proc_macro_attribute]
@@ -217,6 +220,9 @@ pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let parser = Punctuated::<Ident, Token![,]>::parse_terminated;
     let names = parse_macro_input!(arguments with parser);
     let mut item = parse_macro_input!(item as ItemFn);
+    if let Err(wrong) = places::resolve(&mut item.block) {
+        return wrong.into_compile_error().into();
+    }
     let usual = || ["clock", "reset"].map(|name| Ident::new(name, proc_macro2::Span::call_site()));
     let names: Vec<Ident> = names.into_iter().collect();
     let [clock, reset] = match &names[..] {

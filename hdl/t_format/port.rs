@@ -20,17 +20,7 @@ use crate::snapshot::Snapshot;
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Words that the host reaches, as `host_address` counts them.
-pub mod word {
-    /// A request with an exchange of its own.
-    pub const SEND: u8 = 0;
-    /// What became of it.
-    pub const ANSWER: u8 = 1;
-    /// Fields of the last reply.
-    pub const FIELDS: u8 = 2;
-    /// Which parts of the position there are.
-    pub const PARTS: u8 = 3;
-}
+pub use endat_regs::t_format::word;
 
 /// Port of one T-format encoder.
 #[derive(LogicBlock, Block)]
@@ -210,14 +200,14 @@ impl Logic for TFormatPort {
             if self.host_half.val() {
                 self.armed.d.next = !self.own_busy.val();
                 if !self.own_busy.val() {
-                    self.send_id.d.next = self.host_data.val().get_bits::<4>(0);
-                    self.send_sum.d.next = self.host_data.val().get_bits::<4>(0).xor();
+                    self.send_id.d.next = half!(self.host_data.val(), t_format.send.id);
+                    self.send_sum.d.next = half!(self.host_data.val(), t_format.send.id).xor();
                 }
             } else {
                 self.armed.d.next = false;
                 if self.armed.q.val() {
-                    self.send_data.d.next = self.host_data.val().get_bits::<8>(0);
-                    self.send_address.d.next = self.host_data.val().get_bits::<7>(8);
+                    self.send_data.d.next = half!(self.host_data.val(), t_format.send.data);
+                    self.send_address.d.next = half!(self.host_data.val(), t_format.send.address);
                     self.send_sum.d.next =
                         self.send_sum.q.val() ^ self.host_data.val().get_bits::<15>(0).xor();
                     self.pending.d.next = true;
@@ -401,22 +391,22 @@ impl Logic for TFormatPort {
         }
         self.chosen.next = 0.into();
         match self.host_address.val().index() {
-            1 => {
-                self.chosen.next = bit_cast::<32, 8>(self.memory.q.val())
-                    | (bit_cast::<32, 4>(self.echo.q.val()) << 8)
-                    | (bit_cast::<32, 4>(self.own_cause.q.val()) << 12)
-                    | (bit_cast::<32, 1>(self.done.q.val().into()) << 16)
-                    | (bit_cast::<32, 1>(self.own_busy.val().into()) << 17);
+            offset!(t_format.answer) => {
+                self.chosen.next = place!(self.memory.q.val(), t_format.answer.data)
+                    | place!(self.echo.q.val(), t_format.answer.id)
+                    | place!(self.own_cause.q.val(), t_format.answer.cause)
+                    | place!(self.done.q.val(), t_format.answer.done)
+                    | place!(self.own_busy.val(), t_format.answer.busy);
             }
-            2 => {
-                self.chosen.next = bit_cast::<32, 8>(self.status.q.val())
-                    | (bit_cast::<32, 8>(self.identity.q.val()) << 8)
-                    | (bit_cast::<32, 8>(self.alarms.q.val()) << 16)
-                    | (bit_cast::<32, 8>(self.crc.q.val()) << 24);
+            offset!(t_format.fields) => {
+                self.chosen.next = place!(self.status.q.val(), t_format.fields.status)
+                    | place!(self.identity.q.val(), t_format.fields.encoder_id)
+                    | place!(self.alarms.q.val(), t_format.fields.alarm)
+                    | place!(self.crc.q.val(), t_format.fields.crc);
             }
-            3 => {
-                self.chosen.next = bit_cast::<32, 1>(self.has_had_single.q.val().into())
-                    | (bit_cast::<32, 1>(self.has_had_multi.q.val().into()) << 1);
+            offset!(t_format.parts) => {
+                self.chosen.next = place!(self.has_had_single.q.val(), t_format.parts.single_valid)
+                    | place!(self.has_had_multi.q.val(), t_format.parts.multi_valid);
             }
             _ => {}
         }

@@ -277,9 +277,9 @@ module s6_two_channel_tb;
     localparam [31:0] CARD_STREAM_STATE = 32'h00D;
     localparam [31:0] CARD_STREAM_DATA = 32'h00E;
     localparam [31:0] CARD_STREAM_CLEAR = 32'h00F;
-    localparam [31:0] CONFIG_TRIGGER_SOURCES = 32'h100;
-    localparam [31:0] CONFIG_TRIGGER_PERIOD = 32'h101;
-    localparam [31:0] CONFIG_HOLD = 32'h102;
+    localparam [31:0] CARD_CONFIG_TRIGGER_SOURCES = 32'h100;
+    localparam [31:0] CARD_CONFIG_TRIGGER_PERIOD = 32'h101;
+    localparam [31:0] CARD_CONFIG_HOLD = 32'h102;
     localparam [31:0] RESULT_STATUS = 32'h180;
     localparam [31:0] RESULT_POSITION_LOW = 32'h181;
     localparam [31:0] RESULT_POSITION_HIGH = 32'h182;
@@ -827,7 +827,7 @@ module s6_two_channel_tb;
 
         tell("identification");
         // Only the pin triggers from here on; frames that the timer has begun end.
-        write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
+        write_word(CARD_CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
         #(CALIBRATION_NS);
         read_words(CARD_ID, 6);
         check("identification word 0", word(0), 32'h456E4474);
@@ -887,14 +887,14 @@ module s6_two_channel_tb;
         // Held results stand still; let go, they show what has come meanwhile.
         new_positions;
         frame(CYCLE_NS);
-        write_word(CONFIG_HOLD, 32'd1 << HOLD_HOLD_LSB);
+        write_word(CARD_CONFIG_HOLD, 32'd1 << HOLD_HOLD_LSB);
         #(SETTLE_NS);
         new_positions;
         pulse_trigger;
         #(CYCLE_NS);
         check_start;
         read_results;
-        write_word(CONFIG_HOLD, 32'd0);
+        write_word(CARD_CONFIG_HOLD, 32'd0);
         #(SETTLE_NS);
         check_results;
 
@@ -989,7 +989,7 @@ module s6_two_channel_tb;
 
         tell("trigger of the host");
         // The host's trigger, when the pin is switched off.
-        write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_REGISTER_LSB);
+        write_word(CARD_CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_REGISTER_LSB);
         #(SETTLE_NS);
         new_positions;
         pulse_trigger;
@@ -999,7 +999,7 @@ module s6_two_channel_tb;
         #(CYCLE_NS);
         check("channels that the host started", fallen, ENDAT);
         check_results;
-        write_word(CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
+        write_word(CARD_CONFIG_TRIGGER_SOURCES, 32'd1 << TRIGGER_SOURCES_PIN_LSB);
         #(SETTLE_NS);
 
         tell("no start bit, data not falling");

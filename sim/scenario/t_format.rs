@@ -6,7 +6,7 @@ use crate::{
     t_format::{Defect, EncoderConfig},
     Time, MS, US,
 };
-use endat_hdl::regs::values::CAUSES;
+use endat_hdl::regs::causes::CARD as CAUSES;
 use endat_hdl::t_format::{
     cause::{self, of_card},
     port::word,

@@ -2,7 +2,7 @@
 
 use super::{Master, WORD_BUSES};
 use endat_hdl::bus::HostBus;
-use endat_hdl::regs::{blocks, Access, CARD, CARD_CONFIG, RESULT};
+use endat_hdl::regs::{Access, CARD, CARD_CONFIG, RESULT};
 use std::collections::BTreeMap;
 
 /// Word address of a register.
@@ -13,16 +13,9 @@ fn at(block: &endat_hdl::regs::Block, name: &str, channel: usize) -> u16 {
 /// Every word of a card: access and start value.
 fn words(master: &Master) -> BTreeMap<u16, (Access, u32)> {
     let config = &master.config;
-    let mut words = BTreeMap::new();
-    for block in blocks(config) {
-        for channel in 0..if block.per_channel { 2 } else { 1 } {
-            for register in block.present(config) {
-                let start = register.start(config, channel);
-                words.insert(block.address(register, channel), (register.access, start));
-            }
-        }
-    }
-    words
+    let words = endat_hdl::regs::words(config).into_iter();
+    let told = |w: endat_hdl::regs::Word| (w.address, (w.register.access, w.start));
+    words.map(told).collect()
 }
 
 #[test]

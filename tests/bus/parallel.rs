@@ -2,7 +2,7 @@
 
 use super::Master;
 use endat_hdl::bus::HostBus;
-use endat_hdl::regs::{blocks, CARD, CARD_CONFIG};
+use endat_hdl::regs::{words, CARD, CARD_CONFIG};
 use std::collections::BTreeMap;
 
 struct Host(Master);
@@ -97,15 +97,8 @@ fn at(block: &endat_hdl::regs::Block, name: &str) -> u16 {
 fn the_window_shows_every_register_as_the_table_says() {
     let mut host = Host::new();
     let config = host.0.config.clone();
-    let mut words = BTreeMap::new();
-    for block in blocks(&config) {
-        for channel in 0..if block.per_channel { 2 } else { 1 } {
-            for register in block.present(&config) {
-                let start = register.start(&config, channel);
-                words.insert(block.address(register, channel), start);
-            }
-        }
-    }
+    let words = words(&config).into_iter();
+    let words: BTreeMap<u16, u32> = words.map(|w| (w.address, w.start)).collect();
     for address in (0..0x20).chain(0xfe..0x118).chain([0x17f, 0x400, 0x7ff]) {
         let expected = words.get(&address).copied().unwrap_or(0);
         assert_eq!(host.read(address), expected, "{address:#x}");

@@ -2,7 +2,7 @@
 
 use super::Master;
 use endat_hdl::bus::HostBus;
-use endat_hdl::regs::{blocks, CARD, CARD_CONFIG, ID, RESULT};
+use endat_hdl::regs::{words, CARD, CARD_CONFIG, ID, RESULT};
 use std::collections::BTreeMap;
 
 /// Half a period of the serial clock, in system clocks: the fastest that is allowed.
@@ -130,15 +130,8 @@ fn the_check_sum_is_the_one_of_the_catalogue() {
 fn every_register_reads_as_the_table_says_after_reset() {
     let mut host = Host::new("");
     let config = host.0.config.clone();
-    let mut words = BTreeMap::new();
-    for block in blocks(&config) {
-        for channel in 0..if block.per_channel { 2 } else { 1 } {
-            for register in block.present(&config) {
-                let start = register.start(&config, channel);
-                words.insert(block.address(register, channel), start);
-            }
-        }
-    }
+    let words = words(&config).into_iter();
+    let words: BTreeMap<u16, u32> = words.map(|w| (w.address, w.start)).collect();
     for (first, count) in [(0u16, 200u8), (0xff, 60), (0x7f0, 32)] {
         for (i, got) in host.read(first, count).into_iter().enumerate() {
             let address = first + i as u16;

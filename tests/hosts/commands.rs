@@ -405,7 +405,7 @@ fn every_name_of_the_map_is_explained() {
         let outcome = run(&["explain", name]);
         assert_eq!(outcome.exit_code, 0, "{name}: {outcome:?}");
     }
-    for block in endat_host::map::BLOCKS {
+    for block in endat_regs::BLOCKS {
         for register in block.registers {
             let name = format!("{}.{}", block.name, register.name);
             let text = run(&["explain", &name]).stdout;

@@ -8,8 +8,8 @@ use crate::tools::{self, require, require_python};
 use endat_gen::config::{load_preset, parse, preset, Project};
 use endat_hdl::config::CardConfig;
 use endat_hdl::config::{LineParts, OutputParts, PhaseSource};
-use endat_hdl::regs::values::{Named, Values};
-use endat_hdl::regs::{blocks, Access, Block, Field, Register, BLOCKS, VERSION};
+use endat_hdl::regs::{start, words};
+use endat_regs::{Access, Block, Field, Named, Register, Values, BLOCKS, VERSION};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
@@ -60,7 +60,7 @@ fn text_of(project: &Project, end: &str) -> String {
 
 /// One word of a card.
 struct Word {
-    block: Block,
+    block: &'static Block,
     register: &'static Register,
     /// `None` for a word of the card.
     channel: Option<usize>,
@@ -68,28 +68,12 @@ struct Word {
 
 impl Word {
     fn all(config: &CardConfig) -> Vec<Self> {
-        let mut words = Vec::new();
-        for block in blocks(config) {
-            let channels = match block.per_channel {
-                true => (0..config.channels.len()).map(Some).collect(),
-                false => vec![None],
-            };
-            for channel in channels {
-                // A card without a stream does not have its words.
-                let has_stream = config.stream.fifo_bytes != 0;
-                let registers = block.registers.iter();
-                let registers = registers.filter(|r| has_stream || !r.name.starts_with("stream_"));
-                // Nor one without requests those of the informations.
-                let has_infos = config.service.requests || block.name != "result";
-                let registers = registers.filter(|r| has_infos || !r.name.starts_with("info_"));
-                words.extend(registers.map(|register| Self {
-                    block,
-                    register,
-                    channel,
-                }));
-            }
-        }
-        words
+        let of = |word: endat_hdl::regs::Word| Self {
+            block: word.block,
+            register: word.register,
+            channel: word.block.per_channel.then_some(word.channel),
+        };
+        words(config).into_iter().map(of).collect()
     }
 
     fn address(&self) -> u32 {
@@ -98,10 +82,7 @@ impl Word {
     }
 
     fn block_name(&self) -> &'static str {
-        match (self.block.name, self.channel) {
-            ("config", None) => "card_config",
-            (name, _) => name,
-        }
+        self.block.name
     }
 
     fn name(&self) -> String {
@@ -118,7 +99,8 @@ impl Word {
             Some(_) => 0..config.channels.len(),
             None => 0..1,
         };
-        let values: BTreeSet<u64> = channels.map(|n| (field.start)(config, n)).collect();
+        let word = |n| start(self.block, self.register, config, n);
+        let values: BTreeSet<u64> = channels.map(|n| field.of(word(n)).into()).collect();
         let is_known = self.block.name != "service" && values.len() == 1;
         values.into_iter().next().filter(|_| is_known)
     }
@@ -314,12 +296,9 @@ fn program(project: &Project) -> (String, String) {
             show(sum("WORD", offset), word.address());
             show(sum("BYTE", 4 * offset), word.address() * 4);
         }
-        let start = word
-            .register
-            .start(&project.card, word.channel.unwrap_or(0));
-        let resets: Vec<u32> = (0..channels as usize)
-            .map(|n| word.register.start(&project.card, n))
-            .collect();
+        let start_of = |n| start(word.block, word.register, &project.card, n);
+        let start = start_of(word.channel.unwrap_or(0));
+        let resets: Vec<u32> = (0..channels as usize).map(start_of).collect();
         let is_one = word.channel.is_none() || resets.windows(2).all(|w| w[0] == w[1]);
         match word.channel {
             _ if word.block.name == "service" => {}
@@ -527,16 +506,4 @@ fn maps_list_every_word_and_field_that_the_card_has() {
             assert!(page.contains(&format!("`{}`", field.name)));
         }
     }
-}
-
-/// Catches a host library whose map is another than the card's.
-#[test]
-fn the_host_library_has_the_table() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("host/map.rs");
-    let expected = endat_gen::maps::host::write();
-    if std::env::var_os("UPDATE_EXPECT").is_some() {
-        fs::write(&path, &expected).unwrap();
-    }
-    let found = fs::read_to_string(&path).unwrap();
-    assert!(found == expected, "host/map.rs is not the table's; UPDATE_EXPECT=1 cargo test --test system -- maps::the_host");
 }

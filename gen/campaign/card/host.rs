@@ -5,11 +5,13 @@ use super::line::Line;
 use super::told::{Kind, Known, Round, Seen, Verdict, What};
 use super::CYCLES_PER_US;
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::regs::{BLOCK_STRIDE, CARD, CONFIG_BASE, RESULT_BASE, SERVICE, SERVICE_BASE};
+use endat_hdl::regs::{
+    result_words, BLOCK_STRIDE, CARD, CONFIG_BASE, RESULT_BASE, SERVICE, SERVICE_BASE,
+};
 use endat_hdl::service::map::{control, request_state, word};
 use endat_hdl::stream::buffer::frame_bytes;
 use endat_hdl::timing::PARAMETER_TIMEOUT_US;
-use endat_host::result::{Reading, STRIDE, WORDS};
+use endat_host::result::Reading;
 use endat_host::stream::SampleSet;
 use std::collections::VecDeque;
 
@@ -219,14 +221,9 @@ impl Host {
     }
 
     async fn read_results(&mut self) -> Option<Vec<Reading>> {
-        let count = STRIDE * (CHANNELS - 1) + WORDS;
+        let count = result_words(CHANNELS, true) as usize;
         let words = self.read(2, RESULT_BASE, count).await?;
-        let one = |channel: usize| {
-            let mut of_one = [0; WORDS];
-            of_one.copy_from_slice(&words[STRIDE * channel..][..WORDS]);
-            Reading::new(&of_one)
-        };
-        Some((0..CHANNELS).map(one).collect())
+        Some(Reading::of_burst(&words, CHANNELS, true))
     }
 
     async fn read_stream(&mut self) {

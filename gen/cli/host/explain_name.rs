@@ -3,8 +3,8 @@
 use crate::error::{shown, GenError};
 use endat_host::causes;
 use endat_host::feed::NO_CAUSES;
-use endat_host::map::BLOCKS;
 use endat_host::registers::{Access, Block, Field, Register, Values};
+use endat_regs::BLOCKS;
 use std::fmt::Write;
 
 /// Causes of EnDat frames, which the services count; those behind them are T-format's.
@@ -152,7 +152,7 @@ fn field_text(text: &mut String, field: &Field) {
     let _ = writeln!(
         text,
         "  {:>5}  {}: {}{unit}",
-        field.bits(),
+        field.bit_range(),
         field.name,
         field.meaning
     );

@@ -7,6 +7,7 @@ use clap::Args;
 use endat_host::card::Identity;
 use endat_host::name_plate::{step_name, NamePlate};
 use endat_host::t_format::TFormatState;
+use endat_regs::{Named, Part};
 use serde_json::{json, Value};
 use std::fmt::Write;
 
@@ -24,7 +25,7 @@ pub struct IdArgs {
 pub fn run(arguments: &IdArgs) -> Result<Outcome, GenError> {
     let mut card = arguments.port.open()?;
     let identity = *card.identity();
-    let reads_plates = identity.has("initialise");
+    let reads_plates = identity.has(Part::Initialise);
     if reads_plates {
         initialised(&mut card)?;
     }
@@ -80,7 +81,7 @@ fn as_text(identity: &Identity, encoders: &[Encoder]) -> String {
         version(identity),
         identity.configuration_hash
     );
-    for (name, meaning) in identity.parts() {
+    for Named { name, meaning, .. } in identity.parts().map(Part::named) {
         let _ = writeln!(text, "part                {name}: {meaning}");
     }
     for (channel, encoder) in encoders.iter().enumerate() {
@@ -281,7 +282,7 @@ fn as_json(identity: &Identity, encoders: &[Encoder]) -> Value {
         "system_hz": identity.system_hz,
         "register_map": version(identity),
         "configuration": format!("{:08x}", identity.configuration_hash),
-        "parts": identity.parts().map(|(name, _)| name).collect::<Vec<_>>(),
+        "parts": identity.parts().map(|part| part.named().name).collect::<Vec<_>>(),
         "encoders": encoders.iter().enumerate().map(encoder).collect::<Vec<_>>(),
     })
 }

@@ -8,6 +8,7 @@ use crate::error::GenError;
 use clap::Args;
 use endat_host::registers::Place;
 use endat_host::HostError;
+use endat_regs::Part;
 use endat_sim::diagram::{edges_svg, is_drawing, Edges};
 use serde_json::json;
 use std::path::PathBuf;
@@ -48,7 +49,7 @@ pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
             "--channel = {channel}: speaks T-format; the margin is measured on EnDat channels, give one of those"
         )));
     }
-    if !card.identity().has("margin") {
+    if !card.identity().has(Part::Margin) {
         return Err(told(HostError::Part {
             what: "margin",
             part: "margin",
@@ -91,7 +92,7 @@ pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
         Place::named(&format!("config{channel}.frame.period_cycles"), channel + 1).map_err(told)?;
     let period = card.read(&place).map_err(told)?;
     let identity = card.identity();
-    let places_per_cycle = if identity.has("double_edge") { 2 } else { 1 };
+    let places_per_cycle = if identity.has(Part::DoubleEdge) { 2 } else { 1 };
     let place_ns = 1e9 / f64::from(identity.system_hz.max(1)) / f64::from(places_per_cycle);
     let edges = Edges {
         bins: bins.clone(),

@@ -21,6 +21,7 @@ use endat_host::registers::Place;
 use endat_host::transport::Port;
 use endat_host::units::Scale;
 use endat_host::{Bridge, HostError, Transport};
+use endat_regs::Part;
 use std::io::Write;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -103,7 +104,7 @@ fn scale(card: &mut AnyCard, channel: usize) -> Result<Scale, GenError> {
     if card.identity().is_t_format(channel) {
         return Ok(Scale::TFormat);
     }
-    if card.identity().has("initialise") {
+    if card.identity().has(Part::Initialise) {
         if let Some(scale) = card.name_plate(channel).map_err(told)?.scale() {
             return Ok(scale);
         }
@@ -121,7 +122,7 @@ pub fn scales(card: &mut AnyCard) -> Result<Vec<Scale>, GenError> {
 
 /// Waits until no encoder is being initialised, or a minute; says so when it takes long.
 pub fn initialised(card: &mut AnyCard) -> Result<(), GenError> {
-    if !card.identity().has("initialise") {
+    if !card.identity().has(Part::Initialise) {
         return Ok(());
     }
     let begin = Instant::now();

@@ -9,6 +9,7 @@ use clap::Args;
 use endat_host::registers::Place;
 use endat_host::result::Reading;
 use endat_host::units::Scale;
+use endat_regs::Part;
 use std::fmt::Write as _;
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::Ordering;
@@ -46,15 +47,21 @@ impl Places {
         let Some(n) = first else {
             return Ok(Self::default());
         };
-        let frames = named(identity.has("requests"), &format!("service{n}.frames_good"))?;
-        let last = named(identity.has("requests"), &format!("service{n}.bad_infos"))?;
+        let frames = named(
+            identity.has(Part::Requests),
+            &format!("service{n}.frames_good"),
+        )?;
+        let last = named(
+            identity.has(Part::Requests),
+            &format!("service{n}.bad_infos"),
+        )?;
         Ok(Self {
             frames: frames.zip(last).map(|(first, last)| {
                 let words = usize::from(last.address() - first.address());
                 (first, words)
             }),
-            state: named(identity.has("requests"), &format!("service{n}.state"))?,
-            worst: named(identity.has("margin"), &format!("line{n}.worst"))?,
+            state: named(identity.has(Part::Requests), &format!("service{n}.state"))?,
+            worst: named(identity.has(Part::Margin), &format!("line{n}.worst"))?,
         })
     }
 }

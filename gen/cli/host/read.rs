@@ -6,6 +6,7 @@ use crate::error::GenError;
 use clap::Args;
 use endat_host::result::Reading;
 use endat_host::units::Scale;
+use endat_regs::Part;
 use serde_json::json;
 use std::fmt::Write;
 
@@ -76,7 +77,7 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     }
     let is_good = results.channels.iter().all(|r| r.fresh && !is_old(r));
     let each = results.channels.iter().zip(&scales).enumerate();
-    let has_infos = card.identity().has("requests");
+    let has_infos = card.identity().has(Part::Requests);
     let stdout = if arguments.json {
         let objects = each.map(|(channel, (r, scale))| {
             let units = scale.convert(r.position);

@@ -5,8 +5,8 @@ use super::super::{to_json, Outcome};
 use super::{told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::{Args, Subcommand};
-use endat_host::map::BLOCKS;
 use endat_host::registers::{Access, Named, Place, Values};
+use endat_regs::BLOCKS;
 use serde_json::json;
 use std::fmt::Write;
 
@@ -75,6 +75,7 @@ fn places(card: &AnyCard, name: &str) -> Result<Vec<Place>, GenError> {
         Some(block) => block
             .registers
             .iter()
+            .filter(|r| r.part.is_none_or(|part| card.identity().has(part)))
             .map(|r| card.place(&format!("{name}.{}", r.name)).map_err(told))
             .collect(),
         None => Ok(vec![card.place(name).map_err(told)?]),
@@ -117,7 +118,12 @@ fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, 
         let _ = writeln!(text, "{place} = 0x{value:08X} = {value}");
         let is_plain = fields.len() == 1 && fields[0].0.width == 32;
         for (field, value, told) in fields.iter().filter(|_| !is_plain) {
-            let _ = write!(text, "  {:>5}  {:<22} {value}", field.bits(), field.name);
+            let _ = write!(
+                text,
+                "  {:>5}  {:<22} {value}",
+                field.bit_range(),
+                field.name
+            );
             if !field.unit.is_empty() {
                 let _ = write!(text, " {}", field.unit);
             }
@@ -181,11 +187,7 @@ fn list() -> String {
         let number = if block.per_channel { "0" } else { "" };
         let _ = writeln!(text, "{}{number}: {}", block.name, block.meaning);
         for register in block.registers {
-            let access = match register.access {
-                Access::ReadOnly => "ro",
-                Access::ReadWrite => "rw",
-                Access::Strobe => "strobe",
-            };
+            let access = register.access.short();
             let _ = writeln!(
                 text,
                 "  0x{:03X} {access:<6} {}{number}.{}: {}",

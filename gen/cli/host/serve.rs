@@ -6,6 +6,7 @@ use super::{interrupted, scales, settled, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::panda::{Column, Ports, Server, CONTROL_PORT, DATA_PORT};
+use endat_regs::Part;
 use std::io::Write;
 use std::sync::atomic::Ordering;
 
@@ -58,7 +59,7 @@ pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
         let _ = writeln!(stdout, "control {control}\ndata {data}");
         let _ = stdout.flush();
     }
-    if !card.identity().has("stream") {
+    if !card.identity().has(Part::Stream) {
         let _ = writeln!(
             std::io::stderr(),
             "endat-gen: the card has no part stream: results are read one by one, and not every trigger has a sample"

@@ -11,6 +11,7 @@ use crate::error::GenError;
 use clap::Args;
 use count::{Count, Judge};
 use endat_host::feed::Feed;
+use endat_regs::Part;
 use endat_sim::diagram::{is_drawing, series_svg};
 use sheet::{Format, Lines, Sheet};
 use std::collections::VecDeque;
@@ -130,7 +131,7 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     let mut sheet =
         Sheet::new(arguments.format, out, scales, system_hz, informations).map_err(failed)?;
     let judge = Judge {
-        own_triggers: card.identity().has("own_trigger"),
+        own_triggers: card.identity().has(Part::OwnTrigger),
     };
     if drawing.is_some() {
         sheet.keep(judge);

@@ -1,37 +1,49 @@
-//! The words of a line monitor; their places come from [`crate::line_monitor::word`].
+//! The line monitor of a channel: phase of its samples, and how much margin they have.
 
-use super::values::PHASE_MODES;
-use super::{field, word, Access, Block, Field, Register, LINE_BASE, LINE_STRIDE};
-use crate::config::CardConfig;
-use crate::line_monitor::{word as at, LineStart};
+use crate::part::Part;
+use crate::{field, word, Access, Block, Field, Register, LINE_BASE, LINE_STRIDE};
+use word as at;
 use Access::{ReadOnly, ReadWrite, Strobe};
 
-/// Whether a word is there without the part `margin`.
-pub(super) fn is_setting(offset: u16) -> bool {
-    [
-        at::ALIGNMENT,
-        at::FIXED_DELAY,
-        at::LIMITS,
-        at::CLEAR,
-        at::PHASE,
-    ]
-    .map(u16::from)
-    .contains(&offset)
+/// Where the words of a monitor are.
+pub mod word {
+    /// Histogram of the offsets, -16 and before to 15 and after.
+    pub const HISTOGRAM: u8 = 0;
+    /// Source of the phase, majority, bin width.
+    pub const ALIGNMENT: u8 = 32;
+    /// Delay in mode `fixed`.
+    pub const FIXED_DELAY: u8 = 33;
+    /// Limits of the alarms.
+    pub const LIMITS: u8 = 34;
+    /// Clears.
+    pub const CLEAR: u8 = 35;
+    /// Offsets of the last frame.
+    pub const FRAME: u8 = 40;
+    /// Offsets since cleared, alarms.
+    pub const WORST: u8 = 41;
+    /// Tracked delay and its reference.
+    pub const PHASE: u8 = 42;
+    /// Glitches and bad frames.
+    pub const COUNTS: u8 = 43;
+    /// Frames.
+    pub const FRAMES: u8 = 44;
 }
 
-fn start(config: &CardConfig) -> LineStart {
-    config.line.start(config.system_hz)
-}
-
-/// The same field, with a value of its own after reset.
-const fn starts(field: Field, start: fn(&CardConfig, usize) -> u64) -> Field {
-    Field { start, ..field }
+/// Sources of the phase.
+pub mod mode {
+    crate::named::codes! {
+        /// All of them.
+        ALL: u64;
+        TRACKED = 0, "tracked", "mean over many edges";
+        FIXED = 1, "fixed", "fixed_delay";
+        FRAME = 2, "frame", "start bit of each frame";
+    }
 }
 
 const EDGES: &[Field] = &[field("edges", 0, 32, "", "Edges since clear, wrapping")];
 
 const fn bin(name: &'static str, index: u8, meaning: &'static str) -> Register {
-    word(name, at::HISTOGRAM + index, ReadOnly, meaning, EDGES)
+    word(name, at::HISTOGRAM + index, ReadOnly, meaning, EDGES).of(Part::Margin)
 }
 
 /// Phase of the samples, and how much margin they have.
@@ -42,6 +54,7 @@ pub const LINE: Block = Block {
     per_channel: true,
     meaning: "Phase of the samples, and how much margin they have. A place is a system clock cycle, or half of one with double_edge; offsets are signed.",
     is_ram: false,
+    part: Some(Part::Alignment),
     registers: &[
         bin("edges_0", 0, "Edges with offset -16 or less (all bins: offset divided by 2^bin_shift)."),
         bin("edges_1", 1, "Edges with offset -15."),
@@ -76,15 +89,15 @@ pub const LINE: Block = Block {
         bin("edges_30", 30, "Edges with offset 14."),
         bin("edges_31", 31, "Edges with offset 15 or more."),
         word("alignment", at::ALIGNMENT, ReadWrite, "Source of the phase; taken over between two frames.", &[
-            starts(field("mode", 0, 2, "", "Where the phase of the samples comes from"), |c, _| start(c).phase_mode).codes(&PHASE_MODES),
-            starts(field("majority", 4, 1, "", "Each sample is the majority of itself and its neighbours; measure the delay again after a change"), |c, _| start(c).majority.into()),
+            field("mode", 0, 2, "", "Where the phase of the samples comes from").codes(mode::ALL),
+            field("majority", 4, 1, "", "Each sample is the majority of itself and its neighbours; measure the delay again after a change"),
             field("bin_shift", 8, 2, "", "Bins of the histogram are 2^bin_shift places wide; clear after a change"),
         ]),
         word("fixed_delay", at::FIXED_DELAY, ReadWrite, "Delay in mode fixed, synchroniser and filter included.", &[
-            starts(field("value", 0, 15, "cycles/16", "As phase.tracked shows it"), |c, _| start(c).fixed_delay),
+            field("value", 0, 15, "cycles/16", "As phase.tracked shows it"),
         ]),
         word("limits", at::LIMITS, ReadWrite, "Limits of the alarms; 0 = none.", &[
-            starts(field("drift", 0, 12, "cycles/16", "Most that the tracked delay may be from its reference"), |c, _| start(c).drift_limit),
+            field("drift", 0, 12, "cycles/16", "Most that the tracked delay may be from its reference"),
             field("offset", 16, 7, "places", "Most that an edge may be from its expected place"),
         ]),
         word("clear", at::CLEAR, Strobe, "Clears, or takes a new reference.", &[
@@ -95,14 +108,14 @@ pub const LINE: Block = Block {
             field("earliest", 0, 8, "places", "Smallest offset"),
             field("latest", 8, 8, "places", "Largest offset"),
             field("start", 16, 8, "places", "Offset of the start bit's edge"),
-        ]),
+        ]).of(Part::Margin),
         word("worst", at::WORST, ReadOnly, "Edges since clear.", &[
             field("earliest", 0, 8, "places", "Smallest offset"),
             field("latest", 8, 8, "places", "Largest offset"),
             field("valid", 16, 1, "", "There were edges"),
             field("drift_alarm", 24, 1, "", "The drift has been beyond its limit"),
             field("offset_alarm", 25, 1, "", "An edge has been beyond its limit"),
-        ]),
+        ]).of(Part::Margin),
         word("phase", at::PHASE, ReadOnly, "Tracked delay, synchroniser and filter included.", &[
             field("tracked", 0, 15, "cycles/16", "Mean place of the edges after their clock edge"),
             field("reference", 16, 15, "cycles/16", "What it was when it had been measured"),
@@ -110,9 +123,9 @@ pub const LINE: Block = Block {
         word("counts", at::COUNTS, ReadOnly, "Counters, wrapping.", &[
             field("glitches", 0, 16, "", "Pulses that the input filter has removed since clear"),
             field("bad_frames", 16, 16, "", "Frames with a cause other than 0 since clear"),
-        ]),
+        ]).of(Part::Margin),
         word("frames", at::FRAMES, ReadOnly, "Frames since clear, wrapping.", &[
             field("value", 0, 32, "", "Frames"),
-        ]),
+        ]).of(Part::Margin),
     ],
 };

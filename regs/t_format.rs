@@ -1,9 +1,22 @@
-//! The words of a T-format port; their places come from [`crate::t_format::port::word`]. Its settings are those of its configuration.
+//! The port of a T-format encoder: requests of the host, fields of the replies. Its settings are those of its configuration.
 
-use super::values::T_FORMAT_CAUSES;
-use super::{field, word, Access, Block, BLOCK_STRIDE, T_FORMAT_BASE};
-use crate::t_format::port::word as at;
+use crate::causes::EXCHANGE;
+use crate::part::Part;
+use crate::{field, word, Access, Block, BLOCK_STRIDE, T_FORMAT_BASE};
+use word as at;
 use Access::{ReadOnly, Strobe};
+
+/// Words that the host reaches, as `host_address` counts them.
+pub mod word {
+    /// A request with an exchange of its own.
+    pub const SEND: u8 = 0;
+    /// What became of it.
+    pub const ANSWER: u8 = 1;
+    /// Fields of the last reply.
+    pub const FIELDS: u8 = 2;
+    /// Which parts of the position there are.
+    pub const PARTS: u8 = 3;
+}
 
 /// Requests to a T-format encoder beside its triggers, and the fields of its replies.
 pub const T_FORMAT: Block = Block {
@@ -13,6 +26,7 @@ pub const T_FORMAT: Block = Block {
     per_channel: true,
     meaning: "Requests to a T-format encoder beside its triggers, and the fields of its replies; 0 on a channel that speaks EnDat.",
     is_ram: false,
+    part: Some(Part::TFormat),
     registers: &[
         word("send", at::SEND, Strobe, "Sends one request, now or as soon as the exchange under way has ended; not taken while answer.busy.", &[
             field("data", 0, 8, "", "EEPROM data, of request 6"),
@@ -22,7 +36,7 @@ pub const T_FORMAT: Block = Block {
         word("answer", at::ANSWER, ReadOnly, "What became of the request in send.", &[
             field("data", 0, 8, "", "EEPROM data as they came last"),
             field("id", 8, 4, "", "ID that the reply repeats"),
-            field("cause", 12, 4, "", "T-format cause of the exchange").codes(&T_FORMAT_CAUSES),
+            field("cause", 12, 4, "", "T-format cause of the exchange").codes(EXCHANGE),
             field("done", 16, 1, "", "The exchange has ended; 0 from send on"),
             field("busy", 17, 1, "", "The exchange is under way, or waits for its turn"),
         ]),

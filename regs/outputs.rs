@@ -1,11 +1,23 @@
 //! The words of the outputs to logic and to a processor in the same device.
 
-use super::values::INTERRUPT_EVENTS;
-use super::{
-    field, word, Access, Block, Field, Register, BLOCK_STRIDE, DIRECT_BASE, INTERRUPT_BASE,
+use crate::part::Part;
+use crate::{
+    field, named::named, word, Access, Block, Field, Named, Register, BLOCK_STRIDE, DIRECT_BASE,
+    INTERRUPT_BASE,
 };
-use crate::direct::ERROR_CAUSES;
 use Access::{ReadOnly, ReadWrite, Strobe};
+
+/// What sets a bit of a channel in the interrupt's status.
+pub const INTERRUPT_EVENTS: &[Named] = &[
+    named("result", 0, "a new result"),
+    named(
+        "error",
+        1,
+        "a result whose cause is one of direct.error_causes",
+    ),
+    named("alarm", 2, "the alarm has come on"),
+    named("request", 3, "the frame of a request has ended"),
+];
 
 /// The events of all channels.
 const EVENTS: &[Field] = &[
@@ -20,7 +32,7 @@ const EVENTS: &[Field] = &[
 ];
 
 const fn events(name: &'static str, channel: u32) -> Field {
-    field(name, 4 * channel, 4, "", "Events of the channel").bits(&INTERRUPT_EVENTS)
+    field(name, 4 * channel, 4, "", "Events of the channel").bits(INTERRUPT_EVENTS)
 }
 
 const fn all_events(
@@ -32,6 +44,9 @@ const fn all_events(
     word(name, offset, access, meaning, EVENTS)
 }
 
+/// Causes that are errors after reset: all but 0, which is the alarm's.
+pub const ERROR_CAUSES: u32 = !1;
+
 /// Interrupt.
 pub const INTERRUPT: Block = Block {
     name: "interrupt",
@@ -40,6 +55,7 @@ pub const INTERRUPT: Block = Block {
     per_channel: false,
     meaning: "Interrupt: irq_o is high while a bit of status is set that is set in mask, too.",
     is_ram: false,
+    part: Some(Part::Interrupt),
     registers: &[
         all_events(
             "status",
@@ -65,6 +81,7 @@ pub const DIRECT: Block = Block {
     per_channel: true,
     meaning: "Direct outputs of a channel: where its position is cropped, and what is an error.",
     is_ram: false,
+    part: Some(Part::Direct),
     registers: &[
         word(
             "crop",
@@ -79,19 +96,13 @@ pub const DIRECT: Block = Block {
                     "",
                     "Position bit that becomes bit 0, 0..47",
                 ),
-                Field {
-                    start: |config, channel| {
-                        let channel = config.channels.get(channel);
-                        channel.map_or(0, |c| c.position_bits.min(32)).into()
-                    },
-                    ..field(
-                        "length_bits",
-                        8,
-                        6,
-                        "bits",
-                        "How many bits, 0..32; zeros above",
-                    )
-                },
+                field(
+                    "length_bits",
+                    8,
+                    6,
+                    "bits",
+                    "How many bits, 0..32; zeros above",
+                ),
             ],
         ),
         word(
@@ -99,10 +110,13 @@ pub const DIRECT: Block = Block {
             1,
             ReadWrite,
             "What makes direct_error_o high: bit k for cause k, bit 0 for the channel's alarm.",
-            &[Field {
-                start: |_, _| ERROR_CAUSES as u64,
-                ..field("causes", 0, 32, "", "Selected causes of the last result")
-            }],
+            &[field(
+                "causes",
+                0,
+                32,
+                "",
+                "Selected causes of the last result",
+            )],
         ),
     ],
 };

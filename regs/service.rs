@@ -1,8 +1,19 @@
-//! The words of a service; their places come from [`crate::service::map`].
+//! The service of a channel: its words, in RAM.
 
-use super::values::{MODE_COMMANDS, REQUEST_ERRORS, STEPS};
-use super::{field, word, Access, Block, Field, Register, SERVICE_BASE};
-use crate::service::map::{word as at, COUNTER_BAD_INFOS, COUNTER_POSITION_2, NAME_PLATE};
+mod plate;
+mod steps;
+mod words;
+
+pub use plate::*;
+pub use steps::STEPS;
+pub use words::*;
+
+use crate::causes::endat;
+use crate::part::Part;
+use crate::protocol::MODE_COMMANDS;
+use crate::{field, word, Access, Block, Field, Register, SERVICE_BASE};
+use request_state::ERRORS;
+use word as at;
 use Access::{ReadOnly, ReadWrite};
 
 const VALUE: &[Field] = &[field("value", 0, 32, "", "Number")];
@@ -39,17 +50,25 @@ const fn slot(name: &'static str, i: u8) -> Register {
     )
 }
 
-const fn frames(name: &'static str, cause: u8) -> Register {
-    word(
-        name,
+const fn frames(cause: u8) -> Register {
+    let counter = word(
+        match cause {
+            0 => "frames_good",
+            cause => crate::causes::row(endat::ALL, cause as u64).counter,
+        },
         at::COUNTERS + cause,
         ReadOnly,
         "Frames that ended with this cause (good: with none).",
         COUNT,
-    )
+    );
+    // What only the diagnosis of the line finds.
+    match cause as u64 {
+        endat::NO_ENCODER.. => counter.of(Part::Diagnosis),
+        _ => counter,
+    }
 }
 
-const fn plate(i: usize) -> Register {
+const fn plate_word(i: usize) -> Register {
     let entry = &NAME_PLATE[i];
     word(
         entry.name,
@@ -58,6 +77,7 @@ const fn plate(i: usize) -> Register {
         entry.meaning,
         PLATE,
     )
+    .of(Part::Initialise)
 }
 
 /// Requests, health, slots and name plate of a channel; cards without service do not have it. RAM: a reset does not clear it.
@@ -68,15 +88,16 @@ pub const SERVICE: Block = Block {
     per_channel: true,
     meaning: "Requests, health, slots and name plate of a channel. RAM: 0 after power-up, a reset does not clear it.",
     is_ram: true,
+    part: Some(Part::Requests),
     registers: &[
         word("request", at::REQUEST, ReadWrite, "Sends a request when written.", &[
             field("data", 0, 16, "", "Data"),
             field("address", 16, 8, "", "MRS code, address or port"),
-            field("command", 24, 6, "", "Mode command, any of the fourteen").codes(&MODE_COMMANDS),
+            field("command", 24, 6, "", "Mode command, any of the fourteen").codes(MODE_COMMANDS),
         ]),
         word("request_state", at::REQUEST_STATE, ReadOnly, "What became of the request.", &[
             field("busy", 0, 1, "", "It is under way"),
-            field("error", 4, 4, "", "What went wrong").codes(&REQUEST_ERRORS),
+            field("error", 4, 4, "", "What went wrong").codes(ERRORS),
             field("finished", 16, 16, "", "Requests finished, wrapping"),
         ]),
         word("answer", at::ANSWER, ReadOnly, "Answer to the last request; bits 31..0 of a longer one.", &[
@@ -99,9 +120,9 @@ pub const SERVICE: Block = Block {
             field("crc", 2, 1, "", "Spoils the CRC"),
         ]),
         word("progress", at::PROGRESS, ReadOnly, "Initialisation.", &[
-            field("step", 0, 16, "", "Step under way").codes(&STEPS),
-            field("failed", 16, 16, "", "Step that failed").codes(&STEPS),
-        ]),
+            field("step", 0, 16, "", "Step under way").codes(STEPS),
+            field("failed", 16, 16, "", "Step that failed").codes(STEPS),
+        ]).of(Part::Initialise),
         word("state", at::STATE, ReadOnly, "What is known and what is wrong.", &[
             field("initialised", 0, 1, "", "The name plate is valid"),
             field("alarm", 1, 1, "", "Too many bad frames; latched"),
@@ -148,11 +169,11 @@ pub const SERVICE: Block = Block {
         word("limits", at::LIMITS, ReadWrite, "What a frame must keep to.", &[
             field("watchdog_us", 0, 12, "us", "Longest time from the first falling edge to the end of the recovery time; 0 = not watched. Commands with a parameter and continuous clock are not watched"),
             field("recovery_min_cycles", 16, 13, "cycles", "Shortest recovery time; 0 = not checked. The program writes the shortest of the configured range at start"),
-        ]),
+        ]).of(Part::Diagnosis),
         word("continuous", at::CONTINUOUS, ReadWrite, "Continuous clock, for the command 000111.", &[
             field("go_on", 0, 1, "", "1: the clock goes on after each position, from the next trigger on"),
             field("stop_at_error", 1, 1, "", "1: it stops after an error until the next trigger; 0: it goes on after CRC, F1 and F2"),
-        ]),
+        ]).of(Part::Continuous),
         list("list_0", 0),
         list("list_1", 1),
         list("list_2", 2),
@@ -172,52 +193,52 @@ pub const SERVICE: Block = Block {
         word("request_wait", at::REQUEST_WAIT, ReadWrite, "Longest wait of a request for a trigger.", &[
             field("ms", 0, 16, "ms", "0 = no limit. The program writes 2000 at start"),
         ]),
-        frames("frames_good", 0),
-        frames("frames_data_not_low", 1),
-        frames("frames_no_start_bit", 2),
-        frames("frames_start_window", 3),
-        frames("frames_crc", 4),
-        frames("frames_f1", 5),
-        frames("frames_f2", 6),
-        frames("frames_data_not_falling", 7),
-        frames("frames_trigger_overrun", 8),
-        frames("frames_unknown_command", 9),
-        frames("frames_info_missing", 10),
-        frames("frames_no_encoder", 11),
-        frames("frames_stuck_high", 12),
-        frames("frames_stuck_low", 13),
-        frames("frames_late_start", 14),
-        frames("frames_watchdog", 15),
-        frames("frames_own_echo", 16),
-        frames("frames_recovery_too_short", 17),
+        frames(0),
+        frames(1),
+        frames(2),
+        frames(3),
+        frames(4),
+        frames(5),
+        frames(6),
+        frames(7),
+        frames(8),
+        frames(9),
+        frames(10),
+        frames(11),
+        frames(12),
+        frames(13),
+        frames(14),
+        frames(15),
+        frames(16),
+        frames(17),
         word("frames_position_2", at::COUNTERS + COUNTER_POSITION_2, ReadOnly, "Comparisons of positions 1 and 2 that failed.", COUNT),
         word("bad_infos", at::COUNTERS + COUNTER_BAD_INFOS, ReadOnly, "Additional informations with a wrong CRC.", &[
             field("count", 0, 32, "", "Since clear, wrapping"),
         ]),
-        plate(0),
-        plate(1),
-        plate(2),
-        plate(3),
-        plate(4),
-        plate(5),
-        plate(6),
-        plate(7),
-        plate(8),
-        plate(9),
-        plate(10),
-        plate(11),
-        plate(12),
-        plate(13),
-        plate(14),
-        plate(15),
-        plate(16),
-        plate(17),
-        plate(18),
-        plate(19),
-        plate(20),
-        word("delay", crate::service::map::PLATE_DELAY, ReadOnly, "Line delay measured at initialisation.", &[
+        plate_word(0),
+        plate_word(1),
+        plate_word(2),
+        plate_word(3),
+        plate_word(4),
+        plate_word(5),
+        plate_word(6),
+        plate_word(7),
+        plate_word(8),
+        plate_word(9),
+        plate_word(10),
+        plate_word(11),
+        plate_word(12),
+        plate_word(13),
+        plate_word(14),
+        plate_word(15),
+        plate_word(16),
+        plate_word(17),
+        plate_word(18),
+        plate_word(19),
+        plate_word(20),
+        word("delay", PLATE_DELAY, ReadOnly, "Line delay measured at initialisation.", &[
             field("value", 0, 16, "cycles", "tD, synchroniser and filter included"),
             field("is_read", 16, 1, "", "It has been measured"),
-        ]),
+        ]).of(Part::Initialise),
     ],
 };

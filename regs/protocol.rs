@@ -4,6 +4,9 @@
 //! HEIDENHAIN PWM 20 user's manual (Nov 2014), EnDat interface description;
 //! Texas Instruments motor-control SDK, `position_sense/endat` (public source) for counts the brochures leave out.
 
+use crate::named::named;
+use crate::Named;
+
 /// A 6-bit mode command, sent MSB first; the names are the encoder's view.
 ///
 /// The right triplet of the code repeats the left one: complemented in the 2.1 commands and in `111000`, as it is in the 2.2
@@ -156,6 +159,90 @@ impl ModeCommand {
         }
     }
 }
+
+const fn command(name: &'static str, command: ModeCommand, meaning: &'static str) -> Named {
+    named(name, command.code() as u32, meaning)
+}
+
+const SEND_POSITION: Named = command(
+    "send_position",
+    ModeCommand::SendPosition,
+    "000111 send position (EnDat 2.1)",
+);
+const SEND_POSITION_ADD_INFO: Named = command(
+    "send_position_add_info",
+    ModeCommand::SendPositionAddInfo,
+    "111000 send position with additional information (EnDat 2.2)",
+);
+
+/// Mode commands that a trigger sends.
+pub const POSITION_COMMANDS: &[Named] = &[SEND_POSITION, SEND_POSITION_ADD_INFO];
+
+/// Mode commands that a request takes.
+pub const MODE_COMMANDS: &[Named] = &[
+    SEND_POSITION,
+    command(
+        "select_memory",
+        ModeCommand::SelectMemory,
+        "001110 selection of memory area",
+    ),
+    command(
+        "receive_parameter",
+        ModeCommand::ReceiveParameter,
+        "011100 receive parameter",
+    ),
+    command(
+        "send_parameter",
+        ModeCommand::SendParameter,
+        "100011 send parameter",
+    ),
+    command(
+        "receive_reset",
+        ModeCommand::ReceiveReset,
+        "101010 receive reset",
+    ),
+    command(
+        "send_test_values",
+        ModeCommand::SendTestValues,
+        "010101 send test values",
+    ),
+    command(
+        "receive_test_command",
+        ModeCommand::ReceiveTestCommand,
+        "110001 receive test command",
+    ),
+    SEND_POSITION_ADD_INFO,
+    command(
+        "position_select_memory",
+        ModeCommand::PositionSelectMemory,
+        "001001 send position, then selection of memory area or additional information",
+    ),
+    command(
+        "position_receive_parameter",
+        ModeCommand::PositionReceiveParameter,
+        "011011 send position, then receive parameter",
+    ),
+    command(
+        "position_send_parameter",
+        ModeCommand::PositionSendParameter,
+        "100100 send position, then send parameter",
+    ),
+    command(
+        "position_error_reset",
+        ModeCommand::PositionErrorReset,
+        "101101 send position, then receive error reset",
+    ),
+    command(
+        "position_test_command",
+        ModeCommand::PositionTestCommand,
+        "110110 send position, then receive test command",
+    ),
+    command(
+        "receive_communication",
+        ModeCommand::ReceiveCommunication,
+        "010010 receive communication command",
+    ),
+];
 
 /// Bits of a mode command.
 pub const MODE_COMMAND_BITS: u32 = 6;

@@ -1,0 +1,94 @@
+//! The register table: the one place that says which word and bit means what.
+//!
+//! ```text
+//! 0x000  card: identification, capabilities, counters, strobes
+//! 0x010  interrupt: status, mask, clear
+//! 0x080  direct: 2 words of channel n at 0x080 + 8 n
+//! 0x0C0  t_format: 4 words of channel n at 0x0C0 + 8 n
+//! 0x100  configuration: 3 words of the card, then 3 words of channel n at 0x108 + 8 n
+//! 0x180  results: 6 words of channel n at 0x180 + 8 n, 8 with requests
+//! 0x200  line: 64 words of channel n at 0x200 + 64 n
+//! 0x400  service: 128 words of channel n at 0x400 + 128 n
+//! ```
+//!
+//! Offsets count 32-bit words. Blocks and kernels of the card, the maps that come with it and the host library read this table; within a
+//! major version an offset never moves. Plain data: it knows neither hardware nor configuration.
+
+mod card;
+pub mod causes;
+mod config;
+pub mod line;
+mod named;
+mod outputs;
+mod part;
+pub mod protocol;
+mod register;
+mod result;
+pub mod service;
+pub mod t_format;
+
+use register::{field, word};
+
+pub use card::CARD;
+pub use config::{CARD_CONFIG, CHANNEL_CONFIG};
+pub use line::LINE;
+pub use named::{Named, Values};
+pub use outputs::{DIRECT, ERROR_CAUSES, INTERRUPT, INTERRUPT_EVENTS};
+pub use part::{Part, FEATURES};
+pub use register::{Access, Block, Field, Limits, Register};
+pub use result::{EVIDENCE_FLAGS, INFO_FIRST, LINE_FLAGS, RESULT};
+pub use service::SERVICE;
+pub use t_format::T_FORMAT;
+
+/// Major, minor and patch version of the register map.
+pub const VERSION: [u8; 3] = [0, 9, 0];
+/// Identification word: "EnDt" in ASCII, most significant byte first.
+pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
+/// First word of the interrupt.
+pub const INTERRUPT_BASE: u16 = 0x010;
+/// First word of the direct outputs; block n is that of channel n.
+pub const DIRECT_BASE: u16 = 0x080;
+/// First word of the T-format ports; block n is that of channel n.
+pub const T_FORMAT_BASE: u16 = 0x0C0;
+/// First word of the configuration blocks; block 0 is the card's, block n + 1 that of channel n.
+pub const CONFIG_BASE: u16 = 0x100;
+/// First word of the result blocks; block n is that of channel n.
+pub const RESULT_BASE: u16 = 0x180;
+/// First word of the line blocks; block n is that of channel n.
+pub const LINE_BASE: u16 = 0x200;
+/// Words from one line block to the next.
+pub const LINE_STRIDE: u16 = 64;
+/// First word of the service blocks; block n is that of channel n.
+pub const SERVICE_BASE: u16 = 0x400;
+/// Words from one block to the next, but for lines and services.
+pub const BLOCK_STRIDE: u16 = 8;
+/// Most channels that the map and the decoder take.
+pub const CHANNELS_MAX: usize = 8;
+
+/// Words of the burst that gives the results of all channels of one moment, from [`RESULT_BASE`] on; the words between
+/// two blocks are read too. With requests each result has its informations.
+pub const fn result_words(channels: usize, requests: bool) -> u64 {
+    let blocks_before = channels.saturating_sub(1) as u64;
+    let words = if requests {
+        RESULT.registers.len()
+    } else {
+        result::INFO_FIRST as usize
+    };
+    BLOCK_STRIDE as u64 * blocks_before + words as u64
+}
+
+/// All blocks, lowest base first.
+pub const BLOCKS: &[Block] = &[
+    CARD,
+    INTERRUPT,
+    DIRECT,
+    T_FORMAT,
+    CARD_CONFIG,
+    CHANNEL_CONFIG,
+    RESULT,
+    LINE,
+    SERVICE,
+];
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,256 @@
+//! What a table of registers is made of.
+
+use crate::part::Part;
+use crate::{Named, Values};
+
+/// What a host may do with a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Read only: a write does nothing.
+    ReadOnly,
+    /// Read and write.
+    ReadWrite,
+    /// Write only: ones act once, a read gives 0.
+    Strobe,
+}
+
+impl Access {
+    /// Short form used in tables.
+    pub const fn short(self) -> &'static str {
+        match self {
+            Self::ReadOnly => "ro",
+            Self::ReadWrite => "rw",
+            Self::Strobe => "strobe",
+        }
+    }
+}
+
+/// Numbers that the card takes, each range from and to; none = all that fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Of a channel that speaks EnDat, and of the card.
+    pub endat: &'static [(u32, u32)],
+    /// Of a channel that speaks T-format.
+    pub t_format: &'static [(u32, u32)],
+}
+
+impl Limits {
+    /// All numbers that fit.
+    pub const ANY: Self = Self {
+        endat: &[],
+        t_format: &[],
+    };
+}
+
+/// Some bits of a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Name, unique in its word.
+    pub name: &'static str,
+    /// Lowest bit.
+    pub lsb: u32,
+    /// Number of bits.
+    pub width: u32,
+    /// Unit of the number, or "".
+    pub unit: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// What single numbers or bits stand for.
+    pub values: Values,
+    /// Which numbers the card takes.
+    pub limits: Limits,
+}
+
+impl Field {
+    /// The field's number in a word.
+    pub const fn of(&self, word: u32) -> u32 {
+        (word & self.mask()) >> self.lsb
+    }
+
+    /// What it takes in a channel that speaks one protocol or the other, if `value` is nothing of it.
+    pub fn refusal(&self, value: u32, is_t_format: bool) -> Option<String> {
+        let ranges = match is_t_format {
+            true => self.limits.t_format,
+            false => self.limits.endat,
+        };
+        if !ranges.is_empty() {
+            let takes = ranges
+                .iter()
+                .any(|(low, high)| (*low..=*high).contains(&value));
+            let shown = |(low, high): &(u32, u32)| match low == high {
+                true => low.to_string(),
+                false => format!("{low}..{high}"),
+            };
+            return (!takes).then(|| ranges.iter().map(shown).collect::<Vec<_>>().join(", "));
+        }
+        match self.values {
+            // Codes are those of EnDat.
+            Values::Codes(codes) if !is_t_format && codes.iter().all(|c| c.number != value) => {
+                Some(list(codes.iter().map(|c| c.name)))
+            }
+            _ => None,
+        }
+    }
+
+    /// A word with this field changed; none if `value` does not fit.
+    pub fn put(&self, word: u32, value: u32) -> Option<u32> {
+        let is_fitting = u64::from(value) < 1u64 << self.width;
+        is_fitting.then(|| word & !self.mask() | value << self.lsb)
+    }
+
+    /// What the field's number in a word says, if it stands for something.
+    pub fn told(&self, word: u32) -> Option<String> {
+        let value = self.of(word);
+        match self.values {
+            Values::Plain => None,
+            Values::Codes(codes) => codes
+                .iter()
+                .find(|c| c.number == value)
+                .map(|c| c.meaning.to_owned()),
+            Values::Bits(bits) => {
+                let set = bits.iter().filter(|b| value >> b.number & 1 == 1);
+                let names: Vec<_> = set.map(|b| b.meaning).collect();
+                (!names.is_empty()).then(|| names.join(", "))
+            }
+        }
+    }
+
+    /// Its bits as `15:0`, or `3`.
+    pub fn bit_range(&self) -> String {
+        match self.width {
+            1 => self.lsb.to_string(),
+            width => format!("{}:{}", self.lsb + width - 1, self.lsb),
+        }
+    }
+
+    /// The field's bits within its word.
+    pub const fn mask(&self) -> u32 {
+        (((1u64 << self.width) - 1) << self.lsb) as u32
+    }
+
+    /// The same field, with a list of what its numbers stand for.
+    pub(crate) const fn codes(mut self, codes: &'static [Named]) -> Self {
+        self.values = Values::Codes(codes);
+        self
+    }
+
+    /// The same field, which takes these numbers only.
+    pub(crate) const fn takes(
+        mut self,
+        endat: &'static [(u32, u32)],
+        t_format: &'static [(u32, u32)],
+    ) -> Self {
+        self.limits = Limits { endat, t_format };
+        self
+    }
+
+    /// The same field, with a list of what its bits stand for.
+    pub(crate) const fn bits(mut self, bits: &'static [Named]) -> Self {
+        self.values = Values::Bits(bits);
+        self
+    }
+}
+
+/// One word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Register {
+    /// Name, unique in its block.
+    pub name: &'static str,
+    /// Word offset in its block.
+    pub offset: u16,
+    /// What a host may do with it.
+    pub access: Access,
+    /// One sentence.
+    pub meaning: &'static str,
+    /// Part that a card must have for it, beside that of its block.
+    pub part: Option<Part>,
+    /// Fields, lowest first; bits of no field read as 0, except in configuration words, which keep what is written.
+    pub fields: &'static [Field],
+}
+
+impl Register {
+    /// The same word, which only cards with this part have.
+    pub(crate) const fn of(mut self, part: Part) -> Self {
+        self.part = Some(part);
+        self
+    }
+
+    /// The field called `name`.
+    pub fn field(&self, name: &str) -> Option<&'static Field> {
+        self.fields.iter().find(|f| f.name == name)
+    }
+}
+
+/// A field that is 0 after reset.
+pub(crate) const fn field(
+    name: &'static str,
+    lsb: u32,
+    width: u32,
+    unit: &'static str,
+    meaning: &'static str,
+) -> Field {
+    Field {
+        name,
+        lsb,
+        width,
+        unit,
+        meaning,
+        values: Values::Plain,
+        limits: Limits::ANY,
+    }
+}
+
+pub(crate) const fn word(
+    name: &'static str,
+    offset: u8,
+    access: Access,
+    meaning: &'static str,
+    fields: &'static [Field],
+) -> Register {
+    Register {
+        name,
+        offset: offset as u16,
+        access,
+        meaning,
+        part: None,
+        fields,
+    }
+}
+
+/// Words that stand together, once in the card or once for each channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Block {
+    /// Name; registers of a channel are called `<name><channel>_<register>`.
+    pub name: &'static str,
+    /// First word, for channel 0.
+    pub base: u16,
+    /// Words from one channel's to the next one's.
+    pub stride: u16,
+    /// Whether every channel has one.
+    pub per_channel: bool,
+    /// One sentence.
+    pub meaning: &'static str,
+    /// Whether it is RAM: 0 after power-up, and no reset clears it.
+    pub is_ram: bool,
+    /// Part that a card must have for it.
+    pub part: Option<Part>,
+    /// Its words, lowest offset first.
+    pub registers: &'static [Register],
+}
+
+impl Block {
+    /// Word address of one of its registers.
+    pub const fn address(&self, register: &Register, channel: usize) -> u16 {
+        let block = if self.per_channel { channel as u16 } else { 0 };
+        self.base + self.stride * block + register.offset
+    }
+
+    /// The register called `name`.
+    pub fn register(&self, name: &str) -> Option<&'static Register> {
+        self.registers.iter().find(|r| r.name == name)
+    }
+}
+
+fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    names.collect::<Vec<_>>().join(", ")
+}

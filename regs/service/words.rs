@@ -1,0 +1,137 @@
+//! Where the words of a service are in its RAM, and what is in them.
+
+use crate::causes::endat;
+
+/// Words of 32 bits in RAM, as the host counts them; the program's word is twice that, plus one for the high half.
+pub mod word {
+    /// Request: mode command (29..24), MRS code, address or port (23..16), data (15..0). Writing it sends it.
+    pub const REQUEST: u8 = 0;
+    /// State of the request (15..0) and number of requests finished (31..16).
+    pub const REQUEST_STATE: u8 = 1;
+    /// Answer: data (15..0), then echo of MRS code or address, or the status byte of additional information 1 (23..16); of
+    /// longer answers bits 31..0.
+    pub const ANSWER: u8 = 2;
+    /// Bits 47..32 of longer answers.
+    pub const ANSWER_MORE: u8 = 3;
+    /// Duration: microseconds, wrapping (15..0), milliseconds (31..16).
+    pub const DURATION: u8 = 4;
+    /// Control: writing it acts.
+    pub const CONTROL: u8 = 5;
+    /// Forced errors.
+    pub const FORCE: u8 = 6;
+    /// Initialisation: step under way (15..0, 0 = none), step that failed (31..16, 0 = none).
+    pub const PROGRESS: u8 = 7;
+    /// What is known and what is wrong (15..0), how often the program has begun (31..16).
+    pub const STATE: u8 = 8;
+    /// Triggers lost (15..0), ends of frames not looked at (31..16).
+    pub const LOST: u8 = 9;
+    /// Alarm threshold: n bad frames (15..0) of the last m (31..16, up to 16); 0 = none.
+    pub const THRESHOLD: u8 = 10;
+    /// Bad frames among the last m (15..0), which ones (31..16, bit 0 = the last).
+    pub const BAD_FRAMES: u8 = 11;
+    /// Position 2 minus position 1 as it should be, bits 31..0, then 47..32.
+    pub const OFFSET: [u8; 2] = [12, 13];
+    /// Largest distance from that, in measuring steps; 0 with no comparison.
+    pub const TOLERANCE: u8 = 14;
+    /// Position 2 minus position 1 minus offset, bits 31..0 then 47..32, modulo the position's width.
+    pub const DIFFERENCE: [u8; 2] = [15, 16];
+    /// Comparisons (15..0), comparisons that failed (31..16).
+    pub const COMPARISONS: u8 = 17;
+    /// Position 2 as last read, bits 31..0, then 47..32.
+    pub const POSITION_2: [u8; 2] = [18, 19];
+    /// Number of codes in the list, 0..=8.
+    pub const LIST_LENGTH: u8 = 20;
+    /// Last good status byte of additional information 1 (15..0) and 2 (31..16): WRN, RM, Busy, I4..I0; then
+    /// [`super::info_status`].
+    pub const INFO_STATUS: u8 = 21;
+    /// Watchdog in microseconds (15..0, 0 = off), shortest recovery time in system clock cycles (31..16, 0 = not checked).
+    pub const LIMITS: u8 = 22;
+    /// Continuous clock: bit 0 wanted, bit 1 stop after an error.
+    pub const CONTINUOUS: u8 = 23;
+    /// Longest wait of a request for a trigger, in milliseconds (15..0); 0 = none.
+    pub const REQUEST_WAIT: u8 = 40;
+    /// MRS codes that are selected in turn.
+    pub const LIST: u8 = 24;
+    /// Codes in the list at most, and slots.
+    pub const LIST_MAX: u8 = 8;
+    /// For each code of the list: 16 bits of content (15..0), number of the result that brought it (31..16).
+    pub const SLOTS: u8 = 32;
+    /// Frames of each cause, 32 bits; the first one counts good frames, the last two comparisons of positions that failed and
+    /// additional informations with a wrong CRC.
+    pub const COUNTERS: u8 = 48;
+    /// Name plate: value (15..0), 1 = it has been read (31..16).
+    pub const NAME_PLATE: u8 = 68;
+    /// Where the program's own words begin.
+    pub const PRIVATE: u8 = 96;
+}
+
+/// Counter of comparisons that failed, among those of the causes.
+pub const COUNTER_POSITION_2: u8 = endat::COUNT as u8;
+
+/// Counter of additional informations with a wrong CRC, the last one.
+pub const COUNTER_BAD_INFOS: u8 = COUNTER_POSITION_2 + 1;
+
+/// Bits above the status byte, in both halves of [`word::INFO_STATUS`].
+pub mod info_status {
+    /// The information that came last had a wrong CRC; nothing of it was taken.
+    pub const BAD_CRC: u16 = 1 << 8;
+}
+
+/// Bits of [`word::REQUEST_STATE`].
+pub mod request_state {
+    /// A request is under way.
+    pub const BUSY: u16 = 1 << 0;
+    /// Where the error code stands.
+    pub const ERROR_SHIFT: u32 = 4;
+
+    crate::named::codes! {
+        /// What became of a request.
+        ERRORS: u16;
+        OK = 0, "fulfilled", "fulfilled";
+        SILENT = 1, "no_answer", "no answer: command not understood or refused";
+        ADDRESS_ECHO = 2, "address_echo", "echo of MRS code, address or port wrong";
+        DATA_ECHO = 3, "data_echo", "echo of data wrong";
+        CRC = 4, "crc", "CRC of the answer wrong";
+        UNKNOWN = 5, "unknown_command", "unknown mode command, nothing was sent";
+        FRAME = 6, "frame", "frame went wrong or could not begin";
+        BUSY_TIMEOUT = 7, "busy_timeout", "encoder stayed busy";
+        NO_TRIGGER = 8, "no_trigger", "no trigger came in time for a request that rides on one";
+        CANCELLED = 9, "cancelled", "cancelled by the host";
+    }
+
+    /// What an error code means.
+    pub fn name(error: u16) -> &'static str {
+        let row = ERRORS.iter().find(|e| e.number == error.into());
+        row.map_or("unknown", |e| e.meaning)
+    }
+}
+
+/// Bits of [`word::CONTROL`].
+pub mod control {
+    /// Initialise the encoder.
+    pub const INITIALISE: u16 = 1 << 0;
+    /// Counters and the latched part of the state go to zero.
+    pub const CLEAR: u16 = 1 << 1;
+    /// The request under way is given up; what is on the wire is finished.
+    pub const CANCEL: u16 = 1 << 2;
+}
+
+/// Bits of [`word::STATE`], low half.
+pub mod state {
+    /// The encoder has been initialised; the name plate is valid.
+    pub const INITIALISED: u16 = 1 << 0;
+    /// n of the last m frames were bad; latched.
+    pub const ALARM: u16 = 1 << 1;
+    /// Positions 1 and 2 were too far apart; latched.
+    pub const POSITION_2: u16 = 1 << 2;
+    /// The encoder knows EnDat 2.2.
+    pub const ENDAT22: u16 = 1 << 3;
+    /// The encoder has another width than configured; its own is used.
+    pub const OTHER_WIDTH: u16 = 1 << 4;
+    /// The encoder takes only a slower clock than configured; that is used.
+    pub const SLOWER: u16 = 1 << 5;
+    /// DATA has been HIGH for long: no encoder, or a broken line.
+    pub const UNPLUGGED: u16 = 1 << 6;
+    /// The encoder is being initialised, or the power-up sequence is under way; no position is taken.
+    pub const INITIALISING: u16 = 1 << 7;
+}
