@@ -1,9 +1,65 @@
 //! Boards: pin tables, and the clock manager that makes the system clock.
 
-use crate::config::Kind;
 use endat_hdl::config::{SYSTEM_HZ_MAX, SYSTEM_HZ_MIN};
 use serde::Deserialize;
 use std::collections::BTreeMap;
+
+/// What a port of the top level is for; decides its constraints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Board oscillator.
+    Oscillator,
+    /// Output to a transceiver: clock, data, driver enable.
+    Transceiver,
+    /// Answer of the encoder, asynchronous.
+    EncoderData,
+    /// Trigger pin, asynchronous.
+    Trigger,
+    /// UART input, asynchronous.
+    UartInput,
+    /// UART output.
+    UartOutput,
+    /// Input from a bus outside the device, asynchronous.
+    BusInput,
+    /// Output to a bus outside the device, driven only while the card is read.
+    BusOutput,
+    /// Data line of a bus outside the device, driven by either side.
+    BusData,
+    /// Interrupt to a processor outside the device.
+    Interrupt,
+    /// Light.
+    Led,
+}
+
+impl Kind {
+    /// Whether the port is an input of the device.
+    pub const fn is_input(self) -> bool {
+        matches!(
+            self,
+            Self::Oscillator | Self::EncoderData | Self::Trigger | Self::UartInput | Self::BusInput
+        )
+    }
+
+    /// Its direction in a module's port list, padded.
+    pub const fn direction(self) -> &'static str {
+        match self {
+            Self::BusData => "inout  wire",
+            kind if kind.is_input() => "input  wire",
+            _ => "output wire",
+        }
+    }
+
+    /// Why the timing of the port must not be analysed; `None` when it must.
+    pub const fn asynchronous(self) -> Option<&'static str> {
+        match self {
+            Self::EncoderData => Some("answers arrive with the delay of the cable, in any phase; synchronised and tracked inside"),
+            Self::Trigger => Some("belongs to no clock; synchronised inside, one system clock of jitter is documented"),
+            Self::UartInput => Some("belongs to the host's clock; synchronised and sampled in mid bit inside"),
+            Self::BusInput | Self::BusData => Some("belongs to the host's clock; synchronised inside, see the bus's rules for set-up times"),
+            _ => None,
+        }
+    }
+}
 
 /// The boards that come with the program: name and pin table.
 const BOARDS: &[(&str, &str)] = &[(

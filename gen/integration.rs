@@ -5,9 +5,8 @@ mod interface;
 
 use crate::artifact::Artifact;
 use crate::board::Board;
-use crate::config::Project;
+use crate::config::{Project, Receiver};
 use crate::error::GenError;
-use crate::t_format::Receiver;
 use crate::template::render;
 use crate::testbench::RESET_CYCLES;
 use endat_hdl::bus::HostBus;

@@ -16,12 +16,12 @@
 //! `led_status_o` blinks slowly while every channel is well, quickly while the last result of one is an error;
 //! `led_channelN_o` is on while the channel's last result is a good position.
 
-use crate::channel::{Features, FixedTimes};
 use crate::channel_registers::ChannelRegisters;
 use crate::channel_trigger::ChannelTrigger;
 use crate::config::{CardConfig, ChannelConfig};
 use crate::direct::DirectOutput;
 use crate::encoder_port::EncoderPort;
+use crate::features::{Features, FixedTimes};
 use crate::interrupt::Interrupt;
 use crate::line_monitor::LineStart;
 use crate::register_bank::RegisterBank;

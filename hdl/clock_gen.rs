@@ -11,7 +11,7 @@
 //! The line idles HIGH and a frame ends with it HIGH, an aborted one as well. A low phase that was held is followed
 //! by a whole half period, and a low phase that has begun is finished: no pulse is ever shortened.
 
-use crate::channel::Features;
+use crate::features::Features;
 use crate::half_period::HalfPeriod;
 use crate::reg::Reg;
 use endat_macros::{kernel, Block};

@@ -10,7 +10,8 @@
 //!
 //! For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
 
-use crate::channel::{Channel, Features, FixedTimes};
+use crate::channel::Channel;
+use crate::features::{Features, FixedTimes};
 use crate::line_monitor::{LineMonitor, LineStart};
 use crate::service::program::ServiceTimes;
 use crate::service::{channel::ServiceChannel, Service};

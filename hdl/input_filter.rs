@@ -7,7 +7,7 @@
 //!
 //! The delay it adds is part of the propagation delay that the receiver measures, so it needs no correction.
 
-use crate::channel::Features;
+use crate::features::Features;
 use crate::reg::{FallReg, Reg, SyncReg};
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;

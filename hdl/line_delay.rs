@@ -15,7 +15,7 @@
 //!
 //! Ref: HEIDENHAIN PWM 20 user's manual, propagation delay compensation; TI motor-control SDK, `endat_main.asm`.
 
-use crate::channel::Features;
+use crate::features::Features;
 use crate::half_period::HalfPeriod;
 use crate::phase_tracker::PhaseTracker;
 use crate::reg::Reg;

@@ -11,7 +11,7 @@
 //!
 //! What is measured is worth the same at every clock; the settings take effect between two frames.
 
-use crate::channel::Features;
+use crate::features::Features;
 use crate::memory::Memory;
 use crate::reg::Reg;
 use endat_macros::{kernel, Block};

@@ -12,7 +12,7 @@
 //!
 //! In mode `fixed` the delay comes from a register, and the phase stays as it is.
 
-use crate::channel::Features;
+use crate::features::Features;
 use crate::reg::Reg;
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;

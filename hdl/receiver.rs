@@ -19,8 +19,8 @@
 //! shortest answer while its start bit may still be on the cable. `under_way` counts the difference once more: at the end of the
 //! frame all three agree, unless one was upset.
 
-use crate::channel::Features;
 use crate::crc5::{Crc5Check, Crc5Serial, ORDER_OF_X};
+use crate::features::Features;
 use crate::protocol;
 use crate::reg::Reg;
 use endat_macros::{kernel, Block, States};

@@ -25,7 +25,7 @@ pub use endat_regs::causes::endat as cause;
 pub mod primary;
 pub mod verdict;
 
-use crate::channel::{Features, FixedTimes};
+use crate::features::{Features, FixedTimes};
 use crate::line_health::LineHealth;
 use crate::reg::Reg;
 use crate::several::each;

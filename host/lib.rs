@@ -10,8 +10,7 @@
 //!     Scale     degrees, turns, millimetres
 //! ```
 //!
-//! Nothing here knows how the card is made; names and places of its registers are in [`map`], which is generated from the card's
-//! own table.
+//! Nothing here knows how the card is made; names and places of its registers, causes and parts come from [`endat_regs`], as the card has them.
 
 pub mod bridge;
 pub mod card;

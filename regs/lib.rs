@@ -65,6 +65,12 @@ pub const BLOCK_STRIDE: u16 = 8;
 /// Most channels that the map and the decoder take.
 pub const CHANNELS_MAX: usize = 8;
 
+/// Bytes of a word.
+pub const WORD_BYTES: u32 = 4;
+/// Bytes that the largest map takes.
+pub const MAP_BYTES: u32 =
+    WORD_BYTES * (SERVICE_BASE as u32 + SERVICE.stride as u32 * CHANNELS_MAX as u32);
+
 /// Words of the burst that gives the results of all channels of one moment, from [`RESULT_BASE`] on; the words between
 /// two blocks are read too. With requests each result has its informations.
 pub const fn result_words(channels: usize, requests: bool) -> u64 {

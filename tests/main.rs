@@ -14,6 +14,7 @@ mod engines;
 mod files;
 mod host;
 mod hosts;
+mod house;
 mod integrators;
 mod maps;
 mod own_triggers;

@@ -6,6 +6,7 @@
 
 use super::comparison_t_format::asynchronous;
 use super::comparison_table::{Basis, Table, LEGEND};
+use super::measured::area;
 use super::preset_run::{project, run, ChannelRun, Conditions};
 use super::{cycle_times, fault, CycleTime, CycleTimeOptions};
 use crate::config::Project;
@@ -24,8 +25,6 @@ use endat_sim::scenario::{self, RunOptions};
 use endat_sim::{decimal, Time, NS, US};
 use rust_hdl::prelude::Block;
 
-/// The budgets that a test compares with synthesis.
-const AREA: &str = include_str!("../../tests/data/area.toml");
 /// Cables, in metres, from short to long, that a preset is tried on.
 const CABLES_M: [u64; 4] = [20, 100, 150, 780];
 /// Triggers of a run.
@@ -108,13 +107,6 @@ fn samples_told(project: &Project) -> String {
         "{}; works from {PERIOD_CYCLES_MIN} on, from {PERIOD_CYCLES_MIN_DOUBLE} with double edge",
         periods.min().unwrap_or_default() * places
     )
-}
-
-pub(super) fn area(name: &str, family: &str) -> (u64, u64) {
-    let table: toml::Table = AREA.parse().unwrap_or_default();
-    let figure = |what: &str| table.get(name)?.get(family)?.get(what)?.as_integer();
-    let figure = |what| figure(what).unwrap_or_default() as u64;
-    (figure("lut"), figure("ff"))
 }
 
 /// What somebody's frames back to back come to here.

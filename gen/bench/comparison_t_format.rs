@@ -1,8 +1,8 @@
 //! The T-format receiver's table of `docs/comparison.md`.
 
-use super::comparison::area;
 use super::comparison_table::{Basis, Table};
 use super::fault;
+use super::measured::area;
 use crate::error::GenError;
 use endat_hdl::t_format::protocol::{Request, BIT_HZ, FAST_BIT_HZ};
 use endat_sim::decimal;

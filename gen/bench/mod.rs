@@ -8,6 +8,7 @@ mod cycle_time;
 mod design;
 mod frames;
 mod instructions;
+mod measured;
 mod outside;
 mod preset_run;
 mod report;

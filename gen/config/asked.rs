@@ -1,9 +1,5 @@
 //! What the reader asks a file for: the keys that there may be, as the reader itself knows them.
 
-use super::reader::Source;
-use super::schema;
-use crate::error::Diagnostic;
-use crate::t_format;
 use endat_hdl::config::Limits;
 
 /// What may stand under a key.
@@ -34,15 +30,4 @@ pub struct Asked {
     pub kind: Kind,
     /// All that it may be, if it is one of a few words or numbers.
     pub words: Vec<String>,
-}
-
-/// All that the reader asks a text for, and what it complains about.
-pub fn asked(text: &str) -> (Vec<Asked>, Vec<Diagnostic>) {
-    let source = Source::new("", text);
-    // What was read does not matter here; what is wrong is among the complaints.
-    match t_format::receiver_line(text) {
-        Some(_) => drop(t_format::read(&source)),
-        None => drop(schema::read(&source)),
-    }
-    source.into_asked()
 }

@@ -1,9 +1,9 @@
 //! The key `host.base_address`.
 
 use super::reader::Table;
-use crate::maps::MAP_BYTES;
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::limits;
+use endat_regs::MAP_BYTES;
 
 /// Reads where a system has the registers; `None` if something is wrong.
 pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>) -> Option<u32> {

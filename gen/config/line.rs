@@ -1,7 +1,7 @@
 //! The table `[line]`.
 
+use super::reader::read_parts;
 use super::reader::{At, Table};
-use super::schema::read_parts;
 use endat_hdl::config::{limits, LineParts, PhaseSource};
 
 /// Words for the source of the phase after reset.

@@ -8,6 +8,7 @@ mod outputs;
 pub mod pins;
 pub(crate) mod protocol;
 pub(crate) mod reader;
+mod receiver;
 pub(crate) mod schema;
 mod service;
 mod stream;
@@ -18,11 +19,13 @@ pub use names::{check_name, NAME_MAX};
 pub use stream::start_name;
 
 use crate::artifact::read_regular;
+pub use crate::board::Kind;
 use crate::board::{Assignment, Board, Pll};
 use crate::error::{shown, Diagnostic, GenError};
-use crate::t_format::{self, Receiver};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::CardConfig;
+pub use protocol::RECEIVER_BUS;
+pub use receiver::Receiver;
 use std::path::Path;
 
 /// The presets that come with the program: name and text.
@@ -56,63 +59,6 @@ pub const RECEIVER_PRESETS: &[(&str, &str)] =
 pub const DEFAULT_PRESET: &str = "s6_two_channel";
 /// Largest configuration file; a larger one is not a configuration.
 const FILE_BYTES_MAX: u64 = 1 << 20;
-
-/// What a port of the top level is for; decides its constraints.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// Board oscillator.
-    Oscillator,
-    /// Output to a transceiver: clock, data, driver enable.
-    Transceiver,
-    /// Answer of the encoder, asynchronous.
-    EncoderData,
-    /// Trigger pin, asynchronous.
-    Trigger,
-    /// UART input, asynchronous.
-    UartInput,
-    /// UART output.
-    UartOutput,
-    /// Input from a bus outside the device, asynchronous.
-    BusInput,
-    /// Output to a bus outside the device, driven only while the card is read.
-    BusOutput,
-    /// Data line of a bus outside the device, driven by either side.
-    BusData,
-    /// Interrupt to a processor outside the device.
-    Interrupt,
-    /// Light.
-    Led,
-}
-
-impl Kind {
-    /// Whether the port is an input of the device.
-    pub const fn is_input(self) -> bool {
-        matches!(
-            self,
-            Self::Oscillator | Self::EncoderData | Self::Trigger | Self::UartInput | Self::BusInput
-        )
-    }
-
-    /// Its direction in a module's port list, padded.
-    pub const fn direction(self) -> &'static str {
-        match self {
-            Self::BusData => "inout  wire",
-            kind if kind.is_input() => "input  wire",
-            _ => "output wire",
-        }
-    }
-
-    /// Why the timing of the port must not be analysed; `None` when it must.
-    pub const fn asynchronous(self) -> Option<&'static str> {
-        match self {
-            Self::EncoderData => Some("answers arrive with the delay of the cable, in any phase; synchronised and tracked inside"),
-            Self::Trigger => Some("belongs to no clock; synchronised inside, one system clock of jitter is documented"),
-            Self::UartInput => Some("belongs to the host's clock; synchronised and sampled in mid bit inside"),
-            Self::BusInput | Self::BusData => Some("belongs to the host's clock; synchronised inside, see the bus's rules for set-up times"),
-            _ => None,
-        }
-    }
-}
 
 /// A checked configuration and all that follows from it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -268,12 +214,12 @@ fn check_form(file: &str, text: &str) -> Result<(), Vec<Diagnostic>> {
 
 /// Checks the text of a configuration of either kind; `file` names it in the messages.
 pub fn parse_any(file: &str, text: &str) -> Result<Configuration, Vec<Diagnostic>> {
-    if t_format::receiver_line(text).is_none() {
+    if receiver::receiver_line(text).is_none() {
         return parse(file, text).map(|card| Configuration::Card(card.into()));
     }
     check_form(file, text)?;
     let source = reader::Source::new(file, text);
-    match t_format::read(&source) {
+    match receiver::read(&source) {
         Some(receiver) if source.is_good() => Ok(Configuration::Receiver(receiver)),
         _ => Err(source.into_diagnostics()),
     }
@@ -282,9 +228,9 @@ pub fn parse_any(file: &str, text: &str) -> Result<Configuration, Vec<Diagnostic
 /// Checks the text of a card's configuration; `file` names it in the messages.
 pub fn parse(file: &str, text: &str) -> Result<Project, Vec<Diagnostic>> {
     check_form(file, text)?;
-    if let Some(line) = t_format::receiver_line(text) {
+    if let Some(line) = receiver::receiver_line(text) {
         let known = HostBus::ALL.map(HostBus::name).join(", ");
-        let text = format!("host.bus = \"{}\": is a T-format receiver, and this command works on cards; use emit or explain, or choose a card's bus: {known}", t_format::BUS);
+        let text = format!("host.bus = \"{}\": is a T-format receiver, and this command works on cards; use emit or explain, or choose a card's bus: {known}", RECEIVER_BUS);
         return Err(vec![Diagnostic {
             file: file.into(),
             line,
@@ -296,6 +242,17 @@ pub fn parse(file: &str, text: &str) -> Result<Project, Vec<Diagnostic>> {
         Some(project) if source.is_good() => Ok(project),
         _ => Err(source.into_diagnostics()),
     }
+}
+
+/// All that the reader asks a text for, and what it complains about.
+pub fn asked_of(text: &str) -> (Vec<asked::Asked>, Vec<Diagnostic>) {
+    let source = reader::Source::new("", text);
+    // What was read does not matter here; what is wrong is among the complaints.
+    match receiver::receiver_line(text) {
+        Some(_) => drop(receiver::read(&source)),
+        None => drop(schema::read(&source)),
+    }
+    source.into_asked()
 }
 
 #[cfg(test)]

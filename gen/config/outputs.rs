@@ -1,7 +1,7 @@
 //! The table `[outputs]`.
 
+use super::reader::read_parts;
 use super::reader::Table;
-use super::schema::read_parts;
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::OutputParts;
 

@@ -4,6 +4,8 @@ use super::reader::{At, Table};
 use endat_hdl::config::{is_rate, is_triggered, limits, TFormatRequest};
 use endat_hdl::t_format::protocol::{Request, BIT_HZ, FAST_BIT_HZ};
 
+/// Bus that makes a configuration one of a receiver.
+pub const RECEIVER_BUS: &str = "dsp";
 /// Word of the key `protocol` for T-format.
 pub const T_FORMAT: &str = "t_format";
 /// Word of the key `protocol` for EnDat, which may be left out.

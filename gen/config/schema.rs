@@ -1,11 +1,11 @@
 //! The keys of a configuration file, and the way from them to a [`Project`].
 
 use super::pins::{assign_pins, card_ports};
+use super::protocol::RECEIVER_BUS;
 use super::reader::{At, Source, Table};
 use super::{base, check_name, line, outputs, protocol, service, stream, trigger, Project};
 use crate::board::{self, Assignment, Board};
 use crate::error::shorten;
-use crate::t_format::BUS;
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::*;
 use endat_hdl::protocol::ModeCommand;
@@ -628,35 +628,10 @@ fn read_command(table: &Table<'_, '_>, command: At<String>) -> Option<ModeComman
     found
 }
 
-/// Marks the parts that a list names; line and text of each, `None` if something is wrong.
-pub(super) fn read_parts(
-    table: &Table<'_, '_>,
-    names: &[&str],
-    marks: &mut [&mut bool],
-) -> Option<Vec<(usize, String)>> {
-    let mut all = Vec::new();
-    let words = table.strings("parts");
-    table.offer(names);
-    for word in words.unwrap_or_default() {
-        let shown = format!("{:?}", word.value);
-        let Some(index) = names.iter().position(|name| *name == word.value) else {
-            let text = format!("unknown part; use {}", names.join(", "));
-            table.complain(word.line, "parts", &shown, &text);
-            return None;
-        };
-        if std::mem::replace(marks[index], true) {
-            table.complain(word.line, "parts", &shown, "stands twice; remove one");
-            return None;
-        }
-        all.push((word.line, shown));
-    }
-    Some(all)
-}
-
 /// The bus; `None` for what is no bus.
 fn read_bus(table: &Table<'_, '_>) -> Option<HostBus> {
     let name = table.string("bus");
-    table.offer(HostBus::ALL.iter().map(|b| b.name()).chain([BUS]));
+    table.offer(HostBus::ALL.iter().map(|b| b.name()).chain([RECEIVER_BUS]));
     let Some(name) = name else {
         return (!table.has("bus")).then(HostBus::default);
     };

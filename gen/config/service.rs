@@ -1,7 +1,7 @@
 //! The table `[service]`.
 
+use super::reader::read_parts;
 use super::reader::{At, Table};
-use super::schema::read_parts;
 use endat_hdl::config::{ServiceParts, LIST};
 
 /// Reads the table; everything in it may be left out. `None` if something is wrong.

@@ -21,14 +21,9 @@ use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
 use endat_hdl::regs;
-use endat_regs::{Block, Field, Named, Register, Values, CHANNELS_MAX, SERVICE, SERVICE_BASE};
+use endat_regs::{Block, Field, Named, Register, Values};
 
-/// Bytes of a word.
-pub const WORD_BYTES: u32 = 4;
-
-/// Bytes that the largest map takes.
-pub const MAP_BYTES: u32 =
-    WORD_BYTES * (SERVICE_BASE as u32 + SERVICE.stride as u32 * CHANNELS_MAX as u32);
+pub use endat_regs::WORD_BYTES;
 
 /// The registers that a card has.
 #[derive(Clone, Debug)]

@@ -6,38 +6,22 @@
 //! ```
 
 mod bench;
-mod read;
 mod report;
 
-pub use read::{read, receiver_line, BUS};
 pub use report::{report, Report};
 
 use crate::artifact::{self, Artifact};
+use crate::config::Receiver;
 use crate::error::GenError;
 use crate::integration;
 use crate::template::render;
 use crate::testbench::RESET_CYCLES;
 use crate::verilog::{print_files, source_files, source_list, Header};
 use endat_hdl::elaborate::{elaborate, Design};
-use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
+use endat_hdl::t_format::dsp::AsyncDsp;
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
 use minijinja::context;
 use rust_hdl::prelude::Block;
-
-/// A checked configuration of a receiver.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Receiver {
-    /// Name of the folder, the files and the top module.
-    pub name: String,
-    /// Encoder, for people; may be empty.
-    pub encoder: String,
-    /// What it starts with.
-    pub start: TFormatStart,
-    /// The device gives registers their start values when it is configured.
-    pub initial_values: bool,
-    /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
-    pub hash: String,
-}
 
 /// The receiver's design.
 pub fn design(receiver: &Receiver) -> Result<Design, GenError> {

@@ -89,7 +89,7 @@ pub fn report(receiver: &Receiver) -> Report {
         name: receiver.name.clone(),
         config_hash: receiver.hash.clone(),
         protocol: T_FORMAT,
-        bus: super::read::BUS,
+        bus: crate::config::RECEIVER_BUS,
         encoder: receiver.encoder.clone(),
         bit_hz,
         clocks: SYSTEM_HZ.iter().enumerate().map(clock).collect(),

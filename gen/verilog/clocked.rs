@@ -1,6 +1,6 @@
 //! Registers and memories as Verilog text.
 
-use super::expression::{bits, literal, named_literal, Helpers};
+use super::module::expression::{bits, literal, named_literal, Helpers};
 use super::module::ModulePrinter;
 use super::text::{comment, vector, INDENT};
 use endat_hdl::elaborate::{Memory, NetId, Register};

@@ -4,7 +4,6 @@
 //! never change a value. What Verilog cannot say in one expression (bits of an expression) gets a net of its own.
 
 mod clocked;
-mod expression;
 mod module;
 mod names;
 mod text;

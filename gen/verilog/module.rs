@@ -1,10 +1,12 @@
 //! One module as Verilog text.
 
-use super::expression::{literal, named_literal, range, Helper, Helpers};
+pub(super) mod expression;
+
 use super::text::{comment, ranges, upper, vector, INDENT};
 use endat_hdl::elaborate::{
     mask, Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Statement,
 };
+use expression::{literal, named_literal, range, Helper, Helpers};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Keeps a synchroniser stage a flip-flop: Vivado and XST, then yosys and other tools.

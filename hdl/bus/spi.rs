@@ -19,9 +19,6 @@ use crate::several::each;
 use endat_macros::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
-/// System clock cycles in the shortest period of the serial clock.
-pub const SCK_CYCLES_MIN: u64 = 8;
-
 /// What the byte means.
 #[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
 pub enum SpiState {

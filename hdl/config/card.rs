@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::protocol::LEAD_PULSES;
-use crate::regs::result_words;
 use crate::stream::buffer::{frame_bytes, frame_cycles, BUFFER_BYTES};
 use crate::timing::*;
+use endat_regs::result_words;
 
 /// Where the upper limit of the UART rate comes from when it is not the system clock.
 pub const BAUD_NOTE: &str = "the most that the board passes on to the host";

@@ -1,7 +1,6 @@
 //! What each key may be, whatever the other keys say.
 
 use super::*;
-use crate::bus::spi::SCK_CYCLES_MIN;
 use crate::channel_trigger::SKIP_BITS;
 use crate::protocol::POSITION_BITS;
 use crate::stream::buffer::BUFFER_BYTES;
@@ -9,6 +8,9 @@ use crate::t_format::protocol::{
     BIT_HZ, FAST_BIT_HZ, FIELD_GAP_US_MAX, FILTER_CYCLES_MAX, REPLY_GAP_US_MAX,
 };
 use crate::timing::*;
+
+/// System clock cycles in the shortest period of the serial clock, behind SPI.
+pub const SCK_CYCLES_MIN: u64 = 8;
 
 /// The values that one key may have.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -19,8 +19,8 @@ pub use t_format::{is_rate, is_triggered, TFormatRequest};
 use crate::line_delay::mode;
 use crate::line_monitor::LineStart;
 use crate::protocol::ModeCommand;
-use crate::regs::CHANNELS_MAX;
 use crate::timing::{calibration_hz, sixteenths, TST_FROM_HZ, TST_USUAL_NS};
+use endat_regs::CHANNELS_MAX;
 use std::fmt;
 use std::ops::RangeInclusive;
 

@@ -1,6 +1,8 @@
 //! The typed design: modules, nets, registers, memories and expressions, each with its width.
 
-pub use super::memory::{Memory, WritePort};
+mod memory;
+
+pub use memory::{Memory, WritePort};
 use std::collections::BTreeSet;
 
 /// Index of a module in [`Design::modules`].

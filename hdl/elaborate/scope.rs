@@ -1,11 +1,13 @@
 //! The names of one block while it is elaborated, and its statements.
 
+mod expr;
+
 use super::design::{
     Direction, EnumId, EnumType, Expr, ExprKind, Net, NetId, Parameter, Statement,
 };
-use super::expr::Value;
 use super::tree::BlockNode;
 use super::ElaborateError;
+use expr::Value;
 use rust_hdl::core::ast::{
     VerilogBlock, VerilogBlockOrConditional, VerilogCase, VerilogConditional,
     VerilogExpression as Ast, VerilogLink, VerilogLinkDetails, VerilogMatch, VerilogStatement,

@@ -9,7 +9,7 @@
 use super::exchange::Exchange;
 use super::outcome::Outcome;
 use super::reply::Reply;
-use crate::channel::Features;
+use crate::features::Features;
 use crate::input_filter::InputFilter;
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;

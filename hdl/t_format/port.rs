@@ -13,7 +13,7 @@
 use super::exchange::Exchange;
 use super::primary::LowestCause;
 use super::reply::Reply;
-use crate::channel::Features;
+use crate::features::Features;
 use crate::input_filter::InputFilter;
 use crate::reg::Reg;
 use crate::snapshot::Snapshot;

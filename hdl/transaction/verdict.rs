@@ -12,7 +12,7 @@
 
 use super::cause::{self, flag};
 use super::primary::PrimaryCause;
-use crate::channel::{Features, FixedTimes};
+use crate::features::{Features, FixedTimes};
 use crate::reg::Reg;
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;

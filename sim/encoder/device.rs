@@ -4,65 +4,8 @@
 //! marked "assumed" is the usual figure of that kind of device and must be read from a real one (words 13, 17, 20, 21, 39, and
 //! word 25 of area 0xBD).
 
-use super::EncoderConfig;
+use super::{EncoderConfig, TypePlate};
 use crate::{Time, MS, NS, US};
-
-/// What the manufacturer wrote into an encoder, apart from what its times and widths say.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TypePlate {
-    /// Rotary or angle encoder; otherwise linear (word 14, bit 15).
-    pub rotary: bool,
-    /// Distinguishable revolutions, 0 = singleturn (word 17).
-    pub revolutions: u16,
-    /// Signal periods per revolution, or the signal period in nm (words 15, 16).
-    pub signal_periods: u32,
-    /// Measuring steps per revolution, or the measuring step in nm (words 20, 21).
-    pub measuring_steps: u32,
-    /// Letters of the ID number (word 24).
-    pub id_letters: [u8; 2],
-    /// ID number (words 25, 26).
-    pub id_number: u32,
-    /// Letters before and after the serial number (words 27, 29).
-    pub serial_letters: [u8; 2],
-    /// Serial number (words 27 to 29).
-    pub serial_number: u32,
-    /// Alarms it can tell (word 35).
-    pub alarms: u16,
-    /// Warnings it can tell (word 36).
-    pub warnings: u16,
-    /// Additional informations 1 it has, bit n = code 0x40 + n (0xBD word 0: the bits are an assumption).
-    pub infos_1: u16,
-    /// Additional informations 2 it has, bit n = code 0x50 + n (0xBD word 1).
-    pub infos_2: u16,
-    /// For functional safety (word 37).
-    pub safety: bool,
-}
-
-impl TypePlate {
-    /// A singleturn encoder with 2^`bits` measuring steps per revolution that tells everything.
-    pub fn rotary(bits: u32) -> Self {
-        Self {
-            rotary: true,
-            revolutions: 0,
-            signal_periods: 2048,
-            measuring_steps: 1 << bits,
-            id_letters: *b"  ",
-            id_number: 123_456,
-            serial_letters: *b"  ",
-            serial_number: 1,
-            alarms: 0x007F,
-            warnings: 0x001F,
-            infos_1: 0x7FFF,
-            infos_2: 0x0BFF, // 0x5A, 0x5C to 0x5E are not assigned
-            safety: false,
-        }
-    }
-
-    /// How many of `position_bits` count revolutions.
-    pub fn multiturn_bits(&self) -> u32 {
-        u32::from(self.revolutions).checked_ilog2().unwrap_or(0)
-    }
-}
 
 /// A device that can be bought.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

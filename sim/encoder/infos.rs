@@ -1,6 +1,6 @@
 //! The additional informations: which are selected, and what they say.
 
-use super::{jobs::Registers, memory::area, Encoder, EncoderConfig};
+use super::{memory::area, Encoder, EncoderConfig, Registers};
 use crate::{frame::Info, Time, US};
 
 /// The selections that 0x4F and 0x5F end.
@@ -33,48 +33,6 @@ impl Selection {
             return Err(());
         }
         Ok(())
-    }
-}
-
-/// What the additional informations say, as far as it does not come from the protocol.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct InfoValues {
-    /// RM: the reference run is done.
-    pub reference_done: bool,
-    /// Valuation numbers, one per frame in turn (0x41), once operating parameter word 3 is not 0.
-    pub diagnostics: Vec<u16>,
-    /// Position value 2 minus position value 1, in measuring steps (0x42 to 0x44).
-    pub position_2_offset: i64,
-    /// Temperatures 1 and 2 in 0.1 K (0x4C, 0x4D).
-    pub temperatures: [u16; 2],
-    /// Additional sensors (0x4E).
-    pub sensors: u16,
-    /// Commutation (0x51; its high byte in 0x53).
-    pub commutation: u16,
-    /// Acceleration (0x52; its high byte in 0x53 and 0x55).
-    pub acceleration: u16,
-    /// Limit position signals (0x54; their low byte in 0x55).
-    pub limits: u16,
-    /// Asynchronous position minus position value 1, in measuring steps (0x56 to 0x58).
-    pub asynchronous_offset: i64,
-    /// The 40 bits of the test values (010101; 0x49 to 0x4B).
-    pub test_values: u64,
-}
-
-impl Default for InfoValues {
-    fn default() -> Self {
-        Self {
-            reference_done: false,
-            diagnostics: vec![0x6400, 0x5001, 0x3202],
-            position_2_offset: 0,
-            temperatures: [2954, 2982], // 22.2 and 25.0 degrees C
-            sensors: 0,
-            commutation: 0,
-            acceleration: 0,
-            limits: 0,
-            asynchronous_offset: 0,
-            test_values: 0x01_2345_6789,
-        }
     }
 }
 

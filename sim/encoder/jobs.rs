@@ -3,8 +3,8 @@
 use super::{
     command::Command,
     infos::is_info_code,
-    memory::{area, status_word, Place, SHORT_RECOVERY},
-    Encoder, ErrorSource,
+    memory::{area, status_word, Place},
+    Encoder, ErrorSource, Registers, SHORT_RECOVERY,
 };
 use crate::{frame::Parameter, Time};
 use std::ops::RangeInclusive;
@@ -17,17 +17,6 @@ pub(super) enum Work {
     /// The word is stored at the end: a loss of supply before that leaves the old one.
     Write(Place, u16),
     Test(Parameter),
-}
-
-/// What additional informations acknowledge.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Registers {
-    /// Selected area and block (0x47).
-    pub mrs: (u8, u8),
-    /// Last address and word (0x45, 0x46).
-    pub memory: Parameter,
-    /// Last test command (0x48).
-    pub test: Parameter,
 }
 
 /// What becomes of a command with a parameter.

@@ -35,11 +35,6 @@ pub mod status_word {
     pub const FUNCTION: u8 = 3;
 }
 
-/// Function initialisation after power-up: recovery time 10 to 30 us.
-pub const LONG_RECOVERY: u16 = 0b10;
-/// Function initialisation for a recovery time of 1.25 to 3.75 us.
-pub const SHORT_RECOVERY: u16 = 0b01;
-
 /// Areas that bit 0, 1, 2 of the protection word protect. Which bit protects what is not published: an assumption.
 const PROTECTED_BY_BIT: [u8; 3] = [area::OPERATING_PARAMETERS, area::OEM_1, area::SECTION_2];
 const BLOCK_WORDS: usize = 256;

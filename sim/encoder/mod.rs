@@ -24,6 +24,7 @@ mod answer;
 mod clock_check;
 mod command;
 mod config;
+mod content;
 mod continuous;
 mod defect;
 mod device;
@@ -42,19 +43,18 @@ mod words;
 
 pub use command::Command;
 pub use config::{EncoderConfig, LatchEdge, PositionSource};
+pub use content::{Cause, InfoValues, TypePlate, LONG_RECOVERY, SHORT_RECOVERY};
 pub use defect::Defect;
 pub use device::{
-    Device, TypePlate, DEVICES, ECI_1119, ECN_113, EQN_1337, LC_416, LIC_4117, RCN_8510, ROQ_437,
+    Device, DEVICES, ECI_1119, ECN_113, EQN_1337, LC_416, LIC_4117, RCN_8510, ROQ_437,
 };
-pub use infos::InfoValues;
 pub use log::{AnswerKind, FrameEnd, FrameLog, Supplement};
-pub use memory::{area, status_word, LONG_RECOVERY, SHORT_RECOVERY};
-pub use status::{Cause, ErrorSource};
+pub use memory::{area, status_word};
+pub use status::ErrorSource;
 pub use violation::Violation;
 
 use crate::{rng::Rng, Time};
 use infos::{Parts, Selection};
-use jobs::Registers;
 use memory::Memory;
 use status::Status;
 use std::collections::VecDeque;
@@ -192,6 +192,17 @@ fn take_due<T>(queue: &mut VecDeque<(Time, T)>, time: Time) -> Option<(Time, T)>
         return None;
     }
     queue.pop_front()
+}
+
+/// What additional informations acknowledge.
+#[derive(Clone, Copy, Debug, Default)]
+struct Registers {
+    /// Selected area and block (0x47).
+    mrs: (u8, u8),
+    /// Last address and word (0x45, 0x46).
+    memory: crate::frame::Parameter,
+    /// Last test command (0x48).
+    test: crate::frame::Parameter,
 }
 
 /// An encoder. See the module's text.

@@ -1,20 +1,7 @@
 //! Alarms, warnings and error sources: what is wrong, since when, and until somebody clears it.
 
-use super::EncoderConfig;
+use super::{Cause, EncoderConfig};
 use crate::Time;
-use std::ops::Range;
-
-/// Something that is really wrong for a time. It sets its bits; they stay until they are cleared, and come back if it lasts.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Cause {
-    /// When.
-    pub during: Range<Time>,
-    /// Bits of the alarm word (0xB9 word 0): 0 light source, 1 signal amplitude, 2 position value, 3 overvoltage, 4 undervoltage,
-    /// 5 overcurrent, 6 battery.
-    pub alarms: u16,
-    /// Bits of the warning word (0xB9 word 1).
-    pub warnings: u16,
-}
 
 /// Why an encoder refuses something; the numbers are those of the ADDI-DATA driver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

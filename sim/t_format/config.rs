@@ -1,6 +1,5 @@
 //! What a T-format encoder is, and what may be wrong with it.
 
-use super::wire::Wire;
 use crate::{Time, MS, US};
 
 /// An encoder and its moment.
@@ -63,15 +62,6 @@ impl EncoderConfig {
     /// A bit of the nominal rate.
     pub fn nominal_bit(&self) -> Time {
         1_000_000_000_000 / self.bit_hz
-    }
-
-    /// How it puts bits on the line.
-    pub fn wire(&self) -> Wire {
-        let bit = self.nominal_bit() as i64;
-        Wire {
-            bit: (bit * 1_000_000 / (1_000_000 + self.rate_error_ppm)) as Time,
-            jitter: self.jitter,
-        }
     }
 }
 

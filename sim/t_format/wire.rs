@@ -1,6 +1,6 @@
 //! Bytes as edges on the line.
 
-use super::config::Defect;
+use super::config::{Defect, EncoderConfig};
 use crate::{rng::Rng, Time};
 
 /// How bits are put on the line.
@@ -10,6 +10,17 @@ pub struct Wire {
     pub bit: Time,
     /// Each edge comes sooner or later by at most this.
     pub jitter: Time,
+}
+
+impl EncoderConfig {
+    /// How it puts bits on the line.
+    pub fn wire(&self) -> Wire {
+        let bit = self.nominal_bit() as i64;
+        Wire {
+            bit: (bit * 1_000_000 / (1_000_000 + self.rate_error_ppm)) as Time,
+            jitter: self.jitter,
+        }
+    }
 }
 
 impl Wire {

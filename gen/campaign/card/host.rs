@@ -4,6 +4,7 @@
 use super::line::Line;
 use super::told::{Kind, Known, Round, Seen, Verdict, What};
 use super::CYCLES_PER_US;
+use super::{CHANNELS, CONFIG_WORDS, SERVICE_WORDS};
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{
     result_words, BLOCK_STRIDE, CARD, CONFIG_BASE, RESULT_BASE, SERVICE, SERVICE_BASE,
@@ -15,8 +16,6 @@ use endat_host::result::Reading;
 use endat_host::stream::SampleSet;
 use std::collections::VecDeque;
 
-/// Channels of the card.
-pub const CHANNELS: usize = 2;
 /// System clock cycles of a bit of the link, and of a byte.
 pub const BIT_CYCLES: u64 = 8;
 const BYTE: u64 = 10 * BIT_CYCLES;
@@ -45,12 +44,6 @@ const REFUSED: u64 = CYCLES_PER_US * (PARAMETER_TIMEOUT_US + 10_000);
 /// Send parameter, address 0x0D; and select memory area 0xA1.
 const SEND_PARAMETER: u32 = request_word(ModeCommand::SendParameter, 0x0D);
 const SELECT_MEMORY: u32 = request_word(ModeCommand::SelectMemory, 0xA1);
-
-/// Configuration words of the card, and of each channel.
-pub const CONFIG_WORDS: usize = 3;
-
-/// Settings of a service that decide what becomes of positions.
-pub const SERVICE_WORDS: [u8; 3] = [word::FORCE, word::LIMITS, word::CONTINUOUS];
 
 const fn request_word(command: ModeCommand, address: u32) -> u32 {
     (command.code() as u32) << 24 | address << 16

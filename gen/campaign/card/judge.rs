@@ -1,7 +1,7 @@
 //! What became of a flip in a card, from what its host has seen and what the encoders have sent.
 
-use super::host::CHANNELS;
 use super::told::{Round, Seen, Verdict, What};
+use super::CHANNELS;
 use endat_host::result::Reading;
 use endat_host::stream::{Sample, SampleSet};
 use endat_sim::campaign::port::{Class, Mark, TRIGGERS_MAX};

@@ -10,8 +10,10 @@ use crate::config;
 use crate::error::GenError;
 use endat_hdl::card::{service_times, Card};
 use endat_hdl::config::CardConfig;
+use endat_hdl::config_ring::RING_WORDS;
 use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::regs::config_words;
+use endat_hdl::service::map::word;
 use endat_hdl::service::program::ServiceTimes;
 use endat_sim::bench::{LaneBench, LaneUart, Link, PinNames};
 use endat_sim::campaign::port::{is_count, Class, Mark};
@@ -21,7 +23,7 @@ use endat_sim::encoder::{AnswerKind, Encoder, EncoderConfig};
 use endat_sim::engine::{Keep, LaneWords, Lanes};
 use endat_sim::line::LineConfig;
 use endat_sim::{Time, NS, US};
-use host::{BIT_CYCLES, CHANNELS, TIMEOUT_US};
+use host::{BIT_CYCLES, TIMEOUT_US};
 use judge::{Judge, Noted, Shot};
 use line::Host;
 use rust_hdl::prelude::Block;
@@ -31,6 +33,12 @@ use told::{Kind, Known, Seen, Verdict, What};
 
 /// Its name in tables.
 pub const SUBJECT: &str = "card";
+/// Channels of the card.
+const CHANNELS: usize = 2;
+/// Configuration words of the card, and of each channel.
+const CONFIG_WORDS: usize = RING_WORDS;
+/// Settings of a service that decide what becomes of positions.
+const SERVICE_WORDS: [u8; 3] = [word::FORCE, word::LIMITS, word::CONTINUOUS];
 const CONFIGURATION: &str = include_str!("card.toml");
 const SYSTEM_HZ: u64 = 32_000_000;
 const CYCLES_PER_US: u64 = SYSTEM_HZ / 1_000_000;

@@ -1,6 +1,6 @@
 //! What the host tells the judge, and what it is told to do.
 
-use super::host::{CHANNELS, CONFIG_WORDS, SERVICE_WORDS};
+use super::{CHANNELS, CONFIG_WORDS, SERVICE_WORDS};
 use endat_host::result::Reading;
 use endat_host::stream::{Decoder, SampleSet};
 

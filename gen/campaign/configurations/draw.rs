@@ -1,7 +1,8 @@
 //! Random configurations. Which keys there are, and what may stand there, is what the reader asks for; what is wrong with a draw is what it
 //! complains about, and is drawn again. So a new key is drawn as soon as the reader knows it.
 
-use crate::config::asked::{asked, Asked, Kind};
+use crate::config::asked::{Asked, Kind};
+use crate::config::asked_of;
 use crate::error::Diagnostic;
 use endat_hdl::config::{Limits, CHANNELS};
 use endat_sim::rng::Rng;
@@ -215,7 +216,7 @@ fn drawn(rng: &mut Rng) -> Option<String> {
     let mut seen = BTreeSet::new();
     for _ in 0..ROUNDS {
         let (text, _) = draft.text();
-        let (all, complaints) = asked(&text);
+        let (all, complaints) = asked_of(&text);
         let mut is_new = false;
         for asked in &all {
             let is_first = seen.insert((asked.table.clone(), asked.key));
@@ -335,7 +336,7 @@ mod tests {
             if let Err(complaints) = parse_any("drawn.toml", &text) {
                 panic!("{complaints:?}: {text}");
             }
-            for asked in asked(&text).0.iter().filter(|a| a.kind != Kind::Tables) {
+            for asked in asked_of(&text).0.iter().filter(|a| a.kind != Kind::Tables) {
                 keys.insert(asked.key);
             }
             drawn.extend(

@@ -144,7 +144,7 @@ fn emission(text: &str) -> Made {
             }
             Configuration::Receiver(receiver) => {
                 let files = t_format::emit(&receiver)?;
-                (t_format::BUS, receiver.name, files)
+                (crate::config::RECEIVER_BUS, receiver.name, files)
             }
         };
         Ok(Emission {

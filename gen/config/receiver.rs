@@ -1,18 +1,30 @@
-//! The keys of a receiver's configuration.
+//! A T-format receiver: its keys, and what they come to.
 
-use super::Receiver;
-use crate::config::check_name;
-use crate::config::protocol::{read_bit_hz, read_request, T_FORMAT};
-use crate::config::reader::{Source, Table};
-use crate::config::schema::{not_toml, read_encoder, read_initial_values, NO_INITIAL_VALUES};
+use super::check_name;
+use super::protocol::{read_bit_hz, read_request, RECEIVER_BUS, T_FORMAT};
+use super::reader::{Source, Table};
+use super::schema::{not_toml, read_encoder, read_initial_values, NO_INITIAL_VALUES};
 use endat_hdl::config::limits;
 use endat_hdl::t_format::dsp::TFormatStart;
 use endat_hdl::t_format::protocol::FAST_BIT_HZ;
 use sha2::{Digest, Sha256};
 use toml::de::DeTable;
 
-/// Bus that makes a configuration one of a receiver.
-pub const BUS: &str = "dsp";
+/// A checked configuration of a receiver.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Receiver {
+    /// Name of the folder, the files and the top module.
+    pub name: String,
+    /// Encoder, for people; may be empty.
+    pub encoder: String,
+    /// What it starts with.
+    pub start: TFormatStart,
+    /// The device gives registers their start values when it is configured.
+    pub initial_values: bool,
+    /// First 12 hexadecimal digits of the SHA-256 of the resolved configuration.
+    pub hash: String,
+}
+
 /// Tables of a card that a receiver has nothing for.
 const TABLES_OF_CARDS: [&str; 9] = [
     "board", "clock", "endat", "line", "link", "outputs", "service", "stream", "trigger",
@@ -25,7 +37,7 @@ pub fn receiver_line(text: &str) -> Option<usize> {
     let (document, _) = DeTable::parse_recoverable(text);
     let host = document.get_ref().get("host")?;
     let bus = host.get_ref().as_table()?.get("bus")?;
-    let is_ours = bus.get_ref().as_str() == Some(BUS);
+    let is_ours = bus.get_ref().as_str() == Some(RECEIVER_BUS);
     is_ours.then(|| Source::new("", text).line(bus.span().start))
 }
 

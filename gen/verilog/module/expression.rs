@@ -1,13 +1,13 @@
 //! Expressions as Verilog text.
 
-use super::module::ModulePrinter;
+use super::ModulePrinter;
 use endat_hdl::elaborate::{mask, BinaryOp, Expr, ExprKind, NetId, UnaryOp};
 
 /// Ends of the names of quantities.
 const UNITS: [&str; 8] = ["hz", "ns", "us", "ms", "cycles", "bits", "bytes", "words"];
 
 /// The value of something that has a name: quantities in decimal, what may be flags or several fields in hexadecimal.
-pub(super) fn named_literal(name: &str, value: u128, width_bits: usize) -> String {
+pub(in crate::verilog) fn named_literal(name: &str, value: u128, width_bits: usize) -> String {
     let last = name.rsplit('_').next().unwrap_or(name).to_lowercase();
     match UNITS.contains(&last.as_str()) || value <= SMALL_MASK_MAX {
         true => format!(
@@ -19,7 +19,7 @@ pub(super) fn named_literal(name: &str, value: u128, width_bits: usize) -> Strin
 }
 
 /// A sized literal: times and counts, which are below a million or round, in decimal, the others in hexadecimal.
-pub(super) fn literal(value: u128, width_bits: usize) -> String {
+pub(in crate::verilog) fn literal(value: u128, width_bits: usize) -> String {
     match width_bits {
         1 => format!("1'b{value}"),
         _ if value < 1_000_000 || value.is_multiple_of(1_000) => format!("{width_bits}'d{value}"),
@@ -28,7 +28,7 @@ pub(super) fn literal(value: u128, width_bits: usize) -> String {
 }
 
 /// A sized literal of which each bit means something of its own.
-pub(super) fn bits(value: u128, width_bits: usize) -> String {
+pub(in crate::verilog) fn bits(value: u128, width_bits: usize) -> String {
     format!("{width_bits}'h{value:x}")
 }
 
@@ -36,7 +36,7 @@ pub(super) fn bits(value: u128, width_bits: usize) -> String {
 const SMALL_MASK_MAX: u128 = 255;
 
 /// A net that the printer adds because Verilog cannot take bits of an expression.
-pub(super) struct Helper {
+pub(in crate::verilog) struct Helper {
     pub name: String,
     pub width_bits: usize,
     pub value: Expr,
@@ -48,7 +48,7 @@ pub(super) struct Helper {
 
 /// Collects the helper nets of one statement, in the order in which they must be assigned.
 #[derive(Default)]
-pub(super) struct Helpers {
+pub(in crate::verilog) struct Helpers {
     pub nets: Vec<Helper>,
 }
 
@@ -264,7 +264,7 @@ impl ModulePrinter<'_> {
 }
 
 /// A constant range of a net.
-pub(super) fn range(
+pub(in crate::verilog) fn range(
     name: &str,
     low_bit: usize,
     width_bits: usize,

@@ -1,9 +1,9 @@
 //! Expressions: rust-hdl's untyped tree becomes one in which every node has the width that the Rust simulation uses.
 
-use super::design::{mask, BinaryOp, Expr, ExprKind, UnaryOp};
-use super::scope::{Scope, Symbol};
-use super::tree::{literal_value, literal_width};
-use super::ElaborateError;
+use super::{Scope, Symbol};
+use crate::elaborate::design::{mask, BinaryOp, Expr, ExprKind, UnaryOp};
+use crate::elaborate::tree::{literal_value, literal_width};
+use crate::elaborate::ElaborateError;
 use rust_hdl::core::ast::{VerilogExpression as Ast, VerilogOp, VerilogOpUnary};
 
 type Result<T> = std::result::Result<T, ElaborateError>;
@@ -44,7 +44,7 @@ impl Scope<'_> {
         }
     }
 
-    pub fn value(&self, ast: &Ast, field: &str) -> Result<Value> {
+    pub(super) fn value(&self, ast: &Ast, field: &str) -> Result<Value> {
         match ast {
             Ast::Signal(path) => self.signal(path, field),
             Ast::Literal(literal) => {

@@ -1,6 +1,6 @@
 //! Memories of a design, written or read-only.
 
-use super::design::NetId;
+use super::NetId;
 
 /// A memory with one synchronous read port, and a write port unless it is read-only; a read in the cycle of a write sees
 /// the old word.

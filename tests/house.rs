@@ -1,0 +1,360 @@
+//! The rules of the house, where a tool can see them: how long files and functions are, and that no import goes in a circle.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use syn::spanned::Spanned;
+use syn::visit::{self, Visit};
+use syn::{ImplItemFn, ItemFn, ItemMod, ItemUse, UseTree};
+
+/// Folders of the crates.
+const CRATES: [&str; 6] = ["regs", "hdl/macros", "hdl", "sim", "host", "gen"];
+/// Longest file.
+const FILE_LINES: usize = 500;
+/// Longest function.
+const FUNCTION_LINES: usize = 120;
+/// Longest kernel: it is one function by its nature.
+const KERNEL_LINES: usize = 200;
+
+/// What is still longer, and how long it may be at most: each of them becomes shorter, none is added.
+const LONGER: &[(&str, usize)] = &[
+    ("gen/area/subject.rs: subjects", 159),
+    ("gen/cli/host/log/mod.rs: run", 142),
+    ("gen/config/reader.rs", 506),
+    ("gen/config/schema.rs", 715),
+    ("gen/config/schema.rs: read", 226),
+    ("gen/explain.rs", 542),
+    ("gen/testbench.rs: artifact", 143),
+    ("hdl/bus/spi.rs: update", 207),
+    ("hdl/card.rs", 829),
+    ("hdl/card.rs: with_times", 121),
+    ("hdl/card.rs: update", 425),
+    ("hdl/channel.rs", 610),
+    ("hdl/channel.rs: update", 332),
+    ("hdl/config/mod.rs", 531),
+    ("hdl/encoder_port.rs", 504),
+    ("hdl/encoder_port.rs: update", 230),
+    ("hdl/line_delay.rs: update", 265),
+    ("hdl/line_monitor.rs: update", 206),
+    ("hdl/receiver.rs", 660),
+    ("hdl/receiver.rs: update", 402),
+    ("hdl/register_bank.rs", 608),
+    ("hdl/register_bank.rs: update", 346),
+    ("hdl/sequencer.rs: update", 257),
+    ("hdl/service/program.rs", 523),
+    ("hdl/stream.rs: update", 225),
+    ("hdl/t_format/exchange.rs", 521),
+    ("hdl/t_format/exchange.rs: update", 345),
+    ("hdl/t_format/port.rs: update", 263),
+    ("hdl/transaction.rs", 899),
+    ("hdl/transaction.rs: update", 547),
+    ("hdl/uart_bridge.rs: update", 216),
+    ("sim/line/mod.rs", 517),
+];
+
+/// A source of the product, without its tests.
+struct Source {
+    /// Path from the root of the repository.
+    path: String,
+    /// Crate and modules that lead to it.
+    module: Vec<String>,
+    lines: usize,
+    parsed: syn::File,
+}
+
+fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        match path.is_dir() {
+            true => walk(&path, found),
+            false => found.push(path),
+        }
+    }
+}
+
+fn sources() -> Vec<Source> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut all = BTreeMap::new();
+    for name in CRATES {
+        let mut paths = Vec::new();
+        walk(&root.join(name), &mut paths);
+        for path in paths {
+            let inside = path.strip_prefix(root.join(name)).unwrap();
+            let parts: Vec<String> = inside
+                .with_extension("")
+                .iter()
+                .map(|p| p.to_str().unwrap().to_owned())
+                .collect();
+            let is_test = parts
+                .iter()
+                .any(|p| ["tests", "testing"].contains(&p.as_str()));
+            if path.extension().is_none_or(|e| e != "rs") || is_test || parts[0] == "templates" {
+                continue;
+            }
+            let own = |p: &String| !["lib", "mod"].contains(&p.as_str());
+            let module = std::iter::once(name.to_owned()).chain(parts.into_iter().filter(own));
+            let text = fs::read_to_string(&path).unwrap();
+            let path = path
+                .strip_prefix(root)
+                .unwrap()
+                .to_str()
+                .unwrap()
+                .to_owned();
+            let source = Source {
+                module: module.collect(),
+                lines: text.lines().count(),
+                parsed: syn::parse_file(&text).unwrap_or_else(|e| panic!("{path}: {e}")),
+                path: path.clone(),
+            };
+            // A crate inside another one's folder is its own.
+            all.entry(path).or_insert(source);
+        }
+    }
+    all.into_values().collect()
+}
+
+fn is_test(attributes: &[syn::Attribute]) -> bool {
+    let text = |a: &syn::Attribute| a.meta.require_list().map(|l| l.tokens.to_string());
+    attributes
+        .iter()
+        .any(|a| a.path().is_ident("cfg") && text(a).is_ok_and(|t| t == "test"))
+}
+
+/// Functions that are too long.
+#[derive(Default)]
+struct Functions {
+    long: Vec<(String, usize)>,
+}
+
+impl Functions {
+    fn look(&mut self, name: &syn::Ident, attributes: &[syn::Attribute], block: &syn::Block) {
+        let span = block.span();
+        let lines = span.end().line - span.start().line + 1;
+        let is_kernel = attributes.iter().any(|a| a.path().is_ident("kernel"));
+        if lines
+            > if is_kernel {
+                KERNEL_LINES
+            } else {
+                FUNCTION_LINES
+            }
+        {
+            self.long.push((name.to_string(), lines));
+        }
+    }
+}
+
+impl<'ast> Visit<'ast> for Functions {
+    fn visit_item_fn(&mut self, function: &'ast ItemFn) {
+        self.look(&function.sig.ident, &function.attrs, &function.block);
+        visit::visit_item_fn(self, function);
+    }
+
+    fn visit_impl_item_fn(&mut self, function: &'ast ImplItemFn) {
+        self.look(&function.sig.ident, &function.attrs, &function.block);
+        visit::visit_impl_item_fn(self, function);
+    }
+
+    fn visit_item_mod(&mut self, module: &'ast ItemMod) {
+        if !is_test(&module.attrs) {
+            visit::visit_item_mod(self, module);
+        }
+    }
+}
+
+/// Paths that a source names, from its crate on.
+struct Names<'a> {
+    module: &'a [String],
+    children: BTreeSet<String>,
+    paths: BTreeSet<Vec<String>>,
+    /// What it hands on: name, and path that it comes from; `*` for all.
+    hands_on: Vec<(String, Vec<String>)>,
+}
+
+impl Names<'_> {
+    fn absolute(&self, path: &[String]) -> Option<Vec<String>> {
+        let mut base = self.module.to_vec();
+        let mut rest = path;
+        match path.first()?.as_str() {
+            "crate" => {
+                base.truncate(1);
+                rest = &path[1..];
+            }
+            "self" => rest = &path[1..],
+            "super" => {}
+            child if self.children.contains(child) => {}
+            _ => return None,
+        }
+        while rest.first().is_some_and(|part| part == "super") {
+            base.pop();
+            rest = &rest[1..];
+        }
+        Some(base.into_iter().chain(rest.iter().cloned()).collect())
+    }
+
+    fn tree(&mut self, before: &[String], tree: &UseTree, is_public: bool) {
+        let with = |name: &syn::Ident| {
+            let own = (name != "self").then(|| name.to_string());
+            let own = own.or_else(|| before.is_empty().then(|| name.to_string()));
+            before.iter().cloned().chain(own).collect::<Vec<_>>()
+        };
+        let (name, path) = match tree {
+            UseTree::Path(path) => return self.tree(&with(&path.ident), &path.tree, is_public),
+            UseTree::Group(group) => {
+                for item in &group.items {
+                    self.tree(before, item, is_public);
+                }
+                return;
+            }
+            UseTree::Name(name) => (name.ident.to_string(), with(&name.ident)),
+            UseTree::Rename(rename) => (rename.rename.to_string(), with(&rename.ident)),
+            UseTree::Glob(_) => ("*".to_owned(), before.to_vec()),
+        };
+        if let Some(path) = self.absolute(&path) {
+            if is_public {
+                self.hands_on.push((name, path.clone()));
+            }
+            self.paths.insert(path);
+        }
+    }
+}
+
+impl<'ast> Visit<'ast> for Names<'_> {
+    fn visit_item_use(&mut self, item: &'ast ItemUse) {
+        let is_public = !matches!(item.vis, syn::Visibility::Inherited);
+        if !is_test(&item.attrs) {
+            self.tree(&[], &item.tree, is_public);
+        }
+    }
+
+    fn visit_item_mod(&mut self, module: &'ast ItemMod) {
+        if !is_test(&module.attrs) && module.content.is_some() {
+            visit::visit_item_mod(self, module);
+        }
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        let parts: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
+        if parts.len() > 1 {
+            self.paths.extend(self.absolute(&parts));
+        }
+        visit::visit_path(self, path);
+    }
+}
+
+/// Which source takes something from which.
+fn imports(sources: &[Source]) -> Vec<BTreeSet<usize>> {
+    let of_module: BTreeMap<&[String], usize> = (0..)
+        .zip(sources)
+        .map(|(index, s)| (&s.module[..], index))
+        .collect();
+    let names: Vec<Names> = sources
+        .iter()
+        .map(|source| {
+            let children = sources.iter().filter(|other| {
+                other.module.len() == source.module.len() + 1
+                    && other.module.starts_with(&source.module)
+            });
+            let mut names = Names {
+                module: &source.module,
+                children: children.map(|c| c.module.last().unwrap().clone()).collect(),
+                paths: BTreeSet::new(),
+                hands_on: vec![],
+            };
+            names.visit_file(&source.parsed);
+            names
+        })
+        .collect();
+    // The source that a path leads to, behind what others hand on.
+    let home = |path: &[String]| {
+        let mut path = path.to_vec();
+        for _ in 0..8 {
+            let length = (1..=path.len())
+                .rev()
+                .find(|n| of_module.contains_key(&path[..*n]))?;
+            let at = of_module[&path[..length]];
+            let Some(name) = path.get(length) else {
+                return Some(at);
+            };
+            let handed = names[at].hands_on.iter().find(|(n, _)| n == name);
+            let Some((_, from)) = handed else {
+                return Some(at);
+            };
+            path = from.iter().chain(&path[length + 1..]).cloned().collect();
+        }
+        None
+    };
+    let edges = |index: usize| {
+        let mut to: BTreeSet<usize> = names[index].paths.iter().filter_map(|p| home(p)).collect();
+        // A part may use what the whole is made of: folder and file of a module are one.
+        to.retain(|to| !sources[index].module.starts_with(&sources[*to].module));
+        to
+    };
+    (0..sources.len()).map(edges).collect()
+}
+
+/// Sources that reach themselves again, those of one circle together.
+fn circles(edges: &[BTreeSet<usize>]) -> Vec<Vec<usize>> {
+    let reach = |start: usize| {
+        let (mut seen, mut open) = (BTreeSet::new(), vec![start]);
+        while let Some(at) = open.pop() {
+            open.extend(edges[at].iter().filter(|next| seen.insert(**next)));
+        }
+        seen
+    };
+    let reached: Vec<BTreeSet<usize>> = (0..edges.len()).map(reach).collect();
+    let mut circles = BTreeSet::new();
+    for (index, own) in reached
+        .iter()
+        .enumerate()
+        .filter(|(i, own)| own.contains(i))
+    {
+        circles.insert(
+            own.iter()
+                .copied()
+                .filter(|to| reached[*to].contains(&index))
+                .collect(),
+        );
+    }
+    circles.into_iter().collect()
+}
+
+#[test]
+fn no_import_goes_in_a_circle() {
+    let sources = sources();
+    assert!(sources.len() > 200, "{} sources", sources.len());
+    let edges = imports(&sources);
+    let told: Vec<String> = circles(&edges)
+        .into_iter()
+        .map(|circle| {
+            let mut text = String::from("circle:\n");
+            for from in &circle {
+                let to = edges[*from].iter().filter(|to| circle.contains(to));
+                let to: Vec<&str> = to.map(|to| sources[*to].path.as_str()).collect();
+                text += &format!("  {} takes from {}\n", sources[*from].path, to.join(", "));
+            }
+            text
+        })
+        .collect();
+    assert!(told.is_empty(), "{}", told.concat());
+}
+
+#[test]
+fn files_and_functions_are_short() {
+    let mut found = BTreeMap::new();
+    for source in sources() {
+        if source.lines > FILE_LINES {
+            found.insert(source.path.clone(), source.lines);
+        }
+        let mut functions = Functions::default();
+        functions.visit_file(&source.parsed);
+        let named = |(name, lines)| (format!("{}: {name}", source.path), lines);
+        found.extend(functions.long.into_iter().map(named));
+    }
+    for (name, at_most) in LONGER {
+        let lines = found
+            .remove(*name)
+            .unwrap_or_else(|| panic!("{name} is short now: take it off the list"));
+        assert!(lines <= *at_most, "{name}: {lines} lines, were {at_most}");
+    }
+    assert!(found.is_empty(), "too long: {found:#?}");
+}
