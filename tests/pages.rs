@@ -126,7 +126,7 @@ fn the_sizes_in_the_readme_are_those_of_the_area_table() {
 /// What synthesis saves without it.
 #[test]
 fn the_costs_of_the_guards_are_those_of_the_area_table() {
-    let mut page = Figures::of("ARCHITECTURE.md");
+    let mut page = Figures::of("docs/decisions.md");
     let [lut, ff] = area("channel", XC6S.name);
     for guard in GUARDS {
         let [less_lut, less_ff] = area(guard.name, XC6S.name);

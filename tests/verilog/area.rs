@@ -74,7 +74,7 @@ fn area_is_exactly_what_the_table_says() {
         for (family, Usage { lut, ff }) in families(subject).iter().zip(usages.get().unwrap()) {
             let _ = writeln!(found, "{} = {{ lut = {lut}, ff = {ff} }}", family.name);
             let ceiling = match (subject.name, family.name) {
-                // Of these some 90 put the position before back when one is withdrawn; ARCHITECTURE.md says what each guard costs.
+                // Of these some 90 put the position before back when one is withdrawn; docs/decisions.md says what each guard costs.
                 ("channel", "xc6s") => 540,
                 ("card", "xc6s") => 1530,
                 // Some 54 % of the LUTs of an LX9.
