@@ -272,26 +272,6 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let abort_us = card.endat_channels().map(|(_, c)| c.abort_us).max();
     let ports = card.endat_channels();
     let ports: Vec<Port> = ports.map(|(i, c)| Port::new(card, i, c)).collect();
-    let causes = [
-        ("NO_START_BIT", cause::NO_START_BIT),
-        ("CRC", cause::CRC),
-        ("F1", cause::F1),
-        ("F2", cause::F2),
-        ("DATA_NOT_FALLING", cause::DATA_NOT_FALLING),
-        ("TRIGGER_OVERRUN", cause::TRIGGER_OVERRUN),
-        ("WATCHDOG", cause::WATCHDOG),
-    ];
-    let causes: Vec<Value> = causes
-        .into_iter()
-        .map(|(name, code)| context! { name, code })
-        .collect();
-    // Constant words from the first one on: they say which card this is.
-    let identification: Vec<String> = CARD
-        .registers
-        .iter()
-        .take_while(|r| r.name != "trigger_count")
-        .map(|r| format!("{:08X}", start(&CARD, r, card, 0)))
-        .collect();
     let encoder = template::render(
         "encoder",
         include_str!("templates/encoder.v.jinja"),
@@ -308,17 +288,6 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         .into_iter()
         .chain(card.outputs.interrupt.then_some(&INTERRUPT))
         .chain(card.outputs.position.then_some(&DIRECT));
-    // The bench is about channels that take every trigger.
-    let frame = CHANNEL_CONFIG.register("frame").into_iter();
-    let frames = frame.flat_map(|r| (0..card.channels.len()).map(move |n| (r, n)));
-    let frames = frames.filter(|_| card.own_triggers()).map(|(r, n)| {
-        let own = r.fields.iter().filter(|f| is_own_trigger(f.name));
-        let value = own.fold(start(&CHANNEL_CONFIG, r, card, n), |word, f| {
-            word & !f.mask()
-        });
-        let address = CHANNEL_CONFIG.address(r, n);
-        context! { address, value => format!("{value:08X}") }
-    });
     // The first of the four events of each channel is a new result.
     let results: u32 = (0..card.channels.len()).map(|n| 1 << (4 * n)).sum();
     // Cards without requests have no informations in their results.
@@ -371,11 +340,11 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         direct => card.outputs.position,
         fields => Serde([CARD_CONFIG, RESULT, DIRECT].iter().flat_map(fields).filter(|f| has_infos || !f.name.starts_with("INFO_")).collect::<Vec<_>>()),
         block_stride => BLOCK_STRIDE,
-        causes,
-        identification,
+        causes => causes(),
+        identification => identification(card),
         timer => card.sources.timer,
         requests => card.service.requests,
-        every_trigger => frames.collect::<Vec<_>>(),
+        every_trigger => every_trigger(card),
     };
     let text = template::render(
         "testbench",
@@ -383,4 +352,51 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         &context,
     )?;
     Ok(Some(Artifact::new(format!("{}_tb.v", project.name), text)))
+}
+
+/// Causes that the bench waits for.
+fn causes() -> Vec<Value> {
+    let names = [
+        "no_start_bit",
+        "crc",
+        "f1",
+        "f2",
+        "data_not_falling",
+        "trigger_overrun",
+        "watchdog",
+    ];
+    let rows = names
+        .iter()
+        .flat_map(|name| cause::ALL.iter().find(|c| c.name == *name));
+    rows.map(|c| context! { name => c.name.to_uppercase(), code => c.code })
+        .collect()
+}
+
+/// Constant words from the first one on: they say which card this is.
+fn identification(card: &CardConfig) -> Vec<String> {
+    let constant = CARD
+        .registers
+        .iter()
+        .take_while(|r| r.name != "trigger_count");
+    constant
+        .map(|r| format!("{:08X}", start(&CARD, r, card, 0)))
+        .collect()
+}
+
+/// What a host writes so that channels take every trigger: the bench is about such.
+fn every_trigger(card: &CardConfig) -> Vec<Value> {
+    let Some(frame) = CHANNEL_CONFIG
+        .register("frame")
+        .filter(|_| card.own_triggers())
+    else {
+        return vec![];
+    };
+    let write = |channel| {
+        let own = frame.fields.iter().filter(|f| is_own_trigger(f.name));
+        let begins = start(&CHANNEL_CONFIG, frame, card, channel);
+        let value = own.fold(begins, |word, f| word & !f.mask());
+        let address = CHANNEL_CONFIG.address(frame, channel);
+        context! { address, value => format!("{value:08X}") }
+    };
+    (0..card.channels.len()).map(write).collect()
 }

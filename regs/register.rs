@@ -181,7 +181,7 @@ impl Register {
     }
 }
 
-/// A field that is 0 after reset.
+/// A field without list or limits.
 pub(crate) const fn field(
     name: &'static str,
     lsb: u32,
@@ -245,6 +245,20 @@ impl Block {
         self.base + self.stride * block + register.offset
     }
 
+    /// A field that is known to be there, by the names of its register and its own; else it does not compile.
+    pub const fn field(&self, register: &str, field: &str) -> &'static Field {
+        let mut r = 0;
+        while !is_same(self.registers[r].name, register) {
+            r += 1;
+        }
+        let fields = self.registers[r].fields;
+        let mut f = 0;
+        while !is_same(fields[f].name, field) {
+            f += 1;
+        }
+        &fields[f]
+    }
+
     /// The register called `name`.
     pub fn register(&self, name: &str) -> Option<&'static Register> {
         self.registers.iter().find(|r| r.name == name)
@@ -253,4 +267,19 @@ impl Block {
 
 fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
     names.collect::<Vec<_>>().join(", ")
+}
+
+const fn is_same(one: &str, other: &str) -> bool {
+    let (one, other) = (one.as_bytes(), other.as_bytes());
+    if one.len() != other.len() {
+        return false;
+    }
+    let mut at = 0;
+    while at < one.len() {
+        if one[at] != other[at] {
+            return false;
+        }
+        at += 1;
+    }
+    true
 }

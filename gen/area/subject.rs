@@ -11,6 +11,7 @@ use endat_hdl::bus::{
 };
 use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, Features, FixedTimes};
+use endat_hdl::config::CardConfig;
 use endat_hdl::crc5::{Crc5Check, Crc5Fixed, Crc5Serial};
 use endat_hdl::direct::DirectOutput;
 use endat_hdl::elaborate::{block_name, elaborate, Design};
@@ -93,23 +94,25 @@ fn part(change: impl FnOnce(&mut Features)) -> Features {
 
 /// Everything that is measured, the largest first.
 pub fn subjects() -> Result<Vec<Subject>, GenError> {
-    let streaming = load_preset(DEFAULT_PRESET)?.card;
+    let card = load_preset(DEFAULT_PRESET)?.card;
+    let times = FixedTimes::at(card.system_hz);
+    let mut subjects = cards(&card)?;
+    subjects.extend(ports(times, card.system_hz)?);
+    subjects.extend(parts(times, card.stream.fifo_bytes)?);
+    for guard in GUARDS {
+        subjects.push(Subject::without(guard, Channel::new(times))?);
+    }
+    Ok(subjects)
+}
+
+/// Cards, behind each bus.
+fn cards(streaming: &CardConfig) -> Result<Vec<Subject>, GenError> {
     // The others are measured without the stream, so that each row says what it costs by itself.
     let mut card = streaming.clone();
     card.stream = Default::default();
-    let times = FixedTimes::at(card.system_hz);
-    let service = |is_all| {
-        let times = ServiceTimes {
-            diagnosis: is_all,
-            continuous: is_all,
-            ..ServiceTimes::at(card.system_hz)
-        };
-        EncoderPort::new(FixedTimes::at(card.system_hz), Some(&times), false)
-    };
     let full = load_preset("s6_two_channel_service")?.card;
     let mixed = load_preset("mixed_protocols")?.card;
-    let mut subjects =
-        vec![
+    Ok(vec![
         Subject::new("card_service", "the card with everything", Card::new(&full))?,
         Subject::new(
             "card",
@@ -124,7 +127,7 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "card_stream",
             "two-channel card s6_two_channel, with its stream of 2048 bytes",
-            Card::new(&streaming),
+            Card::new(streaming),
         )?,
         Subject::new("card_apb", "the same behind APB3", ApbCard::new(&card))?,
         Subject::new(
@@ -143,6 +146,20 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             "the same behind the parallel bus",
             ParallelCard::new(&card),
         )?,
+    ])
+}
+
+/// Receivers, ports and channels with what they may have.
+fn ports(times: FixedTimes, system_hz: u64) -> Result<Vec<Subject>, GenError> {
+    let service = |is_all| {
+        let service = ServiceTimes {
+            diagnosis: is_all,
+            continuous: is_all,
+            ..ServiceTimes::at(system_hz)
+        };
+        EncoderPort::new(times, Some(&service), false)
+    };
+    Ok(vec![
         Subject::new(
             "async_dsp",
             "T-format receiver behind the bus of a signal processor",
@@ -202,6 +219,12 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
                 LineStart::default(),
             ),
         )?,
+    ])
+}
+
+/// Blocks by themselves.
+fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
+    Ok(vec![
         Subject::new(
             "transaction",
             "order and time-outs",
@@ -220,7 +243,7 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "stream",
             "stream with a buffer of 2048 bytes, without the channels' parts",
-            Stream::new(streaming.stream.fifo_bytes, 2, false, false, SetParts::default()),
+            Stream::new(fifo_bytes, 2, false, false, SetParts::default()),
         )?,
         Subject::new(
             "set_channel",
@@ -245,9 +268,5 @@ pub fn subjects() -> Result<Vec<Subject>, GenError> {
             Crc5Fixed::<31>::default(),
         )?,
         Subject::new("crc5_serial", "CRC5, serial", Crc5Serial::default())?,
-    ];
-    for guard in GUARDS {
-        subjects.push(Subject::without(guard, Channel::new(times))?);
-    }
-    Ok(subjects)
+    ])
 }

@@ -2,9 +2,13 @@
 
 pub(crate) mod asked;
 mod base;
+mod canonical;
+mod channel;
+mod document;
 mod line;
 mod names;
 mod outputs;
+mod parts;
 pub mod pins;
 pub(crate) mod protocol;
 pub(crate) mod reader;

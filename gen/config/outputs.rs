@@ -1,6 +1,6 @@
 //! The table `[outputs]`.
 
-use super::reader::read_parts;
+use super::parts::read_parts;
 use super::reader::Table;
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::OutputParts;

@@ -1,13 +1,14 @@
 //! A T-format receiver: its keys, and what they come to.
 
+use super::canonical::{hash, NO_INITIAL_VALUES};
+use super::channel::read_encoder;
 use super::check_name;
+use super::document::{parse, read_initial_values};
 use super::protocol::{read_bit_hz, read_request, RECEIVER_BUS, T_FORMAT};
 use super::reader::{Source, Table};
-use super::schema::{not_toml, read_encoder, read_initial_values, NO_INITIAL_VALUES};
 use endat_hdl::config::limits;
 use endat_hdl::t_format::dsp::TFormatStart;
 use endat_hdl::t_format::protocol::FAST_BIT_HZ;
-use sha2::{Digest, Sha256};
 use toml::de::DeTable;
 
 /// A checked configuration of a receiver.
@@ -43,16 +44,9 @@ pub fn receiver_line(text: &str) -> Option<usize> {
 
 /// Reads a whole file; complaints go to `source`, and `None` means that there was at least one.
 pub fn read(source: &Source<'_>) -> Option<Receiver> {
-    let (document, errors) = DeTable::parse_recoverable(source.text());
-    for error in &errors {
-        let line = error.span().map_or(0, |span| source.line(span.start));
-        source.complain_line(line, not_toml(source, error, line));
-    }
-    if !errors.is_empty() {
-        return None;
-    }
+    let document = parse(source)?;
     let empty = DeTable::new();
-    let root = Table::root(source, document.get_ref());
+    let root = Table::root(source, &document);
     let name = root.required_string("name", "\"my_receiver\"");
     if let Some(name) = &name {
         if let Err(text) = check_name(&name.value) {
@@ -89,13 +83,12 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
     if !initial_values {
         canonical += &format!("\n{NO_INITIAL_VALUES}");
     }
-    let digest = Sha256::digest(canonical);
     Some(Receiver {
         name: name?.value,
         encoder,
         start,
         initial_values,
-        hash: digest[..6].iter().map(|b| format!("{b:02x}")).collect(),
+        hash: hash(&canonical),
     })
 }
 

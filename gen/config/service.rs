@@ -1,6 +1,6 @@
 //! The table `[service]`.
 
-use super::reader::read_parts;
+use super::parts::read_parts;
 use super::reader::{At, Table};
 use endat_hdl::config::{ServiceParts, LIST};
 

@@ -72,7 +72,7 @@ impl TFormatReport {
         writeln!(
             f,
             "  bit rate         {}; {} cycles in a bit",
-            super::rate(&self.bit_rate, "bit/s"),
+            super::text::rate(&self.bit_rate, "bit/s"),
             self.bit_cycles
         )?;
         writeln!(

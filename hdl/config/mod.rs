@@ -10,17 +10,17 @@
 mod card;
 mod channel;
 mod limits;
+mod parts;
 mod t_format;
 
 pub use card::{needed_baud, read_bytes, stream_baud, BAUD_NOTE};
 pub use limits::{limits, Limits};
+pub use parts::{LineParts, OutputParts, PhaseSource, ServiceParts, StreamParts, StreamStart};
 pub use t_format::{is_rate, is_triggered, TFormatRequest};
 
-use crate::line_delay::mode;
-use crate::line_monitor::LineStart;
 use crate::protocol::ModeCommand;
-use crate::timing::{calibration_hz, sixteenths, TST_FROM_HZ, TST_USUAL_NS};
-use endat_regs::CHANNELS_MAX;
+use crate::timing::{calibration_hz, TST_FROM_HZ, TST_USUAL_NS};
+use endat_regs::{CARD_CONFIG, CHANNELS_MAX, CHANNEL_CONFIG, LINE};
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -29,23 +29,25 @@ pub const CHANNELS: RangeInclusive<usize> = 1..=CHANNELS_MAX;
 /// Additional informations that a service selects in turn.
 pub const LIST: usize = crate::service::map::word::LIST_MAX as usize;
 /// Bits of the EnDat period and of the first low phase, in the blocks.
-pub const PERIOD_BITS: u32 = 11;
+pub const PERIOD_BITS: u32 = CHANNEL_CONFIG.field("frame", "period_cycles").width;
 /// Bits of the drift that gives alarm, in sixteenths of a cycle, in the blocks.
-pub const DRIFT_LIMIT_BITS: u32 = 12;
+pub const DRIFT_LIMIT_BITS: u32 = LINE.field("limits", "drift").width;
 /// Bits of the input filter length, in the blocks.
-pub const FILTER_BITS: u32 = 4;
+pub const FILTER_BITS: u32 = CHANNEL_CONFIG.field("timing", "filter_cycles").width;
 /// Bits of the start window, in the blocks.
-pub const START_WINDOW_BITS: u32 = 6;
+pub const START_WINDOW_BITS: u32 = CHANNEL_CONFIG.field("timing", "start_window_cycles").width;
 /// Bits of the recovery limit, in the blocks.
-pub const RECOVERY_LIMIT_BITS: u32 = 13;
+pub const RECOVERY_LIMIT_BITS: u32 = CHANNEL_CONFIG
+    .field("limits", "recovery_limit_cycles")
+    .width;
 /// Bits of the longest wait for the start bit, in the blocks.
-pub const START_TIMEOUT_BITS: u32 = 12;
+pub const START_TIMEOUT_BITS: u32 = CHANNEL_CONFIG.field("limits", "start_timeout_us").width;
 /// Fewest cycles that a first low phase can be longer than half a period, in the blocks.
 pub const FIRST_LOW_EXTRA_MIN: u64 = 4;
 /// Bits of the ready time tR, in the blocks.
 pub const READY_LOW_BITS: u32 = 8;
 /// Bits of the period of the sampling timer, in the blocks.
-pub const TIMER_BITS: u32 = 24;
+pub const TIMER_BITS: u32 = CARD_CONFIG.field("trigger_period", "value").width;
 /// Slowest system clock that leaves the UART and the filters room, in hertz.
 pub const SYSTEM_HZ_MIN: u64 = 8_000_000;
 /// Fastest system clock that the time stamps and counters are made for, in hertz.
@@ -123,121 +125,6 @@ pub struct CardRequest {
     pub stream: StreamParts,
     /// Outputs to logic in the same device.
     pub outputs: OutputParts,
-}
-
-/// What a channel does about its line delay besides following it by a cycle for each frame; what is not asked for takes no logic.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct LineParts {
-    /// Phase from the mean over many edges, from each start bit or from a register, at the host's choice; majority of three samples.
-    pub alignment: bool,
-    /// Margin of the samples, drift and glitches are measured; takes alignment.
-    pub margin: bool,
-    /// DATA is looked at on both edges of the system clock; takes alignment.
-    pub double_edge: bool,
-    /// Source of the phase after reset; the host may change this and what follows.
-    pub phase: PhaseSource,
-    /// Delay with [`PhaseSource::Fixed`], synchroniser and filter included, in nanoseconds.
-    pub fixed_delay_ns: u64,
-    /// Drift of the tracked delay that gives alarm, in nanoseconds; 0 = none.
-    pub drift_limit_ns: u64,
-    /// Samples of each bit: 1, or 3 for their majority; 0 stands for 1.
-    pub samples: u64,
-}
-
-/// Where the phase of the samples comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum PhaseSource {
-    /// The mean over many edges.
-    #[default]
-    Tracked,
-    /// The start bit of each frame.
-    Frame,
-    /// A register.
-    Fixed,
-}
-
-impl LineParts {
-    /// What the line's settings are after reset.
-    pub fn start(&self, system_hz: u64) -> LineStart {
-        LineStart {
-            phase_mode: match self.phase {
-                PhaseSource::Tracked => mode::TRACKED,
-                PhaseSource::Frame => mode::FRAME,
-                PhaseSource::Fixed => mode::FIXED,
-            },
-            fixed_delay: sixteenths(self.fixed_delay_ns, system_hz),
-            majority: self.samples == 3,
-            drift_limit: sixteenths(self.drift_limit_ns, system_hz),
-            offset_limit: 0,
-            clears: false,
-        }
-    }
-}
-
-/// Outputs to logic and to a processor in the same device (`docs/bus.md`); what is not asked for takes no logic.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct OutputParts {
-    /// Cropped position, its strobe, and an OR of selected causes, of each channel.
-    pub position: bool,
-    /// An interrupt with status and mask.
-    pub interrupt: bool,
-}
-
-impl OutputParts {
-    /// Whether there are any.
-    pub const fn any(self) -> bool {
-        self.position || self.interrupt
-    }
-}
-
-/// The stream of sample sets (`docs/stream.md`); without a buffer there is none, and no logic for it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct StreamParts {
-    /// Bytes of the buffer, one of [`crate::stream::buffer::BUFFER_BYTES`]; 0 = no stream.
-    pub fifo_bytes: u64,
-    /// What it does after reset.
-    pub start: StreamStart,
-    /// Sets have the additional informations, too.
-    pub informations: bool,
-}
-
-/// What a stream does after reset; the host can change it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum StreamStart {
-    /// Nothing.
-    #[default]
-    Off,
-    /// Triggers make sets, which wait in the buffer.
-    Collect,
-    /// Triggers make sets, which are pushed.
-    Push,
-}
-
-impl StreamStart {
-    /// Whether triggers make sets.
-    pub const fn collects(self) -> bool {
-        !matches!(self, Self::Off)
-    }
-
-    /// Whether frames go out over the UART.
-    pub const fn pushes(self) -> bool {
-        matches!(self, Self::Push)
-    }
-}
-
-/// What a channel does besides triggered positions; what is not asked for takes no logic.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ServiceParts {
-    /// All mode commands, additional information, counters, alarm.
-    pub requests: bool,
-    /// Stuck lines, absent and late encoders told apart, watchdog, shortest recovery time; takes requests.
-    pub diagnosis: bool,
-    /// Continuous clock; takes requests.
-    pub continuous: bool,
-    /// Initialisation of the encoder after reset and after it has been plugged in; takes requests.
-    pub initialise: bool,
-    /// MRS codes of the additional informations that are selected in turn from the start on, 0 = none; takes requests.
-    pub infos: [u8; LIST],
 }
 
 /// A request in which what could not be read is missing; what depends on it is not judged.

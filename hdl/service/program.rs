@@ -12,6 +12,7 @@
 
 mod events;
 mod initialise;
+mod own;
 mod position_2;
 mod requests;
 
@@ -88,91 +89,6 @@ impl ServiceTimes {
             system_khz: (system_hz / 1_000) as u32,
         }
     }
-}
-
-/// The program's words of RAM.
-mod own {
-    use super::word;
-
-    const FIRST: u8 = 2 * word::PRIVATE;
-    pub const ZERO: u8 = FIRST;
-    /// Return addresses.
-    pub const FROM_EVENT: u8 = FIRST + 1;
-    pub const FROM_STORE: u8 = FIRST + 2;
-    pub const FROM_WAIT: u8 = FIRST + 3;
-    pub const FROM_OWN: u8 = FIRST + 4;
-    pub const FROM_STEP: u8 = FIRST + 5;
-    pub const FROM_INITIALISE: u8 = FIRST + 6;
-    /// Who uses the request: see [`super::requests::mailbox`].
-    pub const MAILBOX: u8 = FIRST + 7;
-    /// The request.
-    pub const MODE: u8 = FIRST + 8;
-    pub const ADDRESS: u8 = FIRST + 9;
-    pub const DATA: u8 = FIRST + 10;
-    /// How it is to go out.
-    pub const GO: u8 = FIRST + 11;
-    /// Cause and flags of its frame.
-    pub const RESULT: u8 = FIRST + 12;
-    pub const ERROR: u8 = FIRST + 13;
-    pub const BEGAN_US: u8 = FIRST + 14;
-    pub const BEGAN_MS: u8 = FIRST + 15;
-    pub const WAIT_FROM: u8 = FIRST + 16;
-    pub const WAIT_MS: u8 = FIRST + 17;
-    pub const OWN_FROM: u8 = FIRST + 18;
-    /// Levels at the control port.
-    pub const LEVELS: u8 = FIRST + 19;
-    /// While an event is handled.
-    pub const STATUS: u8 = FIRST + 20;
-    pub const CODE: u8 = FIRST + 21;
-    pub const CONTENT: u8 = FIRST + 22;
-    pub const INDEX: u8 = FIRST + 23;
-    pub const NUMBER: u8 = FIRST + 24;
-    /// An additional information of the list has come.
-    pub const MATCHED: u8 = FIRST + 25;
-    /// Which of the last m frames were bad, and how many; 2^(m-1); m.
-    pub const BAD: u8 = 2 * word::BAD_FRAMES;
-    pub const HISTORY: u8 = 2 * word::BAD_FRAMES + 1;
-    pub const LEAVING: u8 = FIRST + 26;
-    pub const WINDOW: u8 = FIRST + 27;
-    /// Place in the list of the code that was selected last.
-    pub const TURN: u8 = FIRST + 28;
-    /// DATA has been HIGH since then.
-    pub const HIGH_FROM: u8 = FIRST + 29;
-    pub const IS_HIGH: u8 = FIRST + 30;
-    /// Address and place of a word that is read.
-    pub const STEP: u8 = FIRST + 31;
-    pub const RETRIES: u8 = FIRST + 32;
-    pub const COUNT: u8 = FIRST + 33;
-    /// 32 bits.
-    pub const REST: u8 = FIRST + 34;
-    pub const DIVISOR: u8 = FIRST + 36;
-    /// What has been found: as the port.
-    pub const FOUND: u8 = FIRST + 37;
-    /// Which part of position 2 comes next: its code; 0 = the first.
-    pub const STAGE: u8 = FIRST + 38;
-    /// 48 bits: the position that position 2 belongs to.
-    pub const POSITION: u8 = FIRST + 39;
-    /// 64 bits: two to the position's width; difference of the positions.
-    pub const MODULUS: u8 = FIRST + 42;
-    pub const DIFFERENCE: u8 = FIRST + 46;
-    /// 64 bits: what is left of the tolerance.
-    pub const MARGIN: u8 = FIRST + 50;
-    pub const FROM_FAILED: u8 = FIRST + 54;
-    pub const STEP_RETURN: u8 = FIRST + 55;
-    /// Frames until a request that does not ride is asked for again.
-    pub const PATIENCE: u8 = FIRST + 56;
-    /// How often the initialisation is still begun again.
-    pub const ROUNDS: u8 = FIRST + 57;
-    /// The period that the initialisation has found; 0 = the configured one.
-    pub const PERIOD: u8 = FIRST + 58;
-    /// Words that decide what goes out as long as nobody writes them again, and where the complement of each stands.
-    pub const KEPT: [(u8, u8); 3] = [
-        (LEVELS, FIRST + 59),
-        (FOUND, FIRST + 60),
-        (PERIOD, FIRST + 61),
-    ];
-    /// RAM has been cleared: two words that it hardly holds by chance.
-    pub const CLEARED: [(u8, u16); 2] = [(FIRST + 62, 0xE2DA), (FIRST + 63, 0x1D25)];
 }
 
 /// 4 seconds.

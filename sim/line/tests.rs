@@ -1,4 +1,5 @@
 use super::*;
+use crate::encoder::Symbol;
 use crate::{NS, US};
 
 const IDLE: Output = Output {

@@ -102,28 +102,7 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         )]));
     }
     let scales = scales(&mut card)?;
-    let (out, name): (Box<dyn Write>, String) = match &arguments.out {
-        None => (Box::new(Lines::to(Box::new(io::stdout()))), "stdout".into()),
-        Some(path) => {
-            let mut options = fs::File::options();
-            options.write(true);
-            let options = match arguments.force {
-                true => options.create(true).truncate(true),
-                false => options.create_new(true),
-            };
-            let file = fs::create_dir_all(folder(path)).and_then(|()| options.open(path));
-            let file = file.map_err(|e| {
-                let remedy = match e.kind() {
-                    io::ErrorKind::AlreadyExists => {
-                        "give another file with --out, or replace it with --force"
-                    }
-                    _ => "give another file with --out",
-                };
-                GenError::io("write", path, &e, remedy)
-            })?;
-            (Box::new(Lines::file(file)), path.display().to_string())
-        }
-    };
+    let (out, name) = open(arguments)?;
     let failed =
         |e: io::Error| GenError::input(format!("{name}: cannot write: {e}; is the disk full?"));
     let system_hz = f64::from(card.identity().system_hz.max(1));
@@ -153,22 +132,12 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     let (is_stream, lost_in_card) = (feed.streams(), feed.lost_in_card());
     let calm = feed.end(&mut card);
     let flushed = sheet.out.flush();
-    let mut text = format!(
+    let head = format!(
         "{name}: {} sample sets in {:.3} s of the card's time",
         count.rows, sheet.span_s
     );
-    if is_stream {
-        let damaged = card.bridge().decoder().damaged();
-        text += &format!(
-            "; {} triggers missing, {} of them dropped in the card; {damaged} frames damaged on the line",
-            count.missing, lost_in_card
-        );
-    } else {
-        text += &format!(
-            "; read one by one: {} results in between not read (a card with [stream] gives them all)",
-            count.missing
-        );
-    }
+    let lost = is_stream.then(|| (lost_in_card, card.bridge().decoder().damaged()));
+    let text = head + &missing(count.missing, lost);
     let mut messages = vec![format!("{text}; {}", count.told())];
     let is_bad = count.bad_percent() > bad_max;
     if is_bad {
@@ -210,6 +179,44 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         exit_code,
         ..Outcome::default()
     })
+}
+
+/// Where the rows go, and what that is called.
+fn open(arguments: &LogArgs) -> Result<(Box<dyn Write>, String), GenError> {
+    Ok(match &arguments.out {
+        None => (Box::new(Lines::to(Box::new(io::stdout()))), "stdout".into()),
+        Some(path) => {
+            let mut options = fs::File::options();
+            options.write(true);
+            let options = match arguments.force {
+                true => options.create(true).truncate(true),
+                false => options.create_new(true),
+            };
+            let file = fs::create_dir_all(folder(path)).and_then(|()| options.open(path));
+            let file = file.map_err(|e| {
+                let remedy = match e.kind() {
+                    io::ErrorKind::AlreadyExists => {
+                        "give another file with --out, or replace it with --force"
+                    }
+                    _ => "give another file with --out",
+                };
+                GenError::io("write", path, &e, remedy)
+            })?;
+            (Box::new(Lines::file(file)), path.display().to_string())
+        }
+    })
+}
+
+/// What is missing among the rows; a stream knows what was dropped in the card and what was damaged.
+fn missing(count: u64, stream: Option<(u64, u64)>) -> String {
+    match stream {
+        Some((lost_in_card, damaged)) => format!(
+            "; {count} triggers missing, {lost_in_card} of them dropped in the card; {damaged} frames damaged on the line"
+        ),
+        None => format!(
+            "; read one by one: {count} results in between not read (a card with [stream] gives them all)"
+        ),
+    }
 }
 
 /// Lines of progress: one that is written over on a terminal, one after the other in a file.

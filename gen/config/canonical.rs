@@ -1,0 +1,231 @@
+//! The resolved configuration as text: what it means, not how the file spells it. Its hash tells cards apart.
+//!
+//! Every struct is taken apart field by field, so that the compiler names one that was added and is not in the text.
+
+use super::stream;
+use crate::board::{Assignment, Board};
+use endat_hdl::bus::HostBus;
+use endat_hdl::config::*;
+use sha2::{Digest, Sha256};
+
+/// What the resolved configuration says of a device that has no initial values.
+pub const NO_INITIAL_VALUES: &str = "device initial_values false";
+
+/// Bytes of the hash.
+const HASH_BYTES: usize = 6;
+
+/// First digits of the SHA-256 of such a text, hexadecimal.
+pub fn hash(text: &str) -> String {
+    let digest = Sha256::digest(text);
+    digest[..HASH_BYTES]
+        .iter()
+        .map(|b| format!("{b:02x}"))
+        .collect()
+}
+
+/// A card, one fact a line.
+pub fn of_card(
+    card: &CardConfig,
+    bus: HostBus,
+    board: Option<&Board>,
+    pins: &[Assignment],
+) -> String {
+    let CardConfig {
+        system_hz,
+        channels,
+        sample_period_cycles,
+        sources,
+        uart_bit_cycles,
+        service,
+        line,
+        stream,
+        outputs,
+        initial_values,
+        // What was asked for; what came of it is in the cycles above.
+        sample_hz: _,
+        baud: _,
+        // For reports only.
+        read_hz: _,
+        hash: _,
+    } = card;
+    let mut lines = vec![
+        format!("system_hz {system_hz}"),
+        format!("sample_period_cycles {sample_period_cycles}"),
+        format!("sources {}", of_sources(sources)),
+    ];
+    match bus {
+        HostBus::Uart => lines.push(format!("uart_bit_cycles {uart_bit_cycles}")),
+        bus => lines.push(format!("bus {}", bus.name())),
+    }
+    if let Some(board) = board {
+        lines.push(format!("part {}", board.part));
+        lines.push(format!("oscillator_hz {}", board.oscillator_hz));
+    }
+    lines.extend(of_line(line, *system_hz));
+    let OutputParts {
+        position,
+        interrupt,
+    } = outputs;
+    if outputs.any() {
+        lines.push(format!("outputs position {position} interrupt {interrupt}"));
+    }
+    if !initial_values {
+        lines.push(NO_INITIAL_VALUES.into());
+    }
+    lines.extend(of_stream(stream));
+    if service.requests {
+        lines.extend(of_service(service));
+        for (n, c) in card.endat_channels() {
+            lines.push(format!(
+                "channel {n} wants_short {}",
+                c.wants_short_recovery()
+            ));
+        }
+    }
+    for (n, c) in channels.iter().enumerate() {
+        let facts = of_channel(c, *system_hz).into_iter();
+        lines.extend(facts.map(|fact| format!("channel {n} {fact}")));
+    }
+    if card.own_triggers() {
+        for (n, c) in channels.iter().enumerate() {
+            let own = c.request.trigger.unwrap_or_default();
+            let OwnTrigger {
+                enabled,
+                divider,
+                sources: _,
+            } = own;
+            let ignored = own.ignored();
+            lines.push(format!(
+                "channel {n} trigger enabled {enabled} divider {divider} ignored {ignored}"
+            ));
+        }
+    }
+    let of_pin = |pin: &Assignment| format!("pin {} {}", pin.signal, pin.pin);
+    lines.extend(pins.iter().map(of_pin));
+    lines.join("\n")
+}
+
+fn of_sources(sources: &TriggerSources) -> String {
+    let TriggerSources {
+        pin,
+        timer,
+        register,
+    } = sources;
+    format!("{pin} {timer} {register}")
+}
+
+fn of_line(line: &LineParts, system_hz: u64) -> Vec<String> {
+    let LineParts {
+        alignment,
+        margin,
+        double_edge,
+        // What they come to is in the start values.
+        phase: _,
+        fixed_delay_ns: _,
+        drift_limit_ns: _,
+        samples: _,
+    } = line;
+    if !alignment {
+        return vec![];
+    }
+    let mut lines = vec![format!("line margin {margin} double_edge {double_edge}")];
+    let start = line.start(system_hz);
+    if start != Default::default() {
+        lines.push(format!(
+            "line start {} {} {} {}",
+            start.phase_mode, start.fixed_delay, start.majority, start.drift_limit
+        ));
+    }
+    lines
+}
+
+fn of_stream(stream: &StreamParts) -> Vec<String> {
+    let StreamParts {
+        fifo_bytes,
+        start,
+        informations,
+    } = stream;
+    if *fifo_bytes == 0 {
+        return vec![];
+    }
+    let mut lines = vec![format!(
+        "stream fifo_bytes {fifo_bytes} start {}",
+        stream::start_name(*start)
+    )];
+    if *informations {
+        lines.push("stream informations true".into());
+    }
+    lines
+}
+
+fn of_service(service: &ServiceParts) -> Vec<String> {
+    let ServiceParts {
+        requests: _,
+        diagnosis,
+        continuous,
+        initialise,
+        infos,
+    } = service;
+    let mut lines = vec![
+        format!("service initialise {initialise}"),
+        format!("service diagnosis {diagnosis}"),
+        format!("service continuous {continuous}"),
+    ];
+    if *infos != [0; LIST] {
+        lines.push(format!("service infos {infos:?}"));
+    }
+    lines
+}
+
+fn of_channel(channel: &ChannelConfig, system_hz: u64) -> Vec<String> {
+    let ChannelConfig {
+        period_cycles,
+        first_low_extra_cycles,
+        command,
+        position_bits,
+        filter_cycles,
+        filter_half,
+        start_window_cycles,
+        start_timeout_us,
+        recovery_limit_cycles,
+        ready_low_cycles,
+        abort_us,
+        t_format,
+        // What it comes to is in the cycles above, and in what is asked of the channel below.
+        request: _,
+    } = channel;
+    if let Some(t_format) = t_format {
+        let TFormatRequest {
+            bit_hz: _,
+            request,
+            reply_gap_us,
+            field_gap_us,
+        } = t_format;
+        return vec![format!(
+            "t_format bit_cycles {period_cycles} filter_cycles {filter_cycles} request {} gaps {reply_gap_us} {field_gap_us}",
+            request.id()
+        )];
+    }
+    let mut lines = Vec::new();
+    if *filter_half {
+        lines.push("filter_half".to_owned());
+    }
+    if channel.has_own_calibration(system_hz) {
+        let cycles = channel.calibration_period_cycles(system_hz);
+        lines.push(format!("calibration_period_cycles {cycles}"));
+    }
+    let numbers = [
+        ("period_cycles", *period_cycles),
+        ("first_low_extra_cycles", *first_low_extra_cycles),
+        ("command", command.code().into()),
+        ("position_bits", (*position_bits).into()),
+        ("filter_cycles", *filter_cycles),
+        ("start_window_cycles", *start_window_cycles),
+        ("start_timeout_us", *start_timeout_us),
+        ("recovery_limit_cycles", *recovery_limit_cycles),
+        ("ready_low_cycles", *ready_low_cycles),
+        ("abort_us", *abort_us),
+    ];
+    lines.extend(numbers.map(|(name, value)| format!("{name} {value}")));
+    lines
+}

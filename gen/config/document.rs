@@ -1,0 +1,43 @@
+//! A file as TOML, and what is said if it is none.
+
+use super::reader::{Source, Table};
+use crate::error::shorten;
+use toml::de::DeTable;
+
+/// The file's top level; complaints go to `source`.
+pub fn parse<'t>(source: &Source<'t>) -> Option<DeTable<'t>> {
+    let (document, errors) = DeTable::parse_recoverable(source.text());
+    for error in &errors {
+        let line = error.span().map_or(0, |span| source.line(span.start));
+        source.complain_line(line, not_toml(source, error, line));
+    }
+    errors.is_empty().then(|| document.into_inner())
+}
+
+/// What the parser says about a line, and what to do about the usual mistakes.
+fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String {
+    let message = error.message().replace('\n', ", ");
+    let written = source.text().lines().nth(line.saturating_sub(1));
+    let (key, value) = written.and_then(|l| l.split_once('=')).unwrap_or_default();
+    let value = value.split('#').next().unwrap_or_default().trim();
+    let digits = value.len() > 1 && value.chars().all(|c| c.is_ascii_digit() || c == '_');
+    let remedy = match () {
+        () if digits && value.starts_with('0') => {
+            format!("put it in quotes: {} = \"{value}\"", key.trim())
+        }
+        () if written.is_some_and(|l| l.trim_start().starts_with("[channel]")) => {
+            "there is one for each channel: write [[channel]]".into()
+        }
+        () if message.contains("duplicate key") => {
+            let span = error.span().and_then(|span| source.text().get(span));
+            format!("{} stands twice, remove one", span.unwrap_or(key).trim())
+        }
+        () => "correct the line".into(),
+    };
+    format!("not TOML: {message}; {}", shorten(&remedy))
+}
+
+/// The key of the table `[device]`.
+pub fn read_initial_values(table: &Table<'_, '_>) -> bool {
+    table.boolean("initial_values").is_none_or(|at| at.value)
+}
