@@ -177,6 +177,7 @@ fn one_wrong_line_gives_one_message_about_that_line() {
         ("encoder = \"RCN 8510\"", "encoder = \"a\\u202eb\"", "has the character '\\u{202e}'"),
         ("encoder = \"RCN 8510\"", "encoder = \"12345678901234567890123456789012345678901\"", "has 41 characters, at most 40 are allowed"),
         // syntax
+        ("system_hz = 100_000_000", "system_hz = 0100_000_000", "not TOML: unexpected leading zero, expected nothing; leave the first 0 out: system_hz = 100_000_000"),
         ("command = \"111000\"", "command = 000111", "not TOML: unexpected leading zero, expected nothing; put it in quotes: command = \"000111\""),
         ("baud = 3_000_000", "baud = 2\nbaud = 3_000_000", "not TOML: duplicate key; baud stands twice, remove one"),
         ("[clock]", "[clock", "not TOML:"),

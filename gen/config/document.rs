@@ -22,8 +22,13 @@ fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String
     let value = value.split('#').next().unwrap_or_default().trim();
     let digits = value.len() > 1 && value.chars().all(|c| c.is_ascii_digit() || c == '_');
     let remedy = match () {
+        () if digits && value.starts_with('0') && key.trim() == "command" => {
+            format!("put it in quotes: command = \"{value}\"")
+        }
         () if digits && value.starts_with('0') => {
-            format!("put it in quotes: {} = \"{value}\"", key.trim())
+            let number = value.trim_start_matches(['0', '_']);
+            let number = if number.is_empty() { "0" } else { number };
+            format!("leave the first 0 out: {} = {number}", key.trim())
         }
         () if written.is_some_and(|l| l.trim_start().starts_with("[channel]")) => {
             "there is one for each channel: write [[channel]]".into()
