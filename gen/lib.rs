@@ -20,6 +20,7 @@ pub mod error;
 pub mod explain;
 pub mod integration;
 pub mod maps;
+pub mod prove;
 pub mod readers;
 mod scratch;
 pub mod t_format;

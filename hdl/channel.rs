@@ -48,6 +48,7 @@ pub const CALIBRATION_FRAMES: usize = 4;
 
 /// One EnDat port.
 #[derive(LogicBlock, Block)]
+#[properties("properties/channel.sv")]
 pub struct Channel {
     /// System clock.
     pub clock: Signal<In, Clock>,

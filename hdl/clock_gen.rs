@@ -19,6 +19,7 @@ use rust_hdl::prelude::*;
 
 /// EnDat clock generator of one channel.
 #[derive(LogicBlock, Block)]
+#[properties("properties/clock_gen.sv")]
 pub struct ClockGen {
     /// System clock.
     pub clock: Signal<In, Clock>,

@@ -23,6 +23,7 @@ use rust_hdl::prelude::*;
 
 /// Sends what the receiver has to say, MSB first, on falling clock edges.
 #[derive(LogicBlock, Block)]
+#[properties("properties/command_sender.sv")]
 pub struct CommandSender {
     /// System clock.
     pub clock: Signal<In, Clock>,

@@ -15,6 +15,7 @@ use rust_hdl::prelude::*;
 
 /// Settings of one channel's frames.
 #[derive(LogicBlock, Block)]
+#[properties("properties/frame_settings.sv")]
 pub struct FrameSettings {
     /// System clock.
     pub clock: Signal<In, Clock>,

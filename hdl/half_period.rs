@@ -15,6 +15,7 @@ use rust_hdl::prelude::*;
 
 /// Marks the last cycle of each half of a clock period.
 #[derive(LogicBlock, Block)]
+#[properties("properties/half_period.sv")]
 pub struct HalfPeriod {
     /// System clock.
     pub clock: Signal<In, Clock>,

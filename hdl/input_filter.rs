@@ -14,6 +14,7 @@ use rust_hdl::prelude::*;
 
 /// Synchroniser of three stages and a run-time filter for one input pin.
 #[derive(LogicBlock, Block)]
+#[properties("properties/input_filter.sv")]
 pub struct InputFilter {
     /// System clock.
     pub clock: Signal<In, Clock>,

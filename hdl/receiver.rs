@@ -55,6 +55,7 @@ pub enum Field {
 
 /// Receiver of one channel.
 #[derive(LogicBlock, Block)]
+#[properties("properties/receiver.sv")]
 pub struct Receiver {
     /// System clock.
     pub clock: Signal<In, Clock>,

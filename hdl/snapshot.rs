@@ -18,6 +18,7 @@ use rust_hdl::prelude::*;
 
 /// Result registers of one channel.
 #[derive(LogicBlock, Block)]
+#[properties("properties/snapshot.sv")]
 pub struct Snapshot {
     /// System clock.
     pub clock: Signal<In, Clock>,

@@ -59,6 +59,7 @@ pub enum Phase {
 
 /// Sequence, time-outs and verdict of one channel.
 #[derive(LogicBlock, Block)]
+#[properties("properties/transaction.sv")]
 pub struct Transaction {
     /// System clock.
     pub clock: Signal<In, Clock>,

@@ -9,6 +9,7 @@ mod emit;
 mod host;
 mod number;
 mod pictures;
+mod prove;
 mod shmoo;
 mod sim;
 mod work;
@@ -80,6 +81,8 @@ enum Command {
     Sim(sim::SimArgs),
     /// Compute and explain the CRC of a frame
     Crc(crc_command::CrcArgs),
+    /// Prove on the Verilog what its blocks promise, in every cycle and for all inputs
+    Prove(prove::ProveArgs),
     /// Measure the area, and the speed, of card, channel and blocks with yosys and nextpnr
     Area(area::AreaArgs),
     /// Measure the simulators, this project's and others
@@ -201,6 +204,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         }
         Some(Command::Sim(arguments)) => sim::run(&arguments).map(with_engine),
         Some(Command::Crc(arguments)) => crc_command::run(&arguments),
+        Some(Command::Prove(arguments)) => prove::run(&arguments),
         Some(Command::Area(arguments)) => area::run(&arguments),
         Some(Command::Bench(arguments)) => bench::run(&arguments).map(with_engine),
         Some(Command::Campaign(arguments)) => campaign::run(&arguments).map(with_engine),

@@ -2,7 +2,7 @@
 
 pub(super) mod expression;
 
-use super::text::{comment, ranges, upper, vector, INDENT};
+use super::text::{comment, properties, ranges, upper, vector, INDENT};
 use endat_hdl::elaborate::{
     mask, Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Statement,
 };
@@ -126,6 +126,7 @@ impl<'a> ModulePrinter<'a> {
                 out.push_str(section.trim_start_matches('\n'));
             }
         }
+        out.push_str(&properties(&self.module.properties));
         out.push_str("endmodule\n");
         out
     }

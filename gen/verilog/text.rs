@@ -1,6 +1,6 @@
 //! Pieces of text that every part of a module uses.
 
-use endat_hdl::elaborate::mask;
+use endat_hdl::elaborate::{mask, properties::ANY_STATE};
 
 pub(super) const INDENT: &str = "    ";
 
@@ -41,4 +41,23 @@ pub(super) fn upper(name: &str) -> String {
         out.push(c.to_ascii_uppercase());
     }
     out
+}
+
+/// What is proved about a module: compilers other than provers never see it.
+pub(super) fn properties(text: &str) -> String {
+    if text.is_empty() {
+        return String::new();
+    }
+    let line = |line: &str| match line {
+        "" => "\n".to_string(),
+        line if line.starts_with('`') => format!("{line}\n"),
+        line => format!("{INDENT}{line}\n"),
+    };
+    let lines: String = text.lines().map(line).collect();
+    // What does not speak of any state holds from the start values.
+    let lines = match text.contains(ANY_STATE) {
+        true => lines,
+        false => format!("`ifndef {ANY_STATE}\n{lines}`endif\n"),
+    };
+    format!("\n`ifdef FORMAL\n{lines}`endif\n")
 }

@@ -136,6 +136,7 @@ impl Builder {
                     None => block.name.split('$').next().unwrap_or(&block.name).into(),
                 },
                 docs: found.map_or(vec![], |t| t.lines.clone()),
+                properties: block.properties.clone(),
                 nets: vec![],
                 ports: vec![],
                 parameters: vec![],

@@ -67,6 +67,8 @@ pub struct Module {
     pub type_name: String,
     /// Rust documentation of the block type, line by line.
     pub docs: Vec<String>,
+    /// What is proved about it: SystemVerilog over the names of its nets, see [`properties`](super::properties).
+    pub properties: String,
     /// Every net, ports included.
     pub nets: Vec<Net>,
     /// Ports, in declaration order.

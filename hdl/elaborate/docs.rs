@@ -15,6 +15,8 @@ pub struct TypeDocs {
     pub lines: &'static [&'static str],
     /// Fields or variants, and about them.
     pub parts: &'static [(&'static str, &'static [&'static str])],
+    /// What is proved about it: SystemVerilog, see [`properties`](super::properties). Empty where there is nothing.
+    pub properties: &'static str,
     /// Enums among the types of its fields.
     pub enums: &'static [&'static TypeDocs],
 }
@@ -27,6 +29,9 @@ pub trait Described {
 
 /// [`TimingInfo`] name of documentation.
 const DOCS_TIMING: &str = "endat_docs";
+
+/// [`TimingInfo`] name of properties.
+const PROPERTIES_TIMING: &str = "endat_properties";
 
 /// Documentation of a block and its enums as its timings.
 pub fn timing(docs: &TypeDocs) -> Vec<TimingInfo> {
@@ -43,7 +48,20 @@ pub fn timing(docs: &TypeDocs) -> Vec<TimingInfo> {
             .collect(),
     };
     let enums = docs.enums.iter().map(|docs| of_one(docs));
-    [of_one(docs)].into_iter().chain(enums).collect()
+    let properties = TimingInfo {
+        name: PROPERTIES_TIMING.into(),
+        clock: docs.properties.into(),
+        inputs: vec![],
+        outputs: vec![],
+    };
+    let own = [of_one(docs), properties];
+    own.into_iter().chain(enums).collect()
+}
+
+/// Properties among the timings of a block.
+pub(super) fn properties_of(timings: &[TimingInfo]) -> String {
+    let found = timings.iter().find(|t| t.name == PROPERTIES_TIMING);
+    found.map_or(String::new(), |t| t.clock.clone())
 }
 
 /// The same in the block tree.
@@ -111,14 +129,17 @@ mod tests {
             name: "State",
             lines: &[],
             parts: &[("Idle", &[" Nothing."])],
+            properties: "",
             enums: &[],
         };
         let block = TypeDocs {
             name: "Timer",
             lines: &[" A timer.", " Of 8 bits."],
             parts: &[("clock", &[" System clock."]), ("level", &[])],
+            properties: "// p: words",
             enums: &[&STATES],
         };
+        assert_eq!(properties_of(&timing(&block)), "// p: words");
         let [timer, state] = &of(&timing(&block))[..] else {
             panic!("two of them")
         };

@@ -19,6 +19,7 @@ mod index;
 mod loops;
 mod names;
 mod plan;
+pub mod properties;
 mod scope;
 mod tree;
 mod uses;

@@ -31,6 +31,8 @@ pub(super) struct BlockNode {
     pub timing: Vec<TimingInfo>,
     /// Of the block, if it has any, and of its enums.
     pub docs: Vec<Docs>,
+    /// What is proved about it.
+    pub properties: String,
 }
 
 impl BlockNode {
@@ -43,6 +45,7 @@ impl BlockNode {
             fields: vec![],
             hdl: node.hdl(),
             docs: docs::of(&node.timing()),
+            properties: docs::properties_of(&node.timing()),
             timing: node.timing(),
         }
     }

@@ -7,14 +7,14 @@ mod places;
 
 use proc_macro::TokenStream;
 use proc_macro2::{Ident, TokenStream as TokenStream2};
-use quote::{format_ident, quote};
+use quote::{format_ident, quote, quote_spanned};
 use std::collections::BTreeSet;
 use syn::punctuated::Punctuated;
 use syn::visit::{visit_angle_bracketed_generic_arguments, visit_expr_field, Visit};
 use syn::{
     parse_macro_input, AngleBracketedGenericArguments, Attribute, Data, DeriveInput, Expr,
-    ExprField, Field, Fields, GenericArgument, GenericParam, ItemFn, Lit, Member, Token, Type,
-    TypePath,
+    ExprField, Field, Fields, GenericArgument, GenericParam, ItemFn, Lit, LitStr, Member, Token,
+    Type, TypePath,
 };
 
 /// The parts of a block, and what is written about them. Signals begin empty, registers with 0 or what `#[start(...)]` says,
@@ -34,7 +34,9 @@ use syn::{
 /// ```
 ///
 /// A block that needs nothing else has `Default` instead.
-#[proc_macro_derive(Block, attributes(start, given))]
+///
+/// `#[properties("x.sv")]` on the block names the file, beside the source, with what is proved about it.
+#[proc_macro_derive(Block, attributes(start, given, properties))]
 pub fn block(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
     let name = &input.ident;
@@ -133,6 +135,12 @@ fn docs<'a>(
     let name = &input.ident;
     let (generics, arguments, bounds) = input.generics.split_for_impl();
     let own = lines(&input.attrs);
+    let properties = input.attrs.iter().find(|a| a.path().is_ident("properties"));
+    let properties = match properties.map(Attribute::parse_args::<LitStr>) {
+        None => quote!(""),
+        Some(Ok(file)) => quote_spanned!(file.span()=> include_str!(#file)),
+        Some(Err(error)) => return error.into_compile_error(),
+    };
     let parts = parts.map(|(part, attributes)| {
         let lines = lines(attributes);
         quote!((stringify!(#part), &[#(#lines),*]))
@@ -143,6 +151,7 @@ fn docs<'a>(
                 name: stringify!(#name),
                 lines: &[#(#own),*],
                 parts: &[#(#parts),*],
+                properties: #properties,
                 enums: &[#(&<#enums as crate::elaborate::docs::Described>::DOCS),*],
             };
         }

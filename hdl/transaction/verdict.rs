@@ -19,6 +19,7 @@ use rust_hdl::prelude::*;
 
 /// Result, cause and flags of one channel's frames.
 #[derive(LogicBlock, Block)]
+#[properties("../properties/verdict.sv")]
 pub struct Verdict {
     /// System clock.
     pub clock: Signal<In, Clock>,

@@ -101,6 +101,22 @@ module s6_two_channel_command_sender (
             in_supplement <= in_supplement_next;
         end
     end
+
+`ifdef FORMAL
+`ifndef FORMAL_ANY_STATE
+    // driver_window: DATA is driven only between the second and the ninth falling edge of CLOCK in a frame; further only for a parameter.
+    reg [5:0] f_falls; initial f_falls = 6'd0;
+    always @(posedge clock) begin
+        if (reset | start_supplement) f_falls <= 6'd0;
+        else if (fall & (f_falls != 6'd63)) f_falls <= f_falls + 6'd1;
+        if (start & !reset) f_falls <= 6'd1;
+    end
+    always @* begin
+        driver_window: assert (!oe | ((f_falls >= 6'd2) & (f_falls <= 6'd8)) | (HAS_ALL & (in_supplement | (|bits_left))));
+        driver_window_cells: assert ((cells_left == 4'd0) | ((f_falls <= 6'd8) & ({2'd0, cells_left} == 6'd9 - f_falls)));
+    end
+`endif
+`endif
 endmodule
 
 `default_nettype wire

@@ -153,6 +153,22 @@ module s6_two_channel_input_filter (
             removed <= removed_next;
         end
     end
+
+`ifdef FORMAL
+`ifndef FORMAL_ANY_STATE
+    // short_pulses_ignored: The level follows DATA only after more samples in a row than the filter ignores.
+    reg [4:0] f_other; initial f_other = 5'd0;
+    wire f_differs = sample != level_now;
+    always @(posedge clock) begin
+        f_other <= 5'd0;
+        if (f_differs & !reset) f_other <= (f_other == 5'd31) ? f_other : f_other + 5'd1;
+    end
+    always @* begin
+        short_pulses_ignored: assert (HAS_DOUBLE | (settled == level_now) | (f_differs & (f_other >= {1'b0, filter_cycles})));
+        short_pulses_ignored_count: assert (HAS_DOUBLE | (different <= f_other));
+    end
+`endif
+`endif
 endmodule
 
 `default_nettype wire

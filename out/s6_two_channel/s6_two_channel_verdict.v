@@ -289,6 +289,27 @@ module s6_two_channel_verdict (
             flags_now <= flags_now_next;
         end
     end
+
+`ifdef FORMAL
+`ifndef FORMAL_ANY_STATE
+    // good_means: A position is good only if both CRC checks, F1 and F2 said so, its settings were whole, and an answer was taken.
+    // one_result_each: An answer gives one result at most: none without a frame that was answered, refused, late or given up.
+    reg f_reason; initial f_reason = 1'b0;
+    reg f_checked; initial f_checked = 1'b0;
+    reg f_open; initial f_open = 1'b0;
+    always @(posedge clock) begin
+        f_checked <= !reset & prove & (f_open | taken_now) & serial_ok & parallel_ok & !f1 & f2 & !settings_upset;
+        f_reason <= !reset & ((prove & (f_open | taken_now)) | refused | announced | gave_up_now);
+        if (taken_now) f_open <= 1'b1;
+        if (reset | gave_up_now | (prove & (f_open | taken_now))) f_open <= 1'b0;
+    end
+    always @* begin
+        good_means: assert (!good | f_checked);
+        one_result_each: assert (!publish | f_reason);
+        one_result_each_open: assert (f_open == pending);
+    end
+`endif
+`endif
 endmodule
 
 `default_nettype wire

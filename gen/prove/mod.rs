@@ -1,0 +1,216 @@
+//! Proofs of the emitted Verilog, run by outside tools: what each block promises holds in every cycle, whatever comes in.
+//!
+//! ```text
+//! properties of the blocks -> below `ifdef FORMAL in their modules -> harness: inputs are anything, in every cycle
+//!                                                   -> yosys: one model -> induction, from the start values
+//!                                                                       -> from any contents of the registers
+//! ```
+//!
+//! A channel's properties are proved together: each may lean on the others in the cycles before.
+
+mod harness;
+mod report;
+mod tools;
+
+pub use report::{ChannelReport, Report, Row, Verdict};
+
+use crate::artifact::Artifact;
+use crate::error::GenError;
+use crate::readers::is_core;
+use crate::scratch;
+use endat_hdl::elaborate::properties::{of_label, properties, Begins, Property};
+use endat_hdl::elaborate::{Design, Module};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use tools::Answer;
+
+/// Blocks that are proved, with everything below them; by type.
+const PROVED: &str = "Channel";
+
+/// Cycles before the one that an induction step is about.
+const INDUCTION_CYCLES: usize = 4;
+
+/// Cycles from any state: a property looks one back.
+const ANYWHERE_CYCLES: usize = 3;
+
+/// How far a counterexample is looked for where the induction finds none that begins at the start values.
+const SEARCH_CYCLES: usize = 40;
+
+/// What is proved.
+pub struct Subject {
+    /// Name of the card.
+    pub name: String,
+    /// It.
+    pub design: Design,
+    /// Its Verilog.
+    pub files: Vec<Artifact>,
+}
+
+/// Properties of a block.
+struct Block<'a> {
+    module: &'a Module,
+    properties: Vec<Property>,
+}
+
+/// Proves all channels of a card. Counterexamples go to `traces`, if given; `progress` is told what comes next.
+pub fn prove(
+    subject: &Subject,
+    traces: Option<&Path>,
+    progress: &dyn Fn(&str),
+) -> Result<Report, GenError> {
+    let design = &subject.design;
+    let tops = design.modules.iter().enumerate();
+    let tops: Vec<usize> = tops
+        .filter(|(_, m)| m.type_name == PROVED)
+        .map(|(i, _)| i)
+        .collect();
+    if tops.is_empty() {
+        return Err(GenError::input(format!(
+            "{}: has no EnDat channel, and only these have properties yet; give a configuration with one",
+            subject.name
+        )));
+    }
+    let mut channels = vec![];
+    for top in tops {
+        progress(&format!("{}: proving", design.modules[top].name));
+        channels.push(prove_channel(subject, top, traces)?);
+    }
+    let provers = tools::versions()?;
+    Ok(Report {
+        name: subject.name.clone(),
+        provers,
+        channels,
+    })
+}
+
+fn prove_channel(
+    subject: &Subject,
+    top: usize,
+    traces: Option<&Path>,
+) -> Result<ChannelReport, GenError> {
+    let design = &subject.design;
+    let module = &design.modules[top];
+    let blocks: Vec<Block> = below(design, top)
+        .into_iter()
+        .map(|index| &design.modules[index])
+        .filter(|m| !m.properties.is_empty())
+        .map(|module| Block {
+            module,
+            properties: properties(&module.properties),
+        })
+        .collect();
+    let folder = scratch::folder()?;
+    let core = subject.files.iter().filter(|f| is_core(f));
+    let mut files: Vec<Artifact> = core.cloned().collect();
+    files.push(harness::artifact(module, design.has_initial_values));
+    crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
+    let mut report = ChannelReport {
+        module: module.name.clone(),
+        start_seconds: 0.0,
+        anywhere_seconds: 0.0,
+        rows: vec![],
+    };
+    for begins in [Begins::AtStart, Begins::Anywhere] {
+        let started = Instant::now();
+        let proof = Proof {
+            folder: folder.path(),
+            files: &files,
+            begins,
+            has_initial_values: design.has_initial_values,
+        };
+        let answer = proof.run()?;
+        let seconds = started.elapsed().as_secs_f64();
+        match begins {
+            Begins::AtStart => report.start_seconds = seconds,
+            Begins::Anywhere => report.anywhere_seconds = seconds,
+        }
+        let mut rows = report::rows(&blocks, begins, &answer);
+        if let (Some(traces), Some(trace)) = (traces, &answer.trace) {
+            keep(traces, &module.name, trace, &mut rows)?;
+        }
+        report.rows.append(&mut rows);
+    }
+    Ok(report)
+}
+
+/// One run over all properties that begin alike.
+struct Proof<'a> {
+    folder: &'a Path,
+    files: &'a [Artifact],
+    begins: Begins,
+    has_initial_values: bool,
+}
+
+impl Proof<'_> {
+    fn run(&self) -> Result<Answer, GenError> {
+        let model = tools::model(self.folder, self.files, self.begins)?;
+        // Without start values the first cycle is a reset, and what is before it is anything.
+        let first = usize::from(!self.has_initial_values);
+        let search = |cycles: usize| {
+            let steps = format!("{first}:{}", first + cycles);
+            tools::solve(self.folder, &model, &["--presat", "-t", &steps])
+        };
+        if self.begins == Begins::Anywhere {
+            let steps = ANYWHERE_CYCLES.to_string();
+            return tools::solve(self.folder, &model, &["-t", &steps]);
+        }
+        let base = search(INDUCTION_CYCLES)?;
+        if !base.failed.is_empty() {
+            return Ok(base);
+        }
+        let steps = INDUCTION_CYCLES.to_string();
+        let step = tools::solve(self.folder, &model, &["-i", "-t", &steps])?;
+        if step.failed.is_empty() {
+            return Ok(step);
+        }
+        let longer = search(SEARCH_CYCLES)?;
+        Ok(match longer.failed.is_empty() {
+            true => Answer {
+                is_reached: false,
+                ..step
+            },
+            false => longer,
+        })
+    }
+}
+
+/// Modules in the tree of one, itself first, each once.
+fn below(design: &Design, top: usize) -> Vec<usize> {
+    let mut found = vec![top];
+    let mut next = 0;
+    while let Some(&index) = found.get(next) {
+        for instance in &design.modules[index].instances {
+            if !found.contains(&instance.module) {
+                found.push(instance.module);
+            }
+        }
+        next += 1;
+    }
+    found
+}
+
+/// Writes a counterexample beside others; the rows that it is of tell where.
+fn keep(traces: &Path, module: &str, trace: &str, rows: &mut [Row]) -> Result<(), GenError> {
+    let failed = rows.iter().find(|r| r.verdict.is_failure());
+    let Some(name) = failed.map(|r| r.name.clone()) else {
+        return Ok(());
+    };
+    let path = PathBuf::from(format!("{module}_{name}.vcd"));
+    let artifact = Artifact::new(path.display().to_string(), trace);
+    crate::artifact::write(traces, &[artifact], "give another folder with --out")?;
+    let shown = traces.join(&path).display().to_string();
+    for row in rows.iter_mut().filter(|r| r.verdict.is_failure()) {
+        row.trace = Some(shown.clone());
+    }
+    Ok(())
+}
+
+/// The property among those of a block that a failed assertion is of, by its path in the model: `u.u_sender.driver_window`.
+fn property_of<'a>(blocks: &'a [Block<'a>], path: &str) -> Option<(&'a Block<'a>, &'a Property)> {
+    let label = path.rsplit('.').next().unwrap_or(path);
+    let in_block = |block: &'a Block<'a>| {
+        let index = of_label(&block.properties, label)?;
+        Some((block, &block.properties[index]))
+    };
+    blocks.iter().find_map(in_block)
+}

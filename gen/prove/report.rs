@@ -1,0 +1,174 @@
+//! What has been proved, as text and data.
+
+use super::tools::Answer;
+use super::{property_of, Block};
+use endat_hdl::elaborate::properties::Begins;
+use serde::Serialize;
+use std::fmt;
+
+/// Whether a property holds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// In every cycle, without bound.
+    Proved,
+    /// A run leads to where it does not.
+    Violated {
+        /// Cycles that it takes.
+        after_cycles: usize,
+    },
+    /// There is a state in which it does not hold, and no short run leads there.
+    NotProved,
+    /// Another property does not hold, and this one may lean on it.
+    Undecided,
+}
+
+impl Verdict {
+    /// Whether this is the property that does not hold.
+    pub fn is_failure(&self) -> bool {
+        matches!(self, Self::Violated { .. } | Self::NotProved)
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Proved => f.pad("proved"),
+            Self::Violated { after_cycles } => f.pad(&format!("VIOLATED in cycle {after_cycles}")),
+            Self::NotProved => f.pad("NOT PROVED"),
+            Self::Undecided => f.pad("undecided"),
+        }
+    }
+}
+
+/// A property of a block.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The module that it is in.
+    pub module: String,
+    /// Its name.
+    pub name: String,
+    /// What it says.
+    pub words: String,
+    /// It holds whatever the registers begin with.
+    pub from_any_state: bool,
+    /// Assertions that it takes, lemmas among them.
+    pub assertions: usize,
+    /// Whether it holds.
+    pub verdict: Verdict,
+    /// File with the counterexample.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trace: Option<String>,
+}
+
+/// A channel.
+#[derive(Clone, Debug, Serialize)]
+pub struct ChannelReport {
+    /// Its module.
+    pub module: String,
+    /// Time for the properties that begin with the start values.
+    pub start_seconds: f64,
+    /// Time for those of any state.
+    pub anywhere_seconds: f64,
+    /// Its properties.
+    pub rows: Vec<Row>,
+}
+
+/// A card.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Its name.
+    pub name: String,
+    /// The programs that proved.
+    pub provers: String,
+    /// Its channels; those that are alike once.
+    pub channels: Vec<ChannelReport>,
+}
+
+impl Report {
+    /// Whether every property holds.
+    pub fn is_good(&self) -> bool {
+        let mut rows = self.channels.iter().flat_map(|c| &c.rows);
+        rows.all(|row| row.verdict == Verdict::Proved)
+    }
+}
+
+/// The rows of properties that begin alike.
+pub(super) fn rows(blocks: &[Block], begins: Begins, answer: &Answer) -> Vec<Row> {
+    let failed: Vec<(&str, &str)> = answer
+        .failed
+        .iter()
+        .filter_map(|path| property_of(blocks, path))
+        .map(|(block, property)| (block.module.name.as_str(), property.name.as_str()))
+        .collect();
+    let verdict = |module: &str, name: &str| {
+        if answer.failed.is_empty() {
+            Verdict::Proved
+        } else if !failed.contains(&(module, name)) {
+            Verdict::Undecided
+        } else if answer.is_reached {
+            Verdict::Violated {
+                after_cycles: answer.cycles,
+            }
+        } else {
+            Verdict::NotProved
+        }
+    };
+    let mut rows = vec![];
+    for block in blocks {
+        for property in block.properties.iter().filter(|p| p.begins == begins) {
+            rows.push(Row {
+                module: block.module.name.clone(),
+                name: property.name.clone(),
+                words: property.words.clone(),
+                from_any_state: begins == Begins::Anywhere,
+                assertions: property.assertions,
+                verdict: verdict(&block.module.name, &property.name),
+                trace: None,
+            });
+        }
+    }
+    rows
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for channel in &self.channels {
+            let count = |any: bool| {
+                let rows = channel.rows.iter().filter(|r| r.from_any_state == any);
+                rows.count()
+            };
+            writeln!(
+                f,
+                "{}: every input may be anything in every cycle",
+                channel.module
+            )?;
+            for (any, from, seconds) in [
+                (
+                    false,
+                    "the start values, without bound",
+                    channel.start_seconds,
+                ),
+                (
+                    true,
+                    "any contents of the registers",
+                    channel.anywhere_seconds,
+                ),
+            ] {
+                writeln!(
+                    f,
+                    "\n  From {from}: {} properties, {seconds:.1} s",
+                    count(any)
+                )?;
+                for row in channel.rows.iter().filter(|r| r.from_any_state == any) {
+                    writeln!(f, "    {:<22} {:<10}  {}", row.name, row.verdict, row.words)?;
+                    if let Some(trace) = &row.trace {
+                        writeln!(f, "    {:<22} counterexample: {trace}", "")?;
+                    }
+                }
+            }
+            writeln!(f)?;
+        }
+        writeln!(f, "{}", self.provers)
+    }
+}

