@@ -23,6 +23,7 @@ mod pages;
 mod position;
 mod presets;
 mod program;
+mod prove;
 mod requests;
 mod service;
 mod shmoo;

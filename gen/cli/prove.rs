@@ -2,9 +2,9 @@
 
 use super::{to_json, Outcome, SourceArgs};
 use crate::artifact::{read_regular, Artifact};
-use crate::config::Configuration;
+use crate::config::{load_any_preset, Configuration, PRESETS};
 use crate::error::GenError;
-use crate::prove::{self, Subject};
+use crate::prove::{self, Report, Subject};
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
@@ -28,41 +28,31 @@ pub struct ProveArgs {
     /// As JSON
     #[arg(long)]
     json: bool,
+    /// Prove all presets with an EnDat channel, and print the page `docs/proofs.md`
+    #[arg(long, conflicts_with_all = ["config", "preset", "rtl", "out", "json"])]
+    page: bool,
 }
 
 /// Runs the command.
 pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
+    if arguments.page {
+        return page();
+    }
     let Configuration::Card(project) = arguments.source.load_any()? else {
         return Err(GenError::input(
             "prove: this is a T-format receiver, and only EnDat channels have properties yet; give a card",
         ));
     };
-    let design = crate::design(&project)?;
-    let mut files = crate::design_artifacts(&project)?;
-    files.retain(crate::readers::is_core);
+    let mut subject = Subject::new(&project)?;
     if let Some(folder) = &arguments.rtl {
-        for file in &mut files {
+        for file in &mut subject.files {
             let path = folder.join(&file.path);
-            let bytes = read_regular(&path, FILE_BYTES_MAX).map_err(|e| {
-                GenError::io(
-                    "read",
-                    &path,
-                    &e,
-                    "give the folder that `emit` wrote for this configuration",
-                )
-            })?;
+            let remedy = "give the folder that `emit` wrote for this configuration";
+            let bytes = read_regular(&path, FILE_BYTES_MAX);
+            let bytes = bytes.map_err(|e| GenError::io("read", &path, &e, remedy))?;
             *file = Artifact::new(&file.path, String::from_utf8_lossy(&bytes));
         }
     }
-    let subject = Subject {
-        name: project.name.clone(),
-        design,
-        files,
-    };
-    let progress = |text: &str| {
-        // A progress line that cannot be written is no reason to stop.
-        let _ = writeln!(std::io::stderr(), "{text}");
-    };
     let report = prove::prove(&subject, arguments.out.as_deref(), &progress)?;
     let stdout = match arguments.json {
         true => to_json(&report)?,
@@ -81,4 +71,25 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
         messages: messages.collect(),
         exit_code: u8::from(!report.is_good()),
     })
+}
+
+/// The page of the presets.
+fn page() -> Result<Outcome, GenError> {
+    let mut reports = vec![];
+    for (name, _) in PRESETS {
+        let Configuration::Card(project) = load_any_preset(name)? else {
+            continue;
+        };
+        reports.push(prove::prove(&Subject::new(&project)?, None, &progress)?);
+    }
+    let is_good = reports.iter().all(Report::is_good);
+    Ok(Outcome {
+        exit_code: u8::from(!is_good),
+        ..Outcome::good(prove::page(&reports))
+    })
+}
+
+fn progress(text: &str) {
+    // A progress line that cannot be written is no reason to stop.
+    let _ = writeln!(std::io::stderr(), "{text}");
 }

@@ -9,12 +9,15 @@
 //! A channel's properties are proved together: each may lean on the others in the cycles before.
 
 mod harness;
+mod page;
 mod report;
 mod tools;
 
+pub use page::page;
 pub use report::{ChannelReport, Report, Row, Verdict};
 
 use crate::artifact::Artifact;
+use crate::config::Project;
 use crate::error::GenError;
 use crate::readers::is_core;
 use crate::scratch;
@@ -34,7 +37,7 @@ const INDUCTION_CYCLES: usize = 4;
 const ANYWHERE_CYCLES: usize = 3;
 
 /// How far a counterexample is looked for where the induction finds none that begins at the start values.
-const SEARCH_CYCLES: usize = 40;
+const SEARCH_CYCLES: usize = 12;
 
 /// What is proved.
 pub struct Subject {
@@ -42,8 +45,21 @@ pub struct Subject {
     pub name: String,
     /// It.
     pub design: Design,
-    /// Its Verilog.
+    /// Its Verilog, and nothing else.
     pub files: Vec<Artifact>,
+}
+
+impl Subject {
+    /// A card as it is emitted.
+    pub fn new(project: &Project) -> Result<Self, GenError> {
+        let mut files = crate::design_artifacts(project)?;
+        files.retain(is_core);
+        Ok(Self {
+            name: project.name.clone(),
+            design: crate::design(project)?,
+            files,
+        })
+    }
 }
 
 /// Properties of a block.
@@ -100,8 +116,7 @@ fn prove_channel(
         })
         .collect();
     let folder = scratch::folder()?;
-    let core = subject.files.iter().filter(|f| is_core(f));
-    let mut files: Vec<Artifact> = core.cloned().collect();
+    let mut files = subject.files.clone();
     files.push(harness::artifact(module, design.has_initial_values));
     crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
     let mut report = ChannelReport {

@@ -37,9 +37,10 @@ pub(super) struct Answer {
 pub(super) fn versions() -> Result<String, GenError> {
     let first = |program: &str| -> Result<String, GenError> {
         let (_, text) = run(program, Path::new("."), &["--version"])?;
-        Ok(text.lines().next().unwrap_or("").trim().to_owned())
+        let line = text.lines().next().unwrap_or("");
+        Ok(line.split(" (").next().unwrap_or("").trim().to_owned())
     };
-    Ok(format!("{}; {}", first(YOSYS)?, first(SOLVER_PROGRAM)?))
+    Ok(format!("{}, {}", first(YOSYS)?, first(SOLVER_PROGRAM)?))
 }
 
 /// Makes the model; the name of its file.

@@ -80,7 +80,11 @@ always @* begin
             bits_counted_lemma_end: assert (f_count <= f_covered + 7'd4);
         end else if (!f_whole) begin
             bits_counted_lemma_before: assert ((field == FIELD_SKIP) | (field == FIELD_START) | (field == FIELD_DONE));
-            if (field != FIELD_DONE) bits_counted_lemma_clear: assert ((f_count == 7'd0) & (f_crc == 5'd31) & (~serial_crc == 5'd31) & f2_bit & f_f2);
+            if (field != FIELD_DONE) begin
+                bits_counted_lemma_clear: assert (f_count == 7'd0);
+                crc_as_received_lemma_clear: assert ((f_crc == 5'd31) & (~serial_crc == 5'd31));
+                error_bits_as_received_lemma_clear: assert (f2_bit & f_f2);
+            end
         end
         if (field == FIELD_START) bits_counted_lemma_start: assert (left == f_covered + 7'd6);
         if (field == FIELD_SKIP) bits_counted_lemma_skip: assert ((left == f_covered + 7'd21 - {3'd0, covered}) & (covered <= 4'd14) & (skip_rounds == 2'd0) & !shift_now & !align & !take_crc & !last_payload);

@@ -173,6 +173,7 @@ fn design(seed: u64) -> Design {
         name: "random".into(),
         type_name: "Random".into(),
         docs: vec![],
+        properties: String::new(),
         nets: vec![],
         ports: vec![],
         parameters: vec![],

