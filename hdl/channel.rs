@@ -29,7 +29,6 @@ use crate::reg::Reg;
 use crate::several::each;
 use crate::snapshot::Snapshot;
 use crate::sure_bit::SureBit;
-
 use crate::transaction::Transaction;
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;

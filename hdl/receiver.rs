@@ -13,7 +13,6 @@
 //! The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
 //! with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC looks at the word where it
 //! then stands, and for as long as it stands there: what is published is what was checked.
-//!
 //! `left` counts cells down to the end of the frame, `to_send` the clock pulses that they need: the difference is under way. The
 //! clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
 //! shortest answer while its start bit may still be on the cable. `under_way` counts the difference once more: at the end of the

@@ -11,7 +11,6 @@
 //!
 //! A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The frame
 //! at the full clock follows by itself, and its result is the trigger's.
-//!
 //! A frame is begun by a trigger, or by `own`, for a request that needs the line for itself. What becomes of the first is
 //! published; what becomes of either is told with `over`.
 //!

@@ -147,25 +147,47 @@ fn a_user_who_changes_a_line_sees_a_proof_fail() {
         told.contains("driver_window") && !told.contains("NOT PROVED"),
         "{told}"
     );
-    let file = format!("{rtl}/bare_command_sender.v");
-    let text = std::fs::read_to_string(&file).unwrap();
-    std::fs::write(&file, text.replace("oe = |cell_now", "oe = |cells_left")).unwrap();
     let traces = dir.path("traces");
     let arguments = [
         "prove", "--config", &config, "--rtl", &rtl, "--out", &traces, "--json",
     ];
-    let outcome = run(&arguments);
-    assert_eq!(outcome.exit_code, 1);
-    let message = outcome.messages.join("\n");
-    assert!(
-        message.starts_with("bare_channel: driver_window = VIOLATED in cycle "),
-        "{message}"
-    );
-    let report: serde_json::Value = serde_json::from_str(&outcome.stdout).unwrap();
-    let rows = report["channels"][0]["rows"].as_array().unwrap();
-    let row = rows.iter().find(|r| r["name"] == "driver_window").unwrap();
-    let trace = std::fs::read_to_string(row["trace"].as_str().unwrap()).unwrap();
-    assert!(trace.contains("$var"), "a waveform");
+    // A long way from the start values, and a short one.
+    let broken = [
+        (
+            "command_sender",
+            "oe = |cell_now",
+            "oe = |cells_left",
+            "driver_window = NOT PROVED: ",
+        ),
+        (
+            "channel",
+            "clk_pin <= 1'b1",
+            "clk_pin <= 1'b0",
+            "safe_after_reset = VIOLATED in cycle ",
+        ),
+    ];
+    for (block, from, to, said) in broken {
+        let file = format!("{rtl}/bare_{block}.v");
+        let text = std::fs::read_to_string(&file).unwrap();
+        std::fs::write(&file, text.replace(from, to)).unwrap();
+        let outcome = run(&arguments);
+        std::fs::write(&file, text).unwrap();
+        assert_eq!(outcome.exit_code, 1);
+        let message = outcome.messages.join("\n");
+        assert!(
+            message.starts_with(&format!("bare_channel: {said}")),
+            "{message}"
+        );
+        let report: serde_json::Value = serde_json::from_str(&outcome.stdout).unwrap();
+        let rows = report["channels"][0]["rows"].as_array().unwrap();
+        let row = rows
+            .iter()
+            .find(|r| said.starts_with(r["name"].as_str().unwrap()))
+            .unwrap();
+        let trace = std::fs::read_to_string(row["trace"].as_str().unwrap()).unwrap();
+        assert!(trace.contains("$var"), "a waveform");
+    }
+    let file = format!("{rtl}/bare_channel.v");
     std::fs::write(&file, "module nothing; endmodule\n").unwrap();
     let told = bad(&["prove", "--config", &config, "--rtl", &rtl], 2);
     assert!(told.contains("cannot read the Verilog"), "{told}");
