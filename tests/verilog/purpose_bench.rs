@@ -145,7 +145,9 @@ fn a_card_without_initial_values_comes_to_life_by_its_reset() {
             .iter()
             .filter(|f| f.path.ends_with(".v") && !f.path.contains("_tb"))
         {
-            assert!(!file.text.contains("initial "), "{}", file.path);
+            // Below the FORMAL line stand the properties, which no hardware keeps.
+            let hardware = file.text.split("`ifdef FORMAL").next().unwrap();
+            assert!(!hardware.contains("initial "), "{}", file.path);
         }
         card
     };
