@@ -307,6 +307,7 @@ pub struct Transaction {
     proof: Signal<Local, Bit>,
     plugged: Signal<Local, Bit>,
     vanished: Signal<Local, Bit>,
+    afresh: Signal<Local, Bit>,
 }
 
 impl Transaction {
@@ -426,16 +427,18 @@ impl Logic for Transaction {
             }
             Phase::Ready => {
                 self.timer_clear.next = true;
-                self.idle.next = !(self.hold_off.val() & self.has_all.val());
+                // A trigger just behind one that was refused is lost: the result that is being told would be taken for its own.
+                self.idle.next =
+                    !(self.hold_off.val() & self.has_all.val()) & !self.verdict.is_telling.val();
                 if self.level.val() {
                     self.phase.d.next = Phase::NotReady;
                     self.plugged.next = true;
-                    if self.triggered.val() | self.owed.val() {
+                    if (self.triggered.val() | self.owed.val()) & !self.verdict.is_telling.val() {
                         self.found.next = self.not_low.val();
                         self.give_up.next = true;
                     }
                 } else {
-                    if self.wanted.val() {
+                    if self.wanted.val() & !self.verdict.is_telling.val() {
                         if self.is_known.val() {
                             self.accept.next = true;
                             self.phase.d.next = Phase::Frame;
@@ -596,7 +599,6 @@ impl Logic for Transaction {
                 if self.sample.val() & !self.tail_sampled.q.val() & !self.all_used.val() {
                     self.found.next = self.upset.val();
                     self.give_up.next = true;
-                    self.proof.next = false;
                 }
                 // The encoder still sends, or has stopped early: its frame has another length than ours.
                 if self.sample.val() & !self.tail_sampled.q.val() & !self.level.val() {
@@ -641,6 +643,11 @@ impl Logic for Transaction {
             self.found.next = self.found.val() | self.too_long.val();
             self.give_up.next = true;
         }
+        // What is given up has that as its one result.
+        if self.give_up.val() | self.verdict.gave_up.val() {
+            self.proof.next = false;
+            self.announce.next = false;
+        }
         // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
         self.leave.next = self.going.val()
             & self.gap_good.val()
@@ -651,7 +658,9 @@ impl Logic for Transaction {
         if self.leave.val() {
             self.normal_end.next = true;
         }
-        if (self.proof.val() & !self.going.val()) | self.announce.val() {
+        if (self.proof.val() & self.verdict.is_pending.val() & !self.going.val())
+            | self.announce.val()
+        {
             self.answered.d.next = true;
         }
         if self.announce.val() {
@@ -754,11 +763,12 @@ impl Logic for Transaction {
         self.lost.next = self.trigger.val()
             & !self.going.val()
             & ((!self.accept.val() & !self.idle.val())
-                | (self.accept.val() & (self.own.val() | self.once_more.q.val())));
+                | (self.accept.val() & self.own.val())
+                | self.owing.q.val());
         self.verdict.lost.next = self.lost.val();
         self.known.next =
             self.is_calibrated.q.val() | (self.has_alignment.val() & self.is_fixed.val());
-        if self.verdict.publish.val() {
+        if self.verdict.publish.val() | self.refuse.val() {
             self.owing.d.next = false;
         }
         // What else becomes of that frame is the trigger's result, not something that comes behind it.
@@ -812,19 +822,11 @@ impl Logic for Transaction {
             self.high_at_tick.d.next = self.level.val();
         }
         // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
-        if self.calibrate.val()
-            | self.plugged.val()
-            | self.delay_upset.val()
-            | (self.has_alignment.val() & self.is_fixed.val())
-        {
+        self.afresh.next = self.calibrate.val() | self.plugged.val() | self.delay_upset.val();
+        if self.afresh.val() | (self.has_alignment.val() & self.is_fixed.val()) {
             self.is_calibrated.d.next = false;
         }
-        if self.calibrate.val()
-            | self.plugged.val()
-            | self.delay_upset.val()
-            | self.verdict.gave_up.val()
-            | self.verdict.is_doubtful.val()
-        {
+        if self.afresh.val() | self.verdict.gave_up.val() | self.verdict.is_doubtful.val() {
             self.passes.d.next = 0.into();
         }
         self.run_now.d.next = self.running.val();

@@ -1,6 +1,7 @@
 // starts_at_rest: A frame starts only when the line was ready: idle, and DATA LOW.
 // low_for_tr: The line is ready only after DATA was LOW for tR.
 // abort_pause: After an aborted frame CLOCK stays quiet for 30 ms, less three microseconds, before DATA is looked at again.
+// one_result_per_trigger: Every trigger has exactly one result, or is told as lost; nothing else has a result.
 reg f_past_valid; initial f_past_valid = 1'b0;
 reg [15:0] f_low_cycles; initial f_low_cycles = 16'd0;
 reg [15:0] f_quiet_us; initial f_quiet_us = 16'd0;
@@ -10,7 +11,29 @@ always @(posedge clock) begin
     f_low_cycles <= (level | reset) ? 16'd0 : (&f_low_cycles) ? f_low_cycles : f_low_cycles + 16'd1;
     f_quiet_us <= (!f_quiet | abort | reset) ? 16'd0 : (tick_us & !(&f_quiet_us)) ? f_quiet_us + 16'd1 : f_quiet_us;
 end
+reg f_owed; initial f_owed = 1'b0;
+reg f_lost; initial f_lost = 1'b0;
+reg f_tells; initial f_tells = 1'b0;
+wire f_taken = trigger & !lost;
+wire f_in_frame = (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_TAIL) | (phase == PHASE_RECOVERY) | (phase == PHASE_PARK);
+always @(posedge clock) begin
+    f_lost <= lost & !reset;
+    f_tells <= !reset & (refuse | announce | (give_up & !abort & !answered & !found_late));
+    f_owed <= !reset & (f_taken | (f_owed & !publish));
+end
 `ifndef FORMAL_ANY_STATE
+// requests have frames of their own, and a clock that goes on has results without triggers
+always @* if (!HAS_ALL & !HAS_CONTINUOUS) begin
+    one_result_per_trigger: assert (!f_taken | !f_owed | publish);
+    one_result_per_trigger_asked: assert (!publish | f_owed);
+    one_result_per_trigger_lost: assert (displaced == f_lost);
+    one_result_per_trigger_at_rest: assert ((phase != PHASE_READY) | !f_owed | owed | f_tells | publish | give_up);
+    one_result_per_trigger_lemma_rest: assert (f_in_frame | !(under_way | answered));
+    one_result_per_trigger_lemma_frame: assert (!f_in_frame | owing | answered);
+    one_result_per_trigger_lemma_once: assert (!answered | !verdict_is_pending | abort);
+    one_result_per_trigger_lemma_where: assert (!answered | abort | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
+    one_result_per_trigger_lemma_open: assert (f_owed == (owing | f_tells | publish));
+end
 always @(posedge clock) if (f_past_valid & !$past(reset)) begin
     starts_at_rest: assert (!start_now | (($past(phase) == PHASE_READY) & !$past(level)));
 end

@@ -67,6 +67,8 @@ pub struct Verdict {
     pub recovery_min_cycles: Signal<In, Bits<13>>,
     /// Strobe: `answer_taken`, a cycle later.
     pub taken: Signal<Out, Bit>,
+    /// An answer has been taken, and not been published yet.
+    pub is_pending: Signal<Out, Bit>,
     /// With `taken`: the CRC is right.
     pub is_received: Signal<Out, Bit>,
     /// With `taken`: the CRC is wrong, and was so in the frame before.
@@ -135,7 +137,6 @@ pub struct Verdict {
     crc_bad: Signal<Local, Bit>,
     bad_now: Signal<Local, Bit>,
     proven: Signal<Local, Bit>,
-    is_pending: Signal<Local, Bit>,
     upset: Signal<Local, Bit>,
     measured: Signal<Local, Bit>,
     recovery_min: Signal<Local, Bits<13>>,
