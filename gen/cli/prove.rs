@@ -2,9 +2,9 @@
 
 use super::{to_json, Outcome, SourceArgs};
 use crate::artifact::{read_regular, Artifact};
-use crate::config::{load_any_preset, Configuration, PRESETS};
+use crate::config::{load_any_preset, Configuration, Project, PRESETS};
 use crate::error::GenError;
-use crate::prove::{self, Report, Subject};
+use crate::prove::{self, frames::Times, Report, Subject};
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
@@ -25,6 +25,9 @@ pub struct ProveArgs {
     /// Folder for counterexamples (VCD)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Prove whole frames, too: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
+    #[arg(long, value_name = "DELAY_CYCLES")]
+    frames: Option<u32>,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -53,6 +56,9 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
             *file = Artifact::new(&file.path, String::from_utf8_lossy(&bytes));
         }
     }
+    if let Some(delay_cycles) = arguments.frames {
+        return frames(arguments, &subject, &project, delay_cycles);
+    }
     let report = prove::prove(&subject, arguments.out.as_deref(), &progress)?;
     let stdout = match arguments.json {
         true => to_json(&report)?,
@@ -70,6 +76,30 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
         stdout,
         messages: messages.collect(),
         exit_code: u8::from(!report.is_good()),
+    })
+}
+
+/// A frame of the first channel.
+fn frames(
+    arguments: &ProveArgs,
+    subject: &Subject,
+    project: &Project,
+    delay_cycles: u32,
+) -> Result<Outcome, GenError> {
+    let us = (project.card.system_hz / 1_000_000) as u32;
+    let times = Times {
+        delay_cycles,
+        tcal_cycles: 5 * us,
+        tm_cycles: 11 * us,
+    };
+    let report = prove::frames::prove(subject, project, times, &progress)?;
+    let stdout = match arguments.json {
+        true => to_json(&report)?,
+        false => report.to_string(),
+    };
+    Ok(Outcome {
+        exit_code: u8::from(report.broken.is_some()),
+        ..Outcome::good(stdout)
     })
 }
 

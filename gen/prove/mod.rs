@@ -8,6 +8,7 @@
 //!
 //! A channel's properties are proved together: each may lean on the others in the cycles before.
 
+pub mod frames;
 mod harness;
 mod page;
 mod report;

@@ -64,11 +64,15 @@ pub(super) fn model(folder: &Path, files: &[Artifact], begins: Begins) -> Result
     if is_good {
         return Ok(file.into());
     }
+    Err(not_read(&text))
+}
+
+fn not_read(text: &str) -> GenError {
     let at = text.find("ERROR").unwrap_or(0);
-    Err(GenError::input(format!(
+    GenError::input(format!(
         "{YOSYS}: cannot read the Verilog: {}; is it as it was emitted, with its properties?",
         crate::error::shorten(text[at..].trim())
-    )))
+    ))
 }
 
 /// Asks about a model.
@@ -118,4 +122,50 @@ fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<(bool, String
         output.status.success(),
         String::from_utf8_lossy(&text).into_owned(),
     ))
+}
+
+/// Who looks into whole frames: it folds what is known as it goes, which solvers of bit vectors do not.
+const ABC: &str = "yosys-abc";
+const INSTALL_ABC: &str = "install it: `apt install yosys`, or any yosys from source";
+
+/// Makes an and-inverter graph with a script for yosys, and looks for the first of its outputs that can be HIGH within so many cycles.
+pub(super) fn first_violated(
+    folder: &Path,
+    script: &str,
+    cycles: u64,
+) -> Result<Option<String>, GenError> {
+    let script = format!("{script}write_aiger -zinit -symbols -map frame.map frame.aig\n");
+    let remedy = crate::scratch::REMEDY;
+    crate::artifact::write(folder, &[Artifact::new("frame.ys", script)], remedy)?;
+    let (is_good, text) = run(YOSYS, folder, &["-q", "frame.ys"])?;
+    if !is_good {
+        return Err(not_read(&text));
+    }
+    let command = format!("read_aiger frame.aig; fold; strash; bmc3 -F {cycles}");
+    let mut abc = Command::new(ABC);
+    let abc = abc.current_dir(folder).args(["-c", &command]);
+    let output = (abc.stdin(Stdio::null()).output())
+        .map_err(|e| GenError::input(format!("{ABC}: cannot be started: {e}; {INSTALL_ABC}")))?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    if let Some((_, found)) = text.split_once("Output ") {
+        let index = found.split(' ').next().unwrap_or("");
+        let path = folder.join("frame.map");
+        let map =
+            std::fs::read_to_string(&path).map_err(|e| GenError::io("read", &path, &e, remedy))?;
+        let name = map.lines().find_map(|l| {
+            let words: Vec<&str> = l.split(' ').collect();
+            match words[..] {
+                ["output", i, _, name] if i == index => Some(name.to_owned()),
+                _ => None,
+            }
+        });
+        return Ok(Some(name.unwrap_or_else(|| index.into())));
+    }
+    match text.contains("No output asserted in") {
+        true => Ok(None),
+        false => Err(GenError::input(format!(
+            "{ABC}: gave no answer: {}; {INSTALL_ABC}",
+            crate::error::shorten(text.trim())
+        ))),
+    }
 }
