@@ -4,7 +4,8 @@ use super::{to_json, Outcome, SourceArgs};
 use crate::artifact::{read_regular, Artifact};
 use crate::config::{load_any_preset, Configuration, Project, PRESETS};
 use crate::error::GenError;
-use crate::prove::{self, frames::Times, Report, Subject};
+use crate::prove::frames::{prove_cases, Times, PHASES_MAX};
+use crate::prove::{self, Report, Subject};
 use clap::Args;
 use std::io::Write;
 use std::path::PathBuf;
@@ -92,7 +93,7 @@ fn frames(
         tcal_cycles: 5 * us,
         tm_cycles: 11 * us,
     };
-    let report = prove::frames::prove(subject, project, times, &progress)?;
+    let report = prove::frames::prove(subject, project, times, PHASES_MAX, &progress)?;
     let stdout = match arguments.json {
         true => to_json(&report)?,
         false => report.to_string(),
@@ -112,10 +113,11 @@ fn page() -> Result<Outcome, GenError> {
         };
         reports.push(prove::prove(&Subject::new(&project)?, None, &progress)?);
     }
-    let is_good = reports.iter().all(Report::is_good);
+    let frames = prove_cases(&progress)?;
+    let is_good = reports.iter().all(Report::is_good) && frames.iter().all(|f| f.broken.is_none());
     Ok(Outcome {
         exit_code: u8::from(!is_good),
-        ..Outcome::good(prove::page(&reports))
+        ..Outcome::good(prove::page(&reports, &frames))
     })
 }
 

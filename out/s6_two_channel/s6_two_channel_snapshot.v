@@ -368,6 +368,8 @@ module s6_two_channel_snapshot (
             if ($past(take_back & !take_good)) restored: assert ((held == $past(earlier)) & (stamp == $past(earlier_stamp)) & !is_fresh);
         end
     end
+    // at rest the stored position fits its parity; the proof of a frame begins and ends there
+    wire f_whole = loaded | (parity_now == parity);
     always @* restored_same: assert (!f_past_valid | !unconfirmed | ((f_last == earlier) & (f_last_stamp == earlier_stamp) & (f_last_valid == earlier_valid)));
 `endif
 `endif

@@ -63,4 +63,9 @@ pub const MUTATIONS: &[(Mutation, &str)] = &[
     (mutation("clock low in reset", "channel", "clk_pin <= 1'b1;", "clk_pin <= 1'b0;"), "safe_after_reset"),
     (mutation("driver on with the clock", "channel", "oe_pin_next = sender_oe;", "oe_pin_next = sender_oe | transaction_run;"), "driver_as_sent"),
     (mutation("rest in a frame", "transaction", "is_at_rest = ((phase == PHASE_NOT_READY)", "is_at_rest = ((phase == PHASE_FRAME) | (phase == PHASE_NOT_READY)"), "frame_is_driven"),
+    (mutation("a trigger behind a refusal taken", "transaction", "idle = !(hold_off & HAS_ALL) & !verdict_is_telling;", "idle = !(hold_off & HAS_ALL);"), "one_result_per_trigger"),
+    (mutation("a result for what was refused, and one more", "transaction", "if (publish | refuse) begin", "if (publish) begin"), "one_result_per_trigger"),
+    (mutation("given up, and good", "transaction", "            proof = 1'b0;\n            announce = 1'b0;", "            announce = 1'b0;"), "one_result_per_trigger"),
+    (mutation("lost and not told", "verdict", "lost_now <= lost;", "lost_now <= 1'b0;"), "one_result_per_trigger"),
+    (mutation("a trigger that meets a frame forgotten", "transaction", "assign lost = trigger & ", "assign lost = trigger & idle & "), "one_result_per_trigger"),
 ];

@@ -10,8 +10,11 @@
 //! controls, and anything for each that holds data; [`rest`] finds it by running the channel, the proofs show that it is one.
 //! The channel is as emitted, with the settings of its configuration; encoder and cable are in `encoder.sv`.
 
+mod cases;
 mod rest;
 mod text;
+
+pub use cases::{prove_case, prove_cases};
 
 use super::{below, tools, Subject, Verdict, PROVED};
 use crate::artifact::Artifact;
@@ -29,7 +32,7 @@ use text::{Run, CHECKS, REST};
 /// Longer than a frame takes here and with the encoder model, in cycles.
 const SLACK_CYCLES: u64 = 40;
 /// Most phases of the microsecond that are proved one by one.
-const PHASES_MAX: u64 = 8;
+pub const PHASES_MAX: u64 = 8;
 /// How often a register that is the same by chance may turn out to hold data.
 const REPAIRS_MAX: usize = 30;
 
@@ -119,11 +122,12 @@ impl fmt::Display for FrameReport {
     }
 }
 
-/// Proves the frames of a card's first EnDat channel.
+/// Proves the frames of a card's first EnDat channel, in so many phases of the microsecond at most.
 pub fn prove(
     subject: &Subject,
     project: &Project,
     times: Times,
+    phases: u64,
     progress: &dyn Fn(&str),
 ) -> Result<FrameReport, GenError> {
     let started = Instant::now();
@@ -185,7 +189,7 @@ pub fn prove(
         rest: &rest,
     };
     let all = case.tick_cycles();
-    let phases = all.min(PHASES_MAX);
+    let phases = all.min(phases);
     let of_phase = |phase| [Run::Wait, Run::Frame].map(|run| (phase * all / phases, run));
     let runs: Vec<(u64, Run)> = (0..phases).flat_map(of_phase).collect();
     let mut broken = None;
