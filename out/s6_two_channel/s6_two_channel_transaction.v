@@ -223,6 +223,7 @@ module s6_two_channel_transaction (
     reg          proof;
     reg          plugged;
     wire         vanished;
+    wire         afresh;
     wire         health_under_way;
     wire         health_is_ready;
     wire         health_expired;
@@ -233,6 +234,7 @@ module s6_two_channel_transaction (
     wire         verdict_is_late;
     wire         verdict_is_going;
     wire         verdict_taken;
+    wire         verdict_is_pending;
     wire         verdict_is_received;
     wire         verdict_is_doubtful;
     wire         verdict_is_bad;
@@ -338,6 +340,7 @@ module s6_two_channel_transaction (
         .recovery_cycles(recovery),
         .recovery_min_cycles(recovery_min_cycles),
         .taken(verdict_taken),
+        .is_pending(verdict_is_pending),
         .is_received(verdict_is_received),
         .is_doubtful(verdict_is_doubtful),
         .is_bad(verdict_is_bad),
@@ -405,9 +408,7 @@ module s6_two_channel_transaction (
         answered_next = answered;
         late_next = late;
         under_way_next = under_way;
-        is_calibrated_next = is_calibrated;
         timer_next = timer;
-        passes_next = passes;
         once_more_next = once_more;
         measuring_next = measuring;
         proof = 1'b0;
@@ -454,16 +455,16 @@ module s6_two_channel_transaction (
             end
             PHASE_READY: begin
                 timer_clear = 1'b1;
-                idle = !(hold_off & HAS_ALL);
+                idle = !(hold_off & HAS_ALL) & !verdict_is_telling;
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
                     plugged = 1'b1;
-                    if (triggered | owed) begin
+                    if ((triggered | owed) & !verdict_is_telling) begin
                         found = not_low;
                         give_up = 1'b1;
                     end
                 end else begin
-                    if (wanted) begin
+                    if (wanted & !verdict_is_telling) begin
                         if (is_known) begin
                             accept = 1'b1;
                             phase_next = PHASE_FRAME;
@@ -607,7 +608,6 @@ module s6_two_channel_transaction (
                 if (sample & !tail_sampled & !all_used) begin
                     found = UPSET;
                     give_up = 1'b1;
-                    proof = 1'b0;
                 end
                 if (sample & !tail_sampled & !level) begin
                     found = TAIL_LOW;
@@ -651,10 +651,14 @@ module s6_two_channel_transaction (
             found = found | TOO_LONG;
             give_up = 1'b1;
         end
+        if (give_up | abort) begin
+            proof = 1'b0;
+            announce = 1'b0;
+        end
         if (leave) begin
             normal_end = 1'b1;
         end
-        if ((proof & !going) | announce) begin
+        if ((proof & verdict_is_pending & !going) | announce) begin
             answered_next = 1'b1;
         end
         if (announce) begin
@@ -672,7 +676,6 @@ module s6_two_channel_transaction (
             idle = 1'b0;
             normal_end = 1'b0;
             answered_next = 1'b0;
-            is_calibrated_next = 1'b0;
             late_next = 1'b0;
             under_way_next = 1'b0;
         end
@@ -691,16 +694,6 @@ module s6_two_channel_transaction (
         if (last_cell) begin
             timer_next = 16'd2;
             cleared_next = 1'b1;
-        end
-        if (verdict_is_received & measuring & !(HAS_ALIGNMENT & is_fixed)) begin
-            is_calibrated_next = 1'b1;
-            if (HAS_ALIGNMENT & slow_now) begin
-                passes_next = passes + 2'd1;
-                is_calibrated_next = &passes;
-            end
-        end
-        if (verdict_is_doubtful & !going) begin
-            is_calibrated_next = 1'b0;
         end
         if (verdict_once_more) begin
             once_more_next = 1'b1;
@@ -729,12 +722,6 @@ module s6_two_channel_transaction (
             probing_next = 1'b0;
             settling_next = 1'b0;
         end
-        if (calibrate | plugged | delay_upset | (HAS_ALIGNMENT & is_fixed)) begin
-            is_calibrated_next = 1'b0;
-        end
-        if (calibrate | plugged | delay_upset | abort | verdict_is_doubtful) begin
-            passes_next = 2'd0;
-        end
         if (reset) begin
             phase_next = PHASE_ABORT;
         end
@@ -746,7 +733,7 @@ module s6_two_channel_transaction (
 
     always @* begin
         owing_next = owing;
-        if (publish) begin
+        if (publish | refuse) begin
             owing_next = 1'b0;
         end
         if (accept & !own) begin
@@ -765,12 +752,37 @@ module s6_two_channel_transaction (
         end
     end
     assign verdict_is_going = going;
-    assign lost = trigger & !going & ((!accept & !idle) | (accept & (own | once_more)));
+    assign lost = trigger & !going & ((!accept & !idle) | (accept & own) | owing);
 
     always @* begin
         high_at_tick_next = high_at_tick & level;
         if (tick_us) begin
             high_at_tick_next = level;
+        end
+    end
+    assign afresh = calibrate | plugged | delay_upset;
+
+    always @* begin
+        is_calibrated_next = is_calibrated;
+        passes_next = passes;
+        if (abort) begin
+            is_calibrated_next = 1'b0;
+        end
+        if (verdict_is_received & measuring & !(HAS_ALIGNMENT & is_fixed)) begin
+            is_calibrated_next = 1'b1;
+            if (HAS_ALIGNMENT & slow_now) begin
+                passes_next = passes + 2'd1;
+                is_calibrated_next = &passes;
+            end
+        end
+        if (verdict_is_doubtful & !going) begin
+            is_calibrated_next = 1'b0;
+        end
+        if (afresh | (HAS_ALIGNMENT & is_fixed)) begin
+            is_calibrated_next = 1'b0;
+        end
+        if (afresh | abort | verdict_is_doubtful) begin
+            passes_next = 2'd0;
         end
     end
     assign run = run_now;
@@ -894,6 +906,7 @@ module s6_two_channel_transaction (
     // starts_at_rest: A frame starts only when the line was ready: idle, and DATA LOW.
     // low_for_tr: The line is ready only after DATA was LOW for tR.
     // abort_pause: After an aborted frame CLOCK stays quiet for 30 ms, less three microseconds, before DATA is looked at again.
+    // one_result_per_trigger: Every trigger has exactly one result, or is told as lost; nothing else has a result.
     reg f_past_valid; initial f_past_valid = 1'b0;
     reg [15:0] f_low_cycles; initial f_low_cycles = 16'd0;
     reg [15:0] f_quiet_us; initial f_quiet_us = 16'd0;
@@ -903,7 +916,29 @@ module s6_two_channel_transaction (
         f_low_cycles <= (level | reset) ? 16'd0 : (&f_low_cycles) ? f_low_cycles : f_low_cycles + 16'd1;
         f_quiet_us <= (!f_quiet | abort | reset) ? 16'd0 : (tick_us & !(&f_quiet_us)) ? f_quiet_us + 16'd1 : f_quiet_us;
     end
+    reg f_owed; initial f_owed = 1'b0;
+    reg f_lost; initial f_lost = 1'b0;
+    reg f_tells; initial f_tells = 1'b0;
+    wire f_taken = trigger & !lost;
+    wire f_in_frame = (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_TAIL) | (phase == PHASE_RECOVERY) | (phase == PHASE_PARK);
+    always @(posedge clock) begin
+        f_lost <= lost & !reset;
+        f_tells <= !reset & (refuse | announce | (give_up & !abort & !answered & !found_late));
+        f_owed <= !reset & (f_taken | (f_owed & !publish));
+    end
 `ifndef FORMAL_ANY_STATE
+    // requests have frames of their own, and a clock that goes on has results without triggers
+    always @* if (!HAS_ALL & !HAS_CONTINUOUS) begin
+        one_result_per_trigger: assert (!f_taken | !f_owed | publish);
+        one_result_per_trigger_asked: assert (!publish | f_owed);
+        one_result_per_trigger_lost: assert (displaced == f_lost);
+        one_result_per_trigger_at_rest: assert ((phase != PHASE_READY) | !f_owed | owed | f_tells | publish | give_up);
+        one_result_per_trigger_lemma_rest: assert (f_in_frame | !(under_way | answered));
+        one_result_per_trigger_lemma_frame: assert (!f_in_frame | owing | answered);
+        one_result_per_trigger_lemma_once: assert (!answered | !verdict_is_pending | abort);
+        one_result_per_trigger_lemma_where: assert (!answered | abort | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
+        one_result_per_trigger_lemma_open: assert (f_owed == (owing | f_tells | publish));
+    end
     always @(posedge clock) if (f_past_valid & !$past(reset)) begin
         starts_at_rest: assert (!start_now | (($past(phase) == PHASE_READY) & !$past(level)));
     end

@@ -52,6 +52,8 @@ module s6_two_channel_verdict (
     input  wire  [12:0] recovery_min_cycles,
     // Strobe: answer_taken, a cycle later.
     output wire         taken,
+    // An answer has been taken, and not been published yet.
+    output wire         is_pending,
     // With taken: the CRC is right.
     output wire         is_received,
     // With taken: the CRC is wrong, and was so in the frame before.
@@ -99,7 +101,6 @@ module s6_two_channel_verdict (
     wire         crc_bad;
     wire         bad_now;
     wire         proven;
-    wire         is_pending;
     wire         upset;
     wire         measured;
     reg   [12:0] recovery_min;
