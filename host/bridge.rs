@@ -77,6 +77,16 @@ impl<T: Transport> Bridge<T> {
         self.decoder.forget();
     }
 
+    /// What came since then were answers without a marker, no damaged frames.
+    pub(crate) fn forgive(&mut self, damaged: u64) {
+        self.decoder.forgive(damaged);
+    }
+
+    /// Whether the card is taken to push sample sets.
+    pub(crate) fn pushes(&self) -> bool {
+        self.pushes
+    }
+
     /// Ends the pushing in order: the answer behind the last frame is the last one with a marker.
     pub fn end_push(&mut self) -> Result<(), HostError> {
         self.write(Place::at("card", "stream_control", 0).address(), &[0])?;
@@ -109,6 +119,11 @@ impl<T: Transport> Bridge<T> {
             self.pushed_byte(byte);
         }
         Ok(self.decoder.take())
+    }
+
+    /// Sample sets that came while an answer was waited for.
+    pub(crate) fn decoded(&mut self) -> Vec<SampleSet> {
+        self.decoder.take()
     }
 
     fn pushed_byte(&mut self, byte: u8) {

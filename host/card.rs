@@ -2,7 +2,7 @@
 
 use crate::bridge::Bridge;
 use crate::name_plate::NamePlate;
-use crate::registers::{Access, Place};
+use crate::registers::{Access, Block, Place};
 use crate::result::Reading;
 use crate::transport::Transport;
 use crate::HostError;
@@ -10,7 +10,12 @@ use endat_regs::{result_words, Part, ID, VERSION};
 use std::time::Duration;
 
 /// Words that say who a card is.
-const IDENTITY_WORDS: usize = 6;
+pub(crate) const IDENTITY_WORDS: usize = 6;
+/// Blocks that only channels of one protocol have.
+const OF_ENDAT: [&str; 2] = ["service", "line"];
+const OF_T_FORMAT: &str = "t_format";
+/// The field of a channel's clock period.
+const PERIOD: &str = "period_cycles";
 /// How long a request may take, unless told otherwise: milliseconds on a real card, many seconds on a simulated one.
 const PATIENCE: Duration = Duration::from_secs(20);
 
@@ -36,6 +41,42 @@ pub struct Identity {
 }
 
 impl Identity {
+    /// What the first words of a card's map say.
+    pub(crate) fn of(words: &[u32]) -> Result<Self, HostError> {
+        if words[0] != ID {
+            return Err(HostError::NoCard(format!(
+                "word 0 is 0x{:08X}, not 0x{ID:08X}: this is no EnDat card, or the baud rate is another (--baud)",
+                words[0]
+            )));
+        }
+        let [major, minor, ..] = words[1].to_be_bytes();
+        let version = [major, minor, words[1] as u8];
+        if major != VERSION[0] {
+            return Err(HostError::NoCard(format!(
+                "register map {major}.{minor}: this program knows {}.x; take the program that the card was emitted with",
+                VERSION[0]
+            )));
+        }
+        let [high, low, bits, channels] = words[2].to_be_bytes();
+        if channels == 0 || channels > 8 {
+            return Err(HostError::NoCard(format!(
+                "capabilities = 0x{:08X}: {channels} channels, outside 1..8; is the link disturbed?",
+                words[2]
+            )));
+        }
+        Ok(Self {
+            version,
+            channels: channels.into(),
+            max_position_bits: bits.into(),
+            features: u16::from_be_bytes([high, low]).into(),
+            system_hz: words[3],
+            configuration_hash: words[4],
+            // 0 on cards with an older map: absent words read 0.
+            t_format_channels: words[5] & 0xFF,
+            stream_informations: words[5] >> 8 & 1 == 1,
+        })
+    }
+
     /// The parts that it has.
     pub fn parts(&self) -> impl Iterator<Item = Part> {
         let identity = *self;
@@ -76,38 +117,7 @@ impl<T: Transport> Card<T> {
             bridge.calm()?;
             words = bridge.read(0, IDENTITY_WORDS)?;
         }
-        if words[0] != ID {
-            return Err(HostError::NoCard(format!(
-                "word 0 is 0x{:08X}, not 0x{ID:08X}: this is no EnDat card, or the baud rate is another (--baud)",
-                words[0]
-            )));
-        }
-        let [major, minor, ..] = words[1].to_be_bytes();
-        let version = [major, minor, words[1] as u8];
-        if major != VERSION[0] {
-            return Err(HostError::NoCard(format!(
-                "register map {major}.{minor}: this program knows {}.x; take the program that the card was emitted with",
-                VERSION[0]
-            )));
-        }
-        let [high, low, bits, channels] = words[2].to_be_bytes();
-        if channels == 0 || channels > 8 {
-            return Err(HostError::NoCard(format!(
-                "capabilities = 0x{:08X}: {channels} channels, outside 1..8; is the link disturbed?",
-                words[2]
-            )));
-        }
-        let identity = Identity {
-            version,
-            channels: channels.into(),
-            max_position_bits: bits.into(),
-            features: u16::from_be_bytes([high, low]).into(),
-            system_hz: words[3],
-            configuration_hash: words[4],
-            // 0 on cards with an older map: absent words read 0.
-            t_format_channels: words[5] & 0xFF,
-            stream_informations: words[5] >> 8 & 1 == 1,
-        };
+        let identity = Identity::of(&words)?;
         Ok(Self {
             bridge,
             identity,
@@ -137,8 +147,19 @@ impl<T: Transport> Card<T> {
 
     /// The place of that name on this card.
     pub fn place(&self, name: &str) -> Result<Place, HostError> {
-        let place = Place::named(name, self.identity.channels)?;
         let lacks = |part: &Part| !self.identity.has(*part);
+        let channels = 0..self.identity.channels;
+        let speaks = |t_format| {
+            channels
+                .clone()
+                .any(|n| self.identity.is_t_format(n) == t_format)
+        };
+        let has = |block: &Block| {
+            block.part.is_none_or(|part| !lacks(&part))
+                && (!OF_ENDAT.contains(&block.name) || speaks(false))
+                && (block.name != OF_T_FORMAT || speaks(true))
+        };
+        let place = Place::named_among(name, self.identity.channels, has)?;
         let word = place
             .register
             .part
@@ -157,8 +178,8 @@ impl<T: Transport> Card<T> {
                 part.switch()
             )));
         }
-        let of_t_format = ["service", "line"].contains(&place.block.name);
-        let of_endat = place.block.name == "t_format";
+        let of_t_format = OF_ENDAT.contains(&place.block.name);
+        let of_endat = place.block.name == OF_T_FORMAT;
         let is_t_format = self.identity.is_t_format(place.channel);
         if is_t_format && of_t_format || !is_t_format && of_endat {
             return Err(HostError::Name(format!(
@@ -180,13 +201,29 @@ impl<T: Transport> Card<T> {
     pub fn permits(&self, place: &Place, value: u32) -> Result<(), HostError> {
         let is_t_format = place.block.per_channel && self.identity.is_t_format(place.channel);
         let fields = place.register.fields.iter();
-        let meant = fields.filter(|f| place.field.is_none_or(|one| one == *f));
+        let meant = fields
+            .clone()
+            .filter(|f| place.field.is_none_or(|one| one == *f));
+        let known = fields.fold(0, |all, f| all | f.mask());
+        // A strobe that is no bit of the word would be told as done.
+        if place.register.access == Access::Strobe && place.field.is_none() && value & !known != 0 {
+            return Err(HostError::Name(format!(
+                "value = {value}: {place} has no such bits; give bits of 0x{known:X}"
+            )));
+        }
         for field in meant {
             let number = match place.field {
                 Some(_) => value,
                 None => field.of(value),
             };
-            if let Some(takes) = field.refusal(number, is_t_format) {
+            let takes = match field.refusal(number, is_t_format) {
+                // The map's limit is that of cards with DATA on both edges.
+                None if field.name == PERIOD && !is_t_format && number < self.period_min() => {
+                    Some(format!("{}..{}", self.period_min(), field.mask()))
+                }
+                takes => takes,
+            };
+            if let Some(takes) = takes {
                 return Err(HostError::Name(format!(
                     "value = {value}: {place} would have {} = {number}, which takes {takes}",
                     field.name
@@ -194,6 +231,14 @@ impl<T: Transport> Card<T> {
             }
         }
         Ok(())
+    }
+
+    /// Fewest system clocks in an EnDat clock period.
+    fn period_min(&self) -> u32 {
+        match self.identity.has(Part::DoubleEdge) {
+            true => 2,
+            false => 4,
+        }
     }
 
     /// Writes a word, or changes the field that is meant and leaves the others.

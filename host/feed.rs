@@ -7,6 +7,7 @@ use crate::registers::Place;
 use crate::result::Reading;
 use crate::stream::{Sample, SampleSet};
 use crate::transport::Transport;
+use crate::witness::Witness;
 use crate::HostError;
 use endat_regs::Part;
 use std::collections::VecDeque;
@@ -90,18 +91,39 @@ struct Clock {
     passed: Option<(u32, u64)>,
     trigger: u64,
     cycles: u64,
+    /// What the card's own count of triggers is more than `trigger`.
+    above: u32,
+    /// How many triggers there have been since the last row, as the card has counted them behind a pause.
+    ahead: Option<u32>,
 }
 
 impl Clock {
+    /// Takes the card's own count of triggers: over a pause the number of a trigger may wrap more than once.
+    fn counted(&mut self, triggers: u32) {
+        match self.last {
+            None => self.above = triggers,
+            Some(_) => {
+                let ahead = triggers.wrapping_sub(self.above.wrapping_add(self.trigger as u32));
+                self.ahead = Some(ahead).filter(|ahead| *ahead as i32 > 0);
+            }
+        }
+    }
+
     /// Takes a trigger's number and moment; gives how many were missing before it.
     fn step(&mut self, sequence: u16, timestamp: u32) -> u64 {
         let missing = match self.last {
             None => {
                 self.trigger = sequence.into();
+                let since = sequence.wrapping_sub(self.above as u16) as i16;
+                let counted = self.above.wrapping_add_signed(since.into());
+                self.above = counted.wrapping_sub(sequence.into());
                 0
             }
             Some((last_sequence, last_timestamp)) => {
-                let steps = u64::from(sequence.wrapping_sub(last_sequence));
+                let low = u64::from(sequence.wrapping_sub(last_sequence));
+                let ahead = u64::from(self.ahead.take().unwrap_or(0));
+                let wraps = (ahead + 0x8000).saturating_sub(low) >> 16;
+                let steps = low + (wraps << 16);
                 self.trigger += steps;
                 self.cycles = match self.passed {
                     None => self.cycles + u64::from(timestamp.wrapping_sub(last_timestamp)),
@@ -144,17 +166,27 @@ pub struct Feed {
     clock: Clock,
     lost_in_card: u64,
     heard: Instant,
+    /// What the card was when it was last asked; none behind an error.
+    witness: Option<Witness>,
+    /// How often the link had been lost by then.
+    reopened: u64,
     /// Sequence numbers of the last row, where results are read.
     sequences: Vec<u16>,
 }
 
-/// Nothing for so long: perhaps the card has begun anew, and does not stream any more.
+/// Nothing for so long: perhaps the card has begun anew, and does not stream any more. A card that is read one by one is asked as often.
 const SILENCE: Duration = Duration::from_secs(1);
+/// More results than this between two looks: perhaps the card has begun anew, and counts from the beginning.
+const LEAP: u16 = 256;
 
 impl Feed {
     /// Begins: from the stream if the card has one and `polls` does not forbid it.
     pub fn begin<T: Transport>(card: &mut Card<T>, polls: bool) -> Result<Self, HostError> {
         let streams = card.identity().has(Part::Stream) && !polls;
+        let witness = Witness::new(card)?;
+        let mut clock = Clock::default();
+        clock.counted(witness.triggers());
+        let reopened = card.bridge().transport().state().reopened;
         if streams {
             let at = |register| Place::at("card", register, 0);
             card.write(&at("stream_clear"), 1)?;
@@ -163,11 +195,40 @@ impl Feed {
         }
         Ok(Self {
             streams,
-            clock: Clock::default(),
+            clock,
             lost_in_card: 0,
             heard: Instant::now(),
+            witness: Some(witness),
+            reopened,
             sequences: Vec::new(),
         })
+    }
+
+    /// Asks who is there if there is a doubt, or nobody was asked for long; false if nobody answers. What comes behind an error is not
+    /// of the card that it was: this is the end.
+    fn is_the_same<T: Transport>(
+        &mut self,
+        card: &mut Card<T>,
+        doubt: bool,
+    ) -> Result<bool, HostError> {
+        let link = card.bridge().transport().state();
+        let is_back = link.reopened != self.reopened;
+        if !link.is_open || !doubt && !is_back && self.heard.elapsed() <= SILENCE {
+            return Ok(link.is_open);
+        }
+        let Some(mut witness) = self.witness.take() else {
+            return Ok(false);
+        };
+        let has_answered = witness.ask(card)?;
+        self.witness = Some(witness);
+        self.heard = Instant::now();
+        if has_answered {
+            self.reopened = link.reopened;
+            if self.streams {
+                self.clock.counted(witness.triggers());
+            }
+        }
+        Ok(has_answered)
     }
 
     /// Whether every trigger has a row, unless it is counted as missing for a fault.
@@ -182,7 +243,8 @@ impl Feed {
 
     /// Ends: the link is as it was before.
     pub fn end<T: Transport>(self, card: &mut Card<T>) -> Result<(), HostError> {
-        match self.streams {
+        // A card that is another one now is left as it is.
+        match self.streams && self.witness.is_some() {
             true => card.bridge().end_push(),
             false => Ok(()),
         }
@@ -261,6 +323,13 @@ impl Feed {
         Some(self.row(sequence.wrapping_add(most), moment, cells))
     }
 
+    /// How many results there were since the last row, of the channel with the most; 0 before the first row.
+    fn leap(&self, results: &[Reading]) -> u16 {
+        let both = results.iter().zip(&self.sequences);
+        let steps = both.map(|(r, last)| r.sequence.wrapping_sub(*last));
+        steps.max().unwrap_or_default()
+    }
+
     /// Takes what has come, after waiting at most `wait`.
     pub fn fill<T: Transport>(
         &mut self,
@@ -269,14 +338,13 @@ impl Feed {
         wait: Duration,
     ) -> Result<(), HostError> {
         if self.streams {
-            let sets = card.bridge().pushed(wait)?;
+            let mut sets = card.bridge().pushed(wait)?;
             if !sets.is_empty() {
                 self.heard = Instant::now();
-            } else if self.heard.elapsed() > SILENCE {
-                self.heard = Instant::now();
-                let control = Place::at("card", "stream_control", 0);
-                card.write(&control, COLLECT_AND_PUSH)?;
             }
+            self.is_the_same(card, false)?;
+            // Those that came before the answer.
+            sets.extend(card.bridge().decoded());
             for set in sets {
                 self.lost_in_card += u64::from(set.lost);
                 if let Some(channel) = set.run {
@@ -288,7 +356,17 @@ impl Feed {
             }
             return Ok(());
         }
+        if !self.is_the_same(card, false)? {
+            std::thread::sleep(wait);
+            // Opens it again when it is back.
+            card.bridge().pushed(Duration::ZERO)?;
+            return Ok(());
+        }
         let results = card.results()?.channels;
+        let is_leap = self.leap(&results) > LEAP;
+        if is_leap && !self.is_the_same(card, true)? {
+            return Ok(());
+        }
         if results.iter().any(|r| r.has_come()) {
             rows.extend(self.polled(&results));
         }
@@ -325,6 +403,8 @@ mod tests {
             clock: Clock::default(),
             lost_in_card: 0,
             heard: Instant::now(),
+            witness: None,
+            reopened: 0,
             sequences: Vec::new(),
         };
         let result = |sequence, timestamp| Reading {
@@ -363,6 +443,28 @@ mod tests {
         }
         assert_eq!((clock.step(9, 0xC), clock.trigger), (0, 9));
         assert_eq!(clock.cycles, 0x100 + (5 << 32) + 0xC);
+    }
+
+    /// Catches a pause of 100 000 triggers that is counted as one of 34 464.
+    #[test]
+    fn over_a_pause_the_cards_own_count_tells_how_many_were_missed() {
+        for begin in [0x0003_0005u32, 0x0002_FFF0, 0xFFFF_FFF0] {
+            let mut clock = Clock::default();
+            // Asked some triggers before the first row, and some before or after the first one behind the pause.
+            clock.counted(begin.wrapping_sub(20));
+            clock.step(begin as u16, 0);
+            for late in [0, 3, u32::MAX - 2] {
+                let before = clock.trigger;
+                let now = begin.wrapping_add(before as u32 - u32::from(begin as u16) + 100_000);
+                clock.counted(now.wrapping_add(late));
+                assert_eq!(clock.step(now as u16, 0), 99_999, "{begin:#x} {late}");
+                assert_eq!(clock.trigger, before + 100_000);
+            }
+            // Nothing was missed: the count is that of now.
+            clock.counted(begin.wrapping_add(300_000));
+            let next = begin.wrapping_add(300_001) as u16;
+            assert_eq!(clock.step(next, 0), 0);
+        }
     }
 
     #[test]

@@ -28,6 +28,7 @@ pub mod stream;
 pub mod t_format;
 pub mod transport;
 pub mod units;
+mod witness;
 
 pub use bridge::Bridge;
 pub use card::Card;

@@ -85,6 +85,15 @@ fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
 impl Place {
     /// The place called `name`, on a card with `channels` channels.
     pub fn named(name: &str, channels: usize) -> Result<Self, HostError> {
+        Self::named_among(name, channels, |_| true)
+    }
+
+    /// The same on a card that has these blocks; only they are proposed for a block that no card has.
+    pub(crate) fn named_among(
+        name: &str,
+        channels: usize,
+        has: impl Fn(&Block) -> bool,
+    ) -> Result<Self, HostError> {
         let fail = |what: String| {
             Err(HostError::Name(format!(
                 "register = {}: {what}{}",
@@ -104,13 +113,15 @@ impl Place {
         let whole = |b: &&Block| !b.per_channel && b.name == own_name;
         let one = |b: &&Block| b.per_channel && b.name == stem;
         let Some(block) = BLOCKS.iter().find(|b| whole(b) || one(b)) else {
-            let names = BLOCKS.iter().map(|b| match b.per_channel {
+            let there = BLOCKS.iter().filter(|b| has(b));
+            let names = there.map(|b| match b.per_channel {
                 true => format!("{}0", b.name),
                 false => b.name.to_owned(),
             });
             let names: Vec<String> = names.collect();
             return fail(format!(
-                "has no block of that name; write BLOCK.REGISTER or BLOCK.REGISTER.FIELD; blocks are {} (0 = channel)",
+                "there is no block {}; write BLOCK.REGISTER or BLOCK.REGISTER.FIELD; blocks are {} (0 = channel)",
+                shown(block_name),
                 names.join(", ")
             ));
         };

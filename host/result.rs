@@ -130,6 +130,36 @@ impl Reading {
 mod tests {
     use super::*;
 
+    /// The bytes of the page are those of a card: what stands beside the high bits of the position is not left out.
+    #[test]
+    fn the_examples_of_the_programming_page_are_results_that_fit() {
+        let page = include_str!("../docs/programming.md");
+        let word = |line: &str| {
+            let behind = line.rsplit("->").next().unwrap_or(line);
+            let bytes = behind.split_whitespace().take(4);
+            bytes.fold(0, |word, b| word << 8 | u32::from_str_radix(b, 16).unwrap())
+        };
+        let mut count = 0;
+        let mut lines = page.lines();
+        while let Some(line) = lines.next() {
+            if !line.starts_with("02 03 00 00 01 80") {
+                continue;
+            }
+            let mut words = [0; WORDS];
+            for (to, line) in words
+                .iter_mut()
+                .zip([Some(line), lines.next(), lines.next()])
+            {
+                *to = word(line.unwrap());
+            }
+            let reading = Reading::new(&words);
+            assert!(words[2] >> 24 == 29 && reading.fits, "{words:x?}");
+            assert_eq!(reading.position, 0x0123_5678);
+            count += 1;
+        }
+        assert_eq!(count, 2);
+    }
+
     #[test]
     fn the_example_of_the_host_link_page() {
         // F1 = 0, F2 = 1, 36 bits.

@@ -226,6 +226,11 @@ impl Decoder {
         self.counts.damaged
     }
 
+    /// Takes bytes back that were no frames: so many were damaged before them.
+    pub(crate) fn forgive(&mut self, damaged: u64) {
+        self.counts.damaged = damaged;
+    }
+
     /// Forgets the frame under way, sets that nobody took, and where the sequence stood: another stream begins.
     pub fn forget(&mut self) {
         self.frame.clear();

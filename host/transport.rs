@@ -12,6 +12,29 @@ pub trait Transport {
 
     /// Waits at most `wait` for bytes, and returns how many came: 0 = none. With a wait of zero, what is there already.
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
+
+    /// Whether it is there now, and how often it was lost before.
+    fn state(&self) -> LinkState {
+        LinkState::default()
+    }
+}
+
+/// What has become of a link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LinkState {
+    /// It is open.
+    pub is_open: bool,
+    /// How often it was lost and opened again.
+    pub reopened: u64,
+}
+
+impl Default for LinkState {
+    fn default() -> Self {
+        Self {
+            is_open: true,
+            reopened: 0,
+        }
+    }
 }
 
 impl<T: Transport + ?Sized> Transport for Box<T> {
@@ -21,6 +44,10 @@ impl<T: Transport + ?Sized> Transport for Box<T> {
 
     fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
         (**self).receive(buffer, wait)
+    }
+
+    fn state(&self) -> LinkState {
+        (**self).state()
     }
 }
 
@@ -106,7 +133,7 @@ fn open_once(address: &str, baud: u32) -> io::Result<Box<dyn Transport>> {
 }
 
 /// What helps where this could not be opened.
-fn remedy(address: &str) -> &'static str {
+fn remedy(address: &str, error: ErrorKind) -> &'static str {
     let has_port = |socket: &str| {
         let port = socket.rsplit_once(':').map(|(_, port)| port.parse::<u16>());
         matches!(port, Some(Ok(1..)))
@@ -114,6 +141,9 @@ fn remedy(address: &str) -> &'static str {
     match address.strip_prefix("tcp:") {
         Some(socket) if !has_port(socket) => {
             "write tcp:HOST:PORT, with a number from 1 to 65535 as PORT"
+        }
+        Some(_) if error == ErrorKind::ConnectionRefused => {
+            "nobody listens there: is `card`, or the serial server, running with that port?"
         }
         None if has_port(address) => "write tcp: before it, or give the card's serial port",
         _ => "give the card's serial port, or tcp:HOST:PORT",
@@ -134,8 +164,8 @@ impl Port {
         let open = open_once(address, baud).map_err(|error| HostError::Link {
             address: address.to_owned(),
             action: "cannot be opened",
+            remedy: remedy(address, error.kind()),
             error,
-            remedy: remedy(address),
         })?;
         Ok(Self {
             address: address.to_owned(),
@@ -195,14 +225,22 @@ impl Transport for Port {
             }
         }
     }
+
+    fn state(&self) -> LinkState {
+        LinkState {
+            is_open: self.open.is_some(),
+            reopened: self.reopened,
+        }
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::remedy;
+    use super::{remedy, ErrorKind};
 
     #[test]
     fn an_address_that_is_nearly_one_is_mended() {
+        let remedy = |address| remedy(address, ErrorKind::NotFound);
         let plain = remedy("/dev/ttyUSB0");
         for (address, told) in [
             ("127.0.0.1:5000", "write tcp: before it"),
@@ -215,5 +253,11 @@ mod tests {
         ] {
             assert!(remedy(address).starts_with(told), "{address}");
         }
+    }
+
+    #[test]
+    fn a_port_at_which_nobody_listens_is_told_as_that() {
+        let told = remedy("tcp:card:5000", ErrorKind::ConnectionRefused);
+        assert!(told.contains("is `card`"), "{told}");
     }
 }

@@ -380,6 +380,29 @@ fn all_mistakes_of_a_file_are_listed_in_the_order_of_its_lines() {
     );
 }
 
+/// Catches a width that is looked at only when the command beside it has been mended.
+#[test]
+fn beside_a_wrong_command_the_numbers_of_a_channel_are_looked_at() {
+    let text = PRESET
+        .replacen(
+            "command = \"111000\"",
+            "command = \"101010\"\nclock_hz = 1",
+            1,
+        )
+        .replacen("position_bits = 29", "position_bits = 0", 1);
+    let found = refuse(&text);
+    let mut keys: Vec<&str> = found
+        .iter()
+        .map(|d| d.text.split([' ', ':']).next().unwrap())
+        .collect();
+    keys.sort_unstable();
+    let wanted = ["clock_hz", "command", "position_bits"].map(|key| format!("channel[0].{key}"));
+    assert_eq!(keys, wanted, "{found:?}");
+    assert!(found
+        .iter()
+        .any(|d| d.text.contains("position_bits = 0: outside 1..48; ")));
+}
+
 #[test]
 fn the_messages_on_the_page_are_the_real_ones() {
     let page = include_str!("../docs/configuration.md");

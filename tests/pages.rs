@@ -1,5 +1,6 @@
 //! Pages: figures in the documentation are those of the program.
 
+use crate::tools;
 use endat_gen::area::{GUARDS, ICE40, XC6S};
 use endat_hdl::config::{needed_baud, read_bytes, CHANNELS};
 use endat_hdl::protocol::ModeCommand;
@@ -354,16 +355,17 @@ fn the_table_for_artinchip_s_drivers_tells_where_the_watchdog_differs() {
 }
 
 /// The first block behind these words, as it stands.
-fn block<'p>(page: &'p str, words: &str) -> &'p str {
+fn block<'p>(page: &'p str, words: &str, language: &str) -> &'p str {
     let behind = page.split_once(words).expect(words).1;
-    let block = behind.split_once("```toml\n").expect("a block").1;
+    let begin = format!("```{language}\n");
+    let block = behind.split_once(&begin).expect("a block").1;
     block.split_once("```").expect("its end").0
 }
 
 #[test]
 fn the_whole_card_on_the_page_on_buses_is_one() {
     let page = include_str!("../docs/bus.md");
-    let text = block(page, "A whole card behind a bus");
+    let text = block(page, "A whole card behind a bus", "toml");
     let project = endat_gen::config::parse("page.toml", text).unwrap();
     let files = endat_gen::emit(&project).unwrap();
     assert!(files.iter().any(|f| f.path.ends_with("my_card_tb.v")));
@@ -375,7 +377,50 @@ fn the_whole_card_on_the_page_on_buses_is_one() {
         assert_eq!(of(&CARD).or(of(&RESULT)), Some(address), "{name}");
         assert!(page.contains(&format!("0x{address:03X}")), "{name}");
     };
+    names("age_recovery", 0x185);
     names("trigger_now", 0x009);
     names("status", 0x180);
     names("position_low", 0x181);
+}
+
+/// Catches an example that does not compile, an encoder that does not answer the card of the page, and a latch in it where an input is tied.
+#[test]
+fn the_bench_of_one_s_own_on_the_page_on_buses_has_a_position() {
+    let test = "the_bench_of_one_s_own_on_the_page_on_buses_has_a_position";
+    if !tools::require("iverilog", test) {
+        return;
+    }
+    let page = include_str!("../docs/bus.md");
+    let text = block(page, "A whole card behind a bus", "toml");
+    let project = endat_gen::config::parse("page.toml", text).unwrap();
+    let folder = tools::folder("own_bench");
+    let card = folder.join("card");
+    endat_gen::artifact::write(&card, &endat_gen::emit(&project).unwrap(), "").unwrap();
+    let encoder = block(page, "For a bench of your own", "verilog");
+    let bench = include_str!("data/own_bench.v").replace("@ENCODER@", encoder);
+    std::fs::write(folder.join("own_bench.v"), bench).unwrap();
+    // From another folder than the card's, as the README of an emission says.
+    let files = ["own_bench.v", "card/my_card_tb.v", "card/my_card.v"];
+    let run = |tool: &str, words: &[&str]| tools::run(tool, &folder, words);
+    let compile = ["-g2005", "-y", "card", "-s", "own_bench", "-o", "own.vvp"];
+    let (good, said) = run("iverilog", &[&compile[..], &files].concat());
+    assert!(good, "{said}");
+    let (good, said) = run("vvp", &["-n", "own.vvp"]);
+    assert!(
+        good && said.contains("PASS") && !said.contains("FAIL"),
+        "{said}"
+    );
+    if tools::require("verilator", test) {
+        let lint = [
+            "--lint-only",
+            "--timing",
+            "-Wno-fatal",
+            "-y",
+            "card",
+            "--top-module",
+            "own_bench",
+        ];
+        let (good, said) = run("verilator", &[&lint[..], &files].concat());
+        assert!(good && !said.contains("LATCH"), "{said}");
+    }
 }

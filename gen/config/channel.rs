@@ -59,19 +59,28 @@ pub fn read_endat(
 ) -> Option<Channel> {
     let encoder = read_encoder(table);
     let own = trigger::read_own(table);
-    let limits = limits("position_bits", system_hz);
-    let position = table.required_integer("position_bits", "29", &limits);
+    let position_limits = limits("position_bits", system_hz);
+    let position = table.required_integer("position_bits", "29", &position_limits);
     let command = table.required_string("command", "\"111000\"");
     table.offer(ModeCommand::POSITION.map(|c| format!("{:06b}", c.code())));
     let command = command.and_then(|c| read_command(table, c));
     let mut keys = defaults.clone();
-    keys.extend(read_line_keys(table, system_hz));
+    let own_keys = read_line_keys(table, system_hz);
+    keys.extend(own_keys.clone());
     if !keys.contains_key("clock_hz") {
         let text = format!(
             "{}: is missing; add `clock_hz = 3_125_000` here or in [endat]",
             table.name("clock_hz")
         );
         table.complain_plain(text);
+    }
+    if command.is_none() && table.has("command") {
+        // No channel comes of it, so nobody else will look at these.
+        let read = own_keys.iter();
+        let read = read.filter_map(|(key, written)| Some((*key, &written.as_ref()?.1)));
+        for (key, at) in read.chain(position.iter().map(|at| ("position_bits", at))) {
+            table.check(key, at, &limits(key, system_hz));
+        }
     }
     let (encoder, position, command) = (encoder?, position?, command?);
     let mut values = BTreeMap::new();

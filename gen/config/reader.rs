@@ -239,6 +239,13 @@ impl<'s, 't> Table<'s, 't> {
         }
     }
 
+    /// Complains about a number outside its limits.
+    pub fn check(&self, key: &'static str, at: &At<u64>, limits: &Limits) {
+        if !limits.contains(at.value) {
+            self.complain(at.line, key, &at.value.to_string(), &limits.to_string());
+        }
+    }
+
     /// An integer that must be there.
     pub fn required_integer(
         &self,

@@ -20,9 +20,12 @@ impl Door {
     /// Listens at `HOST:PORT`.
     pub fn tcp(address: &str) -> Result<Self, GenError> {
         let fail = |e: std::io::Error| {
-            GenError::input(format!(
-                "--tcp = {address:?}: {e}; give HOST:PORT, for example 127.0.0.1:8888 (port 0 takes a free one)"
-            ))
+            let remedy = match e.kind() {
+                ErrorKind::AddrInUse => "give another port (port 0 takes a free one)",
+                ErrorKind::PermissionDenied => "give a port from 1024 on (port 0 takes a free one)",
+                _ => "give HOST:PORT, for example 127.0.0.1:8888 (port 0 takes a free one)",
+            };
+            GenError::input(format!("--tcp = {address:?}: {e}; {remedy}"))
         };
         let listener = TcpListener::bind(address).map_err(fail)?;
         listener.set_nonblocking(true).map_err(fail)?;

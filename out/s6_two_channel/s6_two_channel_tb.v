@@ -17,29 +17,29 @@
 // (100011, address, 16 more bits) it answers with the address and with it twice, once inverted. Where the clock may go on, the falling edge
 // behind the answer takes the next position, and DATA is LOW for one period at least before its start bit.
 module s6_two_channel_tb_encoder #(
-    parameter integer CHANNEL = 0,
-    parameter [5:0] COMMAND = 6'b111000,
-    parameter integer HAS_F2 = 1,
-    parameter integer HAS_PARAMETERS = 0,
-    parameter integer POSITION_BITS = 29,
-    parameter real TCAL_NS = 5000.0,
-    parameter real TM_NS = 15000.0
+    parameter integer CHANNEL = 0, // for its messages
+    parameter [5:0] COMMAND = 6'b111000, // the mode command it knows: 111000 or 000111
+    parameter integer HAS_F2 = 1, // 1: F2 stands behind F1, as in the answer to 111000; must be 0 with 000111
+    parameter integer HAS_PARAMETERS = 0, // 1: it knows 100011, too
+    parameter integer POSITION_BITS = 29, // 1 to 48
+    parameter real TCAL_NS = 5000.0, // calculation time: from the first falling edge, the start bit is at the next rising edge behind it
+    parameter real TM_NS = 15000.0 // recovery time: from the last rising edge until DATA falls
 ) (
     input wire clk, // as it arrives at the encoder
     input wire driver_oe, // the receiver's driver, as it arrives
     input wire driver_data,
     input wire [47:0] position, // taken at the first falling edge, as everything below
-    input wire f1,
-    input wire f2,
-    input wire spoil_crc,
-    input wire no_start,
-    input wire stay_high, // never falls after the frame
-    input wire goes_on, // the mode command is 000111, and the clock may go on behind the position
-    output reg oe,
-    output reg data,
+    input wire f1, // 1 = alarm
+    input wire f2, // the other way round: 0 = alarm, 1 = none; only with HAS_F2
+    input wire spoil_crc, // 1: the last bit of the CRC is wrong
+    input wire no_start, // 1: no start bit, and no answer
+    input wire stay_high, // 1: DATA does not fall after the frame, until this is 0 again
+    input wire goes_on, // 1: the mode command is 000111, and the clock may go on behind the position; else 0
+    output reg oe, // it drives DATA; between two frames, too
+    output reg data, // its level
     output reg [4:0] crc, // of the last answer, as sent
     output reg [31:0] frames, // whole frames, as the encoder sees them
-    output reg [31:0] errors
+    output reg [31:0] errors // what the receiver has done wrong; the first ten are told
 );
     localparam [1:0] IDLE = 2'd0, LEAD = 2'd1, SEND = 2'd2, RECOVERY = 2'd3;
     localparam [5:0] SEND_PARAMETER = 6'b100011;
@@ -237,8 +237,9 @@ module s6_two_channel_tb_encoder #(
         end
     end
 
-    always @(stay_high)
-        if (!stay_high && phase == IDLE)
+    // An edge, not a level: where it is tied to 0 this is nothing, and no latch.
+    always @(negedge stay_high)
+        if (phase == IDLE)
             data = 1'b0;
 
     always @(oe or driver_oe)

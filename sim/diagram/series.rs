@@ -90,13 +90,19 @@ pub fn series_svg(series: &[Series], title: &str, subtitle: &str) -> String {
         if !one.bad.is_empty() {
             label += &format!(": {} bad, marked at the foot", one.bad.len());
         }
+        let values = range(one.points.iter().filter_map(|p| p.1));
+        if values.is_none() {
+            label += "; no value";
+        }
         svg.text(LEFT, top - 9.0, Anchor::Start, "name", &label);
-        let (low, high) = range(one.points.iter().filter_map(|p| p.1)).unwrap_or((0.0, 1.0));
+        let has_values = values.is_some();
+        let (low, high) = values.unwrap_or((0.0, 1.0));
         let room = (high - low) * HEADROOM;
         let (low, high) = (low - room, high + room);
         let y = |value: f64| bottom - HEIGHT * (value - low) / (high - low);
         let (values, digits) = ticks(low, high);
-        for value in values {
+        // Nothing has an axis where there is nothing.
+        for value in values.into_iter().filter(|_| has_values) {
             svg.line(&[(LEFT, y(value)), (LEFT + WIDTH, y(value))], "grid");
             let text = format!("{value:.digits$}");
             svg.text(
@@ -172,6 +178,26 @@ mod tests {
         assert_eq!(ticks(36.0, 126.0).0, [40.0, 60.0, 80.0, 100.0, 120.0]);
         assert_eq!(range([3.0].into_iter()), Some((2.5, 3.5)));
         assert_eq!(range(std::iter::empty()), None);
+    }
+
+    /// Catches an axis of numbers that nobody has measured.
+    #[test]
+    fn a_series_without_values_has_no_axis_of_them() {
+        let one = Series {
+            name: "channel 0".into(),
+            unit: "deg".into(),
+            points: vec![(2.0, None), (3.0, None)],
+            bad: vec![2.0, 3.0],
+            ..Series::default()
+        };
+        let svg = series_svg(std::slice::from_ref(&one), "log", "");
+        assert!(svg.contains("channel 0 (deg): 2 bad, marked at the foot; no value"));
+        assert_eq!(svg.matches("class=\"grid\"").count(), 0);
+        let with = Series {
+            points: vec![(2.0, Some(0.0)), (3.0, None)],
+            ..one
+        };
+        assert!(series_svg(&[with], "log", "").contains("class=\"grid\""));
     }
 
     #[test]

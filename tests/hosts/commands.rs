@@ -478,7 +478,7 @@ fn what_cannot_be_is_told_with_a_remedy() {
         (
             &["read", "--port", "tcp:127.0.0.1:1"],
             2,
-            "cannot be opened",
+            "is `card`, or the serial server, running",
         ),
         (
             &["read", "--port", "virtual", "--baud", "5"],

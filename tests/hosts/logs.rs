@@ -83,9 +83,77 @@ fn a_full_disk_is_told_and_the_plot_is_there() {
         "virtual",
     ]);
     assert_eq!(outcome.exit_code, 2, "{outcome:?}");
-    let last = outcome.messages.last().unwrap();
-    assert!(last.starts_with("/dev/full: cannot write: "), "{outcome:?}");
+    let begins = |text: &str| outcome.messages.iter().position(|m| m.starts_with(text));
+    let told = begins("/dev/full: cannot write: ").expect("the rows");
+    assert!(told < begins("wrote ").expect("the drawing"), "{outcome:?}");
+    assert!(
+        outcome.messages[0].contains(" sample sets in "),
+        "{outcome:?}"
+    );
     assert!(fs::read_to_string(svg).unwrap().contains("channel 1 (deg)"));
+}
+
+/// Catches a run of which only the drawing's failure is told, and not that its rows were cut.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_disk_without_room_for_rows_and_drawing_is_told_for_both() {
+    let folder = tools::folder("host_fuller_disk");
+    let svg = folder.join("plots").join("full.svg");
+    let gone = folder.join("plots");
+    let _ = fs::create_dir_all(&gone);
+    let end = std::thread::spawn(move || {
+        std::thread::sleep(std::time::Duration::from_millis(1500));
+        // No drawing can be made where a file stands in the place of its folder.
+        fs::remove_dir_all(&gone).unwrap();
+        fs::write(&gone, "").unwrap();
+    });
+    // A device is no file that could be replaced: no --force.
+    let log = [
+        "log",
+        "--seconds",
+        "5",
+        "--out",
+        "/dev/full",
+        "--port",
+        "virtual",
+    ];
+    let outcome = run(&[&log[..], &["--svg", svg.to_str().unwrap()]].concat());
+    end.join().unwrap();
+    fs::remove_file(folder.join("plots")).unwrap();
+    assert_eq!(outcome.exit_code, 2, "{outcome:?}");
+    assert!(
+        outcome.messages[0].contains(" sample sets in "),
+        "{outcome:?}"
+    );
+    let begins = |text: &str| outcome.messages.iter().position(|m| m.starts_with(text));
+    let rows = begins("/dev/full: cannot write: ").expect("the rows");
+    assert!(rows < outcome.messages.len() - 1, "{outcome:?}");
+}
+
+/// Catches 20 s of waiting for triggers that nobody can give, and a file that is there told as an error of the system.
+#[test]
+fn what_cannot_be_logged_is_told_at_once() {
+    let folder = tools::folder("host_only_register");
+    let toml = folder.join("register.toml");
+    // The second one could have a clock running, and has none.
+    for name in ["s6_two_channel", "s6_two_channel_service"] {
+        let text = preset(name).unwrap();
+        let line = text.lines().find(|l| l.starts_with("sources = ")).unwrap();
+        fs::write(&toml, text.replacen(line, "sources = [\"register\"]", 1)).unwrap();
+        let port = format!("virtual:{}", toml.display());
+        let outcome = run(&["log", "--port", &port]);
+        assert_eq!(outcome.exit_code, 1, "{outcome:?}");
+        let told = &outcome.messages[0];
+        assert!(
+            told.starts_with("only trigger_now triggers this card"),
+            "{outcome:?}"
+        );
+    }
+    let file = toml.to_str().unwrap();
+    let outcome = run(&["log", "--samples", "1", "--port", "virtual", "--out", file]);
+    assert_eq!(outcome.exit_code, 2, "{outcome:?}");
+    let told = format!("--out = {file}: is there already; give another file with --out, or replace it with --force");
+    assert_eq!(outcome.messages, [told]);
 }
 
 /// Catches a run whose drawing is lost with its card.
@@ -153,6 +221,43 @@ fn reg_write_keeps_to_the_limits_of_the_map_unless_forced() {
         assert_eq!(forced.exit_code, 0, "{forced:?}");
         assert!(forced.stdout.ends_with(&format!(" = {value}\n")), "{forced:?}");
     }
+    let many =
+        "config0.frame.position_bits would have position_bits = 64, which takes 1..48; --force";
+    for (name, value, told) in [
+        (
+            "config0.frame.period_cycles",
+            "2",
+            "which takes 4..2047; --force",
+        ),
+        ("config0.frame.position_bits", "64", many),
+        (
+            "card.trigger_now",
+            "2",
+            "value = 2: card.trigger_now has no such bits; give bits of 0x1; --force",
+        ),
+        (
+            "card.calibrate",
+            "0xFFFF",
+            "has no such bits; give bits of 0xFF; --force",
+        ),
+    ] {
+        let outcome = write(name, value, &[]);
+        assert_eq!(outcome.exit_code, 2, "{outcome:?}");
+        assert!(outcome.messages[0].contains(told), "{outcome:?}");
+    }
+    assert_eq!(write("card.calibrate", "3", &[]).exit_code, 0);
+    let foreign = run(&["reg", "read", "nosuch", "--port", "virtual"]);
+    let told = &foreign.messages[0];
+    let begin = "register = \"nosuch\": there is no block \"nosuch\"; ";
+    // The card has no services and no T-format channel.
+    assert!(
+        told.starts_with(begin) && told.contains("config0"),
+        "{told}"
+    );
+    assert!(
+        !told.contains("service0") && !told.contains("t_format0"),
+        "{told}"
+    );
     let near = run(&["reg", "read", "age_recovery", "--port", "virtual"]);
     assert_eq!(near.exit_code, 2);
     assert!(

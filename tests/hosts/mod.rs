@@ -1,5 +1,6 @@
 //! The host's side of a card, against virtual cards: library, commands, and programs that are not ours.
 
+mod again;
 mod clients;
 mod commands;
 pub mod desk;

@@ -52,6 +52,18 @@ pub fn slow_card() -> Project {
     )
 }
 
+/// Catches advice on the form of an address that has the right one.
+#[test]
+fn a_port_that_is_taken_is_told_to_be_another() {
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = taken.local_addr().unwrap().to_string();
+    let told = Door::tcp(&address).err().unwrap().to_string();
+    assert!(
+        told.ends_with("give another port (port 0 takes a free one)"),
+        "{told}"
+    );
+}
+
 fn read_and_write(name: &str) {
     let port = Port::open(name, 2_000_000).unwrap();
     let mut card = Card::find(Bridge::new(port)).unwrap();

@@ -66,6 +66,17 @@ impl Places {
     }
 }
 
+/// The flags of a word that are set; a number of it is none.
+fn flags(place: &Place, word: u32) -> String {
+    let fields = place.register.fields.iter();
+    let set = fields.filter(|f| f.width == 1 && f.of(word) == 1);
+    let names: Vec<&str> = set.map(|f| f.name).collect();
+    match names.is_empty() {
+        true => "-".into(),
+        false => names.join(", "),
+    }
+}
+
 /// The same place of another channel.
 fn of(place: &Place, channel: usize) -> Place {
     Place { channel, ..*place }
@@ -135,17 +146,7 @@ fn screen(
         }
         if let Some(state) = &places.state {
             let word = card.read(&of(state, channel)).map_err(told)?;
-            let set = state.register.fields.iter().filter(|f| f.of(word) == 1);
-            let names: Vec<&str> = set.map(|f| f.name).collect();
-            let _ = writeln!(
-                text,
-                "           state: {}",
-                if names.is_empty() {
-                    "-".into()
-                } else {
-                    names.join(", ")
-                }
-            );
+            let _ = writeln!(text, "           state: {}", flags(state, word));
         }
         if let Some(worst) = &places.worst {
             let word = card.read(&of(worst, channel)).map_err(told)?;
@@ -163,7 +164,8 @@ fn screen(
     }
     let retries = card.bridge().retries();
     if retries > 0 {
-        let _ = writeln!(text, "link: {retries} answers asked for again");
+        let s = if retries == 1 { "" } else { "s" };
+        let _ = writeln!(text, "link: {retries} answer{s} asked for again");
     }
     *before = results;
     Ok(text)
@@ -224,5 +226,16 @@ mod tests {
         let hz = rate(&at(0xFFFF, 0xFFFF_0000), &at(99, 0x0000_0000), 65_536.0);
         assert_eq!(hz, Some(100.0));
         assert_eq!(rate(&at(1, 5), &at(1, 5), 1e6), None);
+    }
+
+    /// Catches the count of starts, which is 1 after power-up, as if it were a state.
+    #[test]
+    fn a_number_is_no_flag() {
+        let state = Place::named("service0.state", 1).unwrap();
+        let field = |name| state.register.field(name).unwrap();
+        let word = field("starts").put(0, 1).unwrap();
+        assert_eq!(flags(&state, word), "-");
+        let word = field("initialised").put(word, 1).unwrap();
+        assert_eq!(flags(&state, word), "initialised");
     }
 }

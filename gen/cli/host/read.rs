@@ -4,6 +4,7 @@ use super::super::{to_json, Outcome};
 use super::{scales, settled, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
+use endat_host::causes;
 use endat_host::result::Reading;
 use endat_host::units::Scale;
 use endat_regs::Part;
@@ -39,6 +40,19 @@ fn is_old(reading: &Reading) -> bool {
     reading.valid && reading.age_us == u16::MAX
 }
 
+/// Why a position is so old, if it is: triggers that bring none have a cause, without one there are none.
+fn why_old(reading: &Reading) -> Option<String> {
+    let why = match (reading.fresh, reading.cause) {
+        (false, 1..) => {
+            let name = reading.cause_name();
+            let [means, then] = causes::advice(name).unwrap_or(["", ""]);
+            format!("the last trigger brought none, cause {name}: {means}; {then}")
+        }
+        _ => "is a trigger enabled (`endat-gen reg read card_config`)?".into(),
+    };
+    is_old(reading).then(|| format!("the position is older than 65 ms; {why}"))
+}
+
 /// What kind of result it is.
 pub fn verdict(reading: &Reading) -> String {
     if reading.fresh && is_old(reading) {
@@ -68,13 +82,10 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
             "no channel has a result since reset; trigger one with `endat-gen reg write card.trigger_now 1 --port PORT`, or enable the timer (`endat-gen reg write card_config.trigger_sources.timer 1 --port PORT`); a card behind `virtual` is a new one each time, start one with `card`".into(),
         );
     }
-    for (channel, r) in results.channels.iter().enumerate() {
-        if is_old(r) {
-            messages.push(format!(
-                "channel {channel}: the position is older than 65 ms; is a trigger enabled (`endat-gen reg read card_config`)?"
-            ));
-        }
-    }
+    let each = results.channels.iter().enumerate();
+    messages.extend(
+        each.filter_map(|(channel, r)| Some(format!("channel {channel}: {}", why_old(r)?))),
+    );
     let is_good = results.channels.iter().all(|r| r.fresh && !is_old(r));
     let each = results.channels.iter().zip(&scales).enumerate();
     let has_infos = card.identity().has(Part::Requests);
@@ -145,5 +156,24 @@ mod tests {
         };
         assert_eq!(verdict(&at(65_534)), "good");
         assert_eq!(verdict(&at(65_535)), "old: no result for more than 65 ms");
+        assert_eq!(why_old(&at(65_534)), None);
+        let old = why_old(&at(65_535)).unwrap();
+        assert!(old.contains("is a trigger enabled"), "{old}");
+    }
+
+    /// Catches a search for a trigger where the encoder has an alarm.
+    #[test]
+    fn a_position_that_is_held_has_the_advice_of_its_cause() {
+        let held = Reading {
+            valid: true,
+            cause: causes::number("f1").unwrap(),
+            age_us: u16::MAX,
+            ..Reading::default()
+        };
+        let told = why_old(&held).unwrap();
+        assert!(
+            told.contains("cause f1: ") && !told.contains("enabled"),
+            "{told}"
+        );
     }
 }

@@ -5,7 +5,7 @@ use super::super::{to_json, Outcome};
 use super::{told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::{Args, Subcommand};
-use endat_host::registers::{Access, Named, Place, Values};
+use endat_host::registers::{Access, Field, Limits, Named, Place, Values};
 use endat_regs::BLOCKS;
 use serde_json::json;
 use std::fmt::Write;
@@ -141,7 +141,7 @@ fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, 
 }
 
 /// A number, the name of one of the field's values, or names of some of its bits.
-fn value_of(place: &Place, text: &str) -> Result<u32, GenError> {
+fn value_of(place: &Place, text: &str, force: bool) -> Result<u32, GenError> {
     let by_name = |names: &[Named], text: &str| {
         let found = names.iter().find(|n| n.name == text);
         found.map(|n| n.number)
@@ -156,13 +156,16 @@ fn value_of(place: &Place, text: &str) -> Result<u32, GenError> {
     if let Some(value) = named {
         return Ok(value);
     }
-    let most = place.field.map_or(u32::MAX, |f| f.mask() >> f.lsb);
+    // Where the map has limits, they are what is told of every number outside, whether it fits the bits or not.
+    let limited = |f: &&Field| f.limits != Limits::ANY && !force;
+    let field = place.field.filter(|f| !limited(f));
+    let most = field.map_or(u32::MAX, |f| f.mask() >> f.lsb);
     number("value", text, 0..=most.into()).map(|n| n as u32)
 }
 
 fn write(card: &mut AnyCard, name: &str, text: &str, force: bool) -> Result<Outcome, GenError> {
     let place = card.place(name).map_err(told)?;
-    let value = value_of(&place, text)?;
+    let value = value_of(&place, text, force)?;
     if place.register.access != Access::ReadOnly && !force {
         card.permits(&place, value)
             .map_err(|e| GenError::input(format!("{e}; --force writes it all the same")))?;
@@ -209,13 +212,13 @@ mod tests {
     fn values_are_numbers_or_names_of_codes_and_bits() {
         let place = |name: &str| Place::named(name, 2).unwrap();
         let mask = place("interrupt.mask.channel_1");
-        assert_eq!(value_of(&mask, "result,alarm").unwrap(), 0b101);
-        assert_eq!(value_of(&mask, "0xF").unwrap(), 15);
-        assert!(value_of(&mask, "result,alarms").is_err());
+        assert_eq!(value_of(&mask, "result,alarm", false).unwrap(), 0b101);
+        assert_eq!(value_of(&mask, "0xF", false).unwrap(), 15);
+        assert!(value_of(&mask, "result,alarms", false).is_err());
         let command = place("config0.frame.command");
-        assert_eq!(value_of(&command, "0b000111").unwrap(), 7);
-        assert!(value_of(&command, "64").is_err());
+        assert_eq!(value_of(&command, "0b000111", false).unwrap(), 7);
+        assert!(value_of(&command, "64", false).is_err());
         let whole = place("interrupt.mask");
-        assert_eq!(value_of(&whole, "4294967295").unwrap(), u32::MAX);
+        assert_eq!(value_of(&whole, "4294967295", false).unwrap(), u32::MAX);
     }
 }

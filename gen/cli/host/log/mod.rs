@@ -11,6 +11,8 @@ use crate::error::GenError;
 use clap::Args;
 use count::{Count, Judge};
 use endat_host::feed::Feed;
+use endat_host::transport::LinkState;
+use endat_host::{HostError, Transport};
 use endat_regs::Part;
 use endat_sim::diagram::{is_drawing, series_svg};
 use sheet::{Format, Lines, Sheet};
@@ -94,13 +96,7 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     check_all(&rows.iter().chain(&drawing).collect::<Vec<_>>())?;
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let sources = place(&card, "card_config.trigger_sources")?;
-    if card.read(&sources).map_err(told)? == 0 {
-        return Err(GenError::CheckFailed(vec![format!(
-            "no trigger is enabled, so there is nothing to log; enable one, as with `endat-gen reg write card_config.trigger_sources.timer 1 --port {}`",
-            arguments.port.name()
-        )]));
-    }
+    triggered(&mut card, arguments.port.name())?;
     let scales = scales(&mut card)?;
     let (out, name) = open(arguments)?;
     let failed =
@@ -147,6 +143,22 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         ));
     }
     let mut exit_code = u8::from(is_bad || is_stream && count.missing > 0);
+    let mut fail = |error: GenError, messages: &mut Vec<String>| {
+        exit_code = exit_code.max(error.exit_code());
+        messages.extend_from_slice(error.messages());
+    };
+    // Before the drawing: on a full disk neither can be written, and the rows are what was asked for.
+    match result.and(flushed.map_err(Failure::Write)) {
+        // A reader that has gone away (`| head`) is the end, not an error.
+        Err(Failure::Write(e)) if e.kind() == io::ErrorKind::BrokenPipe => messages.clear(),
+        Err(Failure::Write(e)) => fail(failed(e), &mut messages),
+        Err(Failure::Card(e)) => fail(e, &mut messages),
+        Ok(()) => {
+            if let Err(error) = calm {
+                fail(told(error), &mut messages);
+            }
+        }
+    }
     if let (Some(file), Some(plot)) = (&mut drawing, &sheet.plot) {
         let subtitle = format!(
             "{} sample sets, {} triggers missing, {}",
@@ -156,29 +168,51 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         );
         let title = format!("Positions of {}", arguments.port.name());
         file.text = series_svg(plot, &title, &subtitle);
-        messages.extend(write_all(&drawing.into_iter().collect::<Vec<_>>())?);
-    }
-    let error = match result.and(flushed.map_err(Failure::Write)) {
-        // A reader that has gone away (`| head`) is the end, not an error.
-        Err(Failure::Write(e)) if e.kind() == io::ErrorKind::BrokenPipe => {
-            return Ok(Outcome {
-                exit_code,
-                ..Outcome::default()
-            })
+        match write_all(&drawing.into_iter().collect::<Vec<_>>()) {
+            Ok(written) => messages.extend(written),
+            Err(error) => fail(error, &mut messages),
         }
-        Err(Failure::Write(e)) => Some(failed(e)),
-        Err(Failure::Card(e)) => Some(e),
-        Ok(()) => calm.err().map(told),
-    };
-    if let Some(error) = error {
-        exit_code = error.exit_code();
-        messages.extend_from_slice(error.messages());
     }
     Ok(Outcome {
         messages,
         exit_code,
         ..Outcome::default()
     })
+}
+
+/// Refuses a card that nothing triggers: a log sends nothing by itself, and nobody else has the link.
+fn triggered(card: &mut AnyCard, port: &str) -> Result<(), GenError> {
+    let sources = place(card, "card_config.trigger_sources")?;
+    let enabled = card.read(&sources).map_err(told)?;
+    let is_set = |name| (sources.register.field(name)).is_some_and(|f| f.of(enabled) != 0);
+    if is_set("pin") || is_set("timer") {
+        return Ok(());
+    }
+    let what = match is_set("register") {
+        true if may_run(card)? => return Ok(()),
+        true => "only trigger_now triggers this card, and `log` has the link, so there is nothing to log; enable another source",
+        false => "no trigger is enabled, so there is nothing to log; enable one",
+    };
+    Err(GenError::CheckFailed(vec![format!(
+        "{what}, as with `endat-gen reg write card_config.trigger_sources.timer 1 --port {port}`"
+    )]))
+}
+
+/// Whether a clock may be running, which gives positions without triggers.
+fn may_run(card: &mut AnyCard) -> Result<bool, GenError> {
+    let identity = *card.identity();
+    let channels = 0..if identity.has(Part::Continuous) {
+        identity.channels
+    } else {
+        0
+    };
+    for channel in channels.filter(|n| !identity.is_t_format(*n)) {
+        let go_on = place(card, &format!("service{channel}.continuous.go_on"))?;
+        if card.read(&go_on).map_err(told)? == 1 {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Where the rows go, and what that is called.
@@ -188,19 +222,20 @@ fn open(arguments: &LogArgs) -> Result<(Box<dyn Write>, String), GenError> {
         Some(path) => {
             let mut options = fs::File::options();
             options.write(true);
+            // Nothing is lost on a device.
+            let is_device = fs::metadata(path).is_ok_and(|m| !m.is_file());
             let options = match arguments.force {
+                _ if is_device => &mut options,
                 true => options.create(true).truncate(true),
                 false => options.create_new(true),
             };
             let file = fs::create_dir_all(folder(path)).and_then(|()| options.open(path));
-            let file = file.map_err(|e| {
-                let remedy = match e.kind() {
-                    io::ErrorKind::AlreadyExists => {
-                        "give another file with --out, or replace it with --force"
-                    }
-                    _ => "give another file with --out",
-                };
-                GenError::io("write", path, &e, remedy)
+            let file = file.map_err(|e| match e.kind() {
+                io::ErrorKind::AlreadyExists => GenError::input(format!(
+                    "--out = {}: is there already; give another file with --out, or replace it with --force",
+                    path.display()
+                )),
+                _ => GenError::io("write", path, &e, "give another file with --out"),
             })?;
             (Box::new(Lines::file(file)), path.display().to_string())
         }
@@ -269,6 +304,37 @@ enum Failure {
     Write(io::Error),
 }
 
+/// Says so when the link is lost, and when it is back.
+struct Watch {
+    last: LinkState,
+}
+
+impl Watch {
+    /// What is to be told of the link, as it is now.
+    fn news(&mut self, now: LinkState) -> Vec<String> {
+        let before = std::mem::replace(&mut self.last, now);
+        let is_lost = before.is_open && (!now.is_open || now.reopened > before.reopened);
+        let is_back = now.is_open && now.reopened > before.reopened;
+        let lost = format!("connection lost, trying for {} s", SILENCE.as_secs());
+        let back = "connection is back".to_owned();
+        let both = [(is_lost, lost), (is_back, back)];
+        both.into_iter()
+            .filter_map(|(is_so, text)| is_so.then_some(text))
+            .collect()
+    }
+}
+
+/// A card that does not answer may do so again; one that is another one ends the log.
+fn still(filled: Result<(), HostError>, rows: u64) -> Result<(), Failure> {
+    match filled {
+        Ok(()) | Err(HostError::Silent { .. }) => Ok(()),
+        Err(HostError::Refused(text)) => Err(Failure::Card(GenError::CheckFailed(vec![format!(
+            "{text}; this was after {rows} sample sets, which are in the file; begin another log"
+        )]))),
+        Err(error) => Err(Failure::Card(told(error))),
+    }
+}
+
 fn record<W: Write>(
     card: &mut AnyCard,
     feed: &mut Feed,
@@ -280,9 +346,16 @@ fn record<W: Write>(
     let begin = Instant::now();
     let (mut heard, mut flushed) = (begin, begin);
     let mut rows = VecDeque::new();
+    let mut watch = Watch {
+        last: card.bridge().transport().state(),
+    };
     loop {
         let filled = feed.fill(card, &mut rows, SLICE);
-        filled.map_err(|e| Failure::Card(told(e)))?;
+        for text in watch.news(card.bridge().transport().state()) {
+            progress.clear();
+            let _ = writeln!(io::stderr(), "endat-gen: {text}");
+        }
+        still(filled, count.rows)?;
         if !rows.is_empty() {
             heard = Instant::now();
         }
@@ -300,8 +373,12 @@ fn record<W: Write>(
             return Ok(());
         }
         if heard.elapsed() > SILENCE {
+            let why = match watch.last.is_open {
+                true => "is a trigger enabled (`endat-gen reg read card_config`), is the card plugged in?",
+                false => "the connection is lost; is the card plugged in?",
+            };
             return Err(Failure::Card(GenError::CheckFailed(vec![format!(
-                "no sample for {} s; is a trigger enabled (`endat-gen reg read card_config`), is the card plugged in? {} sets are in the file",
+                "no sample for {} s; {why} {} sets are in the file",
                 SILENCE.as_secs(),
                 count.rows
             )])));
@@ -325,5 +402,20 @@ mod tests {
         assert_eq!(progress.text(5), "\r5 of 9 sample sets\x1b[K");
         progress.is_terminal = false;
         assert_eq!(progress.text(5), "5 of 9 sample sets\n");
+    }
+
+    #[test]
+    fn a_lost_link_is_told_once_and_so_is_its_return() {
+        let mut watch = Watch {
+            last: LinkState::default(),
+        };
+        let mut told = |is_open, reopened| watch.news(LinkState { is_open, reopened });
+        assert_eq!(told(true, 0), [""; 0]);
+        assert_eq!(told(false, 0), ["connection lost, trying for 20 s"]);
+        assert_eq!(told(false, 0), [""; 0]);
+        assert_eq!(told(true, 1), ["connection is back"]);
+        // Lost and back between two looks.
+        assert_eq!(told(true, 2).len(), 2);
+        assert_eq!(told(true, 2), [""; 0]);
     }
 }

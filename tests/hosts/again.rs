@@ -1,0 +1,212 @@
+//! A log whose link is lost and found again: the card has run on, was restarted, or is another one.
+
+use super::{changed, slow_card, Served};
+use crate::tools;
+use endat_gen::cli;
+use endat_gen::config::Project;
+use endat_gen::virtual_card::Door;
+use std::fs;
+use std::io::{Read, Write};
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// Longest wait for anything here; a machine that does nothing else takes some seconds.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A log in a thread.
+struct Log {
+    out: PathBuf,
+    svg: PathBuf,
+    thread: JoinHandle<cli::Outcome>,
+}
+
+impl Log {
+    fn new(folder: &str, port: &str, more: &[&str]) -> Self {
+        let folder = tools::folder(folder);
+        let (out, svg) = (folder.join("rows.csv"), folder.join("rows.svg"));
+        let text = |path: &Path| path.to_str().unwrap().to_owned();
+        let mut words: Vec<String> = ["endat-gen", "log", "--force", "--port", port]
+            .map(Into::into)
+            .into();
+        words.extend(["--out".into(), text(&out), "--svg".into(), text(&svg)]);
+        words.extend(more.iter().map(|w| (*w).to_owned()));
+        let _ = fs::remove_file(&out);
+        Self {
+            out,
+            svg,
+            thread: thread::spawn(move || cli::run(words)),
+        }
+    }
+
+    /// Waits until so many lines are in the file.
+    fn wait_for(&self, lines: usize) {
+        let begin = Instant::now();
+        while fs::read_to_string(&self.out).map_or(0, |t| t.lines().count()) < lines {
+            assert!(begin.elapsed() < PATIENCE, "no rows");
+            thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    /// What it has told, and the columns `trigger`, `time_s` and `missing` of its rows.
+    fn end(self) -> (cli::Outcome, Vec<(u64, f64, u64)>) {
+        let outcome = self.thread.join().unwrap();
+        let text = fs::read_to_string(&self.out).unwrap();
+        assert!(text.ends_with('\n'));
+        assert!(fs::read_to_string(&self.svg)
+            .unwrap()
+            .contains("channel 1 (deg)"));
+        let rows = text.lines().skip(1).map(|line| {
+            let mut fields = line.split(',');
+            let mut next = || fields.next().unwrap();
+            (
+                next().parse().unwrap(),
+                next().parse().unwrap(),
+                next().parse().unwrap(),
+            )
+        });
+        (outcome, rows.collect())
+    }
+}
+
+/// A card at an address that another one has just had.
+fn served_at(address: &str, project: Project) -> Served {
+    let address = address.trim_start_matches("tcp:").to_owned();
+    Served::new(project, move || {
+        let begin = Instant::now();
+        // The system keeps the port for a moment.
+        loop {
+            match Door::tcp(&address) {
+                Ok(door) => return door,
+                Err(error) => assert!(begin.elapsed() < PATIENCE, "{error}"),
+            }
+            thread::sleep(Duration::from_millis(100));
+        }
+    })
+}
+
+/// Catches a restarted count that is taken for one that has wrapped, and another card's rows in the file of the one before.
+#[test]
+fn a_log_ends_with_its_card_and_invents_nothing() {
+    let other = || {
+        changed(
+            "s6_two_channel",
+            &[("sample_hz = 10_000", "sample_hz = 900")],
+        )
+    };
+    for (name, again, more, told) in [
+        ("restart", slow_card(), &[][..], "the card was restarted"),
+        (
+            "restart_poll",
+            slow_card(),
+            &["--poll"],
+            "the card was restarted",
+        ),
+        (
+            "other",
+            other(),
+            &[],
+            "another card answers: its configuration hash is 0x",
+        ),
+    ] {
+        let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+        let port = card.name.clone();
+        let log = Log::new(&format!("host_again_{name}"), &port, more);
+        log.wait_for(20);
+        drop(card);
+        let _again = served_at(&port, again);
+        let (outcome, rows) = log.end();
+        assert_eq!(outcome.exit_code, 1, "{name}: {outcome:?}");
+        let reason = outcome.messages.iter().find(|m| m.contains(told));
+        let reason = reason.unwrap_or_else(|| panic!("{name}: {outcome:?}"));
+        let count = format!("after {} sample sets", rows.len());
+        assert!(reason.contains(&count), "{name}: {outcome:?}");
+        let head = &outcome.messages[0];
+        let is_clean = more.contains(&"--poll") || head.contains("; 0 triggers missing, ");
+        // The frame that was cut with the link, and nothing that the question has brought.
+        let frames = [
+            "; 0 frames damaged",
+            "; 1 frames damaged",
+            "; read one by one",
+        ];
+        let is_clean = is_clean && frames.iter().any(|f| head.contains(f));
+        assert!(is_clean, "{name}: {outcome:?}");
+        let last = rows.last().unwrap();
+        // A count or a clock that began anew would be 65 536 triggers, or 42 s, on.
+        assert!(last.0 < 30_000 && last.1 < 30.0, "{name}: {last:?}");
+        assert!(
+            rows.iter().all(|r| more.contains(&"--poll") || r.2 < 1_000),
+            "{name}"
+        );
+    }
+}
+
+/// A line between host and card that can be cut, while the card runs on.
+struct Line {
+    door: TcpListener,
+    card: String,
+}
+
+impl Line {
+    fn new(card: &Served) -> Self {
+        Self {
+            door: TcpListener::bind("127.0.0.1:0").unwrap(),
+            card: card.name.trim_start_matches("tcp:").to_owned(),
+        }
+    }
+
+    /// Takes a host, connects it, and gives the two ends.
+    fn connect(&self) -> [TcpStream; 2] {
+        let (host, _) = self.door.accept().unwrap();
+        let card = TcpStream::connect(&self.card).unwrap();
+        for (from, to) in [(&host, &card), (&card, &host)] {
+            let (mut from, mut to) = (from.try_clone().unwrap(), to.try_clone().unwrap());
+            thread::spawn(move || {
+                let mut buffer = [0; 4096];
+                while let Ok(count @ 1..) = from.read(&mut buffer) {
+                    if to.write_all(&buffer[..count]).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        [host, card]
+    }
+}
+
+/// Catches a log that gives up a card which has run on, or does not count what was missed.
+#[test]
+fn a_log_goes_on_when_only_the_link_was_lost() {
+    for more in [&["--samples", "400"][..], &["--samples", "200", "--poll"]] {
+        let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+        let line = Line::new(&card);
+        let port = format!("tcp:{}", line.door.local_addr().unwrap());
+        let log = Log::new(&format!("host_again_{}", more.len()), &port, more);
+        let ends = line.connect();
+        log.wait_for(20);
+        for end in ends {
+            end.shutdown(Shutdown::Both).unwrap();
+        }
+        thread::sleep(Duration::from_secs(2));
+        let _ends = line.connect();
+        let (outcome, rows) = log.end();
+        let wanted: usize = more[1].parse().unwrap();
+        assert_eq!(rows.len(), wanted, "{outcome:?}");
+        let is_stream = more.len() == 2;
+        let missing: u64 = rows.iter().map(|r| r.2).sum();
+        assert!(missing > 0, "{outcome:?}");
+        if is_stream {
+            assert_eq!(outcome.exit_code, 1, "what is missing is told: {outcome:?}");
+            let told = format!("; {missing} triggers missing, ");
+            assert!(outcome.messages[0].contains(&told), "{outcome:?}");
+        }
+        for pair in rows.windows(2) {
+            let [before, row] = pair else { unreachable!() };
+            assert_eq!(row.0, before.0 + 1 + row.2);
+            // The preset's slow triggers are a millisecond apart.
+            let late = row.1 - before.1 - 1e-3 * (row.0 - before.0) as f64;
+            assert!(late.abs() < if is_stream { 1e-6 } else { 1e-2 }, "{pair:?}");
+        }
+    }
+}
