@@ -3,11 +3,12 @@
 //! ```text
 //! trigger, request -> Exchange -> tx, driver
 //!                      ^   |
-//! rx -> InputFilter ---+-> Reply -> Outcome -> registers -> DSP bus
+//! rx -> InputFilter ---+-> ReplyBytes -> Moments -> DSP bus
 //! ```
 //!
 //! Reading order: [`protocol`] and [`cause`] (facts), [`bit_grid`], [`field_order`], [`request_bits`] (parts), [`exchange`] (order
-//! and checks), [`channel`], [`dsp`]; [`port`] is the same encoder as a channel of a card.
+//! and checks), [`reply_bytes`], [`verdict_bytes`], [`moments`] (words for a processor), [`dsp`]; [`port`] is the same encoder
+//! as a channel of a card, [`channel`] a receiver whose results are signals.
 
 pub mod bit_grid;
 pub use endat_regs::causes::t_format as cause;
@@ -15,9 +16,12 @@ pub mod channel;
 pub mod dsp;
 pub mod exchange;
 pub mod field_order;
+pub mod moments;
 pub mod outcome;
 pub mod port;
 pub mod primary;
 pub mod protocol;
 pub mod reply;
+pub mod reply_bytes;
 pub mod request_bits;
+pub mod verdict_bytes;

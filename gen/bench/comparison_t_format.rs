@@ -15,8 +15,12 @@ pub(super) fn asynchronous() -> Result<Table, GenError> {
     let [(all, all_ff), (receiver, receiver_ff)] =
         ["async_dsp", "t_format"].map(|n| area(n, "ice40"));
     let cells: toml::Table = LOGIC_CELLS.parse().unwrap_or_default();
-    let cells = cells.get("async_dsp").and_then(|c| c.as_integer());
-    let cells = cells.ok_or_else(|| fault(&"no logic cells of async_dsp"))?;
+    let packed = |what: &str| {
+        let found = cells.get("async_dsp").and_then(|c| c.get(what));
+        let found = found.and_then(|c| c.as_integer());
+        found.ok_or_else(|| fault(&"no logic cells of async_dsp"))
+    };
+    let (cells, rams) = (packed("cells")?, packed("rams")?);
     let requests = Request::ALL.map(|r| format!("{:X}", r.id()));
     let rates = [BIT_HZ, FAST_BIT_HZ].map(|hz| format!("{} Mbit/s", decimal(hz as f64 / 1e6, 1)));
     let mut table = Table::new("Asynchronous receiver: `async_dsp`", "Kang et al. 2004");
@@ -24,7 +28,9 @@ pub(super) fn asynchronous() -> Result<Table, GenError> {
         Basis::Synthesis,
         "receiver with the bus of a signal processor",
         "707 logic cells (FLEX10K, LUT4 and FF each)",
-        format!("{cells} logic cells (iCE40, the same): {all} LUT4, {all_ff} FF"),
+        format!(
+            "{cells} logic cells (iCE40, the same): {all} LUT4, {all_ff} FF; and {rams} block RAMs of 4 kbit for the words"
+        ),
     );
     table.row(
         Basis::Synthesis,

@@ -1,8 +1,12 @@
 //! Strobes of an asynchronous bus, brought into the system clock domain.
 //!
 //! ```text
-//! cs_n, rd_n, wr_n, register_at, data_in --SyncReg x2--> reading, register | written, written_register, written_data
+//! cs_n, rd_n, wr_n, register_at --SyncReg x2--> reading, register | written, written_register
+//! data_in --SyncReg, as long as a write lasts--> written_data
 //! ```
+//!
+//! Data of a write need one register: the strobe itself closes it, when they have stood still for a clock, so whether a bit is still taken
+//! at that edge makes no difference; and it is looked at two clocks later.
 
 use crate::reg::{Reg, SyncReg};
 use endat_macros::{kernel, Block};
@@ -35,6 +39,8 @@ pub struct BusStrobes {
     pub written_register: Signal<Out, Bits<3>>,
     /// What was written.
     pub written_data: Signal<Out, Bits<16>>,
+    /// Parity of the data at the pins.
+    pub written_sum: Signal<Out, Bit>,
     cs_0: SyncReg<Bit>,
     cs_1: SyncReg<Bit>,
     rd_0: SyncReg<Bit>,
@@ -44,10 +50,9 @@ pub struct BusStrobes {
     register_0: SyncReg<Bits<3>>,
     register_1: SyncReg<Bits<3>>,
     data_0: SyncReg<Bits<16>>,
-    data_1: SyncReg<Bits<16>>,
+    sum_0: SyncReg<Bit>,
     was_writing: Reg<Bit>,
     last_register: Reg<Bits<3>>,
-    last_data: Reg<Bits<16>>,
     is_writing: Signal<Local, Bit>,
 }
 
@@ -62,8 +67,10 @@ impl Logic for BusStrobes {
         self.wr_1.d.next = self.wr_0.q.val();
         self.register_0.d.next = self.register_at.val();
         self.register_1.d.next = self.register_0.q.val();
-        self.data_0.d.next = self.data_in.val();
-        self.data_1.d.next = self.data_0.q.val();
+        if !self.cs_n.val() & !self.wr_n.val() {
+            self.data_0.d.next = self.data_in.val();
+            self.sum_0.d.next = self.data_in.val().xor();
+        }
 
         self.register.next = self.register_1.q.val();
         self.reading.next = self.cs_1.q.val() & self.rd_1.q.val();
@@ -72,10 +79,10 @@ impl Logic for BusStrobes {
         self.was_writing.d.next = self.is_writing.val();
         if self.is_writing.val() {
             self.last_register.d.next = self.register_1.q.val();
-            self.last_data.d.next = self.data_1.q.val();
         }
         self.written.next = self.was_writing.q.val() & !self.is_writing.val();
         self.written_register.next = self.last_register.q.val();
-        self.written_data.next = self.last_data.q.val();
+        self.written_data.next = self.data_0.q.val();
+        self.written_sum.next = self.sum_0.q.val();
     }
 }

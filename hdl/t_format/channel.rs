@@ -114,6 +114,7 @@ impl Logic for TFormatChannel {
         self.exchange.tick_us.next = self.tick_us.val();
         self.exchange.trigger.next = self.trigger.val();
         self.exchange.request_id.next = self.request_id.val();
+        self.exchange.hold.next = false;
         self.exchange.address.next = self.address.val();
         self.exchange.data.next = self.data.val();
         self.exchange.request_fits.next = true;

@@ -1,8 +1,9 @@
 //! T-format receiver behind the 16-bit bus of a signal processor.
 //!
 //! ```text
-//! bus pins --BusStrobes--> request, settings --> TFormatChannel <-> transceiver
-//! bus_data_o <-- two registers <-- seven-address map <-- moment of the last read of address 0
+//! bus pins --BusStrobes--> request, settings --> Exchange -> transceiver
+//!                                                   ^   |
+//! transceiver -> InputFilter -----------------------+-> ReplyBytes -> Moments -> bus_data_o
 //! ```
 //!
 //! | address | read 7..0 | read 15..8 | write |
@@ -22,10 +23,13 @@
 //! Data stand at the pins 4 clocks after the address and change 4 clocks after it changes. Reading address 0 takes the moment that
 //! addresses 1 to 7 show, bit 15 of address 7 excepted. While that bit is set writes are ignored, but a request counts as trigger.
 
-use super::channel::TFormatChannel;
-use super::primary::LowestCause;
+use super::exchange::Exchange;
+use super::moments::Moments;
 use super::protocol::{BIT_HZ, FAST_BIT_HZ, SYSTEM_HZ};
+use super::reply_bytes::ReplyBytes;
 use crate::bus::strobes::BusStrobes;
+use crate::features::Features;
+use crate::input_filter::InputFilter;
 use crate::reg::{Reg, SyncReg};
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -102,10 +106,13 @@ pub struct AsyncDsp {
     pub led_o: Signal<Out, Bit>,
     #[start]
     strobes: BusStrobes,
+    filter: InputFilter,
     #[start]
-    channel: TFormatChannel,
+    exchange: Exchange,
     #[start]
-    primary: LowestCause,
+    reply: ReplyBytes,
+    #[start]
+    moments: Moments,
     select_0: SyncReg<Bit>,
     select_1: SyncReg<Bit>,
     // HIGH, so that a pin that is high at power-up is not an edge.
@@ -127,34 +134,10 @@ pub struct AsyncDsp {
     #[start(true)]
     memory_sum: Reg<Bit>,
     armed: Reg<Bit>,
-    was_first: Reg<Bit>,
-    seen_fresh: Reg<Bit>,
-    seen_valid: Reg<Bits<2>>,
-    seen_sums: Reg<Bits<2>>,
-    seen_id: Reg<Bits<4>>,
-    seen_flags: Reg<Bits<16>>,
-    seen_single: Reg<Bits<24>>,
-    seen_multi: Reg<Bits<24>>,
-    seen_identity: Reg<Bits<8>>,
-    seen_alarm: Reg<Bits<8>>,
-    seen_status: Reg<Bits<8>>,
-    seen_crc: Reg<Bits<8>>,
-    seen_memory: Reg<Bits<8>>,
-    chosen: Reg<Bits<16>>,
-    out_data: Reg<Bits<16>>,
-    is_first: Signal<Local, Bit>,
     memory_fits: Signal<Local, Bit>,
-    single_fits: Signal<Local, Bit>,
-    multi_fits: Signal<Local, Bit>,
-    fits: Signal<Local, Bit>,
-    valid: Signal<Local, Bits<2>>,
     us_last: Signal<Local, Bit>,
+    chosen_cycles: Signal<Local, Bits<5>>,
     can_write: Signal<Local, Bit>,
-    control: Signal<Local, Bits<8>>,
-    repeats: Signal<Local, Bit>,
-    complains: Signal<Local, Bit>,
-    communication: Signal<Local, Bits<8>>,
-    overrun: Signal<Local, Bit>,
     us_cycles: Vec<Constant<Bits<6>>>,
     bit_cycles: Vec<Constant<Bits<5>>>,
 }
@@ -165,6 +148,7 @@ impl AsyncDsp {
         let cycles = |bit_hz: u64| SYSTEM_HZ.map(|hz| hz / bit_hz);
         let bits = [cycles(BIT_HZ), cycles(FAST_BIT_HZ)].concat();
         Self::from_parts(AsyncDspParts {
+            filter: InputFilter::new(Features::NONE),
             request_id: Reg::new(u64::from(start.request_id).into()),
             settings: Reg::new(start.word().into()),
             us_cycles: (SYSTEM_HZ.iter())
@@ -180,8 +164,14 @@ impl Logic for AsyncDsp {
     fn update(&mut self) {
         self.strobes.clock.next = self.clk_i.val();
         self.strobes.reset.next = self.rst_i.val();
-        self.channel.clock.next = self.clk_i.val();
-        self.channel.reset.next = self.rst_i.val();
+        self.filter.clock.next = self.clk_i.val();
+        self.filter.reset.next = self.rst_i.val();
+        self.exchange.clock.next = self.clk_i.val();
+        self.exchange.reset.next = self.rst_i.val();
+        self.reply.clock.next = self.clk_i.val();
+        self.reply.reset.next = self.rst_i.val();
+        self.moments.clock.next = self.clk_i.val();
+        self.moments.reset.next = self.rst_i.val();
 
         self.strobes.cs_n.next = self.bus_cs_n_i.val();
         self.strobes.rd_n.next = self.bus_rd_n_i.val();
@@ -194,15 +184,15 @@ impl Logic for AsyncDsp {
         self.select_0.d.next = self.clk_select_i.val();
         self.select_1.d.next = self.select_0.q.val();
         self.us_last.next = self.us_count.q.val() == self.us_cycles[0].val();
-        self.channel.bit_cycles.next = self.bit_cycles[0].val();
+        self.chosen_cycles.next = self.bit_cycles[0].val();
         if self.settings.q.val().get_bit(8) {
-            self.channel.bit_cycles.next = self.bit_cycles[2].val();
+            self.chosen_cycles.next = self.bit_cycles[2].val();
         }
         if self.select_1.q.val() {
             self.us_last.next = self.us_count.q.val() == self.us_cycles[1].val();
-            self.channel.bit_cycles.next = self.bit_cycles[1].val();
+            self.chosen_cycles.next = self.bit_cycles[1].val();
             if self.settings.q.val().get_bit(8) {
-                self.channel.bit_cycles.next = self.bit_cycles[3].val();
+                self.chosen_cycles.next = self.bit_cycles[3].val();
             }
         }
         self.us_count.d.next = self.us_count.q.val() + 1;
@@ -215,14 +205,14 @@ impl Logic for AsyncDsp {
         self.trigger_1.d.next = self.trigger_0.q.val();
         self.trigger_2.d.next = self.trigger_1.q.val();
         self.start.d.next = self.trigger_1.q.val() & !self.trigger_2.q.val();
-        self.can_write.next = !self.channel.busy.val() & !self.start.q.val();
+        self.can_write.next = !self.exchange.busy.val() & !self.start.q.val();
         if self.strobes.written.val() & !self.strobes.written_register.val().any() {
             self.start.d.next = true;
         }
         // A byte is written once for each write of address 7 and one of address 0 behind it: no pin, no upset does it again.
         self.memory_fits.next = self.memory.q.val().xor() == self.memory_sum.q.val();
-        self.armed.d.next = self.armed.q.val() & (self.start.q.val() | self.channel.busy.val());
-        if self.channel.result_strobe.val() & self.armed.q.val() & (self.request_id.q.val() == 6) {
+        self.armed.d.next = self.armed.q.val() & (self.start.q.val() | self.exchange.busy.val());
+        if self.moments.published.val() & self.armed.q.val() & (self.request_id.q.val() == 6) {
             self.memory_sum.d.next = !self.memory.q.val().xor();
         }
         if self.strobes.written.val() & self.can_write.val() {
@@ -236,115 +226,67 @@ impl Logic for AsyncDsp {
                 }
                 7 => {
                     self.memory.d.next = self.strobes.written_data.val();
-                    self.memory_sum.d.next = self.strobes.written_data.val().xor();
+                    // Formed before the data stood anywhere.
+                    self.memory_sum.d.next = self.strobes.written_sum.val();
                 }
                 _ => {}
             }
         }
 
-        self.channel.tick_us.next = self.us_tick.q.val();
-        self.channel.trigger.next = self.start.q.val();
-        self.channel.request_id.next = self.request_id.q.val();
+        self.filter.pin.next = self.encoder_data_i.val();
+        self.filter.filter_cycles.next = self.settings.q.val().get_bits::<4>(12);
+        self.filter.filter_half.next = false;
+        self.filter.majority.next = false;
+        self.filter.both_edges.next = false;
+
+        self.exchange.tick_us.next = self.us_tick.q.val();
+        self.exchange.trigger.next = self.start.q.val();
+        self.exchange.request_id.next = self.request_id.q.val();
         if (self.request_id.q.val() == 6) & !(self.armed.q.val() & self.memory_fits.val()) {
-            self.channel.request_id.next = 15.into();
+            self.exchange.request_id.next = 15.into();
         }
-        self.channel.address.next = self.memory.q.val().get_bits::<7>(0);
-        self.channel.data.next = self.memory.q.val().get_bits::<8>(8);
-        self.channel.reply_gap_us.next = self.settings.q.val().get_bits::<6>(0);
-        self.channel.field_gap_us.next = self.settings.q.val().get_bits::<3>(9);
-        self.channel.filter_cycles.next = self.settings.q.val().get_bits::<4>(12);
-        self.channel.rx.next = self.encoder_data_i.val();
-        self.encoder_data_o.next = self.channel.tx.val();
-        self.encoder_data_oe.next = self.channel.driver.val();
-        self.led_o.next = self.channel.fresh.val();
+        self.exchange.request_fits.next = true;
+        self.exchange.address.next = self.memory.q.val().get_bits::<7>(0);
+        self.exchange.data.next = self.memory.q.val().get_bits::<8>(8);
+        self.exchange.bit_cycles.next = bit_cast::<7, 5>(self.chosen_cycles.val());
+        self.exchange.reply_gap_us.next = self.settings.q.val().get_bits::<6>(0);
+        self.exchange.field_gap_us.next = self.settings.q.val().get_bits::<3>(9);
+        self.exchange.level.next = self.filter.level.val();
+        self.exchange.status.next = self.reply.status.val();
+        self.exchange.hold.next = self.moments.hold.val();
+        self.encoder_data_o.next = self.exchange.tx.val();
+        self.encoder_data_oe.next = self.exchange.driver.val();
 
-        self.is_first.next = self.strobes.reading.val() & !self.strobes.register.val().any();
-        self.was_first.d.next = self.is_first.val();
-        if self.is_first.val() & !self.was_first.q.val() {
-            self.seen_fresh.d.next = self.channel.fresh.val();
-            self.seen_valid.d.next = bit_cast::<2, 1>(self.channel.single_valid.val().into())
-                | (bit_cast::<2, 1>(self.channel.multi_valid.val().into()) << 1);
-            self.seen_sums.d.next = bit_cast::<2, 1>(self.channel.single_parity.val().into())
-                | (bit_cast::<2, 1>(self.channel.multi_parity.val().into()) << 1);
-            self.seen_id.d.next = self.channel.reply_id.val();
-            self.seen_flags.d.next = self.channel.flags.val();
-            self.seen_single.d.next = self.channel.single_turn.val();
-            self.seen_multi.d.next = self.channel.multi_turn.val();
-            self.seen_identity.d.next = self.channel.encoder_id.val();
-            self.seen_alarm.d.next = self.channel.alarm.val();
-            self.seen_status.d.next = self.channel.status.val();
-            self.seen_crc.d.next = self.channel.crc.val();
-            self.seen_memory.d.next = self.channel.memory_data.val();
-        }
+        self.reply.idle.next = !self.exchange.busy.val();
+        self.reply.take.next = self.exchange.take.val();
+        self.reply.level.next = self.filter.level.val();
+        self.reply.is_status.next = self.exchange.is_status.val();
+        self.reply.is_single.next = self.exchange.is_single.val();
+        self.reply.is_multi.next = self.exchange.is_multi.val();
+        self.reply.is_byte.next = self.exchange.is_byte.val();
+        self.reply.is_alarm.next = self.exchange.is_alarm.val();
+        self.reply.copy.next = self.moments.copy.val();
+        self.reply.tail.next = self.moments.tail.val();
 
-        // From the wire to here each position has its parity with it.
-        self.single_fits.next = (self.seen_single.q.val().xor()
-            ^ self.seen_valid.q.val().get_bit(0))
-            == self.seen_sums.q.val().get_bit(0);
-        self.multi_fits.next = (self.seen_multi.q.val().xor() ^ self.seen_valid.q.val().get_bit(1))
-            == self.seen_sums.q.val().get_bit(1);
-        self.fits.next = self.single_fits.val() & self.multi_fits.val();
-        self.valid.next = self.seen_valid.q.val();
-        self.primary.flags.next = self.seen_flags.q.val();
-        if !self.fits.val() {
-            // An alarm beside it would hide the upset.
-            self.primary.flags.next =
-                bit_cast::<16, 12>(self.seen_flags.q.val().get_bits::<12>(0)) | 0x4000;
-            self.valid.next = bit_cast::<2, 1>(
-                (self.single_fits.val() & self.seen_valid.q.val().get_bit(0)).into(),
-            ) | (bit_cast::<2, 1>(
-                (self.multi_fits.val() & self.seen_valid.q.val().get_bit(1)).into(),
-            ) << 1);
-        }
-        self.complains.next = self.seen_flags.q.val().get_bits::<2>(9).any();
-        self.communication.next = bit_cast::<8, 2>(self.seen_flags.q.val().get_bits::<2>(2))
-            | (bit_cast::<8, 1>(self.seen_flags.q.val().get_bits::<1>(7)) << 2)
-            | (bit_cast::<8, 1>(self.seen_flags.q.val().get_bits::<1>(6)) << 3)
-            | (bit_cast::<8, 2>(self.seen_flags.q.val().get_bits::<2>(4)) << 4)
-            | (bit_cast::<8, 1>(self.seen_flags.q.val().get_bits::<1>(8)) << 6)
-            | (bit_cast::<8, 1>(self.complains.val().into()) << 7);
-        // Any flag up to the echo says that no ID came, or another one.
-        self.repeats.next = !self.seen_flags.q.val().get_bits::<6>(0).any();
-        self.control.next = bit_cast::<8, 4>(self.seen_id.q.val())
-            | (bit_cast::<8, 1>(self.repeats.val().into()) << 4)
-            | (bit_cast::<8, 1>(self.communication.val().any().into()) << 5)
-            | (bit_cast::<8, 1>((self.seen_fresh.q.val() & self.fits.val()).into()) << 7);
-        self.overrun.next = self.seen_flags.q.val().get_bit(15);
-        match self.strobes.register.val().index() {
-            0 => {
-                self.chosen.d.next = bit_cast::<16, 4>(self.request_id.q.val());
-            }
-            1 => {
-                self.chosen.d.next = bit_cast::<16, 8>(self.control.val())
-                    | (bit_cast::<16, 8>(self.seen_single.q.val().get_bits::<8>(0)) << 8);
-            }
-            2 => {
-                self.chosen.d.next = self.seen_single.q.val().get_bits::<16>(8);
-            }
-            3 => {
-                self.chosen.d.next = bit_cast::<16, 8>(self.seen_identity.q.val())
-                    | (bit_cast::<16, 8>(self.seen_multi.q.val().get_bits::<8>(0)) << 8);
-            }
-            4 => {
-                self.chosen.d.next = self.seen_multi.q.val().get_bits::<16>(8);
-            }
-            5 => {
-                self.chosen.d.next = bit_cast::<16, 8>(self.seen_alarm.q.val())
-                    | (bit_cast::<16, 8>(self.seen_status.q.val()) << 8);
-            }
-            6 => {
-                self.chosen.d.next = bit_cast::<16, 8>(self.seen_crc.q.val())
-                    | (bit_cast::<16, 8>(self.communication.val()) << 8);
-            }
-            _ => {
-                self.chosen.d.next = bit_cast::<16, 8>(self.seen_memory.q.val())
-                    | (bit_cast::<16, 4>(self.primary.cause.val().get_bits::<4>(0)) << 8)
-                    | (bit_cast::<16, 2>(self.valid.val()) << 12)
-                    | (bit_cast::<16, 1>(self.overrun.val().into()) << 14)
-                    | (bit_cast::<16, 1>(self.channel.busy.val().into()) << 15);
-            }
-        }
-        self.out_data.d.next = self.chosen.q.val();
-        self.bus_data_o.next = self.out_data.q.val();
+        self.moments.verdict.next = self.exchange.publish.val();
+        self.moments.good.next = self.exchange.good.val();
+        self.moments.flags.next = self.exchange.flags.val();
+        self.moments.reply_id.next = self.exchange.reply_id.val();
+        self.moments.crc.next = self.exchange.crc.val();
+        self.moments.single_parity.next = self.reply.single_parity.val();
+        self.moments.multi_parity.next = self.reply.multi_parity.val();
+        self.moments.has_single.next = self.exchange.has_single.val();
+        self.moments.has_multi.next = self.exchange.has_multi.val();
+        self.moments.has_identity.next = self.exchange.has_identity.val();
+        self.moments.has_alarm.next = self.exchange.has_alarm.val();
+        self.moments.is_memory.next = self.exchange.is_memory.val();
+        self.moments.head.next = self.reply.head.val();
+        self.moments.second.next = self.reply.second.val();
+        self.moments.register.next = self.strobes.register.val();
+        self.moments.reading.next = self.strobes.reading.val();
+        self.moments.request_id.next = self.request_id.q.val();
+        self.moments.busy.next = self.exchange.busy.val();
+        self.bus_data_o.next = self.moments.word.val();
+        self.led_o.next = self.moments.fresh.val();
     }
 }

@@ -70,6 +70,8 @@ pub struct Exchange {
     pub status: Signal<In, Bits<8>>,
     /// What is to be sent is what was asked for; a request that does not fit is cut.
     pub request_fits: Signal<In, Bit>,
+    /// Stay with the verdict: `publish` and all that belongs to it stand still.
+    pub hold: Signal<In, Bit>,
     /// Line to the encoder, from a register.
     pub tx: Signal<Out, Bit>,
     /// Driver enable, two registers that must agree: the request only.
@@ -143,7 +145,6 @@ pub struct Exchange {
     half_bit: Signal<Local, Bits<7>>,
     too_soon: Signal<Local, Bit>,
     alarms: Signal<Local, Bits<2>>,
-    is_end: Signal<Local, Bit>,
     in_field: Signal<Local, Bit>,
     is_ended: Signal<Local, Bit>,
     is_astray: Signal<Local, Bit>,
@@ -238,7 +239,6 @@ impl Logic for Exchange {
             & self.is_bit.val()
             & !self.index.q.val().get_bit(2)
             & !(self.index.q.val().get_bit(1) & self.index.q.val().get_bit(0));
-
         // The edge into the second cell of the sync code times what follows, even if the old grid has a strobe right now.
         self.retimed.next = self.rising.val()
             & self.in_sync.val()
@@ -255,24 +255,20 @@ impl Logic for Exchange {
             self.wire_bit.val() ^ (self.check.q.val().get_bit(0) & !self.order.is_crc.val());
         self.differs.next = self.level.val() ^ self.bits.bit_out.val();
         self.take.next = self.sampled.val() & self.is_bit.val();
-        if self.strobe.val()
-            & self.is_bit.val()
-            & ((self.phase.q.val() == Phase::Send) | (self.phase.q.val() == Phase::Field))
-        {
+        self.in_field.next =
+            (self.phase.q.val() == Phase::Send) | (self.phase.q.val() == Phase::Field);
+        if self.strobe.val() & self.is_bit.val() & self.in_field.val() {
             self.check.d.next = bit_cast::<8, 7>(self.check.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.summed.val().into()) << 7);
         }
-        self.in_field.next =
-            (self.phase.q.val() == Phase::Send) | (self.phase.q.val() == Phase::Field);
         // Start and data bits are nine: three does not divide what an upset takes from their number, or adds.
-        self.is_end.next = !self.is_start.val() & !self.is_bit.val();
         if self.strobe.val() {
             self.index.d.next = self.index.q.val() + 1;
             self.bits_mod_3.d.next = self.bits_mod_3.q.val() + 1;
             if self.bits_mod_3.q.val().get_bit(1) {
                 self.bits_mod_3.d.next = 0.into();
             }
-            if self.is_end.val() {
+            if !self.is_start.val() & !self.is_bit.val() {
                 self.bits_mod_3.d.next = 0.into();
                 if self.bits_mod_3.q.val().any() & self.in_field.val() {
                     self.upset.d.next = true;
@@ -286,7 +282,6 @@ impl Logic for Exchange {
         // An edge of the control field that is not that of a header.
         self.too_soon.next =
             self.order.is_control.val() & (self.is_start.val() | !self.index.q.val().any());
-
         self.publish.next = false;
         self.in_request.next =
             (self.phase.q.val() == Phase::Send) | (self.phase.q.val() == Phase::Release);
@@ -435,7 +430,12 @@ impl Logic for Exchange {
                 self.phase.d.next = Phase::Rest;
                 self.overrun.d.next = false;
                 if self.phase.q.val() == Phase::Judge {
-                    self.owed.d.next = false;
+                    self.owed.d.next = self.hold.val();
+                    if self.hold.val() {
+                        self.overrun.d.next = self.overrun.q.val();
+                        self.index.d.next = self.index.q.val();
+                        self.phase.d.next = Phase::Judge;
+                    }
                 }
                 // Of a reply that came whole nothing is left on the line, whatever it says.
                 if self.is_whole.val() {

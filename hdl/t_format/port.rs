@@ -224,7 +224,6 @@ impl Logic for TFormatPort {
         self.filter.filter_half.next = false;
         self.filter.majority.next = false;
         self.filter.both_edges.next = false;
-
         self.exchange.tick_us.next = self.tick_us.val();
         self.exchange.trigger.next = self.begins.val();
         // A trigger never goes to the EEPROM: its address and data are the host's, and may change at any time.
@@ -236,6 +235,7 @@ impl Logic for TFormatPort {
             self.exchange.request_id.next = self.send_id.q.val();
         }
         self.exchange.request_fits.next = !self.own_now.val() | self.send_fits.val();
+        self.exchange.hold.next = false;
         self.exchange.address.next = self.send_address.q.val();
         self.exchange.data.next = self.send_data.q.val();
         // A bit of one cycle would have no middle.

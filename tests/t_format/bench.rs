@@ -51,7 +51,8 @@ fn it_passes_on_receivers() {
 const TOP: &str = "";
 const STROBES: &str = "bus_strobes";
 const EXCHANGE: &str = "exchange";
-const OUTCOME: &str = "outcome";
+const MOMENTS: &str = "moments";
+const VERDICT: &str = "verdict_bytes";
 
 #[test]
 fn it_fails_on_every_broken_receiver() {
@@ -89,7 +90,7 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "settings taken within an exchange",
         TOP,
-        "can_write = !channel_busy & !start;",
+        "can_write = !exchange_busy & !start;",
         "can_write = 1'b1;",
     ),
     mutation(
@@ -106,15 +107,15 @@ const MUTATIONS: &[Mutation] = &[
     ),
     mutation(
         "data one clock later",
-        TOP,
-        "assign bus_data_o = out_data;",
-        "reg [15:0] later;\n    always @(posedge clk_i) later <= out_data;\n    assign bus_data_o = later;",
+        MOMENTS,
+        "assign word = out_data;",
+        "reg [15:0] later;\n    always @(posedge clock) later <= out_data;\n    assign word = later;",
     ),
     mutation(
         "data one clock sooner",
-        TOP,
-        "assign bus_data_o = out_data;",
-        "assign bus_data_o = chosen;",
+        MOMENTS,
+        "assign word = out_data;",
+        "assign word = out_data_next;",
     ),
     mutation(
         "data driven without chip select",
@@ -123,52 +124,52 @@ const MUTATIONS: &[Mutation] = &[
         "bus_data_oe = !bus_rd_n_i;",
     ),
     mutation(
-        "no moment: address 0 takes nothing",
-        TOP,
-        "if (is_first & !was_first) begin",
-        "if (1'b1) begin",
+        "no moment: the last result is shown",
+        MOMENTS,
+        "takes = is_first & !was_first;",
+        "takes = 1'b1;",
     ),
     mutation(
         "bytes of the multi-turn position exchanged",
-        TOP,
-        "chosen_next = seen_multi[23:8];",
-        "chosen_next = {seen_multi[15:8], seen_multi[23:16]};",
+        "reply_bytes",
+        "byte_bits_next = multi_bits[7:0];",
+        "byte_bits_next = multi_bits[15:8];",
     ),
     mutation(
         "communication alarm: delimiter missing",
-        TOP,
-        "({7'd0, seen_flags[6]} << 2'd3)",
+        VERDICT,
+        "({7'd0, flags[6]} << 2'd3)",
         "8'd0",
     ),
     mutation(
         "another ID taken for that of the request",
-        TOP,
-        "repeats = !(|seen_flags[5:0]);",
-        "repeats = !(|seen_flags[4:0]);",
+        VERDICT,
+        "repeats = !(|flags[5:0]);",
+        "repeats = !(|flags[4:0]);",
     ),
     mutation(
         "busy not shown",
         TOP,
-        "({15'd0, channel_busy} << 4'd15)",
-        "16'd0",
+        ".busy(exchange_busy),\n        .word(",
+        ".busy(1'b0),\n        .word(",
     ),
     mutation(
         "data of a write taken after the strobe",
         STROBES,
-        "assign written_data = last_data;",
-        "assign written_data = data_1;",
+        "if (!cs_n & !wr_n) begin",
+        "if (1'b1) begin",
     ),
     mutation(
         "a bad reply replaces the positions",
-        OUTCOME,
-        "take = publish & good;",
-        "take = publish;",
+        MOMENTS,
+        "takes_single = good & has_single;",
+        "takes_single = has_single;",
     ),
     mutation(
         "overrun not kept",
-        OUTCOME,
-        "overrun_next = flags_in[15];",
-        "overrun_next = 1'b0;",
+        EXCHANGE,
+        "overrun_next = overrun;\n                        index_next",
+        "overrun_next = 1'b0;\n                        index_next",
     ),
     mutation(
         "CRC of a request wrong",

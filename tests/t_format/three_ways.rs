@@ -26,6 +26,8 @@ fn recorded() -> Stimulus {
         };
         rig.memory(id, rng.next_u64() as u8, rng.next_u64() as u8);
         rig.pins.trigger = !rig.pins.trigger;
+        // A request that is refused is told in these, and nothing is written before.
+        rig.steps(20);
     }
     rig.pins.reset = true;
     rig.steps(3);

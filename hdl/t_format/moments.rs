@@ -1,0 +1,335 @@
+//! Moments: results as the words that the processor reads, in RAM, of which one moment is held while others come.
+//!
+//! ```text
+//! verdict -> step 3, 4, .. 15, 0, 1, 2 -> byte = head, or what stood there -> RAM, bank `free`
+//!                                   \--> free becomes latest
+//! address 0 is read: latest becomes held; words 1 to 4 are read for the parity of the positions
+//! ```
+//!
+//! A byte of step n is the low (n even) or high (n odd) one of word n / 2. Of the four banks three are in use: `held`, which the processor
+//! reads, `latest`, and `free`, which the next result is written to as a whole: what a reply does not bring is copied from `latest`, out of a
+//! second RAM that has nothing else to do. So a result changes at once, and a moment stands as long as the processor likes.
+//!
+//! The parity of the positions, formed of the bits as they came, is compared when the moment is taken, in the clocks in which the
+//! processor still reads address 0, whose word is in no RAM.
+
+use super::verdict_bytes::VerdictBytes;
+use crate::memory::Memory;
+use crate::reg::Reg;
+use endat_macros::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// Words of results.
+#[derive(LogicBlock, Block)]
+pub struct Moments {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// An exchange has ended; what follows belongs to it, and stands still as long as `hold`.
+    pub verdict: Signal<In, Bit>,
+    /// Not all of it has been taken yet.
+    pub hold: Signal<Out, Bit>,
+    /// The reply is good.
+    pub good: Signal<In, Bit>,
+    /// Raw flags, see [`super::cause`].
+    pub flags: Signal<In, Bits<16>>,
+    /// ID that the reply repeats.
+    pub reply_id: Signal<In, Bits<4>>,
+    /// CRC as received.
+    pub crc: Signal<In, Bits<8>>,
+    /// Parity of the single-turn position as it came.
+    pub single_parity: Signal<In, Bit>,
+    /// Parity of the multi-turn position as it came.
+    pub multi_parity: Signal<In, Bit>,
+    /// The reply has a single-turn position.
+    pub has_single: Signal<In, Bit>,
+    /// It has a multi-turn position.
+    pub has_multi: Signal<In, Bit>,
+    /// It has the kind of encoder.
+    pub has_identity: Signal<In, Bit>,
+    /// It has alarms.
+    pub has_alarm: Signal<In, Bit>,
+    /// It has EEPROM data.
+    pub is_memory: Signal<In, Bit>,
+    /// Next byte of the reply, see [`super::reply_bytes`].
+    pub head: Signal<In, Bits<8>>,
+    /// The one behind it.
+    pub second: Signal<In, Bits<8>>,
+    /// Strobe: the bytes of the reply move on.
+    pub copy: Signal<Out, Bit>,
+    /// What comes behind them.
+    pub tail: Signal<Out, Bits<8>>,
+    /// Strobe: a new result can be read from the next cycle on.
+    pub published: Signal<Out, Bit>,
+    /// The last reply was good.
+    pub fresh: Signal<Out, Bit>,
+    /// Address that the processor has selected.
+    pub register: Signal<In, Bits<3>>,
+    /// It is being read.
+    pub reading: Signal<In, Bit>,
+    /// Request ID, the word of address 0.
+    pub request_id: Signal<In, Bits<4>>,
+    /// An exchange is under way, bit 15 of address 7.
+    pub busy: Signal<In, Bit>,
+    /// The word, two clocks behind `register`.
+    pub word: Signal<Out, Bits<16>>,
+    #[start]
+    verdict_bytes: VerdictBytes,
+    /// Low bytes of the words.
+    #[start]
+    low: Memory<8, 5>,
+    /// Their high bytes.
+    #[start]
+    high: Memory<8, 5>,
+    /// The same bytes, for what a reply does not bring.
+    #[start]
+    known: Memory<8, 6>,
+    #[start(3.into())]
+    step: Reg<Bits<4>>,
+    // After a reset a bank is filled with zeros; twice, so that no upset does it.
+    #[start(true)]
+    clearing: Reg<Bit>,
+    cleared: Reg<Bit>,
+    #[start(1.into())]
+    free: Reg<Bits<2>>,
+    #[start(1.into())]
+    latest: Reg<Bits<2>>,
+    held: Reg<Bits<2>>,
+    // Parities: a bank that nobody has chosen shows itself.
+    #[start(true)]
+    latest_sum: Reg<Bit>,
+    held_sum: Reg<Bit>,
+    is_fresh: Reg<Bit>,
+    had_single: Reg<Bit>,
+    had_multi: Reg<Bit>,
+    single_sum: Reg<Bit>,
+    multi_sum: Reg<Bit>,
+    was_first: Reg<Bit>,
+    scan: Reg<Bits<3>>,
+    scanned: Reg<Bits<3>>,
+    differs: Reg<Bit>,
+    shown: Reg<Bits<3>>,
+    out_data: Reg<Bits<16>>,
+    clears: Signal<Local, Bit>,
+    copies: Signal<Local, Bit>,
+    is_last: Signal<Local, Bit>,
+    ends: Signal<Local, Bit>,
+    takes_single: Signal<Local, Bit>,
+    takes_multi: Signal<Local, Bit>,
+    brings: Signal<Local, Bit>,
+    next_step: Signal<Local, Bits<4>>,
+    byte: Signal<Local, Bits<8>>,
+    writes: Signal<Local, Bit>,
+    after_latest: Signal<Local, Bits<2>>,
+    next_free: Signal<Local, Bits<2>>,
+    is_first: Signal<Local, Bit>,
+    takes: Signal<Local, Bit>,
+    place: Signal<Local, Bits<3>>,
+    part: Signal<Local, Bit>,
+    fits: Signal<Local, Bit>,
+    cause: Signal<Local, Bits<4>>,
+    is_told: Signal<Local, Bit>,
+    high_byte: Signal<Local, Bits<8>>,
+    low_byte: Signal<Local, Bits<8>>,
+}
+
+impl Logic for Moments {
+    #[kernel]
+    fn update(&mut self) {
+        clock!(self, clock, low, high, known);
+
+        self.clears.next = self.clearing.q.val() & !self.cleared.q.val();
+        // Step by step, from 3 round to 2: the control data, which come last, are low in word 1.
+        self.copies.next = self.verdict.val() | self.clears.val();
+        self.is_last.next = self.step.q.val() == 2;
+        self.ends.next = self.copies.val() & self.is_last.val();
+        self.next_step.next = 3.into();
+        if self.copies.val() {
+            self.next_step.next = self.step.q.val() + 1;
+        }
+        self.step.d.next = self.next_step.val();
+        self.copy.next = self.copies.val();
+        self.hold.next = !self.is_last.val() | self.clears.val();
+        self.published.next = self.ends.val() & !self.clears.val();
+
+        // What is told about the reply comes behind its fields. EEPROM data, too, which are the same field as the kind of encoder.
+        self.takes_single.next = self.good.val() & self.has_single.val();
+        self.takes_multi.next = self.good.val() & self.has_multi.val();
+        self.verdict_bytes.good.next = self.good.val();
+        self.verdict_bytes.flags.next = self.flags.val();
+        self.verdict_bytes.reply_id.next = self.reply_id.val();
+        self.verdict_bytes.valid.next =
+            bit_cast::<2, 1>((self.had_single.q.val() | self.takes_single.val()).into())
+                | (bit_cast::<2, 1>((self.had_multi.q.val() | self.takes_multi.val()).into()) << 1);
+        // Steps 3, 4, 5, 6 and 9: nine steps before it is their turn.
+        self.tail.next = self.crc.val();
+        if self.step.q.val().get_bit(2) {
+            self.tail.next = self.verdict_bytes.communication.val();
+            if self.step.q.val().get_bit(0) {
+                self.tail.next = self.second.val();
+            }
+            if self.step.q.val().get_bit(1) {
+                self.tail.next = self.verdict_bytes.told.val();
+            }
+        }
+        if self.step.q.val().get_bit(3) {
+            self.tail.next = self.verdict_bytes.control.val();
+        }
+
+        self.brings.next = true;
+        match self.step.q.val().index() {
+            3 => {
+                self.brings.next = self.takes_single.val();
+            }
+            4 => {
+                self.brings.next = self.takes_single.val();
+            }
+            5 => {
+                self.brings.next = self.takes_single.val();
+            }
+            6 => {
+                self.brings.next = self.good.val() & self.has_identity.val();
+            }
+            7 => {
+                self.brings.next = self.takes_multi.val();
+            }
+            8 => {
+                self.brings.next = self.takes_multi.val();
+            }
+            9 => {
+                self.brings.next = self.takes_multi.val();
+            }
+            10 => {
+                self.brings.next = self.good.val() & self.has_alarm.val();
+            }
+            14 => {
+                self.brings.next = self.good.val() & self.is_memory.val();
+            }
+            _ => {}
+        }
+        self.byte.next = self.known.read_data.val();
+        if self.brings.val() | self.clears.val() {
+            self.byte.next = self.head.val();
+        }
+        self.known.read_address.next =
+            bit_cast::<6, 4>(self.next_step.val()) | (bit_cast::<6, 2>(self.latest.q.val()) << 4);
+        self.known.write_enable.next = self.copies.val();
+        self.known.write_address.next =
+            bit_cast::<6, 4>(self.step.q.val()) | (bit_cast::<6, 2>(self.free.q.val()) << 4);
+        self.known.write_data.next = self.byte.val();
+        // Nothing is written where the processor reads.
+        self.writes.next = self.copies.val() & (self.free.q.val() != self.held.q.val());
+        self.low.write_enable.next = self.writes.val() & !self.step.q.val().get_bit(0);
+        self.low.write_address.next = bit_cast::<5, 3>(self.step.q.val().get_bits::<3>(1))
+            | (bit_cast::<5, 2>(self.free.q.val()) << 3);
+        self.low.write_data.next = self.byte.val();
+        self.high.write_enable.next = self.writes.val() & self.step.q.val().get_bit(0);
+        self.high.write_address.next = bit_cast::<5, 3>(self.step.q.val().get_bits::<3>(1))
+            | (bit_cast::<5, 2>(self.free.q.val()) << 3);
+        self.high.write_data.next = self.byte.val();
+
+        // The next one, or the one behind it.
+        self.after_latest.next = self.latest.q.val() + 1;
+        self.next_free.next = self.after_latest.val();
+        if self.after_latest.val() == self.held.q.val() {
+            self.next_free.next = self.latest.q.val() ^ 2;
+        }
+        if !self.copies.val() | self.is_last.val() {
+            self.free.d.next = self.next_free.val();
+        }
+        if self.ends.val() {
+            self.latest.d.next = self.free.q.val();
+            self.latest_sum.d.next = self.free.q.val().xor();
+            self.clearing.d.next = false;
+            self.cleared.d.next = true;
+        }
+        if self.ends.val() & !self.clears.val() {
+            self.is_fresh.d.next = self.good.val();
+            if self.takes_single.val() {
+                self.had_single.d.next = true;
+                self.single_sum.d.next = self.single_parity.val();
+            }
+            if self.takes_multi.val() {
+                self.had_multi.d.next = true;
+                self.multi_sum.d.next = self.multi_parity.val();
+            }
+        }
+        self.fresh.next = self.is_fresh.q.val();
+
+        // The moment that is read.
+        self.is_first.next = self.reading.val() & !self.register.val().any();
+        self.was_first.d.next = self.is_first.val();
+        self.takes.next = self.is_first.val() & !self.was_first.q.val();
+        if self.takes.val() | (self.clears.val() & self.is_last.val()) {
+            self.held.d.next = self.latest.q.val();
+            self.held_sum.d.next = self.latest_sum.q.val();
+        }
+        self.low_byte.next = self.low.read_data.val();
+        self.high_byte.next = self.high.read_data.val();
+        // Words 1 to 4, of which 1 and 3 have a position in their high bytes only.
+        self.scan.d.next = 0.into();
+        if self.scan.q.val().any() & !self.scan.q.val().get_bit(2) {
+            self.scan.d.next = self.scan.q.val() + 1;
+        }
+        if self.takes.val() {
+            self.scan.d.next = 1.into();
+        }
+        self.scanned.d.next = self.scan.q.val();
+        self.part.next = self.high_byte.val().xor()
+            ^ (self.low_byte.val().xor() & !self.scanned.q.val().get_bit(0));
+        if self.scanned.q.val().any() {
+            self.differs.d.next = self.differs.q.val() ^ self.part.val();
+        }
+        if self.takes.val() {
+            self.differs.d.next = self.single_sum.q.val() ^ self.multi_sum.q.val();
+        }
+        self.fits.next = !self.differs.q.val() & (self.held.q.val().xor() == self.held_sum.q.val());
+        self.place.next = self.register.val();
+        if self.scan.q.val().any() {
+            self.place.next = self.scan.q.val();
+        }
+        self.low.read_address.next =
+            bit_cast::<5, 3>(self.place.val()) | (bit_cast::<5, 2>(self.held.q.val()) << 3);
+        self.high.read_address.next =
+            bit_cast::<5, 3>(self.place.val()) | (bit_cast::<5, 2>(self.held.q.val()) << 3);
+
+        self.shown.d.next = self.register.val();
+        self.out_data.d.next =
+            bit_cast::<16, 8>(self.low_byte.val()) | (bit_cast::<16, 8>(self.high_byte.val()) << 8);
+        self.cause.next = self.high_byte.val().get_bits::<4>(0);
+        // Causes 1 to 12 explain it; an alarm beside it would hide the upset.
+        self.is_told.next = self.cause.val().any()
+            & !(self.cause.val().get_bits::<2>(2).all() & self.cause.val().get_bits::<2>(0).any());
+        match self.shown.q.val().index() {
+            0 => {
+                self.out_data.d.next = bit_cast::<16, 4>(self.request_id.val());
+            }
+            1 => {
+                if !self.fits.val() {
+                    self.out_data.d.next = bit_cast::<16, 7>(self.low_byte.val().get_bits::<7>(0))
+                        | (bit_cast::<16, 8>(self.high_byte.val()) << 8);
+                }
+            }
+            7 => {
+                self.out_data.d.next = bit_cast::<16, 8>(self.low_byte.val())
+                    | (bit_cast::<16, 7>(self.high_byte.val().get_bits::<7>(0)) << 8)
+                    | (bit_cast::<16, 1>(self.busy.val().into()) << 15);
+                if !self.fits.val() {
+                    self.out_data.d.next = bit_cast::<16, 8>(self.low_byte.val())
+                        | (bit_cast::<16, 4>(self.cause.val()) << 8)
+                        | (bit_cast::<16, 1>(self.high_byte.val().get_bits::<1>(6)) << 14)
+                        | (bit_cast::<16, 1>(self.busy.val().into()) << 15);
+                    if !self.is_told.val() {
+                        self.out_data.d.next = bit_cast::<16, 8>(self.low_byte.val())
+                            | 0x0F00
+                            | (bit_cast::<16, 1>(self.high_byte.val().get_bits::<1>(6)) << 14)
+                            | (bit_cast::<16, 1>(self.busy.val().into()) << 15);
+                    }
+                }
+            }
+            _ => {}
+        }
+        self.word.next = self.out_data.q.val();
+    }
+}

@@ -1,0 +1,116 @@
+//! Reply bytes: the fields of a reply in registers that hand on bits while it comes, and bytes when it has come.
+//!
+//! ```text
+//! bits    status <- level    alarm <- level    multi <- level    byte <- level    single <- level
+//! bytes   tail -> status -> alarm -> multi -> byte -> single -> head
+//! ```
+//!
+//! So no multiplexer is needed to fetch a field, and a bit takes one logic cell: its look-up table chooses the direction.
+
+use crate::reg::Reg;
+use endat_macros::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// Fields of the reply under way, fetched byte by byte.
+#[derive(LogicBlock, Block)]
+pub struct ReplyBytes {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// No exchange is under way.
+    pub idle: Signal<In, Bit>,
+    /// Strobe: `level` is a data bit.
+    pub take: Signal<In, Bit>,
+    /// The bit.
+    pub level: Signal<In, Bit>,
+    /// It belongs to the status field.
+    pub is_status: Signal<In, Bit>,
+    /// It belongs to the single-turn position.
+    pub is_single: Signal<In, Bit>,
+    /// It belongs to the multi-turn position.
+    pub is_multi: Signal<In, Bit>,
+    /// It belongs to the kind of encoder or to EEPROM data.
+    pub is_byte: Signal<In, Bit>,
+    /// It belongs to the alarm field.
+    pub is_alarm: Signal<In, Bit>,
+    /// All fields move on by a byte.
+    pub copy: Signal<In, Bit>,
+    /// What comes behind the last of them.
+    pub tail: Signal<In, Bits<8>>,
+    /// The first byte: the low one of the single-turn position, before they move.
+    pub head: Signal<Out, Bits<8>>,
+    /// The byte behind it.
+    pub second: Signal<Out, Bits<8>>,
+    /// Status field, of which bits 7 to 4 are there only; stands still while bytes move.
+    pub status: Signal<Out, Bits<8>>,
+    /// Parity of the bits of the single-turn position that have come.
+    pub single_parity: Signal<Out, Bit>,
+    /// Parity of the bits of the multi-turn position that have come.
+    pub multi_parity: Signal<Out, Bit>,
+    status_bits: Reg<Bits<8>>,
+    single_bits: Reg<Bits<24>>,
+    multi_bits: Reg<Bits<24>>,
+    byte_bits: Reg<Bits<8>>,
+    alarm_bits: Reg<Bits<8>>,
+    judged: Reg<Bits<4>>,
+    single_sum: Reg<Bit>,
+    multi_sum: Reg<Bit>,
+    forget: Signal<Local, Bit>,
+}
+
+impl Logic for ReplyBytes {
+    #[kernel]
+    fn update(&mut self) {
+        self.forget.next = self.reset.val() | self.idle.val();
+        self.single_sum.reset.next = self.forget.val();
+        self.multi_sum.reset.next = self.forget.val();
+        self.status_bits.reset.next = self.forget.val();
+        self.judged.reset.next = self.forget.val();
+        if self.take.val() & self.is_status.val() {
+            self.status_bits.d.next = bit_cast::<8, 7>(self.status_bits.q.val().get_bits::<7>(1))
+                | (bit_cast::<8, 1>(self.level.val().into()) << 7);
+        }
+        if self.take.val() & self.is_single.val() {
+            self.single_bits.d.next =
+                bit_cast::<24, 23>(self.single_bits.q.val().get_bits::<23>(1))
+                    | (bit_cast::<24, 1>(self.level.val().into()) << 23);
+        }
+        if self.take.val() & self.is_single.val() {
+            self.single_sum.d.next = self.single_sum.q.val() ^ self.level.val();
+        }
+        if self.take.val() & self.is_multi.val() {
+            self.multi_sum.d.next = self.multi_sum.q.val() ^ self.level.val();
+        }
+        if self.take.val() & self.is_multi.val() {
+            self.multi_bits.d.next = bit_cast::<24, 23>(self.multi_bits.q.val().get_bits::<23>(1))
+                | (bit_cast::<24, 1>(self.level.val().into()) << 23);
+        }
+        if self.take.val() & self.is_byte.val() {
+            self.byte_bits.d.next = bit_cast::<8, 7>(self.byte_bits.q.val().get_bits::<7>(1))
+                | (bit_cast::<8, 1>(self.level.val().into()) << 7);
+        }
+        if self.take.val() & self.is_alarm.val() {
+            self.alarm_bits.d.next = bit_cast::<8, 7>(self.alarm_bits.q.val().get_bits::<7>(1))
+                | (bit_cast::<8, 1>(self.level.val().into()) << 7);
+        }
+        if self.copy.val() {
+            self.status_bits.d.next = self.tail.val();
+            self.alarm_bits.d.next = self.status_bits.q.val();
+            self.multi_bits.d.next = bit_cast::<24, 16>(self.multi_bits.q.val().get_bits::<16>(8))
+                | (bit_cast::<24, 8>(self.alarm_bits.q.val()) << 16);
+            self.byte_bits.d.next = self.multi_bits.q.val().get_bits::<8>(0);
+            self.single_bits.d.next =
+                bit_cast::<24, 16>(self.single_bits.q.val().get_bits::<16>(8))
+                    | (bit_cast::<24, 8>(self.byte_bits.q.val()) << 16);
+        } else {
+            // The verdict goes on needing these.
+            self.judged.d.next = self.status_bits.q.val().get_bits::<4>(4);
+        }
+        self.head.next = self.single_bits.q.val().get_bits::<8>(0);
+        self.second.next = self.single_bits.q.val().get_bits::<8>(8);
+        self.status.next = bit_cast::<8, 4>(self.judged.q.val()) << 4;
+        self.single_parity.next = self.single_sum.q.val();
+        self.multi_parity.next = self.multi_sum.q.val();
+    }
+}
