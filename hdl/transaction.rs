@@ -9,10 +9,9 @@
 //!
 //! With a supplement the clock stays LOW after the last CRC bit (`Park`), and `Frame` goes on until its cells are over.
 //!
-//! A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The frame
-//! at the full clock follows by itself, and its result is the trigger's.
-//! A frame is begun by a trigger, or by `own`, for a request that needs the line for itself. What becomes of the first is
-//! published; what becomes of either is told with `over`.
+//! A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The frame at the full
+//! clock follows by itself, and its result is the trigger's. A frame is begun by a trigger, or by `own`, for a request that needs the line for
+//! itself. What becomes of the first is published; what becomes of either is told with `over`.
 //!
 //! Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
 //! off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. DATA that was HIGH
@@ -658,12 +657,11 @@ impl Logic for Transaction {
         if self.leave.val() {
             self.normal_end.next = true;
         }
-        if (self.proof.val() & self.verdict.is_pending.val() & !self.going.val())
-            | self.announce.val()
-        {
+        if self.proof.val() & self.verdict.is_pending.val() & !self.going.val() {
             self.answered.d.next = true;
         }
         if self.announce.val() {
+            self.answered.d.next = true;
             self.late.d.next = true;
         }
         if self.normal_end.val() {

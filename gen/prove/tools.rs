@@ -126,6 +126,8 @@ fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<(bool, String
 
 /// Who looks into whole frames: it folds what is known as it goes, which solvers of bit vectors do not.
 const ABC: &str = "yosys-abc";
+/// How long it may take for a run.
+const ABC_SECONDS: u64 = 900;
 const INSTALL_ABC: &str = "install it: `apt install yosys`, or any yosys from source";
 
 /// Makes an and-inverter graph with a script for yosys, and looks for the first of its outputs that can be HIGH within so many cycles.
@@ -141,7 +143,7 @@ pub(super) fn first_violated(
     if !is_good {
         return Err(not_read(&text));
     }
-    let command = format!("read_aiger frame.aig; fold; strash; bmc3 -F {cycles}");
+    let command = format!("read_aiger frame.aig; fold; strash; bmc3 -F {cycles} -T {ABC_SECONDS}");
     let mut abc = Command::new(ABC);
     let abc = abc.current_dir(folder).args(["-c", &command]);
     let output = (abc.stdin(Stdio::null()).output())
@@ -161,9 +163,16 @@ pub(super) fn first_violated(
         });
         return Ok(Some(name.unwrap_or_else(|| index.into())));
     }
-    match text.contains("No output asserted in") {
-        true => Ok(None),
-        false => Err(GenError::input(format!(
+    let seen = text.split_once("No output asserted in ").map(|(_, rest)| {
+        let count = rest.split(' ').next().and_then(|n| n.parse::<u64>().ok());
+        count.unwrap_or(0)
+    });
+    match seen {
+        Some(seen) if seen >= cycles => Ok(None),
+        Some(seen) => Err(GenError::input(format!(
+            "{ABC}: looked at {seen} of {cycles} cycles in {ABC_SECONDS} s and gave up; take fewer bits, or fewer cycles in a bit"
+        ))),
+        None => Err(GenError::input(format!(
             "{ABC}: gave no answer: {}; {INSTALL_ABC}",
             crate::error::shorten(text.trim())
         ))),

@@ -658,10 +658,11 @@ module s6_two_channel_transaction (
         if (leave) begin
             normal_end = 1'b1;
         end
-        if ((proof & verdict_is_pending & !going) | announce) begin
+        if (proof & verdict_is_pending & !going) begin
             answered_next = 1'b1;
         end
         if (announce) begin
+            answered_next = 1'b1;
             late_next = 1'b1;
         end
         if (normal_end) begin
