@@ -40,7 +40,7 @@ is run with the encoder model of the bench, not proved. Settings, tcal (40 cycle
 phases as the row says. Wider positions are simulated only: of the two checks of the CRC one is folded, and to relate them takes the solver too long. Informations, requests and `double_edge`
 are outside. Takes `yosys-abc` (`apt install yosys`) besides.
 
-| bits | command | cycles a bit | delay, one way | cycles of a frame | bits at rest with a value, free | phases | | time |
+| bits | command | cycles a bit | delay, one way | cycles of a frame | bits at rest with a value, free | phases | time | |
 |---|---|---|---|---|---|---|---|---|
 ";
 
@@ -92,14 +92,14 @@ pub fn page(reports: &[Report], frames: &[FrameReport]) -> String {
         let [valued, free] = frame.rest_bits;
         let _ = writeln!(
             out,
-            "| {} | {} | {} | {} | {} | {valued}, {free} | {phases} of {of} | {} | {:.0} s |",
+            "| {} | {} | {} | {} | {} | {valued}, {free} | {phases} of {of} | {:.0} s | {} |",
             frame.position_bits,
             frame.command,
             frame.period_cycles,
             frame.times.delay_cycles,
             frame.frame_cycles,
+            frame.seconds,
             frame.broken.as_deref().unwrap_or("proved"),
-            frame.seconds
         );
     }
     let provers = reports.first().map_or("", |r| r.provers.as_str());

@@ -272,7 +272,7 @@ fn a_broken_channel_breaks_its_frames() {
             "channel",
             "oe_pin_next = sender_oe;",
             "oe_pin_next = sender_oe | transaction_run;",
-            "wrong clock, command or driver",
+            "both drive DATA",
         ),
         (
             "command_sender",
