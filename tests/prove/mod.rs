@@ -278,7 +278,7 @@ fn a_broken_channel_breaks_its_frames() {
             "command_sender",
             "cells_left_next = 4'd8",
             "cells_left_next = 4'd9",
-            "wrong clock, command or driver",
+            "both drive DATA",
         ),
     ];
     for (block, from, to, words) in cases {
