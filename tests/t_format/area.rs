@@ -49,7 +49,7 @@ fn the_preset_is_synthesised_for_three_families() {
     for family in [XC6S, ECP5, ICE40] {
         let folder = tools::folder(&format!("async_dsp-{}", family.name));
         let found = synthesise(&folder, &preset(), "async_dsp", &family).unwrap();
-        assert!((300..700).contains(&found.usage.ff), "{:?}", found.usage);
+        assert!((200..400).contains(&found.usage.ff), "{:?}", found.usage);
     }
 }
 
