@@ -306,10 +306,11 @@ impl Logic for Moments {
                 self.out_data.d.next = bit_cast::<16, 4>(self.request_id.val());
             }
             1 => {
-                if !self.fits.val() {
-                    self.out_data.d.next = bit_cast::<16, 7>(self.low_byte.val().get_bits::<7>(0))
-                        | (bit_cast::<16, 8>(self.high_byte.val()) << 8);
-                }
+                self.out_data.d.next = bit_cast::<16, 7>(self.low_byte.val().get_bits::<7>(0))
+                    | (bit_cast::<16, 1>(
+                        (self.low_byte.val().get_bit(7) & self.fits.val()).into(),
+                    ) << 7)
+                    | (bit_cast::<16, 8>(self.high_byte.val()) << 8);
             }
             7 => {
                 self.out_data.d.next = bit_cast::<16, 8>(self.low_byte.val())
