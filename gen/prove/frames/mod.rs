@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Together that is every frame after the first one, which measures the delay, for ever. *Rest* is a value for each register that
-//! controls, and anything for each that holds data; [`rest`] finds it by running the channel, the proofs show that it is one.
+//! controls, and anything for each that holds data; `rest.rs` finds it by running the channel, the proofs show that it is one.
 //! The channel is as emitted, with the settings of its configuration; encoder and cable are in `encoder.sv`.
 
 mod cases;
