@@ -140,7 +140,7 @@ pub fn prove(
             subject.name
         )));
     };
-    if card.line.double_edge || card.system_hz % 1_000_000 != 0 {
+    if card.line.double_edge || !card.system_hz.is_multiple_of(1_000_000) {
         return Err(GenError::input(format!(
             "{}: frames are proved for channels that look at DATA on one edge, at whole megahertz; take double_edge out, or another system_hz",
             subject.name
