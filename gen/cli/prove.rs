@@ -26,14 +26,14 @@ pub struct ProveArgs {
     /// Folder for counterexamples (VCD)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Prove whole frames, too: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
-    #[arg(long, value_name = "DELAY_CYCLES")]
+    /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
+    #[arg(long, value_name = "DELAY_CYCLES", conflicts_with = "out")]
     frames: Option<u32>,
     /// As JSON
     #[arg(long)]
     json: bool,
     /// Prove all presets with an EnDat channel, and print the page `docs/proofs.md`
-    #[arg(long, conflicts_with_all = ["config", "preset", "rtl", "out", "json"])]
+    #[arg(long, conflicts_with_all = ["config", "preset", "rtl", "out", "json", "frames"])]
     page: bool,
 }
 

@@ -35,7 +35,8 @@ whatever DATA is while nobody drives it, whatever the time, with triggers that m
 one was lost); the encoder sees the right command, the driver on from the second to the ninth falling edge, every pulse and not one more; the two never drive DATA at once.
 
 It is an induction over frames. *Rest* is a value for each register that controls and anything for each that holds data, found by running the channel. Proved are: from rest a
-frame leads to rest; from rest a cycle without a trigger leads to rest. So it holds for every frame, without bound. That the first frame, which measures the delay, leads to rest
+frame leads to rest; from rest a cycle without a trigger leads to rest. In a row with all phases of the microsecond that is every frame, without bound; in the others every frame that begins in the phase
+proved, from any such rest, and the phases between are not proved. That the first frame, which measures the delay, leads to rest
 is run with the encoder model of the bench, not proved. Settings, tcal (40 cycles), tm (88 cycles) and the delay are those of the row; the tick of the microsecond begins in as many of its
 phases as the row says. Wider positions are simulated only: of the two checks of the CRC one is folded, and to relate them takes the solver too long. Informations, requests and `double_edge`
 are outside. Takes `yosys-abc` (`apt install yosys`) besides.

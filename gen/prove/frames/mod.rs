@@ -6,7 +6,7 @@
 //!                 rest --a cycle--> rest     proved: waiting
 //! ```
 //!
-//! Together that is every frame after the first one, which measures the delay, for ever. *Rest* is a value for each register that
+//! In all phases of the microsecond that is every frame after the first one, which measures the delay, for ever. *Rest* is a value for each register that
 //! controls, and anything for each that holds data; `rest.rs` finds it by running the channel, the proofs show that it is one.
 //! The channel is as emitted, with the settings of its configuration; encoder and cable are in `encoder.sv`.
 
@@ -57,9 +57,7 @@ struct Case {
     system_hz: u64,
     command: ModeCommand,
     position_bits: u32,
-    delay_cycles: u32,
-    tcal_cycles: u32,
-    tm_cycles: u32,
+    times: Times,
     /// Where in the microsecond the run begins, in cycles.
     tick_phase: u64,
 }
@@ -115,7 +113,8 @@ impl fmt::Display for FrameReport {
             self.times.tm_cycles,
             match &self.broken {
                 Some(broken) => broken.clone(),
-                None => format!("every position arrives as it was sent, frame after frame, {}", self.verdict),
+                None if phases == of => format!("every position arrives as it was sent, frame after frame, {}", self.verdict),
+                None => format!("every position arrives as it was sent, in a frame that begins in these phases, {}", self.verdict),
             },
             self.seconds,
         )
@@ -171,9 +170,7 @@ pub fn prove(
         system_hz: card.system_hz,
         command: channel.command,
         position_bits: channel.position_bits,
-        delay_cycles: times.delay_cycles,
-        tcal_cycles: times.tcal_cycles,
-        tm_cycles: times.tm_cycles,
+        times,
         tick_phase: 0,
     };
     let design = cut(&subject.design, top);
@@ -282,8 +279,7 @@ impl Proof<'_> {
             Run::Frame => self.rest.frame_cycles,
             Run::Wait => 0,
         } + SLACK_CYCLES;
-        let valued: Vec<&Register> = self.registers.iter().collect();
-        let look = text::look(case, run, &valued, limit);
+        let look = text::look(case, run, &self.registers, limit);
         let mut files = self.subject.files.clone();
         files.push(Artifact::new(format!("{}.sv", text::FRAMES), frames));
         files.push(Artifact::new(format!("{}.sv", text::LOOK), look));

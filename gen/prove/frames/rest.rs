@@ -45,13 +45,13 @@ pub(super) fn find(channel: &Design, case: &Case, settings: &Settings) -> Result
     let cycle = |count: f64| (count * 1e12 / case.system_hz as f64) as Time;
     // Twice the way is between the edges where the encoder of the proof is.
     let path = PathConfig {
-        transceivers: cycle(f64::from(case.delay_cycles) + 0.75),
+        transceivers: cycle(f64::from(case.times.delay_cycles) + 0.75),
         ..PathConfig::default()
     };
     let mut encoder = EncoderConfig::endat22(case.position_bits);
     encoder.clock_to_data = 0;
-    encoder.tcal = cycle(case.tcal_cycles.into());
-    encoder.tm = cycle(case.tm_cycles.into())..=cycle(case.tm_cycles.into());
+    encoder.tcal = cycle(case.times.tcal_cycles.into());
+    encoder.tm = cycle(case.times.tm_cycles.into())..=cycle(case.times.tm_cycles.into());
     let line = LineConfig {
         ns_per_m: 0.0,
         clock: path,
@@ -99,7 +99,7 @@ pub(super) fn find(channel: &Design, case: &Case, settings: &Settings) -> Result
         if !is_ready || !is_good {
             return Err(GenError::input(format!(
                 "{}: no good frame with tcal {}, tm {}, delay {} cycles: cause {cause:?}; what is proved begins at a channel that works",
-                case.name, case.tcal_cycles, case.tm_cycles, case.delay_cycles
+                case.name, case.times.tcal_cycles, case.times.tm_cycles, case.times.delay_cycles
             )));
         }
     }

@@ -56,7 +56,7 @@ pub(super) fn frames(channel: &Module, case: &Case, settings: &Settings) -> Stri
     };
     let connections: Vec<String> = channel.ports.iter().filter_map(connection).collect();
     let mut out = String::from(include_str!("encoder.sv"));
-    let (bits, delay, phase) = (case.position_bits, case.delay_cycles, case.tick_phase);
+    let (bits, delay, phase) = (case.position_bits, case.times.delay_cycles, case.tick_phase);
     let last = bits - 1;
     let _ = write!(
         out,
@@ -83,8 +83,8 @@ endmodule
 ",
         f2 = u8::from(case.command.has_f2()),
         command = case.command.code(),
-        tcal = case.tcal_cycles,
-        tm = case.tm_cycles,
+        tcal = case.times.tcal_cycles,
+        tm = case.times.tm_cycles,
         tick = case.tick_cycles() - 1,
         name = channel.name,
         connections = connections.join(", ")
@@ -106,7 +106,7 @@ pub(super) fn around(case: &Case) -> Vec<Register> {
         register("u_encoder.value_now", 1, 0),
         register("u_encoder.wrong_now", 1, 0),
     ];
-    let delay = case.delay_cycles as usize;
+    let delay = case.times.delay_cycles as usize;
     if delay > 0 {
         registers.push(register("u_clk.cable.way", delay, mask(delay)));
         registers.push(register("u_driver.cable.way", delay, 0));
@@ -116,7 +116,7 @@ pub(super) fn around(case: &Case) -> Vec<Register> {
 }
 
 /// Module [`LOOK`]: what must hold, as outputs that must stay LOW. `registers` are those with a value at rest.
-pub(super) fn look(case: &Case, run: Run, registers: &[&Register], limit_cycles: u64) -> String {
+pub(super) fn look(case: &Case, run: Run, registers: &[Register], limit_cycles: u64) -> String {
     let last = case.position_bits - 1;
     let (mut wires, mut connections, mut outputs) = (String::new(), vec![], vec![]);
     let mut rests = String::new();
@@ -137,7 +137,7 @@ pub(super) fn look(case: &Case, run: Run, registers: &[&Register], limit_cycles:
         .map(|name| format!("output wire {name}"))
         .collect();
     // A trigger that meets a frame is lost, and changes nothing but that this is told.
-    let (trigger, is_rest, first) = match run {
+    let (trigger, is_rest, has_frame) = match run {
         Run::Frame => (
             "(step == 16'd0) | (trigger_any & busy)",
             "got & !busy & !was_rest",
@@ -169,7 +169,7 @@ pub(super) fn look(case: &Case, run: Run, registers: &[&Register], limit_cycles:
     assign bad_contention = drives & is_driven & !was_rest;
     assign bad_result = result_strobe & !was_rest & !((position == sent) & fresh & position_valid & ((cause == 5'd0) | (cause == 5'd{overrun})));
     assign bad_again = result_strobe & got & !was_rest;
-    assign bad_none = (step == 16'd{limit_cycles}) & !was_rest & {first};
+    assign bad_none = (step == 16'd{limit_cycles}) & !was_rest & {has_frame};
     assign bad_whole = is_rest & !whole;
 {rests}    {FRAMES} f (.clock(clock), .trigger(trigger), .position_now(position_now), .timestamp(timestamp), .undriven(undriven),
         .result_strobe(result_strobe), .position(position), .cause(cause), .fresh(fresh), .position_valid(position_valid),
