@@ -27,7 +27,7 @@ pub struct ProveArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
-    #[arg(long, value_name = "DELAY_CYCLES", conflicts_with = "out")]
+    #[arg(long, value_name = "DELAY_CYCLES")]
     frames: Option<u32>,
     /// As JSON
     #[arg(long)]
@@ -87,13 +87,11 @@ fn frames(
     project: &Project,
     delay_cycles: u32,
 ) -> Result<Outcome, GenError> {
-    let us = (project.card.system_hz / 1_000_000) as u32;
-    let times = Times {
-        delay_cycles,
-        tcal_cycles: 5 * us,
-        tm_cycles: 11 * us,
-    };
-    let report = prove::frames::prove(subject, project, times, PHASES_MAX, &progress)?;
+    let times = Times::usual(delay_cycles, project.card.system_hz);
+    let mut report = prove::frames::prove(subject, project, times, PHASES_MAX, &progress)?;
+    if let (Some(folder), Some(broken)) = (&arguments.out, &mut report.broken) {
+        broken.keep(folder, &format!("{}_frames", subject.name))?;
+    }
     let stdout = match arguments.json {
         true => to_json(&report)?,
         false => report.to_string(),

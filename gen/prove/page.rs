@@ -91,16 +91,22 @@ pub fn page(reports: &[Report], frames: &[FrameReport]) -> String {
     for frame in frames {
         let [phases, of] = frame.phases;
         let [valued, free] = frame.rest_bits;
+        let [first, next] = frame.frame_cycles;
+        let said = match &frame.broken {
+            None => "proved".into(),
+            Some(broken) => broken.to_string(),
+        };
         let _ = writeln!(
             out,
-            "| {} | {} | {} | {} | {} | {valued}, {free} | {phases} of {of} | {:.0} s | {} |",
+            "| {} | {} | {} | {} | {} | {} | {first}, {next} | {valued}, {free} | {phases} of {of} | {:.0} s | {} |",
             frame.position_bits,
             frame.command,
+            frame.infos,
             frame.period_cycles,
             frame.times.delay_cycles,
-            frame.frame_cycles,
+            frame.phase,
             frame.seconds,
-            frame.broken.as_deref().unwrap_or("proved"),
+            said,
         );
     }
     let provers = reports.first().map_or("", |r| r.provers.as_str());

@@ -124,57 +124,26 @@ fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<(bool, String
     ))
 }
 
-/// Who looks into whole frames: it folds what is known as it goes, which solvers of bit vectors do not.
-const ABC: &str = "yosys-abc";
-/// How long it may take for a run.
-const ABC_SECONDS: u64 = 900;
-const INSTALL_ABC: &str = "install it: `apt install yosys`, or any yosys from source";
-
-/// Makes an and-inverter graph with a script for yosys, and looks for the first of its outputs that can be HIGH within so many cycles.
-pub(super) fn first_violated(
+/// Makes simple gates of a module, as JSON. Nets whose names end like this are kept.
+pub(super) fn gates(
     folder: &Path,
-    script: &str,
-    cycles: u64,
-) -> Result<Option<String>, GenError> {
-    let script = format!("{script}write_aiger -zinit -symbols -map frame.map frame.aig\n");
+    files: &[&str],
+    top: &str,
+    kept: &str,
+) -> Result<String, GenError> {
+    let file = "gates.json";
+    let script = format!(
+        "read_verilog -formal -noassert -sv -DFORMAL {}\nhierarchy -top {top}\nproc\nflatten\ndelete t:$scopeinfo\n\
+         setattr -set keep 1 w:*{kept}\nopt\nmemory_map\nopt\ndffunmap\ntechmap\nopt\ndffunmap\nsimplemap\nopt_clean\n\
+         write_json {file}\n",
+        files.join(" ")
+    );
     let remedy = crate::scratch::REMEDY;
-    crate::artifact::write(folder, &[Artifact::new("frame.ys", script)], remedy)?;
-    let (is_good, text) = run(YOSYS, folder, &["-q", "frame.ys"])?;
+    crate::artifact::write(folder, &[Artifact::new("gates.ys", script)], remedy)?;
+    let (is_good, text) = run(YOSYS, folder, &["-q", "gates.ys"])?;
     if !is_good {
         return Err(not_read(&text));
     }
-    let command = format!("read_aiger frame.aig; fold; strash; bmc3 -F {cycles} -T {ABC_SECONDS}");
-    let mut abc = Command::new(ABC);
-    let abc = abc.current_dir(folder).args(["-c", &command]);
-    let output = (abc.stdin(Stdio::null()).output())
-        .map_err(|e| GenError::input(format!("{ABC}: cannot be started: {e}; {INSTALL_ABC}")))?;
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    if let Some((_, found)) = text.split_once("Output ") {
-        let index = found.split(' ').next().unwrap_or("");
-        let path = folder.join("frame.map");
-        let map =
-            std::fs::read_to_string(&path).map_err(|e| GenError::io("read", &path, &e, remedy))?;
-        let name = map.lines().find_map(|l| {
-            let words: Vec<&str> = l.split(' ').collect();
-            match words[..] {
-                ["output", i, _, name] if i == index => Some(name.to_owned()),
-                _ => None,
-            }
-        });
-        return Ok(Some(name.unwrap_or_else(|| index.into())));
-    }
-    let seen = text.split_once("No output asserted in ").map(|(_, rest)| {
-        let count = rest.split(' ').next().and_then(|n| n.parse::<u64>().ok());
-        count.unwrap_or(0)
-    });
-    match seen {
-        Some(seen) if seen >= cycles => Ok(None),
-        Some(seen) => Err(GenError::input(format!(
-            "{ABC}: looked at {seen} of {cycles} cycles in {ABC_SECONDS} s and gave up; take fewer bits, or fewer cycles in a bit"
-        ))),
-        None => Err(GenError::input(format!(
-            "{ABC}: gave no answer: {}; {INSTALL_ABC}",
-            crate::error::shorten(text.trim())
-        ))),
-    }
+    let path = folder.join(file);
+    std::fs::read_to_string(&path).map_err(|e| GenError::io("read", &path, &e, remedy))
 }

@@ -104,15 +104,19 @@ fn usual_bit_cycles() -> BTreeSet<u64> {
 
 /// 8 channels at 8 cycles a bit: a turn of the ring takes 115 cycles, a byte 80.
 #[test]
-fn words_back_to_back_are_written_at_every_rate_to_every_number_of_channels() {
+fn words_back_to_back_are_written_at_every_rate_and_to_every_number_of_channels() {
     let rates = usual_bit_cycles();
     assert!(
         rates.contains(&BIT_CYCLES_MIN) && rates.len() > 10,
         "{rates:?}"
     );
     let mut rng = Rng::new(6);
+    // The longest ring at every rate, and every ring at the fastest: the ring's turn and a byte's time are all that meet.
     for channels in 1..=8 {
-        for &bit_cycles in &rates {
+        let rates = rates
+            .iter()
+            .filter(|cycles| channels == 8 || **cycles == BIT_CYCLES_MIN);
+        for &bit_cycles in rates {
             let mut host = Host::new(channels, bit_cycles);
             let mut bytes = vec![];
             let mut model = BTreeMap::new();

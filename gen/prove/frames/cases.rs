@@ -1,49 +1,117 @@
-//! The frames of `docs/proofs.md`: widths, commands, cycles in a bit and cables, on a channel at 8 MHz.
+//! The frames of `docs/proofs.md`: widths, commands, cycles in a bit and cables.
 
 use super::{prove, FrameReport, Times};
 use crate::config::parse;
 use crate::error::GenError;
 use crate::prove::Subject;
 
-const SYSTEM_HZ: u64 = 8_000_000;
+/// A channel without bus, and its cable.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameCase {
+    /// Width of the position.
+    pub position_bits: u32,
+    /// Mode command.
+    pub command: &'static str,
+    /// System clock.
+    pub system_mhz: u64,
+    /// System clock cycles in a bit.
+    pub period_cycles: u64,
+    /// Delay, one way.
+    pub delay_cycles: u32,
+    /// What the settings allow for.
+    pub cable_m: u32,
+    /// Tables with the parts that it has.
+    pub parts: &'static str,
+    /// Most phases of the microsecond.
+    pub phases: u64,
+}
 
-/// Width, command, cycles in a bit, delay in cycles, cable in metres that the settings allow for, phases of the microsecond.
-const CASES: [(u32, &str, u64, u32, u32, u64); 9] = [
-    (13, "111000", 4, 1, 7, 8),
-    (1, "000111", 4, 0, 7, 1),
-    (1, "111000", 8, 3, 70, 1),
-    (8, "000111", 5, 2, 40, 1),
-    (10, "111000", 16, 5, 120, 1),
-    (12, "000111", 32, 4, 90, 1),
-    (13, "111000", 4, 31, 780, 1),
-    (13, "000111", 8, 16, 400, 1),
-    (16, "111000", 4, 3, 70, 1),
+/// EnDat 2.2 with 13 bits at 8 MHz, a bit of four cycles and one cycle of delay.
+pub const PLAIN: FrameCase = FrameCase {
+    position_bits: 13,
+    command: "111000",
+    system_mhz: 8,
+    period_cycles: 4,
+    delay_cycles: 1,
+    cable_m: 7,
+    parts: "",
+    phases: 16,
+};
+
+const fn frames(
+    position_bits: u32,
+    command: &'static str,
+    period: u64,
+    delay: u32,
+    cable_m: u32,
+) -> FrameCase {
+    FrameCase {
+        position_bits,
+        command,
+        period_cycles: period,
+        delay_cycles: delay,
+        cable_m,
+        ..PLAIN
+    }
+}
+
+const fn with(parts: &'static str, case: FrameCase) -> FrameCase {
+    FrameCase { parts, ..case }
+}
+
+const FIXED: &str = "[line]\nparts = [\"alignment\"]\nphase = \"fixed\"\nfixed_delay_ns = 1500\n";
+const FRAME: &str = "[line]\nparts = [\"alignment\"]\nphase = \"frame\"\n";
+const DOUBLE: &str = "[line]\nparts = [\"alignment\", \"double_edge\"]\nphase = \"frame\"\n";
+const INFO: &str = "[service]\nparts = [\"requests\"]\ninfos = [0x4C]\n";
+const BOTH: &str = "[service]\nparts = [\"requests\"]\ninfos = [0x4C, 0x59]\n";
+
+const CASES: [FrameCase; 16] = [
+    PLAIN,
+    frames(1, "000111", 4, 0, 7),
+    frames(1, "111000", 8, 3, 70),
+    frames(12, "000111", 32, 4, 90),
+    frames(13, "111000", 4, 31, 780),
+    FrameCase {
+        system_mhz: 16,
+        ..frames(13, "111000", 4, 40, 500)
+    },
+    frames(25, "000111", 5, 2, 40),
+    frames(25, "111000", 16, 5, 120),
+    frames(37, "111000", 8, 16, 400),
+    frames(48, "111000", 4, 3, 70),
+    frames(48, "000111", 6, 31, 500),
+    with(INFO, frames(25, "111000", 8, 3, 70)),
+    with(BOTH, frames(37, "111000", 4, 3, 70)),
+    with(FIXED, frames(25, "111000", 8, 4, 90)),
+    with(FRAME, frames(37, "111000", 8, 4, 90)),
+    with(DOUBLE, frames(25, "111000", 8, 4, 90)),
 ];
 
-/// Proves a frame of a channel without bus and parts.
+/// Proves the frames of a case.
 pub fn prove_case(
-    (bits, command, period_cycles, delay_cycles, cable_m, phases): (u32, &str, u64, u32, u32, u64),
+    case: &FrameCase,
     change: impl FnOnce(&mut Subject),
     progress: &dyn Fn(&str),
 ) -> Result<FrameReport, GenError> {
+    let system_hz = 1_000_000 * case.system_mhz;
     let text = format!(
-        "name = \"frame\"\n[clock]\nsystem_hz = {SYSTEM_HZ}\n[endat]\nclock_hz = {}\ncable_m = {cable_m}\n[[channel]]\n\
-         position_bits = {bits}\ncommand = \"{command}\"\n[trigger]\nsample_hz = 1_000\nsources = [\"pin\"]\n[host]\nbus = \"none\"\n",
-        SYSTEM_HZ / period_cycles
+        "name = \"frame\"\n[clock]\nsystem_hz = {system_hz}\n[endat]\nclock_hz = {}\ncable_m = {}\n[[channel]]\n\
+         position_bits = {}\ncommand = \"{}\"\n[trigger]\nsample_hz = 1_000\nsources = [\"pin\"]\n{}[host]\nbus = \"none\"\n",
+        system_hz / case.period_cycles,
+        case.cable_m,
+        case.position_bits,
+        case.command,
+        case.parts,
     );
     let project = parse("frame.toml", &text)?;
     let mut subject = Subject::new(&project)?;
     change(&mut subject);
-    let times = Times {
-        delay_cycles,
-        tcal_cycles: 40,
-        tm_cycles: 88,
-    };
-    prove(&subject, &project, times, phases, progress)
+    let times = Times::usual(case.delay_cycles, system_hz);
+    prove(&subject, &project, times, case.phases, progress)
 }
 
 /// Proves all of them.
 pub fn prove_cases(progress: &dyn Fn(&str)) -> Result<Vec<FrameReport>, GenError> {
-    let reports = CASES.iter().map(|case| prove_case(*case, |_| (), progress));
+    let reports = CASES.iter().map(|case| prove_case(case, |_| (), progress));
     reports.collect()
 }

@@ -1,40 +1,41 @@
-//! Proof of a whole frame: what the encoder sent is what is published, for every position.
+//! Proof of whole frames: what the encoder sent is what is published, for every position, from power-up on and for ever.
 //!
 //! ```text
-//! start values --first frame--> rest         run with the encoder model of the bench
-//!                 rest --a frame--> rest     proved: any position, any data left over from before
-//!                 rest --a cycle--> rest     proved: waiting
+//! power-up --> ready --first frame--> rest --frame--> rest     and a cycle without a trigger leads from each of the two to itself
 //! ```
 //!
-//! In all phases of the microsecond that is every frame after the first one, which measures the delay, for ever. *Rest* is a value for each register that
-//! controls, and anything for each that holds data; `rest.rs` finds it by running the channel, the proofs show that it is one.
-//! The channel is as emitted, with the settings of its configuration; encoder and cable are in `encoder.sv`.
+//! *Ready* and *rest* are a level for each register that controls, and anything for each that holds data. They are found by running: a run
+//! begins with unknown bits wherever there may be anything, and each bit of the channel is a function of these ([`forms`]). Where two
+//! runs come back differently, a register may be anything, until nothing changes any more. What is looked at is the Verilog as
+//! emitted, with the settings of its configuration; encoder and cable are in `encoder.sv`.
 
 mod cases;
-mod rest;
+mod forms;
+mod netlist;
 mod text;
+mod trace;
+mod walk;
 
-pub use cases::{prove_case, prove_cases};
+pub use cases::{prove_case, prove_cases, FrameCase, PLAIN};
+pub use trace::{Signal, Trace};
 
-use super::{below, tools, Subject, Verdict, PROVED};
+use super::{tools, Subject, PROVED};
 use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
 use crate::scratch;
-use endat_hdl::elaborate::Design;
+use endat_hdl::config::{ChannelConfig, PhaseSource};
+use endat_hdl::elaborate::Module;
 use endat_hdl::protocol::ModeCommand;
-use rest::{Register, Rest};
+use netlist::Netlist;
 use serde::Serialize;
 use std::fmt;
+use std::path::Path;
 use std::time::Instant;
-use text::{Run, CHECKS, REST};
+use walk::{Break, End, Run, State};
 
-/// Longer than a frame takes here and with the encoder model, in cycles.
-const SLACK_CYCLES: u64 = 40;
-/// Most phases of the microsecond that are proved one by one.
-pub const PHASES_MAX: u64 = 8;
-/// How often a register that is the same by chance may turn out to hold data.
-const REPAIRS_MAX: usize = 30;
+/// Most phases of the microsecond that frames are proved in.
+pub const PHASES_MAX: u64 = 16;
 
 /// Inputs of the channel with their levels.
 type Settings = Vec<(&'static str, u128)>;
@@ -50,7 +51,19 @@ pub struct Times {
     pub tm_cycles: u32,
 }
 
-/// A frame to be proved.
+impl Times {
+    /// Those of an encoder with tcal = 5 us and tm = 11 us, which is within what EnDat allows.
+    pub fn usual(delay_cycles: u32, system_hz: u64) -> Self {
+        let cycles = |us: u64| (us * system_hz / 1_000_000) as u32;
+        Self {
+            delay_cycles,
+            tcal_cycles: cycles(5),
+            tm_cycles: cycles(11),
+        }
+    }
+}
+
+/// Frames to be proved.
 #[derive(Clone, Debug)]
 struct Case {
     name: String,
@@ -58,8 +71,9 @@ struct Case {
     command: ModeCommand,
     position_bits: u32,
     times: Times,
-    /// Where in the microsecond the run begins, in cycles.
-    tick_phase: u64,
+    /// Additional data that the encoder sends: bit 0 the first, bit 1 the second.
+    infos: u32,
+    has_initial_values: bool,
 }
 
 impl Case {
@@ -69,7 +83,7 @@ impl Case {
     }
 }
 
-/// What has been proved of a frame.
+/// What has been proved of the frames of a channel.
 #[derive(Clone, Debug, Serialize)]
 pub struct FrameReport {
     /// The card.
@@ -80,42 +94,115 @@ pub struct FrameReport {
     pub position_bits: u32,
     /// System clock cycles in a bit.
     pub period_cycles: u64,
+    /// Where the phase of the samples comes from.
+    pub phase: &'static str,
+    /// Additional data in each answer.
+    pub infos: u32,
     /// Encoder and cable.
     #[serde(flatten)]
     pub times: Times,
-    /// From a trigger to rest.
-    pub frame_cycles: u64,
-    /// Bits of registers that have a value at rest, and bits that hold anything.
+    /// From the first trigger to rest, and from each other one, at most.
+    pub frame_cycles: [u64; 2],
+    /// Bits of registers that have a level at rest, and bits that may be anything.
     pub rest_bits: [usize; 2],
     /// Phases of the microsecond that were proved, of how many.
     pub phases: [u64; 2],
     /// Time for all.
     pub seconds: f64,
-    /// The answer.
-    pub verdict: Verdict,
     /// What does not hold, if anything.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub broken: Option<String>,
+    pub broken: Option<Broken>,
+}
+
+/// What does not hold.
+#[derive(Clone, Debug, Serialize)]
+pub struct Broken {
+    /// In words.
+    pub what: String,
+    /// The run in which.
+    pub run: &'static str,
+    /// Its cycle.
+    pub cycle: u64,
+    /// There is a run that leads there; otherwise it was not proved that none does.
+    pub is_reached: bool,
+    /// Signals up to there.
+    #[serde(skip)]
+    pub trace: Option<Trace>,
+    /// File with them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+}
+
+impl Broken {
+    fn new(found: Break, run: &'static str) -> Self {
+        Self {
+            what: found.what.into(),
+            run,
+            cycle: found.cycle,
+            is_reached: found.trace.is_some(),
+            trace: found.trace,
+            file: None,
+        }
+    }
+
+    /// Writes the waveform, if there is one, into a folder.
+    pub fn keep(&mut self, folder: &Path, name: &str) -> Result<(), GenError> {
+        let Some(trace) = &self.trace else {
+            return Ok(());
+        };
+        let mut text = vec![];
+        let path = folder.join(format!("{name}.vcd"));
+        let remedy = "give another folder with --out";
+        let written = trace.write_vcd(&mut text);
+        written.map_err(|e| GenError::io("write", &path, &e, remedy))?;
+        let text = String::from_utf8_lossy(&text);
+        crate::artifact::write(
+            folder,
+            &[Artifact::new(format!("{name}.vcd"), text)],
+            remedy,
+        )?;
+        self.file = Some(path.display().to_string());
+        Ok(())
+    }
+}
+
+impl fmt::Display for Broken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let word = match self.is_reached {
+            true => "VIOLATED",
+            false => "NOT PROVED",
+        };
+        write!(
+            f,
+            "{word} in cycle {} of {}: {}",
+            self.cycle, self.run, self.what
+        )
+    }
 }
 
 impl fmt::Display for FrameReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [phases, of] = self.phases;
+        let all =
+            "every position arrives as it was sent, from power-up on, frame after frame: proved";
+        let some = "every position arrives as it was sent, where frames begin in these phases of the microsecond: proved";
+        let said = match (&self.broken, phases == of) {
+            (Some(broken), _) => broken.to_string(),
+            (None, true) => all.into(),
+            (None, false) => some.into(),
+        };
         writeln!(
             f,
-            "{}: {} bits, {}, {} cycles a bit, delay {}, tcal {}, tm {} cycles: {} ({:.1} s, {phases} of {of} phases of the microsecond)",
+            "{}: {} bits, {}, {} additional data, {} cycles a bit, {} phase, delay {}, tcal {}, tm {} cycles, {phases} of {of} phases of the microsecond: {said} ({:.1} s)",
             self.name,
             self.position_bits,
             self.command,
+            self.infos,
             self.period_cycles,
+            self.phase,
             self.times.delay_cycles,
             self.times.tcal_cycles,
             self.times.tm_cycles,
-            match &self.broken {
-                Some(broken) => broken.clone(),
-                None if phases == of => format!("every position arrives as it was sent, frame after frame, {}", self.verdict),
-                None => format!("every position arrives as it was sent, in a frame that begins in these phases, {}", self.verdict),
-            },
             self.seconds,
         )
     }
@@ -131,7 +218,7 @@ pub fn prove(
 ) -> Result<FrameReport, GenError> {
     let started = Instant::now();
     let card = &project.card;
-    let is_endat = |c: &&endat_hdl::config::ChannelConfig| c.t_format.is_none();
+    let is_endat = |c: &&ChannelConfig| c.t_format.is_none();
     let top = (subject.design.modules.iter()).position(|m| m.type_name == PROVED);
     let (Some(channel), Some(top)) = (card.channels.iter().find(is_endat), top) else {
         return Err(GenError::input(format!(
@@ -139,9 +226,9 @@ pub fn prove(
             subject.name
         )));
     };
-    if card.line.double_edge || !card.system_hz.is_multiple_of(1_000_000) {
+    if !card.system_hz.is_multiple_of(1_000_000) {
         return Err(GenError::input(format!(
-            "{}: frames are proved for channels that look at DATA on one edge, at whole megahertz; take double_edge out, or another system_hz",
+            "{}: frames are proved at whole megahertz; take another system_hz",
             subject.name
         )));
     }
@@ -165,166 +252,203 @@ pub fn prove(
         ("fixed_delay", line.fixed_delay.into()),
         ("majority", line.majority.into()),
     ];
-    let mut case = Case {
+    let case = Case {
         name: subject.name.clone(),
         system_hz: card.system_hz,
         command: channel.command,
         position_bits: channel.position_bits,
         times,
-        tick_phase: 0,
-    };
-    let design = cut(&subject.design, top);
-    let rest = rest::find(&design, &case, &settings)?;
-    let mut proof = Proof {
-        subject,
-        channel: &design,
-        settings: &settings,
-        registers: text::around(&case)
-            .into_iter()
-            .chain(rest.registers.clone())
-            .collect(),
-        rest: &rest,
+        infos: match channel.command.has_f2() {
+            true => infos(&card.service.infos),
+            false => 0,
+        },
+        has_initial_values: subject.design.has_initial_values,
     };
     let all = case.tick_cycles();
-    let phases = all.min(phases);
-    let of_phase = |phase| [Run::Wait, Run::Frame].map(|run| (phase * all / phases, run));
-    let runs: Vec<(u64, Run)> = (0..phases).flat_map(of_phase).collect();
-    let mut broken = None;
-    let (mut next, mut repairs) = (0, 0);
-    while let Some(&(phase, run)) = runs.get(next) {
-        progress(&format!(
-            "{}: {} of {}, a frame has {} cycles",
-            case.name,
-            next + 1,
-            runs.len(),
-            rest.frame_cycles
-        ));
-        next += 1;
-        case.tick_phase = phase;
-        let Some(output) = proof.violated(&case, run)? else {
-            continue;
-        };
-        // A register that was the same by chance holds data. All that was shown with it has to be shown without it.
-        let index = output
-            .strip_prefix(REST)
-            .and_then(|i| i.parse::<usize>().ok());
-        match index {
-            Some(index) if repairs < REPAIRS_MAX => {
-                progress(&format!(
-                    "{}: {} may hold anything",
-                    case.name, proof.registers[index].name
-                ));
-                proof.registers[index].value = None;
-                repairs += 1;
-                next = 0;
-            }
-            _ => {
-                broken = Some(words(&output).to_owned());
-                break;
-            }
-        }
-    }
-    let bits = |has_value: bool| {
-        let found = proof.registers.iter();
-        let found = found.filter(|r| r.value.is_some() == has_value);
-        found.map(|r| r.width_bits).sum()
+    let count = all.min(phases);
+    let netlist = gates(subject, &subject.design.modules[top], &case, &settings)?;
+    let mut induction = Induction {
+        netlist: &netlist,
+        case: &case,
+        phases: (0..count).map(|phase| phase * all / count).collect(),
+        progress,
+        frame_cycles: [0, 0],
+        rest_bits: [0, 0],
+    };
+    let broken = match induction.run() {
+        Ok(()) => None,
+        Err(Stop::Broken(broken)) => Some(broken),
+        Err(Stop::Error(error)) => return Err(error),
     };
     Ok(FrameReport {
-        name: case.name,
         command: format!("{:06b}", case.command.code()),
         position_bits: case.position_bits,
         period_cycles: channel.period_cycles,
-        times,
-        frame_cycles: rest.frame_cycles,
-        rest_bits: [bits(true), bits(false)],
-        phases: [phases, all],
-        seconds: started.elapsed().as_secs_f64(),
-        verdict: match broken {
-            None => Verdict::Proved,
-            Some(_) => Verdict::NotProved,
+        phase: match card.line.phase {
+            _ if !card.line.alignment => "measured",
+            PhaseSource::Tracked => "tracked",
+            PhaseSource::Frame => "frame's",
+            PhaseSource::Fixed => "fixed",
         },
+        infos: case.infos.count_ones(),
+        times,
+        frame_cycles: induction.frame_cycles,
+        rest_bits: induction.rest_bits,
+        phases: [count, all],
+        seconds: started.elapsed().as_secs_f64(),
         broken,
+        name: case.name,
     })
 }
 
-/// The tree below a module as a design of its own. Modules stand before those that they instantiate.
-fn cut(design: &Design, top: usize) -> Design {
-    let wanted = below(design, top);
-    let last = wanted.iter().max().map_or(top, |&m| m);
-    let mut cut = design.clone();
-    cut.modules.truncate(last + 1);
-    cut.modules.drain(..top);
-    for module in &mut cut.modules {
-        for instance in &mut module.instances {
-            instance.module -= top;
+/// Which additional data these MRS codes select: bit 0 the first, bit 1 the second.
+fn infos(codes: &[u8]) -> u32 {
+    let of = |code: &u8| match code >> 4 {
+        4 => 1,
+        5 => 2,
+        _ => 0,
+    };
+    codes.iter().fold(0, |infos, code| infos | of(code))
+}
+
+/// The channel of these files with encoder and cable, as gates.
+fn gates(
+    subject: &Subject,
+    channel: &Module,
+    case: &Case,
+    settings: &Settings,
+) -> Result<Netlist, GenError> {
+    let folder = scratch::folder()?;
+    let mut files = subject.files.clone();
+    let frames = text::frames(channel, case, settings);
+    files.push(Artifact::new(format!("{}.sv", text::FRAMES), frames));
+    crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
+    let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
+    let text = tools::gates(folder.path(), &names, text::FRAMES, text::WHOLE)?;
+    Netlist::read(&text, text::FRAMES).map_err(|what| unreadable(case, &what))
+}
+
+fn unreadable(case: &Case, what: &str) -> GenError {
+    GenError::input(format!(
+        "{}: cannot run the Verilog: {what}; is it as it was emitted, with its properties?",
+        case.name
+    ))
+}
+
+/// What ends an induction early.
+enum Stop {
+    Broken(Broken),
+    Error(GenError),
+}
+
+impl From<GenError> for Stop {
+    fn from(error: GenError) -> Self {
+        Self::Error(error)
+    }
+}
+
+/// Frames that are looked at one by one before those of which nothing is told apart any more: an average over edges needs some
+/// to come to its end. The second number is for channels where the first one does not do.
+const SETTLING: [usize; 3] = [1, 5, 40];
+
+/// Finds ready and rest, and shows that every run leads to them.
+struct Induction<'a> {
+    netlist: &'a Netlist,
+    case: &'a Case,
+    phases: Vec<u64>,
+    progress: &'a dyn Fn(&str),
+    frame_cycles: [u64; 2],
+    rest_bits: [usize; 2],
+}
+
+impl Induction<'_> {
+    fn run(&mut self) -> Result<(), Stop> {
+        let registers = self.netlist.registers.iter();
+        let start: State = registers.map(|r| self.start(r)).collect();
+        let (ready, _) = self.all(Run::PowerUp, "power-up", &start)?;
+        let (ready, _) = self.closed(&[(Run::Wait, "a wait for the first trigger")], ready)?;
+        let (mut rest, cycles) = self.all(Run::Frame, "the first frame", &ready)?;
+        self.frame_cycles[0] = cycles;
+        let wait = (Run::Wait, "a wait");
+        let mut count = 1;
+        let last = SETTLING[SETTLING.len() - 1];
+        for settling in SETTLING {
+            for _ in count..settling {
+                rest = self.closed(&[wait], rest)?.0;
+                rest = self.all(Run::Frame, "one of the first frames", &rest)?.0;
+            }
+            count = settling;
+            match self.closed(&[wait, (Run::Frame, "a frame")], rest.clone()) {
+                Err(Stop::Broken(_)) if settling < last => {}
+                Err(stop) => return Err(stop),
+                Ok((rest, cycles)) => {
+                    self.frame_cycles[1] = cycles;
+                    for level in rest {
+                        self.rest_bits[usize::from(level.is_none())] += 1;
+                    }
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Level of a register after configuration. Which additional data the encoder sends is known: the service has selected them.
+    fn start(&self, register: &netlist::Register) -> Option<bool> {
+        let names = self.netlist.names.iter();
+        let mut selected = names.filter(|(name, _)| name.ends_with(text::SELECTED));
+        let bit = selected.find_map(|(_, nets)| nets.iter().position(|n| *n == register.output));
+        match bit {
+            Some(bit) => Some(self.case.infos >> bit & 1 == 1),
+            None => register.start,
         }
     }
-    cut
-}
 
-struct Proof<'a> {
-    subject: &'a Subject,
-    channel: &'a Design,
-    settings: &'a Settings,
-    registers: Vec<Register>,
-    rest: &'a Rest,
-}
+    /// Widens a state until these runs lead from it to itself; the cycles of the longest one.
+    fn closed(&self, runs: &[(Run, &'static str)], state: State) -> Result<(State, u64), Stop> {
+        let (mut state, mut longest) = (state, 0);
+        loop {
+            let before = state.clone();
+            for (run, name) in runs {
+                let (end, cycles) = self.all(*run, name, &before)?;
+                longest = longest.max(cycles);
+                join(&mut state, &end);
+            }
+            if state == before {
+                return Ok((state, longest));
+            }
+        }
+    }
 
-impl Proof<'_> {
-    /// An output that becomes HIGH in a run, if any does.
-    fn violated(&self, case: &Case, run: Run) -> Result<Option<String>, GenError> {
-        let folder = scratch::folder()?;
-        let frames = text::frames(self.channel.top(), case, self.settings);
-        let limit = match run {
-            Run::Frame => self.rest.frame_cycles,
-            Run::Wait => 0,
-        } + SLACK_CYCLES;
-        let look = text::look(case, run, &self.registers, limit);
-        let mut files = self.subject.files.clone();
-        files.push(Artifact::new(format!("{}.sv", text::FRAMES), frames));
-        files.push(Artifact::new(format!("{}.sv", text::LOOK), look));
-        crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
-        let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
-        let (look, rest) = names.split_last().unwrap_or((&"", &[]));
-        let with_value = self.registers.iter().filter(|r| r.value.is_some());
-        let exposed: String = with_value
-            .clone()
-            .map(|r| format!("w:{} ", r.name))
-            .collect();
-        let inits: String = with_value
-            .map(|r| {
-                let (width, value) = (r.width_bits, r.value.unwrap_or(0));
-                format!("setattr -set init {width}'b{value:0width$b} w:{}\n", r.name)
-            })
-            .chain([format!(
-                "setattr -set init 8'd{} w:tick_count\n",
-                case.tick_phase
-            )])
-            .collect();
-        let script = format!(
-            "read_verilog -formal -noassert -sv -DFORMAL {}\nhierarchy -top {frames}\nproc\nflatten\nasync2sync\nsetattr -unset init w:*\n{inits}\
-             expose {exposed}w:u.u_snapshot.f_whole\n\
-             read_verilog -formal -sv {look}\nhierarchy -top {top}\nproc\nflatten\nopt_clean\nsetundef -undriven -anyseq\n\
-             prep -top {top} -nordff\nasync2sync\ndffunmap\nchformal -lower\nopt -full\ndffunmap\nopt_clean\nmemory_map\nopt -full\n\
-             setundef -anyseq\ntechmap\nopt -fast\ndffunmap\nsetundef -zero\naigmap\nopt_clean\n",
-            rest.join(" "),
-            frames = text::FRAMES,
-            top = text::LOOK,
-        );
-        tools::first_violated(folder.path(), &script, limit + 1)
+    /// A run in every phase of the microsecond: where it leads to, and the cycles of the longest one.
+    fn all(&self, run: Run, name: &'static str, begins: &State) -> Result<(State, u64), Stop> {
+        let (mut to, mut longest): (Option<State>, u64) = (None, 0);
+        for (index, phase) in self.phases.iter().enumerate() {
+            let end = walk::run(self.netlist, self.case, begins, run, *phase);
+            match end.map_err(|what| unreadable(self.case, &what))? {
+                End::Waits { state, cycles } => {
+                    longest = longest.max(cycles);
+                    match &mut to {
+                        Some(to) => join(to, &state),
+                        None => to = Some(state),
+                    }
+                }
+                End::Breaks(broken) => return Err(Stop::Broken(Broken::new(broken, name))),
+            }
+            if longest > 1 {
+                let (card, count) = (&self.case.name, self.phases.len());
+                (self.progress)(&format!("{card}: {name}, {} of {count} phases", index + 1));
+            }
+        }
+        Ok((to.unwrap_or_default(), longest))
     }
 }
 
-/// What it means that an output is HIGH.
-fn words(output: &str) -> &str {
-    let known = [
-        "the encoder sees a wrong clock, command or driver",
-        "both drive DATA",
-        "what is published is not what was sent",
-        "a second result",
-        "no result, or no rest after it",
-        "the stored position does not fit its parity",
-    ];
-    let found = CHECKS.iter().position(|c| *c == output);
-    found.map_or("the channel does not come back to one rest", |i| known[i])
+/// A register that comes back differently may be anything.
+fn join(to: &mut State, state: &State) {
+    for (to, level) in to.iter_mut().zip(state) {
+        if to != level {
+            *to = None;
+        }
+    }
 }

@@ -1,0 +1,343 @@
+//! Bits as functions of unknown bits, written so that equal ones mostly are the same number: exclusive or of products of unknowns.
+//!
+//! A CRC, a parity, a shift register and a position are exclusive ors, and stay exact whatever their width; that is what solvers of
+//! Boolean formulas are slow at. A product with too many terms becomes an unknown of its own, that is known by its two factors. So two
+//! functions that are told to be the same are the same; of two that are told apart, [`Forms::sample`] says whether they are.
+
+use endat_sim::rng::Rng;
+use std::collections::HashMap;
+
+/// A function: which sum of products it is, and in the last bit whether it is inverted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) struct Form(u32);
+
+impl Form {
+    pub const LOW: Self = Self(0);
+    pub const HIGH: Self = Self(1);
+
+    fn sum(self) -> u32 {
+        self.0 >> 1
+    }
+
+    fn is_inverted(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    /// Its level, if that is known.
+    pub fn level(self) -> Option<bool> {
+        (self.sum() == 0).then_some(self.is_inverted())
+    }
+
+    pub fn inverted_if(self, inverted: bool) -> Self {
+        Self(self.0 ^ u32::from(inverted))
+    }
+}
+
+impl std::ops::Not for Form {
+    type Output = Self;
+    fn not(self) -> Self {
+        Self(self.0 ^ 1)
+    }
+}
+
+impl From<bool> for Form {
+    fn from(level: bool) -> Self {
+        Self(u32::from(level))
+    }
+}
+
+/// What an unknown is.
+#[derive(Clone, Copy, Debug)]
+enum Unknown {
+    /// Anything.
+    Free,
+    /// The product of two sums that would have had too many terms.
+    Product(u32, u32),
+}
+
+/// Products with more terms become an unknown.
+const TERMS_MAX: usize = 64;
+
+/// All functions of a run.
+pub(super) struct Forms {
+    unknowns: Vec<Unknown>,
+    /// Unknowns of each product of a sum, in order.
+    terms: Interned,
+    /// Terms of each sum, in order; sum 0 is empty.
+    sums: Interned,
+    added: HashMap<(u32, u32), u32>,
+    multiplied: HashMap<(u32, u32), u32>,
+}
+
+/// Lists with a number for each.
+#[derive(Default)]
+struct Interned {
+    lists: Vec<Box<[u32]>>,
+    numbers: HashMap<Box<[u32]>, u32>,
+}
+
+impl Interned {
+    fn number(&mut self, list: Vec<u32>) -> u32 {
+        let list = list.into_boxed_slice();
+        if let Some(number) = self.numbers.get(&list) {
+            return *number;
+        }
+        let number = self.lists.len() as u32;
+        self.lists.push(list.clone());
+        self.numbers.insert(list, number);
+        number
+    }
+
+    fn list(&self, number: u32) -> &[u32] {
+        &self.lists[number as usize]
+    }
+}
+
+/// Members of one of two ordered lists, of both (`keeps_both`), or of exactly one.
+fn merged(a: &[u32], b: &[u32], keeps_both: bool) -> Vec<u32> {
+    let mut out = Vec::with_capacity(a.len() + b.len());
+    let (mut i, mut j) = (0, 0);
+    while i < a.len() || j < b.len() {
+        if j == b.len() || (i < a.len() && a[i] < b[j]) {
+            out.push(a[i]);
+            i += 1;
+        } else if i == a.len() || b[j] < a[i] {
+            out.push(b[j]);
+            j += 1;
+        } else {
+            if keeps_both {
+                out.push(a[i]);
+            }
+            i += 1;
+            j += 1;
+        }
+    }
+    out
+}
+
+impl Forms {
+    pub fn new() -> Self {
+        let mut forms = Self {
+            unknowns: vec![],
+            terms: Interned::default(),
+            sums: Interned::default(),
+            added: HashMap::new(),
+            multiplied: HashMap::new(),
+        };
+        forms.sums.number(vec![]);
+        forms
+    }
+
+    /// A new unknown that may be anything.
+    pub fn free(&mut self) -> Form {
+        Form(self.unknown(Unknown::Free) << 1)
+    }
+
+    fn unknown(&mut self, what: Unknown) -> u32 {
+        self.unknowns.push(what);
+        let term = self.terms.number(vec![self.unknowns.len() as u32 - 1]);
+        self.sums.number(vec![term])
+    }
+
+    fn add(&mut self, a: u32, b: u32) -> u32 {
+        let (a, b) = (a.min(b), a.max(b));
+        match (a == 0, a == b) {
+            (true, _) => return b,
+            (_, true) => return 0,
+            _ => {}
+        }
+        if let Some(sum) = self.added.get(&(a, b)) {
+            return *sum;
+        }
+        let sum = merged(self.sums.list(a), self.sums.list(b), false);
+        let sum = self.sums.number(sum);
+        self.added.insert((a, b), sum);
+        sum
+    }
+
+    fn multiply(&mut self, a: u32, b: u32) -> u32 {
+        let (a, b) = (a.min(b), a.max(b));
+        if a == 0 || a == b {
+            return a;
+        }
+        if let Some(sum) = self.multiplied.get(&(a, b)) {
+            return *sum;
+        }
+        let (x, y) = (self.sums.list(a), self.sums.list(b));
+        let sum = if x.len() * y.len() <= TERMS_MAX {
+            let pairs: Vec<(u32, u32)> = (x.iter())
+                .flat_map(|i| y.iter().map(|j| (*i, *j)))
+                .collect();
+            let product = |&(i, j): &(u32, u32)| {
+                let both = merged(self.terms.list(i), self.terms.list(j), true);
+                self.terms.number(both)
+            };
+            let mut terms: Vec<u32> = pairs.iter().map(product).collect();
+            terms.sort_unstable();
+            // What is there twice is not there.
+            let groups = terms.chunk_by(|a, b| a == b);
+            let terms = groups.filter(|g| g.len() % 2 == 1).map(|g| g[0]);
+            let terms = terms.collect();
+            self.sums.number(terms)
+        } else {
+            self.unknown(Unknown::Product(a, b))
+        };
+        self.multiplied.insert((a, b), sum);
+        sum
+    }
+
+    pub fn xor(&mut self, a: Form, b: Form) -> Form {
+        let sum = self.add(a.sum(), b.sum());
+        Form(sum << 1).inverted_if(a.is_inverted() != b.is_inverted())
+    }
+
+    pub fn and(&mut self, a: Form, b: Form) -> Form {
+        match (a.level(), b.level()) {
+            (Some(false), _) | (_, Some(false)) => return Form::LOW,
+            (Some(true), _) => return b,
+            (_, Some(true)) => return a,
+            _ => {}
+        }
+        // (x + i)(y + j) = xy + jx + iy + ij
+        let mut sum = self.multiply(a.sum(), b.sum());
+        if b.is_inverted() {
+            sum = self.add(sum, a.sum());
+        }
+        if a.is_inverted() {
+            sum = self.add(sum, b.sum());
+        }
+        Form(sum << 1).inverted_if(a.is_inverted() && b.is_inverted())
+    }
+
+    pub fn or(&mut self, a: Form, b: Form) -> Form {
+        !self.and(!a, !b)
+    }
+
+    /// `b` while `select` is HIGH, `a` otherwise.
+    pub fn mux(&mut self, a: Form, b: Form, select: Form) -> Form {
+        let difference = self.xor(a, b);
+        let taken = self.and(difference, select);
+        self.xor(a, taken)
+    }
+
+    /// Whether a sum has an unknown in a term of its own and in no other: then it can be solved for it.
+    pub fn has_alone(&self, sum: Form, unknown: Form) -> bool {
+        let [term] = self.sums.list(unknown.sum()) else {
+            return false;
+        };
+        let [unknown] = self.terms.list(*term) else {
+            return false;
+        };
+        let with = self.sums.list(sum.sum()).iter();
+        let mut with = with.filter(|t| self.terms.list(**t).contains(unknown));
+        with.next() == Some(term) && with.next().is_none()
+    }
+
+    /// 64 draws of all unknowns.
+    pub fn sample(&self, seed: u64) -> Sample<'_> {
+        let mut sample = Sample {
+            forms: self,
+            levels: Vec::with_capacity(self.unknowns.len()),
+        };
+        let mut rng = Rng::new(seed);
+        for unknown in &self.unknowns {
+            // The factors of a product are older than it is.
+            let levels = match unknown {
+                Unknown::Free => rng.next_u64(),
+                Unknown::Product(a, b) => sample.of_sum(*a) & sample.of_sum(*b),
+            };
+            sample.levels.push(levels);
+        }
+        sample
+    }
+}
+
+/// Levels of all unknowns in 64 draws, a bit for each.
+pub(super) struct Sample<'a> {
+    forms: &'a Forms,
+    levels: Vec<u64>,
+}
+
+impl Sample<'_> {
+    fn of_sum(&self, sum: u32) -> u64 {
+        let product = |term: &u32| {
+            let unknowns = self.forms.terms.list(*term).iter();
+            unknowns.fold(!0, |level, u| level & self.levels[*u as usize])
+        };
+        let terms = self.forms.sums.list(sum).iter();
+        terms.fold(0, |level, term| level ^ product(term))
+    }
+
+    /// A function's level in each draw.
+    pub fn levels(&self, form: Form) -> u64 {
+        match form.is_inverted() {
+            false => self.of_sum(form.sum()),
+            true => !self.of_sum(form.sum()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Random circuits: whatever the unknowns are, the function has the level that the gates have. Catches a rule of the algebra that is
+    /// wrong, and a sum whose terms are out of order, in products that stay small and in those that become unknowns.
+    #[test]
+    fn functions_are_what_gates_compute() {
+        for seed in 0..200 {
+            let mut rng = Rng::new(seed);
+            let mut forms = Forms::new();
+            let inputs = 3 + (seed as usize % 20);
+            let mut nets: Vec<Form> = (0..inputs).map(|_| forms.free()).collect();
+            nets.extend([Form::LOW, Form::HIGH]);
+            let mut gates = vec![];
+            for _ in 0..120 {
+                let mut any = || rng.next_u64() as usize % nets.len();
+                let [a, b, c] = [any(), any(), any()];
+                let kind = gates.len() % 5;
+                gates.push((kind, [a, b, c]));
+                let [a, b, c] = [nets[a], nets[b], nets[c]];
+                nets.push(match kind {
+                    0 => forms.and(a, b),
+                    1 => forms.or(a, b),
+                    2 => forms.xor(a, b),
+                    3 => forms.mux(a, b, c),
+                    _ => !a,
+                });
+            }
+            let sample = forms.sample(seed);
+            let mut levels: Vec<u64> = nets[..inputs].iter().map(|f| sample.levels(*f)).collect();
+            levels.extend([0, !0]);
+            for (kind, [a, b, c]) in gates {
+                let [a, b, c] = [levels[a], levels[b], levels[c]];
+                levels.push(match kind {
+                    0 => a & b,
+                    1 => a | b,
+                    2 => a ^ b,
+                    3 => (b & c) | (a & !c),
+                    _ => !a,
+                });
+            }
+            for (net, level) in nets.iter().zip(levels) {
+                assert_eq!(sample.levels(*net), level, "seed {seed}");
+            }
+        }
+    }
+
+    /// Two ways to add up a parity are one function, of any width; a wrong one is another.
+    #[test]
+    fn a_parity_is_the_same_in_any_order() {
+        let mut forms = Forms::new();
+        let bits: Vec<Form> = (0..96).map(|_| forms.free()).collect();
+        let forward = bits.iter().fold(Form::LOW, |sum, b| forms.xor(sum, *b));
+        let halves = bits.chunks(2).rev().fold(Form::HIGH, |sum, pair| {
+            let both = forms.xor(pair[0], !pair[1]);
+            forms.xor(sum, both)
+        });
+        assert_eq!(forward, !halves.inverted_if(bits.len() / 2 % 2 == 1));
+        let without_one = forms.xor(forward, bits[50]);
+        assert!(forms.xor(without_one, forward).level().is_none());
+        assert!(forms.has_alone(forward, bits[50]) && !forms.has_alone(without_one, bits[50]));
+    }
+}
