@@ -96,9 +96,14 @@ fn frames(
         true => to_json(&report)?,
         false => report.to_string(),
     };
+    let broken = report.broken.iter();
+    let messages: Vec<String> = broken
+        .map(|broken| format!("{}: frames: {broken}", subject.name))
+        .collect();
     Ok(Outcome {
-        exit_code: u8::from(report.broken.is_some()),
-        ..Outcome::good(stdout)
+        stdout,
+        exit_code: u8::from(!messages.is_empty()),
+        messages,
     })
 }
 

@@ -1,6 +1,7 @@
 //! The emitted test bench as each language of Verilog, behind each bus, at each usual clock: a case is a clock, a bus and a reader.
 
 use crate::tools;
+use crate::verilog::testbench::at_50_mhz;
 use crate::verilog::write;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{parse, preset};
@@ -143,7 +144,7 @@ fn passes_with(test: &str, changes: &[(&str, &str)]) {
         assert_eq!(text.matches(old).count(), 1, "{old}");
         text.replacen(old, new, 1)
     };
-    let text = preset("s6_two_channel").unwrap().to_owned();
+    let text = at_50_mhz(preset("s6_two_channel").unwrap());
     let text = changes.iter().fold(text, change);
     let files = endat_gen::emit(&parse("changed.toml", &text).unwrap()).unwrap();
     let (folder, _) = write(test, &files);

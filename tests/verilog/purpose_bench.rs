@@ -138,7 +138,7 @@ fn a_card_without_initial_values_comes_to_life_by_its_reset() {
              [outputs]\nparts = [\"interrupt\"]\n[device]\ninitial_values = false\n"
         );
         let text = crate::bus::text(HostBus::Wishbone, &more)
-            .replace("100_000_000", "25_000_000")
+            .replace("100_000_000", "12_500_000")
             .replace("= [\"register\"]", "= [\"pin\"]");
         let card = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
         for file in card

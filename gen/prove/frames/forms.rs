@@ -51,8 +51,8 @@ impl From<bool> for Form {
 enum Unknown {
     /// Anything.
     Free,
-    /// The product of two sums that would have had too many terms.
-    Product(u32, u32),
+    /// The product of two functions, which would have had too many terms.
+    Product(Form, Form),
 }
 
 /// Products with more terms become an unknown.
@@ -67,6 +67,8 @@ pub(super) struct Forms {
     sums: Interned,
     added: HashMap<(u32, u32), u32>,
     multiplied: HashMap<(u32, u32), u32>,
+    /// Products that are unknowns.
+    named: HashMap<(Form, Form), Form>,
 }
 
 /// Lists with a number for each.
@@ -123,6 +125,7 @@ impl Forms {
             sums: Interned::default(),
             added: HashMap::new(),
             multiplied: HashMap::new(),
+            named: HashMap::new(),
         };
         forms.sums.number(vec![]);
         forms
@@ -155,35 +158,35 @@ impl Forms {
         sum
     }
 
-    fn multiply(&mut self, a: u32, b: u32) -> u32 {
+    /// The product of two sums, if it is short.
+    fn multiply(&mut self, a: u32, b: u32) -> Option<u32> {
         let (a, b) = (a.min(b), a.max(b));
-        if a == 0 || a == b {
-            return a;
+        if a == b {
+            return Some(a);
         }
         if let Some(sum) = self.multiplied.get(&(a, b)) {
-            return *sum;
+            return Some(*sum);
         }
         let (x, y) = (self.sums.list(a), self.sums.list(b));
-        let sum = if x.len() * y.len() <= TERMS_MAX {
-            let pairs: Vec<(u32, u32)> = (x.iter())
-                .flat_map(|i| y.iter().map(|j| (*i, *j)))
-                .collect();
-            let product = |&(i, j): &(u32, u32)| {
-                let both = merged(self.terms.list(i), self.terms.list(j), true);
-                self.terms.number(both)
-            };
-            let mut terms: Vec<u32> = pairs.iter().map(product).collect();
-            terms.sort_unstable();
-            // What is there twice is not there.
-            let groups = terms.chunk_by(|a, b| a == b);
-            let terms = groups.filter(|g| g.len() % 2 == 1).map(|g| g[0]);
-            let terms = terms.collect();
-            self.sums.number(terms)
-        } else {
-            self.unknown(Unknown::Product(a, b))
+        if x.len() * y.len() > TERMS_MAX {
+            return None;
+        }
+        let pairs: Vec<(u32, u32)> = (x.iter())
+            .flat_map(|i| y.iter().map(|j| (*i, *j)))
+            .collect();
+        let product = |&(i, j): &(u32, u32)| {
+            let both = merged(self.terms.list(i), self.terms.list(j), true);
+            self.terms.number(both)
         };
+        let mut terms: Vec<u32> = pairs.iter().map(product).collect();
+        terms.sort_unstable();
+        // What is there twice is not there.
+        let groups = terms.chunk_by(|a, b| a == b);
+        let terms = groups.filter(|g| g.len() % 2 == 1).map(|g| g[0]);
+        let terms = terms.collect();
+        let sum = self.sums.number(terms);
         self.multiplied.insert((a, b), sum);
-        sum
+        Some(sum)
     }
 
     pub fn xor(&mut self, a: Form, b: Form) -> Form {
@@ -198,8 +201,24 @@ impl Forms {
             (_, Some(true)) => return a,
             _ => {}
         }
+        if a == b {
+            return a;
+        }
+        if a == !b {
+            return Form::LOW;
+        }
+        let Some(product) = self.multiply(a.sum(), b.sum()) else {
+            // Inversions stay within: sums that go on for many cycles would grow otherwise.
+            let (a, b) = (a.min(b), a.max(b));
+            if let Some(form) = self.named.get(&(a, b)) {
+                return *form;
+            }
+            let form = Form(self.unknown(Unknown::Product(a, b)) << 1);
+            self.named.insert((a, b), form);
+            return form;
+        };
         // (x + i)(y + j) = xy + jx + iy + ij
-        let mut sum = self.multiply(a.sum(), b.sum());
+        let mut sum = product;
         if b.is_inverted() {
             sum = self.add(sum, a.sum());
         }
@@ -215,6 +234,11 @@ impl Forms {
 
     /// `b` while `select` is HIGH, `a` otherwise.
     pub fn mux(&mut self, a: Form, b: Form, select: Form) -> Form {
+        // Two ways to write it are one function.
+        let (a, b, select) = match select.is_inverted() {
+            true => (b, a, !select),
+            false => (a, b, select),
+        };
         let difference = self.xor(a, b);
         let taken = self.and(difference, select);
         self.xor(a, taken)
@@ -244,7 +268,7 @@ impl Forms {
             // The factors of a product are older than it is.
             let levels = match unknown {
                 Unknown::Free => rng.next_u64(),
-                Unknown::Product(a, b) => sample.of_sum(*a) & sample.of_sum(*b),
+                Unknown::Product(a, b) => sample.levels(*a) & sample.levels(*b),
             };
             sample.levels.push(levels);
         }

@@ -73,7 +73,6 @@ struct Case {
     times: Times,
     /// Additional data that the encoder sends: bit 0 the first, bit 1 the second.
     infos: u32,
-    has_initial_values: bool,
 }
 
 impl Case {
@@ -232,6 +231,12 @@ pub fn prove(
             subject.name
         )));
     }
+    if !subject.design.has_initial_values {
+        return Err(GenError::input(format!(
+            "{}: frames are proved from the start values on; take initial_values = false out, which changes nothing else",
+            subject.name
+        )));
+    }
     let line = card.line.start(card.system_hz);
     let settings: Settings = vec![
         ("period_cycles", channel.period_cycles.into()),
@@ -262,7 +267,6 @@ pub fn prove(
             true => infos(&card.service.infos),
             false => 0,
         },
-        has_initial_values: subject.design.has_initial_values,
     };
     let all = case.tick_cycles();
     let count = all.min(phases);

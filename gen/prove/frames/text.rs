@@ -39,7 +39,7 @@ pub(super) fn frames(channel: &Module, case: &Case, settings: &Settings) -> Stri
         let net = &channel.nets[port.net];
         let width = net.width_bits;
         let value = match net.name.as_str() {
-            "clock" | "reset" | "tick_us" | "timestamp" | "trigger" | "data_i" => net.name.clone(),
+            "clock" | "tick_us" | "timestamp" | "trigger" | "data_i" => net.name.clone(),
             "endat_clk" | "data_o" | "data_oe" | "busy" | "cause" | "fresh" | "position"
             | "position_valid" | "result_strobe" | "info_1" | "info_2" | "info_came"
             | "info_good" => net.name.clone(),
@@ -59,7 +59,7 @@ pub(super) fn frames(channel: &Module, case: &Case, settings: &Settings) -> Stri
         out,
         "
 module {FRAMES} (
-    input  wire clock, input wire reset, input wire tick_us, input wire trigger, input wire [{last}:0] position_now,
+    input  wire clock, input wire tick_us, input wire trigger, input wire [{last}:0] position_now,
     input  wire [23:0] info_1_now, input wire [23:0] info_2_now, input wire [31:0] timestamp, input wire undriven,
     output wire endat_clk, output wire data_o, output wire data_oe, output wire line, output wire data_i,
     output wire busy, output wire result_strobe, output wire [47:0] position, output wire [4:0] cause, output wire fresh,

