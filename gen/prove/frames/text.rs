@@ -53,7 +53,7 @@ pub(super) fn frames(channel: &Module, case: &Case, settings: &Settings) -> Stri
     };
     let connections: Vec<String> = channel.ports.iter().filter_map(connection).collect();
     let mut out = String::from(include_str!("encoder.sv"));
-    let (bits, delay) = (case.position_bits, case.times.delay_cycles);
+    let (bits, delay) = (case.position_bits, case.line.delay_cycles);
     let last = bits - 1;
     let _ = write!(
         out,
@@ -81,10 +81,10 @@ endmodule
 ",
         f2 = u8::from(case.command.has_f2()),
         command = case.command.code(),
-        tcal = case.times.tcal_cycles,
+        tcal = case.line.tcal_cycles,
         info_1 = case.infos & 1,
         info_2 = case.infos >> 1,
-        tm = case.times.tm_cycles,
+        tm = case.line.tm_cycles,
         name = channel.name,
         connections = connections.join(", ")
     );

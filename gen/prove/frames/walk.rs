@@ -4,7 +4,7 @@ use super::forms::{Form, Forms, Sample};
 use super::netlist::{Kind, Net, Netlist, ANYTHING, HIGH};
 use super::text;
 use super::trace::{Signal, Trace};
-use super::Case;
+use super::{Case, Undriven};
 
 /// Longest run, in microseconds: the frame that measures takes less.
 const LIMIT_US: u64 = 4_000;
@@ -353,11 +353,13 @@ impl Walk<'_> {
 
     /// DATA while nobody drives it, the time, and what the Verilog leaves open.
     fn drive_anything(&mut self) -> Result<(), String> {
-        for name in ["timestamp", "undriven"] {
-            for net in self.nets(name)?.to_vec() {
-                let form = self.forms.free();
-                self.set(net, form);
-            }
+        for net in self.nets("timestamp")?.to_vec() {
+            let form = self.forms.free();
+            self.set(net, form);
+        }
+        if self.case.line.undriven == Undriven::Anything {
+            let form = self.forms.free();
+            self.drive("undriven", &[form])?;
         }
         let form = self.forms.free();
         self.set(ANYTHING, form);
