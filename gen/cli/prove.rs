@@ -23,7 +23,7 @@ pub struct ProveArgs {
     /// Prove the Verilog files in this folder, as `emit` wrote them and you have them now
     #[arg(long, value_name = "DIR")]
     rtl: Option<PathBuf>,
-    /// Folder for counterexamples (VCD)
+    /// Folder for counterexamples (VCD and SVG)
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Prove whole frames instead: what the encoder sent is published, with this delay of the cable, one way, in system clock cycles

@@ -13,9 +13,11 @@ mod harness;
 mod page;
 mod report;
 mod tools;
+mod trace;
 
 pub use page::page;
 pub use report::{ChannelReport, Report, Row, Verdict};
+pub use trace::Trace;
 
 use crate::artifact::Artifact;
 use crate::config::Project;
@@ -24,6 +26,7 @@ use crate::readers::is_core;
 use crate::scratch;
 use endat_hdl::elaborate::properties::{of_label, properties, Begins, Property};
 use endat_hdl::elaborate::{Design, Module};
+use endat_sim::diagram::waves_svg;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use tools::Answer;
@@ -142,7 +145,7 @@ fn prove_channel(
         }
         let mut rows = report::rows(&blocks, begins, &answer);
         if let (Some(traces), Some(trace)) = (traces, &answer.trace) {
-            keep(traces, &module.name, trace, &mut rows)?;
+            keep(traces, &module.name, trace, &answer.failed, &mut rows)?;
         }
         report.rows.append(&mut rows);
     }
@@ -205,15 +208,38 @@ fn below(design: &Design, top: usize) -> Vec<usize> {
     found
 }
 
-/// Writes a counterexample beside others; the rows that it is of tell where.
-fn keep(traces: &Path, module: &str, trace: &str, rows: &mut [Row]) -> Result<(), GenError> {
-    let failed = rows.iter().find(|r| r.verdict.is_failure());
-    let Some(name) = failed.map(|r| r.name.clone()) else {
+/// Writes a counterexample, as waveform and drawing, beside others; the rows that it is of tell where.
+fn keep(
+    traces: &Path,
+    module: &str,
+    trace: &str,
+    assertions: &[String],
+    rows: &mut [Row],
+) -> Result<(), GenError> {
+    let Some(failed) = rows.iter().find(|r| r.verdict.is_failure()) else {
         return Ok(());
     };
-    let path = PathBuf::from(format!("{module}_{name}.vcd"));
-    let artifact = Artifact::new(path.display().to_string(), trace);
-    crate::artifact::write(traces, &[artifact], "give another folder with --out")?;
+    let name = format!("{module}_{}", failed.name);
+    let path = PathBuf::from(format!("{name}.vcd"));
+    let remedy = "give another folder with --out";
+    // A lemma of it may be what fails, in the same block.
+    let is_of = |path: &&String| {
+        path.rsplit('.')
+            .next()
+            .is_some_and(|l| l.starts_with(&failed.name))
+    };
+    let assertion = assertions.iter().find(is_of).map_or("", String::as_str);
+    let waves = trace::waves(trace, assertion);
+    let waves = waves.map_err(|e| GenError::io("read", &path, &e, remedy))?;
+    let title = format!("{}: {} ({})", failed.module, failed.name, failed.verdict);
+    let files = [
+        Artifact::new(path.display().to_string(), trace),
+        Artifact::new(
+            format!("{name}.svg"),
+            waves_svg(&waves, &title, &failed.words),
+        ),
+    ];
+    crate::artifact::write(traces, &files, remedy)?;
     let shown = traces.join(&path).display().to_string();
     for row in rows.iter_mut().filter(|r| r.verdict.is_failure()) {
         row.trace = Some(shown.clone());

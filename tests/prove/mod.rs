@@ -185,8 +185,11 @@ fn a_user_who_changes_a_line_sees_a_proof_fail() {
             .iter()
             .find(|r| said.starts_with(r["name"].as_str().unwrap()))
             .unwrap();
-        let trace = std::fs::read_to_string(row["trace"].as_str().unwrap()).unwrap();
+        let path = row["trace"].as_str().unwrap();
+        let trace = std::fs::read_to_string(path).unwrap();
         assert!(trace.contains("$var"), "a waveform");
+        let drawing = std::fs::read_to_string(path.replace(".vcd", ".svg")).unwrap();
+        assert!(endat_sim::diagram::is_drawing(&drawing) && drawing.contains(">reset</text>"));
     }
     let file = format!("{rtl}/bare_channel.v");
     std::fs::write(&file, "module nothing; endmodule\n").unwrap();

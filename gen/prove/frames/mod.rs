@@ -5,7 +5,7 @@
 //! ```
 //!
 //! *Ready* and *rest* are a level for each register that controls, and anything for each that holds data. They are found by running: a run
-//! begins with unknown bits wherever there may be anything, and each bit of the channel is a function of these ([`forms`]). Where two
+//! begins with unknown bits wherever there may be anything, and each bit of the channel is a function of these (`forms.rs`). Where two
 //! runs come back differently, a register may be anything, until nothing changes any more. What is looked at is the Verilog as
 //! emitted, with the settings of its configuration; encoder and cable are in `encoder.sv`.
 
@@ -13,13 +13,11 @@ mod cases;
 mod forms;
 mod netlist;
 mod text;
-mod trace;
 mod walk;
 
 pub use cases::{prove_case, prove_cases, FrameCase, PLAIN};
-pub use trace::{Signal, Trace};
 
-use super::{tools, Subject, PROVED};
+use super::{tools, Subject, Trace, PROVED};
 use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
@@ -145,7 +143,7 @@ pub struct Broken {
     pub run: &'static str,
     /// Its cycle.
     pub cycle: u64,
-    /// There is a run that leads there; otherwise it was not proved that none does.
+    /// There is a run that leads there, from the state that the run begins with; otherwise it was not proved that none does.
     pub is_reached: bool,
     /// Signals up to there.
     #[serde(skip)]
@@ -167,23 +165,18 @@ impl Broken {
         }
     }
 
-    /// Writes the waveform, if there is one, into a folder.
+    /// Writes waveform and drawing, if there is a run, into a folder.
     pub fn keep(&mut self, folder: &Path, name: &str) -> Result<(), GenError> {
-        let Some(trace) = &self.trace else {
-            return Ok(());
-        };
-        let mut text = vec![];
-        let path = folder.join(format!("{name}.vcd"));
-        let remedy = "give another folder with --out";
-        let written = trace.write_vcd(&mut text);
-        written.map_err(|e| GenError::io("write", &path, &e, remedy))?;
-        let text = String::from_utf8_lossy(&text);
-        crate::artifact::write(
-            folder,
-            &[Artifact::new(format!("{name}.vcd"), text)],
-            remedy,
-        )?;
-        self.file = Some(path.display().to_string());
+        if let Some(trace) = &self.trace {
+            trace.keep(
+                folder,
+                name,
+                &format!("{name}: {}", self.what),
+                &self.to_string(),
+            )?;
+            let path = folder.join(format!("{name}.vcd"));
+            self.file = Some(path.display().to_string());
+        }
         Ok(())
     }
 }

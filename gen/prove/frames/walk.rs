@@ -3,8 +3,8 @@
 use super::forms::{Form, Forms, Sample};
 use super::netlist::{Kind, Net, Netlist, ANYTHING, HIGH};
 use super::text;
-use super::trace::{Signal, Trace};
-use super::{Case, Undriven};
+use super::{Case, Trace, Undriven};
+use endat_sim::diagram::Wave;
 
 /// Longest run, in microseconds: the frame that measures takes less.
 const LIMIT_US: u64 = 4_000;
@@ -271,15 +271,15 @@ impl Walk<'_> {
                     word | (sample.levels(*form) >> draw & 1) << bit
                 })
             };
-            Signal {
-                name,
+            Wave {
+                name: (*name).into(),
                 width_bits: width,
                 levels: self.history.iter().map(word).collect(),
             }
         });
         Trace {
             system_hz: self.case.system_hz,
-            signals: signals.collect(),
+            waves: signals.collect(),
         }
     }
 
