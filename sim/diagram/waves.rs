@@ -27,6 +27,8 @@ const HEIGHT: f64 = 18.0;
 const WIDTH_MAX: f64 = 2400.0;
 const CYCLE_MAX: f64 = 26.0;
 const MARGIN: f64 = 24.0;
+/// Room for the last values.
+const VALUE: f64 = 84.0;
 
 /// Spans of one level: first cycle, the one behind the last, level.
 fn spans(levels: &[u64]) -> Vec<(usize, usize, u64)> {
@@ -75,6 +77,12 @@ pub fn waves_svg(waves: &[Wave], title: &str, subtitle: &str) -> String {
             svg.line(&points.collect::<Vec<_>>(), "wire");
             continue;
         }
+        // The value at the mark is what matters, and mostly too short to stand in its span.
+        let last = wave
+            .levels
+            .last()
+            .map_or(String::new(), |l| format!("{l:x}"));
+        svg.text(x(cycles) + 8.0, low - 5.0, Anchor::Start, "value", &last);
         for (from, to, level) in spans {
             let (from, to) = (x(from), x(to));
             // The slopes of a short span meet.
@@ -97,7 +105,7 @@ pub fn waves_svg(waves: &[Wave], title: &str, subtitle: &str) -> String {
     }
     let last = x(cycles - 1) + cycle / 2.0;
     svg.line(&[(last, TOP - 10.0), (last, bottom + 3.0)], "mark");
-    let width = (x(cycles) + MARGIN).max(head + MARGIN);
+    let width = (x(cycles) + VALUE + MARGIN).max(head + MARGIN);
     let unit = "system clock cycles; words are hexadecimal";
     svg.text(left, bottom + 30.0, Anchor::Start, "tick", unit);
     svg.finish(width, bottom + 44.0, title, STYLE)
