@@ -145,7 +145,19 @@ fn prove_channel(
         }
         let mut rows = report::rows(&blocks, begins, &answer);
         if let (Some(traces), Some(trace)) = (traces, &answer.trace) {
-            keep(traces, &module.name, trace, &answer.failed, &mut rows)?;
+            let mut paths = answer.failed.iter();
+            let is_of = |path: &str, row: &Row| {
+                property_of(&blocks, path).is_some_and(|(_, p)| p.name == row.name)
+            };
+            let failed = rows.iter().find(|r| r.verdict.is_failure());
+            let path = failed.and_then(|row| paths.find(|path| is_of(path, row)));
+            keep(
+                traces,
+                &module.name,
+                trace,
+                path.map_or("", String::as_str),
+                &mut rows,
+            )?;
         }
         report.rows.append(&mut rows);
     }
@@ -213,7 +225,7 @@ fn keep(
     traces: &Path,
     module: &str,
     trace: &str,
-    assertions: &[String],
+    assertion: &str,
     rows: &mut [Row],
 ) -> Result<(), GenError> {
     let Some(failed) = rows.iter().find(|r| r.verdict.is_failure()) else {
@@ -222,13 +234,6 @@ fn keep(
     let name = format!("{module}_{}", failed.name);
     let path = PathBuf::from(format!("{name}.vcd"));
     let remedy = "give another folder with --out";
-    // A lemma of it may be what fails, in the same block.
-    let is_of = |path: &&String| {
-        path.rsplit('.')
-            .next()
-            .is_some_and(|l| l.starts_with(&failed.name))
-    };
-    let assertion = assertions.iter().find(is_of).map_or("", String::as_str);
     let waves = trace::waves(trace, assertion);
     let waves = waves.map_err(|e| GenError::io("read", &path, &e, remedy))?;
     let title = format!("{}: {} ({})", failed.module, failed.name, failed.verdict);

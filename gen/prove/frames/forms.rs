@@ -161,9 +161,6 @@ impl Forms {
     /// The product of two sums, if it is short.
     fn multiply(&mut self, a: u32, b: u32) -> Option<u32> {
         let (a, b) = (a.min(b), a.max(b));
-        if a == b {
-            return Some(a);
-        }
         if let Some(sum) = self.multiplied.get(&(a, b)) {
             return Some(*sum);
         }

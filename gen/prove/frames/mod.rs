@@ -369,7 +369,7 @@ impl From<GenError> for Stop {
 }
 
 /// Frames that are looked at one by one before those of which nothing is told apart any more: an average over edges needs some
-/// to come to its end. The second number is for channels where the first one does not do.
+/// to come to its end. A number is for channels where the one before it does not do.
 const SETTLING: [usize; 3] = [1, 5, 40];
 
 /// Finds ready and rest, and shows that every run leads to them.

@@ -138,10 +138,10 @@ impl Walk<'_> {
     }
 
     fn end(&mut self, run: Run, has_result: bool, cycle: u64) -> Result<End, String> {
-        if run == Run::Frame && !has_result {
-            return Ok(self.breaks("no result", &[Form::HIGH], cycle));
-        }
         if run == Run::Frame {
+            if !has_result {
+                return Ok(self.breaks("no result", &[Form::HIGH], cycle));
+            }
             let wrong = self.wrong_infos()?;
             if wrong != Form::LOW {
                 let what = "the additional data are not those that were sent";
