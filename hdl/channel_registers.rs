@@ -22,6 +22,7 @@ pub const RESULT_WORDS: usize = 6;
 
 /// Host side of one channel.
 #[derive(LogicBlock, Block)]
+#[properties("properties/channel_registers.sv")]
 pub struct ChannelRegisters {
     /// System clock.
     pub clock: Signal<In, Clock>,

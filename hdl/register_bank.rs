@@ -29,6 +29,7 @@ use rust_hdl::prelude::*;
 
 /// Decoder and card registers.
 #[derive(LogicBlock, Block)]
+#[properties("properties/register_bank.sv")]
 pub struct RegisterBank {
     /// System clock.
     pub clock: Signal<In, Clock>,

@@ -23,6 +23,7 @@ pub mod run;
 
 /// Collector, buffer and their registers.
 #[derive(LogicBlock, Block)]
+#[properties("properties/stream.sv")]
 pub struct Stream {
     /// System clock.
     pub clock: Signal<In, Clock>,

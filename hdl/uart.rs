@@ -38,6 +38,7 @@ pub fn baud_error_ppm(system_hz: u64, baud: u64, bit_cycles: u64) -> f64 {
 
 /// UART receiver.
 #[derive(LogicBlock, Block)]
+#[properties("properties/uart_receiver.sv")]
 pub struct UartReceiver {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -137,6 +138,7 @@ impl Logic for UartReceiver {
 
 /// UART transmitter.
 #[derive(LogicBlock, Block)]
+#[properties("properties/uart_transmitter.sv")]
 pub struct UartTransmitter {
     /// System clock.
     pub clock: Signal<In, Clock>,

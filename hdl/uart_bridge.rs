@@ -47,6 +47,7 @@ pub enum BridgeState {
 
 /// UART and UARTBone command interpreter.
 #[derive(LogicBlock, Block)]
+#[properties("properties/uart_bridge.sv")]
 pub struct UartBridge {
     /// System clock.
     pub clock: Signal<In, Clock>,
@@ -343,6 +344,8 @@ impl Logic for UartBridge {
             self.expired.d.next = false;
         }
         if self.expired.q.val() {
+            // A byte that would be read now would meet the next command, and be a word written if that one writes.
+            self.access_next.d.next = false;
             self.state.d.next = BridgeState::Command;
         }
 

@@ -2,7 +2,7 @@
 
 use super::{to_json, Outcome, SourceArgs};
 use crate::artifact::{read_regular, Artifact};
-use crate::config::{load_any_preset, Configuration, Project, PRESETS};
+use crate::config::{load_any_preset, Configuration, Project, PRESETS, RECEIVER_PRESETS};
 use crate::error::GenError;
 use crate::prove::frames::{prove_cases, Line, Undriven, PHASES_MAX};
 use crate::prove::{self, Report, Subject};
@@ -35,7 +35,7 @@ pub struct ProveArgs {
     /// As JSON
     #[arg(long)]
     json: bool,
-    /// Prove all presets with an EnDat channel, and print the page `docs/proofs.md`
+    /// Prove all presets, and print the page `docs/proofs.md`
     #[arg(long, conflicts_with_all = ["config", "preset", "rtl", "out", "json", "frames"])]
     page: bool,
 }
@@ -45,12 +45,8 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
     if arguments.page {
         return page();
     }
-    let Configuration::Card(project) = arguments.source.load_any()? else {
-        return Err(GenError::input(
-            "prove: this is a T-format receiver, and only EnDat channels have properties yet; give a card",
-        ));
-    };
-    let mut subject = Subject::new(&project)?;
+    let configuration = arguments.source.load_any()?;
+    let mut subject = subject(&configuration)?;
     if let Some(folder) = &arguments.rtl {
         for file in &mut subject.files {
             let path = folder.join(&file.path);
@@ -61,19 +57,24 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
         }
     }
     if let Some(delay_cycles) = arguments.frames {
-        return frames(arguments, &subject, &project, delay_cycles);
+        let Configuration::Card(project) = &configuration else {
+            return Err(GenError::input(
+                "--frames: this is a T-format receiver, and only frames of EnDat are proved; give a card, or leave --frames out",
+            ));
+        };
+        return frames(arguments, &subject, project, delay_cycles);
     }
     let report = prove::prove(&subject, arguments.out.as_deref(), &progress)?;
     let stdout = match arguments.json {
         true => to_json(&report)?,
         false => report.to_string(),
     };
-    let failed = (report.channels.iter()).flat_map(|c| c.rows.iter().map(move |row| (c, row)));
+    let failed = (report.parts.iter()).flat_map(|p| p.rows.iter().map(move |row| (p, row)));
     let failed = failed.filter(|(_, row)| row.verdict.is_failure());
-    let messages = failed.map(|(channel, row)| {
+    let messages = failed.map(|(part, row)| {
         format!(
             "{}: {} = {}: {}",
-            channel.module, row.name, row.verdict, row.words
+            part.module, row.name, row.verdict, row.words
         )
     });
     Ok(Outcome {
@@ -81,6 +82,14 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
         messages: messages.collect(),
         exit_code: u8::from(!report.is_good()),
     })
+}
+
+/// What is proved of a configuration.
+fn subject(configuration: &Configuration) -> Result<Subject, GenError> {
+    match configuration {
+        Configuration::Card(project) => Subject::new(project),
+        Configuration::Receiver(receiver) => Subject::receiver(receiver),
+    }
 }
 
 /// A frame of the first channel.
@@ -113,11 +122,9 @@ fn frames(
 /// The page of the presets.
 fn page() -> Result<Outcome, GenError> {
     let mut reports = vec![];
-    for (name, _) in PRESETS {
-        let Configuration::Card(project) = load_any_preset(name)? else {
-            continue;
-        };
-        reports.push(prove::prove(&Subject::new(&project)?, None, &progress)?);
+    for (name, _) in PRESETS.iter().chain(RECEIVER_PRESETS) {
+        let subject = subject(&load_any_preset(name)?)?;
+        reports.push(prove::prove(&subject, None, &progress)?);
     }
     let frames = prove_cases(&progress)?;
     let is_good = reports.iter().all(Report::is_good) && frames.iter().all(|f| f.broken.is_none());

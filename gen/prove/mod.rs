@@ -6,7 +6,7 @@
 //!                                                                       -> from any contents of the registers
 //! ```
 //!
-//! A channel's properties are proved together: each may lean on the others in the cycles before.
+//! The properties of a part of a card are proved together: each may lean on the others in the cycles before.
 
 pub mod frames;
 mod harness;
@@ -16,11 +16,11 @@ mod tools;
 mod trace;
 
 pub use page::page;
-pub use report::{ChannelReport, Report, Row, Verdict};
+pub use report::{PartReport, Report, Row, Verdict};
 pub use trace::Trace;
 
 use crate::artifact::Artifact;
-use crate::config::Project;
+use crate::config::{Project, Receiver};
 use crate::error::GenError;
 use crate::readers::is_core;
 use crate::scratch;
@@ -31,8 +31,19 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use tools::Answer;
 
-/// Blocks that are proved, with everything below them; by type.
-const PROVED: &str = "Channel";
+/// The type of an EnDat channel.
+const CHANNEL: &str = "Channel";
+
+/// Types of blocks that are proved with everything below them, each with all its inputs free; what is in one of them is not proved again.
+const PARTS: [&str; 7] = [
+    CHANNEL,
+    "TFormatPort",
+    "Exchange",
+    "ChannelRegisters",
+    "RegisterBank",
+    "Stream",
+    "UartBridge",
+];
 
 /// Cycles before the one that an induction step is about.
 const INDUCTION_CYCLES: usize = 4;
@@ -51,19 +62,60 @@ pub struct Subject {
     pub design: Design,
     /// Its Verilog, and nothing else.
     pub files: Vec<Artifact>,
+    /// Which of its modules are proved, each with what is below it.
+    pub parts: Vec<usize>,
 }
 
 impl Subject {
     /// A card as it is emitted.
     pub fn new(project: &Project) -> Result<Self, GenError> {
-        let mut files = crate::design_artifacts(project)?;
-        files.retain(is_core);
-        Ok(Self {
-            name: project.name.clone(),
-            design: crate::design(project)?,
-            files,
-        })
+        let (design, files) = (crate::design(project)?, crate::design_artifacts(project)?);
+        Ok(Self::of(&project.name, design, files))
     }
+
+    /// A receiver as it is emitted.
+    pub fn receiver(receiver: &Receiver) -> Result<Self, GenError> {
+        let (design, files) = (
+            crate::t_format::design(receiver)?,
+            crate::t_format::emit(receiver)?,
+        );
+        Ok(Self::of(&receiver.name, design, files))
+    }
+
+    /// Leaves only those parts to prove that hold a module.
+    pub fn narrow(&mut self, module: &str) {
+        let design = &self.design;
+        let holds = |part: usize| {
+            let mut inside = below(design, part).into_iter();
+            inside.any(|index| design.modules[index].name == module)
+        };
+        self.parts.retain(|part| holds(*part));
+    }
+
+    fn of(name: &str, design: Design, mut files: Vec<Artifact>) -> Self {
+        files.retain(is_core);
+        let parts = parts(&design);
+        Self {
+            name: name.into(),
+            design,
+            files,
+            parts,
+        }
+    }
+}
+
+/// The modules that are proved, as [`PARTS`] says.
+fn parts(design: &Design) -> Vec<usize> {
+    let (mut parts, mut inside) = (vec![], vec![]);
+    for part in PARTS {
+        for (index, module) in design.modules.iter().enumerate() {
+            if module.type_name == part && !inside.contains(&index) {
+                parts.push(index);
+                inside.extend(below(design, index));
+            }
+        }
+    }
+    parts
 }
 
 /// Properties of a block.
@@ -72,42 +124,30 @@ struct Block<'a> {
     properties: Vec<Property>,
 }
 
-/// Proves all channels of a card. Counterexamples go to `traces`, if given; `progress` is told what comes next.
+/// Proves all parts. Counterexamples go to `traces`, if given; `progress` is told what comes next.
 pub fn prove(
     subject: &Subject,
     traces: Option<&Path>,
     progress: &dyn Fn(&str),
 ) -> Result<Report, GenError> {
-    let design = &subject.design;
-    let tops = design.modules.iter().enumerate();
-    let tops: Vec<usize> = tops
-        .filter(|(_, m)| m.type_name == PROVED)
-        .map(|(i, _)| i)
-        .collect();
-    if tops.is_empty() {
-        return Err(GenError::input(format!(
-            "{}: has no EnDat channel, and only these have properties yet; give a configuration with one",
-            subject.name
-        )));
-    }
-    let mut channels = vec![];
-    for top in tops {
-        progress(&format!("{}: proving", design.modules[top].name));
-        channels.push(prove_channel(subject, top, traces)?);
+    let mut parts = vec![];
+    for &part in &subject.parts {
+        progress(&format!("{}: proving", subject.design.modules[part].name));
+        parts.push(prove_part(subject, part, traces)?);
     }
     let provers = tools::versions()?;
     Ok(Report {
         name: subject.name.clone(),
         provers,
-        channels,
+        parts,
     })
 }
 
-fn prove_channel(
+fn prove_part(
     subject: &Subject,
     top: usize,
     traces: Option<&Path>,
-) -> Result<ChannelReport, GenError> {
+) -> Result<PartReport, GenError> {
     let design = &subject.design;
     let module = &design.modules[top];
     let blocks: Vec<Block> = below(design, top)
@@ -123,13 +163,17 @@ fn prove_channel(
     let mut files = subject.files.clone();
     files.push(harness::artifact(module, design.has_initial_values));
     crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
-    let mut report = ChannelReport {
+    let mut report = PartReport {
         module: module.name.clone(),
         start_seconds: 0.0,
         anywhere_seconds: 0.0,
         rows: vec![],
     };
     for begins in [Begins::AtStart, Begins::Anywhere] {
+        let mut all = blocks.iter().flat_map(|b| &b.properties);
+        if !all.any(|p| p.begins == begins) {
+            continue;
+        }
         let started = Instant::now();
         let proof = Proof {
             folder: folder.path(),

@@ -1,7 +1,7 @@
 //! `docs/proofs.md`: what is proved, and how long it took.
 
 use super::frames::FrameReport;
-use super::{ChannelReport, Report};
+use super::{Report, Row};
 use std::fmt::Write;
 
 const HEAD: &str = "# Proofs
@@ -16,13 +16,18 @@ cargo run --release -- prove --config mine.toml --rtl out/mine   # the files as 
 It prints the table below for your card, exits with 1 when a property does not hold, and with `--out DIR` leaves the counterexample as waveform and drawing. `--json` gives the same as data.
 The properties stand at the end of their modules below `` `ifdef FORMAL ``, so other provers can read them, too; simulators and synthesis never see them.
 
-**What a proof says.** Every input of a channel may be anything in every cycle: DATA, triggers, reset, and all settings, legal or not. *From the start values* means: after
-configuration of the FPGA, for ever; the proof is an induction over four cycles, without bound. *From any state* means: whatever the registers hold, for instance after an upset.
-The properties of a channel are proved together, so one may lean on another in the cycles before.
+**What a proof says.** A part of the card, an EnDat channel with all its blocks for instance, is proved by itself, and every input of it may be anything in every cycle: DATA, triggers,
+reset, and all settings, legal or not. *From the start values* means: after configuration of the FPGA, for ever; the proof is an induction over four cycles, without bound. *From any
+state* means: whatever the registers hold, for instance after an upset. The properties of a part are proved together, so one may lean on another in the cycles before.
 
-**What it does not say.** Only EnDat channels have properties here; the bus fronts are proved in the suite (`tests/verilog/fronts.rs`), the rest is simulated. A frame that carries a request,
-additional data or a supplement, and a clock that goes on, are outside `crc_as_received`, `error_bits_as_received` and `bits_counted`; `forward_only`, `phases_are_timed` and `phases_end`
-are about channels without requests, diagnosis and continuous clock, `one_result_per_trigger` about those without requests and continuous clock.
+**What it does not say.** The bus fronts are proved in the suite (`tests/verilog/fronts.rs`); services, line monitor, direct outputs and interrupt are simulated only. A frame that carries
+a request, additional data or a supplement, and a clock that goes on, are outside `crc_as_received`, `error_bits_as_received` and `bits_counted`; `forward_only`, `phases_are_timed` and
+`phases_end` are about channels without requests, diagnosis and continuous clock, `one_result_per_trigger` about those without requests and continuous clock. `crc16_as_sent` takes for
+granted that a byte of a set, once it is there, stays until it has been written, as the port says. `first_word_as_sent` is about the first word of a command, while no access of an earlier one
+is under way; `request_as_asked` about a request ID that stays as long as the exchange lasts; `cells_timed` about bits of four cycles and more.
+
+**Found on the way**, and mended: a position frame refused behind the frame that measures had two results; a frame given up in the cycle of its last bit had two, too; a refused trigger took the
+result of the next one. A byte that was read in the very cycle in which an answer timed out met the next command: if that one wrote, a word was written that nobody had sent.
 
 Each property refuses cores that are broken on purpose: `tests/prove/mutations.rs`.
 ";
@@ -56,7 +61,6 @@ meanwhile, and with a cable so long that the receiver listens before the encoder
 /// The page, from reports of several cards and frames. The first card's properties are listed, and those that only others have.
 pub fn page(reports: &[Report], frames: &[FrameReport]) -> String {
     let mut out = HEAD.to_owned();
-    let channels = || reports.iter().flat_map(|r| &r.channels);
     let mut listed: Vec<&str> = vec![];
     for (any, title) in [
         (false, "From the start values, without bound"),
@@ -66,34 +70,34 @@ pub fn page(reports: &[Report], frames: &[FrameReport]) -> String {
             out,
             "\n## {title}\n\n| property | block | in words |\n|---|---|---|\n"
         );
-        for channel in channels() {
-            for row in channel.rows.iter().filter(|r| r.from_any_state == any) {
+        for report in reports {
+            let rows = report.parts.iter().flat_map(|p| &p.rows);
+            for row in rows.filter(|r| r.from_any_state == any) {
                 if listed.contains(&row.name.as_str()) {
                     continue;
                 }
                 listed.push(&row.name);
-                let block = block(channel, &row.module);
+                let block = block(&report.name, &row.module);
                 let _ = writeln!(out, "| `{}` | `{block}` | {} |", row.name, row.words);
             }
         }
     }
-    out.push_str("\n## Measured\n\nTime for yosys and yices together, on one processor of the machine that wrote this page.\n\n\
-        | card | properties proved | assertions | from the start values | from any state |\n|---|---|---|---|---|\n");
+    out.push_str("\n## Measured\n\nTime for yosys and yices together, on one processor of the machine that wrote this page; a block that two parts have is proved in both.\n\n\
+        | card | parts | properties proved | assertions | from the start values | from any state |\n|---|---|---|---|---|---|\n");
     for report in reports {
-        for channel in &report.channels {
-            let rows = &channel.rows;
-            let proved = rows.iter().filter(|r| r.verdict == super::Verdict::Proved);
-            let assertions: usize = rows.iter().map(|r| r.assertions).sum();
-            let _ = writeln!(
-                out,
-                "| `{}` | {} of {} | {assertions} | {:.1} s | {:.1} s |",
-                report.name,
-                proved.count(),
-                rows.len(),
-                channel.start_seconds,
-                channel.anywhere_seconds
-            );
-        }
+        let rows = || report.parts.iter().flat_map(|p| &p.rows);
+        let proved = |row: &&Row| row.verdict == super::Verdict::Proved;
+        let assertions: usize = rows().map(|r| r.assertions).sum();
+        let start: f64 = report.parts.iter().map(|p| p.start_seconds).sum();
+        let anywhere: f64 = report.parts.iter().map(|p| p.anywhere_seconds).sum();
+        let _ = writeln!(
+            out,
+            "| `{}` | {} | {} of {} | {assertions} | {start:.1} s | {anywhere:.1} s |",
+            report.name,
+            report.parts.len(),
+            rows().filter(proved).count(),
+            rows().count(),
+        );
     }
     out.push_str(FRAMES);
     for frame in frames {
@@ -124,8 +128,8 @@ pub fn page(reports: &[Report], frames: &[FrameReport]) -> String {
 }
 
 /// Name of a block without that of its card.
-fn block<'a>(channel: &ChannelReport, module: &'a str) -> &'a str {
-    let card = channel.module.strip_suffix("_channel");
-    let rest = card.and_then(|card| module.strip_prefix(card)?.strip_prefix('_'));
+fn block<'a>(card: &str, module: &'a str) -> &'a str {
+    let rest = module.strip_prefix(card);
+    let rest = rest.and_then(|rest| rest.strip_prefix('_'));
     rest.unwrap_or(module)
 }

@@ -61,9 +61,9 @@ pub struct Row {
     pub trace: Option<String>,
 }
 
-/// A channel.
+/// A part of a card, proved as a whole.
 #[derive(Clone, Debug, Serialize)]
-pub struct ChannelReport {
+pub struct PartReport {
     /// Its module.
     pub module: String,
     /// Time for the properties that begin with the start values.
@@ -81,14 +81,14 @@ pub struct Report {
     pub name: String,
     /// The programs that proved.
     pub provers: String,
-    /// Its channels; those that are alike once.
-    pub channels: Vec<ChannelReport>,
+    /// Its parts; those that are alike once.
+    pub parts: Vec<PartReport>,
 }
 
 impl Report {
     /// Whether every property holds.
     pub fn is_good(&self) -> bool {
-        let mut rows = self.channels.iter().flat_map(|c| &c.rows);
+        let mut rows = self.parts.iter().flat_map(|p| &p.rows);
         rows.all(|row| row.verdict == Verdict::Proved)
     }
 }
@@ -133,34 +133,29 @@ pub(super) fn rows(blocks: &[Block], begins: Begins, answer: &Answer) -> Vec<Row
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for channel in &self.channels {
+        for part in &self.parts {
             let count = |any: bool| {
-                let rows = channel.rows.iter().filter(|r| r.from_any_state == any);
+                let rows = part.rows.iter().filter(|r| r.from_any_state == any);
                 rows.count()
             };
             writeln!(
                 f,
                 "{}: every input may be anything in every cycle",
-                channel.module
+                part.module
             )?;
             for (any, from, seconds) in [
-                (
-                    false,
-                    "the start values, without bound",
-                    channel.start_seconds,
-                ),
-                (
-                    true,
-                    "any contents of the registers",
-                    channel.anywhere_seconds,
-                ),
+                (false, "the start values, without bound", part.start_seconds),
+                (true, "any contents of the registers", part.anywhere_seconds),
             ] {
+                if count(any) == 0 {
+                    continue;
+                }
                 writeln!(
                     f,
                     "\n  From {from}: {} properties, {seconds:.1} s",
                     count(any)
                 )?;
-                for row in channel.rows.iter().filter(|r| r.from_any_state == any) {
+                for row in part.rows.iter().filter(|r| r.from_any_state == any) {
                     writeln!(f, "    {:<22} {:<10}  {}", row.name, row.verdict, row.words)?;
                     if let Some(trace) = &row.trace {
                         writeln!(f, "    {:<22} counterexample: {trace}", "")?;

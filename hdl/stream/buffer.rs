@@ -55,6 +55,7 @@ pub struct SetParts {
 
 /// Encoder and buffer.
 #[derive(LogicBlock, Block)]
+#[properties("../properties/frame_buffer.sv")]
 pub struct FrameBuffer {
     /// System clock.
     pub clock: Signal<In, Clock>,

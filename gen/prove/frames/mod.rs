@@ -17,7 +17,7 @@ mod walk;
 
 pub use cases::{prove_case, prove_cases, FrameCase, PLAIN};
 
-use super::{tools, Subject, Trace, PROVED};
+use super::{tools, Subject, Trace, CHANNEL};
 use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
@@ -235,7 +235,7 @@ pub fn prove(
     let started = Instant::now();
     let card = &project.card;
     let is_endat = |c: &&ChannelConfig| c.t_format.is_none();
-    let top = (subject.design.modules.iter()).position(|m| m.type_name == PROVED);
+    let top = (subject.design.modules.iter()).position(|m| m.type_name == CHANNEL);
     let (Some(channel), Some(top)) = (card.channels.iter().find(is_endat), top) else {
         return Err(GenError::input(format!(
             "{}: has no EnDat channel; give a configuration with one",
