@@ -11,6 +11,8 @@
 //!
 //! Between answers it pushes the frames of a [`crate::stream::Stream`], each in one piece; an answer then begins with 0xFF.
 //!
+//! With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
+//!
 //! A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that byte
 //! waits, the second one comes later than any turn ends.
 //!
@@ -257,7 +259,6 @@ impl Logic for UartBridge {
                 self.state.d.next = BridgeState::Discard;
             }
         }
-
         if self.next_lane.val() {
             self.byte_lane.d.next = self.byte_lane.q.val() + 1;
         }
@@ -344,7 +345,6 @@ impl Logic for UartBridge {
             self.expired.d.next = false;
         }
         if self.expired.q.val() {
-            // A byte that would be read now would meet the next command, and be a word written if that one writes.
             self.access_next.d.next = false;
             self.state.d.next = BridgeState::Command;
         }

@@ -35,7 +35,7 @@ use tools::Answer;
 const CHANNEL: &str = "Channel";
 
 /// Types of blocks that are proved with everything below them, each with all its inputs free; what is in one of them is not proved again.
-const PARTS: [&str; 7] = [
+const PARTS: [&str; 8] = [
     CHANNEL,
     "TFormatPort",
     "Exchange",
@@ -43,6 +43,7 @@ const PARTS: [&str; 7] = [
     "RegisterBank",
     "Stream",
     "UartBridge",
+    "InputFilter",
 ];
 
 /// Cycles before the one that an induction step is about.

@@ -13,9 +13,8 @@
 //! bit and a half are passed over until the reply gap has ended. Later fields are timed from their start bits.
 //!
 //! After a reply that did not come whole the next request waits until the line has been HIGH for longer than any field lasts.
-//!
-//! Two states that do not know of each other must agree that a request is under way before the driver is on, and a request that
-//! lasts too long is cut. From the header on a reply is refused if its level changes twice within half a bit.
+//! Two states that do not know of each other must agree that a request is under way before the driver is on, and one that lasts too long is
+//! cut. From the header on a reply is refused if its level changes twice within half a bit.
 
 use super::bit_grid::BitGrid;
 use super::field_order::FieldOrder;
