@@ -83,10 +83,6 @@ pub fn design(project: &Project) -> Result<Design, GenError> {
 }
 
 /// The card as Verilog, and its register map in every format.
-pub fn design_artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
-    artifacts_of(project, &design(project)?)
-}
-
 fn artifacts_of(project: &Project, design: &Design) -> Result<Vec<Artifact>, GenError> {
     let report = explain::report(project).to_string();
     let channels = project.card.channels.len();

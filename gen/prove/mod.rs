@@ -70,16 +70,15 @@ pub struct Subject {
 impl Subject {
     /// A card as it is emitted.
     pub fn new(project: &Project) -> Result<Self, GenError> {
-        let (design, files) = (crate::design(project)?, crate::design_artifacts(project)?);
+        let design = crate::design(project)?;
+        let files = crate::artifacts_of(project, &design)?;
         Ok(Self::of(&project.name, design, files))
     }
 
     /// A receiver as it is emitted.
     pub fn receiver(receiver: &Receiver) -> Result<Self, GenError> {
-        let (design, files) = (
-            crate::t_format::design(receiver)?,
-            crate::t_format::emit(receiver)?,
-        );
+        let design = crate::t_format::design(receiver)?;
+        let files = crate::t_format::emit(receiver)?;
         Ok(Self::of(&receiver.name, design, files))
     }
 

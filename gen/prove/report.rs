@@ -134,10 +134,6 @@ pub(super) fn rows(blocks: &[Block], begins: Begins, answer: &Answer) -> Vec<Row
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for part in &self.parts {
-            let count = |any: bool| {
-                let rows = part.rows.iter().filter(|r| r.from_any_state == any);
-                rows.count()
-            };
             writeln!(
                 f,
                 "{}: every input may be anything in every cycle",
@@ -147,15 +143,16 @@ impl fmt::Display for Report {
                 (false, "the start values, without bound", part.start_seconds),
                 (true, "any contents of the registers", part.anywhere_seconds),
             ] {
-                if count(any) == 0 {
-                    continue;
-                }
-                writeln!(
-                    f,
-                    "\n  From {from}: {} properties, {seconds:.1} s",
-                    count(any)
-                )?;
-                for row in part.rows.iter().filter(|r| r.from_any_state == any) {
+                let rows = part.rows.iter().filter(|r| r.from_any_state == any);
+                let rows: Vec<&Row> = rows.collect();
+                let noun = match rows.len() {
+                    0 => continue,
+                    1 => "property",
+                    _ => "properties",
+                };
+                let count = rows.len();
+                writeln!(f, "\n  From {from}: {count} {noun}, {seconds:.1} s")?;
+                for row in rows {
                     writeln!(f, "    {:<22} {:<10}  {}", row.name, row.verdict, row.words)?;
                     if let Some(trace) = &row.trace {
                         writeln!(f, "    {:<22} counterexample: {trace}", "")?;
