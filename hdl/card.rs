@@ -637,6 +637,7 @@ impl Logic for CardCore {
             self.set[i].busy.next = self.port[i].busy.val() | !self.trigger_of[i].val();
             self.set[i].result_strobe.next = self.port[i].result_strobe.val();
             self.set[i].position.next = self.port[i].position.val();
+            self.set[i].position_parity.next = self.port[i].position_parity.val();
             self.set[i].position_valid.next = self.port[i].position_valid.val();
             self.set[i].fresh.next = self.port[i].fresh.val();
             self.set[i].cause.next = self.port[i].cause.val();

@@ -442,10 +442,11 @@ impl Logic for Channel {
         if self.has_requests.val() {
             self.wanted_shape.command.next = self.frame_command.q.val();
         }
-        // A trigger takes positions only: another command's answer is none, and may change the encoder.
+        // A trigger takes positions only, with a request or without: another command's answer is none, and may change the encoder.
         self.transaction.is_known.next = (self.wanted_shape.is_position.val()
             | (self.wanted_shape.is_known.val()
-                & (self.frame_own.q.val() | self.frame_ride.q.val())))
+                & (self.frame_own.q.val()
+                    | (self.frame_ride.q.val() & self.wanted_shape.has_f2.val()))))
             & (!self.needs_four.val() | self.period_cycles.val().get_bits::<9>(2).any());
         self.transaction.has_parameter.next = self.shape.has_parameter.val();
         self.transaction.has_supplement.next = self.shape.has_supplement.val();

@@ -62,7 +62,7 @@ pub const BUDGETS: [Budget; 19] = [
         what: "wrong positions told as good",
         bad: |r| r.class == "silent",
         of: is_case,
-        limit_per_mille: 5.0,
+        limit_per_mille: 1.0,
         is_asserted: false,
     },
     Budget {
@@ -86,7 +86,7 @@ pub const BUDGETS: [Budget; 19] = [
         what: "wrong positions of the card told as good",
         bad: |r| r.class == "silent" && is_card(r),
         of: |r| is_case(r) && is_card(r),
-        limit_per_mille: 5.0,
+        limit_per_mille: 1.0,
         is_asserted: false,
     },
     Budget {

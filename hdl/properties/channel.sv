@@ -1,6 +1,9 @@
 // safe_after_reset: In the cycle after a reset CLOCK is HIGH and DATA is not driven.
 // driver_as_sent: DATA is driven only as the command sender, or the line probe, said in the cycle before.
 // frame_is_driven: A frame is on the wire only while the settings that it is received with are held.
+// positions_only: A frame that a trigger begins has a command whose answer is a position, with a request or without.
+wire f_rides = command_now[5:3] == command_now[2:0] & command_now != 6'b000000 & command_now != 6'b010010 & command_now != 6'b111111;
+wire f_bare = command_now == 6'b000111 | command_now == 6'b111000;
 reg f_past_valid; initial f_past_valid = 1'b0;
 always @(posedge clock) begin
     f_past_valid <= 1'b1;
@@ -10,3 +13,4 @@ always @(posedge clock) begin
     end
 end
 always @* frame_is_driven: assert (!transaction_run | !transaction_is_at_rest);
+always @* positions_only: assert (!transaction_start | frame_own | f_bare | f_rides);

@@ -8,10 +8,14 @@
 //!
 //! Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own, one of them may
 //! be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty place in the next one.
+//!
+//! A set waits for the buffer, and has no CRC of the encoder: a position that an upset has changed meanwhile shows by its parity, and goes out as
+//! one that is not fresh, with the cause of an upset.
 
 use super::buffer::SetParts;
 use crate::reg::Reg;
 use crate::several::each;
+use crate::transaction::cause;
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
@@ -30,6 +34,8 @@ pub struct SetChannel {
     pub result_strobe: Signal<In, Bit>,
     /// Last good position.
     pub position: Signal<In, Bits<48>>,
+    /// Parity of the position, as its CRC tells it.
+    pub position_parity: Signal<In, Bit>,
     /// There is a good position.
     pub position_valid: Signal<In, Bit>,
     /// The last result brought the position.
@@ -65,6 +71,7 @@ pub struct SetChannel {
     late_now: Signal<Local, Bit>,
     is_own: Signal<Local, Bit>,
     position_taken: Reg<Bits<48>>,
+    parity_taken: Reg<Bit>,
     status_taken: Reg<Bits<16>>,
     took_taken: Reg<Bit>,
     missing_taken: Reg<Bit>,
@@ -76,6 +83,10 @@ pub struct SetChannel {
     info_byte: Vec<Reg<Bits<8>>>,
     open: Signal<Local, Bit>,
     status: Signal<Local, Bits<16>>,
+    upset_now: Reg<Bit>,
+    shown: Signal<Local, Bits<8>>,
+    taken_bit: Constant<Bits<8>>,
+    upset_cause: Constant<Bits<8>>,
     number: Constant<Bits<4>>,
     takes_late: Constant<Bit>,
     _runs: usize,
@@ -98,6 +109,8 @@ impl SetChannel {
             info_byte: each(infos),
             number: Constant::new((channel as u64 + 1).into()),
             takes_late: Constant::new(takes_late),
+            taken_bit: Constant::new((1u64 << 5).into()),
+            upset_cause: Constant::new(cause::UPSET.into()),
             _runs: runs,
             _infos: infos,
         })
@@ -131,6 +144,7 @@ impl Logic for SetChannel {
         self.is_own.next = self.took.q.val() & !self.open.val();
         self.position_taken.reset.next =
             self.take.val() & !self.is_own.val() & !self.late_now.val();
+        self.parity_taken.reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
         self.status_taken.reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
         self.status.next = bit_cast::<16, 5>(self.cause.val())
             | (bit_cast::<16, 1>(self.position_valid.val().into()) << 6)
@@ -138,6 +152,7 @@ impl Logic for SetChannel {
             | (bit_cast::<16, 7>(self.flags.val().get_bits::<7>(12)) << 8);
         if self.take.val() {
             self.position_taken.d.next = self.position.val();
+            self.parity_taken.d.next = self.position_parity.val();
             self.status_taken.d.next = self.status.val();
             self.took_taken.d.next = self.took.q.val();
             self.missing_taken.d.next = self.open.val();
@@ -145,12 +160,17 @@ impl Logic for SetChannel {
         for i in 0..self._runs {
             if self.take_run[i].val() {
                 self.position_taken.d.next = self.position.val();
+                self.parity_taken.d.next = self.position_parity.val();
                 self.status_taken.d.next = self.status.val();
                 self.took_taken.d.next = true;
                 self.missing_taken.d.next = false;
             }
         }
 
+        // Told with the status byte; the bytes before it have gone out.
+        self.upset_now.reset.next = self.block.val() != self.number.val();
+        self.upset_now.d.next = (self.position_taken.q.val().xor() ^ self.parity_taken.q.val())
+            & (self.byte_at.val() == 6);
         // A reset by deselection alone takes no logic.
         self.byte_now.reset.next = self.block.val() != self.number.val();
         match self.byte_at.val().index() {
@@ -181,7 +201,12 @@ impl Logic for SetChannel {
                     | (bit_cast::<8, 1>(self.missing_taken.q.val().into()) << 7);
             }
         }
-        self.set_byte.next = self.byte_now.q.val();
+        self.shown.next = self.byte_now.q.val();
+        if self.upset_now.q.val() {
+            self.shown.next =
+                (self.byte_now.q.val() & self.taken_bit.val()) | self.upset_cause.val();
+        }
+        self.set_byte.next = self.shown.val();
         for i in 0..self._infos {
             self.info_1[i].clock.next = self.clock.val();
             self.info_2[i].clock.next = self.clock.val();
@@ -218,6 +243,8 @@ impl Logic for SetChannel {
             }
             self.byte_now.reset.next =
                 (self.block.val() != self.number.val()) | self.second[i].val();
+            self.upset_now.reset.next =
+                (self.block.val() != self.number.val()) | self.second[i].val();
             self.info_byte[i].reset.next =
                 (self.block.val() != self.number.val()) | !self.second[i].val();
             match self.byte_at.val().index() {
@@ -246,7 +273,7 @@ impl Logic for SetChannel {
                     self.info_byte[i].d.next = 0.into();
                 }
             }
-            self.set_byte.next = self.byte_now.q.val() | self.info_byte[i].q.val();
+            self.set_byte.next = self.shown.val() | self.info_byte[i].q.val();
         }
     }
 }

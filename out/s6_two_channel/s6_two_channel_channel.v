@@ -294,7 +294,7 @@ module s6_two_channel_channel (
     reg          reply_right_next;
     reg          reply_has_parameter; initial reply_has_parameter = 1'b0;
     reg          reply_has_parameter_next;
-    wire         _unused_ok = &{1'b0, request_ride, request_own, request_cancel, shape_is_known, shape_is_position, wanted_shape_has_f1, wanted_shape_has_f2, wanted_shape_has_parameter, wanted_shape_has_test_values, wanted_shape_has_supplement};
+    wire         _unused_ok = &{1'b0, request_ride, request_own, request_cancel, shape_is_known, shape_is_position, wanted_shape_has_f1, wanted_shape_has_parameter, wanted_shape_has_test_values, wanted_shape_has_supplement};
 
     s6_two_channel_input_filter u_filter (
         .clock(clock),
@@ -647,7 +647,7 @@ module s6_two_channel_channel (
             wanted_shape_command = frame_command;
         end
     end
-    assign transaction_is_known = (wanted_shape_is_position | (wanted_shape_is_known & (frame_own | frame_ride))) & (!NEEDS_FOUR | (|period_cycles[10:2]));
+    assign transaction_is_known = (wanted_shape_is_position | (wanted_shape_is_known & (frame_own | (frame_ride & wanted_shape_has_f2)))) & (!NEEDS_FOUR | (|period_cycles[10:2]));
     assign transaction_begin_own = frame_own & own_wanted;
 
     always @* begin
@@ -815,6 +815,9 @@ module s6_two_channel_channel (
     // safe_after_reset: In the cycle after a reset CLOCK is HIGH and DATA is not driven.
     // driver_as_sent: DATA is driven only as the command sender, or the line probe, said in the cycle before.
     // frame_is_driven: A frame is on the wire only while the settings that it is received with are held.
+    // positions_only: A frame that a trigger begins has a command whose answer is a position, with a request or without.
+    wire f_rides = command_now[5:3] == command_now[2:0] & command_now != 6'b000000 & command_now != 6'b010010 & command_now != 6'b111111;
+    wire f_bare = command_now == 6'b000111 | command_now == 6'b111000;
     reg f_past_valid; initial f_past_valid = 1'b0;
     always @(posedge clock) begin
         f_past_valid <= 1'b1;
@@ -824,6 +827,7 @@ module s6_two_channel_channel (
         end
     end
     always @* frame_is_driven: assert (!transaction_run | !transaction_is_at_rest);
+    always @* positions_only: assert (!transaction_start | frame_own | f_bare | f_rides);
 `endif
 `endif
 endmodule

@@ -18,6 +18,8 @@ module s6_two_channel_set_channel_number_1 (
     input  wire         result_strobe,
     // Last good position.
     input  wire  [47:0] position,
+    // Parity of the position, as its CRC tells it.
+    input  wire         position_parity,
     // There is a good position.
     input  wire         position_valid,
     // The last result brought the position.
@@ -39,6 +41,8 @@ module s6_two_channel_set_channel_number_1 (
     // The result of the trigger has been replaced by another one (continuous clock).
     output wire         replaced
 );
+    localparam   [7:0] TAKEN_BIT = 8'd32;
+    localparam   [7:0] UPSET_CAUSE = 8'd31;
     localparam   [3:0] NUMBER = 4'd1;
     localparam         TAKES_LATE = 1'b0;
 
@@ -46,6 +50,7 @@ module s6_two_channel_set_channel_number_1 (
     wire         is_own;
     wire         open;
     wire  [15:0] status;
+    reg    [7:0] shown;
     reg          took; initial took = 1'b0;
     reg          took_next;
     reg          waiting; initial waiting = 1'b0;
@@ -56,6 +61,9 @@ module s6_two_channel_set_channel_number_1 (
     reg   [47:0] position_taken; initial position_taken = 48'd0;
     reg   [47:0] position_taken_next;
     wire         position_taken_reset;
+    reg          parity_taken; initial parity_taken = 1'b0;
+    reg          parity_taken_next;
+    wire         parity_taken_reset;
     reg   [15:0] status_taken; initial status_taken = 16'd0;
     reg   [15:0] status_taken_next;
     wire         status_taken_reset;
@@ -66,6 +74,8 @@ module s6_two_channel_set_channel_number_1 (
     reg    [7:0] byte_now; initial byte_now = 8'd0;
     reg    [7:0] byte_now_next;
     wire         byte_now_reset;
+    reg          upset_now; initial upset_now = 1'b0;
+    wire         upset_now_reset;
     wire         _unused_ok = &{1'b0, flags[11:0], flags[19]};
 
     always @* begin
@@ -125,23 +135,34 @@ module s6_two_channel_set_channel_number_1 (
     assign late_now = late | (owed & result_strobe);
     assign is_own = took & !open;
     assign position_taken_reset = take & !is_own & !late_now;
+    assign parity_taken_reset = take & !is_own & !late_now;
     assign status_taken_reset = take & !is_own & !late_now;
     assign status = {11'd0, cause} | ({15'd0, position_valid} << 3'd6) | ({15'd0, fresh} << 3'd7) | ({9'd0, flags[18:12]} << 4'd8);
 
     always @* begin
         position_taken_next = position_taken;
+        parity_taken_next = parity_taken;
         status_taken_next = status_taken;
         took_taken_next = took_taken;
         missing_taken_next = missing_taken;
         if (take) begin
             position_taken_next = position;
+            parity_taken_next = position_parity;
             status_taken_next = status;
             took_taken_next = took;
             missing_taken_next = open;
         end
     end
+    assign upset_now_reset = block != NUMBER;
     assign byte_now_reset = block != NUMBER;
-    assign set_byte = byte_now;
+
+    always @* begin
+        shown = byte_now;
+        if (upset_now) begin
+            shown = (byte_now & TAKEN_BIT) | UPSET_CAUSE;
+        end
+    end
+    assign set_byte = shown;
 
     always @(posedge clock) begin
         if (reset) begin
@@ -170,6 +191,14 @@ module s6_two_channel_set_channel_number_1 (
     end
 
     always @(posedge clock) begin
+        if (parity_taken_reset) begin
+            parity_taken <= 1'b0;
+        end else begin
+            parity_taken <= parity_taken_next;
+        end
+    end
+
+    always @(posedge clock) begin
         if (status_taken_reset) begin
             status_taken <= 16'd0;
         end else begin
@@ -182,6 +211,14 @@ module s6_two_channel_set_channel_number_1 (
             byte_now <= 8'd0;
         end else begin
             byte_now <= byte_now_next;
+        end
+    end
+
+    always @(posedge clock) begin
+        if (upset_now_reset) begin
+            upset_now <= 1'b0;
+        end else begin
+            upset_now <= ((^position_taken) ^ parity_taken) & (byte_at == 3'd6);
         end
     end
 endmodule

@@ -41,6 +41,21 @@ fn a_trigger_sends_no_other_command_than_those_for_a_position() {
     }
     assert_eq!(rig.bench.frames(0).len(), frames);
     rig.assert_clean();
+    // Nor on a request that is to ride on it: an answer without a position would pass for one.
+    rig.bench
+        .set("command", ModeCommand::SendPositionAddInfo.code().into());
+    rig.bench.run_cycles(4);
+    let others = |c: &ModeCommand| !c.has_f2() && !known.contains(&c.code());
+    let others: Vec<_> = ModeCommand::ALL.into_iter().filter(others).collect();
+    for &command in &others {
+        let over = rig.ride(command, 0, 0);
+        let told = (cause::name(over.cause), over.is_request);
+        assert_eq!(told, ("unknown mode command", true), "{command:?}");
+        // And it is forgotten.
+        rig.bench.run_cycles(4);
+        rig.good_position();
+    }
+    assert_eq!(rig.bench.frames(0).len(), frames + others.len());
     // With a request it goes out as ever.
     rig.bench
         .set("command", ModeCommand::SendPositionAddInfo.code().into());

@@ -139,6 +139,8 @@ pub struct Channel {
     pub position: u64,
     /// As in a set, without the bits `TAKEN` and `MISSING`.
     pub status: u16,
+    /// The position is not the one that its parity is of.
+    pub is_upset: bool,
 }
 
 /// An access to a word: byte of a read, or a value to write.
@@ -239,6 +241,8 @@ impl Rig {
             set.set("busy", channel.busy);
             set.set("result_strobe", channel.strobe);
             set.set("position", channel.position);
+            let parity = channel.position.count_ones() % 2 == 1;
+            set.set("position_parity", parity ^ channel.is_upset);
             set.set("position_valid", channel.status & VALID != 0);
             set.set("fresh", channel.status & FRESH != 0);
             set.set("cause", channel.status & 31);

@@ -1,6 +1,7 @@
 //! What is in a set, and what never gets into one.
 
 use super::rig::*;
+use endat_hdl::transaction::cause;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 
@@ -261,6 +262,27 @@ fn the_next_trigger_closes_a_set_and_marks_who_is_missing() {
         assert_eq!(sets[1].parts, [good(0x44), Part::default()]);
         assert_eq!((sets.len(), sets[1].lost), (2, 0));
     }
+}
+
+/// Catches a set that tells a position as good that an upset has changed while it waited for the buffer.
+#[test]
+fn a_position_that_is_not_of_its_parity_is_told_as_upset() {
+    let mut rig = two();
+    let good = Channel {
+        position: 0x8000_0000_0701,
+        status: VALID | FRESH,
+        ..Channel::default()
+    };
+    let upset = Channel {
+        is_upset: true,
+        ..good
+    };
+    let sent = rig.set_of(&[good, upset]);
+    rig.written();
+    let sets = Set::all(&rig.drain());
+    assert_eq!(sets[0].parts[0], sent.parts[0]);
+    let told = sets[0].parts[1].status;
+    assert_eq!(told, TAKEN | cause::UPSET as u16);
 }
 
 #[test]

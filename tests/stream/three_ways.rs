@@ -74,7 +74,7 @@ fn stream_and_channel_agree_in_kernels_engines_and_verilog() {
     block.connect_all();
     let design = elaborate(&block, "set_channel").unwrap();
     let mut kernel = kernel_engine!(block; clock;
-        in reset, trigger, busy, result_strobe, position, position_valid, fresh, cause, flags, take, block, byte_at;
+        in reset, trigger, busy, result_strobe, position, position_parity, position_valid, fresh, cause, flags, take, block, byte_at;
         out set_byte, owes, replaced);
     three_way("set_channel", &mut kernel, &design, &channel).unwrap();
 }
