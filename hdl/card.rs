@@ -289,6 +289,7 @@ impl CardCore {
         };
         let runs = if parts.runs { served } else { 0 };
         let set_infos = if parts.informations { served } else { 0 };
+        let is_endat = |i: usize| config.channels[i].t_format.is_none();
         let plain_sets = if parts.informations { sets } else { 0 };
         Self::from_parts(CardCoreParts {
             direct_position_o: each(direct_ports),
@@ -315,7 +316,7 @@ impl CardCore {
                 .collect(),
             port: (0..channels).map(|i| port(config, i, service)).collect(),
             whole: (0..served)
-                .map(|i| WholeResult::new(i, config.channels[i].t_format.is_none()))
+                .map(|i| WholeResult::new(i, is_endat(i)))
                 .collect(),
             info_byte: each(served + 1),
             set_open: each(set_infos + 1),
@@ -330,7 +331,7 @@ impl CardCore {
                 })
                 .collect(),
             set: (0..sets)
-                .map(|i| SetChannel::new(i, own_triggers != 0, parts))
+                .map(|i| SetChannel::new(i, is_endat(i), own_triggers != 0, parts))
                 .collect(),
             set_byte: each(sets + streams),
             set_owes: each(sets + streams),
@@ -398,13 +399,10 @@ impl CardCore {
 impl Logic for CardCore {
     #[kernel]
     fn update(&mut self) {
-        self.timebase.clock.next = self.clk_i.val();
+        clock!(self, clk_i, timebase, trigger, bank);
         self.timebase.reset.next = self.rst_i.val();
-        self.trigger.clock.next = self.clk_i.val();
         self.trigger.reset.next = self.rst_i.val();
-        self.bank.clock.next = self.clk_i.val();
         self.bank.reset.next = self.rst_i.val();
-
         self.trigger.pin.next = self.trigger_i.val();
         self.trigger.register.next = self.bank.trigger_now.val();
         self.trigger.sources.next = self.bank.sources.val();
@@ -637,7 +635,8 @@ impl Logic for CardCore {
             self.set[i].busy.next = self.port[i].busy.val() | !self.trigger_of[i].val();
             self.set[i].result_strobe.next = self.port[i].result_strobe.val();
             self.set[i].position.next = self.port[i].position.val();
-            self.set[i].position_parity.next = self.port[i].position_parity.val();
+            self.set[i].position_crc.next = self.port[i].position_crc.val();
+            self.set[i].position_has_f2.next = self.port[i].position_has_f2.val();
             self.set[i].position_valid.next = self.port[i].position_valid.val();
             self.set[i].fresh.next = self.port[i].fresh.val();
             self.set[i].cause.next = self.port[i].cause.val();

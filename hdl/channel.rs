@@ -276,19 +276,8 @@ impl Channel {
 impl Logic for Channel {
     #[kernel]
     fn update(&mut self) {
-        clock!(
-            self,
-            clock,
-            filter,
-            clock_gen,
-            sender,
-            delay,
-            receiver,
-            transaction,
-            snapshot,
-            add_info,
-            settings
-        );
+        clock!(self, clock, filter, clock_gen, sender, delay, receiver);
+        clock!(self, clock, transaction, snapshot, add_info, settings);
         self.settings.reset.next = self.reset.val();
         self.add_info.reset.next = self.reset.val();
         self.filter.reset.next = self.reset.val();

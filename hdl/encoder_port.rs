@@ -70,8 +70,6 @@ pub struct EncoderPort {
     pub result_strobe: Signal<Out, Bit>,
     /// Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     pub position: Signal<Out, Bits<48>>,
-    /// Parity of the position, as its CRC tells it; of a T-format position its own.
-    pub position_parity: Signal<Out, Bit>,
     /// There is a good position.
     pub position_valid: Signal<Out, Bit>,
     /// The last result brought the position; low = held from an earlier frame.
@@ -311,9 +309,6 @@ impl Logic for EncoderPort {
             self.data_oe.next = self.channel[i].data_oe.val();
             self.result_strobe.next = self.channel[i].result_strobe.val();
             self.position.next = self.channel[i].position.val();
-            // The polynomial has the factor x + 1: CRC and what it is of, F1 = 0, F2 = 1 and the position, have the same parity.
-            self.position_parity.next =
-                self.channel[i].position_crc.val().xor() ^ self.channel[i].position_has_f2.val();
             self.position_valid.next = self.channel[i].position_valid.val();
             self.fresh.next = self.channel[i].fresh.val();
             self.sequence.next = self.channel[i].sequence.val();
@@ -391,7 +386,6 @@ impl Logic for EncoderPort {
             self.data_oe.next = self.t_format[i].data_oe.val();
             self.result_strobe.next = self.t_format[i].result_strobe.val();
             self.position.next = self.t_format[i].position.val();
-            self.position_parity.next = self.t_format[i].position.val().xor();
             self.position_valid.next = self.t_format[i].position_valid.val();
             self.fresh.next = self.t_format[i].fresh.val();
             self.sequence.next = self.t_format[i].sequence.val();

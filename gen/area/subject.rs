@@ -248,7 +248,7 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
         Subject::new(
             "set_channel",
             "a channel's part of it",
-            SetChannel::new(0, false, SetParts::default()),
+            SetChannel::new(0, true, false, SetParts::default()),
         )?,
         Subject::new(
             "direct_output",

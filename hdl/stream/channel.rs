@@ -34,8 +34,10 @@ pub struct SetChannel {
     pub result_strobe: Signal<In, Bit>,
     /// Last good position.
     pub position: Signal<In, Bits<48>>,
-    /// Parity of the position, as its CRC tells it.
-    pub position_parity: Signal<In, Bit>,
+    /// CRC that came with the position.
+    pub position_crc: Signal<In, Bits<5>>,
+    /// The position came with F2.
+    pub position_has_f2: Signal<In, Bit>,
     /// There is a good position.
     pub position_valid: Signal<In, Bit>,
     /// The last result brought the position.
@@ -84,7 +86,9 @@ pub struct SetChannel {
     open: Signal<Local, Bit>,
     status: Signal<Local, Bits<16>>,
     upset_now: Reg<Bit>,
+    parity: Signal<Local, Bit>,
     shown: Signal<Local, Bits<8>>,
+    has_crc: Constant<Bit>,
     taken_bit: Constant<Bits<8>>,
     upset_cause: Constant<Bits<8>>,
     number: Constant<Bits<4>>,
@@ -94,8 +98,8 @@ pub struct SetChannel {
 }
 
 impl SetChannel {
-    /// The place of channel `channel`, for late results too if `takes_late`, and for what else sets have.
-    pub fn new(channel: usize, takes_late: bool, parts: SetParts) -> Self {
+    /// The place of channel `channel`, for late results too if `takes_late`, and for what else sets have. `has_crc`: it speaks EnDat.
+    pub fn new(channel: usize, has_crc: bool, takes_late: bool, parts: SetParts) -> Self {
         let (runs, infos) = (usize::from(parts.runs), usize::from(parts.informations));
         Self::from_parts(SetChannelParts {
             take_run: each(runs),
@@ -109,6 +113,7 @@ impl SetChannel {
             info_byte: each(infos),
             number: Constant::new((channel as u64 + 1).into()),
             takes_late: Constant::new(takes_late),
+            has_crc: Constant::new(has_crc),
             taken_bit: Constant::new((1u64 << 5).into()),
             upset_cause: Constant::new(cause::UPSET.into()),
             _runs: runs,
@@ -150,9 +155,14 @@ impl Logic for SetChannel {
             | (bit_cast::<16, 1>(self.position_valid.val().into()) << 6)
             | (bit_cast::<16, 1>(self.fresh.val().into()) << 7)
             | (bit_cast::<16, 7>(self.flags.val().get_bits::<7>(12)) << 8);
+        // The polynomial has the factor x + 1: CRC and what it is of, F1 = 0, F2 = 1 and the position, have the same parity.
+        self.parity.next = self.position_crc.val().xor() ^ self.position_has_f2.val();
+        if !self.has_crc.val() {
+            self.parity.next = self.position.val().xor();
+        }
         if self.take.val() {
             self.position_taken.d.next = self.position.val();
-            self.parity_taken.d.next = self.position_parity.val();
+            self.parity_taken.d.next = self.parity.val();
             self.status_taken.d.next = self.status.val();
             self.took_taken.d.next = self.took.q.val();
             self.missing_taken.d.next = self.open.val();
@@ -160,7 +170,7 @@ impl Logic for SetChannel {
         for i in 0..self._runs {
             if self.take_run[i].val() {
                 self.position_taken.d.next = self.position.val();
-                self.parity_taken.d.next = self.position_parity.val();
+                self.parity_taken.d.next = self.parity.val();
                 self.status_taken.d.next = self.status.val();
                 self.took_taken.d.next = true;
                 self.missing_taken.d.next = false;

@@ -186,7 +186,6 @@ module s6_two_channel_card_core (
     wire  [12:0] registers_1_recovery_limit_cycles;
     wire         port_0_result_strobe;
     wire  [47:0] port_0_position;
-    wire         port_0_position_parity;
     wire         port_0_position_valid;
     wire         port_0_fresh;
     wire  [15:0] port_0_sequence;
@@ -222,7 +221,6 @@ module s6_two_channel_card_core (
     wire  [31:0] port_0_host_word;
     wire         port_1_result_strobe;
     wire  [47:0] port_1_position;
-    wire         port_1_position_parity;
     wire         port_1_position_valid;
     wire         port_1_fresh;
     wire  [15:0] port_1_sequence;
@@ -463,7 +461,6 @@ module s6_two_channel_card_core (
         .data_oe(endat_data0_oe),
         .result_strobe(port_0_result_strobe),
         .position(port_0_position),
-        .position_parity(port_0_position_parity),
         .position_valid(port_0_position_valid),
         .fresh(port_0_fresh),
         .sequence_value(port_0_sequence),
@@ -528,7 +525,6 @@ module s6_two_channel_card_core (
         .data_oe(endat_data1_oe),
         .result_strobe(port_1_result_strobe),
         .position(port_1_position),
-        .position_parity(port_1_position_parity),
         .position_valid(port_1_position_valid),
         .fresh(port_1_fresh),
         .sequence_value(port_1_sequence),
@@ -601,7 +597,8 @@ module s6_two_channel_card_core (
         .busy(set_0_busy),
         .result_strobe(port_0_result_strobe),
         .position(port_0_position),
-        .position_parity(port_0_position_parity),
+        .position_crc(port_0_position_crc),
+        .position_has_f2(port_0_position_has_f2),
         .position_valid(port_0_position_valid),
         .fresh(port_0_fresh),
         .cause(port_0_cause),
@@ -620,7 +617,8 @@ module s6_two_channel_card_core (
         .busy(set_1_busy),
         .result_strobe(port_1_result_strobe),
         .position(port_1_position),
-        .position_parity(port_1_position_parity),
+        .position_crc(port_1_position_crc),
+        .position_has_f2(port_1_position_has_f2),
         .position_valid(port_1_position_valid),
         .fresh(port_1_fresh),
         .cause(port_1_cause),

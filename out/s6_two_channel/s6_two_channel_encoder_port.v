@@ -52,8 +52,6 @@ module s6_two_channel_encoder_port (
     output wire         result_strobe,
     // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     output wire  [47:0] position,
-    // Parity of the position, as its CRC tells it; of a T-format position its own.
-    output wire         position_parity,
     // There is a good position.
     output wire         position_valid,
     // The last result brought the position; low = held from an earlier frame.
@@ -217,7 +215,6 @@ module s6_two_channel_encoder_port (
         .sample_second(channel_0_sample_second)
     );
 
-    assign position_parity = (^position_crc) ^ position_has_f2;
     assign alarm = 1'b0;
     assign host_word = 32'd0;
 endmodule

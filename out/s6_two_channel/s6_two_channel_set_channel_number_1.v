@@ -18,8 +18,10 @@ module s6_two_channel_set_channel_number_1 (
     input  wire         result_strobe,
     // Last good position.
     input  wire  [47:0] position,
-    // Parity of the position, as its CRC tells it.
-    input  wire         position_parity,
+    // CRC that came with the position.
+    input  wire   [4:0] position_crc,
+    // The position came with F2.
+    input  wire         position_has_f2,
     // There is a good position.
     input  wire         position_valid,
     // The last result brought the position.
@@ -41,6 +43,7 @@ module s6_two_channel_set_channel_number_1 (
     // The result of the trigger has been replaced by another one (continuous clock).
     output wire         replaced
 );
+    localparam         HAS_CRC = 1'b1;
     localparam   [7:0] TAKEN_BIT = 8'd32;
     localparam   [7:0] UPSET_CAUSE = 8'd31;
     localparam   [3:0] NUMBER = 4'd1;
@@ -50,6 +53,7 @@ module s6_two_channel_set_channel_number_1 (
     wire         is_own;
     wire         open;
     wire  [15:0] status;
+    reg          parity;
     reg    [7:0] shown;
     reg          took; initial took = 1'b0;
     reg          took_next;
@@ -140,6 +144,13 @@ module s6_two_channel_set_channel_number_1 (
     assign status = {11'd0, cause} | ({15'd0, position_valid} << 3'd6) | ({15'd0, fresh} << 3'd7) | ({9'd0, flags[18:12]} << 4'd8);
 
     always @* begin
+        parity = (^position_crc) ^ position_has_f2;
+        if (!HAS_CRC) begin
+            parity = ^position;
+        end
+    end
+
+    always @* begin
         position_taken_next = position_taken;
         parity_taken_next = parity_taken;
         status_taken_next = status_taken;
@@ -147,7 +158,7 @@ module s6_two_channel_set_channel_number_1 (
         missing_taken_next = missing_taken;
         if (take) begin
             position_taken_next = position;
-            parity_taken_next = position_parity;
+            parity_taken_next = parity;
             status_taken_next = status;
             took_taken_next = took;
             missing_taken_next = open;

@@ -186,7 +186,7 @@ impl Rig {
             set: (0..channels)
                 .map(|n| {
                     Named::new(
-                        SetChannel::new(n, false, SetParts::default()),
+                        SetChannel::new(n, true, false, SetParts::default()),
                         "set_channel",
                     )
                 })
@@ -242,7 +242,7 @@ impl Rig {
             set.set("result_strobe", channel.strobe);
             set.set("position", channel.position);
             let parity = channel.position.count_ones() % 2 == 1;
-            set.set("position_parity", parity ^ channel.is_upset);
+            set.set("position_crc", parity ^ channel.is_upset);
             set.set("position_valid", channel.status & VALID != 0);
             set.set("fresh", channel.status & FRESH != 0);
             set.set("cause", channel.status & 31);

@@ -70,11 +70,11 @@ fn stream_and_channel_agree_in_kernels_engines_and_verilog() {
     assert!(pushed.contains(&0x11), "the head of a set");
     assert!(recording.output("take_set").iter().sum::<u128>() > 5);
 
-    let mut block = SetChannel::new(0, false, SetParts::default());
+    let mut block = SetChannel::new(0, true, false, SetParts::default());
     block.connect_all();
     let design = elaborate(&block, "set_channel").unwrap();
     let mut kernel = kernel_engine!(block; clock;
-        in reset, trigger, busy, result_strobe, position, position_parity, position_valid, fresh, cause, flags, take, block, byte_at;
+        in reset, trigger, busy, result_strobe, position, position_crc, position_has_f2, position_valid, fresh, cause, flags, take, block, byte_at;
         out set_byte, owes, replaced);
     three_way("set_channel", &mut kernel, &design, &channel).unwrap();
 }
