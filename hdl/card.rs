@@ -282,7 +282,6 @@ impl CardCore {
         let interrupts = usize::from(config.outputs.interrupt);
         let served = served_channels(config);
         let services = services(config);
-        let places = services * CHANNELS_SERVED;
         let parts = SetParts {
             informations: config.stream.informations,
             runs: config.service.continuous && streams != 0,
@@ -356,10 +355,10 @@ impl CardCore {
             read_link: each(channels + 1),
             service_link: each(channels + 1),
             selected: each(channels),
-            io_address: each(places),
+            io_address: each(services * CHANNELS_SERVED),
             io_read: each(served),
             io_in: each(served),
-            io_out: each(places),
+            io_out: each(services * CHANNELS_SERVED),
             io_write: each(served),
             word_link: each(services + 1),
             taken: each(channels + 1),
@@ -403,6 +402,7 @@ impl Logic for CardCore {
         self.timebase.reset.next = self.rst_i.val();
         self.trigger.reset.next = self.rst_i.val();
         self.bank.reset.next = self.rst_i.val();
+
         self.trigger.pin.next = self.trigger_i.val();
         self.trigger.register.next = self.bank.trigger_now.val();
         self.trigger.sources.next = self.bank.sources.val();
