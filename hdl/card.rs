@@ -237,7 +237,7 @@ pub fn services(card: &CardConfig) -> usize {
 
 fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort {
     let channel = &card.channels[index];
-    if channel.t_format.is_some() {
+    if !channel.is_endat() {
         return EncoderPort::t_format(index < served_channels(card));
     }
     let service = card.service.requests.then_some(service);
@@ -253,7 +253,7 @@ fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort 
 /// The first channel's port alone, for those who bring registers and triggers of their own.
 pub fn bare_port(card: &CardConfig) -> EncoderPort {
     let (channel, service) = (&card.channels[0], service_times(card));
-    if channel.t_format.is_some() {
+    if !channel.is_endat() {
         return EncoderPort::t_format(false);
     }
     EncoderPort::with_line(
@@ -288,7 +288,7 @@ impl CardCore {
         };
         let runs = if parts.runs { served } else { 0 };
         let set_infos = if parts.informations { served } else { 0 };
-        let is_endat = |i: usize| config.channels[i].t_format.is_none();
+        let is_endat = |i: usize| config.channels[i].is_endat();
         let plain_sets = if parts.informations { sets } else { 0 };
         Self::from_parts(CardCoreParts {
             direct_position_o: each(direct_ports),

@@ -6,16 +6,14 @@ use endat_gen::area;
 use endat_gen::config::{load_preset, PRESETS};
 use endat_hdl::regs::{blocks, present};
 use endat_regs::{causes, service::request_state, EVIDENCE_FLAGS, INTERRUPT_EVENTS, LINE_FLAGS};
+use std::path::Path;
 
 /// Catches a figure that was typed, and one that has changed since.
 #[test]
 fn the_page_is_what_the_command_writes() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/comparison.md");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/comparison.md");
     let now = good(&["bench", "comparison"]);
-    if std::env::var_os("UPDATE_EXPECT").is_some() {
-        std::fs::write(path, &now).unwrap();
-    }
-    let page = std::fs::read_to_string(path).unwrap();
+    let page = tools::committed(&path, &now);
     for (line, (page, now)) in page.lines().zip(now.lines()).enumerate() {
         let place = format!("docs/comparison.md:{}", line + 1);
         assert_eq!(page, now, "{place}: UPDATE_EXPECT=1 cargo test comparison");

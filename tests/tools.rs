@@ -57,6 +57,14 @@ pub fn cannot(why: &str, check: &str) {
     let _ = writeln!(std::io::stderr(), "SKIPPED {check}: {why}");
 }
 
+/// A committed file, after `UPDATE_EXPECT=1` has made it what it should be now.
+pub fn committed(path: &Path, now: &str) -> String {
+    if std::env::var_os("UPDATE_EXPECT").is_some() {
+        fs::write(path, now).unwrap();
+    }
+    fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
 /// An empty folder for the files of one test.
 pub fn folder(name: &str) -> PathBuf {
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);

@@ -45,7 +45,7 @@ fn changed(
     let mut card = card.clone();
     let (system_hz, double_edge) = (card.system_hz, card.line.double_edge);
     for (index, channel) in card.channels.iter_mut().enumerate() {
-        if channel.t_format.is_none() {
+        if channel.is_endat() {
             let request = change(&channel.request);
             *channel = ChannelConfig::resolve(&request, system_hz, double_edge, index).ok()?;
         }

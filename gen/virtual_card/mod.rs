@@ -97,7 +97,7 @@ fn is_t_format_device(name: &str) -> bool {
 
 /// The device that `--encoder` asks for on a channel. One for all is one for those that speak its protocol.
 fn wanted<'a>(project: &Project, channel: usize, devices: &'a [String]) -> Option<&'a str> {
-    let is_t_format = |n: usize| project.card.channels[n].t_format.is_some();
+    let is_t_format = |n: usize| !project.card.channels[n].is_endat();
     match devices {
         [one] if one != NO_DEVICE => {
             let is_of = |n: usize| is_t_format(n) == is_t_format_device(one);
@@ -228,7 +228,7 @@ impl VirtualCard {
         let mut t_format = Vec::new();
         for channel in 0..card.channels.len() {
             let wanted = wanted(project, channel, &config.encoders);
-            if card.channels[channel].t_format.is_some() {
+            if !card.channels[channel].is_endat() {
                 let link = t_format_link(project, channel, wanted, config)?;
                 t_format.push((PinNames::card(channel), link));
                 continue;

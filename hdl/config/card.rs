@@ -98,7 +98,7 @@ impl CardDraft {
                             ),
                         ),
                     ];
-                    let is_endat = channel.t_format.is_none();
+                    let is_endat = channel.is_endat();
                     for (is_wanted, part) in parts {
                         if is_endat && is_wanted && channel.period_cycles < part.2 {
                             problems.push(too_fast_for(index, &channel, system_hz, part));

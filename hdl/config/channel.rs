@@ -8,6 +8,11 @@ use crate::protocol::{INFO_BITS, LEAD_PULSES, SUPPLEMENT_PULSES};
 use crate::timing::*;
 
 impl ChannelConfig {
+    /// Whether it speaks EnDat; otherwise T-format.
+    pub fn is_endat(&self) -> bool {
+        self.t_format.is_none()
+    }
+
     /// Converts and checks one channel; `Err` has every problem found.
     pub fn resolve(
         request: &ChannelRequest,

@@ -143,7 +143,7 @@ impl CardConfig {
     /// Numbers of the channels that speak T-format.
     pub fn t_format_numbers(&self) -> impl Iterator<Item = usize> + '_ {
         let channels = self.channels.iter().enumerate();
-        let t_format = channels.filter(|(_, c)| c.t_format.is_some());
+        let t_format = channels.filter(|(_, c)| !c.is_endat());
         t_format.map(|(n, _)| n)
     }
 
@@ -155,6 +155,6 @@ impl CardConfig {
     /// Channels that speak EnDat, with their numbers.
     pub fn endat_channels(&self) -> impl Iterator<Item = (usize, &ChannelConfig)> {
         let channels = self.channels.iter().enumerate();
-        channels.filter(|(_, c)| c.t_format.is_none())
+        channels.filter(|(_, c)| c.is_endat())
     }
 }

@@ -234,7 +234,7 @@ pub fn prove(
 ) -> Result<FrameReport, GenError> {
     let started = Instant::now();
     let card = &project.card;
-    let is_endat = |c: &&ChannelConfig| c.t_format.is_none();
+    let is_endat = |c: &&ChannelConfig| c.is_endat();
     let top = (subject.design.modules.iter()).position(|m| m.type_name == CHANNEL);
     let (Some(channel), Some(top)) = (card.channels.iter().find(is_endat), top) else {
         return Err(GenError::input(format!(
