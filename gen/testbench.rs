@@ -13,7 +13,8 @@ use crate::template;
 use endat_hdl::bus::HostBus;
 use endat_hdl::card::{service_times, services};
 use endat_hdl::channel::CALIBRATION_FRAMES;
-use endat_hdl::config::{CardConfig, ChannelConfig, LIST};
+use endat_hdl::config::{CardConfig, ChannelConfig};
+use endat_hdl::protocol::{INFO_BITS, SUPPLEMENT_PULSES};
 use endat_hdl::regs::{
     start, Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, LINE, RESULT,
     SERVICE,
@@ -141,24 +142,16 @@ fn program_words(times: &ServiceTimes) -> Vec<String> {
     words.map(|w| format!("20'h{w:05x}")).collect()
 }
 
-/// The program that the services of a card run in the bench, if it is not their own: the bench's encoders answer with positions only, so
-/// nothing selects additional informations, and of an initialisation there is the beginning only.
+/// The program that the services of a card run in the bench, if it is not their own: of an initialisation there is the beginning only.
 fn program_text(card: &CardConfig) -> Result<String, GenError> {
     let times = service_times(card);
-    let without = match times.initialise {
-        true => ServiceTimes {
-            initialise: false,
-            clears_ram: times.clears_ram,
-            ..ServiceTimes::at(card.system_hz)
-        },
-        false => ServiceTimes {
-            infos: [0; LIST],
-            ..times
-        },
-    };
-    if times == without {
+    if !times.initialise {
         return Ok(String::new());
     }
+    let without = ServiceTimes {
+        initialise: false,
+        ..times
+    };
     let program = program_words(&without);
     template::render(
         "bench_program",
@@ -225,7 +218,12 @@ pub const RESET_CYCLES: u64 = 4;
 /// From a trigger to the end of everything, in ns.
 fn cycle_ns(card: &CardConfig) -> u64 {
     let hz = card.system_hz;
-    let exchange = |c: &ChannelConfig| cycles_to_ns(c.cycle_max_cycles(hz), hz);
+    // Whatever is selected comes with it, and may be selected in it.
+    let more = |c: &ChannelConfig| match card.service.requests && c.is_endat() {
+        true => c.longest_frame_cycles(hz) - c.frame_time(hz).frame_cycles,
+        false => 0,
+    };
+    let exchange = |c: &ChannelConfig| cycles_to_ns(c.cycle_max_cycles(hz) + more(c), hz);
     let exchange_ns = card.channels.iter().map(exchange).max().unwrap_or(0);
     // A T-format line has to be idle for a while after an exchange without a reply.
     let idle_ns = match card.t_format_numbers().next() {
@@ -254,12 +252,21 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let after_frame = |c: &ChannelConfig| c.cycle_max_cycles(hz) - c.frame_time(hz).frame_cycles;
     let calibration_ns =
         longest_ns(card, |c| c.calibration_cycles(hz) + after_frame(c)) + MARGIN_NS;
+    // What a list has selected comes with the frames that measure, too.
+    let informations = |c: &ChannelConfig| {
+        u64::from(2 * INFO_BITS + SUPPLEMENT_PULSES) * c.calibration_period_cycles(hz)
+    };
+    let informations_ns = match purpose::configured_list(card).is_empty() {
+        true => 0,
+        false => longest_ns(card, informations),
+    };
     let measuring = if card.line.alignment {
         CALIBRATION_FRAMES
     } else {
         1
     };
-    let calibration_ns = calibration_ns.max(cycle_ns) * measuring as u64 + cycle_ns;
+    let calibration_ns =
+        (calibration_ns + informations_ns).max(cycle_ns) * measuring as u64 + cycle_ns;
     let timeout = |c: &ChannelConfig| {
         c.recovery_limit_cycles + cycles_at_least(1_000 * c.start_timeout_us, hz)
     };
@@ -294,7 +301,6 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let has_infos = card.service.requests;
     let context = context! {
         result_words => if has_infos { 8 } else { 6 },
-        without_list => !program.is_empty() && !card.service.initialise,
         program,
         power_up,
         sleeps,

@@ -205,8 +205,8 @@ impl<T: Transport> Card<T> {
             .clone()
             .filter(|f| place.field.is_none_or(|one| one == *f));
         let known = fields.fold(0, |all, f| all | f.mask());
-        // A strobe that is no bit of the word would be told as done.
-        if place.register.access == Access::Strobe && place.field.is_none() && value & !known != 0 {
+        // The card drops a bit that the word does not have, and it would be told as written.
+        if place.field.is_none() && value & !known != 0 {
             return Err(HostError::Name(format!(
                 "value = {value}: {place} has no such bits; give bits of 0x{known:X}"
             )));

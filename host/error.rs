@@ -18,7 +18,7 @@ pub enum HostError {
         remedy: &'static str,
     },
     /// No answer, several times.
-    #[error("no answer from the card in {tries} tries of {wait_ms} ms; is it powered, is the baud rate the card's (--baud), is another program connected to it?")]
+    #[error("no answer from the card in {tries} tries of {wait_ms} ms; is another program connected to it, is it powered, is the baud rate the card's (--baud)?")]
     Silent {
         /// How often it was asked.
         tries: u32,

@@ -94,9 +94,10 @@ impl Place {
         channels: usize,
         has: impl Fn(&Block) -> bool,
     ) -> Result<Self, HostError> {
-        let fail = |what: String| {
+        // The guess before the list of names, which may be long.
+        let fail = |what: String, names: String| {
             Err(HostError::Name(format!(
-                "register = {}: {what}{}",
+                "register = {}: {what}{} ({names})",
                 shown(name),
                 proposal(name, channels)
             )))
@@ -119,45 +120,49 @@ impl Place {
                 false => b.name.to_owned(),
             });
             let names: Vec<String> = names.collect();
-            return fail(format!(
-                "there is no block {}; write BLOCK.REGISTER or BLOCK.REGISTER.FIELD; blocks are {} (0 = channel)",
-                shown(block_name),
-                names.join(", ")
-            ));
+            return fail(
+                format!("there is no block {}", shown(block_name)),
+                format!(
+                    "write BLOCK.REGISTER or BLOCK.REGISTER.FIELD; blocks are {}; 0 = channel",
+                    names.join(", ")
+                ),
+            );
         };
         let number = &block_name[stem.len()..];
         let channel = match (block.per_channel, number.parse::<usize>()) {
             (false, _) => 0,
             (true, Ok(n)) if n < channels => n,
             (true, _) => {
-                return fail(format!(
-                    "{} needs a channel: write {stem}0 to {stem}{}",
-                    stem,
-                    channels.max(1) - 1
-                ))
+                return fail(
+                    format!("{stem} needs a channel"),
+                    format!("write {stem}0 to {stem}{}", channels.max(1) - 1),
+                )
             }
         };
         let Some(register_name) = parts.next() else {
-            return fail(format!(
-                "names no register; {block_name} has {}",
-                list(block.registers.iter().map(|r| r.name))
-            ));
+            return fail(
+                "names no register".into(),
+                format!(
+                    "{block_name} has {}",
+                    list(block.registers.iter().map(|r| r.name))
+                ),
+            );
         };
         let Some(register) = block.register(register_name) else {
-            return fail(format!(
-                "no register of that name in {block_name}; it has {}",
-                list(block.registers.iter().map(|r| r.name))
-            ));
+            return fail(
+                format!("no register of that name in {block_name}"),
+                format!("it has {}", list(block.registers.iter().map(|r| r.name))),
+            );
         };
         let field = match parts.next() {
             None => None,
             Some(field) => match register.field(field) {
                 Some(field) => Some(field),
                 None => {
-                    return fail(format!(
-                        "no field of that name in {block_name}.{register_name}; it has {}",
-                        list(register.fields.iter().map(|f| f.name))
-                    ))
+                    return fail(
+                        format!("no field of that name in {block_name}.{register_name}"),
+                        format!("it has {}", list(register.fields.iter().map(|f| f.name))),
+                    )
                 }
             },
         };
@@ -168,7 +173,10 @@ impl Place {
                 register,
                 field,
             }),
-            Some(_) => fail("has too many parts; write BLOCK.REGISTER.FIELD".into()),
+            Some(_) => fail(
+                "has too many parts".into(),
+                "write BLOCK.REGISTER.FIELD".into(),
+            ),
         }
     }
 
@@ -249,7 +257,10 @@ mod tests {
             ("nothing.id", "blocks are card"),
             ("result.status", "result0 to result1"),
             ("result2.status", "result0 to result1"),
-            ("result0", "result0 has status, position_low"),
+            (
+                "result0",
+                "names no register (result0 has status, position_low",
+            ),
             ("result0.statu", "it has status, position_low"),
             ("result0.status.caus", "it has sequence, cause"),
             ("result0.status.cause.x", "too many parts"),
@@ -281,7 +292,7 @@ mod tests {
             ),
         ] {
             let error = Place::named(name, 2).unwrap_err().to_string();
-            assert!(error.ends_with(told), "{name}: {error}");
+            assert!(error.contains(&format!("{told} (")), "{name}: {error}");
         }
         let error = Place::named("quite.something_else", 2).unwrap_err();
         assert!(!error.to_string().contains("did you mean"), "{error}");

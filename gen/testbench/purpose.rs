@@ -1,5 +1,5 @@
 //! What the published systems are for, as far as a card has it: usual clock rates, cropped positions, selected causes, the
-//! watchdog, requests, continuous clock.
+//! watchdog, requests, additional informations, continuous clock.
 
 use super::{clock_ns, cycle_ns, fields, is_own_trigger, longest_ns, real, whole, Port};
 use crate::error::GenError;
@@ -175,6 +175,45 @@ fn requests(card: &CardConfig) -> Vec<Value> {
     channels.collect()
 }
 
+/// MRS codes that the services of a card select in turn after reset.
+pub(super) fn configured_list(card: &CardConfig) -> &[u8] {
+    let list = &card.service.infos;
+    let length = list.iter().position(|code| *code == 0);
+    &list[..length.unwrap_or(list.len())]
+}
+
+/// What the bench selects on a card that has no list of its own: a temperature, and the sources of errors.
+const USUAL_LIST: [u8; 2] = [0x4C, 0x59];
+/// What ends additional information 1 and 2.
+const NO_INFOS: [u8; 2] = [0x4F, 0x5F];
+
+/// Channels whose encoders send additional informations: where the list stands, the slots, and what the host writes there, if it has to.
+fn infos(card: &CardConfig) -> Vec<Value> {
+    if !card.service.requests {
+        return vec![];
+    }
+    let own = configured_list(card);
+    let list = if own.is_empty() { &USUAL_LIST } else { own };
+    let channels = card.endat_channels().filter(|(_, c)| c.command.has_f2());
+    let channels = channels.map(|(n, _)| {
+        let codes = list.iter().enumerate().map(|(i, code)| {
+            context! {
+                place => service_address(&format!("list_{i}"), n),
+                slot => service_address(&format!("slot_{i}"), n),
+                mrs => format!("{code:02X}"),
+            }
+        });
+        context! {
+            index => n,
+            codes => codes.collect::<Vec<_>>(),
+            length => service_address("list_length", n),
+            request => service_address("request", n),
+            state => service_address("request_state", n),
+        }
+    });
+    channels.collect()
+}
+
 /// Such a request takes no longer than this, in nanoseconds.
 fn request_ns(card: &CardConfig) -> u64 {
     let more = longest_ns(card, |c| REQUEST_MORE_PERIODS * c.period_cycles);
@@ -191,6 +230,10 @@ impl Parts {
             watchdog => watched(card),
             requests => requests(card),
             request_fields => Serde(fields(&SERVICE).filter(|f| REQUEST_FIELDS.contains(&f.name.as_str())).collect::<Vec<_>>()),
+            infos => infos(card),
+            has_list => !configured_list(card).is_empty(),
+            no_infos => NO_INFOS.map(|code| format!("{code:02X}")),
+            select => ModeCommand::PositionSelectMemory.code(),
             runs => run.iter().flat_map(runs).collect::<Vec<_>>(),
             run_writes => run.iter().flat_map(writes).collect::<Vec<_>>(),
             run_ns => whole(RUN_FRAMES * cycle_ns(card)),

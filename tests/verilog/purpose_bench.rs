@@ -104,6 +104,28 @@ fn bench_of_a_card_with_services_passes_only_as_it_stands() {
     }
 }
 
+/// Shown by additional informations.
+const BROKEN_INFOS: &[Mutation] = &[
+    mutation(
+        "a LOW bit too few before the supplement",
+        "command_sender",
+        "cells_left_next = 4'd9;",
+        "cells_left_next = 4'd8;",
+    ),
+    mutation(
+        "an information that has ended is waited for",
+        "add_info",
+        "is_off = &mrs[3:0];",
+        "is_off = 1'b0;",
+    ),
+    mutation(
+        "information 2 taken for information 1",
+        "add_info",
+        "second_next = word;",
+        "first_next = word;",
+    ),
+];
+
 /// Of a device that gives nothing a start value: seen by unknown values, of which this simulator's registers and RAM are full.
 const BROKEN_START: &[Mutation] = &[
     mutation(
@@ -152,9 +174,9 @@ fn a_card_without_initial_values_comes_to_life_by_its_reset() {
         card
     };
     check_mutations("start", &card("\"requests\", \"diagnosis\""), BROKEN_START);
+    let list = card("\"requests\"]\ninfos = [0x4C, 0x59");
+    check_mutations("start-list", &list, BROKEN_INFOS);
     // Where the bench gives the services another program.
-    let list = card("\"requests\"]\ninfos = [0x4C");
-    assert_passes(&run_bench("start-list", &list, &[]));
     let initialise = card("\"requests\", \"initialise\"");
     assert_passes(&run_bench("start-initialise", &initialise, &[]));
 }
@@ -171,6 +193,7 @@ fn benches_of_the_published_systems_do_what_those_are_for() {
                 "selected causes",
                 "watchdog",
                 "requests",
+                "additional informations",
                 "continuous clock",
                 "interrupt",
             ],

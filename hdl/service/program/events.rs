@@ -170,6 +170,8 @@ fn turn(a: &mut Assembler) {
     a.ld(low(word::LIST_LENGTH)).xori(1).jnz(select);
     a.ld(own::MATCHED).jnz("event_done");
     a.place(select);
+    // The frame that has ended need not be the one with the last selection: it may have measured the delay, and that one is under way.
+    a.call("let_go").jnz("event_done");
     a.ld(own::TURN).addi(1).st(own::TURN);
     a.sub(low(word::LIST_LENGTH)).jc(go_on);
     set(a, own::TURN, 0);

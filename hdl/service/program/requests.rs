@@ -48,11 +48,7 @@ pub(super) fn code(command: ModeCommand) -> u16 {
 pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     let (is_own, ride) = (a.label(), a.label());
     a.place("mailbox");
-    // A selection of the list that has begun is let go first: the channel sends it from the same place.
-    a.ldi(go::CANCEL).out(output::GO);
-    a.inp(input::STATUS)
-        .andi(status::REQUEST_RUNS | status::EVENT)
-        .jnz("main");
+    a.call("let_go").jnz("main");
     a.ldi(acknowledge::MAILBOX).out(output::ACKNOWLEDGE);
     a.inp(input::TIME_US).st(own::BEGAN_US);
     a.inp(input::TIME_MS).st(own::BEGAN_MS);
@@ -98,6 +94,14 @@ pub(super) fn mailbox_request(a: &mut Assembler, times: &ServiceTimes) {
     a.call("pause");
     a.ld(own::ERROR).call("finish");
     a.jmp("main");
+
+    // A selection of the list that has not begun is taken back. One that has (A is not 0) is let go first, and its end is looked at: the
+    // channel sends it from where the next request is to stand.
+    a.place("let_go");
+    a.ldi(go::CANCEL).out(output::GO);
+    a.inp(input::STATUS)
+        .andi(status::REQUEST_RUNS | status::EVENT)
+        .ret();
 
     // The wait that a command of its own demands.
     let (reset, write) = (a.label(), a.label());
