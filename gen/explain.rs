@@ -152,6 +152,8 @@ pub struct Report {
     pub phase: Option<&'static str>,
     /// Outputs to logic and to a processor in the same device.
     pub outputs: Vec<&'static str>,
+    /// What watches each channel beside it.
+    pub safety: Vec<&'static str>,
 }
 
 impl Report {
@@ -286,6 +288,7 @@ pub fn report(project: &Project) -> Report {
             (card.outputs.position, "position"),
             (card.outputs.interrupt, "interrupt"),
         ]),
+        safety: present(&[(card.safety.recovery_counter, "recovery_counter")]),
         bus: project.bus.name(),
         stream: StreamReport::of(card, project.bus == HostBus::Uart),
         link: (project.bus == HostBus::Uart).then(|| LinkReport {

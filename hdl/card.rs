@@ -18,12 +18,11 @@
 
 use crate::channel_registers::ChannelRegisters;
 use crate::channel_trigger::ChannelTrigger;
-use crate::config::{CardConfig, ChannelConfig};
+use crate::config::CardConfig;
 use crate::direct::DirectOutput;
 use crate::encoder_port::EncoderPort;
-use crate::features::{Features, FixedTimes};
 use crate::interrupt::Interrupt;
-use crate::line_monitor::LineStart;
+use crate::recovery_counter::RecoveryCounter;
 use crate::register_bank::RegisterBank;
 use crate::service::{program::ServiceTimes, Service, CHANNELS_SERVED};
 use crate::several::each;
@@ -34,6 +33,9 @@ use crate::whole_result::WholeResult;
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
+use parts::{blink_bit, channel_triggers, port, served_channels};
+
+pub use parts::{bare_port, service_times, services};
 pub use uart::Card;
 
 /// The card but for its front; the number of channels is that of [`CardConfig::channels`].
@@ -133,6 +135,8 @@ pub struct CardCore {
     interrupt: Vec<Interrupt>,
     direct_byte: Vec<Signal<Local, Bits<8>>>,
     part_byte: Vec<Signal<Local, Bits<8>>>,
+    recovery: Vec<RecoveryCounter>,
+    recovery_byte: Vec<Signal<Local, Bits<8>>>,
     part_write: Signal<Local, Bit>,
     ring_link: Vec<Signal<Local, Bits<9>>>,
     read_link: Vec<Signal<Local, Bits<8>>>,
@@ -144,13 +148,13 @@ pub struct CardCore {
     io_out: Vec<Signal<Local, Bits<16>>>,
     io_write: Vec<Signal<Local, Bit>>,
     word_link: Vec<Signal<Local, Bits<32>>>,
-    service_reads: Signal<Local, Bits<8>>,
-    service_writes: Signal<Local, Bits<8>>,
+    in_service: Signal<Local, Bit>,
     taken: Vec<Signal<Local, Bit>>,
     owes: Vec<Signal<Local, Bit>>,
     brought: Vec<Signal<Local, Bit>>,
     new_set: Signal<Local, Bit>,
     faulty: Vec<Signal<Local, Bit>>,
+    now: Signal<Local, Bits<32>>,
     slow_bit: Constant<Bits<5>>,
     quick_bit: Constant<Bits<5>>,
     _channels: usize,
@@ -172,97 +176,13 @@ pub struct CardCore {
     _direct_links: usize,
     _direct_ports: usize,
     _interrupts: usize,
+    _recoveries: usize,
+    _recovery_links: usize,
     _served: usize,
     _services: usize,
     _pairs: usize,
     _service_links: usize,
     _interrupt_channels: usize,
-}
-
-/// Time stamp bit that toggles about `hz` times a second.
-fn blink_bit(system_hz: u64, hz: u64) -> u64 {
-    u64::from((system_hz / (2 * hz)).max(1).ilog2())
-}
-
-/// The times of a channel that are fixed in the design.
-fn times(card: &CardConfig, channel: &ChannelConfig) -> FixedTimes {
-    FixedTimes {
-        ready_low_cycles: channel.ready_low_cycles,
-        abort_us: channel.abort_us,
-        calibration_period_cycles: channel.calibration_period_cycles(card.system_hz),
-        ..FixedTimes::at(card.system_hz)
-    }
-}
-
-/// The features of its channels that have to do with the line delay.
-fn line(card: &CardConfig) -> Features {
-    Features {
-        alignment: card.line.alignment,
-        margin: card.line.margin,
-        double_edge: card.line.double_edge,
-        ..Features::NONE
-    }
-}
-
-fn line_start(card: &CardConfig) -> LineStart {
-    LineStart {
-        clears: !card.initial_values,
-        ..card.line.start(card.system_hz)
-    }
-}
-
-/// Parts and waits of a card's services.
-pub fn service_times(config: &CardConfig) -> ServiceTimes {
-    ServiceTimes {
-        initialise: config.service.initialise,
-        diagnosis: config.service.diagnosis,
-        continuous: config.service.continuous,
-        infos: config.service.infos,
-        clears_ram: !config.initial_values,
-        ..ServiceTimes::at(config.system_hz)
-    }
-}
-
-/// Channels from the first one on that have a place at a service: to the last one that speaks EnDat.
-fn served_channels(card: &CardConfig) -> usize {
-    let last = card.endat_channels().last();
-    last.filter(|_| card.service.requests)
-        .map_or(0, |(index, _)| index + 1)
-}
-
-/// Services of a card; each has room for [`CHANNELS_SERVED`] channels that follow each other.
-pub fn services(card: &CardConfig) -> usize {
-    served_channels(card).div_ceil(CHANNELS_SERVED)
-}
-
-fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort {
-    let channel = &card.channels[index];
-    if !channel.is_endat() {
-        return EncoderPort::t_format(index < served_channels(card));
-    }
-    let service = card.service.requests.then_some(service);
-    EncoderPort::served(
-        times(card, channel),
-        service,
-        channel.wants_short_recovery(),
-        line(card),
-        line_start(card),
-    )
-}
-
-/// The first channel's port alone, for those who bring registers and triggers of their own.
-pub fn bare_port(card: &CardConfig) -> EncoderPort {
-    let (channel, service) = (&card.channels[0], service_times(card));
-    if !channel.is_endat() {
-        return EncoderPort::t_format(false);
-    }
-    EncoderPort::with_line(
-        times(card, channel),
-        card.service.requests.then_some(&service),
-        channel.wants_short_recovery(),
-        line(card),
-        line_start(card),
-    )
 }
 
 impl CardCore {
@@ -280,6 +200,7 @@ impl CardCore {
         let directs = channels * usize::from(config.outputs.any());
         let direct_ports = channels * usize::from(config.outputs.position);
         let interrupts = usize::from(config.outputs.interrupt);
+        let recoveries = channels * usize::from(config.safety.recovery_counter);
         let served = served_channels(config);
         let services = services(config);
         let parts = SetParts {
@@ -301,12 +222,7 @@ impl CardCore {
             endat_data_i: each(channels),
             led_channel_o: each(channels),
             timebase: Timebase::new(config.system_hz),
-            own_trigger: (config.channels.iter().take(own_triggers))
-                .map(|c| {
-                    let own = c.request.trigger.unwrap_or_default();
-                    ChannelTrigger::new(own.ignored(), own.skip(), !own.enabled)
-                })
-                .collect(),
+            own_trigger: channel_triggers(config, own_triggers),
             trigger_of: each(channels),
             is_off: each(channels),
             bank: RegisterBank::new(config),
@@ -350,7 +266,9 @@ impl CardCore {
                 .collect(),
             interrupt: (0..interrupts).map(|_| Interrupt::new(channels)).collect(),
             direct_byte: each(directs + 1),
-            part_byte: each(2),
+            part_byte: each(3),
+            recovery: (0..recoveries).map(RecoveryCounter::new).collect(),
+            recovery_byte: each(recoveries + 1),
             ring_link: each(channels + 1),
             read_link: each(channels + 1),
             service_link: each(channels + 1),
@@ -386,6 +304,8 @@ impl CardCore {
             _direct_links: directs + 1,
             _direct_ports: direct_ports,
             _interrupts: interrupts,
+            _recoveries: recoveries,
+            _recovery_links: recoveries + 1,
             _served: served,
             _services: services,
             _pairs: served / CHANNELS_SERVED,
@@ -430,7 +350,6 @@ impl Logic for CardCore {
         self.passing_byte.next = self.bank.passing_byte.val();
         self.read_byte.next = self.bank.read_byte.val();
         self.done.next = self.bank.done.val();
-
         self.bank.word_address.next = self.word_address.val();
         self.bank.in_range.next = self.in_range.val();
         self.bank.lane.next = self.lane.val();
@@ -530,11 +449,8 @@ impl Logic for CardCore {
             self.endat_data_oe[i].next = self.port[i].data_oe.val();
             self.led_channel_o[i].next = self.port[i].fresh.val() & !self.is_off[i].val();
         }
-        self.led_status_o.next = self
-            .timebase
-            .timestamp
-            .val()
-            .get_bit(self.slow_bit.val().index());
+        self.now.next = self.timebase.timestamp.val();
+        self.led_status_o.next = self.now.val().get_bit(self.slow_bit.val().index());
         for i in self._channels..self._links {
             self.ring_link[i].next = self.bank.ring_out.val();
             self.bank.channel_byte.next = self.read_link[i].val();
@@ -544,21 +460,12 @@ impl Logic for CardCore {
             self.bank.owes.next = self.owes[i].val();
             self.bank.brought.next = self.brought[i].val();
             if self.faulty[i].val() {
-                self.led_status_o.next = self
-                    .timebase
-                    .timestamp
-                    .val()
-                    .get_bit(self.quick_bit.val().index());
+                self.led_status_o.next = self.now.val().get_bit(self.quick_bit.val().index());
             }
         }
 
         // Services, each for two channels; the last one may have one only. A word that was not asked for is 0.
-        self.service_reads.next = 0.into();
-        self.service_writes.next = 0.into();
-        if !self.bank.service_line.val() {
-            self.service_reads.next = self.bank.service_read.val();
-            self.service_writes.next = self.bank.service_write.val();
-        }
+        self.in_service.next = !self.bank.service_line.val();
         for i in 0..self._served {
             self.port[i].io_address[0].next = self.io_address[i].val();
             self.port[i].io_out[0].next = self.io_out[i].val();
@@ -579,11 +486,11 @@ impl Logic for CardCore {
             self.io_write[2 * i].next = self.service[i].io_write[0].val();
             self.service[i].host_address.next = self.bank.service_address.val();
             self.service[i].host_second.next = self.bank.service_channels.val().get_bit(2 * i + 1);
-            self.service[i].host_read.next = self.service_reads.val().get_bit(2 * i)
-                | self.service_reads.val().get_bit(2 * i + 1);
+            self.service[i].host_read.next =
+                self.in_service.val() & self.bank.service_read.val().get_bits::<2>(2 * i).any();
             self.service[i].host_clear.next = self.bank.service_clear.val();
-            self.service[i].host_write.next = self.service_writes.val().get_bit(2 * i)
-                | self.service_writes.val().get_bit(2 * i + 1);
+            self.service[i].host_write.next =
+                self.in_service.val() & self.bank.service_write.val().get_bits::<2>(2 * i).any();
             self.service[i].host_half.next = self.bank.service_half.val();
             self.service[i].host_data.next = self.bank.service_data.val();
             self.word_link[i + 1].next = self.word_link[i].val() | self.service[i].host_word.val();
@@ -702,8 +609,22 @@ impl Logic for CardCore {
             self.interrupt[0].request[i].next =
                 self.port[i].over.val() & self.port[i].over_request.val();
         }
-        self.bank.part_byte.next =
-            self.part_byte[0].val() | self.part_byte[1].val() | self.direct_byte[0].val();
+        for i in 0..self._recoveries {
+            self.recovery[i].clock.next = self.clk_i.val();
+            self.recovery[i].reset.next = self.rst_i.val();
+            self.recovery[i].endat_clk.next = self.port[i].endat_clk.val();
+            self.recovery[i].data_oe.next = self.port[i].data_oe.val();
+            self.recovery[i].data_i.next = self.endat_data_i[i].val();
+            self.recovery[i].word_address.next = self.bank.address.val();
+            self.recovery[i].in_range.next = self.bank.is_inside.val();
+            self.recovery[i].lane.next = self.lane.val();
+            self.recovery_byte[i].next =
+                self.recovery_byte[i + 1].val() | self.recovery[i].read_byte.val();
+        }
+        for i in self._recoveries..self._recovery_links {
+            self.recovery_byte[i].next = 0.into();
+        }
+        self.part_byte[2].next = 0.into();
 
         // Channels with requests: the registers see a result when its informations are there, too.
         for i in 0..self._infos {
@@ -760,11 +681,10 @@ impl Logic for CardCore {
         }
         for i in self._infos..self._info_links {
             self.info_byte[i].next = 0.into();
-            self.bank.part_byte.next = self.part_byte[0].val()
-                | self.part_byte[1].val()
-                | self.direct_byte[0].val()
-                | self.info_byte[0].val();
+            self.part_byte[2].next = self.info_byte[0].val();
         }
+        self.bank.part_byte.next = (self.part_byte[0].val() | self.part_byte[1].val())
+            | (self.part_byte[2].val() | self.direct_byte[0].val() | self.recovery_byte[0].val());
         for i in 0..self._set_infos {
             self.set[i].word_1[0].next = self.whole[i].word_1.val();
             self.set[i].word_2[0].next = self.whole[i].word_2.val();
@@ -824,6 +744,7 @@ impl Logic for CardCore {
     }
 }
 
+mod parts;
 #[cfg(test)]
 mod tests;
 mod uart;

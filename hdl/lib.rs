@@ -39,6 +39,7 @@ pub mod memory;
 pub mod phase_tracker;
 pub use endat_regs::protocol;
 pub mod receiver;
+pub mod recovery_counter;
 pub mod reg;
 pub mod register_bank;
 pub mod regs;

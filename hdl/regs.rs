@@ -23,6 +23,7 @@ pub fn has(config: &CardConfig, part: Part) -> bool {
         Part::Direct => config.outputs.any(),
         Part::Interrupt => config.outputs.interrupt,
         Part::TFormat => config.t_format_channels() != 0,
+        Part::RecoveryCounter => config.safety.recovery_counter,
         Part::OwnTrigger => config.own_triggers(),
     }
 }

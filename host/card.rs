@@ -12,7 +12,7 @@ use std::time::Duration;
 /// Words that say who a card is.
 pub(crate) const IDENTITY_WORDS: usize = 6;
 /// Blocks that only channels of one protocol have.
-const OF_ENDAT: [&str; 2] = ["service", "line"];
+const OF_ENDAT: [&str; 3] = ["service", "line", "recovery"];
 const OF_T_FORMAT: &str = "t_format";
 /// The field of a channel's clock period.
 const PERIOD: &str = "period_cycles";

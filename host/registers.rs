@@ -252,7 +252,7 @@ mod tests {
         for (name, told) in [
             (
                 "",
-                "blocks are card, interrupt, direct0, t_format0, card_config, config0",
+                "blocks are card, interrupt, recovery0, direct0, t_format0, card_config, config0",
             ),
             ("nothing.id", "blocks are card"),
             ("result.status", "result0 to result1"),

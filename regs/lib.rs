@@ -3,6 +3,7 @@
 //! ```text
 //! 0x000  card: identification, capabilities, counters, strobes
 //! 0x010  interrupt: status, mask, clear
+//! 0x040  recovery: 2 words of channel n at 0x040 + 8 n
 //! 0x080  direct: 2 words of channel n at 0x080 + 8 n
 //! 0x0C0  t_format: 4 words of channel n at 0x0C0 + 8 n
 //! 0x100  configuration: 3 words of the card, then 3 words of channel n at 0x108 + 8 n
@@ -22,6 +23,7 @@ mod named;
 mod outputs;
 mod part;
 pub mod protocol;
+mod recovery;
 mod register;
 mod result;
 pub mod service;
@@ -35,6 +37,7 @@ pub use line::LINE;
 pub use named::{Named, Values};
 pub use outputs::{DIRECT, ERROR_CAUSES, INTERRUPT, INTERRUPT_EVENTS};
 pub use part::{Part, FEATURES};
+pub use recovery::{COUNTER_SPACING, RECOVERY};
 pub use register::{Access, Block, Field, Limits, Register};
 pub use result::{EVIDENCE_FLAGS, INFO_FIRST, LINE_FLAGS, RESULT};
 pub use service::SERVICE;
@@ -46,6 +49,8 @@ pub const VERSION: [u8; 3] = [0, 9, 0];
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the interrupt.
 pub const INTERRUPT_BASE: u16 = 0x010;
+/// First word of the recovery counters; block n is that of channel n.
+pub const RECOVERY_BASE: u16 = 0x040;
 /// First word of the direct outputs; block n is that of channel n.
 pub const DIRECT_BASE: u16 = 0x080;
 /// First word of the T-format ports; block n is that of channel n.
@@ -87,6 +92,7 @@ pub const fn result_words(channels: usize, requests: bool) -> u64 {
 pub const BLOCKS: &[Block] = &[
     CARD,
     INTERRUPT,
+    RECOVERY,
     DIRECT,
     T_FORMAT,
     CARD_CONFIG,

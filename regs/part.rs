@@ -49,6 +49,7 @@ parts! {
     Interrupt = 13, "interrupt", "interrupt", "[outputs] parts";
     TFormat = 14, "t_format", "T-format channels", "[[channel]] protocol = \"t_format\"";
     OwnTrigger = 15, "own_trigger", "enable, divider and sources of triggers of each channel", "[[channel]] trigger";
+    RecoveryCounter = 16, "recovery_counter", "recovery time measured a second time", "[safety] parts";
 }
 
 impl Part {

@@ -20,6 +20,7 @@ use endat_hdl::interrupt::Interrupt;
 use endat_hdl::line_delay::LineDelay;
 use endat_hdl::line_monitor::LineStart;
 use endat_hdl::receiver::Receiver;
+use endat_hdl::recovery_counter::RecoveryCounter;
 use endat_hdl::service::program::ServiceTimes;
 use endat_hdl::snapshot::Snapshot;
 use endat_hdl::stream::{buffer::SetParts, channel::SetChannel, Stream};
@@ -256,6 +257,11 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
             DirectOutput::new(0, 29),
         )?,
         Subject::new("interrupt", "interrupt of two channels", Interrupt::new(2))?,
+        Subject::new(
+            "recovery_counter",
+            "recovery time of a channel, measured a second time",
+            RecoveryCounter::new(0),
+        )?,
         Subject::new("snapshot", "snapshot with time stamp", Snapshot::default())?,
         Subject::new(
             "crc5_parallel",

@@ -40,6 +40,7 @@ pub fn of_card(
         line,
         stream,
         outputs,
+        safety,
         initial_values,
         // What was asked for; what came of it is in the cycles above.
         sample_hz: _,
@@ -68,6 +69,10 @@ pub fn of_card(
     } = outputs;
     if outputs.any() {
         lines.push(format!("outputs position {position} interrupt {interrupt}"));
+    }
+    let SafetyParts { recovery_counter } = safety;
+    if *recovery_counter {
+        lines.push("safety recovery_counter".into());
     }
     if !initial_values {
         lines.push(NO_INITIAL_VALUES.into());

@@ -13,6 +13,7 @@ pub mod pins;
 pub(crate) mod protocol;
 pub(crate) mod reader;
 mod receiver;
+mod safety;
 pub(crate) mod schema;
 mod service;
 mod stream;

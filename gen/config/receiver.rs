@@ -27,8 +27,8 @@ pub struct Receiver {
 }
 
 /// Tables of a card that a receiver has nothing for.
-const TABLES_OF_CARDS: [&str; 9] = [
-    "board", "clock", "endat", "line", "link", "outputs", "service", "stream", "trigger",
+const TABLES_OF_CARDS: [&str; 10] = [
+    "board", "clock", "endat", "line", "link", "outputs", "safety", "service", "stream", "trigger",
 ];
 /// Longest filter at the fast rate and a clock of 20 MHz, where a bit has four clocks.
 const FAST_FILTER_CYCLES_MAX: u64 = 1;

@@ -6,7 +6,7 @@ use super::pins::{assign_pins, card_ports};
 use super::protocol::RECEIVER_BUS;
 use super::reader::{At, Source, Table};
 use super::{
-    base, canonical, check_name, line, outputs, protocol, service, stream, trigger, Project,
+    base, canonical, check_name, line, outputs, protocol, safety, service, stream, trigger, Project,
 };
 use crate::board::{self, Assignment, Board};
 use endat_hdl::bus::HostBus;
@@ -25,6 +25,7 @@ struct Tables<'s, 't> {
     link: Table<'s, 't>,
     service: Table<'s, 't>,
     outputs: Table<'s, 't>,
+    safety: Table<'s, 't>,
     device: Table<'s, 't>,
     stream: Table<'s, 't>,
     pins: Table<'s, 't>,
@@ -43,6 +44,7 @@ impl<'s, 't> Tables<'s, 't> {
             link: table("link"),
             service: table("service"),
             outputs: table("outputs"),
+            safety: table("safety"),
             device: table("device"),
             stream: table("stream"),
             pins: table("pins"),
@@ -61,6 +63,7 @@ impl<'s, 't> Tables<'s, 't> {
             &self.line,
             &self.stream,
             &self.outputs,
+            &self.safety,
             &self.device,
             &self.root,
         ]) {
@@ -92,6 +95,7 @@ struct Written<'s, 't> {
     read_hz: Option<At<u64>>,
     service: Option<ServiceParts>,
     outputs: Option<OutputParts>,
+    safety: Option<SafetyParts>,
     initial_values: bool,
     stream: stream::Written,
 }
@@ -123,7 +127,11 @@ impl<'s, 't> Written<'s, 't> {
             false => read_endat(table, &defaults, system_hz, is_aligned),
         };
         let channels = channel_tables.as_ref();
-        let channels = channels.map(|tables| tables.iter().map(read_channel).collect());
+        let channels: Option<Vec<Option<Channel>>> =
+            channels.map(|tables| tables.iter().map(read_channel).collect());
+        // One that could not be read may be of either protocol.
+        let speaks = |c: &Option<Channel>| c.as_ref().is_none_or(|c| c.request.t_format.is_none());
+        let has_endat = channels.iter().flatten().any(speaks);
         let sample_limits = limits("sample_hz", system_hz);
         let sample = t
             .trigger
@@ -138,6 +146,7 @@ impl<'s, 't> Written<'s, 't> {
             read_hz: has_uart.then(read_hz).flatten(),
             service: service::read(&t.service),
             outputs: outputs::read(&t.outputs, bus, has_board),
+            safety: safety::read(&t.safety, bus, has_endat),
             initial_values: read_initial_values(&t.device),
             stream: stream::read(&t.stream),
             bus,
@@ -236,6 +245,7 @@ impl<'s, 't> Written<'s, 't> {
             line: self.line.unwrap_or_default(),
             stream: self.stream.parts,
             outputs: self.outputs.unwrap_or_default(),
+            safety: self.safety.unwrap_or_default(),
             initial_values: self.initial_values,
             without_uart: !has_uart,
         }

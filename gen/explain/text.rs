@@ -170,6 +170,9 @@ impl fmt::Display for Report {
         if !self.outputs.is_empty() {
             writeln!(f, "outputs: {}", list(&self.outputs))?;
         }
+        if !self.safety.is_empty() {
+            writeln!(f, "safety: {}", list(&self.safety))?;
+        }
         if !self.service.is_empty() {
             writeln!(
                 f,

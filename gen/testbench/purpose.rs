@@ -7,7 +7,7 @@ use crate::template;
 use endat_hdl::card::services;
 use endat_hdl::config::{CardConfig, ChannelConfig, ChannelRequest};
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::regs::{start, CHANNEL_CONFIG, SERVICE};
+use endat_hdl::regs::{start, CHANNEL_CONFIG, RECOVERY, SERVICE};
 use endat_hdl::timing::{
     cycles_to_ns, PARAMETER_GAP_MS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
@@ -175,6 +175,25 @@ fn requests(card: &CardConfig) -> Vec<Value> {
     channels.collect()
 }
 
+/// Channels whose recovery time is measured a second time, and where.
+fn counters(card: &CardConfig) -> Vec<Value> {
+    if !card.safety.recovery_counter {
+        return vec![];
+    }
+    let address = |name, channel| {
+        let register = RECOVERY.register(name).expect("a word of the block");
+        format!("{:03X}", RECOVERY.address(register, channel))
+    };
+    let channels = card.endat_channels().map(|(n, _)| {
+        context! {
+            index => n,
+            edges => address("edges", n),
+            counter => address("counter", n),
+        }
+    });
+    channels.collect()
+}
+
 /// MRS codes that the services of a card select in turn after reset.
 pub(super) fn configured_list(card: &CardConfig) -> &[u8] {
     let list = &card.service.infos;
@@ -231,6 +250,7 @@ impl Parts {
             requests => requests(card),
             request_fields => Serde(fields(&SERVICE).filter(|f| REQUEST_FIELDS.contains(&f.name.as_str())).collect::<Vec<_>>()),
             infos => infos(card),
+            counters => counters(card),
             has_list => !configured_list(card).is_empty(),
             no_infos => NO_INFOS.map(|code| format!("{code:02X}")),
             select => ModeCommand::PositionSelectMemory.code(),

@@ -129,6 +129,7 @@ impl CardDraft {
                     line,
                     stream,
                     outputs,
+                    safety,
                     initial_values,
                     ..
                 },
@@ -145,6 +146,7 @@ impl CardDraft {
                 line,
                 stream,
                 outputs,
+                safety,
                 initial_values,
                 hash: 0,
             }),

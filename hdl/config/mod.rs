@@ -15,7 +15,9 @@ mod t_format;
 
 pub use card::{needed_baud, read_bytes, stream_baud, BAUD_NOTE};
 pub use limits::{limits, Limits};
-pub use parts::{LineParts, OutputParts, PhaseSource, ServiceParts, StreamParts, StreamStart};
+pub use parts::{
+    LineParts, OutputParts, PhaseSource, SafetyParts, ServiceParts, StreamParts, StreamStart,
+};
 pub use t_format::{is_rate, is_triggered, TFormatRequest};
 
 use crate::protocol::ModeCommand;
@@ -125,6 +127,8 @@ pub struct CardRequest {
     pub stream: StreamParts,
     /// Outputs to logic in the same device.
     pub outputs: OutputParts,
+    /// What watches each channel beside it.
+    pub safety: SafetyParts,
 }
 
 /// A request in which what could not be read is missing; what depends on it is not judged.
@@ -152,6 +156,8 @@ pub struct CardDraft {
     pub stream: StreamParts,
     /// Outputs to logic in the same device.
     pub outputs: OutputParts,
+    /// What watches each channel beside it.
+    pub safety: SafetyParts,
     /// See [`CardConfig::initial_values`].
     pub initial_values: bool,
     /// The host has another bus than a UART; the numbers of the UART mean nothing.
@@ -172,6 +178,7 @@ impl From<&CardRequest> for CardDraft {
             line: request.line,
             stream: request.stream,
             outputs: request.outputs,
+            safety: request.safety,
             initial_values: true,
             without_uart: false,
         }
@@ -328,6 +335,8 @@ pub struct CardConfig {
     pub stream: StreamParts,
     /// Outputs to logic in the same device.
     pub outputs: OutputParts,
+    /// What watches each channel beside it.
+    pub safety: SafetyParts,
     /// The device gives registers and RAM their start values when it is configured; otherwise a reset does, and RAM is cleared after it.
     pub initial_values: bool,
     /// First 48 bits of the SHA-256 of the canonical configuration (0 until a generator sets it).

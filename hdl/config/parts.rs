@@ -70,6 +70,13 @@ impl OutputParts {
     }
 }
 
+/// What watches a channel beside it, for a safe control (`docs/safety.md`); what is not asked for takes no logic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SafetyParts {
+    /// Recovery time measured a second time, by a counter that nothing sets back.
+    pub recovery_counter: bool,
+}
+
 /// The stream of sample sets (`docs/stream.md`); without a buffer there is none, and no logic for it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StreamParts {

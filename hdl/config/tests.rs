@@ -37,6 +37,7 @@ fn card() -> CardRequest {
         line: Default::default(),
         stream: Default::default(),
         outputs: Default::default(),
+        safety: Default::default(),
     }
 }
 

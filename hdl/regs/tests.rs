@@ -42,6 +42,7 @@ pub fn test_config() -> CardConfig {
         line: Default::default(),
         stream: Default::default(),
         outputs: Default::default(),
+        safety: Default::default(),
     })
     .unwrap();
     config.hash = 0x0123_4567_89ab;

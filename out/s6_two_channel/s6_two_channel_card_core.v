@@ -93,6 +93,8 @@ module s6_two_channel_card_core (
     wire   [7:0] direct_byte_0;
     wire   [7:0] part_byte_0;
     wire   [7:0] part_byte_1;
+    wire   [7:0] part_byte_2;
+    wire   [7:0] recovery_byte_0;
     wire   [8:0] ring_link_0;
     wire   [8:0] ring_link_1;
     wire   [8:0] ring_link_2;
@@ -118,7 +120,7 @@ module s6_two_channel_card_core (
     wire         faulty_0;
     wire         faulty_1;
     wire         faulty_2;
-    wire  [31:0] timebase_timestamp;
+    wire  [31:0] now;
     wire   [2:0] trigger_hits;
     wire  [31:0] trigger_trigger_count;
     wire         bank_begins;
@@ -271,7 +273,7 @@ module s6_two_channel_card_core (
         .clock(clk_i),
         .reset(rst_i),
         .tick_us(tick_us),
-        .timestamp(timebase_timestamp)
+        .timestamp(now)
     );
     s6_two_channel_trigger u_trigger (
         .clock(clk_i),
@@ -441,7 +443,7 @@ module s6_two_channel_card_core (
         .clock(clk_i),
         .reset(rst_i),
         .tick_us(tick_us),
-        .timestamp(timebase_timestamp),
+        .timestamp(now),
         .trigger(trigger_of_0),
         .calibrate(bank_calibrate[0]),
         .data_i(endat_data0_i),
@@ -505,7 +507,7 @@ module s6_two_channel_card_core (
         .clock(clk_i),
         .reset(rst_i),
         .tick_us(tick_us),
-        .timestamp(timebase_timestamp),
+        .timestamp(now),
         .trigger(trigger_of_1),
         .calibrate(bank_calibrate[1]),
         .data_i(endat_data1_i),
@@ -570,7 +572,7 @@ module s6_two_channel_card_core (
         .reset(rst_i),
         .trigger(trigger_of_0),
         .trigger_count(trigger_trigger_count),
-        .timestamp(timebase_timestamp),
+        .timestamp(now),
         .owes(stream_0_owes),
         .replaced(stream_0_replaced),
         .take_set(set_taken_0),
@@ -671,9 +673,9 @@ module s6_two_channel_card_core (
     assign led_channel1_o = port_1_fresh & !is_off_1;
 
     always @* begin
-        led_status_o = timebase_timestamp[SLOW_BIT];
+        led_status_o = now[SLOW_BIT];
         if (faulty_2) begin
-            led_status_o = timebase_timestamp[QUICK_BIT];
+            led_status_o = now[QUICK_BIT];
         end
     end
     assign word_link_0 = service_link_2;
@@ -697,7 +699,9 @@ module s6_two_channel_card_core (
     assign direct_byte_0 = 8'd0;
     assign part_byte_1 = 8'd0;
     assign irq_o = 1'b0;
-    assign bank_part_byte = part_byte_0 | part_byte_1 | direct_byte_0;
+    assign recovery_byte_0 = 8'd0;
+    assign part_byte_2 = 8'd0;
+    assign bank_part_byte = part_byte_0 | part_byte_1 | (part_byte_2 | direct_byte_0 | recovery_byte_0);
 endmodule
 
 `default_nettype wire

@@ -79,6 +79,7 @@
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_INTERRUPT 0x2000u /* interrupt */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_T_FORMAT 0x4000u /* T-format channels */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_OWN_TRIGGER 0x8000u /* enable, divider and sources of triggers of each channel */
+#define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_RECOVERY_COUNTER 0x10000u /* recovery time measured a second time */
 
 /* ro: System clock: the unit of every number of cycles. */
 #define S6_TWO_CHANNEL_CARD_SYSTEM_HZ_WORD 0x003u

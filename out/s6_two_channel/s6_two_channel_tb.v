@@ -15,12 +15,14 @@
 
 // An encoder: counts clock edges, reads the mode command, answers with its position, waits its recovery time. Asked for a parameter
 // (100011, address, 16 more bits) it answers with the address and with it twice, once inverted. Where the clock may go on, the falling edge
-// behind the answer takes the next position, and DATA is LOW for one period at least before its start bit.
+// behind the answer takes the next position, and DATA is LOW for one period at least before its start bit. Behind the position of 001001
+// it takes an MRS code, which selects the additional information that comes with each answer from then on, 2 before 1.
 module s6_two_channel_tb_encoder #(
     parameter integer CHANNEL = 0, // for its messages
     parameter [5:0] COMMAND = 6'b111000, // the mode command it knows: 111000 or 000111
     parameter integer HAS_F2 = 1, // 1: F2 stands behind F1, as in the answer to 111000; must be 0 with 000111
     parameter integer HAS_PARAMETERS = 0, // 1: it knows 100011, too
+    parameter integer HAS_INFOS = 0, // 1: it knows 001001, too; only with 111000. What it tells is the position's low 16 bits, inverted for 2
     parameter integer POSITION_BITS = 29, // 1 to 48
     parameter real TCAL_NS = 5000.0, // calculation time: from the first falling edge, the start bit is at the next rising edge behind it
     parameter real TM_NS = 15000.0 // recovery time: from the last rising edge until DATA falls
@@ -37,34 +39,45 @@ module s6_two_channel_tb_encoder #(
     input wire goes_on, // 1: the mode command is 000111, and the clock may go on behind the position; else 0
     output reg oe, // it drives DATA; between two frames, too
     output reg data, // its level
-    output reg [4:0] crc, // of the last answer, as sent
+    output reg [4:0] crc, // of the last answer's position, as sent
+    output reg [23:0] info_1, // additional information 1 of the last answer: WRN, RM, Busy, I4..I0, and 16 bits; 0 without one
+    output reg [23:0] info_2, // the same of information 2
     output reg [31:0] frames, // whole frames, as the encoder sees them
     output reg [31:0] errors // what the receiver has done wrong; the first ten are told
 );
-    localparam [1:0] IDLE = 2'd0, LEAD = 2'd1, SEND = 2'd2, RECOVERY = 2'd3;
+    localparam [2:0] IDLE = 3'd0, LEAD = 3'd1, SEND = 3'd2, RECOVERY = 3'd3, SUPPLEMENT = 3'd4;
     localparam [5:0] SEND_PARAMETER = 6'b100011;
     localparam [5:0] SEND_POSITION = 6'b000111;
+    localparam [5:0] POSITION_SELECT = 6'b001001;
+    localparam integer ZEROS = 7; // LOW bits before the start bit of a supplement, at least
     localparam integer RUN_RISES = 9; // where the count of rising edges goes on in a run: LOW at the next, a start bit behind it
     localparam integer PARAMETER_BITS = 24; // address and data, in command and answer
     localparam real RELEASE_NS = 20.0; // from the first falling edge to the driver being off
+    localparam real PARK_RELEASE_NS = 500.0; // the same where the clock is parked behind an answer, for a supplement
     localparam real LAUNCH_NS = 12.0; // from a rising edge to the data
     localparam real STOPPED_NS = 12000.0; // the clock high for longer than this ends any frame
 
-    reg [1:0] phase;
-    reg [55:0] answer; // bit 0 goes first
+    reg [2:0] phase;
+    reg [127:0] answer; // bit 0 goes first
+    integer bits; // of the answer
     reg [5:0] command;
-    reg [PARAMETER_BITS-1:0] asked;
-    integer covered; // bits under the CRC
+    reg [PARAMETER_BITS-1:0] asked; // with a parameter's command, or in a supplement
+    reg [7:0] selected_1, selected_2; // MRS codes; 0: no such information
+    reg is_selecting; // a supplement comes behind this answer
+    integer zeros; // LOW bits of a supplement so far
+    integer taken; // its start bit and bits so far, and the two edges behind them
     integer later; // clock periods that a parameter delays everything behind the mode command
     reg is_run; // the clock has gone on
     reg silent;
     reg stuck;
+    reg [4:0] rest; // the CRC that was put last
     integer falls;
     integer rises;
     integer sent;
     integer i;
     real first_fall;
     real last_rise;
+    real parked; // when the clock fell behind the answer
     integer ended; // recovery times that have begun, and the last one that is over
     integer recovered;
 
@@ -81,20 +94,55 @@ module s6_two_channel_tb_encoder #(
                     register[0] ^ register[4] ^ value, register[4] ^ value};
     endfunction
 
+    task put(input value);
+        begin
+            answer[bits] = value;
+            bits = bits + 1;
+        end
+    endtask
+
+    task put_byte(input [7:0] value);
+        for (i = 7; i >= 0; i = i - 1)
+            put(value[i]);
+    endtask
+
+    // The CRC over all bits from this one on.
+    task put_crc(input integer first, input [4:0] spoilt);
+        begin
+            rest = 5'b11111;
+            for (i = first; i < bits; i = i + 1)
+                rest = crc_step(rest, answer[i]);
+            rest = ~rest ^ spoilt;
+            for (i = 4; i >= 0; i = i - 1)
+                put(rest[i]);
+        end
+    endtask
+
+    task put_info(input [23:0] info);
+        if (info != 24'd0) begin
+            put(1'b0);
+            put_byte(info[23:16]);
+            put_byte(info[15:8]);
+            put_byte(info[7:0]);
+            put_crc(bits - 24, 5'd0);
+        end
+    endtask
+
     task prepare;
         begin
-            answer = 56'd0;
-            answer[0] = 1'b1;
-            answer[1] = f1;
-            covered = 1;
-            if (HAS_F2 != 0 && !goes_on) begin
-                answer[2] = f2;
-                covered = 2;
-            end
+            bits = 0;
+            put(1'b1);
+            put(f1);
+            if (HAS_F2 != 0 && !goes_on)
+                put(f2);
             for (i = 0; i < POSITION_BITS; i = i + 1)
-                answer[1 + covered + i] = position[i];
-            covered = covered + POSITION_BITS;
-            close_answer;
+                put(position[i]);
+            put_crc(1, {4'd0, spoil_crc});
+            crc = rest;
+            info_1 = selected_1 == 8'd0 || goes_on ? 24'd0 : {3'd0, selected_1[4:0], position[15:0]};
+            info_2 = selected_2 == 8'd0 || goes_on ? 24'd0 : {3'd0, selected_2[4:0], ~position[15:0]};
+            put_info(info_2);
+            put_info(info_1);
             silent = no_start;
             stuck = stay_high;
         end
@@ -102,26 +150,30 @@ module s6_two_channel_tb_encoder #(
 
     task prepare_parameter;
         begin
-            answer = 56'd1;
-            for (i = 0; i < 8; i = i + 1) begin
-                answer[1 + i] = asked[PARAMETER_BITS-1-i];
-                answer[9 + i] = ~asked[PARAMETER_BITS-1-i];
-                answer[17 + i] = asked[PARAMETER_BITS-1-i];
-            end
-            covered = PARAMETER_BITS;
-            close_answer;
+            bits = 0;
+            put(1'b1);
+            put_byte(asked[23:16]);
+            put_byte(~asked[23:16]);
+            put_byte(asked[23:16]);
+            put_crc(1, {4'd0, spoil_crc});
+            crc = rest;
         end
     endtask
 
-    // The CRC behind it.
-    task close_answer;
+    // 0x4F and 0x5F: no such information from now on.
+    task select(input [7:0] mrs);
+        case (mrs[7:4])
+            4'h4: selected_1 = mrs == 8'h4F ? 8'd0 : mrs;
+            4'h5: selected_2 = mrs == 8'h5F ? 8'd0 : mrs;
+            default: complain("not an MRS code that it has", mrs);
+        endcase
+    endtask
+
+    task recover;
         begin
-            crc = 5'b11111;
-            for (i = 1; i <= covered; i = i + 1)
-                crc = crc_step(crc, answer[i]);
-            crc = ~crc ^ {4'd0, spoil_crc};
-            for (i = 0; i < 5; i = i + 1)
-                answer[1 + covered + i] = crc[4 - i];
+            phase = RECOVERY;
+            ended = ended + 1;
+            recovered <= #(TM_NS) ended;
         end
     endtask
 
@@ -130,8 +182,15 @@ module s6_two_channel_tb_encoder #(
         oe = 1'b1;
         data = 1'b0;
         crc = 5'd0;
+        info_1 = 24'd0;
+        info_2 = 24'd0;
+        falls = 0;
+        rises = 0;
         later = 0;
-        covered = 0;
+        bits = 0;
+        selected_1 = 8'd0;
+        selected_2 = 8'd0;
+        is_selecting = 1'b0;
         is_run = 1'b0;
         ended = 0;
         recovered = 0;
@@ -139,6 +198,7 @@ module s6_two_channel_tb_encoder #(
         errors = 0;
         first_fall = 0.0;
         last_rise = 0.0;
+        parked = 0.0;
     end
 
     always @(negedge clk)
@@ -148,6 +208,7 @@ module s6_two_channel_tb_encoder #(
                 falls = 1;
                 rises = 0;
                 later = 0;
+                is_selecting = 1'b0;
                 is_run = 1'b0;
                 first_fall = $realtime;
                 prepare;
@@ -169,6 +230,18 @@ module s6_two_channel_tb_encoder #(
                 // One period after the receiver's driver has to be off.
                 if (falls == 10 + later)
                     oe = 1'b1;
+                // Parked behind the answer: the receiver drives from the next rising edge on.
+                if (phase == SEND && sent == bits && is_selecting) begin
+                    phase = SUPPLEMENT;
+                    zeros = -1;
+                    taken = 0;
+                    parked = $realtime;
+                    oe <= #(PARK_RELEASE_NS) 1'b0;
+                end
+                if (phase == SUPPLEMENT && taken == 1 + PARAMETER_BITS) begin
+                    oe <= #(LAUNCH_NS) 1'b1;
+                    data <= #(LAUNCH_NS) 1'b0;
+                end
             end
         endcase
 
@@ -180,11 +253,14 @@ module s6_two_channel_tb_encoder #(
                 command = {command[4:0], driver_data};
             if (HAS_PARAMETERS != 0 && rises == 8 && command === SEND_PARAMETER)
                 later = PARAMETER_BITS;
-            if (driver_oe !== (rises >= 2 && rises <= 8 + later && !is_run))
+            if (phase != SUPPLEMENT && driver_oe !== (rises >= 2 && rises <= 8 + later && !is_run))
                 complain("receiver's driver wrong at rising edge", rises);
-            if (rises == 9 && command !== (goes_on ? SEND_POSITION : COMMAND) && later == 0)
-                complain("not the mode command", command);
-            if (rises >= 9 && rises <= 8 + later) begin
+            if (rises == 9 && later == 0) begin
+                is_selecting = HAS_INFOS != 0 && command === POSITION_SELECT;
+                if (command !== (goes_on ? SEND_POSITION : COMMAND) && !is_selecting)
+                    complain("not the mode command", command);
+            end
+            if (phase != SUPPLEMENT && rises >= 9 && rises <= 8 + later) begin
                 asked = {asked[PARAMETER_BITS-2:0], driver_data};
                 if (rises == 8 + later)
                     prepare_parameter;
@@ -200,14 +276,37 @@ module s6_two_channel_tb_encoder #(
                     phase = SEND;
                 end
             SEND:
-                if (sent < 1 + covered + 5) begin
+                if (sent < bits) begin
                     data <= #(LAUNCH_NS) answer[sent];
                     sent = sent + 1;
                 end else begin
                     data <= #(LAUNCH_NS) 1'b1;
-                    phase = RECOVERY;
-                    ended = ended + 1;
-                    recovered <= #(TM_NS) ended;
+                    recover;
+                end
+            SUPPLEMENT:
+                if (zeros < 0) begin
+                    // The edge that ends the pause is none of its bits.
+                    zeros = 0;
+                    if ($realtime - parked < PARK_RELEASE_NS)
+                        complain("a pause too short before the supplement", $rtoi($realtime - parked));
+                end else begin
+                    if (driver_oe !== (taken <= PARAMETER_BITS))
+                        complain("receiver's driver wrong in the supplement", taken);
+                    if (taken == 0 && driver_data !== 1'b1)
+                        zeros = zeros + 1;
+                    else begin
+                        if (taken == 0 && zeros < ZEROS)
+                            complain("LOW bits before the supplement", zeros);
+                        if (taken <= PARAMETER_BITS)
+                            asked = {asked[PARAMETER_BITS-2:0], driver_data};
+                        taken = taken + 1;
+                        if (taken == PARAMETER_BITS + 2)
+                            data <= #(LAUNCH_NS) 1'b1;
+                        if (taken == PARAMETER_BITS + 3) begin
+                            select(asked[23:16]);
+                            recover;
+                        end
+                    end
                 end
             RECOVERY: complain("a clock edge too many", rises);
             default:
@@ -243,7 +342,7 @@ module s6_two_channel_tb_encoder #(
             data = 1'b0;
 
     always @(oe or driver_oe)
-        if (oe && driver_oe)
+        if (oe && driver_oe && $realtime > 0.0)
             complain("two drivers on the line, falling edges", falls);
 endmodule
 
@@ -516,6 +615,7 @@ module s6_two_channel_tb;
     reg [48*CHANNELS-1:0] position;
     reg [CHANNELS-1:0] f1, f2, spoil_crc, no_start, stay_high, goes_on;
     wire [5*CHANNELS-1:0] encoder_crc;
+    wire [24*CHANNELS-1:0] encoder_info_1, encoder_info_2;
     wire [32*CHANNELS-1:0] encoder_frames, encoder_errors;
     real first_fall [0:CHANNELS-1];
     reg [CHANNELS-1:0] fallen;
@@ -543,6 +643,8 @@ module s6_two_channel_tb;
         .oe(encoder_oe[0]),
         .data(encoder_data[0]),
         .crc(encoder_crc[5*0 +: 5]),
+        .info_1(encoder_info_1[24*0 +: 24]),
+        .info_2(encoder_info_2[24*0 +: 24]),
         .frames(encoder_frames[32*0 +: 32]),
         .errors(encoder_errors[32*0 +: 32])
     );
@@ -579,6 +681,8 @@ module s6_two_channel_tb;
         .oe(encoder_oe[1]),
         .data(encoder_data[1]),
         .crc(encoder_crc[5*1 +: 5]),
+        .info_1(encoder_info_1[24*1 +: 24]),
+        .info_2(encoder_info_2[24*1 +: 24]),
         .frames(encoder_frames[32*1 +: 32]),
         .errors(encoder_errors[32*1 +: 32])
     );

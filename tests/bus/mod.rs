@@ -9,6 +9,7 @@ mod handshake;
 mod outputs;
 mod parallel;
 mod rates;
+mod safety;
 mod spi;
 mod three_ways;
 mod uart;

@@ -7,7 +7,7 @@ mod peakrdl;
 use crate::tools::{self, require, require_python};
 use endat_gen::config::{load_preset, parse, preset, Project};
 use endat_hdl::config::CardConfig;
-use endat_hdl::config::{LineParts, OutputParts, PhaseSource};
+use endat_hdl::config::{LineParts, OutputParts, PhaseSource, SafetyParts};
 use endat_hdl::regs::{start, words};
 use endat_regs::{Access, Block, Field, Named, Register, Values, BLOCKS, VERSION};
 use std::collections::BTreeSet;
@@ -32,6 +32,9 @@ fn projects() -> Vec<Project> {
     projects[1].card.outputs = OutputParts {
         position: true,
         interrupt: true,
+    };
+    projects[1].card.safety = SafetyParts {
+        recovery_counter: true,
     };
     let text = preset("s6_two_channel").unwrap();
     // A good name, and a keyword of SystemRDL.

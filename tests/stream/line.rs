@@ -79,6 +79,7 @@ pub fn card(system_hz: u64, sample_hz: u64, baud: u64, start: StreamStart) -> Ca
             informations: false,
         },
         outputs: Default::default(),
+        safety: Default::default(),
     })
     .unwrap()
 }

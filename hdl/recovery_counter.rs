@@ -1,0 +1,112 @@
+//! The recovery time once more, beside the channel and sharing nothing with it: a counter that nothing sets back, kept at the edges.
+//!
+//! ```text
+//! CLOCK as it goes out ----------------- rising edge ---> rise = counter
+//! DATA pin --> synchroniser of its own --falling edge---> fall = counter
+//! ```
+//!
+//! DATA falls within the answer, too, and with a long cable behind the last edge of CLOCK: the last fall is the one that counts. The
+//! counters of two channels are never equal, so a control sees that it reads the one it means, and that it runs.
+
+use crate::reg::{Reg, SyncReg};
+use crate::regs::{COUNTER_SPACING, RECOVERY};
+use endat_macros::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// Recovery counter of one channel.
+#[derive(LogicBlock, Block)]
+pub struct RecoveryCounter {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// EnDat clock, as it goes out.
+    pub endat_clk: Signal<In, Bit>,
+    /// The receiver drives DATA.
+    pub data_oe: Signal<In, Bit>,
+    /// Data line from the transceiver, asynchronous.
+    pub data_i: Signal<In, Bit>,
+    /// Word address of an access.
+    pub word_address: Signal<In, Bits<11>>,
+    /// The front's address fits `word_address`.
+    pub in_range: Signal<In, Bit>,
+    /// Byte of the word, 0 = most significant.
+    pub lane: Signal<In, Bits<2>>,
+    /// Byte of the word, a cycle after its address; 0 if it is none of this channel's.
+    pub read_byte: Signal<Out, Bits<8>>,
+    #[given]
+    counter: Reg<Bits<16>>,
+    rise: Reg<Bits<16>>,
+    fall: Reg<Bits<16>>,
+    fallen: Reg<Bit>,
+    clk_before: Reg<Bit>,
+    near: SyncReg<Bit>,
+    level: SyncReg<Bit>,
+    level_before: Reg<Bit>,
+    held: Reg<Bits<24>>,
+    byte_read: Reg<Bits<8>>,
+    selected: Signal<Local, Bit>,
+    word: Signal<Local, Bits<32>>,
+    pair: Constant<Bits<10>>,
+}
+
+impl RecoveryCounter {
+    /// That of channel `channel`.
+    pub fn new(channel: usize) -> Self {
+        let first_word = RECOVERY.base + RECOVERY.stride * channel as u16;
+        let start = u64::from(COUNTER_SPACING) * channel as u64;
+        Self::from_parts(RecoveryCounterParts {
+            counter: Reg::new(start.into()),
+            pair: Constant::new(u64::from(first_word >> 1).into()),
+        })
+    }
+}
+
+impl Logic for RecoveryCounter {
+    #[kernel]
+    fn update(&mut self) {
+        self.counter.d.next = self.counter.q.val() + 1;
+        self.near.d.next = self.data_i.val();
+        self.level.d.next = self.near.q.val();
+        self.level_before.d.next = self.level.q.val();
+        if self.level_before.q.val() & !self.level.q.val() & !self.data_oe.val() {
+            self.fall.d.next = self.counter.q.val();
+            self.fallen.d.next = true;
+        }
+        self.clk_before.d.next = self.endat_clk.val();
+        if self.endat_clk.val() & !self.clk_before.q.val() {
+            self.rise.d.next = self.counter.q.val();
+            self.fallen.d.next = false;
+        }
+
+        self.selected.next =
+            self.in_range.val() & (self.word_address.val().get_bits::<10>(1) == self.pair.val());
+        self.word.next = place!(self.rise.q.val(), recovery.edges.rise)
+            | place!(self.fall.q.val(), recovery.edges.fall);
+        if self.word_address.val().get_bit(0) {
+            self.word.next = place!(self.counter.q.val(), recovery.counter.value)
+                | place!(self.fallen.q.val(), recovery.counter.fallen);
+        }
+        // A word is of one moment: that of its first byte.
+        if !self.lane.val().any() {
+            self.held.d.next = self.word.val().get_bits::<24>(0);
+        }
+        // A reset by deselection takes no logic.
+        self.byte_read.reset.next = !self.selected.val();
+        match self.lane.val().index() {
+            0 => {
+                self.byte_read.d.next = self.word.val().get_bits::<8>(24);
+            }
+            1 => {
+                self.byte_read.d.next = self.held.q.val().get_bits::<8>(16);
+            }
+            2 => {
+                self.byte_read.d.next = self.held.q.val().get_bits::<8>(8);
+            }
+            _ => {
+                self.byte_read.d.next = self.held.q.val().get_bits::<8>(0);
+            }
+        }
+        self.read_byte.next = self.byte_read.q.val();
+    }
+}
