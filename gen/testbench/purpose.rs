@@ -184,9 +184,10 @@ fn counters(card: &CardConfig) -> Vec<Value> {
         let register = RECOVERY.register(name).expect("a word of the block");
         format!("{:03X}", RECOVERY.address(register, channel))
     };
-    let channels = card.endat_channels().map(|(n, _)| {
+    let channels = card.endat_channels().map(|(n, c)| {
         context! {
             index => n,
+            filter_cycles => c.filter_cycles,
             edges => address("edges", n),
             counter => address("counter", n),
         }

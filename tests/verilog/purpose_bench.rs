@@ -39,6 +39,18 @@ const BROKEN: &[Mutation] = &[
         "out_watchdog_next = out_watchdog;",
     ),
     mutation(
+        "recovery counter: kept at the falling edge of the clock",
+        "recovery_counter_pair_32",
+        "endat_clk & !clk_before",
+        "!endat_clk & clk_before",
+    ),
+    mutation(
+        "recovery counter: stands still",
+        "recovery_counter_pair_36",
+        "counter <= counter + 16'd1;",
+        "counter <= counter;",
+    ),
+    mutation(
         "a written clock rate is not taken",
         "frame_settings",
         "period_held_next = period_cycles;",
@@ -82,7 +94,7 @@ const BROKEN_SERVICES: &[Mutation] = &[
 
 fn card() -> Vec<endat_gen::artifact::Artifact> {
     let more =
-        "[service]\nparts = [\"requests\", \"diagnosis\"]\n[outputs]\nparts = [\"position\"]\n";
+        "[service]\nparts = [\"requests\", \"diagnosis\"]\n[outputs]\nparts = [\"position\"]\n[safety]\nparts = [\"recovery_counter\"]\n";
     let text = crate::bus::text(HostBus::Apb, more).replace("= [\"register\"]", "= [\"pin\"]");
     endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap()
 }
