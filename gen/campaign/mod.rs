@@ -3,6 +3,7 @@
 pub mod budget;
 pub mod card;
 pub mod configurations;
+mod elements;
 pub mod page;
 pub mod part;
 pub mod reference;

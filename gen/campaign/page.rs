@@ -1,7 +1,7 @@
 //! The page that says what the core stands: tables from the results of whole campaigns.
 
 use super::part::Part;
-use super::{budget, report};
+use super::{budget, elements, report};
 use crate::error::GenError;
 use endat_sim::campaign::Shard;
 use std::fmt::Write;
@@ -65,6 +65,13 @@ stamp, a wrong answer, a configuration that is another one. After four triggers 
 Ages, evidence and delays are not compared. The clocks are fast and pauses short: 8 cycles to a bit of the link, commands forgotten after 100 us, the longest wait of a service 16 ms.
 ";
 
+/// What stands above the upsets by element.
+const ELEMENTS: &str = "By element, for a fault analysis (FMEDA; [safety.md](safety.md)): an upset is safe where every result is as without it; told by a cause, a position that is not fresh, or a check of \
+the host; other where a trigger is lost or something beside the position is wrong. Coverage is the share of upsets that are not safe of which no wrong position came out as good. \
+Upsets of a flip-flop only: faults that stay, of gates and of wires inside the device, are not counted.
+
+";
+
 /// What stands above the tables of a campaign.
 fn title(campaign: &str) -> Option<(&'static str, &'static str)> {
     Some(match campaign {
@@ -107,6 +114,11 @@ pub fn page(parts: &[Part]) -> Result<String, GenError> {
             );
         }
         text.push('\n');
+        if name == "upsets" {
+            text.push_str(ELEMENTS);
+            text.push_str(&elements::table(&part.tally));
+            text.push('\n');
+        }
         text.push_str(report::text(name, &part.tally).trim_end());
         text.push('\n');
     }

@@ -9,15 +9,15 @@ use std::fmt::Write;
 const WORST: usize = 20;
 
 /// Cases by class.
-type Counts<'a> = BTreeMap<&'a str, u64>;
+pub(super) type Counts<'a> = BTreeMap<&'a str, u64>;
 
 /// The block that a register is in.
-fn block(place: &str) -> &str {
+pub(super) fn block(place: &str) -> &str {
     place.rsplit_once('.').map_or("(top)", |(block, _)| block)
 }
 
 /// How many cases there are: each is in one class.
-fn flips(counts: &Counts) -> u64 {
+pub(super) fn flips(counts: &Counts) -> u64 {
     Class::ALL
         .iter()
         .map(|c| counts.get(c.name()).unwrap_or(&0))
@@ -25,7 +25,10 @@ fn flips(counts: &Counts) -> u64 {
 }
 
 /// The counts of every group of rows.
-fn grouped<'a, K: Ord>(tally: &'a Tally, key: impl Fn(&'a Row) -> K) -> BTreeMap<K, Counts<'a>> {
+pub(super) fn grouped<'a, K: Ord>(
+    tally: &'a Tally,
+    key: impl Fn(&'a Row) -> K,
+) -> BTreeMap<K, Counts<'a>> {
     let mut groups: BTreeMap<K, Counts> = BTreeMap::new();
     for (row, count) in tally.rows() {
         *groups
