@@ -1,7 +1,7 @@
-//! The recovery time once more, beside the channel and sharing nothing with it: a counter that nothing sets back, kept at the edges.
+//! The recovery time once more, beside the channel: a counter that no frame resets, kept at the edges.
 //!
 //! ```text
-//! CLOCK as it goes out ----------------- rising edge ---> rise = counter
+//! CLOCK as it goes to the pin ---------- rising edge ---> rise = counter
 //! DATA pin --> synchroniser of its own --falling edge---> fall = counter
 //! ```
 //!
@@ -39,12 +39,15 @@ pub struct RecoveryCounter {
     rise: Reg<Bits<16>>,
     fall: Reg<Bits<16>>,
     fallen: Reg<Bit>,
+    // CLOCK rests HIGH.
+    #[start(true)]
     clk_before: Reg<Bit>,
     near: SyncReg<Bit>,
     level: SyncReg<Bit>,
     level_before: Reg<Bit>,
     held: Reg<Bits<24>>,
     byte_read: Reg<Bits<8>>,
+    is_over: Signal<Local, Bit>,
     selected: Signal<Local, Bit>,
     word: Signal<Local, Bits<32>>,
     pair: Constant<Bits<10>>,
@@ -73,6 +76,8 @@ impl Logic for RecoveryCounter {
             self.fall.d.next = self.counter.q.val();
             self.fallen.d.next = true;
         }
+        // Bits of the answer may still come in, and fall, where the cable is long.
+        self.is_over.next = self.fallen.q.val() & !self.level.q.val();
         self.clk_before.d.next = self.endat_clk.val();
         if self.endat_clk.val() & !self.clk_before.q.val() {
             self.rise.d.next = self.counter.q.val();
@@ -85,7 +90,7 @@ impl Logic for RecoveryCounter {
             | place!(self.fall.q.val(), recovery.edges.fall);
         if self.word_address.val().get_bit(0) {
             self.word.next = place!(self.counter.q.val(), recovery.counter.value)
-                | place!(self.fallen.q.val(), recovery.counter.fallen);
+                | place!(self.is_over.val(), recovery.counter.fallen);
         }
         // A word is of one moment: that of its first byte.
         if !self.lane.val().any() {

@@ -97,6 +97,12 @@ fn line(config: &CardConfig) -> LineStart {
     config.line.start(config.system_hz)
 }
 
+/// The parts of a card, a bit for each.
+fn features(config: &CardConfig) -> u64 {
+    let bit = |part: &Part| u64::from(has(config, *part)) << *part as u32;
+    Part::ALL.iter().map(bit).sum()
+}
+
 /// Fields that are not 0 after reset: `block.register.field`.
 const STARTS: &[(&str, Start)] = &[
     ("card.id.value", |_, _| ID.into()),
@@ -108,14 +114,19 @@ const STARTS: &[(&str, Start)] = &[
         MAX_POSITION_BITS as u64
     }),
     ("card.capabilities.features", |s, _| {
-        let bit = |part: &Part| u64::from(has(s, *part)) << *part as u32;
-        Part::ALL.iter().map(bit).sum()
+        features(s) & ((1 << FEATURES_BITS) - 1)
     }),
     ("card.system_hz.value", |s, _| s.system_hz),
     ("card.configuration_hash.value", |s, _| s.hash >> 16),
     ("card.protocols.t_format", |s, _| s.t_format_channels()),
     ("card.protocols.stream_informations", |s, _| {
         s.stream.informations.into()
+    }),
+    ("card.protocols.features", |s, _| {
+        features(s) >> FEATURES_BITS
+    }),
+    ("recovery.counter.value", |_, n| {
+        u64::from(COUNTER_SPACING) * n as u64
     }),
     ("card.stream_control.collect", |s, _| {
         s.stream.start.collects().into()

@@ -6,7 +6,7 @@ use crate::registers::{Access, Block, Place};
 use crate::result::Reading;
 use crate::transport::Transport;
 use crate::HostError;
-use endat_regs::{result_words, Part, ID, VERSION};
+use endat_regs::{result_words, Part, FEATURES_BITS, ID, VERSION};
 use std::time::Duration;
 
 /// Words that say who a card is.
@@ -68,7 +68,8 @@ impl Identity {
             version,
             channels: channels.into(),
             max_position_bits: bits.into(),
-            features: u16::from_be_bytes([high, low]).into(),
+            features: u32::from(u16::from_be_bytes([high, low]))
+                | (words[5] >> 16) << FEATURES_BITS,
             system_hz: words[3],
             configuration_hash: words[4],
             // 0 on cards with an older map: absent words read 0.

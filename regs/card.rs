@@ -1,6 +1,6 @@
 //! The card's own words: identification, capabilities, counters and strobes.
 
-use crate::part::{Part, FEATURES};
+use crate::part::{Part, FEATURES, MORE_FEATURES};
 use crate::{field, word, Access, Block, BLOCK_STRIDE};
 use Access::{ReadOnly, ReadWrite, Strobe};
 
@@ -70,7 +70,7 @@ pub const CARD: Block = Block {
             "protocols",
             5,
             ReadOnly,
-            "Which channels speak another protocol than EnDat, and what sets of the stream have.",
+            "Which channels speak another protocol than EnDat, what sets of the stream have, and further parts.",
             &[
                 field("t_format", 0, 8, "", "T-format: bit n for channel n"),
                 field(
@@ -80,6 +80,7 @@ pub const CARD: Block = Block {
                     "",
                     "1: sets of the stream have the additional informations",
                 ),
+                field("features", 16, 16, "", "Parts that have no place in capabilities.features").bits(MORE_FEATURES),
             ],
         ),
         word(

@@ -36,7 +36,7 @@ pub use config::{CARD_CONFIG, CHANNEL_CONFIG};
 pub use line::LINE;
 pub use named::{Named, Values};
 pub use outputs::{DIRECT, ERROR_CAUSES, INTERRUPT, INTERRUPT_EVENTS};
-pub use part::{Part, FEATURES};
+pub use part::{Part, FEATURES, FEATURES_BITS, MORE_FEATURES};
 pub use recovery::{COUNTER_SPACING, RECOVERY};
 pub use register::{Access, Block, Field, Limits, Register};
 pub use result::{EVIDENCE_FLAGS, INFO_FIRST, LINE_FLAGS, RESULT};

@@ -1,4 +1,4 @@
-//! Parts that a card may have, as `capabilities.features` tells them.
+//! Parts that a card may have, as `capabilities.features` and `protocols.features` tell them.
 
 use crate::named::named;
 use crate::Named;
@@ -27,8 +27,7 @@ macro_rules! parts {
             }
         }
 
-        /// Bits of the features.
-        pub const FEATURES: &[Named] = &[$(named($name, $bit, $meaning)),*];
+        const ALL_FEATURES: &[Named] = &[$(named($name, $bit, $meaning)),*];
     };
 }
 
@@ -52,9 +51,27 @@ parts! {
     RecoveryCounter = 16, "recovery_counter", "recovery time measured a second time", "[safety] parts";
 }
 
+/// Parts that have a bit in `capabilities.features`; those behind them have one in `protocols.features`.
+pub const FEATURES_BITS: usize = 16;
+/// Bits of `capabilities.features`.
+pub const FEATURES: &[Named] = ALL_FEATURES.split_at(FEATURES_BITS).0;
+/// Bits of `protocols.features`.
+pub const MORE_FEATURES: &[Named] = &more_features();
+
+const fn more_features() -> [Named; ALL_FEATURES.len() - FEATURES_BITS] {
+    let mut more = [ALL_FEATURES[0]; ALL_FEATURES.len() - FEATURES_BITS];
+    let mut i = 0;
+    while i < more.len() {
+        let part = ALL_FEATURES[FEATURES_BITS + i];
+        more[i] = named(part.name, i as u32, part.meaning);
+        i += 1;
+    }
+    more
+}
+
 impl Part {
     /// Its name and its meaning.
     pub const fn named(self) -> Named {
-        FEATURES[self as usize]
+        ALL_FEATURES[self as usize]
     }
 }

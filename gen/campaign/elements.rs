@@ -33,7 +33,7 @@ const ELEMENTS: &[Element] = &[
     Element(CARD, &["core.bank", "core.registers"], "register bank, results for the host", "CRC5 of the position, stale"),
     Element(CARD, &["core.whole"], "results with informations", "CRC5 of the position"),
     Element(CARD, &["core.set", "core.stream"], "stream", "parity of each set, CRC-16 of each frame, count of triggers"),
-    Element(CARD, &["core.service", "core.port"], "services", "answer of the encoder, its state; positions do not pass"),
+    Element(CARD, &["core.service", "core.port"], "services", "answer of the encoder, its state"),
     Element(CARD, &["core.trigger"], "trigger", "count of triggers"),
     Element(CARD, &["core.timebase"], "time base", "nothing: time stamps are another moment's"),
 ];
@@ -47,7 +47,7 @@ fn element(subject: &str, block: &str) -> Option<usize> {
 fn percent(part: u64, all: u64) -> String {
     match (part, all) {
         (0, _) | (_, 0) => "0".into(),
-        _ => format!("{:.3}", 100.0 * part as f64 / all as f64),
+        _ => format!("{:.2}", 100.0 * part as f64 / all as f64),
     }
 }
 
@@ -56,17 +56,16 @@ fn line(text: &mut String, subject: &str, name: &str, counts: &Counts, told_by: 
     let all = flips(counts);
     let (masked, silent) = (of(Class::Masked), of(Class::Silent));
     let other = of(Class::Lost) + of(Class::SilentOther) + of(Class::Hang);
-    let coverage = match all - masked {
-        0 => "-".into(),
-        acting => format!("{:.2}", 100.0 - 100.0 * silent as f64 / acting as f64),
-    };
+    let acting = all - masked;
     let _ = writeln!(
         text,
-        "| {subject} | {name} | {all} | {} | {} | {} | {} | {coverage} | {told_by} |",
+        "| {subject} | {name} | {all} | {} | {} | {} | {} | {} | {} | {told_by} |",
         percent(masked, all),
         percent(of(Class::Detected), all),
         percent(other, all),
         percent(silent, all),
+        percent(of(Class::Detected), acting),
+        percent(acting - silent, acting),
     );
 }
 
@@ -88,8 +87,8 @@ pub fn table(tally: &Tally) -> String {
         }
     }
     let mut text = String::from(
-        "| | element | upsets | safe, % | told, % | other, % | wrong position told as good, % | coverage, % | told by |\n\
-         |---|---|---|---|---|---|---|---|---|\n",
+        "| subject | element | upsets | safe, % | told, % | other, % | wrong position told as good, % | told of those that are not safe, % | without a wrong position, of the same, % | told by |\n\
+         |---|---|---|---|---|---|---|---|---|---|\n",
     );
     for (index, counts) in &found {
         let Element(subject, _, name, told_by) = ELEMENTS[*index];

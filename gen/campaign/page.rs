@@ -66,9 +66,9 @@ Ages, evidence and delays are not compared. The clocks are fast and pauses short
 ";
 
 /// What stands above the upsets by element.
-const ELEMENTS: &str = "By element, for a fault analysis (FMEDA; [safety.md](safety.md)): an upset is safe where every result is as without it; told by a cause, a position that is not fresh, or a check of \
-the host; other where a trigger is lost or something beside the position is wrong. Coverage is the share of upsets that are not safe of which no wrong position came out as good. \
-Upsets of a flip-flop only: faults that stay, of gates and of wires inside the device, are not counted.
+const ELEMENTS: &str = "By element, as a fault analysis sorts them ([safety.md](safety.md); no FMEDA, which has rates and faults that stay): an upset is safe where every result is as without it; told by a cause, a position that is not fresh, or a check of \
+the host; other where a trigger is lost or something beside the position is wrong, and nothing tells it. \
+Subjects are the EnDat port with everything and the card behind the UART.
 
 ";
 

@@ -79,7 +79,6 @@
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_INTERRUPT 0x2000u /* interrupt */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_T_FORMAT 0x4000u /* T-format channels */
 #define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_OWN_TRIGGER 0x8000u /* enable, divider and sources of triggers of each channel */
-#define S6_TWO_CHANNEL_CARD_CAPABILITIES_FEATURES_RECOVERY_COUNTER 0x10000u /* recovery time measured a second time */
 
 /* ro: System clock: the unit of every number of cycles. */
 #define S6_TWO_CHANNEL_CARD_SYSTEM_HZ_WORD 0x003u
@@ -97,7 +96,7 @@
 #define S6_TWO_CHANNEL_CARD_CONFIGURATION_HASH_VALUE_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_CONFIGURATION_HASH_VALUE_MASK 0xFFFFFFFFu
 
-/* ro: Which channels speak another protocol than EnDat, and what sets of the stream have. */
+/* ro: Which channels speak another protocol than EnDat, what sets of the stream have, and further parts. */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_WORD 0x005u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_BYTE 0x0014u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_RESET 0x00000000u
@@ -107,6 +106,10 @@
 /* stream_informations: 1: sets of the stream have the additional informations */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_INFORMATIONS_SHIFT 8u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_INFORMATIONS_MASK 0x00000100u
+/* features: Parts that have no place in capabilities.features */
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SHIFT 16u
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_MASK 0xFFFF0000u
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER 0x1u /* recovery time measured a second time */
 
 /* ro: Triggers since reset; stands still with the results (see hold). */
 #define S6_TWO_CHANNEL_CARD_TRIGGER_COUNT_WORD 0x008u

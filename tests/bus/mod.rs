@@ -89,11 +89,20 @@ impl Master {
 
     /// The same with these encoders, each at its channel.
     pub fn with_encoders(project: &Project, encoders: Vec<(usize, EncoderConfig)>) -> Self {
+        Self::with_cable(project, encoders, 20.0)
+    }
+
+    /// The same at the end of so many metres.
+    pub fn with_cable(
+        project: &Project,
+        encoders: Vec<(usize, EncoderConfig)>,
+        cable_m: f64,
+    ) -> Self {
         let design = endat_gen::design(project).unwrap();
         let engine = Compiled::new(&design).unwrap();
         let link = |(n, encoder)| {
             let port = PinNames::card(n);
-            (port, Link::new(LineConfig::cable(20.0), encoder))
+            (port, Link::new(LineConfig::cable(cable_m), encoder))
         };
         let links = encoders.into_iter().map(link).collect();
         let mut bench = Bench::new(engine, project.card.system_hz, links);

@@ -122,6 +122,51 @@ fn data_that_does_not_fall_is_told() {
     assert!(!measured(&mut master, 0).1);
 }
 
+/// Catches bits of the answer that come in behind the last edge of CLOCK and pass for the end of the recovery time.
+#[test]
+fn data_that_does_not_fall_is_told_on_a_long_cable() {
+    let text = text(HostBus::Wishbone, SAFETY)
+        .replace(
+            "clock_hz = 3_125_000",
+            "clock_hz = 8_000_000\ncable_m = 150",
+        )
+        .replace("100_000_000", "96_000_000");
+    let project = parse("card.toml", &text).unwrap();
+    let stuck = |seed, bits| {
+        (3..12).fold(sound(seed, bits), |e, frame| {
+            e.defect(frame, Defect::LateFall(20_000 * US))
+        })
+    };
+    for seed in 0..8 {
+        let mut master = Master::with_cable(
+            &project,
+            vec![(0, stuck(seed, 29)), (1, sound(1, 25))],
+            150.0,
+        );
+        frame(&mut master);
+        frame(&mut master);
+        assert!(measured(&mut master, 0).1, "{seed}");
+        frame(&mut master);
+        assert!(measured(&mut master, 1).1, "{seed}");
+        assert!(!measured(&mut master, 0).1, "{seed}");
+    }
+}
+
+/// Catches a part that no host finds: its bit stands in a word of its own.
+#[test]
+fn a_host_finds_the_part() {
+    let file = crate::tools::folder("safety-host").join("card.toml");
+    std::fs::write(&file, text(HostBus::AxiLite, SAFETY)).unwrap();
+    let port = format!("virtual:{}", file.display());
+    for name in ["recovery0.edges", "recovery1.counter"] {
+        let outcome = crate::program::run(&["reg", "read", name, "--port", &port]);
+        assert_eq!(outcome.exit_code, 0, "{outcome:?}");
+    }
+    let write = ["reg", "write", "recovery0.edges", "1", "--port", &port];
+    let outcome = crate::program::run(&write);
+    assert!(outcome.messages[0].contains("is read only"), "{outcome:?}");
+}
+
 #[test]
 fn the_block_agrees_in_three_ways() {
     let mut block = RecoveryCounter::new(5);
