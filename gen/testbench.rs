@@ -130,6 +130,12 @@ fn fields(block: &Block) -> impl Iterator<Item = Bits> + '_ {
     })
 }
 
+/// Where a word of a channel's block stands.
+fn word_address(block: &Block, name: &str, channel: usize) -> String {
+    let register = block.register(name).expect("a word of the block");
+    format!("{:03X}", block.address(register, channel))
+}
+
 /// The longest of a time over all EnDat channels, in cycles, as ns.
 fn longest_ns(card: &CardConfig, cycles: impl Fn(&ChannelConfig) -> u64) -> u64 {
     let most = card.endat_channels().map(|(_, c)| cycles(c)).max();
@@ -202,12 +208,8 @@ fn cleared(card: &CardConfig) -> Vec<Value> {
     ];
     let words = words.into_iter().filter(|(has_part, ..)| *has_part);
     let words = words.flat_map(|(_, block, name)| {
-        let register = block.register(name).expect("a word of the block");
         let channels = card.endat_channels();
-        channels.map(move |(n, _)| {
-            let address = format!("{:03X}", block.address(register, n));
-            context! { name, address }
-        })
+        channels.map(move |(n, _)| context! { name, address => word_address(block, name, n) })
     });
     words.collect()
 }

@@ -2,8 +2,7 @@
 
 use super::report::{block, flips, grouped, Counts};
 use endat_sim::campaign::port::Class;
-use endat_sim::campaign::Tally;
-use std::collections::BTreeMap;
+use endat_sim::campaign::{Row, Tally};
 use std::fmt::Write;
 
 /// An element: subject, how its blocks begin, what it is, and what tells an upset of it.
@@ -71,31 +70,21 @@ fn line(text: &mut String, subject: &str, name: &str, counts: &Counts, told_by: 
 
 /// The table: a line for each element of the port with everything and of the card, and their sums.
 pub fn table(tally: &Tally) -> String {
-    let mut found: BTreeMap<usize, Counts> = BTreeMap::new();
-    let mut sums: BTreeMap<&str, Counts> = BTreeMap::new();
-    for ((subject, block), counts) in grouped(tally, |r| (r.subject.as_str(), block(&r.place))) {
-        let Some(index) = element(subject, block) else {
-            continue;
-        };
-        for (class, count) in counts {
-            *found.entry(index).or_default().entry(class).or_default() += count;
-            *sums
-                .entry(ELEMENTS[index].0)
-                .or_default()
-                .entry(class)
-                .or_default() += count;
-        }
-    }
+    let of = |r: &Row| element(&r.subject, block(&r.place));
     let mut text = String::from(
         "| subject | element | upsets | safe, % | told, % | other, % | wrong position told as good, % | told of those that are not safe, % | without a wrong position, of the same, % | told by |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
     );
-    for (index, counts) in &found {
-        let Element(subject, _, name, told_by) = ELEMENTS[*index];
-        line(&mut text, subject, name, counts, told_by);
+    for (index, counts) in grouped(tally, of) {
+        if let Some(index) = index {
+            let Element(subject, _, name, told_by) = ELEMENTS[index];
+            line(&mut text, subject, name, &counts, told_by);
+        }
     }
-    for (subject, counts) in &sums {
-        line(&mut text, subject, "all", counts, "");
+    for (subject, counts) in grouped(tally, |r| of(r).map(|index| ELEMENTS[index].0)) {
+        if let Some(subject) = subject {
+            line(&mut text, subject, "all", &counts, "");
+        }
     }
     text
 }

@@ -1,7 +1,9 @@
 //! What the published systems are for, as far as a card has it: usual clock rates, cropped positions, selected causes, the
 //! watchdog, requests, additional informations, continuous clock.
 
-use super::{clock_ns, cycle_ns, fields, is_own_trigger, longest_ns, real, whole, Port};
+use super::{
+    clock_ns, cycle_ns, fields, is_own_trigger, longest_ns, real, whole, word_address, Port,
+};
 use crate::error::GenError;
 use crate::template;
 use endat_hdl::card::services;
@@ -107,8 +109,7 @@ fn rates(card: &CardConfig) -> Vec<Value> {
 
 /// Where a word of a channel's service stands.
 fn service_address(name: &str, channel: usize) -> String {
-    let register = SERVICE.register(name).expect("a word of every service");
-    format!("{:03X}", SERVICE.address(register, channel))
+    word_address(&SERVICE, name, channel)
 }
 
 /// Channels with a watchdog: where it is set, and a time in which the mode command is out and no answer has come.
@@ -180,16 +181,12 @@ fn counters(card: &CardConfig) -> Vec<Value> {
     if !card.safety.recovery_counter {
         return vec![];
     }
-    let address = |name, channel| {
-        let register = RECOVERY.register(name).expect("a word of the block");
-        format!("{:03X}", RECOVERY.address(register, channel))
-    };
     let channels = card.endat_channels().map(|(n, c)| {
         context! {
             index => n,
             filter_cycles => c.filter_cycles,
-            edges => address("edges", n),
-            counter => address("counter", n),
+            edges => word_address(&RECOVERY, "edges", n),
+            counter => word_address(&RECOVERY, "counter", n),
         }
     });
     channels.collect()
@@ -228,7 +225,6 @@ fn infos(card: &CardConfig) -> Vec<Value> {
             codes => codes.collect::<Vec<_>>(),
             length => service_address("list_length", n),
             request => service_address("request", n),
-            state => service_address("request_state", n),
         }
     });
     channels.collect()
