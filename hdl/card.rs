@@ -747,4 +747,5 @@ impl Logic for CardCore {
 mod parts;
 #[cfg(test)]
 mod tests;
+pub(crate) mod top;
 mod uart;

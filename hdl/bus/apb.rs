@@ -12,7 +12,7 @@
 //! Ref: ARM IHI 0024B, AMBA 3 APB Protocol v1.0.
 
 use super::word_access::WordAccess;
-use crate::card::CardCore;
+use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::reg::Reg;
 use crate::several::each;
@@ -135,128 +135,37 @@ impl Logic for ApbFront {
     }
 }
 
-/// The whole core behind APB3; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock, Block)]
-pub struct ApbCard {
-    /// System clock.
-    pub clk_i: Signal<In, Clock>,
-    /// Synchronous reset, active high.
-    pub rst_i: Signal<In, Bit>,
-    /// Trigger pin, asynchronous; a rising edge triggers.
-    pub trigger_i: Signal<In, Bit>,
-    /// The master talks to this slave.
-    pub s_apb_psel: Signal<In, Bit>,
-    /// Second and later cycles of a transfer.
-    pub s_apb_penable: Signal<In, Bit>,
-    /// Write.
-    pub s_apb_pwrite: Signal<In, Bit>,
-    /// Byte address, a multiple of 4.
-    pub s_apb_paddr: Signal<In, Bits<13>>,
-    /// Word to write.
-    pub s_apb_pwdata: Signal<In, Bits<32>>,
-    /// Word read, valid with `pready`.
-    pub s_apb_prdata: Signal<Out, Bits<32>>,
-    /// The transfer ends in this cycle.
-    pub s_apb_pready: Signal<Out, Bit>,
-    /// With `pready`: the address is no multiple of 4; nothing was done.
-    pub s_apb_pslverr: Signal<Out, Bit>,
-    /// Cropped position of the channel, for logic in the same device.
-    pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
-    /// The cropped position is that of the last result.
-    pub direct_valid_o: Vec<Signal<Out, Bit>>,
-    /// Strobe: the cropped position is new.
-    pub direct_fresh_o: Vec<Signal<Out, Bit>>,
-    /// The last result's cause is one of those selected, or the alarm.
-    pub direct_error_o: Vec<Signal<Out, Bit>>,
-    /// Interrupt; low without this part.
-    pub irq_o: Signal<Out, Bit>,
-    /// EnDat clock to the transceiver.
-    pub endat_clk_o: Vec<Signal<Out, Bit>>,
-    /// EnDat data to the transceiver.
-    pub endat_data_o: Vec<Signal<Out, Bit>>,
-    /// Driver enable of the EnDat data line.
-    pub endat_data_oe: Vec<Signal<Out, Bit>>,
-    /// EnDat data from the transceiver, asynchronous.
-    pub endat_data_i: Vec<Signal<In, Bit>>,
-    /// Blinks: slowly = well, quickly = the last result of a channel is an error.
-    pub led_status_o: Signal<Out, Bit>,
-    /// The channel's last result is a good position.
-    pub led_channel_o: Vec<Signal<Out, Bit>>,
-    core: CardCore,
-    #[start]
-    front: ApbFront,
-    _direct_ports: usize,
-    _channels: usize,
+card_top! {
+    /// The whole core behind APB3; the number of channels is that of [`CardConfig::channels`].
+    ApbCard, ApbCardParts: front: ApbFront, irq_o
+    in {
+        /// The master talks to this slave.
+        s_apb_psel: Bit => psel,
+        /// Second and later cycles of a transfer.
+        s_apb_penable: Bit => penable,
+        /// Write.
+        s_apb_pwrite: Bit => pwrite,
+        /// Byte address, a multiple of 4.
+        s_apb_paddr: Bits<13> => paddr,
+        /// Word to write.
+        s_apb_pwdata: Bits<32> => pwdata,
+    }
+    out {
+        /// Word read, valid with `pready`.
+        s_apb_prdata: Bits<32> => prdata,
+        /// The transfer ends in this cycle.
+        s_apb_pready: Bit => pready,
+        /// With `pready`: the address is no multiple of 4; nothing was done.
+        s_apb_pslverr: Bit => pslverr,
+    }
+    to_core { bank_write => write, bank_data => write_data }
+    to_front { passing_byte => passing_byte }
+    fixed { in_range: true, push_take: false }
 }
 
 impl ApbCard {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
-        let channels = config.channels.len();
-        let direct_ports = channels * usize::from(config.outputs.position);
-        Self::from_parts(ApbCardParts {
-            direct_position_o: each(direct_ports),
-            direct_valid_o: each(direct_ports),
-            direct_fresh_o: each(direct_ports),
-            direct_error_o: each(direct_ports),
-            endat_clk_o: each(channels),
-            endat_data_o: each(channels),
-            endat_data_oe: each(channels),
-            endat_data_i: each(channels),
-            led_channel_o: each(channels),
-            core: CardCore::new(config),
-            _direct_ports: direct_ports,
-            _channels: channels,
-        })
-    }
-}
-
-impl Logic for ApbCard {
-    #[kernel]
-    fn update(&mut self) {
-        self.core.clk_i.next = self.clk_i.val();
-        self.core.rst_i.next = self.rst_i.val();
-        self.core.trigger_i.next = self.trigger_i.val();
-        self.front.clock.next = self.clk_i.val();
-        self.front.reset.next = self.rst_i.val();
-
-        self.front.psel.next = self.s_apb_psel.val();
-        self.front.penable.next = self.s_apb_penable.val();
-        self.front.pwrite.next = self.s_apb_pwrite.val();
-        self.front.paddr.next = self.s_apb_paddr.val();
-        self.front.pwdata.next = self.s_apb_pwdata.val();
-        self.s_apb_prdata.next = self.front.prdata.val();
-        self.s_apb_pready.next = self.front.pready.val();
-        self.s_apb_pslverr.next = self.front.pslverr.val();
-
-        self.front.tick_us.next = self.core.tick_us.val();
-        self.front.take_byte.next = self.core.take_byte.val();
-        self.front.passing_byte.next = self.core.passing_byte.val();
-        self.front.read_byte.next = self.core.read_byte.val();
-        self.front.done.next = self.core.done.val();
-        self.core.word_address.next = self.front.word_address.val();
-        self.core.in_range.next = true;
-        self.core.lane.next = self.front.lane.val();
-        self.core.access.next = self.front.access.val();
-        self.core.write.next = self.front.bank_write.val();
-        self.core.write_data.next = self.front.bank_data.val();
-        self.core.push_take.next = false;
-        self.core.reading.next = self.front.reading.val();
-
-        for i in 0..self._direct_ports {
-            self.direct_position_o[i].next = self.core.direct_position_o[i].val();
-            self.direct_valid_o[i].next = self.core.direct_valid_o[i].val();
-            self.direct_fresh_o[i].next = self.core.direct_fresh_o[i].val();
-            self.direct_error_o[i].next = self.core.direct_error_o[i].val();
-        }
-        self.irq_o.next = self.core.irq_o.val();
-        for i in 0..self._channels {
-            self.core.endat_data_i[i].next = self.endat_data_i[i].val();
-            self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();
-            self.endat_data_o[i].next = self.core.endat_data_o[i].val();
-            self.endat_data_oe[i].next = self.core.endat_data_oe[i].val();
-            self.led_channel_o[i].next = self.core.led_channel_o[i].val();
-        }
-        self.led_status_o.next = self.core.led_status_o.val();
+        Self::behind(Default::default(), CardCore::new(config), config)
     }
 }

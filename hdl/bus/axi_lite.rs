@@ -14,7 +14,7 @@
 //! Ref: ARM IHI 0022E, AMBA AXI4-Lite, chapter B1.
 
 use super::word_access::WordAccess;
-use crate::card::CardCore;
+use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::reg::Reg;
 use crate::several::each;
@@ -204,155 +204,66 @@ impl Logic for AxiLiteFront {
     }
 }
 
-/// The whole core behind AXI4-Lite; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock, Block)]
-pub struct AxiLiteCard {
-    /// System clock.
-    pub clk_i: Signal<In, Clock>,
-    /// Synchronous reset, active high.
-    pub rst_i: Signal<In, Bit>,
-    /// Trigger pin, asynchronous; a rising edge triggers.
-    pub trigger_i: Signal<In, Bit>,
-    /// Byte address of a write; the lowest two bits do not matter.
-    pub s_axi_awaddr: Signal<In, Bits<13>>,
-    /// There is an address of a write.
-    pub s_axi_awvalid: Signal<In, Bit>,
-    /// It is taken.
-    pub s_axi_awready: Signal<Out, Bit>,
-    /// Word to write.
-    pub s_axi_wdata: Signal<In, Bits<32>>,
-    /// Bytes of it: all, or none.
-    pub s_axi_wstrb: Signal<In, Bits<4>>,
-    /// There is a word to write.
-    pub s_axi_wvalid: Signal<In, Bit>,
-    /// It is taken.
-    pub s_axi_wready: Signal<Out, Bit>,
-    /// 0 = written, 2 = refused: a part of a word.
-    pub s_axi_bresp: Signal<Out, Bits<2>>,
-    /// A write has ended.
-    pub s_axi_bvalid: Signal<Out, Bit>,
-    /// The master takes that.
-    pub s_axi_bready: Signal<In, Bit>,
-    /// Byte address of a read; the lowest two bits do not matter.
-    pub s_axi_araddr: Signal<In, Bits<13>>,
-    /// There is an address of a read.
-    pub s_axi_arvalid: Signal<In, Bit>,
-    /// It is taken.
-    pub s_axi_arready: Signal<Out, Bit>,
-    /// Word read.
-    pub s_axi_rdata: Signal<Out, Bits<32>>,
-    /// Always 0.
-    pub s_axi_rresp: Signal<Out, Bits<2>>,
-    /// There is a word read.
-    pub s_axi_rvalid: Signal<Out, Bit>,
-    /// The master takes it.
-    pub s_axi_rready: Signal<In, Bit>,
-    /// Cropped position of the channel, for logic in the same device.
-    pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
-    /// The cropped position is that of the last result.
-    pub direct_valid_o: Vec<Signal<Out, Bit>>,
-    /// Strobe: the cropped position is new.
-    pub direct_fresh_o: Vec<Signal<Out, Bit>>,
-    /// The last result's cause is one of those selected, or the alarm.
-    pub direct_error_o: Vec<Signal<Out, Bit>>,
-    /// Interrupt; low without this part.
-    pub irq_o: Signal<Out, Bit>,
-    /// EnDat clock to the transceiver.
-    pub endat_clk_o: Vec<Signal<Out, Bit>>,
-    /// EnDat data to the transceiver.
-    pub endat_data_o: Vec<Signal<Out, Bit>>,
-    /// Driver enable of the EnDat data line.
-    pub endat_data_oe: Vec<Signal<Out, Bit>>,
-    /// EnDat data from the transceiver, asynchronous.
-    pub endat_data_i: Vec<Signal<In, Bit>>,
-    /// Blinks: slowly = well, quickly = the last result of a channel is an error.
-    pub led_status_o: Signal<Out, Bit>,
-    /// The channel's last result is a good position.
-    pub led_channel_o: Vec<Signal<Out, Bit>>,
-    core: CardCore,
-    #[start]
-    front: AxiLiteFront,
-    _direct_ports: usize,
-    _channels: usize,
+card_top! {
+    /// The whole core behind AXI4-Lite; the number of channels is that of [`CardConfig::channels`].
+    AxiLiteCard, AxiLiteCardParts: front: AxiLiteFront, irq_o
+    in {
+        /// Byte address of a write; the lowest two bits do not matter.
+        s_axi_awaddr: Bits<13> => awaddr,
+        /// There is an address of a write.
+        s_axi_awvalid: Bit => awvalid,
+    }
+    out {
+        /// It is taken.
+        s_axi_awready: Bit => awready,
+    }
+    in {
+        /// Word to write.
+        s_axi_wdata: Bits<32> => wdata,
+        /// Bytes of it: all, or none.
+        s_axi_wstrb: Bits<4> => wstrb,
+        /// There is a word to write.
+        s_axi_wvalid: Bit => wvalid,
+    }
+    out {
+        /// It is taken.
+        s_axi_wready: Bit => wready,
+        /// 0 = written, 2 = refused: a part of a word.
+        s_axi_bresp: Bits<2> => bresp,
+        /// A write has ended.
+        s_axi_bvalid: Bit => bvalid,
+    }
+    in {
+        /// The master takes that.
+        s_axi_bready: Bit => bready,
+        /// Byte address of a read; the lowest two bits do not matter.
+        s_axi_araddr: Bits<13> => araddr,
+        /// There is an address of a read.
+        s_axi_arvalid: Bit => arvalid,
+    }
+    out {
+        /// It is taken.
+        s_axi_arready: Bit => arready,
+        /// Word read.
+        s_axi_rdata: Bits<32> => rdata,
+        /// Always 0.
+        s_axi_rresp: Bits<2> => rresp,
+        /// There is a word read.
+        s_axi_rvalid: Bit => rvalid,
+    }
+    in {
+        /// The master takes it.
+        s_axi_rready: Bit => rready,
+    }
+    out {}
+    to_core { bank_write => write, bank_data => write_data }
+    to_front { passing_byte => passing_byte }
+    fixed { in_range: true, push_take: false }
 }
 
 impl AxiLiteCard {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
-        let channels = config.channels.len();
-        let direct_ports = channels * usize::from(config.outputs.position);
-        Self::from_parts(AxiLiteCardParts {
-            direct_position_o: each(direct_ports),
-            direct_valid_o: each(direct_ports),
-            direct_fresh_o: each(direct_ports),
-            direct_error_o: each(direct_ports),
-            endat_clk_o: each(channels),
-            endat_data_o: each(channels),
-            endat_data_oe: each(channels),
-            endat_data_i: each(channels),
-            led_channel_o: each(channels),
-            core: CardCore::new(config),
-            _direct_ports: direct_ports,
-            _channels: channels,
-        })
-    }
-}
-
-impl Logic for AxiLiteCard {
-    #[kernel]
-    fn update(&mut self) {
-        self.core.clk_i.next = self.clk_i.val();
-        self.core.rst_i.next = self.rst_i.val();
-        self.core.trigger_i.next = self.trigger_i.val();
-        self.front.clock.next = self.clk_i.val();
-        self.front.reset.next = self.rst_i.val();
-
-        self.front.awaddr.next = self.s_axi_awaddr.val();
-        self.front.awvalid.next = self.s_axi_awvalid.val();
-        self.s_axi_awready.next = self.front.awready.val();
-        self.front.wdata.next = self.s_axi_wdata.val();
-        self.front.wstrb.next = self.s_axi_wstrb.val();
-        self.front.wvalid.next = self.s_axi_wvalid.val();
-        self.s_axi_wready.next = self.front.wready.val();
-        self.s_axi_bresp.next = self.front.bresp.val();
-        self.s_axi_bvalid.next = self.front.bvalid.val();
-        self.front.bready.next = self.s_axi_bready.val();
-        self.front.araddr.next = self.s_axi_araddr.val();
-        self.front.arvalid.next = self.s_axi_arvalid.val();
-        self.s_axi_arready.next = self.front.arready.val();
-        self.s_axi_rdata.next = self.front.rdata.val();
-        self.s_axi_rresp.next = self.front.rresp.val();
-        self.s_axi_rvalid.next = self.front.rvalid.val();
-        self.front.rready.next = self.s_axi_rready.val();
-
-        self.front.tick_us.next = self.core.tick_us.val();
-        self.front.take_byte.next = self.core.take_byte.val();
-        self.front.passing_byte.next = self.core.passing_byte.val();
-        self.front.read_byte.next = self.core.read_byte.val();
-        self.front.done.next = self.core.done.val();
-        self.core.word_address.next = self.front.word_address.val();
-        self.core.in_range.next = true;
-        self.core.lane.next = self.front.lane.val();
-        self.core.access.next = self.front.access.val();
-        self.core.write.next = self.front.bank_write.val();
-        self.core.write_data.next = self.front.bank_data.val();
-        self.core.push_take.next = false;
-        self.core.reading.next = self.front.reading.val();
-
-        for i in 0..self._direct_ports {
-            self.direct_position_o[i].next = self.core.direct_position_o[i].val();
-            self.direct_valid_o[i].next = self.core.direct_valid_o[i].val();
-            self.direct_fresh_o[i].next = self.core.direct_fresh_o[i].val();
-            self.direct_error_o[i].next = self.core.direct_error_o[i].val();
-        }
-        self.irq_o.next = self.core.irq_o.val();
-        for i in 0..self._channels {
-            self.core.endat_data_i[i].next = self.endat_data_i[i].val();
-            self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();
-            self.endat_data_o[i].next = self.core.endat_data_o[i].val();
-            self.endat_data_oe[i].next = self.core.endat_data_oe[i].val();
-            self.led_channel_o[i].next = self.core.led_channel_o[i].val();
-        }
-        self.led_status_o.next = self.core.led_status_o.val();
+        Self::behind(Default::default(), CardCore::new(config), config)
     }
 }

@@ -18,7 +18,7 @@
 
 use super::strobes::BusStrobes;
 use super::word_access::WordAccess;
-use crate::card::CardCore;
+use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::reg::Reg;
 use crate::several::each;
@@ -261,125 +261,35 @@ impl Logic for ParallelFront {
     }
 }
 
-/// The whole core behind a parallel bus; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock, Block)]
-pub struct ParallelCard {
-    /// System clock.
-    pub clk_i: Signal<In, Clock>,
-    /// Synchronous reset, active high.
-    pub rst_i: Signal<In, Bit>,
-    /// Trigger pin, asynchronous; a rising edge triggers.
-    pub trigger_i: Signal<In, Bit>,
-    /// Chip select, active low, asynchronous.
-    pub bus_cs_n_i: Signal<In, Bit>,
-    /// Read strobe, active low, asynchronous.
-    pub bus_rd_n_i: Signal<In, Bit>,
-    /// Write strobe, active low, asynchronous; its rising edge writes.
-    pub bus_wr_n_i: Signal<In, Bit>,
-    /// Register that is read or written, asynchronous.
-    pub bus_address_i: Signal<In, Bits<3>>,
-    /// Data from the processor, asynchronous.
-    pub bus_data_i: Signal<In, Bits<16>>,
-    /// Data to the processor, valid 4 clocks after the register is selected.
-    pub bus_data_o: Signal<Out, Bits<16>>,
-    /// The card drives the data lines, straight from the strobes.
-    pub bus_data_oe: Signal<Out, Bit>,
-    /// Cropped position of the channel, for logic in the same device.
-    pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
-    /// The cropped position is that of the last result.
-    pub direct_valid_o: Vec<Signal<Out, Bit>>,
-    /// Strobe: the cropped position is new.
-    pub direct_fresh_o: Vec<Signal<Out, Bit>>,
-    /// The last result's cause is one of those selected, or the alarm.
-    pub direct_error_o: Vec<Signal<Out, Bit>>,
-    /// Interrupt; low without this part.
-    pub irq_o: Signal<Out, Bit>,
-    /// EnDat clock to the transceiver.
-    pub endat_clk_o: Vec<Signal<Out, Bit>>,
-    /// EnDat data to the transceiver.
-    pub endat_data_o: Vec<Signal<Out, Bit>>,
-    /// Driver enable of the EnDat data line.
-    pub endat_data_oe: Vec<Signal<Out, Bit>>,
-    /// EnDat data from the transceiver, asynchronous.
-    pub endat_data_i: Vec<Signal<In, Bit>>,
-    /// Blinks: slowly = well, quickly = the last result of a channel is an error.
-    pub led_status_o: Signal<Out, Bit>,
-    /// The channel's last result is a good position.
-    pub led_channel_o: Vec<Signal<Out, Bit>>,
-    core: CardCore,
-    #[start]
-    front: ParallelFront,
-    _direct_ports: usize,
-    _channels: usize,
+card_top! {
+    /// The whole core behind a parallel bus; the number of channels is that of [`CardConfig::channels`].
+    ParallelCard, ParallelCardParts: front: ParallelFront, irq_o
+    in {
+        /// Chip select, active low, asynchronous.
+        bus_cs_n_i: Bit => cs_n,
+        /// Read strobe, active low, asynchronous.
+        bus_rd_n_i: Bit => rd_n,
+        /// Write strobe, active low, asynchronous; its rising edge writes.
+        bus_wr_n_i: Bit => wr_n,
+        /// Register that is read or written, asynchronous.
+        bus_address_i: Bits<3> => register_at,
+        /// Data from the processor, asynchronous.
+        bus_data_i: Bits<16> => data_in,
+    }
+    out {
+        /// Data to the processor, valid 4 clocks after the register is selected.
+        bus_data_o: Bits<16> => data_out,
+        /// The card drives the data lines, straight from the strobes.
+        bus_data_oe: Bit => data_enable,
+    }
+    to_core { bank_write => write, bank_data => write_data }
+    to_front { passing_byte => passing_byte }
+    fixed { in_range: true, push_take: false }
 }
 
 impl ParallelCard {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
-        let channels = config.channels.len();
-        let direct_ports = channels * usize::from(config.outputs.position);
-        Self::from_parts(ParallelCardParts {
-            direct_position_o: each(direct_ports),
-            direct_valid_o: each(direct_ports),
-            direct_fresh_o: each(direct_ports),
-            direct_error_o: each(direct_ports),
-            endat_clk_o: each(channels),
-            endat_data_o: each(channels),
-            endat_data_oe: each(channels),
-            endat_data_i: each(channels),
-            led_channel_o: each(channels),
-            core: CardCore::new(config),
-            _direct_ports: direct_ports,
-            _channels: channels,
-        })
-    }
-}
-
-impl Logic for ParallelCard {
-    #[kernel]
-    fn update(&mut self) {
-        self.core.clk_i.next = self.clk_i.val();
-        self.core.rst_i.next = self.rst_i.val();
-        self.core.trigger_i.next = self.trigger_i.val();
-        self.front.clock.next = self.clk_i.val();
-        self.front.reset.next = self.rst_i.val();
-
-        self.front.cs_n.next = self.bus_cs_n_i.val();
-        self.front.rd_n.next = self.bus_rd_n_i.val();
-        self.front.wr_n.next = self.bus_wr_n_i.val();
-        self.front.register_at.next = self.bus_address_i.val();
-        self.front.data_in.next = self.bus_data_i.val();
-        self.bus_data_o.next = self.front.data_out.val();
-        self.bus_data_oe.next = self.front.data_enable.val();
-
-        self.front.tick_us.next = self.core.tick_us.val();
-        self.front.take_byte.next = self.core.take_byte.val();
-        self.front.passing_byte.next = self.core.passing_byte.val();
-        self.front.read_byte.next = self.core.read_byte.val();
-        self.front.done.next = self.core.done.val();
-        self.core.word_address.next = self.front.word_address.val();
-        self.core.in_range.next = true;
-        self.core.lane.next = self.front.lane.val();
-        self.core.access.next = self.front.access.val();
-        self.core.write.next = self.front.bank_write.val();
-        self.core.write_data.next = self.front.bank_data.val();
-        self.core.push_take.next = false;
-        self.core.reading.next = self.front.reading.val();
-
-        for i in 0..self._direct_ports {
-            self.direct_position_o[i].next = self.core.direct_position_o[i].val();
-            self.direct_valid_o[i].next = self.core.direct_valid_o[i].val();
-            self.direct_fresh_o[i].next = self.core.direct_fresh_o[i].val();
-            self.direct_error_o[i].next = self.core.direct_error_o[i].val();
-        }
-        self.irq_o.next = self.core.irq_o.val();
-        for i in 0..self._channels {
-            self.core.endat_data_i[i].next = self.endat_data_i[i].val();
-            self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();
-            self.endat_data_o[i].next = self.core.endat_data_o[i].val();
-            self.endat_data_oe[i].next = self.core.endat_data_oe[i].val();
-            self.led_channel_o[i].next = self.core.led_channel_o[i].val();
-        }
-        self.led_status_o.next = self.core.led_status_o.val();
+        Self::behind(Default::default(), CardCore::new(config), config)
     }
 }

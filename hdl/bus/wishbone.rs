@@ -11,7 +11,7 @@
 //! Ref: OpenCores, Wishbone B4, chapter 3 (classic cycles), 32-bit port, granularity 8 bits.
 
 use super::word_access::WordAccess;
-use crate::card::CardCore;
+use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::reg::Reg;
 use crate::several::each;
@@ -136,131 +136,39 @@ impl Logic for WishboneFront {
     }
 }
 
-/// The whole core behind Wishbone; the number of channels is that of [`CardConfig::channels`].
-#[derive(LogicBlock, Block)]
-pub struct WishboneCard {
-    /// System clock.
-    pub clk_i: Signal<In, Clock>,
-    /// Synchronous reset, active high.
-    pub rst_i: Signal<In, Bit>,
-    /// Trigger pin, asynchronous; a rising edge triggers.
-    pub trigger_i: Signal<In, Bit>,
-    /// A bus cycle is under way.
-    pub wb_cyc_i: Signal<In, Bit>,
-    /// With `wb_cyc_i`: the master asks for a transfer.
-    pub wb_stb_i: Signal<In, Bit>,
-    /// Write.
-    pub wb_we_i: Signal<In, Bit>,
-    /// Word address: a byte address divided by 4.
-    pub wb_adr_i: Signal<In, Bits<11>>,
-    /// Word to write.
-    pub wb_dat_i: Signal<In, Bits<32>>,
-    /// Bytes of it; a write takes all four.
-    pub wb_sel_i: Signal<In, Bits<4>>,
-    /// Word read, valid with `wb_ack_o`.
-    pub wb_dat_o: Signal<Out, Bits<32>>,
-    /// The transfer has been done.
-    pub wb_ack_o: Signal<Out, Bit>,
-    /// The transfer has been refused: a write of a part of a word.
-    pub wb_err_o: Signal<Out, Bit>,
-    /// Cropped position of the channel, for logic in the same device.
-    pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
-    /// The cropped position is that of the last result.
-    pub direct_valid_o: Vec<Signal<Out, Bit>>,
-    /// Strobe: the cropped position is new.
-    pub direct_fresh_o: Vec<Signal<Out, Bit>>,
-    /// The last result's cause is one of those selected, or the alarm.
-    pub direct_error_o: Vec<Signal<Out, Bit>>,
-    /// Interrupt; low without this part.
-    pub irq_o: Signal<Out, Bit>,
-    /// EnDat clock to the transceiver.
-    pub endat_clk_o: Vec<Signal<Out, Bit>>,
-    /// EnDat data to the transceiver.
-    pub endat_data_o: Vec<Signal<Out, Bit>>,
-    /// Driver enable of the EnDat data line.
-    pub endat_data_oe: Vec<Signal<Out, Bit>>,
-    /// EnDat data from the transceiver, asynchronous.
-    pub endat_data_i: Vec<Signal<In, Bit>>,
-    /// Blinks: slowly = well, quickly = the last result of a channel is an error.
-    pub led_status_o: Signal<Out, Bit>,
-    /// The channel's last result is a good position.
-    pub led_channel_o: Vec<Signal<Out, Bit>>,
-    core: CardCore,
-    #[start]
-    front: WishboneFront,
-    _direct_ports: usize,
-    _channels: usize,
+card_top! {
+    /// The whole core behind Wishbone; the number of channels is that of [`CardConfig::channels`].
+    WishboneCard, WishboneCardParts: front: WishboneFront, irq_o
+    in {
+        /// A bus cycle is under way.
+        wb_cyc_i: Bit => cyc,
+        /// With `wb_cyc_i`: the master asks for a transfer.
+        wb_stb_i: Bit => stb,
+        /// Write.
+        wb_we_i: Bit => we,
+        /// Word address: a byte address divided by 4.
+        wb_adr_i: Bits<11> => adr,
+        /// Word to write.
+        wb_dat_i: Bits<32> => dat_write,
+        /// Bytes of it; a write takes all four.
+        wb_sel_i: Bits<4> => sel,
+    }
+    out {
+        /// Word read, valid with `wb_ack_o`.
+        wb_dat_o: Bits<32> => dat_read,
+        /// The transfer has been done.
+        wb_ack_o: Bit => ack,
+        /// The transfer has been refused: a write of a part of a word.
+        wb_err_o: Bit => err,
+    }
+    to_core { bank_write => write, bank_data => write_data }
+    to_front { passing_byte => passing_byte }
+    fixed { in_range: true, push_take: false }
 }
 
 impl WishboneCard {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
-        let channels = config.channels.len();
-        let direct_ports = channels * usize::from(config.outputs.position);
-        Self::from_parts(WishboneCardParts {
-            direct_position_o: each(direct_ports),
-            direct_valid_o: each(direct_ports),
-            direct_fresh_o: each(direct_ports),
-            direct_error_o: each(direct_ports),
-            endat_clk_o: each(channels),
-            endat_data_o: each(channels),
-            endat_data_oe: each(channels),
-            endat_data_i: each(channels),
-            led_channel_o: each(channels),
-            core: CardCore::new(config),
-            _direct_ports: direct_ports,
-            _channels: channels,
-        })
-    }
-}
-
-impl Logic for WishboneCard {
-    #[kernel]
-    fn update(&mut self) {
-        self.core.clk_i.next = self.clk_i.val();
-        self.core.rst_i.next = self.rst_i.val();
-        self.core.trigger_i.next = self.trigger_i.val();
-        self.front.clock.next = self.clk_i.val();
-        self.front.reset.next = self.rst_i.val();
-
-        self.front.cyc.next = self.wb_cyc_i.val();
-        self.front.stb.next = self.wb_stb_i.val();
-        self.front.we.next = self.wb_we_i.val();
-        self.front.adr.next = self.wb_adr_i.val();
-        self.front.dat_write.next = self.wb_dat_i.val();
-        self.front.sel.next = self.wb_sel_i.val();
-        self.wb_dat_o.next = self.front.dat_read.val();
-        self.wb_ack_o.next = self.front.ack.val();
-        self.wb_err_o.next = self.front.err.val();
-
-        self.front.tick_us.next = self.core.tick_us.val();
-        self.front.take_byte.next = self.core.take_byte.val();
-        self.front.passing_byte.next = self.core.passing_byte.val();
-        self.front.read_byte.next = self.core.read_byte.val();
-        self.front.done.next = self.core.done.val();
-        self.core.word_address.next = self.front.word_address.val();
-        self.core.in_range.next = true;
-        self.core.lane.next = self.front.lane.val();
-        self.core.access.next = self.front.access.val();
-        self.core.write.next = self.front.bank_write.val();
-        self.core.write_data.next = self.front.bank_data.val();
-        self.core.push_take.next = false;
-        self.core.reading.next = self.front.reading.val();
-
-        for i in 0..self._direct_ports {
-            self.direct_position_o[i].next = self.core.direct_position_o[i].val();
-            self.direct_valid_o[i].next = self.core.direct_valid_o[i].val();
-            self.direct_fresh_o[i].next = self.core.direct_fresh_o[i].val();
-            self.direct_error_o[i].next = self.core.direct_error_o[i].val();
-        }
-        self.irq_o.next = self.core.irq_o.val();
-        for i in 0..self._channels {
-            self.core.endat_data_i[i].next = self.endat_data_i[i].val();
-            self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();
-            self.endat_data_o[i].next = self.core.endat_data_o[i].val();
-            self.endat_data_oe[i].next = self.core.endat_data_oe[i].val();
-            self.led_channel_o[i].next = self.core.led_channel_o[i].val();
-        }
-        self.led_status_o.next = self.core.led_status_o.val();
+        Self::behind(Default::default(), CardCore::new(config), config)
     }
 }

@@ -1,0 +1,131 @@
+//! The top of a card: the pins that every card has, and the core behind a front. A front adds its own pins.
+
+/// A top: core, front, and who is connected to whom.
+///
+/// Pins of the front stand in groups, inputs and outputs, in the order in which they are emitted, each with the front's name for it. The last
+/// three lists connect what fronts do differently; `fixed` are ports of the core that this front does not use.
+macro_rules! card_top {
+    (
+        $(#[$($about:tt)*])*
+        $card:ident, $parts:ident: $front:ident: $kind:ident $(, $irq:ident)?
+        $(
+            in { $( $(#[$($doc_in:tt)*])* $pin_in:ident: $bits_in:ident $(<$width_in:tt>)? => $port_in:ident, )* }
+            out { $( $(#[$($doc_out:tt)*])* $pin_out:ident: $bits_out:ident $(<$width_out:tt>)? => $port_out:ident, )* }
+        )*
+        to_core { $($out_of_front:ident => $into_core:ident),* }
+        to_front { $($out_of_core:ident => $into_front:ident),* }
+        fixed { $($constant:ident: $value:literal),* }
+    ) => {
+        $(#[$($about)*])*
+        #[derive(LogicBlock, Block)]
+        pub struct $card {
+            /// System clock.
+            pub clk_i: Signal<In, Clock>,
+            /// Synchronous reset, active high.
+            pub rst_i: Signal<In, Bit>,
+            /// Trigger pin, asynchronous; a rising edge triggers.
+            pub trigger_i: Signal<In, Bit>,
+            $(
+                $( $(#[$($doc_in)*])* pub $pin_in: Signal<In, $bits_in $(<$width_in>)?>, )*
+                $( $(#[$($doc_out)*])* pub $pin_out: Signal<Out, $bits_out $(<$width_out>)?>, )*
+            )*
+            /// Cropped position of the channel, for logic in the same device.
+            pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
+            /// The cropped position is that of the last result.
+            pub direct_valid_o: Vec<Signal<Out, Bit>>,
+            /// Strobe: the cropped position is new.
+            pub direct_fresh_o: Vec<Signal<Out, Bit>>,
+            /// The last result's cause is one of those selected, or the alarm.
+            pub direct_error_o: Vec<Signal<Out, Bit>>,
+            $(
+                /// Interrupt; low without this part.
+                pub $irq: Signal<Out, Bit>,
+            )?
+            /// EnDat clock to the transceiver.
+            pub endat_clk_o: Vec<Signal<Out, Bit>>,
+            /// EnDat data to the transceiver.
+            pub endat_data_o: Vec<Signal<Out, Bit>>,
+            /// Driver enable of the EnDat data line.
+            pub endat_data_oe: Vec<Signal<Out, Bit>>,
+            /// EnDat data from the transceiver, asynchronous.
+            pub endat_data_i: Vec<Signal<In, Bit>>,
+            /// Blinks: slowly = well, quickly = the last result of a channel is an error.
+            pub led_status_o: Signal<Out, Bit>,
+            /// The channel's last result is a good position.
+            pub led_channel_o: Vec<Signal<Out, Bit>>,
+            pub(crate) core: CardCore,
+            $front: $kind,
+            _direct_ports: usize,
+            _channels: usize,
+        }
+
+        impl $card {
+            /// This core behind this front.
+            fn behind($front: $kind, core: CardCore, config: &CardConfig) -> Self {
+                let channels = config.channels.len();
+                let direct_ports = channels * usize::from(config.outputs.position);
+                Self::from_parts($parts {
+                    direct_position_o: each(direct_ports),
+                    direct_valid_o: each(direct_ports),
+                    direct_fresh_o: each(direct_ports),
+                    direct_error_o: each(direct_ports),
+                    endat_clk_o: each(channels),
+                    endat_data_o: each(channels),
+                    endat_data_oe: each(channels),
+                    endat_data_i: each(channels),
+                    led_channel_o: each(channels),
+                    core,
+                    $front,
+                    _direct_ports: direct_ports,
+                    _channels: channels,
+                })
+            }
+        }
+
+        impl Logic for $card {
+            #[kernel]
+            fn update(&mut self) {
+                self.core.clk_i.next = self.clk_i.val();
+                self.core.rst_i.next = self.rst_i.val();
+                self.core.trigger_i.next = self.trigger_i.val();
+                self.$front.clock.next = self.clk_i.val();
+                self.$front.reset.next = self.rst_i.val();
+
+                $(
+                    $( self.$front.$port_in.next = self.$pin_in.val(); )*
+                    $( self.$pin_out.next = self.$front.$port_out.val(); )*
+                )*
+
+                self.$front.tick_us.next = self.core.tick_us.val();
+                self.$front.take_byte.next = self.core.take_byte.val();
+                self.$front.read_byte.next = self.core.read_byte.val();
+                self.$front.done.next = self.core.done.val();
+                self.core.word_address.next = self.$front.word_address.val();
+                self.core.lane.next = self.$front.lane.val();
+                self.core.access.next = self.$front.access.val();
+                self.core.reading.next = self.$front.reading.val();
+                $( self.core.$into_core.next = self.$front.$out_of_front.val(); )*
+                $( self.$front.$into_front.next = self.core.$out_of_core.val(); )*
+                $( self.core.$constant.next = $value; )*
+
+                for i in 0..self._direct_ports {
+                    self.direct_position_o[i].next = self.core.direct_position_o[i].val();
+                    self.direct_valid_o[i].next = self.core.direct_valid_o[i].val();
+                    self.direct_fresh_o[i].next = self.core.direct_fresh_o[i].val();
+                    self.direct_error_o[i].next = self.core.direct_error_o[i].val();
+                }
+                $( self.$irq.next = self.core.irq_o.val(); )?
+                for i in 0..self._channels {
+                    self.core.endat_data_i[i].next = self.endat_data_i[i].val();
+                    self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();
+                    self.endat_data_o[i].next = self.core.endat_data_o[i].val();
+                    self.endat_data_oe[i].next = self.core.endat_data_oe[i].val();
+                    self.led_channel_o[i].next = self.core.led_channel_o[i].val();
+                }
+                self.led_status_o.next = self.core.led_status_o.val();
+            }
+        }
+    };
+}
+
+pub(crate) use card_top;
