@@ -67,6 +67,13 @@ fn meaning(pin: &Assignment, t_format: &[usize]) -> String {
         (Kind::BusInput, "spi_sck_i") => "host SPI, clock, mode 0".into(),
         (Kind::BusInput, "spi_cs_n_i") => "host SPI, selects the card when low".into(),
         (Kind::BusInput, "spi_mosi_i") => "host SPI, from the host".into(),
+        (Kind::BusInput, "second_sck_i") => "second controller's SPI, clock, mode 0".into(),
+        (Kind::BusInput, "second_cs_n_i") => {
+            "second controller's SPI, selects the card when low".into()
+        }
+        (Kind::BusOutput, "second_miso_o") => {
+            "second controller's SPI, to the controller; driven while selected".into()
+        }
         (Kind::BusOutput, _) => "host SPI, to the host; driven while selected".into(),
         (Kind::BusInput, "bus_cs_n_i") => "host bus, selects the card when low".into(),
         (Kind::BusInput, "bus_rd_n_i") => "host bus, reads when low".into(),
@@ -125,6 +132,12 @@ fn has_unused_interrupt(project: &Project) -> bool {
     project.bus != HostBus::Uart && !project.card.outputs.interrupt
 }
 
+/// Outputs that others may drive, too, while the card does not; without the end of their names.
+fn shared_outputs(project: &Project) -> impl Iterator<Item = &str> {
+    let outputs = project.pins.iter().filter(|p| p.kind == Kind::BusOutput);
+    outputs.map(|pin| pin.signal.trim_end_matches("_o"))
+}
+
 /// What the top connects to a port of the card.
 #[derive(Serialize)]
 struct Connection {
@@ -144,11 +157,11 @@ fn connections(project: &Project) -> Vec<Connection> {
         let names = (0..count).rev().map(|n| format!("{name}{n}_{end}"));
         format!("{{{}}}", names.collect::<Vec<_>>().join(", "))
     };
+    let shared = shared_outputs(project).flat_map(|name| {
+        let of = |end: &str| format!("{name}{end}");
+        [(of("_o"), of("")), (of("_oe"), of("_oe"))]
+    });
     let mut bus = match project.bus {
-        HostBus::Spi => vec![
-            ("spi_miso_o", "spi_miso".to_owned()),
-            ("spi_miso_oe", "spi_miso_oe".to_owned()),
-        ],
         HostBus::Parallel => vec![
             (
                 "bus_address_i",
@@ -164,7 +177,8 @@ fn connections(project: &Project) -> Vec<Connection> {
         bus.push(("irq_o", UNUSED_INTERRUPT.to_owned()));
     }
     let bus = bus.into_iter().map(|(port, net)| (port.to_owned(), net));
-    own.chain(bus)
+    own.chain(shared)
+        .chain(bus)
         .map(|(port, net)| Connection { port, net })
         .collect()
 }
@@ -211,6 +225,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
         bus => project.bus.name(),
         data_lines => PARALLEL_DATA_LINES,
         connections => Serde(connections(project)),
+        shared => Serde(shared_outputs(project).collect::<Vec<_>>()),
         unused_interrupt => has_unused_interrupt(project).then_some(UNUSED_INTERRUPT),
         widest => project.pins.iter().map(|p| p.signal.len()).max().unwrap_or(0),
         oscillator_hz => board.oscillator_hz,

@@ -288,7 +288,10 @@ pub fn report(project: &Project) -> Report {
             (card.outputs.position, "position"),
             (card.outputs.interrupt, "interrupt"),
         ]),
-        safety: present(&[(card.safety.recovery_counter, "recovery_counter")]),
+        safety: present(&[
+            (card.safety.recovery_counter, "recovery_counter"),
+            (card.safety.second_interface, "second_interface"),
+        ]),
         bus: project.bus.name(),
         stream: StreamReport::of(card, project.bus == HostBus::Uart),
         link: (project.bus == HostBus::Uart).then(|| LinkReport {

@@ -67,6 +67,7 @@ struct Port {
     cable_ns: String,
     recovery_cycles: u64,
     delay_cycles: u64,
+    run_late: u64,
 }
 
 /// A literal of type `real`.
@@ -96,6 +97,8 @@ impl Port {
         let share = (index + 1) as f64 / card.channels.len() as f64;
         let cable_ns = ((request.delay_max_ns() - LAUNCH_NS) as f64 * share / 2.0).floor() - 0.7;
         let round_trip_ns = (2.0 * cable_ns) as u64 + LAUNCH_NS;
+        let delay_cycles =
+            cycles_at_most(round_trip_ns, card.system_hz) + INPUT_CYCLES + channel.filter_cycles;
         Self {
             index,
             command: format!("{:06b}", channel.command.code()),
@@ -106,9 +109,9 @@ impl Port {
             tm_ns: whole(tm_ns),
             cable_ns: real(cable_ns),
             recovery_cycles: cycles_at_most(tm_ns, card.system_hz),
-            delay_cycles: cycles_at_most(round_trip_ns, card.system_hz)
-                + INPUT_CYCLES
-                + channel.filter_cycles,
+            delay_cycles,
+            // And what the receiver needs itself.
+            run_late: delay_cycles / channel.period_cycles + 2,
         }
     }
 }
@@ -290,20 +293,17 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         true => power_up(card, &ports, !t_format.is_empty())?,
         false => String::new(),
     };
-    let program = program_text(card)?;
     let purpose = purpose::Parts::new(card, &ports)?;
     let blocks = [&CARD, &CARD_CONFIG, &RESULT];
     let blocks = blocks
         .into_iter()
         .chain(card.outputs.interrupt.then_some(&INTERRUPT))
         .chain(card.outputs.position.then_some(&DIRECT));
-    // The first of the four events of each channel is a new result.
-    let results: u32 = (0..card.channels.len()).map(|n| 1 << (4 * n)).sum();
     // Cards without requests have no informations in their results.
     let has_infos = card.service.requests;
     let context = context! {
         result_words => if has_infos { 8 } else { 6 },
-        program,
+        program => program_text(card)?,
         power_up,
         sleeps,
         initial_values => card.initial_values,
@@ -344,15 +344,18 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         trigger_cycles_max => TRIGGER_CYCLES_MAX,
         words => Serde(blocks.into_iter().flat_map(words).filter(|w| has_infos || !w.name.starts_with("RESULT_INFO_")).collect::<Vec<_>>()),
         has_irq => project.bus != HostBus::Uart,
-        interrupt => card.outputs.interrupt.then(|| format!("{results:08X}")),
+        interrupt => card.outputs.interrupt.then(|| result_events(card)),
         direct => card.outputs.position,
+        second => card.safety.second_interface,
         fields => Serde([CARD_CONFIG, RESULT, DIRECT].iter().flat_map(fields).filter(|f| has_infos || !f.name.starts_with("INFO_")).collect::<Vec<_>>()),
         block_stride => BLOCK_STRIDE,
         causes => causes(),
         identification => identification(card),
         timer => card.sources.timer,
         requests => card.service.requests,
+        continuous => card.service.continuous,
         every_trigger => every_trigger(card),
+        measures => purpose::first_measured(card),
     };
     let text = template::render(
         "testbench",
@@ -360,6 +363,12 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         &context,
     )?;
     Ok(Some(Artifact::new(format!("{}_tb.v", project.name), text)))
+}
+
+/// The event of a new result of each channel, the first of its four.
+fn result_events(card: &CardConfig) -> String {
+    let events: u32 = (0..card.channels.len()).map(|n| 1 << (4 * n)).sum();
+    format!("{events:08X}")
 }
 
 /// Causes that the bench waits for.

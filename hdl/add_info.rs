@@ -53,6 +53,8 @@ pub struct AddInfo {
     pub crc_ok: Signal<In, Bit>,
     /// Its bits WRN, RM, Busy, I4..I0, 16 bits.
     pub word: Signal<In, Bits<24>>,
+    /// Its CRC as received.
+    pub crc: Signal<In, Bits<5>>,
     /// Strobe: the frame has ended.
     pub over: Signal<In, Bit>,
     /// Raw flags of the frame, with `over`.
@@ -71,9 +73,13 @@ pub struct AddInfo {
     pub came: Signal<Out, Bits<2>>,
     /// The CRC of those that came is right.
     pub good: Signal<Out, Bits<2>>,
+    /// The CRCs with which they came: info 1 in bits 4..0, info 2 in bits 9..5.
+    pub crcs: Signal<Out, Bits<10>>,
     selected: Reg<Bits<2>>,
     first: Reg<Bits<24>>,
     second: Reg<Bits<24>>,
+    first_crc: Reg<Bits<5>>,
+    second_crc: Reg<Bits<5>>,
     seen: Reg<Bits<2>>,
     right: Reg<Bits<2>>,
     answered: Reg<Bit>,
@@ -128,9 +134,11 @@ impl Logic for AddInfo {
         if self.info_done.val() {
             if self.is_second.val() {
                 self.second.d.next = self.word.val();
+                self.second_crc.d.next = self.crc.val();
                 self.seen.d.next = self.seen.q.val() | 2;
             } else {
                 self.first.d.next = self.word.val();
+                self.first_crc.d.next = self.crc.val();
                 self.seen.d.next = self.seen.q.val() | 1;
             }
             if self.crc_ok.val() {
@@ -195,5 +203,7 @@ impl Logic for AddInfo {
         self.info_2.next = self.second.q.val();
         self.came.next = self.seen.q.val();
         self.good.next = self.right.q.val();
+        self.crcs.next = (bit_cast::<10, 5>(self.second_crc.q.val()) << 5)
+            | bit_cast::<10, 5>(self.first_crc.q.val());
     }
 }

@@ -24,6 +24,7 @@ use crate::encoder_port::EncoderPort;
 use crate::interrupt::Interrupt;
 use crate::recovery_counter::RecoveryCounter;
 use crate::register_bank::RegisterBank;
+use crate::second_interface::{record::SecondRecord, SecondInterface};
 use crate::service::{program::ServiceTimes, Service, CHANNELS_SERVED};
 use crate::several::each;
 use crate::stream::{buffer::SetParts, channel::SetChannel, run::RunChannel, Stream};
@@ -91,6 +92,18 @@ pub struct CardCore {
     pub direct_error_o: Vec<Signal<Out, Bit>>,
     /// Interrupt; low without this part.
     pub irq_o: Signal<Out, Bit>,
+    /// Second interface, serial clock, asynchronous; at most an eighth of the system clock.
+    #[optional]
+    pub second_sck_i: Vec<Signal<In, Bit>>,
+    /// Second interface, chip select, active low, asynchronous.
+    #[optional]
+    pub second_cs_n_i: Vec<Signal<In, Bit>>,
+    /// Second interface, data to the controller; changes after the falling edge.
+    #[optional]
+    pub second_miso_o: Vec<Signal<Out, Bit>>,
+    /// The card drives `second_miso_o`, straight from `second_cs_n_i`.
+    #[optional]
+    pub second_miso_oe: Vec<Signal<Out, Bit>>,
     /// EnDat clock to the transceiver; HIGH if the channel speaks T-format.
     pub endat_clk_o: Vec<Signal<Out, Bit>>,
     /// Data to the transceiver.
@@ -137,6 +150,9 @@ pub struct CardCore {
     part_byte: Vec<Signal<Local, Bits<8>>>,
     recovery: Vec<RecoveryCounter>,
     recovery_byte: Vec<Signal<Local, Bits<8>>>,
+    second: Vec<SecondInterface>,
+    record: Vec<SecondRecord>,
+    record_link: Vec<Signal<Local, Bits<32>>>,
     part_write: Signal<Local, Bit>,
     ring_link: Vec<Signal<Local, Bits<9>>>,
     read_link: Vec<Signal<Local, Bits<8>>>,
@@ -176,6 +192,10 @@ pub struct CardCore {
     _direct_links: usize,
     _direct_ports: usize,
     _interrupts: usize,
+    _seconds: usize,
+    _records: usize,
+    _record_links: usize,
+    _record_infos: usize,
     _recoveries: usize,
     _recovery_links: usize,
     _served: usize,
@@ -183,136 +203,6 @@ pub struct CardCore {
     _pairs: usize,
     _service_links: usize,
     _interrupt_channels: usize,
-}
-
-impl CardCore {
-    /// A card.
-    pub fn new(config: &CardConfig) -> Self {
-        Self::with_times(config, &service_times(config))
-    }
-
-    /// A card with other waits of its services.
-    pub fn with_times(config: &CardConfig, service: &ServiceTimes) -> Self {
-        let channels = config.channels.len();
-        let own_triggers = if config.own_triggers() { channels } else { 0 };
-        let streams = usize::from(config.stream.fifo_bytes != 0);
-        let sets = channels * streams;
-        let directs = channels * usize::from(config.outputs.any());
-        let direct_ports = channels * usize::from(config.outputs.position);
-        let interrupts = usize::from(config.outputs.interrupt);
-        let recoveries = channels * usize::from(config.safety.recovery_counter);
-        let served = served_channels(config);
-        let services = services(config);
-        let parts = SetParts {
-            informations: config.stream.informations,
-            runs: config.service.continuous && streams != 0,
-        };
-        let runs = if parts.runs { served } else { 0 };
-        let set_infos = if parts.informations { served } else { 0 };
-        let is_endat = |i: usize| config.channels[i].is_endat();
-        let plain_sets = if parts.informations { sets } else { 0 };
-        Self::from_parts(CardCoreParts {
-            direct_position_o: each(direct_ports),
-            direct_valid_o: each(direct_ports),
-            direct_fresh_o: each(direct_ports),
-            direct_error_o: each(direct_ports),
-            endat_clk_o: each(channels),
-            endat_data_o: each(channels),
-            endat_data_oe: each(channels),
-            endat_data_i: each(channels),
-            led_channel_o: each(channels),
-            timebase: Timebase::new(config.system_hz),
-            own_trigger: channel_triggers(config, own_triggers),
-            trigger_of: each(channels),
-            is_off: each(channels),
-            bank: RegisterBank::new(config),
-            registers: (0..channels)
-                .map(|i| ChannelRegisters::new(config, i))
-                .collect(),
-            port: (0..channels).map(|i| port(config, i, service)).collect(),
-            whole: (0..served)
-                .map(|i| WholeResult::new(i, is_endat(i)))
-                .collect(),
-            info_byte: each(served + 1),
-            set_open: each(set_infos + 1),
-            service: (0..services)
-                .map(|i| Service::new(service, served - i * CHANNELS_SERVED))
-                .collect(),
-            stream: (0..streams)
-                .map(|_| {
-                    let start = config.stream.start;
-                    let (collect, push) = (start.collects(), start.pushes());
-                    Stream::new(config.stream.fifo_bytes, channels, collect, push, parts)
-                })
-                .collect(),
-            set: (0..sets)
-                .map(|i| SetChannel::new(i, is_endat(i), own_triggers != 0, parts))
-                .collect(),
-            set_byte: each(sets + streams),
-            set_owes: each(sets + streams),
-            set_replaced: each(sets + streams),
-            set_taken: each(streams),
-            set_block: each(streams),
-            set_byte_at: each(streams),
-            run: (0..runs).map(RunChannel::new).collect(),
-            run_ready: each(runs + 1),
-            run_sequence: each(runs + 1),
-            run_moment: each(runs + 1),
-            run_head: each(runs + 1),
-            run_place: each(runs + 1),
-            run_lost: each(runs + 1),
-            direct: (0..directs)
-                .map(|i| DirectOutput::new(i, config.channels[i].position_bits))
-                .collect(),
-            interrupt: (0..interrupts).map(|_| Interrupt::new(channels)).collect(),
-            direct_byte: each(directs + 1),
-            part_byte: each(3),
-            recovery: (0..recoveries).map(RecoveryCounter::new).collect(),
-            recovery_byte: each(recoveries + 1),
-            ring_link: each(channels + 1),
-            read_link: each(channels + 1),
-            service_link: each(channels + 1),
-            selected: each(channels),
-            io_address: each(services * CHANNELS_SERVED),
-            io_read: each(served),
-            io_in: each(served),
-            io_out: each(services * CHANNELS_SERVED),
-            io_write: each(served),
-            word_link: each(services + 1),
-            taken: each(channels + 1),
-            owes: each(channels + 1),
-            brought: each(channels + 1),
-            faulty: each(channels + 1),
-            slow_bit: Constant::new(blink_bit(config.system_hz, 1).into()),
-            quick_bit: Constant::new(blink_bit(config.system_hz, 8).into()),
-            _channels: channels,
-            _links: channels + 1,
-            _own_triggers: own_triggers,
-            _streams: streams,
-            _sets: sets,
-            _set_links: sets + streams,
-            _infos: served,
-            _set_ends: if set_infos == 0 { 0 } else { set_infos + 1 },
-            _info_interrupts: served * interrupts,
-            _info_links: if served == 0 { 0 } else { served + 1 },
-            _set_infos: set_infos,
-            _plain_sets: plain_sets,
-            _runs: runs,
-            _run_sets: if parts.runs { sets } else { 0 },
-            _run_links: if runs == 0 { 0 } else { runs + 1 },
-            _directs: directs,
-            _direct_links: directs + 1,
-            _direct_ports: direct_ports,
-            _interrupts: interrupts,
-            _recoveries: recoveries,
-            _recovery_links: recoveries + 1,
-            _served: served,
-            _services: services,
-            _pairs: served / CHANNELS_SERVED,
-            _service_links: services + 1,
-            _interrupt_channels: channels * interrupts,
-        })
-    }
 }
 
 impl Logic for CardCore {
@@ -324,9 +214,7 @@ impl Logic for CardCore {
         self.bank.reset.next = self.rst_i.val();
 
         self.trigger.pin.next = self.trigger_i.val();
-        self.trigger.register.next = self.bank.trigger_now.val();
-        self.trigger.sources.next = self.bank.sources.val();
-        self.trigger.period_cycles.next = self.bank.period_cycles.val();
+        connect!(self.trigger <= self.bank; register = trigger_now, sources, period_cycles);
 
         for i in 0..self._own_triggers {
             self.own_trigger[i].clock.next = self.clk_i.val();
@@ -346,17 +234,10 @@ impl Logic for CardCore {
         }
 
         self.tick_us.next = self.timebase.tick_us.val();
-        self.take_byte.next = self.bank.take_byte.val();
-        self.passing_byte.next = self.bank.passing_byte.val();
-        self.read_byte.next = self.bank.read_byte.val();
-        self.done.next = self.bank.done.val();
-        self.bank.word_address.next = self.word_address.val();
-        self.bank.in_range.next = self.in_range.val();
-        self.bank.lane.next = self.lane.val();
-        self.bank.access.next = self.access.val();
-        self.bank.write.next = self.write.val();
-        self.bank.write_data.next = self.write_data.val();
-        self.bank.reading.next = self.reading.val();
+        connect!(self <= self.bank; take_byte, passing_byte, read_byte, done);
+        connect!(self.bank <= self;
+            word_address, in_range, lane, access, write, write_data, reading
+        );
         self.bank.trigger_count.next = self.trigger.trigger_count.val();
 
         // From the first channel to the last: read bytes and "some channel" signals. The ring runs the other way.
@@ -377,18 +258,11 @@ impl Logic for CardCore {
             self.port[i].trigger.next = self.trigger_of[i].val();
             self.port[i].calibrate.next = self.bank.calibrate.val().get_bit(i);
 
-            self.port[i].period_cycles.next = self.registers[i].period_cycles.val();
-            self.port[i].first_low_extra_cycles.next =
-                self.registers[i].first_low_extra_cycles.val();
-            self.port[i].command.next = self.registers[i].command.val();
-            self.port[i].position_bits.next = self.registers[i].position_bits.val();
-            self.port[i].filter_cycles.next = self.registers[i].filter_cycles.val();
-            self.port[i].filter_half.next = self.registers[i].filter_half.val();
-            self.port[i].start_window_cycles.next = self.registers[i].start_window_cycles.val();
-            self.port[i].start_timeout_us.next = self.registers[i].start_timeout_us.val();
-            self.port[i].recovery_limit_cycles.next = self.registers[i].recovery_limit_cycles.val();
-            self.port[i].request_id.next = self.registers[i].request_id.val();
-            self.port[i].field_gap_us.next = self.registers[i].field_gap_us.val();
+            connect!(self.port[i] <= self.registers[i];
+                period_cycles, first_low_extra_cycles, command, position_bits, filter_cycles,
+                filter_half, start_window_cycles, start_timeout_us, recovery_limit_cycles,
+                request_id, field_gap_us
+            );
 
             self.port[i].host_address.next = self.bank.service_address.val();
             self.port[i].host_line.next = self.bank.service_line.val();
@@ -406,34 +280,20 @@ impl Logic for CardCore {
             self.registers[i].tick_us.next = self.timebase.tick_us.val();
             self.registers[i].trigger.next = self.trigger_of[i].val();
             self.registers[i].new_set.next = self.new_set.val();
-            self.registers[i].busy.next = self.port[i].busy.val();
-            self.registers[i].result_strobe.next = self.port[i].result_strobe.val();
-            self.registers[i].position.next = self.port[i].position.val();
-            self.registers[i].position_valid.next = self.port[i].position_valid.val();
-            self.registers[i].fresh.next = self.port[i].fresh.val();
-            self.registers[i].sequence.next = self.port[i].sequence.val();
-            self.registers[i].first_fall_timestamp.next = self.port[i].first_fall_timestamp.val();
-            self.registers[i].age_us.next = self.port[i].age_us.val();
-            self.registers[i].cause.next = self.port[i].cause.val();
-            self.registers[i].flags.next = self.port[i].flags.val();
-            self.registers[i].crc_received.next = self.port[i].crc_received.val();
-            self.registers[i].crc_computed.next = self.port[i].crc_computed.val();
-            self.registers[i].position_crc.next = self.port[i].position_crc.val();
-            self.registers[i].position_width.next = self.port[i].position_width.val();
-            self.registers[i].position_has_f2.next = self.port[i].position_has_f2.val();
-            self.registers[i].recovery_cycles.next = self.port[i].recovery_cycles.val();
-            self.registers[i].delay_cycles.next = self.port[i].delay_cycles.val();
+            connect!(self.registers[i] <= self.port[i];
+                busy, result_strobe, position, position_valid, fresh, sequence,
+                first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed,
+                position_crc, position_width, position_has_f2, recovery_cycles, delay_cycles
+            );
 
-            self.registers[i].load.next = self.bank.load.val();
-            self.registers[i].show.next = self.bank.show.val();
-            self.registers[i].word_skip.next = self.bank.word_skip.val();
+            connect!(self.registers[i] <= self.bank; load, show, word_skip);
             self.registers[i].lane.next = self.lane.val();
             self.registers[i].skip.next = self.bank.channel_skip.val().get_bit(i);
             self.registers[i].read_in.next = self.read_link[i].val();
             self.read_link[i + 1].next = self.registers[i].read_out.val();
-            self.registers[i].ring_turn.next = self.bank.ring_turn.val();
-            self.registers[i].ring_home.next = self.bank.ring_home.val();
-            self.registers[i].card_damaged.next = self.bank.is_damaged.val();
+            connect!(self.registers[i] <= self.bank;
+                ring_turn, ring_home, card_damaged = is_damaged
+            );
             self.registers[i].ring_in.next = self.ring_link[i + 1].val();
             self.ring_link[i].next = self.registers[i].ring_out.val();
             self.taken[i + 1].next = self.taken[i].val() | self.registers[i].taken.val();
@@ -529,10 +389,7 @@ impl Logic for CardCore {
             self.stream[i].write.next = self.write.val();
             self.stream[i].write_data.next = self.write_data.val().get_bits::<2>(0);
             self.part_byte[0].next = self.stream[i].read_byte.val();
-            self.push.next = self.stream[i].push.val();
-            self.in_frame.next = self.stream[i].in_frame.val();
-            self.push_valid.next = self.stream[i].push_valid.val();
-            self.push_byte.next = self.stream[i].push_byte.val();
+            connect!(self <= self.stream[i]; push, in_frame, push_valid, push_byte);
             self.stream[i].push_take.next = self.push_take.val();
         }
         for i in 0..self._sets {
@@ -540,14 +397,10 @@ impl Logic for CardCore {
             self.set[i].reset.next = self.rst_i.val();
             self.set[i].trigger.next = self.trigger.trigger.val();
             self.set[i].busy.next = self.port[i].busy.val() | !self.trigger_of[i].val();
-            self.set[i].result_strobe.next = self.port[i].result_strobe.val();
-            self.set[i].position.next = self.port[i].position.val();
-            self.set[i].position_crc.next = self.port[i].position_crc.val();
-            self.set[i].position_has_f2.next = self.port[i].position_has_f2.val();
-            self.set[i].position_valid.next = self.port[i].position_valid.val();
-            self.set[i].fresh.next = self.port[i].fresh.val();
-            self.set[i].cause.next = self.port[i].cause.val();
-            self.set[i].flags.next = self.port[i].flags.val();
+            connect!(self.set[i] <= self.port[i];
+                result_strobe, position, position_crc, position_has_f2, position_valid, fresh,
+                cause, flags
+            );
             self.set[i].take.next = self.set_taken[0].val();
             self.set[i].block.next = self.set_block[0].val();
             self.set[i].byte_at.next = self.set_byte_at[0].val();
@@ -566,16 +419,10 @@ impl Logic for CardCore {
         for i in 0..self._directs {
             self.direct[i].clock.next = self.clk_i.val();
             self.direct[i].reset.next = self.rst_i.val();
-            self.direct[i].result_strobe.next = self.port[i].result_strobe.val();
-            self.direct[i].position.next = self.port[i].position.val();
-            self.direct[i].fresh.next = self.port[i].fresh.val();
-            self.direct[i].cause.next = self.port[i].cause.val();
-            self.direct[i].alarm.next = self.port[i].alarm.val();
+            connect!(self.direct[i] <= self.port[i]; result_strobe, position, fresh, cause, alarm);
             self.direct[i].word_address.next = self.bank.address.val();
             self.direct[i].in_range.next = self.bank.is_inside.val();
-            self.direct[i].lane.next = self.lane.val();
-            self.direct[i].write.next = self.part_write.val();
-            self.direct[i].write_data.next = self.write_data.val();
+            connect!(self.direct[i] <= self; lane, write = part_write, write_data);
             self.direct_byte[i].next =
                 self.direct_byte[i + 1].val() | self.direct[i].read_byte.val();
         }
@@ -595,9 +442,7 @@ impl Logic for CardCore {
             self.interrupt[i].reset.next = self.rst_i.val();
             self.interrupt[i].word_address.next = self.bank.address.val();
             self.interrupt[i].in_range.next = self.bank.is_inside.val();
-            self.interrupt[i].lane.next = self.lane.val();
-            self.interrupt[i].write.next = self.part_write.val();
-            self.interrupt[i].write_data.next = self.write_data.val();
+            connect!(self.interrupt[i] <= self; lane, write = part_write, write_data);
             self.part_byte[1].next = self.interrupt[i].read_byte.val();
             self.irq_o.next = self.interrupt[i].irq.val();
         }
@@ -632,47 +477,24 @@ impl Logic for CardCore {
             self.whole[i].reset.next = self.rst_i.val();
             self.whole[i].tick_us.next = self.timebase.tick_us.val();
             self.whole[i].taken.next = self.registers[i].taken.val();
-            self.whole[i].strobe_in.next = self.port[i].result_strobe.val();
-            self.whole[i].age_in.next = self.port[i].age_us.val();
-            self.whole[i].position_in.next = self.port[i].position.val();
-            self.whole[i].position_valid_in.next = self.port[i].position_valid.val();
-            self.whole[i].fresh_in.next = self.port[i].fresh.val();
-            self.whole[i].sequence_in.next = self.port[i].sequence.val();
-            self.whole[i].first_fall_timestamp_in.next = self.port[i].first_fall_timestamp.val();
-            self.whole[i].cause_in.next = self.port[i].cause.val();
-            self.whole[i].flags_in.next = self.port[i].flags.val();
-            self.whole[i].crc_received_in.next = self.port[i].crc_received.val();
-            self.whole[i].crc_computed_in.next = self.port[i].crc_computed.val();
-            self.whole[i].position_crc_in.next = self.port[i].position_crc.val();
-            self.whole[i].position_width_in.next = self.port[i].position_width.val();
-            self.whole[i].position_has_f2_in.next = self.port[i].position_has_f2.val();
-            self.whole[i].recovery_cycles_in.next = self.port[i].recovery_cycles.val();
-            self.whole[i].delay_cycles_in.next = self.port[i].delay_cycles.val();
-            self.whole[i].over.next = self.port[i].over.val();
-            self.whole[i].info_active.next = self.port[i].info_active.val();
-            self.whole[i].info_1.next = self.port[i].info_1.val();
-            self.whole[i].info_2.next = self.port[i].info_2.val();
-            self.whole[i].info_came.next = self.port[i].info_came.val();
-            self.whole[i].info_good.next = self.port[i].info_good.val();
-            self.registers[i].result_strobe.next = self.whole[i].result_strobe.val();
-            self.registers[i].age_us.next = self.whole[i].age_us.val();
-            self.registers[i].position.next = self.whole[i].position.val();
-            self.registers[i].position_valid.next = self.whole[i].position_valid.val();
-            self.registers[i].fresh.next = self.whole[i].fresh.val();
-            self.registers[i].sequence.next = self.whole[i].sequence.val();
-            self.registers[i].first_fall_timestamp.next = self.whole[i].first_fall_timestamp.val();
-            self.registers[i].cause.next = self.whole[i].cause.val();
-            self.registers[i].flags.next = self.whole[i].flags.val();
-            self.registers[i].crc_received.next = self.whole[i].crc_received.val();
-            self.registers[i].crc_computed.next = self.whole[i].crc_computed.val();
-            self.registers[i].position_crc.next = self.whole[i].position_crc.val();
-            self.registers[i].position_width.next = self.whole[i].position_width.val();
-            self.registers[i].position_has_f2.next = self.whole[i].position_has_f2.val();
-            self.registers[i].recovery_cycles.next = self.whole[i].recovery_cycles.val();
-            self.registers[i].delay_cycles.next = self.whole[i].delay_cycles.val();
-            self.whole[i].load.next = self.bank.load.val();
-            self.whole[i].word_address.next = self.bank.address.val();
-            self.whole[i].in_range.next = self.bank.is_inside.val();
+            connect!(self.whole[i] <= self.port[i];
+                strobe_in = result_strobe, age_in = age_us, position_in = position,
+                position_valid_in = position_valid, fresh_in = fresh, sequence_in = sequence,
+                first_fall_timestamp_in = first_fall_timestamp, cause_in = cause, flags_in = flags,
+                crc_received_in = crc_received, crc_computed_in = crc_computed,
+                position_crc_in = position_crc, position_width_in = position_width,
+                position_has_f2_in = position_has_f2, recovery_cycles_in = recovery_cycles,
+                delay_cycles_in = delay_cycles, over, info_active, info_1, info_2, info_came,
+                info_good, info_crcs
+            );
+            connect!(self.registers[i] <= self.whole[i];
+                result_strobe, age_us, position, position_valid, fresh, sequence,
+                first_fall_timestamp, cause, flags, crc_received, crc_computed, position_crc,
+                position_width, position_has_f2, recovery_cycles, delay_cycles
+            );
+            connect!(self.whole[i] <= self.bank;
+                load, word_address = address, in_range = is_inside
+            );
             self.whole[i].lane.next = self.lane.val();
             self.info_byte[i].next = self.info_byte[i + 1].val() | self.whole[i].read_byte.val();
         }
@@ -702,15 +524,48 @@ impl Logic for CardCore {
             self.set[i].second[0].next = self.stream[0].second[0].val();
         }
 
+        // For the second controller: what the registers show, as it is now.
+        for i in 0..self._seconds {
+            self.second[i].clock.next = self.clk_i.val();
+            self.second[i].reset.next = self.rst_i.val();
+            self.second[i].sck.next = self.second_sck_i[i].val();
+            self.second[i].cs_n.next = self.second_cs_n_i[i].val();
+            self.second[i].word.next = self.record_link[0].val();
+            self.second_miso_o[i].next = self.second[i].miso.val();
+            self.second_miso_oe[i].next = self.second[i].miso_enable.val();
+        }
+        for i in 0..self._records {
+            self.record[i].clock.next = self.clk_i.val();
+            self.record[i].reset.next = self.rst_i.val();
+            connect!(self.record[i] <= self.second[0]; take, channel, word_at);
+            self.record[i].word_in.next = self.record_link[i + 1].val();
+            self.record_link[i].next = self.record[i].word.val();
+            self.record[i].live[0].next = self.registers[i].live[0].val();
+            self.record[i].live[1].next = self.registers[i].live[1].val();
+            self.record[i].live[2].next = self.registers[i].live[2].val();
+            self.record[i].live[3].next = self.registers[i].live[3].val();
+            self.record[i].live[4].next = self.registers[i].live[4].val();
+            self.record[i].live[5].next = self.registers[i].live[5].val();
+        }
+        for i in 0..self._record_infos {
+            self.record[i].live[6].next = self.whole[i].live[0].val();
+            self.record[i].live[7].next = self.whole[i].live[1].val();
+        }
+        for i in self._record_infos..self._records {
+            self.record[i].live[6].next = 0.into();
+            self.record[i].live[7].next = 0.into();
+        }
+        for i in self._records..self._record_links {
+            self.record_link[i].next = 0.into();
+        }
+
         // Positions of running clocks.
         for i in 0..self._runs {
             self.run[i].clock.next = self.clk_i.val();
             self.run[i].reset.next = self.rst_i.val();
             self.run[i].collects.next = self.stream[0].collects[0].val();
             self.run[i].taken.next = self.registers[i].taken.val();
-            self.run[i].result_strobe.next = self.port[i].result_strobe.val();
-            self.run[i].sequence.next = self.port[i].sequence.val();
-            self.run[i].first_fall_timestamp.next = self.port[i].first_fall_timestamp.val();
+            connect!(self.run[i] <= self.port[i]; result_strobe, sequence, first_fall_timestamp);
             self.run[i].turn.next = self.stream[0].run_turn[0].val();
             self.run[i].take.next = self.stream[0].run_take[0].val();
             self.run[i].counted.next =
@@ -744,6 +599,7 @@ impl Logic for CardCore {
     }
 }
 
+mod build;
 mod parts;
 #[cfg(test)]
 mod tests;

@@ -189,6 +189,8 @@ pub struct Channel {
     pub info_came: Signal<Out, Bits<2>>,
     /// Their CRCs are right.
     pub info_good: Signal<Out, Bits<2>>,
+    /// The CRCs with which they came: information 1 in bits 4..0, information 2 in bits 9..5.
+    pub info_crcs: Signal<Out, Bits<10>>,
     /// The propagation delay is known: frames run at the full clock, requests may ride.
     pub calibrated: Signal<Out, Bit>,
     /// Strobe: the data line is sampled for a bit of the answer.
@@ -290,18 +292,11 @@ impl Logic for Channel {
 
         self.settings.is_at_rest.next = self.transaction.is_at_rest.val();
         self.settings.start.next = self.transaction.start.val();
-        self.settings.period_cycles.next = self.period_cycles.val();
-        self.settings.first_low_extra_cycles.next = self.first_low_extra_cycles.val();
-        self.settings.command.next = self.command.val();
-        self.settings.frame_command.next = self.command_now.val();
-        self.settings.filter_cycles.next = self.filter_cycles.val();
-        self.settings.filter_half.next = self.filter_half.val();
-        self.settings.position_bits.next = self.position_bits.val();
-        self.settings.start_window_cycles.next = self.start_window_cycles.val();
-        self.settings.start_timeout_us.next = self.start_timeout_us.val();
-        self.settings.recovery_limit_cycles.next = self.recovery_limit_cycles.val();
-        self.settings.recovery_min_cycles.next = self.recovery_min_cycles.val();
-        self.settings.watchdog_us.next = self.watchdog_us.val();
+        connect!(self.settings <= self;
+            period_cycles, first_low_extra_cycles, command, frame_command = command_now,
+            filter_cycles, filter_half, position_bits, start_window_cycles, start_timeout_us,
+            recovery_limit_cycles, recovery_min_cycles, watchdog_us
+        );
 
         self.period.next = self.settings.period_cycles_now.val();
         if self.transaction.slow.val() {
@@ -325,13 +320,13 @@ impl Logic for Channel {
         for i in 0..self._requests {
             self.own_asked[i].clock.next = self.clock.val();
             self.own_asked[i].reset.next = self.reset.val();
-            self.own_asked[i].set.next = self.request_own.val() & !self.request_cancel.val();
+            self.own_asked[i].raise.next = self.request_own.val() & !self.request_cancel.val();
             self.own_asked[i].clear.next =
                 self.request_cancel.val() | (self.transaction.begun.val() & self.frame_own.q.val());
             self.own_wanted.next = self.own_asked[i].is_set.val();
             self.ride_asked[i].clock.next = self.clock.val();
             self.ride_asked[i].reset.next = self.reset.val();
-            self.ride_asked[i].set.next = self.request_ride.val() & !self.request_cancel.val();
+            self.ride_asked[i].raise.next = self.request_ride.val() & !self.request_cancel.val();
             self.ride_asked[i].clear.next = self.request_cancel.val()
                 | (self.transaction.begun.val() & self.frame_ride.q.val());
             self.ride_wanted.next = self.ride_asked[i].is_set.val();
@@ -357,25 +352,20 @@ impl Logic for Channel {
         self.filter.majority.next = self.majority.val();
         self.filter.both_edges.next = self.receiver.started.val();
 
-        self.clock_gen.start.next = self.transaction.start.val();
-        self.clock_gen.hold_low.next = self.transaction.hold_low.val();
-        self.clock_gen.stop.next = self.transaction.stop.val();
+        connect!(self.clock_gen <= self.transaction; start, hold_low, stop);
         self.clock_gen.period_cycles.next = self.period.val();
 
         self.sender.start.next = self.transaction.start.val();
         self.sender.fall.next = self.clock_gen.fall.val();
         // Outside of a command nothing is left to send, whatever a register says.
-        self.sender.abort.next = self.transaction.abort.val()
+        self.sender.aborts.next = self.transaction.aborts.val()
             | (!self.receiver.skipping.val() & !self.transaction.start_supplement.val());
         self.sender.start_supplement.next = self.transaction.start_supplement.val();
         self.sender.command.next = self.command_now.val();
         self.sender.has_parameter.next = self.shape.has_parameter.val();
         self.sender.parameter_word.next = self.request_parameter.val();
 
-        self.delay.drain.next = self.transaction.drain.val();
-        self.delay.run.next = self.transaction.run.val();
-        self.delay.acquire.next = self.transaction.acquire.val();
-        self.delay.last_cell.next = self.transaction.last_cell.val();
+        connect!(self.delay <= self.transaction; drain, run, acquire, last_cell);
         self.delay.hunting.next = self.receiver.hunting.val();
         self.delay.will_rise.next = self.clock_gen.will_rise.val();
         self.delay.rise.next = self.clock_gen.rise.val();
@@ -390,9 +380,7 @@ impl Logic for Channel {
         self.delay.period_cycles.next = self.period.val();
         self.delay.start_window_cycles.next = self.settings.start_window_cycles_now.val();
 
-        self.receiver.start.next = self.transaction.start.val();
-        self.receiver.abort.next = self.transaction.abort.val();
-        self.receiver.acquire.next = self.transaction.acquire.val();
+        connect!(self.receiver <= self.transaction; start, aborts, acquire);
         self.receiver.rise.next = self.clock_gen.rise.val();
         self.receiver.pulse.next = self.delay.pulse.val();
         self.receiver.sample.next = self.delay.sample.val();
@@ -402,30 +390,21 @@ impl Logic for Channel {
         }
         self.receiver.edge_in_window.next = self.delay.edge_in_window.val();
         self.receiver.payload_bits.next = self.payload_bits.val();
-        self.receiver.has_f1.next = self.shape.has_f1.val();
-        self.receiver.has_f2.next = self.shape.has_f2.val();
-        self.receiver.has_parameter.next = self.shape.has_parameter.val();
-        self.receiver.has_supplement.next = self.shape.has_supplement.val();
+        connect!(self.receiver <= self.shape; has_f1, has_f2, has_parameter, has_supplement);
         self.receiver.infos.next = self.add_info.infos.val();
         self.receiver.look.next = self.add_info.look.val();
         self.receiver.start_supplement.next = self.transaction.start_supplement.val();
         self.receiver.going_on.next = self.transaction.going_on.val();
         self.receiver.command.next = self.command_now.val();
 
-        self.transaction.tick_us.next = self.tick_us.val();
-        self.transaction.trigger.next = self.trigger.val();
-        self.transaction.calibrate.next = self.calibrate.val();
+        connect!(self.transaction <= self; tick_us, trigger, calibrate);
         self.transaction.level.next = self.filter.level.val();
         self.transaction.is_fixed.next = self.phase_mode.val() == self.fixed_mode.val();
         self.transaction.sample.next = self.delay.sample.val();
         self.transaction.center.next = self.delay.center.val();
-        self.transaction.hunting.next = self.receiver.hunting.val();
-        self.transaction.started.next = self.receiver.started.val();
-        self.transaction.start_refused.next = self.receiver.start_refused.val();
-        self.transaction.answer_done.next = self.receiver.done.val();
-        self.transaction.finished.next = self.receiver.finished.val();
-        self.transaction.separated.next = self.receiver.separated.val();
-        self.transaction.info_missing.next = self.receiver.info_missing.val();
+        connect!(self.transaction <= self.receiver;
+            hunting, started, start_refused, answer_done = done, finished, separated, info_missing
+        );
         // In fewer than four cycles an additional information would begin before the position is taken.
         self.wanted_shape.command.next = self.command.val();
         if self.has_requests.val() {
@@ -448,15 +427,9 @@ impl Logic for Channel {
             & !self.shape.has_test_values.val();
         self.transaction.stop_at_error.next = self.stop_at_error.val();
         self.transaction.line_wanted.next = self.own_wanted.val() | self.hold_off.val();
-        self.transaction.gap_good.next = self.receiver.gap_good.val();
-        self.transaction.again.next = self.receiver.latched.val();
-        self.transaction.gap_low.next = self.receiver.gap_low.val();
-        self.transaction.gap_high.next = self.receiver.gap_high.val();
-        self.transaction.is_echo.next = self.receiver.is_echo.val();
-        self.transaction.serial_ok.next = self.receiver.serial_ok.val();
-        self.transaction.parallel_ok.next = self.receiver.parallel_ok.val();
-        self.transaction.f1.next = self.receiver.f1.val();
-        self.transaction.f2.next = self.receiver.f2.val();
+        connect!(self.transaction <= self.receiver;
+            gap_good, again = latched, gap_low, gap_high, is_echo, serial_ok, parallel_ok, f1, f2
+        );
         if self.has_requests.val() {
             self.transaction.f1.next = self.receiver.f1.val() ^ self.forced.val().get_bit(0);
             self.transaction.f2.next = self.receiver.f2.val() ^ self.forced.val().get_bit(1);
@@ -464,36 +437,31 @@ impl Logic for Channel {
                 self.receiver.serial_ok.val() & !self.forced.val().get_bit(2);
         }
         self.transaction.will_rise.next = self.clock_gen.will_rise.val();
-        self.transaction.no_pulse_left.next = self.receiver.all_sent.val();
-        self.transaction.one_pulse_left.next = self.receiver.one_to_send.val();
-        self.transaction.none_under_way.next = self.receiver.none_under_way.val();
-        self.transaction.all_used.next = self.receiver.all_used.val();
-        self.transaction.all_ended.next = self.receiver.all_ended.val();
+        connect!(self.transaction <= self.receiver;
+            no_pulse_left = all_sent, one_pulse_left = one_to_send, none_under_way, all_used,
+            all_ended
+        );
         self.delay.none_under_way.next = self.receiver.none_under_way.val();
         self.transaction.delay_upset.next = self.delay.is_upset.val();
-        self.transaction.first_low_extra_cycles.next =
-            self.settings.first_low_extra_cycles_now.val();
-        self.transaction.start_timeout_us.next = self.settings.start_timeout_us_now.val();
-        self.transaction.recovery_limit_cycles.next = self.settings.recovery_limit_cycles_now.val();
-        self.transaction.recovery_min_cycles.next = self.settings.recovery_min_cycles_now.val();
-        self.transaction.watchdog_us.next = self.settings.watchdog_us_now.val();
-        self.transaction.settings_upset.next = self.settings.is_upset.val();
+        connect!(self.transaction <= self.settings;
+            first_low_extra_cycles = first_low_extra_cycles_now,
+            start_timeout_us = start_timeout_us_now,
+            recovery_limit_cycles = recovery_limit_cycles_now,
+            recovery_min_cycles = recovery_min_cycles_now, watchdog_us = watchdog_us_now,
+            settings_upset = is_upset
+        );
 
         self.snapshot.tick_us.next = self.tick_us.val();
         self.snapshot.timestamp.next = self.timestamp.val();
         self.snapshot.first_fall.next = self.transaction.start.val();
         self.snapshot.latched.next = self.receiver.latched.val();
         self.snapshot.delay_cycles.next = self.delay.delay_cycles.val();
-        self.snapshot.publish.next = self.transaction.publish.val();
-        self.snapshot.good.next = self.transaction.good.val();
-        self.snapshot.late_fault.next = self.transaction.late_fault.val();
-        self.snapshot.withdraw.next = self.transaction.withdraw.val();
-        self.snapshot.confirm.next = self.transaction.confirm.val();
+        connect!(self.snapshot <= self.transaction; publish, good, late_fault, withdraw, confirm);
         self.snapshot.width_in.next = self.payload_bits.val();
         self.snapshot.has_f2_in.next = self.shape.has_f2.val();
-        self.snapshot.position_in.next = self.receiver.payload.val();
-        self.snapshot.crc_received_in.next = self.receiver.crc_received.val();
-        self.snapshot.crc_computed_in.next = self.receiver.crc_computed.val();
+        connect!(self.snapshot <= self.receiver;
+            position_in = payload, crc_received_in = crc_received, crc_computed_in = crc_computed
+        );
         self.snapshot.cause_in.next = self.transaction.cause.val();
         self.snapshot.flags_in.next = self.transaction.flags.val();
 
@@ -528,6 +496,7 @@ impl Logic for Channel {
         self.add_info.info_done.next = self.info_taken.q.val() & self.has_requests.val();
         self.add_info.crc_ok.next = self.crc_ok.val();
         self.add_info.word.next = self.word.val();
+        self.add_info.crc.next = self.receiver.crc_received.val();
         self.add_info.over.next = self.transaction.over.val() & self.has_requests.val();
         self.add_info.flags.next = self.transaction.flags.val().get_bits::<12>(0);
 
@@ -545,25 +514,14 @@ impl Logic for Channel {
         self.data_o.next = self.data_pin.q.val();
         self.data_oe.next = self.oe_pin.q.val();
 
-        self.result_strobe.next = self.snapshot.result_strobe.val();
-        self.position.next = self.snapshot.position.val();
-        self.position_valid.next = self.snapshot.position_valid.val();
-        self.fresh.next = self.snapshot.fresh.val();
-        self.sequence.next = self.snapshot.sequence.val();
-        self.first_fall_timestamp.next = self.snapshot.first_fall_timestamp.val();
-        self.age_us.next = self.snapshot.age_us.val();
-        self.cause.next = self.snapshot.cause.val();
-        self.flags.next = self.snapshot.flags.val();
-        self.crc_received.next = self.snapshot.crc_received.val();
-        self.crc_computed.next = self.snapshot.crc_computed.val();
-        self.position_crc.next = self.snapshot.position_crc.val();
-        self.position_width.next = self.snapshot.position_width.val();
-        self.position_has_f2.next = self.snapshot.position_has_f2.val();
+        connect!(self <= self.snapshot;
+            result_strobe, position, position_valid, fresh, sequence, first_fall_timestamp, age_us,
+            cause, flags, crc_received, crc_computed, position_crc, position_width, position_has_f2
+        );
         self.recovery_cycles.next = self.transaction.recovery_cycles.val();
-        self.delay_cycles.next = self.delay.delay_cycles.val();
-        self.phase.next = self.delay.phase.val();
-        self.edge_measured.next = self.delay.measured.val();
-        self.edge_offset.next = self.delay.offset.val();
+        connect!(self <= self.delay;
+            delay_cycles, phase, edge_measured = measured, edge_offset = offset
+        );
         self.glitch.next = self.filter.glitch.val();
         self.busy.next = self.transaction.busy.val();
         self.request_runs.next =
@@ -588,11 +546,10 @@ impl Logic for Channel {
             self.reply.next = bit_cast::<48, 24>(self.turned.val());
         }
         self.reply_good.next = self.reply_right.q.val();
-        self.info_active.next = self.add_info.active.val();
-        self.info_1.next = self.add_info.info_1.val();
-        self.info_2.next = self.add_info.info_2.val();
-        self.info_came.next = self.add_info.came.val();
-        self.info_good.next = self.add_info.good.val();
+        connect!(self <= self.add_info;
+            info_active = active, info_1, info_2, info_came = came, info_good = good,
+            info_crcs = crcs
+        );
         self.calibrated.next = self.transaction.calibrated.val();
         self.sample_second.next = self.delay.sample_second.val();
         self.sample_strobe.next = self.delay.sample.val() & !self.receiver.skipping.val();

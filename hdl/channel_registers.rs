@@ -14,6 +14,7 @@ use crate::config::CardConfig;
 use crate::config_ring::ConfigRing;
 use crate::reg::Reg;
 use crate::regs::config_words;
+use crate::several::each;
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
@@ -124,6 +125,8 @@ pub struct ChannelRegisters {
     pub start_timeout_us: Signal<Out, Bits<12>>,
     /// Longest recovery time, in system clock cycles.
     pub recovery_limit_cycles: Signal<Out, Bits<13>>,
+    /// The words of the result as they are now, for the second interface; none without one.
+    pub live: Vec<Signal<Out, Bits<32>>>,
     waiting: Reg<Bit>,
     behind: Reg<Bit>,
     behind_now: Signal<Local, Bit>,
@@ -149,6 +152,8 @@ pub struct ChannelRegisters {
     #[given]
     config2: Reg<Bits<32>>,
     _words: usize,
+    _lives: usize,
+    _live_ends: usize,
 }
 
 impl ChannelRegisters {
@@ -156,6 +161,7 @@ impl ChannelRegisters {
     pub fn new(config: &CardConfig, channel: usize) -> Self {
         let words = config_words(config, Some(channel));
         let active = |i: usize| Reg::new(u64::from(words[i]).into());
+        let lives = RESULT_WORDS * usize::from(config.safety.second_interface);
         Self::from_parts(ChannelRegistersParts {
             held: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
             word: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
@@ -165,7 +171,10 @@ impl ChannelRegisters {
             config0: active(0),
             config1: active(1),
             config2: active(2),
+            live: each(lives),
             _words: RESULT_WORDS,
+            _lives: lives.saturating_sub(1),
+            _live_ends: lives,
         })
     }
 }
@@ -236,6 +245,14 @@ impl Logic for ChannelRegisters {
             self.delay_cycles.val().get_bit(10),
             result.age_recovery.delay_high
         );
+        for i in 0..self._lives {
+            self.live[i].next = self.word[i].val();
+        }
+        for i in self._lives..self._live_ends {
+            self.live[i].next = self.word[i].val()
+                | place!(self.age_us.val(), result.age_recovery.age_us)
+                | place!(self.behind_now.val(), result.age_recovery.stale);
+        }
         for i in 0..self._words {
             self.held[i].clock.next = self.clock.val();
             self.held[i].reset.next = self.reset.val();

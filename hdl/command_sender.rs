@@ -36,7 +36,7 @@ pub struct CommandSender {
     /// Strobe of each later falling edge.
     pub fall: Signal<In, Bit>,
     /// Releases the line at once.
-    pub abort: Signal<In, Bit>,
+    pub aborts: Signal<In, Bit>,
     /// The mode command.
     pub command: Signal<In, Bits<6>>,
     /// The parameter follows the mode command.
@@ -105,7 +105,7 @@ impl Logic for CommandSender {
                 self.in_supplement.d.next = true;
             }
         }
-        if self.abort.val() {
+        if self.aborts.val() {
             self.cells_left.d.next = 0.into();
             self.bits_left.d.next = 0.into();
         }

@@ -128,6 +128,8 @@ pub struct EncoderPort {
     pub info_came: Signal<Out, Bits<2>>,
     /// Their CRCs are right.
     pub info_good: Signal<Out, Bits<2>>,
+    /// The CRCs with which they came: information 1 in bits 4..0, information 2 in bits 9..5.
+    pub info_crcs: Signal<Out, Bits<10>>,
     /// The propagation delay is known: frames run at the full clock, requests may ride.
     pub calibrated: Signal<Out, Bit>,
     /// Strobe: the data line is sampled for a bit of the answer.
@@ -273,22 +275,11 @@ impl Logic for EncoderPort {
     #[kernel]
     fn update(&mut self) {
         for i in 0..self._channels {
-            self.channel[i].clock.next = self.clock.val();
-            self.channel[i].reset.next = self.reset.val();
-            self.channel[i].tick_us.next = self.tick_us.val();
-            self.channel[i].timestamp.next = self.timestamp.val();
-            self.channel[i].trigger.next = self.trigger.val();
-            self.channel[i].calibrate.next = self.calibrate.val();
-            self.channel[i].data_i.next = self.data_i.val();
-            self.channel[i].period_cycles.next = self.period_cycles.val();
-            self.channel[i].first_low_extra_cycles.next = self.first_low_extra_cycles.val();
-            self.channel[i].command.next = self.command.val();
-            self.channel[i].position_bits.next = self.position_bits.val();
-            self.channel[i].filter_cycles.next = self.filter_cycles.val();
-            self.channel[i].filter_half.next = self.filter_half.val();
-            self.channel[i].start_window_cycles.next = self.start_window_cycles.val();
-            self.channel[i].start_timeout_us.next = self.start_timeout_us.val();
-            self.channel[i].recovery_limit_cycles.next = self.recovery_limit_cycles.val();
+            connect!(self.channel[i] <= self;
+                clock, reset, tick_us, timestamp, trigger, calibrate, data_i, period_cycles,
+                first_low_extra_cycles, command, position_bits, filter_cycles, filter_half,
+                start_window_cycles, start_timeout_us, recovery_limit_cycles
+            );
             self.channel[i].phase_mode.next = 0.into();
             self.channel[i].fixed_delay.next = 0.into();
             self.channel[i].majority.next = false;
@@ -304,62 +295,27 @@ impl Logic for EncoderPort {
             self.channel[i].recovery_min_cycles.next = 0.into();
             self.channel[i].continuous.next = false;
             self.channel[i].stop_at_error.next = false;
-            self.endat_clk.next = self.channel[i].endat_clk.val();
-            self.data_o.next = self.channel[i].data_o.val();
-            self.data_oe.next = self.channel[i].data_oe.val();
-            self.result_strobe.next = self.channel[i].result_strobe.val();
-            self.position.next = self.channel[i].position.val();
-            self.position_valid.next = self.channel[i].position_valid.val();
-            self.fresh.next = self.channel[i].fresh.val();
-            self.sequence.next = self.channel[i].sequence.val();
-            self.first_fall_timestamp.next = self.channel[i].first_fall_timestamp.val();
-            self.age_us.next = self.channel[i].age_us.val();
-            self.cause.next = self.channel[i].cause.val();
-            self.flags.next = self.channel[i].flags.val();
-            self.crc_received.next = self.channel[i].crc_received.val();
-            self.crc_computed.next = self.channel[i].crc_computed.val();
-            self.position_crc.next = self.channel[i].position_crc.val();
-            self.position_width.next = self.channel[i].position_width.val();
-            self.position_has_f2.next = self.channel[i].position_has_f2.val();
-            self.recovery_cycles.next = self.channel[i].recovery_cycles.val();
-            self.delay_cycles.next = self.channel[i].delay_cycles.val();
-            self.busy.next = self.channel[i].busy.val();
-            self.request_runs.next = self.channel[i].request_runs.val();
-            self.line_high.next = self.channel[i].line_high.val();
-            self.displaced.next = self.channel[i].displaced.val();
-            self.over.next = self.channel[i].over.val();
-            self.over_request.next = self.channel[i].over_request.val();
-            self.over_cause.next = self.channel[i].over_cause.val();
-            self.over_flags.next = self.channel[i].over_flags.val();
-            self.reply.next = self.channel[i].reply.val();
-            self.reply_good.next = self.channel[i].reply_good.val();
-            self.info_active.next = self.channel[i].info_active.val();
-            self.info_1.next = self.channel[i].info_1.val();
-            self.info_2.next = self.channel[i].info_2.val();
-            self.info_came.next = self.channel[i].info_came.val();
-            self.info_good.next = self.channel[i].info_good.val();
-            self.calibrated.next = self.channel[i].calibrated.val();
-            self.sample_strobe.next = self.channel[i].sample_strobe.val();
+            connect!(self <= self.channel[i];
+                endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh,
+                sequence, first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed,
+                position_crc, position_width, position_has_f2, recovery_cycles, delay_cycles, busy,
+                request_runs, line_high, displaced, over, over_request, over_cause, over_flags,
+                reply, reply_good, info_active, info_1, info_2, info_came, info_good, info_crcs,
+                calibrated, sample_strobe
+            );
         }
         self.alarm.next = false;
         self.host_word.next = 0.into();
         for i in 0..self._t_formats {
-            self.t_format[i].clock.next = self.clock.val();
-            self.t_format[i].reset.next = self.reset.val();
-            self.t_format[i].tick_us.next = self.tick_us.val();
-            self.t_format[i].timestamp.next = self.timestamp.val();
-            self.t_format[i].trigger.next = self.trigger.val();
-            self.t_format[i].data_i.next = self.data_i.val();
-            self.t_format[i].request_id.next = self.request_id.val();
+            connect!(self.t_format[i] <= self;
+                clock, reset, tick_us, timestamp, trigger, data_i, request_id
+            );
             self.t_format[i].bit_cycles.next = self.period_cycles.val().get_bits::<7>(0);
             self.t_format[i].reply_gap_us.next = self.start_timeout_us.val().get_bits::<6>(0);
             self.t_format[i].field_gap_us.next = self.field_gap_us.val();
             self.t_format[i].filter_cycles.next = self.filter_cycles.val();
             self.t_format[i].host_address.next = self.host_address.val().get_bits::<3>(0);
-            self.t_format[i].host_read.next = self.host_read.val();
-            self.t_format[i].host_write.next = self.host_write.val();
-            self.t_format[i].host_half.next = self.host_half.val();
-            self.t_format[i].host_data.next = self.host_data.val();
+            connect!(self.t_format[i] <= self; host_read, host_write, host_half, host_data);
             self.endat_clk.next = true;
             self.crc_received.next = 0.into();
             self.crc_computed.next = 0.into();
@@ -380,66 +336,35 @@ impl Logic for EncoderPort {
             self.info_2.next = 0.into();
             self.info_came.next = 0.into();
             self.info_good.next = 0.into();
+            self.info_crcs.next = 0.into();
             self.calibrated.next = false;
             self.sample_strobe.next = false;
-            self.data_o.next = self.t_format[i].data_o.val();
-            self.data_oe.next = self.t_format[i].data_oe.val();
-            self.result_strobe.next = self.t_format[i].result_strobe.val();
-            self.position.next = self.t_format[i].position.val();
-            self.position_valid.next = self.t_format[i].position_valid.val();
-            self.fresh.next = self.t_format[i].fresh.val();
-            self.sequence.next = self.t_format[i].sequence.val();
-            self.first_fall_timestamp.next = self.t_format[i].first_fall_timestamp.val();
-            self.age_us.next = self.t_format[i].age_us.val();
-            self.cause.next = self.t_format[i].cause.val();
-            self.flags.next = self.t_format[i].flags.val();
-            self.busy.next = self.t_format[i].busy.val();
-            self.over.next = self.t_format[i].over.val();
-            self.over_request.next = self.t_format[i].over_request.val();
-            self.host_word.next = self.t_format[i].host_word.val();
+            connect!(self <= self.t_format[i];
+                data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
+                first_fall_timestamp, age_us, cause, flags, busy, over, over_request, host_word
+            );
         }
         for i in 0..self._served {
             self.served[i].clock.next = self.clock.val();
             self.served[i].reset.next = self.reset.val();
-            self.served[i].over.next = self.channel[i].over.val();
-            self.served[i].over_request.next = self.channel[i].over_request.val();
-            self.served[i].over_cause.next = self.channel[i].over_cause.val();
-            self.served[i].reply.next = self.channel[i].answer.val();
-            self.served[i].reply_good.next = self.channel[i].reply_good.val();
-            self.served[i].info_active.next = self.channel[i].info_active.val();
-            self.served[i].info_1.next = self.channel[i].info_1.val();
-            self.served[i].info_2.next = self.channel[i].info_2.val();
-            self.served[i].info_came.next = self.channel[i].info_came.val();
-            self.served[i].info_good.next = self.channel[i].info_good.val();
-            self.served[i].request_runs.next = self.channel[i].request_runs.val();
-            self.served[i].line_high.next = self.channel[i].line_high.val();
-            self.served[i].displaced.next = self.channel[i].displaced.val();
-            self.served[i].sequence.next = self.channel[i].sequence.val();
-            self.served[i].position.next = self.channel[i].position.val();
-            self.served[i].fresh.next = self.channel[i].fresh.val();
-            self.served[i].delay_cycles.next = self.channel[i].delay_cycles.val();
-            self.served[i].period_cycles.next = self.period_cycles.val();
-            self.served[i].command.next = self.command.val();
-            self.served[i].position_bits.next = self.position_bits.val();
-            self.served[i].host_address.next = self.host_address.val();
+            connect!(self.served[i] <= self.channel[i];
+                over, over_request, over_cause, reply = answer, reply_good, info_active, info_1,
+                info_2, info_came, info_good, request_runs, line_high, displaced, sequence,
+                position, fresh, delay_cycles
+            );
+            connect!(self.served[i] <= self; period_cycles, command, position_bits, host_address);
             self.served[i].host_write.next = self.host_write.val() & !self.host_line.val();
             self.served[i].host_half.next = self.host_half.val();
-            self.channel[i].period_cycles.next = self.served[i].period_now_cycles.val();
-            self.channel[i].command.next = self.served[i].command_now.val();
-            self.channel[i].position_bits.next = self.served[i].position_bits_now.val();
+            connect!(self.channel[i] <= self.served[i];
+                period_cycles = period_now_cycles, command = command_now,
+                position_bits = position_bits_now
+            );
             self.channel[i].calibrate.next = self.calibrate.val() | self.served[i].calibrate.val();
-            self.channel[i].request_command.next = self.served[i].request_command.val();
-            self.channel[i].request_parameter.next = self.served[i].request_parameter.val();
-            self.channel[i].request_ride.next = self.served[i].request_ride.val();
-            self.channel[i].request_own.next = self.served[i].request_own.val();
-            self.channel[i].request_cancel.next = self.served[i].request_cancel.val();
-            self.channel[i].hold_off.next = self.served[i].hold_off.val();
-            self.channel[i].clock_low.next = self.served[i].clock_low.val();
-            self.channel[i].forced.next = self.served[i].forced.val();
-            self.channel[i].watchdog_us.next = self.served[i].watchdog_us.val();
-            self.channel[i].recovery_min_cycles.next = self.served[i].recovery_min_cycles.val();
-            self.channel[i].continuous.next = self.served[i].continuous.val();
-            self.channel[i].stop_at_error.next = self.served[i].stop_at_error.val();
+            connect!(self.channel[i] <= self.served[i];
+                request_command, request_parameter, request_ride, request_own, request_cancel,
+                hold_off, clock_low, forced, watchdog_us, recovery_min_cycles, continuous,
+                stop_at_error
+            );
             self.alarm.next = self.served[i].alarm.val();
         }
         for i in 0..self._ios {
@@ -453,9 +378,7 @@ impl Logic for EncoderPort {
             self.io_in[i].next = 0.into();
         }
         for i in 0..self._services {
-            self.service[i].clock.next = self.clock.val();
-            self.service[i].reset.next = self.reset.val();
-            self.service[i].tick_us.next = self.tick_us.val();
+            connect!(self.service[i] <= self; clock, reset, tick_us);
             self.service[i].io_in[0].next = self.served[i].io_in.val();
             self.served[i].io_address.next = self.service[i].io_address.val();
             self.served[i].io_out.next = self.service[i].io_out.val();
@@ -473,26 +396,19 @@ impl Logic for EncoderPort {
         for i in 0..self._monitors {
             self.monitor[i].clock.next = self.clock.val();
             self.monitor[i].reset.next = self.reset.val();
-            self.monitor[i].busy.next = self.channel[i].busy.val();
-            self.monitor[i].edge_measured.next = self.channel[i].edge_measured.val();
-            self.monitor[i].edge_offset.next = self.channel[i].edge_offset.val();
-            self.monitor[i].over.next = self.channel[i].over.val();
+            connect!(self.monitor[i] <= self.channel[i]; busy, edge_measured, edge_offset, over);
             // These come with a good position.
             self.monitor[i].over_bad.next = self.channel[i].over_cause.val().any()
                 & (self.channel[i].over_cause.val() != self.trigger_overrun.val())
                 & (self.channel[i].over_cause.val() != self.info_missing.val())
                 & (self.channel[i].over_cause.val() != self.recovery_too_short.val());
-            self.monitor[i].glitch.next = self.channel[i].glitch.val();
-            self.monitor[i].phase.next = self.channel[i].phase.val();
-            self.monitor[i].calibrated.next = self.channel[i].calibrated.val();
+            connect!(self.monitor[i] <= self.channel[i]; glitch, phase, calibrated);
             self.monitor[i].host_address.next = self.host_address.val().get_bits::<6>(0);
             self.monitor[i].host_read.next = self.host_read.val() & self.host_line.val();
             self.monitor[i].host_write.next = self.host_write.val() & self.host_line.val();
             self.monitor[i].host_half.next = self.host_half.val();
             self.monitor[i].host_data.next = self.host_data.val();
-            self.channel[i].phase_mode.next = self.monitor[i].phase_mode.val();
-            self.channel[i].fixed_delay.next = self.monitor[i].fixed_delay.val();
-            self.channel[i].majority.next = self.monitor[i].majority.val();
+            connect!(self.channel[i] <= self.monitor[i]; phase_mode, fixed_delay, majority);
             if self.monitor[i].alarm.val() {
                 self.alarm.next = true;
             }

@@ -43,6 +43,7 @@ pub mod recovery_counter;
 pub mod reg;
 pub mod register_bank;
 pub mod regs;
+pub mod second_interface;
 pub mod sequencer;
 pub mod service;
 mod several;

@@ -375,9 +375,7 @@ impl Logic for LineDelay {
             self.edge_place.d.next = false;
         }
         for i in 0..self._trackers {
-            self.tracker[i].clock.next = self.clock.val();
-            self.tracker[i].reset.next = self.reset.val();
-            self.tracker[i].acquired.next = self.acquired.val();
+            connect!(self.tracker[i] <= self; clock, reset, acquired);
             self.tracker[i].measured_places.next = bit_cast::<12, 11>(self.since_rise.q.val());
             if self.has_double.val() {
                 self.tracker[i].measured_places.next =

@@ -110,7 +110,7 @@ pub struct LineMonitor {
     worst_earliest: Reg<Bits<8>>,
     worst_latest: Reg<Bits<8>>,
     has_worst: Reg<Bit>,
-    reference: Reg<Bits<15>>,
+    drift_reference: Reg<Bits<15>>,
     was_calibrated: Reg<Bit>,
     drift: Reg<Bits<15>>,
     drift_alarm: Reg<Bit>,
@@ -176,7 +176,7 @@ impl Logic for LineMonitor {
             if self.at.val() == offset!(line.clear) {
                 self.clear.d.next = half!(self.host_data.val(), line.clear.clear);
                 if half!(self.host_data.val(), line.clear.reference) {
-                    self.reference.d.next = self.phase.val();
+                    self.drift_reference.d.next = self.phase.val();
                 }
             }
         }
@@ -232,11 +232,11 @@ impl Logic for LineMonitor {
         // Alarms.
         self.was_calibrated.d.next = self.calibrated.val();
         if self.calibrated.val() & !self.was_calibrated.q.val() {
-            self.reference.d.next = self.phase.val();
+            self.drift_reference.d.next = self.phase.val();
         }
-        self.drift.d.next = self.phase.val() - self.reference.q.val();
-        if self.phase.val() < self.reference.q.val() {
-            self.drift.d.next = self.reference.q.val() - self.phase.val();
+        self.drift.d.next = self.phase.val() - self.drift_reference.q.val();
+        if self.phase.val() < self.drift_reference.q.val() {
+            self.drift.d.next = self.drift_reference.q.val() - self.phase.val();
         }
         if self.drift_limit.q.val().any()
             & self.was_calibrated.q.val()
@@ -325,7 +325,7 @@ impl Logic for LineMonitor {
             }
             offset!(line.phase) => {
                 self.shown.next = place!(self.phase.val(), line.phase.tracked)
-                    | place!(self.reference.q.val(), line.phase.reference);
+                    | place!(self.drift_reference.q.val(), line.phase.reference);
             }
             offset!(line.counts) => {
                 self.shown.next = place!(self.glitches.q.val(), line.counts.glitches)

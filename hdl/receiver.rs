@@ -63,7 +63,7 @@ pub struct Receiver {
     /// One-cycle strobe: a frame begins.
     pub start: Signal<In, Bit>,
     /// The frame is given up: nothing is expected any more.
-    pub abort: Signal<In, Bit>,
+    pub aborts: Signal<In, Bit>,
     /// The frame measures the propagation delay: cells before the start bit are counted by clock edges.
     pub acquire: Signal<In, Bit>,
     /// Strobe of each rising clock edge.
@@ -604,7 +604,7 @@ impl Logic for Receiver {
             self.heard.d.next = 0.into();
             self.echo.d.next = false;
         }
-        if self.abort.val() {
+        if self.aborts.val() {
             self.field.d.next = Field::Done;
         }
         if self.start_supplement.val() & self.has_all.val() {

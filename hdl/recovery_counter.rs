@@ -42,7 +42,7 @@ pub struct RecoveryCounter {
     // CLOCK rests HIGH.
     #[start(true)]
     clk_before: Reg<Bit>,
-    near: SyncReg<Bit>,
+    sampled: SyncReg<Bit>,
     level: SyncReg<Bit>,
     level_before: Reg<Bit>,
     held: Reg<Bits<24>>,
@@ -69,8 +69,8 @@ impl Logic for RecoveryCounter {
     #[kernel]
     fn update(&mut self) {
         self.counter.d.next = self.counter.q.val() + 1;
-        self.near.d.next = self.data_i.val();
-        self.level.d.next = self.near.q.val();
+        self.sampled.d.next = self.data_i.val();
+        self.level.d.next = self.sampled.q.val();
         self.level_before.d.next = self.level.q.val();
         if self.level_before.q.val() & !self.level.q.val() & !self.data_oe.val() {
             self.fall.d.next = self.counter.q.val();

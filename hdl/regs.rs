@@ -24,6 +24,7 @@ pub fn has(config: &CardConfig, part: Part) -> bool {
         Part::Interrupt => config.outputs.interrupt,
         Part::TFormat => config.t_format_channels() != 0,
         Part::RecoveryCounter => config.safety.recovery_counter,
+        Part::SecondInterface => config.safety.second_interface,
         Part::OwnTrigger => config.own_triggers(),
     }
 }

@@ -173,13 +173,9 @@ impl Logic for Service {
                 self.sequencer.port_write.val() & self.sequencer.port_second.val();
         }
 
-        self.sequencer.host_address.next = self.host_address.val();
-        self.sequencer.host_second.next = self.host_second.val();
-        self.sequencer.host_read.next = self.host_read.val();
-        self.sequencer.host_clear.next = self.host_clear.val();
-        self.sequencer.host_write.next = self.host_write.val();
-        self.sequencer.host_half.next = self.host_half.val();
-        self.sequencer.host_data.next = self.host_data.val();
+        connect!(self.sequencer <= self;
+            host_address, host_second, host_read, host_clear, host_write, host_half, host_data
+        );
         self.host_word.next = self.sequencer.host_word.val();
     }
 }

@@ -4,3 +4,8 @@
 pub(crate) fn each<T: Default>(n: usize) -> Vec<T> {
     (0..n).map(|_| T::default()).collect()
 }
+
+/// As many parts, each of its number.
+pub(crate) fn numbered<T>(n: usize, of: impl Fn(usize) -> T) -> Vec<T> {
+    (0..n).map(of).collect()
+}

@@ -1,7 +1,7 @@
 //! Sure bit: a flag that one upset does not set.
 //!
 //! ```text
-//! set      __/\__________________
+//! raise    __/\__________________
 //! clear    ____________/\________
 //! yes      ____/~~~~~~~~~\_______
 //! no       ~~~~\_________/~~~~~~~
@@ -22,7 +22,7 @@ pub struct SureBit {
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
     /// Strobe: set it; stronger than `clear`.
-    pub set: Signal<In, Bit>,
+    pub raise: Signal<In, Bit>,
     /// Strobe: clear it.
     pub clear: Signal<In, Bit>,
     /// It is set.
@@ -39,7 +39,7 @@ impl Logic for SureBit {
             self.yes.d.next = false;
             self.no.d.next = true;
         }
-        if self.set.val() {
+        if self.raise.val() {
             self.yes.d.next = true;
             self.no.d.next = false;
         }
@@ -58,7 +58,7 @@ mod tests {
         block.connect_all();
         block.yes.q.next = yes;
         block.no.q.next = no;
-        block.set.next = set;
+        block.raise.next = set;
         block.clear.next = clear;
         settle(&mut block);
         (block.yes.d.val(), block.no.d.val())

@@ -158,7 +158,7 @@ pub struct Transaction {
     /// A frame is under way on the wire.
     pub run: Signal<Out, Bit>,
     /// Driver off, at once.
-    pub abort: Signal<Out, Bit>,
+    pub aborts: Signal<Out, Bit>,
     /// Keeps the clock low.
     pub hold_low: Signal<Out, Bit>,
     /// The clock waits for the cells of all pulses sent.
@@ -724,23 +724,15 @@ impl Logic for Transaction {
             self.stalled.d.next = false;
         }
 
-        self.verdict.found.next = self.found.val();
-        self.verdict.answer_taken.next = self.answer_taken.val();
-        self.verdict.prove.next = self.proof.val();
+        connect!(self.verdict <= self; found, answer_taken, prove = proof);
         self.verdict.is_measuring.next = self.measuring.q.val();
         self.verdict.settings_upset.next = self.settings_upset.val() | self.delay_upset.val();
         self.verdict.give_up.next = self.give_up.val();
         self.verdict.is_late.next = self.answered.q.val() | self.found_late.val();
-        self.verdict.refuse.next = self.refuse.val();
-        self.verdict.announce.next = self.announce.val();
-        self.verdict.normal_end.next = self.normal_end.val();
-        self.verdict.is_going.next = self.going.val();
-        self.verdict.is_own.next = self.own.val();
-        self.verdict.serial_ok.next = self.serial_ok.val();
-        self.verdict.parallel_ok.next = self.parallel_ok.val();
-        self.verdict.f1.next = self.f1.val();
-        self.verdict.f2.next = self.f2.val();
-        self.verdict.is_echo.next = self.is_echo.val();
+        connect!(self.verdict <= self;
+            refuse, announce, normal_end, is_going = going, is_own = own, serial_ok, parallel_ok,
+            f1, f2, is_echo
+        );
         self.verdict.recovery_cycles.next = self.recovery.q.val();
         self.verdict.recovery_min_cycles.next = self.recovery_min_cycles.val();
         // The mean over several frames, if it is taken; the last of them makes the delay known.
@@ -799,7 +791,7 @@ impl Logic for Transaction {
         for i in 0..self._runs {
             self.runs[i].clock.next = self.clock.val();
             self.runs[i].reset.next = self.reset.val();
-            self.runs[i].set.next =
+            self.runs[i].raise.next =
                 self.accept.val() & self.continuous.val() & self.known.val() & !self.own.val();
             self.runs[i].clear.next =
                 self.leave.val() | self.verdict.gave_up.val() | self.accept.val();
@@ -831,7 +823,7 @@ impl Logic for Transaction {
         self.run.next = self.run_now.q.val();
         self.start_now.d.next = self.accept.val();
         self.start.next = self.start_now.q.val();
-        self.abort.next = self.verdict.gave_up.val();
+        self.aborts.next = self.verdict.gave_up.val();
         // Taking the start bit ends its cell; `started` comes when the comparison knows that.
         self.sent.next = self.all_sent.q.val() & self.started.val() & !self.going.val();
         self.parking.next = false;
@@ -857,13 +849,7 @@ impl Logic for Transaction {
         self.slow.next = self.slow_now.q.val();
         self.busy.next =
             !self.idle.val() | self.once_more.q.val() | (self.begin_own.val() & self.has_all.val());
-        self.publish.next = self.verdict.publish.val();
-        self.good.next = self.verdict.good.val();
-        self.late_fault.next = self.verdict.late_fault.val();
-        self.withdraw.next = self.verdict.withdraw.val();
-        self.confirm.next = self.verdict.confirm.val();
-        self.cause.next = self.verdict.cause.val();
-        self.flags.next = self.verdict.flags.val();
+        connect!(self <= self.verdict; publish, good, late_fault, withdraw, confirm, cause, flags);
         self.start_supplement.next = self.supplement_now.q.val();
         self.over.next = self.verdict.over.val();
         self.begun.next = self.accept.val() | self.refuse.val();

@@ -18,6 +18,7 @@
 
 use crate::reg::Reg;
 use crate::regs::{BLOCK_STRIDE, INFO_FIRST, RESULT_BASE};
+use crate::several::each;
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
@@ -76,6 +77,8 @@ pub struct WholeResult {
     pub info_came: Signal<In, Bits<2>>,
     /// Their CRCs are right.
     pub info_good: Signal<In, Bits<2>>,
+    /// The CRCs with which they came: information 1 in bits 4..0, information 2 in bits 9..5.
+    pub info_crcs: Signal<In, Bits<10>>,
     /// The frame of the newest result is not over: informations may still come.
     pub is_open: Signal<Out, Bit>,
     /// Information 1 of the newest result's frame: 24 bits, came, good, due.
@@ -114,6 +117,8 @@ pub struct WholeResult {
     pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked line delay, in system clock cycles.
     pub delay_cycles: Signal<Out, Bits<11>>,
+    /// Words of the informations as they are now, for the second interface; none without one.
+    pub live: Vec<Signal<Out, Bits<32>>>,
     /// The held words follow.
     pub load: Signal<In, Bit>,
     /// Word address of the access.
@@ -127,8 +132,8 @@ pub struct WholeResult {
     open: Reg<Bit>,
     past: Reg<Bit>,
     whole: Reg<Bit>,
-    first: Reg<Bits<26>>,
-    second: Reg<Bits<26>>,
+    first: Reg<Bits<31>>,
+    second: Reg<Bits<31>>,
     age: Reg<Bits<16>>,
     position_kept: Reg<Bits<48>>,
     position_valid_kept: Reg<Bit>,
@@ -144,28 +149,31 @@ pub struct WholeResult {
     position_has_f2_kept: Reg<Bit>,
     recovery_cycles_kept: Reg<Bits<13>>,
     delay_cycles_kept: Reg<Bits<11>>,
-    held_first: Reg<Bits<26>>,
-    held_second: Reg<Bits<26>>,
+    held_first: Reg<Bits<31>>,
+    held_second: Reg<Bits<31>>,
     byte_read: Reg<Bits<8>>,
     opens: Signal<Local, Bit>,
     open_now: Signal<Local, Bit>,
     closes: Signal<Local, Bit>,
     follows: Signal<Local, Bit>,
-    filled_1: Signal<Local, Bits<26>>,
-    filled_2: Signal<Local, Bits<26>>,
+    filled_1: Signal<Local, Bits<31>>,
+    filled_2: Signal<Local, Bits<31>>,
     selected: Signal<Local, Bit>,
     word: Signal<Local, Bits<32>>,
     pair: Constant<Bits<10>>,
     has_infos: Constant<Bit>,
+    _live_pairs: usize,
 }
 
 impl WholeResult {
-    /// That of channel `channel`, which has informations or not.
-    pub fn new(channel: usize, has_infos: bool) -> Self {
+    /// That of channel `channel`, which has informations or not, on a card with a second interface or without.
+    pub fn new(channel: usize, has_infos: bool, is_shown: bool) -> Self {
         let first = RESULT_BASE + BLOCK_STRIDE * channel as u16 + u16::from(INFO_FIRST);
         Self::from_parts(WholeResultParts {
             pair: Constant::new(u64::from(first / 2).into()),
             has_infos: Constant::new(has_infos),
+            live: each(2 * usize::from(is_shown)),
+            _live_pairs: is_shown.into(),
         })
     }
 }
@@ -186,16 +194,26 @@ impl Logic for WholeResult {
         self.open.d.next = self.open_now.val() & !self.closes.val();
         self.is_open.next = self.open_now.val();
 
-        // The content counts if its CRC is right.
-        self.filled_1.next = bit_cast::<26, 1>(self.info_came.val().get_bits::<1>(0)) << 24;
-        if self.info_came.val().get_bit(0) & self.info_good.val().get_bit(0) {
-            self.filled_1.next =
-                bit_cast::<26, 24>(self.info_1.val()) | (bit_cast::<26, 2>(3.into()) << 24);
+        // The content counts if its CRC is right; the CRC stands as it came.
+        self.filled_1.next = 0.into();
+        if self.info_came.val().get_bit(0) {
+            self.filled_1.next = (bit_cast::<31, 5>(self.info_crcs.val().get_bits::<5>(0)) << 26)
+                | (bit_cast::<31, 1>(1.into()) << 24);
         }
-        self.filled_2.next = bit_cast::<26, 1>(self.info_came.val().get_bits::<1>(1)) << 24;
+        if self.info_came.val().get_bit(0) & self.info_good.val().get_bit(0) {
+            self.filled_1.next = self.filled_1.val()
+                | bit_cast::<31, 24>(self.info_1.val())
+                | (bit_cast::<31, 1>(1.into()) << 25);
+        }
+        self.filled_2.next = 0.into();
+        if self.info_came.val().get_bit(1) {
+            self.filled_2.next = (bit_cast::<31, 5>(self.info_crcs.val().get_bits::<5>(5)) << 26)
+                | (bit_cast::<31, 1>(1.into()) << 24);
+        }
         if self.info_came.val().get_bit(1) & self.info_good.val().get_bit(1) {
-            self.filled_2.next =
-                bit_cast::<26, 24>(self.info_2.val()) | (bit_cast::<26, 2>(3.into()) << 24);
+            self.filled_2.next = self.filled_2.val()
+                | bit_cast::<31, 24>(self.info_2.val())
+                | (bit_cast::<31, 1>(1.into()) << 25);
         }
 
         // While nothing is open the result may still change: its cause when the frame ends, an upset at any time.
@@ -273,9 +291,14 @@ impl Logic for WholeResult {
             self.word_2.next = bit_cast::<27, 1>(1.into()) << 26;
         } else {
             if !self.strobe_in.val() {
-                self.word_1.next = bit_cast::<27, 26>(self.first.q.val());
-                self.word_2.next = bit_cast::<27, 26>(self.second.q.val());
+                self.word_1.next = bit_cast::<27, 26>(self.first.q.val().get_bits::<26>(0));
+                self.word_2.next = bit_cast::<27, 26>(self.second.q.val().get_bits::<26>(0));
             }
+        }
+
+        for i in 0..self._live_pairs {
+            self.live[2 * i].next = bit_cast::<32, 31>(self.first.q.val());
+            self.live[2 * i + 1].next = bit_cast::<32, 31>(self.second.q.val());
         }
 
         // The host's words.
@@ -286,9 +309,9 @@ impl Logic for WholeResult {
         self.selected.next = self.has_infos.val()
             & self.in_range.val()
             & (self.word_address.val().get_bits::<10>(1) == self.pair.val());
-        self.word.next = bit_cast::<32, 26>(self.held_first.q.val());
+        self.word.next = bit_cast::<32, 31>(self.held_first.q.val());
         if self.word_address.val().get_bit(0) {
-            self.word.next = bit_cast::<32, 26>(self.held_second.q.val());
+            self.word.next = bit_cast::<32, 31>(self.held_second.q.val());
         }
         // A reset by deselection takes no logic.
         self.byte_read.reset.next = !self.selected.val();

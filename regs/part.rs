@@ -49,6 +49,7 @@ parts! {
     TFormat = 14, "t_format", "T-format channels", "[[channel]] protocol = \"t_format\"";
     OwnTrigger = 15, "own_trigger", "enable, divider and sources of triggers of each channel", "[[channel]] trigger";
     RecoveryCounter = 16, "recovery_counter", "recovery time measured a second time", "[safety] parts";
+    SecondInterface = 17, "second_interface", "results for a second controller, over an SPI that can only be read", "[safety] parts";
 }
 
 /// Parts that have a bit in `capabilities.features`; those behind them have one in `protocols.features`.

@@ -57,7 +57,7 @@ pub const LINE_FLAGS: &[Named] = &[
 /// Offset of the first of the two words that cards with requests have.
 pub const INFO_FIRST: u8 = 6;
 
-const INFO: [Field; 7] = [
+const INFO: [Field; 8] = [
     field("content", 0, 16, "", "What it says; 0 unless good"),
     field(
         "sign",
@@ -83,6 +83,13 @@ const INFO: [Field; 7] = [
     ),
     field("came", 24, 1, "", "The frame brought it"),
     field("good", 25, 1, "", "Its CRC is right"),
+    field(
+        "crc",
+        26,
+        5,
+        "",
+        "Its CRC as received, over bits 23..0 as they came",
+    ),
 ];
 
 /// Result of a channel; all words of all channels change together and never within a read command.

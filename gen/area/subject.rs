@@ -21,6 +21,7 @@ use endat_hdl::line_delay::LineDelay;
 use endat_hdl::line_monitor::LineStart;
 use endat_hdl::receiver::Receiver;
 use endat_hdl::recovery_counter::RecoveryCounter;
+use endat_hdl::second_interface::{record::SecondRecord, SecondInterface};
 use endat_hdl::service::program::ServiceTimes;
 use endat_hdl::snapshot::Snapshot;
 use endat_hdl::stream::{buffer::SetParts, channel::SetChannel, Stream};
@@ -257,6 +258,16 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
             DirectOutput::new(0, 29),
         )?,
         Subject::new("interrupt", "interrupt of two channels", Interrupt::new(2))?,
+        Subject::new(
+            "second_interface",
+            "SPI of the second interface, without its records",
+            SecondInterface::new(2, 0x1234_5678),
+        )?,
+        Subject::new(
+            "second_record",
+            "record of a channel for the second interface",
+            SecondRecord::new(0),
+        )?,
         Subject::new(
             "recovery_counter",
             "recovery time of a channel, measured a second time",

@@ -70,9 +70,15 @@ pub fn of_card(
     if outputs.any() {
         lines.push(format!("outputs position {position} interrupt {interrupt}"));
     }
-    let SafetyParts { recovery_counter } = safety;
+    let SafetyParts {
+        recovery_counter,
+        second_interface,
+    } = safety;
     if *recovery_counter {
         lines.push("safety recovery_counter".into());
+    }
+    if *second_interface {
+        lines.push("safety second_interface".into());
     }
     if !initial_values {
         lines.push(NO_INITIAL_VALUES.into());

@@ -39,12 +39,26 @@ fn bus_ports(bus: HostBus) -> Vec<(String, Kind)> {
     }
 }
 
+/// What decides which ports a card has besides those of its bus and channels.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MorePorts {
+    /// An interrupt.
+    pub interrupt: bool,
+    /// The second interface.
+    pub second_interface: bool,
+}
+
 /// The ports of the board top except the oscillator, in their order.
-pub fn card_ports(bus: HostBus, has_interrupt: bool, channels: usize) -> Vec<(String, Kind)> {
+pub fn card_ports(bus: HostBus, more: MorePorts, channels: usize) -> Vec<(String, Kind)> {
     let mut ports = vec![("trigger_i".to_owned(), Kind::Trigger)];
     ports.extend(bus_ports(bus));
-    if has_interrupt {
+    if more.interrupt {
         ports.push(("irq_o".to_owned(), Kind::Interrupt));
+    }
+    if more.second_interface {
+        ports.push(("second_sck_i".to_owned(), Kind::BusInput));
+        ports.push(("second_cs_n_i".to_owned(), Kind::BusInput));
+        ports.push(("second_miso_o".to_owned(), Kind::BusOutput));
     }
     for n in 0..channels {
         ports.push((format!("endat_clk{n}_o"), Kind::Transceiver));

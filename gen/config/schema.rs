@@ -2,7 +2,7 @@
 
 use super::channel::{read_endat, read_line_keys, read_t_format, Channel};
 use super::document::{parse, read_initial_values};
-use super::pins::{assign_pins, card_ports};
+use super::pins::{assign_pins, card_ports, MorePorts};
 use super::protocol::RECEIVER_BUS;
 use super::reader::{At, Source, Table};
 use super::{
@@ -207,8 +207,11 @@ impl<'s, 't> Written<'s, 't> {
         // The pins of a card with too many channels would only repeat that complaint.
         let count = self.channel_tables.as_ref().map(Vec::len);
         let count = count.filter(|count| CHANNELS.contains(count))?;
-        let has_interrupt = self.outputs.is_some_and(|parts| parts.interrupt);
-        let ports = card_ports(self.bus?, has_interrupt, count);
+        let more = MorePorts {
+            interrupt: self.outputs.is_some_and(|parts| parts.interrupt),
+            second_interface: self.safety.is_some_and(|parts| parts.second_interface),
+        };
+        let ports = card_ports(self.bus?, more, count);
         Some(assign_pins(source, &t.pins, self.board.as_ref()?, ports))
     }
 

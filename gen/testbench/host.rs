@@ -29,7 +29,7 @@ pub struct Host {
 /// Bit times of a UART that a written word is waited for.
 const UART_SETTLE_BITS: f64 = 20.0;
 /// Half an SPI clock period, in system clock cycles: a quarter more than the shortest one, and no multiple of a cycle.
-const SCK_HALF_CYCLES: f64 = 5.1;
+pub(super) const SCK_HALF_CYCLES: f64 = 5.1;
 
 /// What an access takes at most besides a turn of the configuration ring, in system clock cycles.
 const ACCESS_CYCLES: usize = 100;

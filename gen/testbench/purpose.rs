@@ -1,15 +1,19 @@
 //! What the published systems are for, as far as a card has it: usual clock rates, cropped positions, selected causes, the
-//! watchdog, requests, additional informations, continuous clock.
+//! watchdog, requests, additional informations, continuous clock; and the monitors of a safe control.
 
+use super::host::SCK_HALF_CYCLES;
 use super::{
     clock_ns, cycle_ns, fields, is_own_trigger, longest_ns, real, whole, word_address, Port,
 };
 use crate::error::GenError;
 use crate::template;
 use endat_hdl::card::services;
-use endat_hdl::config::{CardConfig, ChannelConfig, ChannelRequest};
+use endat_hdl::channel_registers::RESULT_WORDS;
+use endat_hdl::config::{CardConfig, ChannelConfig, ChannelRequest, PhaseSource};
+use endat_hdl::line_delay::mode;
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::regs::{start, CHANNEL_CONFIG, RECOVERY, SERVICE};
+use endat_hdl::regs::{start, CHANNEL_CONFIG, LINE, RECOVERY, RESULT, SERVICE};
+use endat_hdl::second_interface::{MARK, RECORD_WORDS};
 use endat_hdl::timing::{
     cycles_to_ns, PARAMETER_GAP_MS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
@@ -192,6 +196,56 @@ fn counters(card: &CardConfig) -> Vec<Value> {
     channels.collect()
 }
 
+/// What an answer of the second interface is compared with, if there is one.
+fn second(card: &CardConfig) -> Option<Value> {
+    let of = |card: &CardConfig| {
+        context! {
+            mark => MARK,
+            channels => card.channels.len(),
+            words => RECORD_WORDS,
+            read => if card.service.requests { RECORD_WORDS } else { RESULT_WORDS },
+            hash => format!("{:08X}", card.hash >> 16),
+            // The age has gone on since; what stands above it is of the result.
+            age => usize::from(RESULT.register("age_recovery").map_or(0, |r| r.offset)),
+            age_bits => RESULT.field("age_recovery", "age_us").width,
+            sck_half_ns => real(SCK_HALF_CYCLES as f64 * clock_ns(card.system_hz)),
+        }
+    };
+    card.safety.second_interface.then(|| of(card))
+}
+
+/// Channels whose phase is at the host's choice: where it is set, and the word for each choice.
+pub(super) fn phases(card: &CardConfig) -> Vec<Value> {
+    let Some(word) = LINE.register("alignment").filter(|_| card.line.alignment) else {
+        return vec![];
+    };
+    let at = LINE.field("alignment", "mode");
+    let address = |name: &str, n: usize| word_address(&LINE, name, n);
+    let channels = card.endat_channels().map(|(n, _)| {
+        let begins = start(&LINE, word, card, n) & !at.mask();
+        let with = |mode: u64| format!("{:08X}", begins | (mode as u32) << at.lsb);
+        context! {
+            alignment => address("alignment", n),
+            fixed_delay => address("fixed_delay", n),
+            phase => address("phase", n),
+            measured => with(match card.line.phase {
+                PhaseSource::Frame => mode::FRAME,
+                PhaseSource::Tracked | PhaseSource::Fixed => mode::TRACKED,
+            }),
+            fixed => with(mode::FIXED),
+        }
+    });
+    channels.collect()
+}
+
+/// The same, where the configuration knows a delay that is not the bench's: there it is measured.
+pub(super) fn first_measured(card: &CardConfig) -> Vec<Value> {
+    match card.line.phase {
+        PhaseSource::Fixed => phases(card),
+        PhaseSource::Tracked | PhaseSource::Frame => vec![],
+    }
+}
+
 /// MRS codes that the services of a card select in turn after reset.
 pub(super) fn configured_list(card: &CardConfig) -> &[u8] {
     let list = &card.service.infos;
@@ -248,6 +302,9 @@ impl Parts {
             request_fields => Serde(fields(&SERVICE).filter(|f| REQUEST_FIELDS.contains(&f.name.as_str())).collect::<Vec<_>>()),
             infos => infos(card),
             counters => counters(card),
+            second => second(card),
+            phases => phases(card),
+            phase_bits => LINE.field("phase", "tracked").width,
             has_list => !configured_list(card).is_empty(),
             no_infos => NO_INFOS.map(|code| format!("{code:02X}")),
             select => ModeCommand::PositionSelectMemory.code(),

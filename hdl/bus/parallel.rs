@@ -105,27 +105,14 @@ pub struct ParallelFront {
 impl Logic for ParallelFront {
     #[kernel]
     fn update(&mut self) {
-        self.words.clock.next = self.clock.val();
-        self.words.reset.next = self.reset.val();
-        self.words.tick_us.next = self.tick_us.val();
-        self.words.take_byte.next = self.take_byte.val();
-        self.words.passing_byte.next = self.passing_byte.val();
-        self.words.read_byte.next = self.read_byte.val();
-        self.words.done.next = self.done.val();
+        connect!(self.words <= self;
+            clock, reset, tick_us, take_byte, passing_byte, read_byte, done
+        );
         self.words.keep_moment.next = false;
         self.words.end_moment.next = false;
-        self.lane.next = self.words.lane.val();
-        self.access.next = self.words.access.val();
-        self.bank_data.next = self.words.bank_data.val();
-        self.reading.next = self.words.reading.val();
+        connect!(self <= self.words; lane, access, bank_data, reading);
 
-        self.strobes.clock.next = self.clock.val();
-        self.strobes.reset.next = self.reset.val();
-        self.strobes.cs_n.next = self.cs_n.val();
-        self.strobes.rd_n.next = self.rd_n.val();
-        self.strobes.wr_n.next = self.wr_n.val();
-        self.strobes.register_at.next = self.register_at.val();
-        self.strobes.data_in.next = self.data_in.val();
+        connect!(self.strobes <= self; clock, reset, cs_n, rd_n, wr_n, register_at, data_in);
 
         // Reading register 0 takes the moment that registers 0 to 4 show.
         self.is_first.next = self.strobes.reading.val() & !self.strobes.register.val().any();

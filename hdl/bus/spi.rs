@@ -142,19 +142,11 @@ impl Default for SpiFront {
 impl Logic for SpiFront {
     #[kernel]
     fn update(&mut self) {
-        self.words.clock.next = self.clock.val();
-        self.words.reset.next = self.reset.val();
-        self.words.tick_us.next = self.tick_us.val();
-        self.words.take_byte.next = self.take_byte.val();
-        self.words.passing_byte.next = self.passing_byte.val();
-        self.words.read_byte.next = self.read_byte.val();
-        self.words.done.next = self.done.val();
-        self.words.keep_moment.next = self.selected.val();
+        connect!(self.words <= self;
+            clock, reset, tick_us, take_byte, passing_byte, read_byte, done, keep_moment = selected
+        );
         self.words.end_moment.next = !self.selected.val();
-        self.lane.next = self.words.lane.val();
-        self.access.next = self.words.access.val();
-        self.bank_data.next = self.words.bank_data.val();
-        self.reading.next = self.words.reading.val();
+        connect!(self <= self.words; lane, access, bank_data, reading);
 
         self.sck_0.d.next = self.sck.val();
         self.sck_1.d.next = self.sck_0.q.val();

@@ -41,6 +41,18 @@ macro_rules! card_top {
                 /// Interrupt; low without this part.
                 pub $irq: Signal<Out, Bit>,
             )?
+            /// Second interface, serial clock, idle low, asynchronous; at most an eighth of the system clock.
+            #[optional]
+            pub second_sck_i: Vec<Signal<In, Bit>>,
+            /// Second interface, chip select, active low, asynchronous.
+            #[optional]
+            pub second_cs_n_i: Vec<Signal<In, Bit>>,
+            /// Second interface, data to the controller; changes after the falling edge.
+            #[optional]
+            pub second_miso_o: Vec<Signal<Out, Bit>>,
+            /// The card drives `second_miso_o`, straight from `second_cs_n_i`.
+            #[optional]
+            pub second_miso_oe: Vec<Signal<Out, Bit>>,
             /// EnDat clock to the transceiver.
             pub endat_clk_o: Vec<Signal<Out, Bit>>,
             /// EnDat data to the transceiver.
@@ -56,6 +68,7 @@ macro_rules! card_top {
             pub(crate) core: CardCore,
             $front: $kind,
             _direct_ports: usize,
+            _seconds: usize,
             _channels: usize,
         }
 
@@ -63,12 +76,17 @@ macro_rules! card_top {
             /// This core behind this front.
             fn behind($front: $kind, core: CardCore, config: &CardConfig) -> Self {
                 let channels = config.channels.len();
+                let seconds = usize::from(config.safety.second_interface);
                 let direct_ports = channels * usize::from(config.outputs.position);
                 Self::from_parts($parts {
                     direct_position_o: each(direct_ports),
                     direct_valid_o: each(direct_ports),
                     direct_fresh_o: each(direct_ports),
                     direct_error_o: each(direct_ports),
+                    second_sck_i: each(seconds),
+                    second_cs_n_i: each(seconds),
+                    second_miso_o: each(seconds),
+                    second_miso_oe: each(seconds),
                     endat_clk_o: each(channels),
                     endat_data_o: each(channels),
                     endat_data_oe: each(channels),
@@ -77,6 +95,7 @@ macro_rules! card_top {
                     core,
                     $front,
                     _direct_ports: direct_ports,
+                    _seconds: seconds,
                     _channels: channels,
                 })
             }
@@ -85,27 +104,16 @@ macro_rules! card_top {
         impl Logic for $card {
             #[kernel]
             fn update(&mut self) {
-                self.core.clk_i.next = self.clk_i.val();
-                self.core.rst_i.next = self.rst_i.val();
-                self.core.trigger_i.next = self.trigger_i.val();
-                self.$front.clock.next = self.clk_i.val();
-                self.$front.reset.next = self.rst_i.val();
+                connect!(self.core <= self; clk_i, rst_i, trigger_i);
+                connect!(self.$front <= self; clock = clk_i, reset = rst_i);
 
                 $(
-                    $( self.$front.$port_in.next = self.$pin_in.val(); )*
-                    $( self.$pin_out.next = self.$front.$port_out.val(); )*
+                    connect!(self.$front <= self; $($port_in = $pin_in),*);
+                    connect!(self <= self.$front; $($pin_out = $port_out),*);
                 )*
 
-                self.$front.tick_us.next = self.core.tick_us.val();
-                self.$front.take_byte.next = self.core.take_byte.val();
-                self.$front.read_byte.next = self.core.read_byte.val();
-                self.$front.done.next = self.core.done.val();
-                self.core.word_address.next = self.$front.word_address.val();
-                self.core.lane.next = self.$front.lane.val();
-                self.core.access.next = self.$front.access.val();
-                self.core.reading.next = self.$front.reading.val();
-                $( self.core.$into_core.next = self.$front.$out_of_front.val(); )*
-                $( self.$front.$into_front.next = self.core.$out_of_core.val(); )*
+                connect!(self.$front <= self.core; tick_us, take_byte, read_byte, done $(, $into_front = $out_of_core)*);
+                connect!(self.core <= self.$front; word_address, lane, access, reading $(, $into_core = $out_of_front)*);
                 $( self.core.$constant.next = $value; )*
 
                 for i in 0..self._direct_ports {
@@ -115,6 +123,12 @@ macro_rules! card_top {
                     self.direct_error_o[i].next = self.core.direct_error_o[i].val();
                 }
                 $( self.$irq.next = self.core.irq_o.val(); )?
+                for i in 0..self._seconds {
+                    self.core.second_sck_i[i].next = self.second_sck_i[i].val();
+                    self.core.second_cs_n_i[i].next = self.second_cs_n_i[i].val();
+                    self.second_miso_o[i].next = self.core.second_miso_o[i].val();
+                    self.second_miso_oe[i].next = self.core.second_miso_oe[i].val();
+                }
                 for i in 0..self._channels {
                     self.core.endat_data_i[i].next = self.endat_data_i[i].val();
                     self.endat_clk_o[i].next = self.core.endat_clk_o[i].val();

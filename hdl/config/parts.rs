@@ -75,6 +75,8 @@ impl OutputParts {
 pub struct SafetyParts {
     /// Recovery time measured a second time, by a counter that nothing sets back.
     pub recovery_counter: bool,
+    /// Results for a second controller, over an SPI that can only be read.
+    pub second_interface: bool,
 }
 
 /// The stream of sample sets (`docs/stream.md`); without a buffer there is none, and no logic for it.

@@ -160,7 +160,7 @@ impl Builder {
     }
 
     fn atom(&mut self, draft: &mut Draft, atom: &AtomNode) -> Result<()> {
-        let name = verilog_name(&atom.key);
+        let name = atom.name.clone();
         let docs = draft.docs(&atom.key);
         let enum_id = self.intern_enums(&mut draft.enums, &draft.block.docs, &atom.descriptor);
         let direction = match atom.kind {
@@ -307,7 +307,7 @@ impl Builder {
         let ports = child.atoms.iter().filter(|atom| atom.kind.is_parameter());
         for (atom, port) in ports.zip(&self.design.modules[id].ports.clone()) {
             let enum_id = self.intern_enums(&mut draft.enums, &child.docs, &atom.descriptor);
-            let net_name = draft.free_name(&format!("{name}_{}", verilog_name(&atom.key)));
+            let net_name = draft.free_name(&format!("{name}_{}", atom.name));
             let net = draft.net(net_name, atom.width_bits, enum_id, vec![]);
             draft.child_port(&child.name, &atom.key, net, port.direction);
             nets.push(net);

@@ -15,6 +15,8 @@ pub struct TypeDocs {
     pub lines: &'static [&'static str],
     /// Fields or variants, and about them.
     pub parts: &'static [(&'static str, &'static [&'static str])],
+    /// Fields that are lists of at most one signal, whose name has no number.
+    pub optional: &'static [&'static str],
     /// What is proved about it: SystemVerilog, see [`properties`](super::properties). Empty where there is nothing.
     pub properties: &'static str,
     /// Enums among the types of its fields.
@@ -29,6 +31,9 @@ pub trait Described {
 
 /// [`TimingInfo`] name of documentation.
 const DOCS_TIMING: &str = "endat_docs";
+
+/// [`TimingInfo`] name of optional fields.
+const OPTIONAL_TIMING: &str = "endat_optional";
 
 /// [`TimingInfo`] name of properties.
 const PROPERTIES_TIMING: &str = "endat_properties";
@@ -54,8 +59,20 @@ pub fn timing(docs: &TypeDocs) -> Vec<TimingInfo> {
         inputs: vec![],
         outputs: vec![],
     };
-    let own = [of_one(docs), properties];
+    let optional = TimingInfo {
+        name: OPTIONAL_TIMING.into(),
+        clock: String::new(),
+        inputs: docs.optional.iter().map(|&name| name.into()).collect(),
+        outputs: vec![],
+    };
+    let own = [of_one(docs), optional, properties];
     own.into_iter().chain(enums).collect()
+}
+
+/// Optional fields among the timings of a block.
+pub(super) fn optional_of(timings: &[TimingInfo]) -> Vec<String> {
+    let found = timings.iter().find(|t| t.name == OPTIONAL_TIMING);
+    found.map_or(vec![], |t| t.inputs.clone())
 }
 
 /// Properties among the timings of a block.
@@ -129,6 +146,7 @@ mod tests {
             name: "State",
             lines: &[],
             parts: &[("Idle", &[" Nothing."])],
+            optional: &[],
             properties: "",
             enums: &[],
         };
@@ -136,10 +154,12 @@ mod tests {
             name: "Timer",
             lines: &[" A timer.", " Of 8 bits."],
             parts: &[("clock", &[" System clock."]), ("level", &[])],
+            optional: &["level"],
             properties: "// p: words",
             enums: &[&STATES],
         };
         assert_eq!(properties_of(&timing(&block)), "// p: words");
+        assert_eq!(optional_of(&timing(&block)), ["level"]);
         let [timer, state] = &of(&timing(&block))[..] else {
             panic!("two of them")
         };

@@ -51,11 +51,10 @@ impl Draft<'_> {
 
     /// The first of some names that no field has; the last one gets a number if all are taken.
     pub(super) fn free_name_of<const N: usize>(&self, names: [String; N]) -> String {
-        let fields = self.block.atoms.iter().map(|a| &a.key);
-        let mut taken: BTreeSet<String> = fields
-            .chain(self.block.children.iter().map(|c| &c.name))
-            .map(|key| verilog_name(key).to_lowercase())
-            .collect();
+        let fields = self.block.atoms.iter().map(|a| a.name.to_lowercase());
+        let children = self.block.children.iter().map(|c| &c.name);
+        let children = children.map(|key| verilog_name(key).to_lowercase());
+        let mut taken: BTreeSet<String> = fields.chain(children).collect();
         taken.extend(self.module.nets.iter().map(|n| n.name.to_lowercase()));
         let last = names.last().cloned().unwrap_or_default();
         let numbered = (2..).map(|number| format!("{last}_{number}"));

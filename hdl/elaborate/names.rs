@@ -125,11 +125,118 @@ const KEYWORDS: &[&str] = &[
     "xor",
 ];
 
+/// Words of C++ and its libraries: Verilator, which makes C++ of a design, warns of nets that are called so.
+const CPP_WORDS: &[&str] = &[
+    "NULL",
+    "abort",
+    "alignas",
+    "alignof",
+    "and_eq",
+    "asm",
+    "auto",
+    "bit_vector",
+    "bitand",
+    "bitor",
+    "bool",
+    "catch",
+    "cdecl",
+    "char",
+    "class",
+    "compl",
+    "complex",
+    "concept",
+    "const",
+    "const_cast",
+    "const_iterator",
+    "constexpr",
+    "continue",
+    "decltype",
+    "delete",
+    "deque",
+    "double",
+    "dynamic_cast",
+    "enum",
+    "explicit",
+    "export",
+    "extern",
+    "false",
+    "far",
+    "float",
+    "friend",
+    "goto",
+    "huge",
+    "import",
+    "inline",
+    "int",
+    "interrupt",
+    "iterator",
+    "list",
+    "long",
+    "map",
+    "mutable",
+    "namespace",
+    "near",
+    "new",
+    "noexcept",
+    "not_eq",
+    "nullptr",
+    "operator",
+    "or_eq",
+    "override",
+    "pascal",
+    "private",
+    "protected",
+    "public",
+    "queue",
+    "reference",
+    "reinterpret_cast",
+    "requires",
+    "restrict",
+    "return",
+    "sc_clock",
+    "sc_in",
+    "sc_inout",
+    "sc_out",
+    "sc_signal",
+    "sensitive",
+    "set",
+    "short",
+    "sizeof",
+    "stack",
+    "static",
+    "static_assert",
+    "static_cast",
+    "struct",
+    "switch",
+    "synchronized",
+    "template",
+    "this",
+    "thread_local",
+    "throw",
+    "true",
+    "try",
+    "type_info",
+    "typedef",
+    "typeid",
+    "typename",
+    "union",
+    "using",
+    "vector",
+    "virtual",
+    "void",
+    "volatile",
+    "wchar_t",
+    "xor_eq",
+];
+
 /// Why a name cannot be used in Verilog, if it cannot.
 pub(super) fn problem(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     if KEYWORDS.contains(&name) || KEYWORDS.contains(&lower.as_str()) {
         return Some("is a Verilog keyword");
+    }
+    if CPP_WORDS.contains(&name) {
+        return Some("is a word of C++");
     }
     let is_plain = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     if !is_plain || !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
@@ -201,6 +308,7 @@ mod tests {
         assert!(problem("Release").is_some());
         assert!(problem("a$b").is_some());
         assert!(problem("_x").is_some());
+        assert!(problem("abort").is_some());
         assert!(problem("fall").is_none());
     }
 }

@@ -2,6 +2,7 @@
 
 use super::design::MAX_WIDTH_BITS;
 use super::docs::{self, Docs};
+use super::names::verilog_name;
 use super::ElaborateError;
 use rust_hdl::prelude::*;
 
@@ -10,6 +11,8 @@ use rust_hdl::prelude::*;
 pub(super) struct AtomNode {
     /// Path within the block, parts joined with `$`, array elements as `name$0`.
     pub key: String,
+    /// Name in Verilog.
+    pub name: String,
     pub kind: AtomKind,
     pub width_bits: usize,
     pub descriptor: TypeDescriptor,
@@ -31,6 +34,8 @@ pub(super) struct BlockNode {
     pub timing: Vec<TimingInfo>,
     /// Of the block, if it has any, and of its enums.
     pub docs: Vec<Docs>,
+    /// Lists of at most one signal.
+    optional: Vec<String>,
     /// What is proved about it.
     pub properties: String,
 }
@@ -45,6 +50,7 @@ impl BlockNode {
             fields: vec![],
             hdl: node.hdl(),
             docs: docs::of(&node.timing()),
+            optional: docs::optional_of(&node.timing()),
             properties: docs::properties_of(&node.timing()),
             timing: node.timing(),
         }
@@ -148,6 +154,10 @@ impl Probe for Reader {
             .chain([name])
             .collect::<Vec<_>>()
             .join("$");
+        let name = match key.strip_suffix("$0") {
+            Some(field) if block.optional.iter().any(|o| o == field) => verilog_name(field),
+            _ => verilog_name(&key),
+        };
         let width_bits = signal.bits();
         if width_bits == 0 || width_bits > MAX_WIDTH_BITS {
             let error = block.error(
@@ -169,6 +179,7 @@ impl Probe for Reader {
         };
         block.atoms.push(AtomNode {
             key,
+            name,
             kind: signal.kind(),
             width_bits,
             descriptor: signal.descriptor(),

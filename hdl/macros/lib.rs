@@ -3,6 +3,7 @@
 //! [`macro@Block`] makes a block of its parts, so that its `new` names only those of which something is to be said. [`macro@kernel`] stands
 //! where rust-hdl has `#[hdl_gen]`, and connects clock and reset of every register that the kernel assigns.
 
+mod connect;
 mod places;
 
 use proc_macro::TokenStream;
@@ -35,8 +36,10 @@ use syn::{
 ///
 /// A block that needs nothing else has `Default` instead.
 ///
+/// `#[optional]` on a list of at most one signal: its name is emitted without a number.
+///
 /// `#[properties("x.sv")]` on the block names the file, beside the source, with what is proved about it.
-#[proc_macro_derive(Block, attributes(start, given, properties))]
+#[proc_macro_derive(Block, attributes(start, given, optional, properties))]
 pub fn block(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
     let name = &input.ident;
@@ -101,7 +104,7 @@ pub fn states(input: TokenStream) -> TokenStream {
     match &input.data {
         Data::Enum(data) => {
             let states = data.variants.iter().map(|v| (&v.ident, &v.attrs[..]));
-            docs(&input, states, &[]).into()
+            docs(&input, states, &[], &[]).into()
         }
         _ => refuse(&input.ident, "states are those of an enum"),
     }
@@ -123,13 +126,18 @@ fn described<'a>(
     let named = fields
         .into_iter()
         .filter_map(|f| Some((f.ident.as_ref()?, &f.attrs[..])));
-    docs(input, named, &found.enums)
+    let named: Vec<_> = named.collect();
+    let is_optional = |attribute: &Attribute| attribute.path().is_ident("optional");
+    let optional = named.iter().filter(|(_, a)| a.iter().any(is_optional));
+    let optional: Vec<&Ident> = optional.map(|(name, _)| *name).collect();
+    docs(input, named.into_iter(), &optional, &found.enums)
 }
 
-/// The documentation of a type, its parts and these enums.
+/// The documentation of a type, its parts, those that are optional, and these enums.
 fn docs<'a>(
     input: &DeriveInput,
     parts: impl Iterator<Item = (&'a Ident, &'a [Attribute])>,
+    optional: &[&Ident],
     enums: &[&Ident],
 ) -> TokenStream2 {
     let name = &input.ident;
@@ -151,6 +159,7 @@ fn docs<'a>(
                 name: stringify!(#name),
                 lines: &[#(#own),*],
                 parts: &[#(#parts),*],
+                optional: &[#(stringify!(#optional)),*],
                 properties: #properties,
                 enums: &[#(&<#enums as crate::elaborate::docs::Described>::DOCS),*],
             };
@@ -223,13 +232,17 @@ fn begins_empty(kind: &Type) -> bool {
 /// It hands on what [`macro@Block`] knows, and knows the register table by name: `field!(word, config.frame.skip)` is a field of a word
 /// (a bit, where it is one), `place!(value, config.frame.skip)` a word of 32 bits in which the value stands there.
 ///
+/// `connect!(self.receiver <= self.settings; width, command = mode_command)` wires ports to ports: those of one name, and the first to the
+/// second where they have two.
+///
 /// `#[kernel(clk_i, rst_i)]` where clock and reset have other names than `clock` and `reset`. Registers in lists are the kernel's.
 #[proc_macro_attribute]
 pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let parser = Punctuated::<Ident, Token![,]>::parse_terminated;
     let names = parse_macro_input!(arguments with parser);
     let mut item = parse_macro_input!(item as ItemFn);
-    if let Err(wrong) = places::resolve(&mut item.block) {
+    let written = connect::expand(&mut item.block);
+    if let Err(wrong) = written.and_then(|()| places::resolve(&mut item.block)) {
         return wrong.into_compile_error().into();
     }
     let usual = || ["clock", "reset"].map(|name| Ident::new(name, proc_macro2::Span::call_site()));

@@ -54,11 +54,11 @@ always @(posedge clock) begin
         f_f1 <= 1'b0;
         f_f2 <= 1'b1;
     end
-    if (start | abort | reset | start_supplement) begin
+    if (start | aborts | reset | start_supplement) begin
         f_open <= 1'b0;
         f_whole <= 1'b0;
     end
-    if (reset | abort | start_supplement) f_same <= 1'b0;
+    if (reset | aborts | start_supplement) f_same <= 1'b0;
 end
 wire f_answer = (field == FIELD_F1) | (field == FIELD_F2) | (field == FIELD_PAYLOAD) | (field == FIELD_CRC);
 always @* begin

@@ -339,10 +339,9 @@ impl Logic for FrameBuffer {
             self.read_byte.next = self.ram4k[i].read_data.val();
         }
         for i in 0..self._ram8k {
-            self.ram8k[i].clock.next = self.clock.val();
-            self.ram8k[i].write_enable.next = self.write.val();
-            self.ram8k[i].write_address.next = self.write_address.val();
-            self.ram8k[i].write_data.next = self.write_byte.val();
+            connect!(self.ram8k[i] <= self;
+                clock, write_enable = write, write_address, write_data = write_byte
+            );
             self.ram8k[i].read_address.next = self.read_at.q.val();
             self.read_byte.next = self.ram8k[i].read_data.val();
         }

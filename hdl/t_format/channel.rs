@@ -111,9 +111,7 @@ impl Logic for TFormatChannel {
         self.filter.majority.next = false;
         self.filter.both_edges.next = false;
 
-        self.exchange.tick_us.next = self.tick_us.val();
-        self.exchange.trigger.next = self.trigger.val();
-        self.exchange.request_id.next = self.request_id.val();
+        connect!(self.exchange <= self; tick_us, trigger, request_id);
         self.exchange.hold.next = false;
         self.exchange.address.next = self.address.val();
         self.exchange.data.next = self.data.val();
@@ -123,51 +121,27 @@ impl Logic for TFormatChannel {
         self.exchange.field_gap_us.next = self.field_gap_us.val();
         self.exchange.level.next = self.filter.level.val();
         self.exchange.status.next = self.reply.status.val();
-        self.tx.next = self.exchange.tx.val();
-        self.driver.next = self.exchange.driver.val();
-        self.busy.next = self.exchange.busy.val();
+        connect!(self <= self.exchange; tx, driver, busy);
 
         self.reply.idle.next = !self.exchange.busy.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
-        self.reply.is_status.next = self.exchange.is_status.val();
-        self.reply.is_single.next = self.exchange.is_single.val();
-        self.reply.is_multi.next = self.exchange.is_multi.val();
-        self.reply.is_byte.next = self.exchange.is_byte.val();
-        self.reply.is_alarm.next = self.exchange.is_alarm.val();
+        connect!(self.reply <= self.exchange; is_status, is_single, is_multi, is_byte, is_alarm);
 
-        self.outcome.publish.next = self.exchange.publish.val();
-        self.outcome.good.next = self.exchange.good.val();
-        self.outcome.flags_in.next = self.exchange.flags.val();
-        self.outcome.reply_id_in.next = self.exchange.reply_id.val();
-        self.outcome.crc_in.next = self.exchange.crc.val();
-        self.outcome.status_in.next = self.reply.status.val();
-        self.outcome.single_turn_in.next = self.reply.single_turn.val();
-        self.outcome.multi_turn_in.next = self.reply.multi_turn.val();
-        self.outcome.single_parity_in.next = self.reply.single_parity.val();
-        self.outcome.multi_parity_in.next = self.reply.multi_parity.val();
-        self.outcome.byte_in.next = self.reply.byte_field.val();
-        self.outcome.alarm_in.next = self.reply.alarm.val();
-        self.outcome.has_single.next = self.exchange.has_single.val();
-        self.outcome.has_multi.next = self.exchange.has_multi.val();
-        self.outcome.has_identity.next = self.exchange.has_identity.val();
-        self.outcome.has_alarm.next = self.exchange.has_alarm.val();
-        self.outcome.is_memory.next = self.exchange.is_memory.val();
-        self.result_strobe.next = self.outcome.result_strobe.val();
-        self.fresh.next = self.outcome.fresh.val();
-        self.sequence.next = self.outcome.sequence.val();
-        self.single_turn.next = self.outcome.single_turn.val();
-        self.single_valid.next = self.outcome.single_valid.val();
-        self.single_parity.next = self.outcome.single_parity.val();
-        self.multi_parity.next = self.outcome.multi_parity.val();
-        self.multi_turn.next = self.outcome.multi_turn.val();
-        self.multi_valid.next = self.outcome.multi_valid.val();
-        self.encoder_id.next = self.outcome.encoder_id.val();
-        self.memory_data.next = self.outcome.memory_data.val();
-        self.alarm.next = self.outcome.alarm.val();
-        self.status.next = self.outcome.status.val();
-        self.crc.next = self.outcome.crc.val();
-        self.reply_id.next = self.outcome.reply_id.val();
-        self.flags.next = self.outcome.flags.val();
+        connect!(self.outcome <= self.exchange;
+            publish, good, flags_in = flags, reply_id_in = reply_id, crc_in = crc
+        );
+        connect!(self.outcome <= self.reply;
+            status_in = status, single_turn_in = single_turn, multi_turn_in = multi_turn,
+            single_parity_in = single_parity, multi_parity_in = multi_parity, byte_in = byte_field,
+            alarm_in = alarm
+        );
+        connect!(self.outcome <= self.exchange;
+            has_single, has_multi, has_identity, has_alarm, is_memory
+        );
+        connect!(self <= self.outcome;
+            result_strobe, fresh, sequence, single_turn, single_valid, single_parity, multi_parity,
+            multi_turn, multi_valid, encoder_id, memory_data, alarm, status, crc, reply_id, flags
+        );
     }
 }

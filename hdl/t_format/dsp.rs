@@ -173,11 +173,10 @@ impl Logic for AsyncDsp {
         self.moments.clock.next = self.clk_i.val();
         self.moments.reset.next = self.rst_i.val();
 
-        self.strobes.cs_n.next = self.bus_cs_n_i.val();
-        self.strobes.rd_n.next = self.bus_rd_n_i.val();
-        self.strobes.wr_n.next = self.bus_wr_n_i.val();
-        self.strobes.register_at.next = self.bus_address_i.val();
-        self.strobes.data_in.next = self.bus_data_i.val();
+        connect!(self.strobes <= self;
+            cs_n = bus_cs_n_i, rd_n = bus_rd_n_i, wr_n = bus_wr_n_i, register_at = bus_address_i,
+            data_in = bus_data_i
+        );
         // No register: the lines are free as soon as the strobe ends.
         self.bus_data_oe.next = !self.bus_cs_n_i.val() & !self.bus_rd_n_i.val();
 
@@ -260,26 +259,16 @@ impl Logic for AsyncDsp {
         self.reply.idle.next = !self.exchange.busy.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
-        self.reply.is_status.next = self.exchange.is_status.val();
-        self.reply.is_single.next = self.exchange.is_single.val();
-        self.reply.is_multi.next = self.exchange.is_multi.val();
-        self.reply.is_byte.next = self.exchange.is_byte.val();
-        self.reply.is_alarm.next = self.exchange.is_alarm.val();
+        connect!(self.reply <= self.exchange; is_status, is_single, is_multi, is_byte, is_alarm);
         self.reply.copy.next = self.moments.copy.val();
         self.reply.tail.next = self.moments.tail.val();
 
-        self.moments.verdict.next = self.exchange.publish.val();
-        self.moments.good.next = self.exchange.good.val();
-        self.moments.flags.next = self.exchange.flags.val();
-        self.moments.reply_id.next = self.exchange.reply_id.val();
-        self.moments.crc.next = self.exchange.crc.val();
+        connect!(self.moments <= self.exchange; verdict = publish, good, flags, reply_id, crc);
         self.moments.single_parity.next = self.reply.single_parity.val();
         self.moments.multi_parity.next = self.reply.multi_parity.val();
-        self.moments.has_single.next = self.exchange.has_single.val();
-        self.moments.has_multi.next = self.exchange.has_multi.val();
-        self.moments.has_identity.next = self.exchange.has_identity.val();
-        self.moments.has_alarm.next = self.exchange.has_alarm.val();
-        self.moments.is_memory.next = self.exchange.is_memory.val();
+        connect!(self.moments <= self.exchange;
+            has_single, has_multi, has_identity, has_alarm, is_memory
+        );
         self.moments.head.next = self.reply.head.val();
         self.moments.second.next = self.reply.second.val();
         self.moments.register.next = self.strobes.register.val();

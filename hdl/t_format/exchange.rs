@@ -199,14 +199,10 @@ impl Logic for Exchange {
         self.order.sending.next = self.phase.q.val() == Phase::Send;
         self.order.first.next = false;
         self.order.step.next = false;
-        self.bits.request_id.next = self.request_id.val();
-        self.bits.address.next = self.address.val();
-        self.bits.data.next = self.data.val();
+        connect!(self.bits <= self; request_id, address, data);
         self.bits.crc_bit.next = self.check.q.val().get_bit(0);
         self.bits.index.next = self.index.q.val().get_bits::<3>(0);
-        self.bits.is_control.next = self.order.is_control.val();
-        self.bits.is_address.next = self.order.is_address.val();
-        self.bits.is_crc.next = self.order.is_crc.val();
+        connect!(self.bits <= self.order; is_control, is_address, is_crc);
 
         self.previous.d.next = self.level.val();
         self.rising.next = !self.previous.q.val() & self.level.val();
@@ -507,15 +503,10 @@ impl Logic for Exchange {
         self.tx.next = self.line.q.val();
         self.driver.next = self.drives.q.val() & self.enabled.q.val();
         self.busy.next = self.phase.q.val() != Phase::Rest;
-        self.is_status.next = self.order.is_status.val();
-        self.is_single.next = self.order.is_single.val();
-        self.is_multi.next = self.order.is_multi.val();
+        connect!(self <= self.order; is_status, is_single, is_multi);
         self.is_byte.next = self.order.is_identity.val() | self.order.is_data.val();
-        self.is_alarm.next = self.order.is_alarm.val();
-        self.has_single.next = self.order.has_single.val();
-        self.has_multi.next = self.order.has_multi.val();
-        self.has_identity.next = self.order.has_identity.val();
-        self.has_alarm.next = self.order.has_alarm.val();
-        self.is_memory.next = self.order.is_memory.val();
+        connect!(self <= self.order;
+            is_alarm, has_single, has_multi, has_identity, has_alarm, is_memory
+        );
     }
 }

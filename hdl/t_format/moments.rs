@@ -156,9 +156,7 @@ impl Logic for Moments {
         // What is told about the reply comes behind its fields. EEPROM data, too, which are the same field as the kind of encoder.
         self.takes_single.next = self.good.val() & self.has_single.val();
         self.takes_multi.next = self.good.val() & self.has_multi.val();
-        self.verdict_bytes.good.next = self.good.val();
-        self.verdict_bytes.flags.next = self.flags.val();
-        self.verdict_bytes.reply_id.next = self.reply_id.val();
+        connect!(self.verdict_bytes <= self; good, flags, reply_id);
         self.verdict_bytes.valid.next =
             bit_cast::<2, 1>((self.had_single.q.val() | self.takes_single.val()).into())
                 | (bit_cast::<2, 1>((self.had_multi.q.val() | self.takes_multi.val()).into()) << 1);

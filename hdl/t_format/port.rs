@@ -254,11 +254,7 @@ impl Logic for TFormatPort {
         self.reply.idle.next = !self.exchange.busy.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
-        self.reply.is_status.next = self.exchange.is_status.val();
-        self.reply.is_single.next = self.exchange.is_single.val();
-        self.reply.is_multi.next = self.exchange.is_multi.val();
-        self.reply.is_byte.next = self.exchange.is_byte.val();
-        self.reply.is_alarm.next = self.exchange.is_alarm.val();
+        connect!(self.reply <= self.exchange; is_status, is_single, is_multi, is_byte, is_alarm);
 
         // A trigger that was not taken is told by the result of the exchange under way, or of the next one.
         self.overrun.next = self.lost.q.val() & !self.is_own.val();
@@ -348,15 +344,10 @@ impl Logic for TFormatPort {
         self.snapshot.flags_in.next = bit_cast::<20, 16>(self.flags_in.val());
         self.over.next = self.exchange.publish.val();
         self.over_request.next = self.is_own.val();
-        self.result_strobe.next = self.snapshot.result_strobe.val();
-        self.position.next = self.snapshot.position.val();
-        self.position_valid.next = self.snapshot.position_valid.val();
-        self.fresh.next = self.snapshot.fresh.val();
-        self.sequence.next = self.snapshot.sequence.val();
-        self.first_fall_timestamp.next = self.snapshot.first_fall_timestamp.val();
-        self.age_us.next = self.snapshot.age_us.val();
-        self.cause.next = self.snapshot.cause.val();
-        self.flags.next = self.snapshot.flags.val();
+        connect!(self <= self.snapshot;
+            result_strobe, position, position_valid, fresh, sequence, first_fall_timestamp, age_us,
+            cause, flags
+        );
 
         // What the words of the host show. What the snapshot has withdrawn is there no more.
         if !self.snapshot.position_valid.val() {

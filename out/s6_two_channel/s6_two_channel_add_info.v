@@ -32,6 +32,8 @@ module s6_two_channel_add_info (
     input  wire         crc_ok,
     // Its bits WRN, RM, Busy, I4..I0, 16 bits.
     input  wire  [23:0] word,
+    // Its CRC as received.
+    input  wire   [4:0] crc,
     // Strobe: the frame has ended.
     input  wire         over,
     // Raw flags of the frame, with over.
@@ -49,7 +51,9 @@ module s6_two_channel_add_info (
     // The last frame brought: bit 0 info 1, bit 1 info 2.
     output wire   [1:0] came,
     // The CRC of those that came is right.
-    output wire   [1:0] good
+    output wire   [1:0] good,
+    // The CRCs with which they came: info 1 in bits 4..0, info 2 in bits 9..5.
+    output wire   [9:0] crcs
 );
     localparam   [7:0] SEPARATOR_CYCLES = 8'd62;
 
@@ -63,6 +67,10 @@ module s6_two_channel_add_info (
     reg   [23:0] first_next;
     reg   [23:0] second; initial second = 24'd0;
     reg   [23:0] second_next;
+    reg    [4:0] first_crc; initial first_crc = 5'd0;
+    reg    [4:0] first_crc_next;
+    reg    [4:0] second_crc; initial second_crc = 5'd0;
+    reg    [4:0] second_crc_next;
     reg    [1:0] seen; initial seen = 2'd0;
     reg    [1:0] seen_next;
     reg    [1:0] right; initial right = 2'd0;
@@ -105,8 +113,10 @@ module s6_two_channel_add_info (
     always @* begin
         trusted_next = trusted;
         second_next = second;
+        second_crc_next = second_crc;
         seen_next = seen;
         first_next = first;
+        first_crc_next = first_crc;
         right_next = right;
         selected_next = selected;
         if (answered) begin
@@ -115,9 +125,11 @@ module s6_two_channel_add_info (
         if (info_done) begin
             if (is_second) begin
                 second_next = word;
+                second_crc_next = crc;
                 seen_next = seen | 2'd2;
             end else begin
                 first_next = word;
+                first_crc_next = crc;
                 seen_next = seen | 2'd1;
             end
             if (crc_ok) begin
@@ -170,12 +182,15 @@ module s6_two_channel_add_info (
     assign info_2 = second;
     assign came = seen;
     assign good = right;
+    assign crcs = ({5'd0, second_crc} << 3'd5) | {5'd0, first_crc};
 
     always @(posedge clock) begin
         if (reset) begin
             selected <= 2'd0;
             first <= 24'd0;
             second <= 24'd0;
+            first_crc <= 5'd0;
+            second_crc <= 5'd0;
             seen <= 2'd0;
             right <= 2'd0;
             answered <= 1'b0;
@@ -186,6 +201,8 @@ module s6_two_channel_add_info (
             selected <= selected_next;
             first <= first_next;
             second <= second_next;
+            first_crc <= first_crc_next;
+            second_crc <= second_crc_next;
             seen <= seen_next;
             right <= right_next;
             answered <= answer_done;

@@ -217,6 +217,7 @@ module s6_two_channel_card_core (
     wire  [23:0] port_0_info_2;
     wire   [1:0] port_0_info_came;
     wire   [1:0] port_0_info_good;
+    wire   [9:0] port_0_info_crcs;
     wire         port_0_calibrated;
     wire         port_0_sample_strobe;
     wire         port_0_alarm;
@@ -252,6 +253,7 @@ module s6_two_channel_card_core (
     wire  [23:0] port_1_info_2;
     wire   [1:0] port_1_info_came;
     wire   [1:0] port_1_info_good;
+    wire   [9:0] port_1_info_crcs;
     wire         port_1_calibrated;
     wire         port_1_sample_strobe;
     wire         port_1_alarm;
@@ -267,7 +269,7 @@ module s6_two_channel_card_core (
     wire   [7:0] set_1_set_byte;
     wire         set_1_owes;
     wire         set_1_replaced;
-    wire         _unused_ok = &{1'b0, trigger_hits, bank_address[10:2], bank_is_inside, bank_channel_skip[7:2], bank_service_channels[7:2], bank_service_clear, bank_service_read[7:2], bank_service_write[7:2], bank_calibrate[7:2], bank_disabled, bank_restart, registers_0_trigger_skip, registers_0_ignored_sources, registers_1_trigger_skip, registers_1_ignored_sources, port_0_request_runs, port_0_line_high, port_0_displaced, port_0_over, port_0_over_request, port_0_over_cause, port_0_over_flags, port_0_reply, port_0_reply_good, port_0_info_active, port_0_info_1, port_0_info_2, port_0_info_came, port_0_info_good, port_0_calibrated, port_0_sample_strobe, port_1_request_runs, port_1_line_high, port_1_displaced, port_1_over, port_1_over_request, port_1_over_cause, port_1_over_flags, port_1_reply, port_1_reply_good, port_1_info_active, port_1_info_1, port_1_info_2, port_1_info_came, port_1_info_good, port_1_calibrated, port_1_sample_strobe};
+    wire         _unused_ok = &{1'b0, trigger_hits, bank_address[10:2], bank_is_inside, bank_channel_skip[7:2], bank_service_channels[7:2], bank_service_clear, bank_service_read[7:2], bank_service_write[7:2], bank_calibrate[7:2], bank_disabled, bank_restart, registers_0_trigger_skip, registers_0_ignored_sources, registers_1_trigger_skip, registers_1_ignored_sources, port_0_request_runs, port_0_line_high, port_0_displaced, port_0_over, port_0_over_request, port_0_over_cause, port_0_over_flags, port_0_reply, port_0_reply_good, port_0_info_active, port_0_info_1, port_0_info_2, port_0_info_came, port_0_info_good, port_0_info_crcs, port_0_calibrated, port_0_sample_strobe, port_1_request_runs, port_1_line_high, port_1_displaced, port_1_over, port_1_over_request, port_1_over_cause, port_1_over_flags, port_1_reply, port_1_reply_good, port_1_info_active, port_1_info_1, port_1_info_2, port_1_info_came, port_1_info_good, port_1_info_crcs, port_1_calibrated, port_1_sample_strobe};
 
     s6_two_channel_timebase u_timebase (
         .clock(clk_i),
@@ -492,6 +494,7 @@ module s6_two_channel_card_core (
         .info_2(port_0_info_2),
         .info_came(port_0_info_came),
         .info_good(port_0_info_good),
+        .info_crcs(port_0_info_crcs),
         .calibrated(port_0_calibrated),
         .sample_strobe(port_0_sample_strobe),
         .alarm(port_0_alarm),
@@ -556,6 +559,7 @@ module s6_two_channel_card_core (
         .info_2(port_1_info_2),
         .info_came(port_1_info_came),
         .info_good(port_1_info_good),
+        .info_crcs(port_1_info_crcs),
         .calibrated(port_1_calibrated),
         .sample_strobe(port_1_sample_strobe),
         .alarm(port_1_alarm),

@@ -146,6 +146,8 @@ module s6_two_channel_channel (
     output wire   [1:0] info_came,
     // Their CRCs are right.
     output wire   [1:0] info_good,
+    // The CRCs with which they came: information 1 in bits 4..0, information 2 in bits 9..5.
+    output wire   [9:0] info_crcs,
     // The propagation delay is known: frames run at the full clock, requests may ride.
     output wire         calibrated,
     // Strobe: the data line is sampled for a bit of the answer.
@@ -177,7 +179,7 @@ module s6_two_channel_channel (
     wire         clock_gen_will_rise;
     wire         clock_gen_rise;
     wire         clock_gen_fall;
-    wire         sender_abort;
+    wire         sender_aborts;
     wire         sender_data;
     wire         sender_oe;
     wire         delay_in_answer;
@@ -224,7 +226,7 @@ module s6_two_channel_channel (
     reg          transaction_f2;
     wire         transaction_start;
     wire         transaction_run;
-    wire         transaction_abort;
+    wire         transaction_aborts;
     wire         transaction_hold_low;
     wire         transaction_drain;
     wire         transaction_stop;
@@ -328,7 +330,7 @@ module s6_two_channel_channel (
         .start(transaction_start),
         .start_supplement(transaction_start_supplement),
         .fall(clock_gen_fall),
-        .abort(sender_abort),
+        .aborts(sender_aborts),
         .command(command_now),
         .has_parameter(shape_has_parameter),
         .parameter_word(request_parameter),
@@ -371,7 +373,7 @@ module s6_two_channel_channel (
         .clock(clock),
         .reset(reset),
         .start(transaction_start),
-        .abort(transaction_abort),
+        .aborts(transaction_aborts),
         .acquire(transaction_acquire),
         .rise(clock_gen_rise),
         .pulse(delay_pulse),
@@ -466,7 +468,7 @@ module s6_two_channel_channel (
         .watchdog_us(settings_watchdog_us_now),
         .start(transaction_start),
         .run(transaction_run),
-        .abort(transaction_abort),
+        .aborts(transaction_aborts),
         .hold_low(transaction_hold_low),
         .drain(transaction_drain),
         .stop(transaction_stop),
@@ -561,6 +563,7 @@ module s6_two_channel_channel (
         .info_done(add_info_info_done),
         .crc_ok(crc_ok),
         .word(word),
+        .crc(receiver_crc_received),
         .over(add_info_over),
         .flags(over_flags[11:0]),
         .active(info_active),
@@ -569,7 +572,8 @@ module s6_two_channel_channel (
         .info_1(info_1),
         .info_2(info_2),
         .came(info_came),
-        .good(info_good)
+        .good(info_good),
+        .crcs(info_crcs)
     );
     s6_two_channel_frame_settings u_settings (
         .clock(clock),
@@ -630,7 +634,7 @@ module s6_two_channel_channel (
     assign settings_frame_command = command_now;
     assign own_wanted = 1'b0;
     assign ride_wanted = 1'b0;
-    assign sender_abort = transaction_abort | (!receiver_skipping & !transaction_start_supplement);
+    assign sender_aborts = transaction_aborts | (!receiver_skipping & !transaction_start_supplement);
     assign delay_in_answer = receiver_started & !receiver_skipping;
 
     always @* begin

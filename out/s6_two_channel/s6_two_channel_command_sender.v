@@ -17,7 +17,7 @@ module s6_two_channel_command_sender (
     // Strobe of each later falling edge.
     input  wire         fall,
     // Releases the line at once.
-    input  wire         abort,
+    input  wire         aborts,
     // The mode command.
     input  wire   [5:0] command,
     // The parameter follows the mode command.
@@ -79,7 +79,7 @@ module s6_two_channel_command_sender (
                 in_supplement_next = 1'b1;
             end
         end
-        if (abort) begin
+        if (aborts) begin
             cells_left_next = 4'd0;
             bits_left_next = 5'd0;
         end

@@ -110,6 +110,8 @@ module s6_two_channel_encoder_port (
     output wire   [1:0] info_came,
     // Their CRCs are right.
     output wire   [1:0] info_good,
+    // The CRCs with which they came: information 1 in bits 4..0, information 2 in bits 9..5.
+    output wire   [9:0] info_crcs,
     // The propagation delay is known: frames run at the full clock, requests may ride.
     output wire         calibrated,
     // Strobe: the data line is sampled for a bit of the answer.
@@ -210,6 +212,7 @@ module s6_two_channel_encoder_port (
         .info_2(info_2),
         .info_came(info_came),
         .info_good(info_good),
+        .info_crcs(info_crcs),
         .calibrated(calibrated),
         .sample_strobe(sample_strobe),
         .sample_second(channel_0_sample_second)

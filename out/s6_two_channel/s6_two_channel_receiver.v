@@ -13,7 +13,7 @@ module s6_two_channel_receiver (
     // One-cycle strobe: a frame begins.
     input  wire         start,
     // The frame is given up: nothing is expected any more.
-    input  wire         abort,
+    input  wire         aborts,
     // The frame measures the propagation delay: cells before the start bit are counted by clock edges.
     input  wire         acquire,
     // Strobe of each rising clock edge.
@@ -553,7 +553,7 @@ module s6_two_channel_receiver (
             word_next = 50'd0;
             covered_d = 4'd0;
         end
-        if (abort) begin
+        if (aborts) begin
             field_next = FIELD_DONE;
         end
         if (start_supplement & HAS_ALL) begin
@@ -764,11 +764,11 @@ module s6_two_channel_receiver (
             f_f1 <= 1'b0;
             f_f2 <= 1'b1;
         end
-        if (start | abort | reset | start_supplement) begin
+        if (start | aborts | reset | start_supplement) begin
             f_open <= 1'b0;
             f_whole <= 1'b0;
         end
-        if (reset | abort | start_supplement) f_same <= 1'b0;
+        if (reset | aborts | start_supplement) f_same <= 1'b0;
     end
     wire f_answer = (field == FIELD_F1) | (field == FIELD_F2) | (field == FIELD_PAYLOAD) | (field == FIELD_CRC);
     always @* begin

@@ -110,6 +110,7 @@
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SHIFT 16u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_MASK 0xFFFF0000u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER 0x1u /* recovery time measured a second time */
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SECOND_INTERFACE 0x2u /* results for a second controller, over an SPI that can only be read */
 
 /* ro: Triggers since reset; stands still with the results (see hold). */
 #define S6_TWO_CHANNEL_CARD_TRIGGER_COUNT_WORD 0x008u

@@ -105,7 +105,7 @@ module s6_two_channel_transaction (
     // A frame is under way on the wire.
     output wire         run,
     // Driver off, at once.
-    output wire         abort,
+    output wire         aborts,
     // Keeps the clock low.
     output wire         hold_low,
     // The clock waits for the cells of all pulses sent.
@@ -344,7 +344,7 @@ module s6_two_channel_transaction (
         .is_received(verdict_is_received),
         .is_doubtful(verdict_is_doubtful),
         .is_bad(verdict_is_bad),
-        .gave_up(abort),
+        .gave_up(aborts),
         .is_telling(verdict_is_telling),
         .publish(publish),
         .once_more(verdict_once_more),
@@ -651,7 +651,7 @@ module s6_two_channel_transaction (
             found = found | TOO_LONG;
             give_up = 1'b1;
         end
-        if (give_up | abort) begin
+        if (give_up | aborts) begin
             proof = 1'b0;
             announce = 1'b0;
         end
@@ -669,7 +669,7 @@ module s6_two_channel_transaction (
             answered_next = 1'b0;
             under_way_next = going & !leave;
         end
-        if (abort) begin
+        if (aborts) begin
             phase_next = PHASE_ABORT;
             timer_clear = 1'b1;
             accept = 1'b0;
@@ -700,7 +700,7 @@ module s6_two_channel_transaction (
             once_more_next = 1'b1;
             answered_next = 1'b0;
         end
-        if ((accept & !own) | refuse | abort | !owing) begin
+        if ((accept & !own) | refuse | aborts | !owing) begin
             once_more_next = 1'b0;
         end
         if (accept) begin
@@ -718,7 +718,7 @@ module s6_two_channel_transaction (
             timer_clear = 1'b1;
             leaving_next = 1'b1;
         end
-        if (abort) begin
+        if (aborts) begin
             leaving_next = 1'b0;
             probing_next = 1'b0;
             settling_next = 1'b0;
@@ -766,7 +766,7 @@ module s6_two_channel_transaction (
     always @* begin
         is_calibrated_next = is_calibrated;
         passes_next = passes;
-        if (abort) begin
+        if (aborts) begin
             is_calibrated_next = 1'b0;
         end
         if (verdict_is_received & measuring & !(HAS_ALIGNMENT & is_fixed)) begin
@@ -782,7 +782,7 @@ module s6_two_channel_transaction (
         if (afresh | (HAS_ALIGNMENT & is_fixed)) begin
             is_calibrated_next = 1'b0;
         end
-        if (afresh | abort | verdict_is_doubtful) begin
+        if (afresh | aborts | verdict_is_doubtful) begin
             passes_next = 2'd0;
         end
     end
@@ -875,7 +875,7 @@ module s6_two_channel_transaction (
             start_now <= accept;
             run_now <= running;
             extra <= |first_low_extra_cycles;
-            stop_now <= !running | abort | leave;
+            stop_now <= !running | aborts | leave;
             is_calibrated <= is_calibrated_next;
             acquiring <= acquiring_next;
             slow_now <= slow_now_next;
@@ -915,7 +915,7 @@ module s6_two_channel_transaction (
     always @(posedge clock) begin
         f_past_valid <= 1'b1;
         f_low_cycles <= (level | reset) ? 16'd0 : (&f_low_cycles) ? f_low_cycles : f_low_cycles + 16'd1;
-        f_quiet_us <= (!f_quiet | abort | reset) ? 16'd0 : (tick_us & !(&f_quiet_us)) ? f_quiet_us + 16'd1 : f_quiet_us;
+        f_quiet_us <= (!f_quiet | aborts | reset) ? 16'd0 : (tick_us & !(&f_quiet_us)) ? f_quiet_us + 16'd1 : f_quiet_us;
     end
     reg f_owed; initial f_owed = 1'b0;
     reg f_lost; initial f_lost = 1'b0;
@@ -924,7 +924,7 @@ module s6_two_channel_transaction (
     wire f_in_frame = (phase == PHASE_FIRST_LOW) | (phase == PHASE_FRAME) | (phase == PHASE_TAIL) | (phase == PHASE_RECOVERY) | (phase == PHASE_PARK);
     always @(posedge clock) begin
         f_lost <= lost & !reset;
-        f_tells <= !reset & (refuse | announce | (give_up & !abort & !answered & !found_late));
+        f_tells <= !reset & (refuse | announce | (give_up & !aborts & !answered & !found_late));
         f_owed <= !reset & (f_taken | (f_owed & !publish));
     end
 `ifndef FORMAL_ANY_STATE
@@ -936,8 +936,8 @@ module s6_two_channel_transaction (
         one_result_per_trigger_at_rest: assert ((phase != PHASE_READY) | !f_owed | owed | f_tells | publish | give_up);
         one_result_per_trigger_lemma_rest: assert (f_in_frame | !(under_way | answered));
         one_result_per_trigger_lemma_frame: assert (!f_in_frame | owing | answered);
-        one_result_per_trigger_lemma_once: assert (!answered | !verdict_is_pending | abort);
-        one_result_per_trigger_lemma_where: assert (!answered | abort | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
+        one_result_per_trigger_lemma_once: assert (!answered | !verdict_is_pending | aborts);
+        one_result_per_trigger_lemma_where: assert (!answered | aborts | (phase == PHASE_RECOVERY) | (late & (phase == PHASE_FRAME)));
         one_result_per_trigger_lemma_open: assert (f_owed == (owing | f_tells | publish));
     end
     always @(posedge clock) if (f_past_valid & !$past(reset)) begin
@@ -948,7 +948,7 @@ module s6_two_channel_transaction (
         low_for_tr_lemma_timer: assert ((phase != PHASE_NOT_READY) | (timer <= f_low_cycles));
         low_for_tr_lemma_limit: assert ((phase != PHASE_NOT_READY) | cleared | (timer_limit == READY_LOW_CYCLES));
         low_for_tr_lemma_hit: assert ((phase != PHASE_NOT_READY) | !timer_hit | (f_low_cycles >= READY_LOW_CYCLES));
-        abort_pause: assert (!f_quiet | abort | (phase_next != PHASE_NOT_READY) | (f_quiet_us >= ABORT_US - 16'd3));
+        abort_pause: assert (!f_quiet | aborts | (phase_next != PHASE_NOT_READY) | (f_quiet_us >= ABORT_US - 16'd3));
         abort_pause_lemma_timer: assert (!f_quiet | ({1'b0, timer} + {16'd0, timer_step} <= {1'b0, f_quiet_us} + 17'd3));
         abort_pause_lemma_limit: assert (!f_quiet | cleared | (timer_limit == ABORT_US));
         abort_pause_lemma_hit: assert (!f_quiet | !timer_hit | (f_quiet_us >= ABORT_US - 16'd3));
@@ -972,10 +972,10 @@ module s6_two_channel_transaction (
     // a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
     wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
     wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | ((phase == PHASE_TAIL) & was_center);
-    wire f_timed = (f_rank(phase) != 3'd0) & !abort & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts;
+    wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts;
     always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
-        forward_only: assert ((f_rank(phase) <= f_rank($past(phase))) | $past(abort));
-        if ($past(abort)) forward_only_abort: assert (phase == PHASE_ABORT);
+        forward_only: assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));
+        if ($past(aborts)) forward_only_abort: assert (phase == PHASE_ABORT);
         if ((phase == $past(phase)) & $past(f_timed)) begin
             phases_are_timed: assert (timer == $past(timer) + {15'd0, $past(timer_step)});
             phases_are_timed_to_the_end: assert (timer_hit == (($past(timer) >= $past(timer_limit)) & !$past(cleared)));
@@ -985,15 +985,15 @@ module s6_two_channel_transaction (
             if (phase == PHASE_RECOVERY & !is_own) phases_are_timed_recovery: assert ((timer_limit == $past({3'd0, recovery_limit_cycles})) | $past(own));
             if (phase == PHASE_FRAME) phases_are_timed_frame: assert (timer_limit == $past({4'd0, start_timeout_us}));
         end
-        if (!$past(abort)) begin
+        if (!$past(aborts)) begin
             if (($past(phase) == PHASE_ABORT) & $past(timer_hit) & !$past(probing)) phases_end_abort: assert (phase == PHASE_NOT_READY);
             if (($past(phase) == PHASE_FIRST_LOW) & $past(timer_hit)) phases_end: assert (phase == PHASE_FRAME);
-            if (($past(phase) == PHASE_RECOVERY) & $past(timer_hit)) phases_end_recovery: assert ((phase == PHASE_NOT_READY) | abort);
-            if ($past(phase) == PHASE_PARK) phases_end_park: assert (abort | (phase != PHASE_PARK));
+            if (($past(phase) == PHASE_RECOVERY) & $past(timer_hit)) phases_end_recovery: assert ((phase == PHASE_NOT_READY) | aborts);
+            if ($past(phase) == PHASE_PARK) phases_end_park: assert (aborts | (phase != PHASE_PARK));
             if (($past(phase) == PHASE_TAIL) & $past(was_center)) phases_end_tail: assert (phase == PHASE_RECOVERY);
             if ((($past(phase) == PHASE_FRAME) | ($past(phase) == PHASE_TAIL)) & $past(timer[12]) & !(($past(phase) == PHASE_FRAME) & $past(hunting)))
-                phases_end_watchdog: assert (abort | (phase != $past(phase)));
-            if (($past(phase) == PHASE_FRAME) & $past(timer_hit & hunting & was_hunting)) phases_end_hunting: assert (abort | (phase != PHASE_FRAME));
+                phases_end_watchdog: assert (aborts | (phase != $past(phase)));
+            if (($past(phase) == PHASE_FRAME) & $past(timer_hit & hunting & was_hunting)) phases_end_hunting: assert (aborts | (phase != PHASE_FRAME));
         end
     end
 `endif

@@ -57,7 +57,7 @@ fn double_edge_agrees_on_a_line_with_jitter() {
             out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
             first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, position_crc, position_width, position_has_f2, recovery_cycles, delay_cycles, phase, edge_measured, edge_offset, glitch, busy,
             sample_strobe, sample_second, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply, answer, reply_good, info_active, info_1, info_2,
-            info_came, info_good, calibrated);
+            info_came, info_good, info_crcs, calibrated);
         let recording = three_way(name, &mut kernel, &design, &stimulus).unwrap();
         let fresh: u128 = recording.output("result_strobe").iter().sum();
         assert_eq!(fresh, case.frames as u128, "{name}");

@@ -10,6 +10,7 @@ mod outputs;
 mod parallel;
 mod rates;
 mod safety;
+mod second;
 mod spi;
 mod three_ways;
 mod uart;

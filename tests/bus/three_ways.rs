@@ -31,10 +31,10 @@ macro_rules! with_channels {
     };
 }
 
-/// What a bus's card has besides: the outputs within the device for one of them.
+/// What a bus's card has besides: the outputs within the device and the second interface for one of them.
 fn more(bus: HostBus) -> &'static str {
     match bus {
-        HostBus::Apb => "[outputs]\nparts = [\"position\", \"interrupt\"]\n",
+        HostBus::Apb => "[outputs]\nparts = [\"position\", \"interrupt\"]\n[safety]\nparts = [\"recovery_counter\", \"second_interface\"]\n",
         _ => "",
     }
 }
@@ -61,7 +61,11 @@ fn kernels(bus: HostBus) -> (Box<dyn Engine>, Design) {
                 .output("direct_fresh0_o", |b| &mut b.direct_fresh_o[0])
                 .output("direct_fresh1_o", |b| &mut b.direct_fresh_o[1])
                 .output("direct_error0_o", |b| &mut b.direct_error_o[0])
-                .output("direct_error1_o", |b| &mut b.direct_error_o[1]);
+                .output("direct_error1_o", |b| &mut b.direct_error_o[1])
+                .input("second_sck_i", |b| &mut b.second_sck_i[0])
+                .input("second_cs_n_i", |b| &mut b.second_cs_n_i[0])
+                .output("second_miso_o", |b| &mut b.second_miso_o[0])
+                .output("second_miso_oe", |b| &mut b.second_miso_oe[0]);
             Box::new(engine)
         }
         HostBus::Wishbone => {
@@ -114,8 +118,8 @@ fn stimulus(kernel: &dyn Engine) -> Stimulus {
             let stays = match name {
                 "rst_i" | "trigger_i" => 400,
                 _ if name.starts_with("bus_") => 6,
-                "spi_cs_n_i" => 500,
-                "spi_sck_i" => 4,
+                "spi_cs_n_i" | "second_cs_n_i" => 500,
+                "spi_sck_i" | "second_sck_i" => 4,
                 "spi_mosi_i" => 20,
                 _ if name.contains("ready") => 2,
                 _ if name.contains("data0_i") || name.contains("data1_i") => 60,
@@ -131,8 +135,8 @@ fn stimulus(kernel: &dyn Engine) -> Stimulus {
                 _ if name.contains("adr") || name.contains("addr") => u128::from(
                     addresses[rng.in_range(0, addresses.len() as u64 - 1) as usize] << shift,
                 ),
-                "spi_sck_i" => *value ^ 1,
-                "spi_cs_n_i" => (rng.in_range(0, 3) == 0).into(),
+                "spi_sck_i" | "second_sck_i" => *value ^ 1,
+                "spi_cs_n_i" | "second_cs_n_i" => (rng.in_range(0, 3) == 0).into(),
                 // Addresses of the window; anything elsewhere.
                 "bus_data_i" => {
                     u128::from(addresses[rng.in_range(0, addresses.len() as u64 - 1) as usize])

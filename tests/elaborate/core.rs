@@ -72,7 +72,7 @@ fn channel_agrees(name: &str, features: Features) {
         out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
         first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, position_crc, position_width, position_has_f2, recovery_cycles, delay_cycles, phase, edge_measured, edge_offset, glitch, busy,
         sample_strobe, sample_second, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply, answer, reply_good, info_active, info_1, info_2,
-        info_came, info_good, calibrated);
+        info_came, info_good, info_crcs, calibrated);
     let lines = [
         ("tick_us", 2),
         ("trigger", 8),

@@ -35,6 +35,7 @@ fn projects() -> Vec<Project> {
     };
     projects[1].card.safety = SafetyParts {
         recovery_counter: true,
+        second_interface: true,
     };
     let text = preset("s6_two_channel").unwrap();
     // A good name, and a keyword of SystemRDL.

@@ -97,7 +97,7 @@ fn kernels_engines_and_verilog_agree_on_requests() {
         out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
         first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, position_crc, position_width, position_has_f2, recovery_cycles, delay_cycles, busy,
         sample_strobe, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply,
-        reply_good, info_active, info_1, info_2, info_came, info_good, calibrated, alarm, host_word);
+        reply_good, info_active, info_1, info_2, info_came, info_good, info_crcs, calibrated, alarm, host_word);
     let seen = three_way("encoder_port", &mut kernel, &design, &recorded()).unwrap();
     let last = |name: &str| *seen.output(name).last().unwrap();
     assert_eq!((last("sequence"), last("fresh")), (4, 1));

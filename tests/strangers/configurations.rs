@@ -39,7 +39,6 @@ const fn card(
 }
 
 const LINK: &str = "[link]\nbaud = 1_000_000\nread_hz = 100\n[board]\nname = \"papilio_pro\"\n";
-const BOARD: &str = "[board]\nname = \"papilio_pro\"\n";
 
 /// Each bus, part, protocol and extreme at least once, with clocks whose half period is no whole number of picoseconds among them.
 const CARDS: [Card; 26] = [
@@ -47,9 +46,9 @@ const CARDS: [Card; 26] = [
     card("widest", 96_000_000, 2_000_000, "uart", &["position_bits = 48\ncommand = \"111000\"", "clock_hz = 8_000_000\nposition_bits = 13\ncommand = \"000111\""], LINK),
     card("apb", 100_000_000, 3_125_000, "apb", &[NEW, OLD], "[outputs]\nparts = [\"position\", \"interrupt\"]\n"),
     card("wishbone", 48_000_000, 3_000_000, "wishbone", &[NEW, OLD], "[outputs]\nparts = [\"interrupt\"]\n"),
-    card("axi_lite", 77_000_000, 7_000_000, "axi_lite", &[NEW, OLD], "[outputs]\nparts = [\"position\"]\n[safety]\nparts = [\"recovery_counter\"]\n"),
+    card("axi_lite", 77_000_000, 7_000_000, "axi_lite", &[NEW, OLD], "[outputs]\nparts = [\"position\"]\n[safety]\nparts = [\"recovery_counter\", \"second_interface\"]\n"),
     card("spi", 73_728_000, 4_608_000, "spi", &[NEW, OLD], ""),
-    card("spi_board", 64_000_000, 8_000_000, "spi", &[NEW, OLD], BOARD),
+    card("spi_board", 64_000_000, 8_000_000, "spi", &[NEW, OLD], "[board]\nname = \"papilio_pro\"\n[safety]\nparts = [\"second_interface\"]\n"),
     card("parallel", 240_000_000, 10_000_000, "parallel", &[NEW, OLD], ""),
     card("parallel_board", 80_000_000, 8_000_000, "parallel", &[NEW], "[board]\nname = \"papilio_pro\"\n[outputs]\nparts = [\"interrupt\"]\n"),
     card("bare", 100_000_000, 4_000_000, "none", &[NEW], ""),

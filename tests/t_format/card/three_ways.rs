@@ -103,7 +103,7 @@ fn kernels_engines_and_verilog_agree_on_a_t_format_port() {
         out endat_clk, data_o, data_oe, result_strobe, position, position_valid, fresh, sequence,
         first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed, position_crc, position_width, position_has_f2, recovery_cycles, delay_cycles, busy,
         sample_strobe, request_runs, line_high, displaced, over, over_request, over_cause, over_flags, reply,
-        reply_good, info_active, info_1, info_2, info_came, info_good, calibrated, alarm, host_word);
+        reply_good, info_active, info_1, info_2, info_came, info_good, info_crcs, calibrated, alarm, host_word);
     let seen = three_way("t_format_port", &mut kernel, &design, &recorded()).unwrap();
     // Something has happened, good and bad, by triggers and by the host.
     assert!(*seen.output("sequence").last().unwrap() > 10);
