@@ -73,7 +73,7 @@ pub struct AddInfo {
     pub came: Signal<Out, Bits<2>>,
     /// The CRC of those that came is right.
     pub good: Signal<Out, Bits<2>>,
-    /// The CRCs with which they came: info 1 in bits 4..0, info 2 in bits 9..5.
+    /// The CRCs with which they came, 0 otherwise: info 1 in bits 4..0, info 2 in bits 9..5.
     pub crcs: Signal<Out, Bits<10>>,
     selected: Reg<Bits<2>>,
     first: Reg<Bits<24>>,
@@ -151,6 +151,8 @@ impl Logic for AddInfo {
         if self.start.val() {
             self.seen.d.next = 0.into();
             self.right.d.next = 0.into();
+            self.first_crc.d.next = 0.into();
+            self.second_crc.d.next = 0.into();
             self.trusted.d.next = false;
         }
 

@@ -195,21 +195,15 @@ impl Logic for WholeResult {
         self.is_open.next = self.open_now.val();
 
         // The content counts if its CRC is right; the CRC stands as it came.
-        self.filled_1.next = 0.into();
-        if self.info_came.val().get_bit(0) {
-            self.filled_1.next = (bit_cast::<31, 5>(self.info_crcs.val().get_bits::<5>(0)) << 26)
-                | (bit_cast::<31, 1>(1.into()) << 24);
-        }
+        self.filled_1.next = (bit_cast::<31, 5>(self.info_crcs.val().get_bits::<5>(0)) << 26)
+            | (bit_cast::<31, 1>(self.info_came.val().get_bits::<1>(0)) << 24);
         if self.info_came.val().get_bit(0) & self.info_good.val().get_bit(0) {
             self.filled_1.next = self.filled_1.val()
                 | bit_cast::<31, 24>(self.info_1.val())
                 | (bit_cast::<31, 1>(1.into()) << 25);
         }
-        self.filled_2.next = 0.into();
-        if self.info_came.val().get_bit(1) {
-            self.filled_2.next = (bit_cast::<31, 5>(self.info_crcs.val().get_bits::<5>(5)) << 26)
-                | (bit_cast::<31, 1>(1.into()) << 24);
-        }
+        self.filled_2.next = (bit_cast::<31, 5>(self.info_crcs.val().get_bits::<5>(5)) << 26)
+            | (bit_cast::<31, 1>(self.info_came.val().get_bits::<1>(1)) << 24);
         if self.info_came.val().get_bit(1) & self.info_good.val().get_bit(1) {
             self.filled_2.next = self.filled_2.val()
                 | bit_cast::<31, 24>(self.info_2.val())

@@ -257,7 +257,7 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
             "direct outputs of a channel: crop, error",
             DirectOutput::new(0, 29),
         )?,
-        Subject::new("interrupt", "interrupt of two channels", Interrupt::new(2))?,
+        Subject::new("irq", "interrupt of two channels", Interrupt::new(2))?,
         Subject::new(
             "second_interface",
             "SPI of the second interface, without its records",

@@ -20,7 +20,7 @@ The properties stand at the end of their modules below `` `ifdef FORMAL ``, so o
 reset, and all settings, legal or not. *From the start values* means: after configuration of the FPGA, for ever; the proof is an induction over four cycles, without bound. *From any
 state* means: whatever the registers hold, for instance after an upset. The properties of a part are proved together, so one may lean on another in the cycles before.
 
-**What it does not say.** The bus fronts are proved in the suite (`tests/verilog/fronts.rs`); services, line monitor, direct outputs, recovery counter and interrupt are simulated only. A frame that carries
+**What it does not say.** The bus fronts are proved in the suite (`tests/verilog/fronts.rs`); services, line monitor, direct outputs, recovery counter, second interface and interrupt are simulated only. A frame that carries
 a request, additional data or a supplement, and a clock that goes on, are outside `crc_as_received`, `error_bits_as_received` and `bits_counted`; `forward_only`, `phases_are_timed` and
 `phases_end` are about channels without requests, diagnosis and continuous clock, `one_result_per_trigger` about those without requests and continuous clock. `crc16_as_sent` takes for
 granted that a byte of a set, once it is there, stays until it has been written, as the port says. `first_word_as_sent` is about the first word of a command, while no access of an earlier one

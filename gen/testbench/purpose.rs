@@ -208,7 +208,7 @@ fn second(card: &CardConfig) -> Option<Value> {
             // The age has gone on since; what stands above it is of the result.
             age => usize::from(RESULT.register("age_recovery").map_or(0, |r| r.offset)),
             age_bits => RESULT.field("age_recovery", "age_us").width,
-            sck_half_ns => real(SCK_HALF_CYCLES as f64 * clock_ns(card.system_hz)),
+            sck_half_ns => real(SCK_HALF_CYCLES * clock_ns(card.system_hz)),
         }
     };
     card.safety.second_interface.then(|| of(card))

@@ -52,7 +52,7 @@ module s6_two_channel_add_info (
     output wire   [1:0] came,
     // The CRC of those that came is right.
     output wire   [1:0] good,
-    // The CRCs with which they came: info 1 in bits 4..0, info 2 in bits 9..5.
+    // The CRCs with which they came, 0 otherwise: info 1 in bits 4..0, info 2 in bits 9..5.
     output wire   [9:0] crcs
 );
     localparam   [7:0] SEPARATOR_CYCLES = 8'd62;
@@ -142,6 +142,8 @@ module s6_two_channel_add_info (
         if (start) begin
             seen_next = 2'd0;
             right_next = 2'd0;
+            first_crc_next = 5'd0;
+            second_crc_next = 5'd0;
             trusted_next = 1'b0;
         end
         if (over) begin

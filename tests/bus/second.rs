@@ -138,8 +138,8 @@ fn both_controllers_read_the_same() {
                     *came |= info >> 24 & 3 == 3;
                     // The CRC came with these bits.
                     let crc = (0..24).rev().fold(0x1F, |crc: u32, bit| {
-                        let feed = (crc >> 4 ^ info >> bit) & 1;
-                        (crc << 1 ^ feed * 0x0B) & 0x1F
+                        let feed = ((crc >> 4) ^ (info >> bit)) & 1;
+                        ((crc << 1) ^ (feed * 0x0B)) & 0x1F
                     });
                     assert!(info == 0 || crc ^ 0x1F == info >> 26, "{info:08x}");
                 }
@@ -160,13 +160,13 @@ fn an_answer_is_of_one_moment() {
         // The result comes while the answer goes out; each time elsewhere.
         master.bench.run_cycles(10 + 200 * round);
         let bytes = answer(&mut master);
-        for channel in 0..2 {
+        for (channel, before) in before.iter().enumerate() {
             assert!(is_right(&bytes, channel));
             let mut seen = second_told(&bytes, channel);
             // It says that a trigger has come since.
             assert_eq!(seen[5] >> 30 & 1, 1);
             seen[5] &= !(1 << 30);
-            assert_eq!(seen, before[channel], "{round}");
+            assert_eq!(seen, *before, "{round}");
         }
         master.bench.run_cycles(60_000);
         let bytes = answer(&mut master);

@@ -99,26 +99,38 @@ fn cocotb_reads_the_identification_of_every_emission() {
     }
 }
 
-/// The full product; `cargo test every_emission_runs -- --ignored`.
+/// The full product: every emission in every simulator and language; `cargo test every_emission_runs -- --ignored --nocapture` tells each that
+/// has ended. Where it was stopped, `FIRST_CASE` goes on.
 #[test]
-#[ignore = "some 100 simulations, and as many builds"]
+#[ignore = "136 simulations, and as many builds"]
 fn every_emission_runs_in_every_language() {
     if !has_tools() || !has_cocotb() {
         return;
     }
-    check("product", |emission, folder| {
-        let mut wrong = vec![];
-        if emission.files.iter().any(is_bench) {
-            for reader in LINTERS {
-                let (passes, text) = reader.play(folder, &emission.files).unwrap();
-                if !passes {
-                    wrong.push(format!("{reader}: {text}"));
-                }
+    let texts = texts();
+    let readers = LINTERS.map(Some).into_iter().chain([None]);
+    let cases = texts
+        .iter()
+        .flat_map(|card| readers.clone().map(move |reader| (card, reader)));
+    let cases: Vec<_> = cases.enumerate().collect();
+    let first = std::env::var("FIRST_CASE").map_or(0, |n| n.parse().unwrap());
+    let said = on_both_cores(&cases[first..], |_, (case, ((name, text), reader))| {
+        let emission = emission(name, text);
+        let (folder, _) = write(&format!("product-{case}"), &emission.files);
+        let wrong = match reader {
+            // A port without a bus has no bench.
+            Some(_) if !emission.files.iter().any(is_bench) => None,
+            Some(reader) => {
+                let (passes, text) = reader.play(&folder, &emission.files).unwrap();
+                (!passes).then(|| format!("{reader}: {text}"))
             }
-        }
-        wrong.extend(cocotb(emission, folder, "-g2012"));
-        // It takes hours: what is known is told at once.
-        eprintln!("{}: {wrong:?}", emission.top());
-        wrong
+            None => cocotb(&emission, &folder, "-g2012"),
+        };
+        let _ = std::fs::remove_dir_all(folder);
+        let what = reader.map_or("cocotb".into(), |reader| reader.to_string());
+        let became = wrong.as_deref().unwrap_or("passes");
+        eprintln!("case {case} of {}: {name}, {what}: {became}", cases.len());
+        wrong.map(|text| format!("{name}: {text}"))
     });
+    assert!(said.is_empty(), "{}", said.join("\n"));
 }
