@@ -89,9 +89,17 @@ fn the_sizes_in_the_readme_are_those_of_the_area_table() {
         ("| the same behind AXI4-Lite", "card_axi_lite"),
         ("| the same behind SPI", "card_spi"),
         ("| the same behind the parallel bus", "card_parallel"),
+        ("| recovery counter", "recovery_counter"),
         ("| card with everything", "card_service"),
     ] {
         page.cells(head, &area(subject, XC6S.name).map(|n| n.to_string()));
+    }
+    for (head, one, other) in [
+        ("| direct outputs", "direct_output", "irq"),
+        ("| second interface", "second_interface", "second_record"),
+    ] {
+        let [ours, theirs] = [one, other].map(|subject| area(subject, XC6S.name));
+        page.cells(head, &[0, 1].map(|n| format!("{}; {}", ours[n], theirs[n])));
     }
     // The receiver of T-format has a sentence.
     let [lut, ff] = area("t_format", ICE40.name);
