@@ -55,7 +55,7 @@ impl Kind {
             Self::EncoderData => Some("answers arrive with the delay of the cable, in any phase; synchronised and tracked inside"),
             Self::Trigger => Some("belongs to no clock; synchronised inside, one system clock of jitter is documented"),
             Self::UartInput => Some("belongs to the host's clock; synchronised and sampled in mid bit inside"),
-            Self::BusInput | Self::BusData => Some("belongs to the host's clock; synchronised inside, see the bus's rules for set-up times"),
+            Self::BusInput | Self::BusData => Some("belongs to the clock of the other end; synchronised inside, see the rules of its bus for set-up times"),
             _ => None,
         }
     }

@@ -195,6 +195,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
             bare => project.bus == HostBus::Bare,
             system_hz => project.card.system_hz,
             channels => project.card.channels.len(),
+            second => project.card.safety.second_interface,
             protocols => project.protocols(),
             t_format => project.card.t_format_numbers().collect::<Vec<_>>(),
             quiet_ms => ABORT_US / 1_000,

@@ -1,7 +1,7 @@
 //! A module under construction: its names and nets, and the checks on them.
 
 use super::design::*;
-use super::names::{problem, verilog_name};
+use super::names::{problem_of_net, verilog_name};
 use super::plan::{Dependencies, PlanError};
 use super::scope::{child_port, Symbol};
 use super::tree::BlockNode;
@@ -249,7 +249,7 @@ impl Draft<'_> {
         let names = names.chain(module.parameters.iter().map(|p| &p.name));
         let names = names.chain(module.memories.iter().map(|m| &m.name));
         for name in names.chain(module.instances.iter().map(|i| &i.name)) {
-            if let Some(problem) = problem(name) {
+            if let Some(problem) = problem_of_net(name) {
                 return Err(self.block.error(name, problem, "rename the field"));
             }
             if let Some(other) = seen.insert(name.to_lowercase(), name) {

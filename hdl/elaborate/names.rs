@@ -229,14 +229,17 @@ const CPP_WORDS: &[&str] = &[
     "xor_eq",
 ];
 
+/// Why a net cannot have a name, if it cannot.
+pub(super) fn problem_of_net(name: &str) -> Option<&'static str> {
+    let is_cpp = CPP_WORDS.contains(&name);
+    problem(name).or(is_cpp.then_some("is a word of C++"))
+}
+
 /// Why a name cannot be used in Verilog, if it cannot.
 pub(super) fn problem(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     if KEYWORDS.contains(&name) || KEYWORDS.contains(&lower.as_str()) {
         return Some("is a Verilog keyword");
-    }
-    if CPP_WORDS.contains(&name) {
-        return Some("is a word of C++");
     }
     let is_plain = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     if !is_plain || !name.starts_with(|c: char| c.is_ascii_alphabetic()) {
@@ -308,7 +311,7 @@ mod tests {
         assert!(problem("Release").is_some());
         assert!(problem("a$b").is_some());
         assert!(problem("_x").is_some());
-        assert!(problem("abort").is_some());
+        assert!(problem_of_net("abort").is_some() && problem("abort").is_none());
         assert!(problem("fall").is_none());
     }
 }
