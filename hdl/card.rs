@@ -217,12 +217,12 @@ impl Logic for CardCore {
         connect!(self.trigger <= self.bank; register = trigger_now, sources, period_cycles);
 
         for i in 0..self._own_triggers {
-            self.own_trigger[i].clock.next = self.clk_i.val();
-            self.own_trigger[i].reset.next = self.rst_i.val();
+            connect!(self.own_trigger[i] <= self; clock = clk_i, reset = rst_i);
             self.own_trigger[i].hits.next = self.trigger.hits.val();
             self.own_trigger[i].home.next = self.bank.ring_home.val();
-            self.own_trigger[i].ignored_sources.next = self.registers[i].ignored_sources.val();
-            self.own_trigger[i].skip.next = self.registers[i].trigger_skip.val();
+            connect!(self.own_trigger[i] <= self.registers[i];
+                ignored_sources, skip = trigger_skip
+            );
             self.own_trigger[i].off.next = self.bank.disabled.val().get_bit(i);
             self.own_trigger[i].restart.next = self.bank.restart.val();
             self.trigger_of[i].next = self.own_trigger[i].trigger.val();
@@ -249,12 +249,9 @@ impl Logic for CardCore {
         self.faulty[0].next = false;
         self.bank.ring_in.next = self.ring_link[0].val();
         for i in 0..self._channels {
-            self.registers[i].clock.next = self.clk_i.val();
-            self.registers[i].reset.next = self.rst_i.val();
-            self.port[i].clock.next = self.clk_i.val();
-            self.port[i].reset.next = self.rst_i.val();
-            self.port[i].tick_us.next = self.timebase.tick_us.val();
-            self.port[i].timestamp.next = self.timebase.timestamp.val();
+            connect!(self.registers[i] <= self; clock = clk_i, reset = rst_i);
+            connect!(self.port[i] <= self; clock = clk_i, reset = rst_i);
+            connect!(self.port[i] <= self.timebase; tick_us, timestamp);
             self.port[i].trigger.next = self.trigger_of[i].val();
             self.port[i].calibrate.next = self.bank.calibrate.val().get_bit(i);
 
@@ -264,12 +261,12 @@ impl Logic for CardCore {
                 request_id, field_gap_us
             );
 
-            self.port[i].host_address.next = self.bank.service_address.val();
-            self.port[i].host_line.next = self.bank.service_line.val();
+            connect!(self.port[i] <= self.bank;
+                host_address = service_address, host_line = service_line
+            );
             self.port[i].host_read.next = self.bank.service_read.val().get_bit(i);
             self.port[i].host_write.next = self.bank.service_write.val().get_bit(i);
-            self.port[i].host_half.next = self.bank.service_half.val();
-            self.port[i].host_data.next = self.bank.service_data.val();
+            connect!(self.port[i] <= self.bank; host_half = service_half, host_data = service_data);
             // A word that is not asked for is 0.
             self.selected[i].next = 0.into();
             if self.bank.service_channels.val().get_bit(i) {
@@ -334,8 +331,7 @@ impl Logic for CardCore {
             self.io_in[i].next = self.port[i].io_in[0].val();
         }
         for i in 0..self._services {
-            self.service[i].clock.next = self.clk_i.val();
-            self.service[i].reset.next = self.rst_i.val();
+            connect!(self.service[i] <= self; clock = clk_i, reset = rst_i);
             self.service[i].tick_us.next = self.timebase.tick_us.val();
             self.io_address[2 * i].next = self.service[i].io_address.val();
             self.io_address[2 * i + 1].next = self.service[i].io_address.val();
@@ -351,8 +347,9 @@ impl Logic for CardCore {
             self.service[i].host_clear.next = self.bank.service_clear.val();
             self.service[i].host_write.next =
                 self.in_service.val() & self.bank.service_write.val().get_bits::<2>(2 * i).any();
-            self.service[i].host_half.next = self.bank.service_half.val();
-            self.service[i].host_data.next = self.bank.service_data.val();
+            connect!(self.service[i] <= self.bank;
+                host_half = service_half, host_data = service_data
+            );
             self.word_link[i + 1].next = self.word_link[i].val() | self.service[i].host_word.val();
         }
         for i in self._services..self._service_links {
@@ -371,10 +368,8 @@ impl Logic for CardCore {
         self.push_valid.next = false;
         self.push_byte.next = 0.into();
         for i in 0..self._streams {
-            self.stream[i].clock.next = self.clk_i.val();
-            self.stream[i].reset.next = self.rst_i.val();
-            self.stream[i].trigger.next = self.trigger.trigger.val();
-            self.stream[i].trigger_count.next = self.trigger.trigger_count.val();
+            connect!(self.stream[i] <= self; clock = clk_i, reset = rst_i);
+            connect!(self.stream[i] <= self.trigger; trigger, trigger_count);
             self.stream[i].timestamp.next = self.timebase.timestamp.val();
             self.stream[i].owes.next = self.set_owes[i].val();
             self.stream[i].replaced.next = self.set_replaced[i].val();
@@ -393,8 +388,7 @@ impl Logic for CardCore {
             self.stream[i].push_take.next = self.push_take.val();
         }
         for i in 0..self._sets {
-            self.set[i].clock.next = self.clk_i.val();
-            self.set[i].reset.next = self.rst_i.val();
+            connect!(self.set[i] <= self; clock = clk_i, reset = rst_i);
             self.set[i].trigger.next = self.trigger.trigger.val();
             self.set[i].busy.next = self.port[i].busy.val() | !self.trigger_of[i].val();
             connect!(self.set[i] <= self.port[i];
@@ -417,11 +411,9 @@ impl Logic for CardCore {
         // Outputs within the device.
         self.part_write.next = self.bank.begins.val() & self.write.val();
         for i in 0..self._directs {
-            self.direct[i].clock.next = self.clk_i.val();
-            self.direct[i].reset.next = self.rst_i.val();
+            connect!(self.direct[i] <= self; clock = clk_i, reset = rst_i);
             connect!(self.direct[i] <= self.port[i]; result_strobe, position, fresh, cause, alarm);
-            self.direct[i].word_address.next = self.bank.address.val();
-            self.direct[i].in_range.next = self.bank.is_inside.val();
+            connect!(self.direct[i] <= self.bank; word_address = address, in_range = is_inside);
             connect!(self.direct[i] <= self; lane, write = part_write, write_data);
             self.direct_byte[i].next =
                 self.direct_byte[i + 1].val() | self.direct[i].read_byte.val();
@@ -438,10 +430,8 @@ impl Logic for CardCore {
         self.part_byte[1].next = 0.into();
         self.irq_o.next = false;
         for i in 0..self._interrupts {
-            self.interrupt[i].clock.next = self.clk_i.val();
-            self.interrupt[i].reset.next = self.rst_i.val();
-            self.interrupt[i].word_address.next = self.bank.address.val();
-            self.interrupt[i].in_range.next = self.bank.is_inside.val();
+            connect!(self.interrupt[i] <= self; clock = clk_i, reset = rst_i);
+            connect!(self.interrupt[i] <= self.bank; word_address = address, in_range = is_inside);
             connect!(self.interrupt[i] <= self; lane, write = part_write, write_data);
             self.part_byte[1].next = self.interrupt[i].read_byte.val();
             self.irq_o.next = self.interrupt[i].irq.val();
@@ -455,13 +445,10 @@ impl Logic for CardCore {
                 self.port[i].over.val() & self.port[i].over_request.val();
         }
         for i in 0..self._recoveries {
-            self.recovery[i].clock.next = self.clk_i.val();
-            self.recovery[i].reset.next = self.rst_i.val();
-            self.recovery[i].endat_clk.next = self.port[i].endat_clk.val();
-            self.recovery[i].data_oe.next = self.port[i].data_oe.val();
+            connect!(self.recovery[i] <= self; clock = clk_i, reset = rst_i);
+            connect!(self.recovery[i] <= self.port[i]; endat_clk, data_oe);
             self.recovery[i].data_i.next = self.endat_data_i[i].val();
-            self.recovery[i].word_address.next = self.bank.address.val();
-            self.recovery[i].in_range.next = self.bank.is_inside.val();
+            connect!(self.recovery[i] <= self.bank; word_address = address, in_range = is_inside);
             self.recovery[i].lane.next = self.lane.val();
             self.recovery_byte[i].next =
                 self.recovery_byte[i + 1].val() | self.recovery[i].read_byte.val();
@@ -473,8 +460,7 @@ impl Logic for CardCore {
 
         // Channels with requests: the registers see a result when its informations are there, too.
         for i in 0..self._infos {
-            self.whole[i].clock.next = self.clk_i.val();
-            self.whole[i].reset.next = self.rst_i.val();
+            connect!(self.whole[i] <= self; clock = clk_i, reset = rst_i);
             self.whole[i].tick_us.next = self.timebase.tick_us.val();
             self.whole[i].taken.next = self.registers[i].taken.val();
             connect!(self.whole[i] <= self.port[i];
@@ -526,8 +512,7 @@ impl Logic for CardCore {
 
         // For the second controller: what the registers show, as it is now.
         for i in 0..self._seconds {
-            self.second[i].clock.next = self.clk_i.val();
-            self.second[i].reset.next = self.rst_i.val();
+            connect!(self.second[i] <= self; clock = clk_i, reset = rst_i);
             self.second[i].sck.next = self.second_sck_i[i].val();
             self.second[i].cs_n.next = self.second_cs_n_i[i].val();
             self.second[i].word.next = self.record_link[0].val();
@@ -535,8 +520,7 @@ impl Logic for CardCore {
             self.second_miso_oe[i].next = self.second[i].miso_enable.val();
         }
         for i in 0..self._records {
-            self.record[i].clock.next = self.clk_i.val();
-            self.record[i].reset.next = self.rst_i.val();
+            connect!(self.record[i] <= self; clock = clk_i, reset = rst_i);
             connect!(self.record[i] <= self.second[0]; take, channel, word_at);
             self.record[i].word_in.next = self.record_link[i + 1].val();
             self.record_link[i].next = self.record[i].word.val();
@@ -561,8 +545,7 @@ impl Logic for CardCore {
 
         // Positions of running clocks.
         for i in 0..self._runs {
-            self.run[i].clock.next = self.clk_i.val();
-            self.run[i].reset.next = self.rst_i.val();
+            connect!(self.run[i] <= self; clock = clk_i, reset = rst_i);
             self.run[i].collects.next = self.stream[0].collects[0].val();
             self.run[i].taken.next = self.registers[i].taken.val();
             connect!(self.run[i] <= self.port[i]; result_strobe, sequence, first_fall_timestamp);

@@ -290,8 +290,7 @@ impl Logic for Channel {
         self.transaction.reset.next = self.reset.val();
         self.snapshot.reset.next = self.reset.val();
 
-        self.settings.is_at_rest.next = self.transaction.is_at_rest.val();
-        self.settings.start.next = self.transaction.start.val();
+        connect!(self.settings <= self.transaction; is_at_rest, start);
         connect!(self.settings <= self;
             period_cycles, first_low_extra_cycles, command, frame_command = command_now,
             filter_cycles, filter_half, position_bits, start_window_cycles, start_timeout_us,
@@ -304,8 +303,7 @@ impl Logic for Channel {
         }
 
         // Which command the next frame has is settled before it begins, and stays until all has been told of it.
-        self.command_now.next = self.settings.command_now.val();
-        self.payload_bits.next = self.settings.position_bits_now.val();
+        connect!(self <= self.settings; command_now, payload_bits = position_bits_now);
         if self.has_requests.val() {
             self.command_now.next = self.frame_command.q.val();
             if self.shape.has_parameter.val() {
@@ -318,14 +316,12 @@ impl Logic for Channel {
         self.own_wanted.next = false;
         self.ride_wanted.next = false;
         for i in 0..self._requests {
-            self.own_asked[i].clock.next = self.clock.val();
-            self.own_asked[i].reset.next = self.reset.val();
+            connect!(self.own_asked[i] <= self; clock, reset);
             self.own_asked[i].raise.next = self.request_own.val() & !self.request_cancel.val();
             self.own_asked[i].clear.next =
                 self.request_cancel.val() | (self.transaction.begun.val() & self.frame_own.q.val());
             self.own_wanted.next = self.own_asked[i].is_set.val();
-            self.ride_asked[i].clock.next = self.clock.val();
-            self.ride_asked[i].reset.next = self.reset.val();
+            connect!(self.ride_asked[i] <= self; clock, reset);
             self.ride_asked[i].raise.next = self.request_ride.val() & !self.request_cancel.val();
             self.ride_asked[i].clear.next = self.request_cancel.val()
                 | (self.transaction.begun.val() & self.frame_ride.q.val());
@@ -347,8 +343,9 @@ impl Logic for Channel {
         self.shape.command.next = self.command_now.val();
 
         self.filter.pin.next = self.data_i.val();
-        self.filter.filter_cycles.next = self.settings.filter_cycles_now.val();
-        self.filter.filter_half.next = self.settings.filter_half_now.val();
+        connect!(self.filter <= self.settings;
+            filter_cycles = filter_cycles_now, filter_half = filter_half_now
+        );
         self.filter.majority.next = self.majority.val();
         self.filter.both_edges.next = self.receiver.started.val();
 
@@ -367,14 +364,11 @@ impl Logic for Channel {
 
         connect!(self.delay <= self.transaction; drain, run, acquire, last_cell);
         self.delay.hunting.next = self.receiver.hunting.val();
-        self.delay.will_rise.next = self.clock_gen.will_rise.val();
-        self.delay.rise.next = self.clock_gen.rise.val();
-        self.delay.data_edge.next = self.filter.edge_strobe.val();
-        self.delay.edge_second.next = self.filter.edge_second.val();
+        connect!(self.delay <= self.clock_gen; will_rise, rise);
+        connect!(self.delay <= self.filter; data_edge = edge_strobe, edge_second);
         self.delay.in_answer.next = self.receiver.started.val() & !self.receiver.skipping.val();
         self.delay.slow.next = self.transaction.slow.val();
-        self.delay.mode.next = self.phase_mode.val();
-        self.delay.fixed_delay.next = self.fixed_delay.val();
+        connect!(self.delay <= self; mode = phase_mode, fixed_delay);
         self.delay.follow.next = self.receiver.start_found.val();
         self.delay.going_on.next = self.transaction.going_on.val();
         self.delay.period_cycles.next = self.period.val();
@@ -382,8 +376,7 @@ impl Logic for Channel {
 
         connect!(self.receiver <= self.transaction; start, aborts, acquire);
         self.receiver.rise.next = self.clock_gen.rise.val();
-        self.receiver.pulse.next = self.delay.pulse.val();
-        self.receiver.sample.next = self.delay.sample.val();
+        connect!(self.receiver <= self.delay; pulse, sample);
         self.receiver.level.next = self.filter.level.val();
         if self.has_double.val() & !self.delay.sample_second.val() {
             self.receiver.level.next = self.filter.level_first.val();
@@ -391,17 +384,14 @@ impl Logic for Channel {
         self.receiver.edge_in_window.next = self.delay.edge_in_window.val();
         self.receiver.payload_bits.next = self.payload_bits.val();
         connect!(self.receiver <= self.shape; has_f1, has_f2, has_parameter, has_supplement);
-        self.receiver.infos.next = self.add_info.infos.val();
-        self.receiver.look.next = self.add_info.look.val();
-        self.receiver.start_supplement.next = self.transaction.start_supplement.val();
-        self.receiver.going_on.next = self.transaction.going_on.val();
+        connect!(self.receiver <= self.add_info; infos, look);
+        connect!(self.receiver <= self.transaction; start_supplement, going_on);
         self.receiver.command.next = self.command_now.val();
 
         connect!(self.transaction <= self; tick_us, trigger, calibrate);
         self.transaction.level.next = self.filter.level.val();
         self.transaction.is_fixed.next = self.phase_mode.val() == self.fixed_mode.val();
-        self.transaction.sample.next = self.delay.sample.val();
-        self.transaction.center.next = self.delay.center.val();
+        connect!(self.transaction <= self.delay; sample, center);
         connect!(self.transaction <= self.receiver;
             hunting, started, start_refused, answer_done = done, finished, separated, info_missing
         );
@@ -416,8 +406,7 @@ impl Logic for Channel {
                 & (self.frame_own.q.val()
                     | (self.frame_ride.q.val() & self.wanted_shape.has_f2.val()))))
             & (!self.needs_four.val() | self.period_cycles.val().get_bits::<9>(2).any());
-        self.transaction.has_parameter.next = self.shape.has_parameter.val();
-        self.transaction.has_supplement.next = self.shape.has_supplement.val();
+        connect!(self.transaction <= self.shape; has_parameter, has_supplement);
         self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.val();
         self.transaction.is_own.next = self.frame_own.q.val();
         self.transaction.hold_off.next = self.hold_off.val();
@@ -451,8 +440,7 @@ impl Logic for Channel {
             settings_upset = is_upset
         );
 
-        self.snapshot.tick_us.next = self.tick_us.val();
-        self.snapshot.timestamp.next = self.timestamp.val();
+        connect!(self.snapshot <= self; tick_us, timestamp);
         self.snapshot.first_fall.next = self.transaction.start.val();
         self.snapshot.latched.next = self.receiver.latched.val();
         self.snapshot.delay_cycles.next = self.delay.delay_cycles.val();
@@ -462,8 +450,7 @@ impl Logic for Channel {
         connect!(self.snapshot <= self.receiver;
             position_in = payload, crc_received_in = crc_received, crc_computed_in = crc_computed
         );
-        self.snapshot.cause_in.next = self.transaction.cause.val();
-        self.snapshot.flags_in.next = self.transaction.flags.val();
+        connect!(self.snapshot <= self.transaction; cause_in = cause, flags_in = flags);
 
         // What comes MSB first stands the other way round in the payload.
         self.word.next = 0.into();
@@ -486,16 +473,13 @@ impl Logic for Channel {
         }
 
         self.add_info.start.next = self.transaction.start.val();
-        self.add_info.center.next = self.delay.center.val();
-        self.add_info.sample.next = self.delay.sample.val();
+        connect!(self.add_info <= self.delay; center, sample);
         self.add_info.answer_done.next = self.receiver.done.val();
-        self.add_info.has_f2.next = self.shape.has_f2.val();
-        self.add_info.has_supplement.next = self.shape.has_supplement.val();
+        connect!(self.add_info <= self.shape; has_f2, has_supplement);
         self.add_info.command.next = self.command_now.val();
         self.add_info.mrs.next = self.request_parameter.val().get_bits::<8>(16);
         self.add_info.info_done.next = self.info_taken.q.val() & self.has_requests.val();
-        self.add_info.crc_ok.next = self.crc_ok.val();
-        self.add_info.word.next = self.word.val();
+        connect!(self.add_info <= self; crc_ok, word);
         self.add_info.crc.next = self.receiver.crc_received.val();
         self.add_info.over.next = self.transaction.over.val() & self.has_requests.val();
         self.add_info.flags.next = self.transaction.flags.val().get_bits::<12>(0);
@@ -528,11 +512,9 @@ impl Logic for Channel {
             (self.frame_own.q.val() | self.frame_ride.q.val()) & !self.transaction.is_at_rest.val();
         self.line_high.next = (self.filter.level.val() | self.transaction.is_probed.val())
             & !self.transaction.run.val();
-        self.displaced.next = self.transaction.displaced.val();
-        self.over.next = self.transaction.over.val();
+        connect!(self <= self.transaction; displaced, over);
         self.over_request.next = self.frame_own.q.val() | self.frame_ride.q.val();
-        self.over_cause.next = self.transaction.cause.val();
-        self.over_flags.next = self.transaction.flags.val();
+        connect!(self <= self.transaction; over_cause = cause, over_flags = flags);
         self.answer.next = self.reply_word.q.val();
         self.reply.next = self.reply_word.q.val();
         self.turned.next = 0.into();

@@ -254,8 +254,7 @@ impl Logic for ChannelRegisters {
                 | place!(self.behind_now.val(), result.age_recovery.stale);
         }
         for i in 0..self._words {
-            self.held[i].clock.next = self.clock.val();
-            self.held[i].reset.next = self.reset.val();
+            connect!(self.held[i] <= self; clock, reset);
             self.held[i].d.next = self.held[i].q.val();
             if self.load.val() {
                 self.held[i].d.next = self.word[i].val();
@@ -293,8 +292,7 @@ impl Logic for ChannelRegisters {
             | self.byte[5].q.val();
         self.read_out.next = self.read_in.val() | self.read_byte.q.val();
 
-        self.ring.turn.next = self.ring_turn.val();
-        self.ring.byte_in.next = self.ring_in.val();
+        connect!(self.ring <= self; turn = ring_turn, byte_in = ring_in);
         self.ring_out.next = self.ring.byte_out.val();
         if self.ring_home.val() & !self.busy.val() {
             self.config0.d.next = self.ring.word0.val();

@@ -63,8 +63,7 @@ impl Logic for ClockGen {
     #[kernel]
     fn update(&mut self) {
         clock!(self, clock, half);
-        self.half.reset.next = self.reset.val();
-        self.half.period_cycles.next = self.period_cycles.val();
+        connect!(self.half <= self; reset, period_cycles);
         self.half.second.next = self.level.q.val();
         self.half.began.next = false;
         self.half.shorten.next = false;

@@ -312,8 +312,7 @@ impl Logic for EncoderPort {
             );
             self.t_format[i].bit_cycles.next = self.period_cycles.val().get_bits::<7>(0);
             self.t_format[i].reply_gap_us.next = self.start_timeout_us.val().get_bits::<6>(0);
-            self.t_format[i].field_gap_us.next = self.field_gap_us.val();
-            self.t_format[i].filter_cycles.next = self.filter_cycles.val();
+            connect!(self.t_format[i] <= self; field_gap_us, filter_cycles);
             self.t_format[i].host_address.next = self.host_address.val().get_bits::<3>(0);
             connect!(self.t_format[i] <= self; host_read, host_write, host_half, host_data);
             self.endat_clk.next = true;
@@ -345,8 +344,7 @@ impl Logic for EncoderPort {
             );
         }
         for i in 0..self._served {
-            self.served[i].clock.next = self.clock.val();
-            self.served[i].reset.next = self.reset.val();
+            connect!(self.served[i] <= self; clock, reset);
             connect!(self.served[i] <= self.channel[i];
                 over, over_request, over_cause, reply = answer, reply_good, info_active, info_1,
                 info_2, info_came, info_good, request_runs, line_high, displaced, sequence,
@@ -380,8 +378,7 @@ impl Logic for EncoderPort {
         for i in 0..self._services {
             connect!(self.service[i] <= self; clock, reset, tick_us);
             self.service[i].io_in[0].next = self.served[i].io_in.val();
-            self.served[i].io_address.next = self.service[i].io_address.val();
-            self.served[i].io_out.next = self.service[i].io_out.val();
+            connect!(self.served[i] <= self.service[i]; io_address, io_out);
             self.served[i].io_read.next = self.service[i].io_read[0].val();
             self.served[i].io_write.next = self.service[i].io_write[0].val();
             self.service[i].host_address.next = self.host_address.val();
@@ -389,13 +386,11 @@ impl Logic for EncoderPort {
             self.service[i].host_read.next = self.host_read.val() & !self.host_line.val();
             self.service[i].host_clear.next = false;
             self.service[i].host_write.next = self.host_write.val() & !self.host_line.val();
-            self.service[i].host_half.next = self.host_half.val();
-            self.service[i].host_data.next = self.host_data.val();
+            connect!(self.service[i] <= self; host_half, host_data);
             self.host_word.next = self.service[i].host_word.val();
         }
         for i in 0..self._monitors {
-            self.monitor[i].clock.next = self.clock.val();
-            self.monitor[i].reset.next = self.reset.val();
+            connect!(self.monitor[i] <= self; clock, reset);
             connect!(self.monitor[i] <= self.channel[i]; busy, edge_measured, edge_offset, over);
             // These come with a good position.
             self.monitor[i].over_bad.next = self.channel[i].over_cause.val().any()
@@ -406,8 +401,7 @@ impl Logic for EncoderPort {
             self.monitor[i].host_address.next = self.host_address.val().get_bits::<6>(0);
             self.monitor[i].host_read.next = self.host_read.val() & self.host_line.val();
             self.monitor[i].host_write.next = self.host_write.val() & self.host_line.val();
-            self.monitor[i].host_half.next = self.host_half.val();
-            self.monitor[i].host_data.next = self.host_data.val();
+            connect!(self.monitor[i] <= self; host_half, host_data);
             connect!(self.channel[i] <= self.monitor[i]; phase_mode, fixed_delay, majority);
             if self.monitor[i].alarm.val() {
                 self.alarm.next = true;

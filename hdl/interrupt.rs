@@ -88,14 +88,11 @@ impl Logic for Interrupt {
     #[kernel]
     fn update(&mut self) {
         for i in 0..self._channels {
-            self.had_result[i].clock.next = self.clock.val();
-            self.had_result[i].reset.next = self.reset.val();
+            connect!(self.had_result[i] <= self; clock, reset);
             self.had_result[i].d.next = self.result[i].val();
-            self.had_error[i].clock.next = self.clock.val();
-            self.had_error[i].reset.next = self.reset.val();
+            connect!(self.had_error[i] <= self; clock, reset);
             self.had_error[i].d.next = self.error[i].val();
-            self.had_alarm[i].clock.next = self.clock.val();
-            self.had_alarm[i].reset.next = self.reset.val();
+            connect!(self.had_alarm[i] <= self; clock, reset);
             self.had_alarm[i].d.next = self.alarm[i].val();
             self.one[i].next = 0.into();
             if self.result[i].val() {

@@ -382,8 +382,7 @@ impl Logic for LineDelay {
                     (bit_cast::<12, 11>(self.since_rise.q.val()) << 1)
                         | bit_cast::<12, 1>(self.edge_second.val().into());
             }
-            self.tracker[i].starts.next = self.first_center.val();
-            self.tracker[i].is_later.next = self.is_later.val();
+            connect!(self.tracker[i] <= self; starts = first_center, is_later);
             self.tracker[i].edge_strobe.next = self.measured_now.q.val();
             self.tracker[i].offset.next = self.offset_now.q.val();
             self.tracker[i].acquire.next = self.acquire.val();

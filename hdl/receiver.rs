@@ -504,8 +504,7 @@ impl Logic for Receiver {
             | (self.new_block.q.val() & self.has_all.val())
             | (self.again.val() & self.has_continuous.val());
         self.check.word_bit.next = self.sample.val() & (self.field.q.val() == Field::Payload);
-        self.check.crc_bit.next = self.crc_bit.val();
-        self.check.bit.next = self.level.val();
+        connect!(self.check <= self; crc_bit, bit = level);
         self.check.word.next = self.word.q.val().get_bits::<48>(0);
         self.check.has_f1.next = !self.has_all.val() | (self.has_f1.val() & !self.in_info.q.val());
         self.check.has_f2.next = self.has_f2.val();

@@ -165,8 +165,7 @@ impl Logic for Service {
             self.io_read[i + 1].next =
                 self.sequencer.port_read.val() & self.sequencer.port_second.val();
         }
-        self.io_address.next = self.sequencer.port_address.val();
-        self.io_out.next = self.sequencer.port_out.val();
+        connect!(self <= self.sequencer; io_address = port_address, io_out = port_out);
         self.io_write[0].next = self.sequencer.port_write.val() & !self.sequencer.port_second.val();
         for i in 0..self._seconds {
             self.io_write[i + 1].next =

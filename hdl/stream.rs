@@ -234,14 +234,10 @@ impl Logic for Stream {
 
         // A position of a running clock, when no set of a trigger wants the buffer, one channel after the other.
         for i in 0..self._runs {
-            self.turn[i].clock.next = self.clock.val();
-            self.turn[i].reset.next = self.reset.val();
-            self.is_run[i].clock.next = self.clock.val();
-            self.is_run[i].reset.next = self.reset.val();
-            self.head_taken[i].clock.next = self.clock.val();
-            self.head_taken[i].reset.next = self.reset.val();
-            self.place_taken[i].clock.next = self.clock.val();
-            self.place_taken[i].reset.next = self.reset.val();
+            connect!(self.turn[i] <= self; clock, reset);
+            connect!(self.is_run[i] <= self; clock, reset);
+            connect!(self.head_taken[i] <= self; clock, reset);
+            connect!(self.place_taken[i] <= self; clock, reset);
             self.run_now[i].next = self.run_ready[i].val()
                 & self.buffer.idle.val()
                 & self.buffer.single_room[i].val()
@@ -291,8 +287,7 @@ impl Logic for Stream {
         }
 
         // Its bytes.
-        self.block.next = self.buffer.block.val();
-        self.byte_at.next = self.buffer.byte_at.val();
+        connect!(self <= self.buffer; block, byte_at);
         self.head_byte.reset.next = self.buffer.block.val().any();
         match self.buffer.byte_at.val().index() {
             0 => {

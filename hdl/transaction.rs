@@ -789,8 +789,7 @@ impl Logic for Transaction {
         }
         self.going.next = false;
         for i in 0..self._runs {
-            self.runs[i].clock.next = self.clock.val();
-            self.runs[i].reset.next = self.reset.val();
+            connect!(self.runs[i] <= self; clock, reset);
             self.runs[i].raise.next =
                 self.accept.val() & self.continuous.val() & self.known.val() & !self.own.val();
             self.runs[i].clear.next =
@@ -873,13 +872,11 @@ impl Logic for Transaction {
             (self.probing.q.val() | self.settling.q.val()) & self.has_diagnosis.val();
         self.going_on.next = self.going.val();
 
-        self.health.tick_us.next = self.tick_us.val();
-        self.health.level.next = self.level.val();
+        connect!(self.health <= self; tick_us, level);
         self.health.start.next = self.start_now.q.val();
         self.health.under_way.next =
             self.watched.val() & !self.has_parameter.val() & !self.going.val();
-        self.health.watchdog_us.next = self.watchdog_us.val();
-        self.health.probed.next = self.probed.val();
+        connect!(self.health <= self; watchdog_us, probed);
         self.health.is_ready.next = self.phase.q.val() == Phase::Ready;
     }
 }

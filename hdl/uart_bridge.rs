@@ -155,8 +155,7 @@ impl Logic for UartBridge {
             self.transmitter.data.next = 255.into();
         }
         if self.from_stream.val() {
-            self.transmitter.data.next = self.push_byte.val();
-            self.transmitter.valid.next = self.push_valid.val();
+            connect!(self.transmitter <= self; data = push_byte, valid = push_valid);
         }
         self.push_take.next = self.transmitter.accept.val() & self.from_stream.val();
         self.answer_sent.next =

@@ -18,9 +18,9 @@ const KERNEL_LINES: usize = 200;
 
 /// What is still longer, and how long it may be at most: each of them becomes shorter, none is added.
 const LONGER: &[(&str, usize)] = &[
-    ("hdl/card.rs", 607),
+    ("hdl/card.rs", 591),
     ("hdl/card.rs: update", 390),
-    ("hdl/channel.rs", 557),
+    ("hdl/channel.rs", 540),
     ("hdl/channel.rs: update", 277),
     ("hdl/line_delay.rs: update", 263),
     ("hdl/line_monitor.rs: update", 206),

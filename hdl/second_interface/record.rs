@@ -54,8 +54,7 @@ impl Logic for SecondRecord {
     #[kernel]
     fn update(&mut self) {
         for i in 0..self._words {
-            self.held[i].clock.next = self.clock.val();
-            self.held[i].reset.next = self.reset.val();
+            connect!(self.held[i] <= self; clock, reset);
             self.held[i].d.next = self.held[i].q.val();
             if self.take.val() {
                 self.held[i].d.next = self.live[i].val();

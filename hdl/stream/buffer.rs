@@ -304,8 +304,7 @@ impl Logic for FrameBuffer {
         self.fits.d.next = self.used.q.val() <= self.most_used.val();
         self.room.next = self.fits.q.val();
         for i in 0..self._singles {
-            self.single_fits[i].clock.next = self.clock.val();
-            self.single_fits[i].reset.next = self.reset.val();
+            connect!(self.single_fits[i] <= self; clock, reset);
             // More than the longest frame.
             self.single_fits[i].d.next = self.used.q.val() <= (self.most_used.val() - 144);
             self.single_room[i].next = self.single_fits[i].q.val();
@@ -315,24 +314,21 @@ impl Logic for FrameBuffer {
 
         self.read_byte.next = 0.into();
         for i in 0..self._ram1k {
-            self.ram1k[i].clock.next = self.clock.val();
-            self.ram1k[i].write_enable.next = self.write.val();
+            connect!(self.ram1k[i] <= self; clock, write_enable = write);
             self.ram1k[i].write_address.next = self.write_address.val().get_bits::<10>(0);
             self.ram1k[i].write_data.next = self.write_byte.val();
             self.ram1k[i].read_address.next = self.read_at.q.val().get_bits::<10>(0);
             self.read_byte.next = self.ram1k[i].read_data.val();
         }
         for i in 0..self._ram2k {
-            self.ram2k[i].clock.next = self.clock.val();
-            self.ram2k[i].write_enable.next = self.write.val();
+            connect!(self.ram2k[i] <= self; clock, write_enable = write);
             self.ram2k[i].write_address.next = self.write_address.val().get_bits::<11>(0);
             self.ram2k[i].write_data.next = self.write_byte.val();
             self.ram2k[i].read_address.next = self.read_at.q.val().get_bits::<11>(0);
             self.read_byte.next = self.ram2k[i].read_data.val();
         }
         for i in 0..self._ram4k {
-            self.ram4k[i].clock.next = self.clock.val();
-            self.ram4k[i].write_enable.next = self.write.val();
+            connect!(self.ram4k[i] <= self; clock, write_enable = write);
             self.ram4k[i].write_address.next = self.write_address.val().get_bits::<12>(0);
             self.ram4k[i].write_data.next = self.write_byte.val();
             self.ram4k[i].read_address.next = self.read_at.q.val().get_bits::<12>(0);

@@ -105,20 +105,17 @@ impl Logic for TFormatChannel {
         self.reply.reset.next = self.reset.val();
         self.outcome.reset.next = self.reset.val();
 
-        self.filter.pin.next = self.rx.val();
-        self.filter.filter_cycles.next = self.filter_cycles.val();
+        connect!(self.filter <= self; pin = rx, filter_cycles);
         self.filter.filter_half.next = false;
         self.filter.majority.next = false;
         self.filter.both_edges.next = false;
 
         connect!(self.exchange <= self; tick_us, trigger, request_id);
         self.exchange.hold.next = false;
-        self.exchange.address.next = self.address.val();
-        self.exchange.data.next = self.data.val();
+        connect!(self.exchange <= self; address, data);
         self.exchange.request_fits.next = true;
         self.exchange.bit_cycles.next = bit_cast::<7, 5>(self.bit_cycles.val());
-        self.exchange.reply_gap_us.next = self.reply_gap_us.val();
-        self.exchange.field_gap_us.next = self.field_gap_us.val();
+        connect!(self.exchange <= self; reply_gap_us, field_gap_us);
         self.exchange.level.next = self.filter.level.val();
         self.exchange.status.next = self.reply.status.val();
         connect!(self <= self.exchange; tx, driver, busy);

@@ -162,16 +162,11 @@ impl AsyncDsp {
 impl Logic for AsyncDsp {
     #[kernel(clk_i, rst_i)]
     fn update(&mut self) {
-        self.strobes.clock.next = self.clk_i.val();
-        self.strobes.reset.next = self.rst_i.val();
-        self.filter.clock.next = self.clk_i.val();
-        self.filter.reset.next = self.rst_i.val();
-        self.exchange.clock.next = self.clk_i.val();
-        self.exchange.reset.next = self.rst_i.val();
-        self.reply.clock.next = self.clk_i.val();
-        self.reply.reset.next = self.rst_i.val();
-        self.moments.clock.next = self.clk_i.val();
-        self.moments.reset.next = self.rst_i.val();
+        connect!(self.strobes <= self; clock = clk_i, reset = rst_i);
+        connect!(self.filter <= self; clock = clk_i, reset = rst_i);
+        connect!(self.exchange <= self; clock = clk_i, reset = rst_i);
+        connect!(self.reply <= self; clock = clk_i, reset = rst_i);
+        connect!(self.moments <= self; clock = clk_i, reset = rst_i);
 
         connect!(self.strobes <= self;
             cs_n = bus_cs_n_i, rd_n = bus_rd_n_i, wr_n = bus_wr_n_i, register_at = bus_address_i,
@@ -253,29 +248,23 @@ impl Logic for AsyncDsp {
         self.exchange.level.next = self.filter.level.val();
         self.exchange.status.next = self.reply.status.val();
         self.exchange.hold.next = self.moments.hold.val();
-        self.encoder_data_o.next = self.exchange.tx.val();
-        self.encoder_data_oe.next = self.exchange.driver.val();
+        connect!(self <= self.exchange; encoder_data_o = tx, encoder_data_oe = driver);
 
         self.reply.idle.next = !self.exchange.busy.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
         connect!(self.reply <= self.exchange; is_status, is_single, is_multi, is_byte, is_alarm);
-        self.reply.copy.next = self.moments.copy.val();
-        self.reply.tail.next = self.moments.tail.val();
+        connect!(self.reply <= self.moments; copy, tail);
 
         connect!(self.moments <= self.exchange; verdict = publish, good, flags, reply_id, crc);
-        self.moments.single_parity.next = self.reply.single_parity.val();
-        self.moments.multi_parity.next = self.reply.multi_parity.val();
+        connect!(self.moments <= self.reply; single_parity, multi_parity);
         connect!(self.moments <= self.exchange;
             has_single, has_multi, has_identity, has_alarm, is_memory
         );
-        self.moments.head.next = self.reply.head.val();
-        self.moments.second.next = self.reply.second.val();
-        self.moments.register.next = self.strobes.register.val();
-        self.moments.reading.next = self.strobes.reading.val();
+        connect!(self.moments <= self.reply; head, second);
+        connect!(self.moments <= self.strobes; register, reading);
         self.moments.request_id.next = self.request_id.q.val();
         self.moments.busy.next = self.exchange.busy.val();
-        self.bus_data_o.next = self.moments.word.val();
-        self.led_o.next = self.moments.fresh.val();
+        connect!(self <= self.moments; bus_data_o = word, led_o = fresh);
     }
 }

@@ -219,13 +219,11 @@ impl Logic for TFormatPort {
             self.pending.d.next = false;
         }
 
-        self.filter.pin.next = self.data_i.val();
-        self.filter.filter_cycles.next = self.filter_cycles.val();
+        connect!(self.filter <= self; pin = data_i, filter_cycles);
         self.filter.filter_half.next = false;
         self.filter.majority.next = false;
         self.filter.both_edges.next = false;
-        self.exchange.tick_us.next = self.tick_us.val();
-        self.exchange.trigger.next = self.begins.val();
+        connect!(self.exchange <= self; tick_us, trigger = begins);
         // A trigger never goes to the EEPROM: its address and data are the host's, and may change at any time.
         self.exchange.request_id.next = self.request_id.val();
         if (self.request_id.val() == 6) | (self.request_id.val() == 13) {
@@ -243,12 +241,10 @@ impl Logic for TFormatPort {
         if !self.bit_cycles.val().get_bits::<4>(3).any() {
             self.exchange.bit_cycles.next = self.bit_cycles.val() | 8;
         }
-        self.exchange.reply_gap_us.next = self.reply_gap_us.val();
-        self.exchange.field_gap_us.next = self.field_gap_us.val();
+        connect!(self.exchange <= self; reply_gap_us, field_gap_us);
         self.exchange.level.next = self.filter.level.val();
         self.exchange.status.next = self.reply.status.val();
-        self.data_o.next = self.exchange.tx.val();
-        self.data_oe.next = self.exchange.driver.val();
+        connect!(self <= self.exchange; data_o = tx, data_oe = driver);
         self.busy.next = self.is_busy.val();
 
         self.reply.idle.next = !self.exchange.busy.val();
@@ -323,8 +319,7 @@ impl Logic for TFormatPort {
             & self.good.val()
             & !self.is_own.val()
             & (self.exchange.has_single.val() | self.exchange.has_multi.val());
-        self.snapshot.tick_us.next = self.tick_us.val();
-        self.snapshot.timestamp.next = self.timestamp.val();
+        connect!(self.snapshot <= self; tick_us, timestamp);
         self.snapshot.first_fall.next = !self.exchange.tx.val() & !self.started.q.val();
         self.snapshot.latched.next = false;
         self.snapshot.delay_cycles.next = 0.into();
