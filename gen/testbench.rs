@@ -13,7 +13,7 @@ use crate::template;
 use endat_hdl::bus::HostBus;
 use endat_hdl::card::{service_times, services};
 use endat_hdl::channel::CALIBRATION_FRAMES;
-use endat_hdl::config::{CardConfig, ChannelConfig};
+use endat_hdl::config::{CardConfig, ChannelConfig, PhaseSource};
 use endat_hdl::protocol::{INFO_BITS, SUPPLEMENT_PULSES};
 use endat_hdl::regs::{
     start, Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, LINE, RESULT,
@@ -190,6 +190,8 @@ fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String,
         &context! {
             channels => Serde(ports),
             t_format,
+            // A delay that is known from the start is not measured at a slow clock.
+            measures => card.line.phase != PhaseSource::Fixed,
             services => services(card),
             power_up_ms => times.power_up_ms,
             after_pulse_ms => times.after_pulse_ms,
