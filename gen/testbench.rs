@@ -191,7 +191,7 @@ fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String,
             channels => Serde(ports),
             t_format,
             // A delay that is known from the start is not measured at a slow clock.
-            measures => card.line.phase != PhaseSource::Fixed,
+            is_measured => card.line.phase != PhaseSource::Fixed,
             services => services(card),
             power_up_ms => times.power_up_ms,
             after_pulse_ms => times.after_pulse_ms,

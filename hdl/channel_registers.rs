@@ -163,10 +163,10 @@ impl ChannelRegisters {
         let active = |i: usize| Reg::new(u64::from(words[i]).into());
         let lives = RESULT_WORDS * usize::from(config.safety.second_interface);
         Self::from_parts(ChannelRegistersParts {
-            held: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
-            word: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
-            shown: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
-            byte: (0..RESULT_WORDS).map(|_| Default::default()).collect(),
+            held: each(RESULT_WORDS),
+            word: each(RESULT_WORDS),
+            shown: each(RESULT_WORDS),
+            byte: each(RESULT_WORDS),
             ring: ConfigRing::new(words),
             config0: active(0),
             config1: active(1),

@@ -16,6 +16,7 @@ pub mod record;
 
 use crate::reg::{Reg, SyncReg};
 use crate::regs::RESULT;
+use crate::stream::buffer::CRC16_POLYNOMIAL;
 use endat_macros::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
@@ -97,7 +98,7 @@ impl SecondInterface {
             check_sum: Constant::new((RECORD_WORDS as u64).into()),
             head: Constant::new(head.into()),
             hash: Constant::new(hash.into()),
-            polynomial: Constant::new(0x1021u64.into()),
+            polynomial: Constant::new(CRC16_POLYNOMIAL.into()),
         })
     }
 }

@@ -198,7 +198,7 @@ fn counters(card: &CardConfig) -> Vec<Value> {
 
 /// What an answer of the second interface is compared with, if there is one.
 fn second(card: &CardConfig) -> Option<Value> {
-    let of = |card: &CardConfig| {
+    card.safety.second_interface.then(|| {
         context! {
             mark => MARK,
             channels => card.channels.len(),
@@ -210,8 +210,7 @@ fn second(card: &CardConfig) -> Option<Value> {
             age_bits => RESULT.field("age_recovery", "age_us").width,
             sck_half_ns => real(SCK_HALF_CYCLES * clock_ns(card.system_hz)),
         }
-    };
-    card.safety.second_interface.then(|| of(card))
+    })
 }
 
 /// Channels whose phase is at the host's choice: where it is set, and the word for each choice.

@@ -130,7 +130,7 @@ impl Logic for ApbFront {
 
 card_top! {
     /// The whole core behind APB3; the number of channels is that of [`CardConfig::channels`].
-    ApbCard, ApbCardParts: front: ApbFront, irq_o
+    ApbCard, ApbCardParts: ApbFront
     in {
         /// The master talks to this slave.
         s_apb_psel: Bit => psel,
@@ -150,15 +150,5 @@ card_top! {
         s_apb_pready: Bit => pready,
         /// With `pready`: the address is no multiple of 4; nothing was done.
         s_apb_pslverr: Bit => pslverr,
-    }
-    to_core { bank_write => write, bank_data => write_data }
-    to_front { passing_byte => passing_byte }
-    fixed { in_range: true, push_take: false }
-}
-
-impl ApbCard {
-    /// A card.
-    pub fn new(config: &CardConfig) -> Self {
-        Self::behind(Default::default(), CardCore::new(config), config)
     }
 }

@@ -199,7 +199,7 @@ impl Logic for AxiLiteFront {
 
 card_top! {
     /// The whole core behind AXI4-Lite; the number of channels is that of [`CardConfig::channels`].
-    AxiLiteCard, AxiLiteCardParts: front: AxiLiteFront, irq_o
+    AxiLiteCard, AxiLiteCardParts: AxiLiteFront
     in {
         /// Byte address of a write; the lowest two bits do not matter.
         s_axi_awaddr: Bits<13> => awaddr,
@@ -249,14 +249,4 @@ card_top! {
         s_axi_rready: Bit => rready,
     }
     out {}
-    to_core { bank_write => write, bank_data => write_data }
-    to_front { passing_byte => passing_byte }
-    fixed { in_range: true, push_take: false }
-}
-
-impl AxiLiteCard {
-    /// A card.
-    pub fn new(config: &CardConfig) -> Self {
-        Self::behind(Default::default(), CardCore::new(config), config)
-    }
 }

@@ -250,7 +250,7 @@ impl Logic for ParallelFront {
 
 card_top! {
     /// The whole core behind a parallel bus; the number of channels is that of [`CardConfig::channels`].
-    ParallelCard, ParallelCardParts: front: ParallelFront, irq_o
+    ParallelCard, ParallelCardParts: ParallelFront
     in {
         /// Chip select, active low, asynchronous.
         bus_cs_n_i: Bit => cs_n,
@@ -268,15 +268,5 @@ card_top! {
         bus_data_o: Bits<16> => data_out,
         /// The card drives the data lines, straight from the strobes.
         bus_data_oe: Bit => data_enable,
-    }
-    to_core { bank_write => write, bank_data => write_data }
-    to_front { passing_byte => passing_byte }
-    fixed { in_range: true, push_take: false }
-}
-
-impl ParallelCard {
-    /// A card.
-    pub fn new(config: &CardConfig) -> Self {
-        Self::behind(Default::default(), CardCore::new(config), config)
     }
 }

@@ -16,6 +16,7 @@ use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::reg::{Reg, SyncReg};
 use crate::several::each;
+use crate::stream::buffer::CRC16_POLYNOMIAL;
 use endat_macros::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
@@ -132,7 +133,7 @@ pub struct SpiFront {
 impl Default for SpiFront {
     fn default() -> Self {
         Self::from_parts(SpiFrontParts {
-            polynomial: Constant::new(0x1021u64.into()),
+            polynomial: Constant::new(CRC16_POLYNOMIAL.into()),
             accepted_word: Constant::new(0xa000_0000u64.into()),
             refused_word: Constant::new(0xa200_0000u64.into()),
         })
@@ -367,6 +368,6 @@ card_top! {
 impl SpiCard {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
-        Self::behind(Default::default(), CardCore::new(config), config)
+        Self::behind(Default::default(), CardCore::new(config))
     }
 }

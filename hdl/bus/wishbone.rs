@@ -131,7 +131,7 @@ impl Logic for WishboneFront {
 
 card_top! {
     /// The whole core behind Wishbone; the number of channels is that of [`CardConfig::channels`].
-    WishboneCard, WishboneCardParts: front: WishboneFront, irq_o
+    WishboneCard, WishboneCardParts: WishboneFront
     in {
         /// A bus cycle is under way.
         wb_cyc_i: Bit => cyc,
@@ -153,15 +153,5 @@ card_top! {
         wb_ack_o: Bit => ack,
         /// The transfer has been refused: a write of a part of a word.
         wb_err_o: Bit => err,
-    }
-    to_core { bank_write => write, bank_data => write_data }
-    to_front { passing_byte => passing_byte }
-    fixed { in_range: true, push_take: false }
-}
-
-impl WishboneCard {
-    /// A card.
-    pub fn new(config: &CardConfig) -> Self {
-        Self::behind(Default::default(), CardCore::new(config), config)
     }
 }

@@ -3,7 +3,8 @@
 /// A top: core, front, and who is connected to whom.
 ///
 /// Pins of the front stand in groups, inputs and outputs, in the order in which they are emitted, each with the front's name for it. The last
-/// three lists connect what fronts do differently; `fixed` are ports of the core that this front does not use.
+/// three lists connect what fronts do differently; `fixed` are ports of the core that this front does not use. Without the lists it is a bus whose
+/// every address fits, and its front needs nothing to begin.
 macro_rules! card_top {
     (
         $(#[$($about:tt)*])*
@@ -74,10 +75,10 @@ macro_rules! card_top {
 
         impl $card {
             /// This core behind this front.
-            fn behind($front: $kind, core: CardCore, config: &CardConfig) -> Self {
-                let channels = config.channels.len();
-                let seconds = usize::from(config.safety.second_interface);
-                let direct_ports = channels * usize::from(config.outputs.position);
+            fn behind($front: $kind, core: CardCore) -> Self {
+                let channels = core.endat_clk_o.len();
+                let seconds = core.second_sck_i.len();
+                let direct_ports = core.direct_position_o.len();
                 Self::from_parts($parts {
                     direct_position_o: each(direct_ports),
                     direct_valid_o: each(direct_ports),
@@ -137,6 +138,27 @@ macro_rules! card_top {
                     self.led_channel_o[i].next = self.core.led_channel_o[i].val();
                 }
                 self.led_status_o.next = self.core.led_status_o.val();
+            }
+        }
+    };
+    (
+        $(#[$($about:tt)*])*
+        $card:ident, $parts:ident: $kind:ident
+        $( in { $($in:tt)* } out { $($out:tt)* } )*
+    ) => {
+        card_top! {
+            $(#[$($about)*])*
+            $card, $parts: front: $kind, irq_o
+            $( in { $($in)* } out { $($out)* } )*
+            to_core { bank_write => write, bank_data => write_data }
+            to_front { passing_byte => passing_byte }
+            fixed { in_range: true, push_take: false }
+        }
+
+        impl $card {
+            /// A card.
+            pub fn new(config: &CardConfig) -> Self {
+                Self::behind(Default::default(), CardCore::new(config))
             }
         }
     };

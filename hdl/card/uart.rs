@@ -42,6 +42,6 @@ impl Card {
     /// A card with other waits, too.
     pub fn with_times(config: &CardConfig, timeout_us: u64, service: &ServiceTimes) -> Self {
         let bridge = UartBridge::new(config.uart_bit_cycles, timeout_us);
-        Self::behind(bridge, CardCore::with_times(config, service), config)
+        Self::behind(bridge, CardCore::with_times(config, service))
     }
 }

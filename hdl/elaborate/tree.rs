@@ -42,6 +42,7 @@ pub(super) struct BlockNode {
 
 impl BlockNode {
     fn new(name: &str, parent: Option<&BlockNode>, node: &dyn Block) -> Self {
+        let timing = node.timing();
         Self {
             name: name.into(),
             path: parent.map_or_else(|| name.into(), |p| format!("{}.{name}", p.path)),
@@ -49,10 +50,10 @@ impl BlockNode {
             children: vec![],
             fields: vec![],
             hdl: node.hdl(),
-            docs: docs::of(&node.timing()),
-            optional: docs::optional_of(&node.timing()),
-            properties: docs::properties_of(&node.timing()),
-            timing: node.timing(),
+            docs: docs::of(&timing),
+            optional: docs::optional_of(&timing),
+            properties: docs::properties_of(&timing),
+            timing,
         }
     }
 

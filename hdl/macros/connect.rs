@@ -1,7 +1,6 @@
 //! `connect!` in a kernel: ports that are wired to ports, by name.
 
 use proc_macro2::Ident;
-use quote::quote;
 use syn::parse::{Parse, ParseStream};
 use syn::punctuated::Punctuated;
 use syn::visit_mut::{visit_block_mut, VisitMut};
@@ -70,7 +69,9 @@ impl VisitMut for Writer {
                 Stmt::Macro(call) if call.mac.path.is_ident("connect") => {
                     match call.mac.parse_body::<Connect>() {
                         Ok(connect) => all.extend(connect.statements()),
-                        Err(wrong) => self.wrong = self.wrong.take().or(Some(wrong)),
+                        Err(wrong) => {
+                            self.wrong.get_or_insert(wrong);
+                        }
                     }
                 }
                 other => all.push(other),
@@ -88,8 +89,6 @@ impl Connect {
             source,
             ports,
         } = self;
-        let target = quote!(#target);
-        let source = quote!(#source);
         ports.into_iter().map(
             move |Port { name, other }| parse_quote!(#target.#name.next = #source.#other.val();),
         )

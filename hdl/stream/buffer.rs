@@ -25,7 +25,7 @@ pub const BUFFER_BYTES: [u64; 4] = [1024, 2048, 4096, 8192];
 /// System clock cycles for each byte that is written.
 pub const BYTE_CYCLES: u64 = 16;
 /// Generator of the CRC, without x^16.
-const CRC16_POLYNOMIAL: u64 = 0x1021;
+pub const CRC16_POLYNOMIAL: u64 = 0x1021;
 /// Start value of the CRC (CRC-16/IBM-3740).
 const CRC16_PRESET: u64 = 0xFFFF;
 

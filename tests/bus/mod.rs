@@ -18,6 +18,7 @@ mod uart;
 use endat_gen::config::{parse, Project};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::CardConfig;
+use endat_hdl::regs::{Block, CARD};
 use endat_sim::bench::{Bench, Link, PinNames};
 use endat_sim::encoder::EncoderConfig;
 use endat_sim::engine::Compiled;
@@ -36,6 +37,17 @@ pub fn text(bus: HostBus, more: &str) -> String {
          [[channel]]\nposition_bits = 29\ncommand = \"111000\"\n[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n\
          [trigger]\nsample_hz = 10_000\nsources = [\"register\"]\n[host]\nbus = \"{name}\"\n{more}"
     )
+}
+
+/// Address of a word.
+pub fn at(block: &Block, name: &str, channel: usize) -> u16 {
+    block.address(block.register(name).unwrap(), channel)
+}
+
+/// Triggers, and runs to the end of everything.
+pub fn frame(master: &mut Master) {
+    master.write(at(&CARD, "trigger_now", 0), 1);
+    master.bench.run_cycles(60_000);
 }
 
 /// An access that a master makes, and what it gives.

@@ -1,12 +1,12 @@
 //! What watches a channel beside it: the recovery time measured a second time.
 
-use super::{sound, text, Master, WORD_BUSES};
+use super::{at, frame, sound, text, Master, WORD_BUSES};
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
 use endat_hdl::elaborate::elaborate;
 use endat_hdl::recovery_counter::RecoveryCounter;
-use endat_hdl::regs::{Block, CARD, COUNTER_SPACING, RECOVERY, RESULT};
+use endat_hdl::regs::{COUNTER_SPACING, RECOVERY, RESULT};
 use endat_sim::encoder::{Defect, EncoderConfig};
 use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
@@ -15,19 +15,9 @@ use rust_hdl::prelude::Block as _;
 
 const SAFETY: &str = "[safety]\nparts = [\"recovery_counter\"]\n";
 
-fn at(block: &Block, name: &str, channel: usize) -> u16 {
-    block.address(block.register(name).unwrap(), channel)
-}
-
 fn card(bus: HostBus, first: EncoderConfig) -> Master {
     let project = parse("card.toml", &text(bus, SAFETY)).unwrap();
     Master::with_encoders(&project, vec![(0, first), (1, sound(1, 25))])
-}
-
-/// Triggers, and runs to the end of everything.
-fn frame(master: &mut Master) {
-    master.write(at(&CARD, "trigger_now", 0), 1);
-    master.bench.run_cycles(60_000);
 }
 
 /// From rise to fall, in cycles, and whether fall belongs to it.

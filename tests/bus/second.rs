@@ -1,12 +1,13 @@
 //! The second interface: an SPI master that knows nothing but the page, beside the first controller at its bus.
 
-use super::{sound, text, Master, WORD_BUSES};
+use super::spi::crc16;
+use super::{at, frame, sound, text, Master, WORD_BUSES};
 use crate::three_way::{three_way, Stimulus};
 use crate::tools::{self, require};
 use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
 use endat_hdl::elaborate::elaborate;
-use endat_hdl::regs::{Block, CARD, RESULT};
+use endat_hdl::regs::{CARD, RESULT};
 use endat_hdl::second_interface::record::SecondRecord;
 use endat_hdl::second_interface::SecondInterface;
 use endat_sim::encoder::Defect;
@@ -22,31 +23,12 @@ const HALF: u64 = 4;
 /// Words of an answer of two channels.
 const WORDS: usize = 2 + 2 * 9;
 
-fn at(block: &Block, name: &str, channel: usize) -> u16 {
-    block.address(block.register(name).unwrap(), channel)
-}
-
-fn crc16(bytes: &[u8]) -> u16 {
-    bytes.iter().fold(0xffff, |crc, byte| {
-        (0..8).rev().fold(crc, |crc, bit| {
-            let feed = (crc >> 15) ^ u16::from(byte >> bit & 1);
-            (crc << 1) ^ if feed == 1 { 0x1021 } else { 0 }
-        })
-    })
-}
-
 fn card(bus: HostBus, more: &str) -> Master {
     let project = parse("card.toml", &text(bus, more)).unwrap();
     let mut master = Master::with_encoders(&project, vec![(0, sound(0, 29)), (1, sound(1, 25))]);
     master.set("second_cs_n_i", 1);
     master.bench.run_cycles(20);
     master
-}
-
-/// Triggers, and runs to the end of everything.
-fn frame(master: &mut Master) {
-    master.write(at(&CARD, "trigger_now", 0), 1);
-    master.bench.run_cycles(60_000);
 }
 
 /// So many bits of an answer; noise now and then turns the clock round for a cycle.
@@ -259,7 +241,7 @@ impl Example {
         Self(folder)
     }
 
-    /// What it says of answers, the first of which should have this count, the others the next ones or the same; `sequences` before each.
+    /// What it says of answers that should have this count; with `steps` each the next one, and the sequences go on.
     fn says(
         &self,
         answers: &[Vec<u8>],

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 const HALF: u64 = 4;
 
 /// CRC-16/CCITT-FALSE.
-fn crc16(bytes: &[u8]) -> u16 {
+pub fn crc16(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xffff, |crc, byte| {
         (0..8).rev().fold(crc, |crc, bit| {
             let feed = (crc >> 15) ^ u16::from(byte >> bit & 1);

@@ -10,10 +10,16 @@ use std::path::Path;
 
 const PYTHON: &str = "cocotb at every emission";
 
-/// The emissions, written; `of` gives what is wrong with one.
-fn check(test: &str, of: impl Fn(&Emission, &Path) -> Vec<String> + Sync) {
+/// The texts of all.
+fn all() -> Vec<(String, String)> {
     let texts = texts();
     assert_eq!(texts.len(), 34, "docs/works-with.md says how many");
+    texts
+}
+
+/// The emissions, written; `of` gives what is wrong with one.
+fn check(test: &str, of: impl Fn(&Emission, &Path) -> Vec<String> + Sync) {
+    let texts = all();
     let said = on_both_cores(&texts, |_, (name, text)| {
         let emission = emission(name, text);
         let (folder, _) = write(&format!("{test}-{name}"), &emission.files);
@@ -107,7 +113,7 @@ fn every_emission_runs_in_every_language() {
     if !has_tools() || !has_cocotb() {
         return;
     }
-    let texts = texts();
+    let texts = all();
     let readers = LINTERS.map(Some).into_iter().chain([None]);
     let cases = texts
         .iter()
