@@ -291,6 +291,8 @@ pub fn report(project: &Project) -> Report {
         safety: present(&[
             (card.safety.recovery_counter, "recovery_counter"),
             (card.safety.second_interface, "second_interface"),
+            (card.safety.second_receiver, "second_receiver"),
+            (card.safety.error_test_ms != 0, "error_test"),
         ]),
         bus: project.bus.name(),
         stream: StreamReport::of(card, project.bus == HostBus::Uart),

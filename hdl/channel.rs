@@ -26,7 +26,8 @@ use crate::line_delay::{self, LineDelay};
 use crate::protocol::{PARAMETER_BITS, TEST_VALUE_BITS};
 use crate::receiver::Receiver;
 use crate::reg::Reg;
-use crate::several::each;
+use crate::second_receiver::SecondReceiver;
+use crate::several::{each, numbered};
 use crate::snapshot::Snapshot;
 use crate::sure_bit::SureBit;
 use crate::transaction::Transaction;
@@ -83,8 +84,8 @@ pub struct Channel {
     pub hold_off: Signal<In, Bit>,
     /// Puts the EnDat clock LOW, for the pulse of the power-up sequence.
     pub clock_low: Signal<In, Bit>,
-    /// Errors forced upon what is received, to try the error paths: bit 0 inverts F1, bit 1 inverts F2, bit 2 spoils the CRC.
-    pub forced: Signal<In, Bits<3>>,
+    /// Errors forced upon what is received, to try the error paths, as the service's word `force` has them.
+    pub forced: Signal<In, Bits<5>>,
     /// Position width, 1..=48 bits.
     pub position_bits: Signal<In, Bits<6>>,
     /// Pulses on the data line of at most this many system clock cycles are ignored.
@@ -214,11 +215,13 @@ pub struct Channel {
     clk_pin: Reg<Bit>,
     data_pin: Reg<Bit>,
     oe_pin: Reg<Bit>,
+    second: Vec<SecondReceiver>,
     own_asked: Vec<SureBit>,
     ride_asked: Vec<SureBit>,
     own_wanted: Signal<Local, Bit>,
     ride_wanted: Signal<Local, Bit>,
     _requests: usize,
+    _seconds: usize,
     frame_command: Reg<Bits<6>>,
     frame_own: Reg<Bit>,
     frame_ride: Reg<Bit>,
@@ -238,6 +241,7 @@ pub struct Channel {
     word: Signal<Local, Bits<24>>,
     turned: Signal<Local, Bits<24>>,
     crc_ok: Signal<Local, Bit>,
+    forced_now: Signal<Local, Bits<4>>,
     period: Signal<Local, Bits<11>>,
     calibration_period_cycles: Constant<Bits<11>>,
 }
@@ -251,6 +255,7 @@ impl Channel {
     /// A channel with these fixed times and features.
     pub fn with(times: FixedTimes, features: Features) -> Self {
         let requests = usize::from(features.requests);
+        let seconds = usize::from(features.second_receiver);
         Self::from_parts(ChannelParts {
             filter: InputFilter::new(features),
             clock_gen: ClockGen::new(features),
@@ -261,9 +266,11 @@ impl Channel {
             shape: CommandShape::new(features.requests),
             wanted_shape: CommandShape::new(features.requests),
             add_info: AddInfo::new(times.separator_cycles),
+            second: numbered(seconds, |_| SecondReceiver::new(features)),
             own_asked: each(requests),
             ride_asked: each(requests),
             _requests: requests,
+            _seconds: seconds,
             has_requests: Constant::new(features.requests),
             has_double: Constant::new(features.double_edge),
             needs_four: Constant::new(features.double_edge && features.requests),
@@ -278,17 +285,10 @@ impl Channel {
 impl Logic for Channel {
     #[kernel]
     fn update(&mut self) {
-        clock!(self, clock, filter, clock_gen, sender, delay, receiver);
-        clock!(self, clock, transaction, snapshot, add_info, settings);
-        self.settings.reset.next = self.reset.val();
-        self.add_info.reset.next = self.reset.val();
-        self.filter.reset.next = self.reset.val();
-        self.clock_gen.reset.next = self.reset.val();
-        self.sender.reset.next = self.reset.val();
-        self.delay.reset.next = self.reset.val();
-        self.receiver.reset.next = self.reset.val();
-        self.transaction.reset.next = self.reset.val();
-        self.snapshot.reset.next = self.reset.val();
+        connect!(
+            self.filter, self.clock_gen, self.sender, self.delay, self.receiver, self.transaction,
+            self.snapshot, self.add_info, self.settings <= self; clock, reset
+        );
 
         connect!(self.settings <= self.transaction; is_at_rest, start);
         connect!(self.settings <= self;
@@ -352,46 +352,37 @@ impl Logic for Channel {
         connect!(self.clock_gen <= self.transaction; start, hold_low, stop);
         self.clock_gen.period_cycles.next = self.period.val();
 
-        self.sender.start.next = self.transaction.start.val();
         self.sender.fall.next = self.clock_gen.fall.val();
         // Outside of a command nothing is left to send, whatever a register says.
         self.sender.aborts.next = self.transaction.aborts.val()
             | (!self.receiver.skipping.val() & !self.transaction.start_supplement.val());
-        self.sender.start_supplement.next = self.transaction.start_supplement.val();
-        self.sender.command.next = self.command_now.val();
+        connect!(self.sender <= self.transaction; start, start_supplement);
+        connect!(self.sender <= self; command = command_now, parameter_word = request_parameter);
         self.sender.has_parameter.next = self.shape.has_parameter.val();
-        self.sender.parameter_word.next = self.request_parameter.val();
 
-        connect!(self.delay <= self.transaction; drain, run, acquire, last_cell);
-        self.delay.hunting.next = self.receiver.hunting.val();
+        connect!(self.delay <= self.transaction; drain, run, acquire, last_cell, slow, going_on);
         connect!(self.delay <= self.clock_gen; will_rise, rise);
         connect!(self.delay <= self.filter; data_edge = edge_strobe, edge_second);
         self.delay.in_answer.next = self.receiver.started.val() & !self.receiver.skipping.val();
-        self.delay.slow.next = self.transaction.slow.val();
-        connect!(self.delay <= self; mode = phase_mode, fixed_delay);
-        self.delay.follow.next = self.receiver.start_found.val();
-        self.delay.going_on.next = self.transaction.going_on.val();
-        self.delay.period_cycles.next = self.period.val();
+        connect!(self.delay <= self; mode = phase_mode, fixed_delay, period_cycles = period);
+        connect!(self.delay <= self.receiver; hunting, follow = start_found, none_under_way);
         self.delay.start_window_cycles.next = self.settings.start_window_cycles_now.val();
 
-        connect!(self.receiver <= self.transaction; start, aborts, acquire);
+        connect!(self.receiver <= self.transaction; start, aborts, acquire, start_supplement, going_on);
         self.receiver.rise.next = self.clock_gen.rise.val();
-        connect!(self.receiver <= self.delay; pulse, sample);
+        connect!(self.receiver <= self.delay; pulse, sample, edge_in_window);
         self.receiver.level.next = self.filter.level.val();
         if self.has_double.val() & !self.delay.sample_second.val() {
             self.receiver.level.next = self.filter.level_first.val();
         }
-        self.receiver.edge_in_window.next = self.delay.edge_in_window.val();
-        self.receiver.payload_bits.next = self.payload_bits.val();
+        connect!(self.receiver <= self; payload_bits, command = command_now);
         connect!(self.receiver <= self.shape; has_f1, has_f2, has_parameter, has_supplement);
         connect!(self.receiver <= self.add_info; infos, look);
-        connect!(self.receiver <= self.transaction; start_supplement, going_on);
-        self.receiver.command.next = self.command_now.val();
 
-        connect!(self.transaction <= self; tick_us, trigger, calibrate);
+        connect!(self.transaction <= self; tick_us, trigger, calibrate, hold_off, stop_at_error);
         self.transaction.level.next = self.filter.level.val();
         self.transaction.is_fixed.next = self.phase_mode.val() == self.fixed_mode.val();
-        connect!(self.transaction <= self.delay; sample, center);
+        connect!(self.transaction <= self.delay; sample, center, delay_upset = is_upset);
         connect!(self.transaction <= self.receiver;
             hunting, started, start_refused, answer_done = done, finished, separated, info_missing
         );
@@ -409,29 +400,29 @@ impl Logic for Channel {
         connect!(self.transaction <= self.shape; has_parameter, has_supplement);
         self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.val();
         self.transaction.is_own.next = self.frame_own.q.val();
-        self.transaction.hold_off.next = self.hold_off.val();
         self.transaction.continuous.next = self.continuous.val()
             & self.shape.has_f1.val()
             & !self.shape.has_f2.val()
             & !self.shape.has_test_values.val();
-        self.transaction.stop_at_error.next = self.stop_at_error.val();
         self.transaction.line_wanted.next = self.own_wanted.val() | self.hold_off.val();
         connect!(self.transaction <= self.receiver;
             gap_good, again = latched, gap_low, gap_high, is_echo, serial_ok, parallel_ok, f1, f2
         );
+        self.forced_now.next = self.forced.val().get_bits::<4>(0);
+        if self.forced.val().get_bit(4) & !self.frame_own.q.val() {
+            self.forced_now.next = 0.into();
+        }
         if self.has_requests.val() {
-            self.transaction.f1.next = self.receiver.f1.val() ^ self.forced.val().get_bit(0);
-            self.transaction.f2.next = self.receiver.f2.val() ^ self.forced.val().get_bit(1);
+            self.transaction.f1.next = self.receiver.f1.val() ^ self.forced_now.val().get_bit(0);
+            self.transaction.f2.next = self.receiver.f2.val() ^ self.forced_now.val().get_bit(1);
             self.transaction.serial_ok.next =
-                self.receiver.serial_ok.val() & !self.forced.val().get_bit(2);
+                self.receiver.serial_ok.val() & !self.forced_now.val().get_bit(2);
         }
         self.transaction.will_rise.next = self.clock_gen.will_rise.val();
         connect!(self.transaction <= self.receiver;
             no_pulse_left = all_sent, one_pulse_left = one_to_send, none_under_way, all_used,
             all_ended
         );
-        self.delay.none_under_way.next = self.receiver.none_under_way.val();
-        self.transaction.delay_upset.next = self.delay.is_upset.val();
         connect!(self.transaction <= self.settings;
             first_low_extra_cycles = first_low_extra_cycles_now,
             start_timeout_us = start_timeout_us_now,
@@ -440,17 +431,13 @@ impl Logic for Channel {
             settings_upset = is_upset
         );
 
-        connect!(self.snapshot <= self; tick_us, timestamp);
-        self.snapshot.first_fall.next = self.transaction.start.val();
-        self.snapshot.latched.next = self.receiver.latched.val();
+        connect!(self.snapshot <= self; tick_us, timestamp, width_in = payload_bits);
         self.snapshot.delay_cycles.next = self.delay.delay_cycles.val();
-        connect!(self.snapshot <= self.transaction; publish, good, late_fault, withdraw, confirm);
-        self.snapshot.width_in.next = self.payload_bits.val();
+        connect!(self.snapshot <= self.transaction; first_fall = start, publish, good, late_fault, withdraw, confirm, cause_in = cause, flags_in = flags);
         self.snapshot.has_f2_in.next = self.shape.has_f2.val();
         connect!(self.snapshot <= self.receiver;
-            position_in = payload, crc_received_in = crc_received, crc_computed_in = crc_computed
+            latched, position_in = payload, crc_received_in = crc_received, crc_computed_in = crc_computed
         );
-        connect!(self.snapshot <= self.transaction; cause_in = cause, flags_in = flags);
 
         // What comes MSB first stands the other way round in the payload.
         self.word.next = 0.into();
@@ -502,19 +489,16 @@ impl Logic for Channel {
             result_strobe, position, position_valid, fresh, sequence, first_fall_timestamp, age_us,
             cause, flags, crc_received, crc_computed, position_crc, position_width, position_has_f2
         );
-        self.recovery_cycles.next = self.transaction.recovery_cycles.val();
         connect!(self <= self.delay;
-            delay_cycles, phase, edge_measured = measured, edge_offset = offset
+            delay_cycles, phase, edge_measured = measured, edge_offset = offset, sample_second
         );
         self.glitch.next = self.filter.glitch.val();
-        self.busy.next = self.transaction.busy.val();
         self.request_runs.next =
             (self.frame_own.q.val() | self.frame_ride.q.val()) & !self.transaction.is_at_rest.val();
         self.line_high.next = (self.filter.level.val() | self.transaction.is_probed.val())
             & !self.transaction.run.val();
-        connect!(self <= self.transaction; displaced, over);
         self.over_request.next = self.frame_own.q.val() | self.frame_ride.q.val();
-        connect!(self <= self.transaction; over_cause = cause, over_flags = flags);
+        connect!(self <= self.transaction; recovery_cycles, busy, displaced, over, over_cause = cause, over_flags = flags, calibrated);
         self.answer.next = self.reply_word.q.val();
         self.reply.next = self.reply_word.q.val();
         self.turned.next = 0.into();
@@ -532,8 +516,26 @@ impl Logic for Channel {
             info_active = active, info_1, info_2, info_came = came, info_good = good,
             info_crcs = crcs
         );
-        self.calibrated.next = self.transaction.calibrated.val();
-        self.sample_second.next = self.delay.sample_second.val();
+        for i in 0..self._seconds {
+            connect!(self.second[i] <= self; clock, reset);
+            connect!(self.second[i] <= self.transaction; start, aborts, acquire, start_supplement, going_on);
+            connect!(self.second[i] <= self.clock_gen; rise);
+            connect!(self.second[i] <= self.delay; pulse, sample, edge_in_window);
+            connect!(self.second[i] <= self.filter; level);
+            connect!(self.second[i] <= self.shape; has_f1, has_f2, has_parameter, has_supplement);
+            connect!(self.second[i] <= self.add_info; infos, look);
+            connect!(self.second[i] <= self; payload_bits, command = command_now);
+            connect!(self.second[i] <= self.receiver;
+                skipping, hunting, started, all_sent, none_under_way, all_ended, done, info_done, separated, finished, gap_good,
+                latched, payload, f1, f2, crc_received, serial_ok, parallel_ok
+            );
+            self.second[i].forced.next = self.forced_now.val().get_bit(3) & self.has_requests.val();
+            if self.second[i].differs.val() {
+                self.transaction.settings_upset.next = true;
+                self.info_good.next = 0.into();
+                self.reply_good.next = false;
+            }
+        }
         self.sample_strobe.next = self.delay.sample.val() & !self.receiver.skipping.val();
     }
 }

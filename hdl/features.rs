@@ -63,6 +63,8 @@ pub struct Features {
     pub margin: bool,
     /// Data is looked at on both edges of the system clock.
     pub double_edge: bool,
+    /// A second receiver takes each answer, too, and is compared (not with `double_edge`).
+    pub second_receiver: bool,
 }
 
 impl Features {
@@ -74,6 +76,7 @@ impl Features {
         alignment: false,
         margin: false,
         double_edge: false,
+        second_receiver: false,
     };
 
     /// Everything of the protocol.

@@ -44,6 +44,7 @@ pub mod reg;
 pub mod register_bank;
 pub mod regs;
 pub mod second_interface;
+pub mod second_receiver;
 pub mod sequencer;
 pub mod service;
 mod several;

@@ -25,6 +25,8 @@ pub fn has(config: &CardConfig, part: Part) -> bool {
         Part::TFormat => config.t_format_channels() != 0,
         Part::RecoveryCounter => config.safety.recovery_counter,
         Part::SecondInterface => config.safety.second_interface,
+        Part::SecondReceiver => config.safety.second_receiver,
+        Part::ErrorTest => config.safety.error_test_ms != 0,
         Part::OwnTrigger => config.own_triggers(),
     }
 }

@@ -50,6 +50,8 @@ parts! {
     OwnTrigger = 15, "own_trigger", "enable, divider and sources of triggers of each channel", "[[channel]] trigger";
     RecoveryCounter = 16, "recovery_counter", "recovery time measured a second time", "[safety] parts";
     SecondInterface = 17, "second_interface", "results for a second controller, over an SPI that can only be read", "[safety] parts";
+    SecondReceiver = 18, "second_receiver", "second receiver in lockstep", "[safety] parts";
+    ErrorTest = 19, "error_test", "forced errors on a schedule", "[safety] parts";
 }
 
 /// Parts that have a bit in `capabilities.features`; those behind them have one in `protocols.features`.

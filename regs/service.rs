@@ -118,6 +118,8 @@ pub const SERVICE: Block = Block {
             field("f1", 0, 1, "", "Inverts F1"),
             field("f2", 1, 1, "", "Inverts F2"),
             field("crc", 2, 1, "", "Spoils the CRC"),
+            field("second_receiver", 3, 1, "", "The second receiver disagrees, if there is one"),
+            field("own_frames", 4, 1, "", "1: only in frames that requests have of their own"),
         ]),
         word("progress", at::PROGRESS, ReadOnly, "Initialisation.", &[
             field("step", 0, 16, "", "Step under way").codes(STEPS),
@@ -132,6 +134,7 @@ pub const SERVICE: Block = Block {
             field("slower", 5, 1, "", "The encoder takes only a slower clock than configured; that is used"),
             field("unplugged", 6, 1, "", "DATA has been HIGH for long: no encoder, or an open line"),
             field("initialising", 7, 1, "", "power-up sequence or initialisation is under way; triggers are lost"),
+            field("error_test", 8, 1, "", "A forced error was not told; latched"),
             field("starts", 16, 16, "", "How often the program has begun since power-up, wrapping: one more after each reset, and after an upset that led it astray"),
         ]),
         word("lost", at::LOST, ReadOnly, "What did not get its turn.", &[
@@ -193,6 +196,13 @@ pub const SERVICE: Block = Block {
         word("request_wait", at::REQUEST_WAIT, ReadWrite, "Longest wait of a request for a trigger.", &[
             field("ms", 0, 16, "ms", "0 = no limit. The program writes 2000 at start"),
         ]),
+        word("error_test", at::ERROR_TEST, ReadWrite, "Forced errors on the card's own schedule.", &[
+            field("period_ms", 0, 16, "ms", "One error each so many milliseconds, in a frame of its own; 0 = none. The program writes the configured one at start").takes(&[(0, 0), (10, 32_000)], &[]),
+        ]).of(Part::ErrorTest),
+        word("error_test_state", at::ERROR_TEST_STATE, ReadOnly, "What became of them.", &[
+            field("told", 0, 16, "", "Forced errors that were told with their cause, since clear, wrapping"),
+            field("silent", 16, 16, "", "Forced errors after which the frame was told as good, since clear"),
+        ]).of(Part::ErrorTest),
         frames(0),
         frames(1),
         frames(2),

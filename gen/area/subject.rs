@@ -22,6 +22,7 @@ use endat_hdl::line_monitor::LineStart;
 use endat_hdl::receiver::Receiver;
 use endat_hdl::recovery_counter::RecoveryCounter;
 use endat_hdl::second_interface::{record::SecondRecord, SecondInterface};
+use endat_hdl::second_receiver::SecondReceiver;
 use endat_hdl::service::program::ServiceTimes;
 use endat_hdl::snapshot::Snapshot;
 use endat_hdl::stream::{buffer::SetParts, channel::SetChannel, Stream};
@@ -267,6 +268,11 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
             "second_record",
             "record of a channel for the second interface",
             SecondRecord::new(0),
+        )?,
+        Subject::new(
+            "second_receiver",
+            "second receiver of a channel, and the comparison",
+            SecondReceiver::new(Features::NONE),
         )?,
         Subject::new(
             "recovery_counter",

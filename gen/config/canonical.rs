@@ -73,12 +73,20 @@ pub fn of_card(
     let SafetyParts {
         recovery_counter,
         second_interface,
+        second_receiver,
+        error_test_ms,
     } = safety;
     if *recovery_counter {
         lines.push("safety recovery_counter".into());
     }
     if *second_interface {
         lines.push("safety second_interface".into());
+    }
+    if *second_receiver {
+        lines.push("safety second_receiver".into());
+    }
+    if *error_test_ms > 0 {
+        lines.push(format!("safety error_test_ms {error_test_ms}"));
     }
     if !initial_values {
         lines.push(NO_INITIAL_VALUES.into());

@@ -3,25 +3,78 @@
 use super::parts::read_parts;
 use super::reader::Table;
 use endat_hdl::bus::HostBus;
-use endat_hdl::config::SafetyParts;
+use endat_hdl::config::{limits, SafetyParts, ERROR_TEST_MS};
 
-/// Reads the table, for a card with this bus, on which some channel speaks EnDat or none; `None` if something is wrong.
-pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>, has_endat: bool) -> Option<SafetyParts> {
+/// Names of the parts.
+const PARTS: [&str; 4] = [
+    "recovery_counter",
+    "second_interface",
+    "second_receiver",
+    "error_test",
+];
+/// How often a forced error is tried.
+const PERIOD: &str = "error_test_ms";
+
+/// What else the card has, as far as it could be read.
+#[derive(Clone, Copy)]
+pub struct Around {
+    /// Its bus.
+    pub bus: Option<HostBus>,
+    /// Some channel speaks EnDat.
+    pub has_endat: bool,
+    /// DATA is looked at on both edges of the system clock.
+    pub double_edge: bool,
+    /// The channels have a service.
+    pub has_requests: bool,
+}
+
+impl Around {
+    /// Why this part cannot be there, and what to do.
+    fn refuses(self, part: &str) -> Option<&'static str> {
+        let takes_registers = part != "second_receiver";
+        let takes_endat = part != "second_interface";
+        match part {
+            _ if self.bus == Some(HostBus::Bare) && takes_registers => Some("host.bus = \"none\" has no registers, and all results as ports; choose another bus, or leave it out"),
+            "recovery_counter" if !self.has_endat => Some("no channel speaks EnDat, and T-format has no recovery time; leave it out"),
+            _ if !self.has_endat && takes_endat => Some("no channel speaks EnDat; leave it out"),
+            "second_receiver" if self.double_edge => Some("bits of line.parts = [\"double_edge\"] are too short for a comparison; leave one of them out"),
+            "error_test" if !self.has_requests => Some("frames of its own take the service; write service.parts = [\"requests\"]"),
+            _ => None,
+        }
+    }
+}
+
+/// Reads the table; `None` if something is wrong.
+pub fn read(table: &Table<'_, '_>, around: Around) -> Option<SafetyParts> {
     let mut parts = SafetyParts::default();
-    let marks = &mut [&mut parts.recovery_counter, &mut parts.second_interface];
-    let named = read_parts(table, &["recovery_counter", "second_interface"], marks)?;
-    let Some(last) = named.last() else {
-        return Some(parts);
-    };
-    // What is said of one part names that part; what is said of all, the last.
-    let counter = named
-        .iter()
-        .find(|(_, text)| text == "\"recovery_counter\"");
-    let ((line, shown), remedy) = match bus {
-        Some(HostBus::Bare) => (last, "host.bus = \"none\" has no registers, and all results as ports; choose another bus, or leave [safety] out"),
-        _ if !has_endat && parts.recovery_counter => (counter.unwrap_or(last), "no channel speaks EnDat, and T-format has no recovery time; leave it out"),
-        _ => return Some(parts),
-    };
-    table.complain(*line, "parts", shown, remedy);
-    None
+    let mut tests = false;
+    let marks = &mut [
+        &mut parts.recovery_counter,
+        &mut parts.second_interface,
+        &mut parts.second_receiver,
+        &mut tests,
+    ];
+    let named = read_parts(table, &PARTS, marks);
+    let period_limits = limits(PERIOD, None);
+    let period = table.integer(PERIOD, &period_limits);
+    let mut good = true;
+    for (line, shown) in &named? {
+        if let Some(remedy) = around.refuses(shown.trim_matches('"')) {
+            table.complain(*line, "parts", shown, remedy);
+            good = false;
+        }
+    }
+    if let Some(period) = &period {
+        if !tests {
+            let text = "takes the part error_test; add it to safety.parts, or remove the key";
+            table.complain(period.line, PERIOD, &period.value.to_string(), text);
+            return None;
+        }
+        table.check(PERIOD, period, &period_limits);
+        good &= period_limits.contains(period.value);
+    }
+    if tests {
+        parts.error_test_ms = period.map_or(ERROR_TEST_MS, |p| p.value as u16);
+    }
+    good.then_some(parts)
 }

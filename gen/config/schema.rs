@@ -141,12 +141,20 @@ impl<'s, 't> Written<'s, 't> {
         let baud_limits = limits("baud", system_hz).at_most(baud_max, BAUD_NOTE);
         let baud = || t.link.required_integer("baud", "2_000_000", &baud_limits);
         let read_hz = || t.link.integer("read_hz", &limits("read_hz", system_hz));
+        let service = service::read(&t.service);
+        let around = safety::Around {
+            bus,
+            has_endat,
+            double_edge: line.is_some_and(|parts| parts.double_edge),
+            // What could not be read may have them.
+            has_requests: service.is_none_or(|parts| parts.requests),
+        };
         Self {
             baud: has_uart.then(baud).flatten(),
             read_hz: has_uart.then(read_hz).flatten(),
-            service: service::read(&t.service),
+            service,
             outputs: outputs::read(&t.outputs, bus, has_board),
-            safety: safety::read(&t.safety, bus, has_endat),
+            safety: safety::read(&t.safety, around),
             initial_values: read_initial_values(&t.device),
             stream: stream::read(&t.stream),
             bus,

@@ -32,12 +32,13 @@ fn times(card: &CardConfig, channel: &ChannelConfig) -> FixedTimes {
     }
 }
 
-/// The features of its channels that have to do with the line delay.
+/// The features of its channels besides those of a service.
 fn line(card: &CardConfig) -> Features {
     Features {
         alignment: card.line.alignment,
         margin: card.line.margin,
         double_edge: card.line.double_edge,
+        second_receiver: card.safety.second_receiver,
         ..Features::NONE
     }
 }
@@ -56,6 +57,8 @@ pub fn service_times(config: &CardConfig) -> ServiceTimes {
         diagnosis: config.service.diagnosis,
         continuous: config.service.continuous,
         infos: config.service.infos,
+        error_test_ms: config.safety.error_test_ms,
+        second_receiver: config.safety.second_receiver,
         clears_ram: !config.initial_values,
         ..ServiceTimes::at(config.system_hz)
     }

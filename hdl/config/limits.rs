@@ -93,6 +93,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "field_gap_us" => 0..=FIELD_GAP_US_MAX,
         "filter_cycles" => 0..=FILTER_CYCLES_MAX,
         "divider" => 1..=1 << SKIP_BITS,
+        "error_test_ms" => ERROR_TEST_PATIENCE_MS.into()..=ERROR_TEST_MS_MAX.into(),
         _ => 0..=u64::MAX,
     };
     Limits {

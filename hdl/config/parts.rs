@@ -70,6 +70,14 @@ impl OutputParts {
     }
 }
 
+/// Time between two forced errors, in milliseconds, if nothing else is said.
+pub const ERROR_TEST_MS: u16 = 1_000;
+/// The longest one: a service's milliseconds wrap at 65536.
+pub const ERROR_TEST_MS_MAX: u16 = 32_000;
+/// How long a forced error that is due waits for the end of a trigger's frame, behind which the next trigger is far; without triggers it is
+/// sent then. The time between two is at least that.
+pub const ERROR_TEST_PATIENCE_MS: u16 = 10;
+
 /// What watches a channel beside it, for a safe control (`docs/safety.md`); what is not asked for takes no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SafetyParts {
@@ -77,6 +85,10 @@ pub struct SafetyParts {
     pub recovery_counter: bool,
     /// Results for a second controller, over an SPI that can only be read.
     pub second_interface: bool,
+    /// A second receiver on the same samples, compared with the first.
+    pub second_receiver: bool,
+    /// One forced error each so many milliseconds, whose cause is awaited; 0 = no schedule, and no program for it.
+    pub error_test_ms: u16,
 }
 
 /// The stream of sample sets (`docs/stream.md`); without a buffer there is none, and no logic for it.

@@ -6,9 +6,9 @@ use syn::punctuated::Punctuated;
 use syn::visit_mut::{visit_block_mut, VisitMut};
 use syn::{parse_quote, BinOp, Block, Error, Expr, ExprBinary, Result, Stmt, Token};
 
-/// `target <= source; port, port = other, ...`
+/// `target, target <= source; port, port = other, ...`
 struct Connect {
-    target: Expr,
+    targets: Vec<Expr>,
     source: Expr,
     ports: Punctuated<Port, Token![,]>,
 }
@@ -32,19 +32,28 @@ impl Parse for Port {
 
 impl Parse for Connect {
     fn parse(input: ParseStream<'_>) -> Result<Self> {
-        let Expr::Binary(ExprBinary {
-            left,
-            op: BinOp::Le(_),
-            right,
-            ..
-        }) = input.parse()?
-        else {
-            return Err(input.error("connect!(target <= source; port, port = other, ...)"));
+        let wrong = "connect!(target, target <= source; port, port = other, ...)";
+        let mut targets = Vec::new();
+        let source = loop {
+            match input.parse()? {
+                Expr::Binary(ExprBinary {
+                    left,
+                    op: BinOp::Le(_),
+                    right,
+                    ..
+                }) => {
+                    targets.push(*left);
+                    break *right;
+                }
+                target if input.peek(Token![,]) => targets.push(target),
+                _ => return Err(input.error(wrong)),
+            }
+            input.parse::<Token![,]>()?;
         };
         input.parse::<Token![;]>()?;
         Ok(Self {
-            target: *left,
-            source: *right,
+            targets,
+            source,
             ports: Punctuated::parse_terminated(input)?,
         })
     }
@@ -83,14 +92,15 @@ impl VisitMut for Writer {
 }
 
 impl Connect {
-    fn statements(self) -> impl Iterator<Item = Stmt> {
+    fn statements(&self) -> Vec<Stmt> {
         let Self {
-            target,
-            source,
-            ports,
+            targets, source, ..
         } = self;
-        ports.into_iter().map(
-            move |Port { name, other }| parse_quote!(#target.#name.next = #source.#other.val();),
-        )
+        let of_one = |target| {
+            self.ports.iter().map(move |Port { name, other }| {
+                parse_quote!(#target.#name.next = #source.#other.val();)
+            })
+        };
+        targets.iter().flat_map(of_one).collect()
     }
 }

@@ -82,8 +82,8 @@ pub struct ServiceChannel {
     pub clock_low: Signal<Out, Bit>,
     /// The channel's alarm.
     pub alarm: Signal<Out, Bit>,
-    /// Forced errors: bit 0 F1, bit 1 F2, bit 2 CRC.
-    pub forced: Signal<Out, Bits<3>>,
+    /// Forced errors, as [`word::FORCE`](endat_regs::service::word::FORCE).
+    pub forced: Signal<Out, Bits<5>>,
     /// Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
     pub watchdog_us: Signal<Out, Bits<12>>,
     /// Shortest recovery time, in system clock cycles; 0 = not checked.
@@ -122,7 +122,7 @@ pub struct ServiceChannel {
     // Until the program has begun, no trigger may get in its way.
     #[given]
     out_control: Reg<Bits<3>>,
-    out_force: Reg<Bits<3>>,
+    out_force: Reg<Bits<5>>,
     out_found: Reg<Bits<7>>,
     out_period: Reg<Bits<11>>,
     out_watchdog: Reg<Bits<12>>,
@@ -259,7 +259,7 @@ impl Logic for ServiceChannel {
                     self.out_control.d.next = self.io_out.val().get_bits::<3>(0);
                 }
                 6 => {
-                    self.out_force.d.next = self.io_out.val().get_bits::<3>(0);
+                    self.out_force.d.next = self.io_out.val().get_bits::<5>(0);
                 }
                 7 => {
                     self.out_found.d.next = self.io_out.val().get_bits::<7>(0);

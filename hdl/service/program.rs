@@ -10,6 +10,7 @@
 //! Subroutines that call others keep their return address in a word of RAM. Conditions: after `sub` C means less, after `addi(minus(k))`
 //! C means at least k.
 
+mod error_test;
 mod events;
 mod initialise;
 mod own;
@@ -37,6 +38,10 @@ pub struct ServiceTimes {
     pub continuous: bool,
     /// MRS codes that the list of additional informations has after reset; 0 = none.
     pub infos: [u8; LIST],
+    /// One forced error each so many milliseconds, until the host says otherwise; 0 = no program for it.
+    pub error_test_ms: u16,
+    /// The channels have a second receiver.
+    pub second_receiver: bool,
     /// Clock HIGH after power-up, before the pulse.
     pub power_up_ms: u16,
     /// Clock HIGH after the pulse.
@@ -73,6 +78,8 @@ impl ServiceTimes {
             diagnosis: true,
             continuous: true,
             infos: [0; LIST],
+            error_test_ms: 0,
+            second_receiver: false,
             power_up_ms: timing::POWER_UP_MS,
             after_pulse_ms: timing::AFTER_PULSE_MS,
             reset_ms: timing::RESET_MS,
@@ -148,6 +155,9 @@ pub fn program(times: &ServiceTimes) -> Vec<u32> {
     requests::mailbox_request(&mut a, times);
     requests::own_frame(&mut a, times);
     requests::judge(&mut a);
+    if times.error_test_ms > 0 {
+        error_test::error_test(&mut a, times);
+    }
     if times.initialise {
         initialise::initialise(&mut a, times);
     }
@@ -215,6 +225,9 @@ fn start(a: &mut Assembler, times: &ServiceTimes) {
         set(a, low(word::LIST_LENGTH), length.into());
     }
     set(a, low(word::REQUEST_WAIT), times.wait_ms);
+    if times.error_test_ms > 0 {
+        error_test::start(a, times);
+    }
     a.ldi(acknowledge::EVENT | acknowledge::MAILBOX | acknowledge::CONTROL);
     a.out(output::ACKNOWLEDGE);
     a.call("modulus");
@@ -272,6 +285,9 @@ fn main_loop(a: &mut Assembler, times: &ServiceTimes) {
     }
     a.place(no_control);
     a.inp(input::STATUS).andi(status::MAILBOX).jnz("mailbox");
+    if times.error_test_ms > 0 {
+        a.call("error_test");
+    }
     a.place(levels);
     a.inp(input::DISPLACED).st(low(word::LOST));
     for (word, inverse) in own::KEPT {
@@ -394,9 +410,13 @@ fn subroutines(a: &mut Assembler, times: &ServiceTimes) {
     ] {
         a.st(word);
     }
-    a.ld(low(word::STATE));
-    a.andi(!(state::ALARM | state::POSITION_2))
-        .st(low(word::STATE));
+    let mut latched = state::ALARM | state::POSITION_2;
+    if times.error_test_ms > 0 {
+        a.st(low(word::ERROR_TEST_STATE));
+        a.st(high(word::ERROR_TEST_STATE));
+        latched |= state::ERROR_TEST;
+    }
+    a.ld(low(word::STATE)).andi(!latched).st(low(word::STATE));
     a.ld(own::LEVELS).andi(!level::ALARM);
     keep(a, own::LEVELS);
     a.out(output::CONTROL).ret();

@@ -17,7 +17,7 @@ pub mod word {
     pub const DURATION: u8 = 4;
     /// Control: writing it acts.
     pub const CONTROL: u8 = 5;
-    /// Forced errors.
+    /// Forced errors, see [`super::force`].
     pub const FORCE: u8 = 6;
     /// Initialisation: step under way (15..0, 0 = none), step that failed (31..16, 0 = none).
     pub const PROGRESS: u8 = 7;
@@ -50,6 +50,10 @@ pub mod word {
     pub const CONTINUOUS: u8 = 23;
     /// Longest wait of a request for a trigger, in milliseconds (15..0); 0 = none.
     pub const REQUEST_WAIT: u8 = 40;
+    /// Forced errors on the card's own schedule: one of them each so many milliseconds (15..0, 0 = none).
+    pub const ERROR_TEST: u8 = 41;
+    /// Forced errors that were told (15..0), that were not (31..16).
+    pub const ERROR_TEST_STATE: u8 = 42;
     /// MRS codes that are selected in turn.
     pub const LIST: u8 = 24;
     /// Codes in the list at most, and slots.
@@ -106,6 +110,20 @@ pub mod request_state {
     }
 }
 
+/// Bits of [`word::FORCE`].
+pub mod force {
+    /// Inverts F1.
+    pub const F1: u16 = 1 << 0;
+    /// Inverts F2.
+    pub const F2: u16 = 1 << 1;
+    /// Spoils the CRC.
+    pub const CRC: u16 = 1 << 2;
+    /// The second receiver disagrees.
+    pub const SECOND_RECEIVER: u16 = 1 << 3;
+    /// Only in frames of a request's own.
+    pub const OWN_FRAMES: u16 = 1 << 4;
+}
+
 /// Bits of [`word::CONTROL`].
 pub mod control {
     /// Initialise the encoder.
@@ -134,4 +152,6 @@ pub mod state {
     pub const UNPLUGGED: u16 = 1 << 6;
     /// The encoder is being initialised, or the power-up sequence is under way; no position is taken.
     pub const INITIALISING: u16 = 1 << 7;
+    /// A forced error was not told; latched.
+    pub const ERROR_TEST: u16 = 1 << 8;
 }

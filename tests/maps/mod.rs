@@ -36,6 +36,8 @@ fn projects() -> Vec<Project> {
     projects[1].card.safety = SafetyParts {
         recovery_counter: true,
         second_interface: true,
+        second_receiver: true,
+        error_test_ms: 500,
     };
     let text = preset("s6_two_channel").unwrap();
     // A good name, and a keyword of SystemRDL.

@@ -19,8 +19,17 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::STATUS).andi(status::MISSED).jz(not_missed);
     a.ld(high(word::LOST)).addi(1).st(high(word::LOST));
     a.place(not_missed);
+    let uncounted = a.label();
+    if times.error_test_ms > 0 {
+        let counted = a.label();
+        a.ld(own::TESTING).jz(counted);
+        a.ld(own::STATUS).andi(status::IS_REQUEST).jnz(uncounted);
+        a.place(counted);
+        set(a, own::BEHIND, 1);
+    }
     a.call("count");
     threshold(a);
+    a.place(uncounted);
 
     // What the additional informations say goes into the slots of their codes.
     a.ldi(0).st(own::MATCHED);

@@ -79,5 +79,14 @@ pub const KEPT: [(u8, u8); 3] = [
     (FOUND, FIRST + 60),
     (PERIOD, FIRST + 61),
 ];
+/// Those of the forced errors, in front of the counters: how long ago the last one was, which one comes next, its cause.
+pub const TEST_FROM: u8 = 2 * word::COUNTERS - 1;
+pub const TEST_NEXT: u8 = 2 * word::COUNTERS - 2;
+pub const TEST_CAUSE: u8 = 2 * word::COUNTERS - 3;
+/// A forced error is under way: its frame is not counted.
+pub const TESTING: u8 = 2 * word::COUNTERS - 4;
+/// A frame has just ended.
+pub const BEHIND: u8 = 2 * word::COUNTERS - 5;
+pub const FROM_TEST: u8 = 2 * word::COUNTERS - 6;
 /// RAM has been cleared: two words that it hardly holds by chance.
 pub const CLEARED: [(u8, u16); 2] = [(FIRST + 62, 0xE2DA), (FIRST + 63, 0x1D25)];

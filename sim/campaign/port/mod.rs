@@ -111,6 +111,8 @@ pub enum Port {
     AllParts,
     /// Alignment and double edge.
     DoubleEdge,
+    /// All parts, and a second receiver.
+    SecondReceiver,
 }
 
 /// The frame in which it is done.
@@ -155,7 +157,7 @@ impl FrameKind {
 }
 
 impl Port {
-    /// All of them.
+    /// Those of the committed campaigns.
     pub const ALL: [Self; 3] = [Self::Position, Self::AllParts, Self::DoubleEdge];
 
     /// Its name in tables.
@@ -164,6 +166,7 @@ impl Port {
             Self::Position => "port",
             Self::AllParts => "port_all",
             Self::DoubleEdge => "port_double_edge",
+            Self::SecondReceiver => "port_second_receiver",
         }
     }
 
@@ -172,7 +175,7 @@ impl Port {
         use FrameKind::*;
         match self {
             Self::Position | Self::DoubleEdge => &[Calibration, Position, Position21],
-            Self::AllParts => &[
+            Self::AllParts | Self::SecondReceiver => &[
                 Calibration,
                 Position,
                 Position21,
@@ -190,6 +193,10 @@ impl Port {
             Self::AllParts => Features {
                 alignment: true,
                 ..Features::PROTOCOL
+            },
+            Self::SecondReceiver => Features {
+                second_receiver: true,
+                ..Self::AllParts.features()
             },
             Self::DoubleEdge => Features {
                 alignment: true,
