@@ -180,6 +180,9 @@ pub(crate) fn tell(name: &str, before: &str, values: &str) -> Result<String, Gen
 
 /// What the bench of a card that initialises its encoders does first.
 fn power_up(card: &CardConfig, ports: &[Port], t_format: bool) -> Result<String, GenError> {
+    if !card.service.initialise {
+        return Ok(String::new());
+    }
     let times = ServiceTimes::at(card.system_hz);
     let period = card
         .endat_channels()
@@ -291,10 +294,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         include_str!("templates/encoder.v.jinja"),
         &context! { name => project.name.as_str() },
     )?;
-    let power_up = match card.service.initialise {
-        true => power_up(card, &ports, !t_format.is_empty())?,
-        false => String::new(),
-    };
+    let power_up = power_up(card, &ports, !t_format.is_empty())?;
     let purpose = purpose::Parts::new(card, &ports)?;
     let blocks = [&CARD, &CARD_CONFIG, &RESULT];
     let blocks = blocks
@@ -358,6 +358,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         continuous => card.service.continuous,
         every_trigger => every_trigger(card),
         measures => purpose::first_measured(card),
+        tests => purpose::tests(card),
     };
     let text = template::render(
         "testbench",

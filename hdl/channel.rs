@@ -517,14 +517,13 @@ impl Logic for Channel {
             info_crcs = crcs
         );
         for i in 0..self._seconds {
-            connect!(self.second[i] <= self; clock, reset);
             connect!(self.second[i] <= self.transaction; start, aborts, acquire, start_supplement, going_on);
-            connect!(self.second[i] <= self.clock_gen; rise);
+            self.second[i].rise.next = self.clock_gen.rise.val();
             connect!(self.second[i] <= self.delay; pulse, sample, edge_in_window);
             connect!(self.second[i] <= self.filter; level);
             connect!(self.second[i] <= self.shape; has_f1, has_f2, has_parameter, has_supplement);
             connect!(self.second[i] <= self.add_info; infos, look);
-            connect!(self.second[i] <= self; payload_bits, command = command_now);
+            connect!(self.second[i] <= self; clock, reset, payload_bits, command = command_now);
             connect!(self.second[i] <= self.receiver;
                 skipping, hunting, started, all_sent, none_under_way, all_ended, done, info_done, separated, finished, gap_good,
                 latched, payload, f1, f2, crc_received, serial_ok, parallel_ok

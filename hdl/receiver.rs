@@ -583,12 +583,13 @@ impl Logic for Receiver {
                 }
             }
         }
-        // The next answer, without a command before it.
+        // The next answer, without a command before it; an upset of `in_info` does not last as long as the run.
         if self.again.val() & self.has_continuous.val() {
             self.left.d.next =
                 bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_from_start.val();
             self.word.d.next = 0.into();
             self.covered.d.next = 0.into();
+            self.in_info.d.next = false;
         }
         // The first bits from the first HIGH on, until it has gone through all places.
         if self.sample.val() & (self.field.q.val() != Field::Skip) & !self.heard.q.val().get_bit(6)

@@ -107,8 +107,9 @@ pub struct SecondReceiver {
     different: Reg<Bit>,
     inputs: Signal<Local, Bits<11>>,
     signs: Signal<Local, Bits<12>>,
-    own_signs: Signal<Local, Bits<12>>,
+    apart: Signal<Local, Bit>,
     bits_differ: Signal<Local, Bit>,
+    ends: Signal<Local, Bit>,
 }
 
 impl SecondReceiver {
@@ -168,75 +169,33 @@ impl Logic for SecondReceiver {
         self.signs.next = self.signs.val().replace_bit(10, self.gap_good.val());
         self.signs.next = self.signs.val().replace_bit(11, self.latched.val());
         self.signs_before.d.next = self.signs.val();
-        self.own_signs.next = 0.into();
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(0, self.receiver.skipping.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(1, self.receiver.hunting.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(2, self.receiver.started.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(3, self.receiver.all_sent.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(4, self.receiver.none_under_way.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(5, self.receiver.all_ended.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(6, self.receiver.done.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(7, self.receiver.info_done.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(8, self.receiver.separated.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(9, self.receiver.finished.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(10, self.receiver.gap_good.val());
-        self.own_signs.next = self
-            .own_signs
-            .val()
-            .replace_bit(11, self.receiver.latched.val());
+        self.apart.next = (self.signs_before.q.val().get_bit(0) ^ self.receiver.skipping.val())
+            | (self.signs_before.q.val().get_bit(1) ^ self.receiver.hunting.val())
+            | (self.signs_before.q.val().get_bit(2) ^ self.receiver.started.val())
+            | (self.signs_before.q.val().get_bit(3) ^ self.receiver.all_sent.val())
+            | (self.signs_before.q.val().get_bit(4) ^ self.receiver.none_under_way.val())
+            | (self.signs_before.q.val().get_bit(5) ^ self.receiver.all_ended.val())
+            | (self.signs_before.q.val().get_bit(6) ^ self.receiver.done.val())
+            | (self.signs_before.q.val().get_bit(7) ^ self.receiver.info_done.val())
+            | (self.signs_before.q.val().get_bit(8) ^ self.receiver.separated.val())
+            | (self.signs_before.q.val().get_bit(9) ^ self.receiver.finished.val())
+            | (self.signs_before.q.val().get_bit(10) ^ self.receiver.gap_good.val())
+            | (self.signs_before.q.val().get_bit(11) ^ self.receiver.latched.val());
 
         // What has come stays where it is until a new block, or frame, begins.
-        if self.receiver.done.val() | self.receiver.info_done.val() {
+        self.ends.next = self.receiver.done.val() | self.receiver.info_done.val();
+        if self.ends.val() {
             self.holds.d.next = true;
         }
         if self.start.val() | self.separated.val() | self.latched.val() {
             self.holds.d.next = false;
         }
-        self.bits_differ.next = (self.payload.val() != self.receiver.payload.val())
-            | (self.f1.val() != self.receiver.f1.val())
-            | (self.f2.val() != self.receiver.f2.val())
-            | (self.crc_received.val() != self.receiver.crc_received.val())
-            | (self.serial_ok.val() != self.receiver.serial_ok.val())
-            | (self.parallel_ok.val() != self.receiver.parallel_ok.val())
-            | self.forced.val();
         if self.start.val() {
             self.different.d.next = false;
         }
-        if (self.signs_before.q.val() != self.own_signs.val())
+        if self.apart.val()
             | (self.holds.q.val() & self.bits_differ.val())
+            | (self.ends.val() & self.forced.val())
         {
             self.different.d.next = true;
         }

@@ -90,6 +90,7 @@ fn the_sizes_in_the_readme_are_those_of_the_area_table() {
         ("| the same behind SPI", "card_spi"),
         ("| the same behind the parallel bus", "card_parallel"),
         ("| recovery counter", "recovery_counter"),
+        ("| second receiver", "second_receiver"),
         ("| card with everything", "card_service"),
     ] {
         page.cells(head, &area(subject, XC6S.name).map(|n| n.to_string()));

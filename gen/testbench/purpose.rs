@@ -196,6 +196,23 @@ fn counters(card: &CardConfig) -> Vec<Value> {
     channels.collect()
 }
 
+/// Channels with forced errors on a schedule: where the schedule is, and what became of it.
+pub(super) fn tests(card: &CardConfig) -> Vec<Value> {
+    if card.safety.error_test_ms == 0 {
+        return vec![];
+    }
+    let channels = card.endat_channels().map(|(n, _)| {
+        context! {
+            index => n,
+            period => service_address("error_test", n),
+            period_ms => card.safety.error_test_ms,
+            request_ns => whole(request_ns(card)),
+            state => service_address("error_test_state", n),
+        }
+    });
+    channels.collect()
+}
+
 /// What an answer of the second interface is compared with, if there is one.
 fn second(card: &CardConfig) -> Option<Value> {
     card.safety.second_interface.then(|| {
@@ -301,6 +318,8 @@ impl Parts {
             request_fields => Serde(fields(&SERVICE).filter(|f| REQUEST_FIELDS.contains(&f.name.as_str())).collect::<Vec<_>>()),
             infos => infos(card),
             counters => counters(card),
+            tests => tests(card),
+            forced_errors => 3 + u8::from(card.safety.second_receiver),
             second => second(card),
             phases => phases(card),
             phase_bits => LINE.field("phase", "tracked").width,

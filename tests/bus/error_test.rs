@@ -142,9 +142,9 @@ fn the_host_keeps_its_requests_and_its_own_forced_errors() {
     master.write(at(&SERVICE, "force", 0), 0);
     let request = at(&SERVICE, "request", 0);
     for round in 0..4 {
-        // 100011, encoder sends parameter.
-        let address = 0x0A + (round & 1);
-        master.write(request, 0x23 << 24 | address << 16);
+        // 001110, selection of a memory area.
+        let address = 0xA1 + 2 * (round & 1);
+        master.write(request, 0x0E << 24 | address << 16);
         let mut finished = 1;
         for _ in 0..100 {
             master.bench.run_cycles(100_000);
