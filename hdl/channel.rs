@@ -470,7 +470,6 @@ impl Logic for Channel {
         self.add_info.crc.next = self.receiver.crc_received.val();
         self.add_info.over.next = self.transaction.over.val() & self.has_requests.val();
         self.add_info.flags.next = self.transaction.flags.val().get_bits::<12>(0);
-
         self.clk_pin.d.next = self.clock_gen.endat_clk.val();
         self.data_pin.d.next = self.sender.data.val();
         self.oe_pin.d.next = self.sender.oe.val();
@@ -517,7 +516,8 @@ impl Logic for Channel {
             info_crcs = crcs
         );
         for i in 0..self._seconds {
-            connect!(self.second[i] <= self.transaction; start, aborts, acquire, start_supplement, going_on);
+            connect!(self.second[i] <= self.transaction; start, aborts, acquire, start_supplement, going_on, good, cause, flags);
+            connect!(self.snapshot <= self.second[i]; good = good_told, cause_in = cause_told, flags_in = flags_told);
             self.second[i].rise.next = self.clock_gen.rise.val();
             connect!(self.second[i] <= self.delay; pulse, sample, edge_in_window);
             connect!(self.second[i] <= self.filter; level);

@@ -14,6 +14,7 @@
 use crate::features::Features;
 use crate::receiver::Receiver;
 use crate::reg::Reg;
+use crate::transaction::cause::{self, flag};
 use endat_macros::{kernel, Block};
 use rust_hdl::prelude::*;
 
@@ -98,18 +99,35 @@ pub struct SecondReceiver {
     pub parallel_ok: Signal<In, Bit>,
     /// The comparison is to find a difference at the end of each answer, to show that it lives.
     pub forced: Signal<In, Bit>,
+    /// The result that is about to be told is good.
+    pub good: Signal<In, Bit>,
+    /// Its primary cause.
+    pub cause: Signal<In, Bits<5>>,
+    /// Its raw flags.
+    pub flags: Signal<In, Bits<20>>,
     /// The two have disagreed in this frame.
     pub differs: Signal<Out, Bit>,
+    /// The result is good, and the two agree to the very cycle in which it is told.
+    pub good_told: Signal<Out, Bit>,
+    /// Its primary cause.
+    pub cause_told: Signal<Out, Bits<5>>,
+    /// Its raw flags.
+    pub flags_told: Signal<Out, Bits<20>>,
     receiver: Receiver,
     strobes: Reg<Bits<11>>,
     signs_before: Reg<Bits<12>>,
     holds: Reg<Bit>,
+    separator: Reg<Bit>,
+    leaves: Reg<Bit>,
     different: Reg<Bit>,
     inputs: Signal<Local, Bits<11>>,
     signs: Signal<Local, Bits<12>>,
     apart: Signal<Local, Bit>,
     bits_differ: Signal<Local, Bit>,
     ends: Signal<Local, Bit>,
+    differs_now: Signal<Local, Bit>,
+    upset_cause: Constant<Bits<5>>,
+    upset_flag: Constant<Bits<20>>,
 }
 
 impl SecondReceiver {
@@ -117,6 +135,8 @@ impl SecondReceiver {
     pub fn new(features: Features) -> Self {
         Self::from_parts(SecondReceiverParts {
             receiver: Receiver::new(features),
+            upset_cause: Constant::new(cause::UPSET.into()),
+            upset_flag: Constant::new(flag(cause::UPSET).into()),
         })
     }
 }
@@ -182,23 +202,38 @@ impl Logic for SecondReceiver {
             | (self.signs_before.q.val().get_bit(10) ^ self.receiver.gap_good.val())
             | (self.signs_before.q.val().get_bit(11) ^ self.receiver.latched.val());
 
+        self.bits_differ.next = (self.payload.val() != self.receiver.payload.val())
+            | (self.f1.val() != self.receiver.f1.val())
+            | (self.f2.val() != self.receiver.f2.val())
+            | (self.crc_received.val() != self.receiver.crc_received.val())
+            | (self.serial_ok.val() != self.receiver.serial_ok.val())
+            | (self.parallel_ok.val() != self.receiver.parallel_ok.val());
         // What has come stays where it is until a new block, or frame, begins.
         self.ends.next = self.receiver.done.val() | self.receiver.info_done.val();
         if self.ends.val() {
             self.holds.d.next = true;
         }
-        if self.start.val() | self.separated.val() | self.latched.val() {
+        self.separator.d.next = self.separated.val();
+        self.leaves.d.next = self.separator.q.val();
+        if self.start.val() | self.leaves.q.val() | self.latched.val() {
             self.holds.d.next = false;
         }
         if self.start.val() {
             self.different.d.next = false;
         }
-        if self.apart.val()
+        self.differs_now.next = self.apart.val()
             | (self.holds.q.val() & self.bits_differ.val())
-            | (self.ends.val() & self.forced.val())
-        {
+            | (self.ends.val() & self.forced.val());
+        if self.differs_now.val() {
             self.different.d.next = true;
         }
         self.differs.next = self.different.q.val();
+
+        connect!(self <= self; good_told = good, cause_told = cause, flags_told = flags);
+        if self.good.val() & (self.different.q.val() | self.differs_now.val()) {
+            self.good_told.next = false;
+            self.cause_told.next = self.upset_cause.val();
+            self.flags_told.next = self.upset_flag.val();
+        }
     }
 }

@@ -99,6 +99,7 @@ impl Builder {
             loops: vec![],
         };
         let mut statements = scope.statements(kernel)?;
+        draft.symbols = scope.symbols;
         draft.module.nets = scope.nets;
         draft.module.parameters = scope.parameters;
 

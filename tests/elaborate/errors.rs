@@ -109,6 +109,27 @@ block!(
 );
 
 block!(
+    UndrivenLocal,
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, state);
+        self.state.reset.next = self.f.val();
+        self.state.d.next = self.a.val();
+        self.out.next = self.a.val() + self.x.val();
+    }
+);
+
+block!(
+    UndrivenOutput,
+    #[hdl_gen]
+    fn update(&mut self) {
+        clock!(self, clock, state);
+        self.state.reset.next = self.f.val();
+        self.state.d.next = self.a.val();
+    }
+);
+
+block!(
     OutOfRange,
     #[hdl_gen]
     fn update(&mut self) {
@@ -135,6 +156,8 @@ fn each_is_refused_with_its_place_and_remedy() {
     );
     check(Latch::default(), "out", "latch");
     check(Undriven::default(), "state.reset", "is not driven");
+    check(UndrivenLocal::default(), "x", "is not driven");
+    check(UndrivenOutput::default(), "out", "is not driven");
     check(Loop::default(), "x", "combinational loop: x -> y");
     check(Early::default(), "x", "read before it is assigned");
     check(
