@@ -40,8 +40,8 @@ module s6_two_channel_channel (
     input  wire         hold_off,
     // Puts the EnDat clock LOW, for the pulse of the power-up sequence.
     input  wire         clock_low,
-    // Errors forced upon what is received, to try the error paths: bit 0 inverts F1, bit 1 inverts F2, bit 2 spoils the CRC.
-    input  wire   [2:0] forced,
+    // Errors forced upon what is received, to try the error paths, as the service's word force has them.
+    input  wire   [4:0] forced,
     // Position width, 1..=48 bits.
     input  wire   [5:0] position_bits,
     // Pulses on the data line of at most this many system clock cycles are ignored.
@@ -170,6 +170,7 @@ module s6_two_channel_channel (
     reg   [23:0] word;
     reg   [23:0] turned;
     wire         crc_ok;
+    reg    [3:0] forced_now;
     reg   [10:0] period;
     wire         filter_level;
     wire         filter_level_first;
@@ -296,7 +297,7 @@ module s6_two_channel_channel (
     reg          reply_right_next;
     reg          reply_has_parameter; initial reply_has_parameter = 1'b0;
     reg          reply_has_parameter_next;
-    wire         _unused_ok = &{1'b0, request_ride, request_own, request_cancel, shape_is_known, shape_is_position, wanted_shape_has_f1, wanted_shape_has_parameter, wanted_shape_has_test_values, wanted_shape_has_supplement};
+    wire         _unused_ok = &{1'b0, request_ride, request_own, request_cancel, forced_now[3], shape_is_known, shape_is_position, wanted_shape_has_f1, wanted_shape_has_parameter, wanted_shape_has_test_values, wanted_shape_has_supplement};
 
     s6_two_channel_input_filter u_filter (
         .clock(clock),
@@ -671,13 +672,20 @@ module s6_two_channel_channel (
     assign transaction_line_wanted = own_wanted | hold_off;
 
     always @* begin
+        forced_now = forced[3:0];
+        if (forced[4] & !frame_own) begin
+            forced_now = 4'd0;
+        end
+    end
+
+    always @* begin
         transaction_serial_ok = receiver_serial_ok;
         transaction_f1 = receiver_f1;
         transaction_f2 = receiver_f2;
         if (HAS_REQUESTS) begin
-            transaction_f1 = receiver_f1 ^ forced[0];
-            transaction_f2 = receiver_f2 ^ forced[1];
-            transaction_serial_ok = receiver_serial_ok & !forced[2];
+            transaction_f1 = receiver_f1 ^ forced_now[0];
+            transaction_f2 = receiver_f2 ^ forced_now[1];
+            transaction_serial_ok = receiver_serial_ok & !forced_now[2];
         end
     end
 

@@ -159,7 +159,7 @@ module s6_two_channel_encoder_port (
         .request_cancel(1'b0),
         .hold_off(1'b0),
         .clock_low(1'b0),
-        .forced(3'd0),
+        .forced(5'd0),
         .position_bits(position_bits),
         .filter_cycles(filter_cycles),
         .filter_half(filter_half),

@@ -552,6 +552,7 @@ module s6_two_channel_receiver (
             left_next = {1'b0, payload_bits} + CELLS_FROM_START;
             word_next = 50'd0;
             covered_d = 4'd0;
+            in_info_next = 1'b0;
         end
         if (aborts) begin
             field_next = FIELD_DONE;

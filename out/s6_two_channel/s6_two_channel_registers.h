@@ -111,6 +111,8 @@
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_MASK 0xFFFF0000u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER 0x1u /* recovery time measured a second time */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SECOND_INTERFACE 0x2u /* results for a second controller, over an SPI that can only be read */
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SECOND_RECEIVER 0x4u /* second receiver in lockstep */
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_ERROR_TEST 0x8u /* forced errors on a schedule */
 
 /* ro: Triggers since reset; stands still with the results (see hold). */
 #define S6_TWO_CHANNEL_CARD_TRIGGER_COUNT_WORD 0x008u

@@ -197,6 +197,7 @@ module s6_two_channel_transaction (
     reg          running;
     reg          in_us;
     reg          timer_clear;
+    reg          rise_back;
     reg          accept;
     reg          give_up;
     reg          idle;
@@ -390,6 +391,13 @@ module s6_two_channel_transaction (
     end
     assign vanished = (owing & !once_more) | under_way;
     assign last_cell = (phase == PHASE_TAIL) & was_center;
+
+    always @* begin
+        rise_back = was_center & !tail_sampled;
+        if ((phase != PHASE_TAIL) & (phase != PHASE_RECOVERY)) begin
+            rise_back = 1'b0;
+        end
+    end
     assign verdict_settings_upset = settings_upset | delay_upset;
     assign known = is_calibrated | (HAS_ALIGNMENT & is_fixed);
     assign going = 1'b0;
@@ -684,17 +692,13 @@ module s6_two_channel_transaction (
             timer_next = timer + 16'd1;
         end
         timer_hit_next = (timer >= timer_limit) & !cleared;
-        cleared_next = timer_clear | accept;
+        cleared_next = timer_clear | accept | rise_back;
         if (timer_clear) begin
             timer_next = 16'd0;
             timer_hit_next = 1'b0;
         end
-        if (accept) begin
+        if (accept | rise_back) begin
             timer_next = 16'd2;
-        end
-        if (last_cell) begin
-            timer_next = 16'd2;
-            cleared_next = 1'b1;
         end
         if (verdict_once_more) begin
             once_more_next = 1'b1;
@@ -971,7 +975,7 @@ module s6_two_channel_transaction (
     endfunction
     // a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
     wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
-    wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | ((phase == PHASE_TAIL) & was_center);
+    wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | (was_center & ((phase == PHASE_TAIL) | ((phase == PHASE_RECOVERY) & !tail_sampled)));
     wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts;
     always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
         forward_only: assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));
