@@ -15,6 +15,8 @@
 #define HEAD_BYTES 4u
 /** Where the words of an answer begin. */
 #define ANSWER_AT 5u
+/** What makes a check sum wrong, farther from the right one than any few wrong bits. */
+#define ALL_WRONG 0xFFFFu
 
 static void put_head(endat_spi *spi, uint8_t command, uint32_t word_address, uint32_t count)
 {
@@ -102,26 +104,44 @@ static endat_error last_write(endat_spi *spi)
     return error;
 }
 
+/** One write of a word, with its check sum or with a wrong one. What the card says of the write before is in spi->received[0]. */
+static endat_error write_once(endat_spi *spi, uint32_t word_address, uint32_t value, uint32_t wrong)
+{
+    uint32_t crc;
+    uint32_t n;
+
+    put_head(spi, (uint8_t)COMMAND_WRITE, word_address, 1u);
+    for (n = 0u; n < 4u; n++) {
+        spi->sent[HEAD_BYTES + n] = (uint8_t)((value >> (24u - (8u * n))) & 0xFFu);
+    }
+    crc = endat_crc16(ENDAT_CRC16_START, spi->sent, HEAD_BYTES + 4u) ^ wrong;
+    spi->sent[HEAD_BYTES + 4u] = (uint8_t)(crc >> 8u);
+    spi->sent[HEAD_BYTES + 5u] = (uint8_t)(crc & 0xFFu);
+    return spi->transfer(spi->context, spi->sent, spi->received, HEAD_BYTES + 6u);
+}
+
+/*
+ * A write whose command byte was disturbed is none, and the card has nothing to say of it. So one with a wrong check sum goes first,
+ * which writes nothing: the card says "bad" until the good one has arrived.
+ */
 static endat_error write_word(void *context, uint32_t word_address, uint32_t value)
 {
     endat_spi *const spi = (endat_spi *)context;
     endat_error error = ENDAT_ERROR_CHECKSUM;
     uint32_t tries = 0u;
-    uint32_t n;
 
+    if (spi->unconfirmed) {
+        return write_once(spi, word_address, value, 0u);
+    }
     do {
-        uint32_t crc;
-
-        put_head(spi, (uint8_t)COMMAND_WRITE, word_address, 1u);
-        for (n = 0u; n < 4u; n++) {
-            spi->sent[HEAD_BYTES + n] = (uint8_t)((value >> (24u - (8u * n))) & 0xFFu);
-        }
-        crc = endat_crc16(ENDAT_CRC16_START, spi->sent, HEAD_BYTES + 4u);
-        spi->sent[HEAD_BYTES + 4u] = (uint8_t)(crc >> 8u);
-        spi->sent[HEAD_BYTES + 5u] = (uint8_t)(crc & 0xFFu);
-        error = spi->transfer(spi->context, spi->sent, spi->received, HEAD_BYTES + 6u);
+        error = write_once(spi, word_address, value, ALL_WRONG);
         if (error == ENDAT_OK) {
+            error = write_once(spi, word_address, value, 0u);
+        }
+        if (error == ENDAT_OK) {
+            const bool was_bad = (spi->received[0] == STATUS_BAD_WRITE);
             error = last_write(spi);
+            error = ((error == ENDAT_OK) && !was_bad) ? ENDAT_ERROR_CHECKSUM : error;
         }
         if (error == ENDAT_ERROR_CHECKSUM) {
             spi->disturbed++;

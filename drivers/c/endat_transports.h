@@ -23,6 +23,11 @@ typedef struct {
     /** Sends count bytes while it receives as many, chip select low from the first to the last. */
     endat_error (*transfer)(void *context, const uint8_t *sent, uint8_t *received, uint32_t count);
     uint32_t tries;                    /**< How often a frame goes out at most; 0 counts as 1. */
+    /**
+     * False: a write takes four frames, and has arrived when it is told as done; a disturbed one goes out again, so that a trigger may
+     * come twice. True: it is one frame, and nobody knows.
+     */
+    bool unconfirmed;
     uint32_t disturbed;                /**< Frames that had to go out again, for you to look at. */
     uint8_t sent[ENDAT_SPI_BYTES];     /**< The driver's. */
     uint8_t received[ENDAT_SPI_BYTES]; /**< The driver's. */

@@ -115,7 +115,10 @@ fn quoted(text: &str) -> String {
 
 /// An array of texts, each at its number; a hole is no text.
 fn list(text: &mut String, name: &str, about: &str, rows: &[(u32, String)]) {
-    let _ = writeln!(text, "\n/* {about} */\nstatic const char *const {name}[] = {{");
+    let _ = writeln!(
+        text,
+        "\n/* {about} */\nstatic const char *const {name}[] = {{"
+    );
     let greatest = rows.iter().map(|row| row.0).max().unwrap_or(0);
     for number in 0..=greatest {
         let row = rows.iter().find(|row| row.0 == number);
@@ -157,12 +160,42 @@ fn texts() -> String {
     let words = |word: &endat_regs::service::PlateEntry| quoted(word.meaning);
     let plate: Vec<(u32, String)> = (0..).zip(NAME_PLATE.iter().map(words)).collect();
     for (function_name, list_name, about, rows) in [
-        ("endat_cause_text", "causes", "Causes of a result", meanings(causes::CARD)),
-        ("endat_cause_meaning", "meanings", "What they mean", advice(0)),
-        ("endat_cause_remedy", "remedies", "What to do about them", advice(1)),
-        ("endat_refusal_text", "refusals", "What became of a request", meanings(request_state::ERRORS)),
-        ("endat_step_text", "steps", "Steps of the initialisation", meanings(STEPS)),
-        ("endat_plate_text", "plate", "Words of the name plate", plate),
+        (
+            "endat_cause_text",
+            "causes",
+            "Causes of a result",
+            meanings(causes::CARD),
+        ),
+        (
+            "endat_cause_meaning",
+            "meanings",
+            "What they mean",
+            advice(0),
+        ),
+        (
+            "endat_cause_remedy",
+            "remedies",
+            "What to do about them",
+            advice(1),
+        ),
+        (
+            "endat_refusal_text",
+            "refusals",
+            "What became of a request",
+            meanings(request_state::ERRORS),
+        ),
+        (
+            "endat_step_text",
+            "steps",
+            "Steps of the initialisation",
+            meanings(STEPS),
+        ),
+        (
+            "endat_plate_text",
+            "plate",
+            "Words of the name plate",
+            plate,
+        ),
     ] {
         list(&mut text, list_name, about, &rows);
         function(&mut text, function_name, list_name);

@@ -1,7 +1,13 @@
 //! The C driver: its generated files, strict compilers, and its calls against the fronts of real cards.
 
+mod rig;
+
+use crate::program::{bad, good, Dir};
 use crate::tools;
+use endat_hdl::bus::HostBus;
+use rig::{Rig, ALL_PARTS};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// Where the driver lies.
 fn home() -> PathBuf {
@@ -19,4 +25,161 @@ fn the_driver_has_the_map_and_the_texts_of_the_tables() {
             file.path
         );
     }
+}
+
+/// What the driver has to be clean under.
+const STRICT: [&str; 8] = [
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Wpedantic",
+    "-Wconversion",
+    "-Wshadow",
+    "-Werror",
+    "-O2",
+];
+
+/// The driver's files that are compiled.
+fn sources() -> Vec<String> {
+    let names = endat_gen::driver::FILES.iter().map(|file| file.0);
+    let sources = names.filter(|name| name.ends_with(".c"));
+    sources
+        .map(|name| home().join(name).display().to_string())
+        .collect()
+}
+
+/// The scenarios with the driver, compiled once; none without a compiler.
+fn compiled() -> Option<&'static Path> {
+    static PROGRAM: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let compile = || {
+        if !tools::require("gcc", "C driver") {
+            return None;
+        }
+        let folder = tools::folder("driver");
+        let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver");
+        let include = format!("-I{}", home().display());
+        let own = ["program.c", "alone.c"].map(|name| tests.join(name).display().to_string());
+        let mut arguments: Vec<String> = ["-std=c99", "-Wall", "-Werror", "-O1", "-g", "-o", "run"]
+            .map(str::to_owned)
+            .to_vec();
+        arguments
+            .extend(["-fsanitize=address,undefined", "-fno-sanitize-recover"].map(str::to_owned));
+        arguments.push(include);
+        arguments.extend(own);
+        arguments.extend(sources());
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let (is_good, text) = tools::run("gcc", &folder, &arguments);
+        assert!(is_good, "{text}");
+        Some(folder.join("run"))
+    };
+    PROGRAM.get_or_init(compile).as_deref()
+}
+
+#[test]
+fn strict_compilers_have_nothing_to_say_about_the_driver() {
+    let folder = tools::folder("driver-strict");
+    for compiler in ["gcc", "clang"] {
+        // gcc is enough: clang is a second opinion where there is one.
+        let is_there = match compiler {
+            "gcc" => tools::require(compiler, "C driver"),
+            _ => tools::has(compiler),
+        };
+        for source in sources().iter().filter(|_| is_there) {
+            let arguments = [&STRICT[..], &["-c", "-o", "object", source]].concat();
+            let (is_good, text) = tools::run(compiler, &folder, &arguments);
+            assert!(is_good && text.is_empty(), "{compiler}: {text}");
+        }
+    }
+}
+
+#[test]
+fn the_driver_refuses_what_no_card_says() {
+    if let Some(program) = compiled() {
+        let (is_good, text) =
+            tools::run(program.to_str().unwrap(), &home(), &["words", "alone", "0"]);
+        assert!(is_good, "{text}");
+    }
+}
+
+#[test]
+fn everything_works_over_axi_lite() {
+    Rig::new(HostBus::AxiLite, ALL_PARTS).run("journey");
+}
+
+#[test]
+fn everything_works_over_spi() {
+    Rig::new(HostBus::Spi, ALL_PARTS).run("journey");
+}
+
+#[test]
+fn position_parameter_and_plug_over_every_other_bus() {
+    for bus in [
+        HostBus::Apb,
+        HostBus::Wishbone,
+        HostBus::Parallel,
+        HostBus::Uart,
+    ] {
+        Rig::new(bus, ALL_PARTS).run("short");
+    }
+}
+
+#[test]
+fn a_card_without_parts_says_which_one_is_missing() {
+    Rig::new(HostBus::AxiLite, "").run("bare");
+}
+
+/// Catches words of two results in one moment where reads are slow, and a hold that is not given back.
+#[test]
+fn slow_reads_are_of_one_moment() {
+    Rig::new(HostBus::Apb, ALL_PARTS).run("torn");
+    Rig::new(HostBus::Parallel, ALL_PARTS).run("torn");
+}
+
+#[test]
+fn noise_on_spi_spoils_nothing() {
+    let mut rig = Rig::new(HostBus::Spi, ALL_PARTS).noise(20);
+    rig.run("noisy");
+    assert!(rig.flipped > 50 || compiled().is_none(), "{}", rig.flipped);
+}
+
+#[test]
+fn emit_hands_the_driver_out_with_a_card() {
+    let dir = Dir::new("driver");
+    let out = dir.path("o");
+    let with = [
+        "emit",
+        "--preset",
+        "s6_two_channel",
+        "--out",
+        &out,
+        "--driver",
+    ];
+    good(&with);
+    let folder = dir.0.join("o/s6_two_channel");
+    for (name, text) in endat_gen::driver::FILES {
+        assert_eq!(std::fs::read_to_string(folder.join(name)).unwrap(), *text);
+    }
+    let manifest = std::fs::read_to_string(folder.join("MANIFEST")).unwrap();
+    assert_eq!(manifest.matches("  endat.h\n").count(), 1);
+    good(&[&with[..], &["--check"]].concat());
+    let told = bad(
+        &with[..5]
+            .iter()
+            .copied()
+            .chain(["--check"])
+            .collect::<Vec<_>>(),
+        1,
+    );
+    assert!(told.contains("endat.h: is no longer emitted"), "{told}");
+    std::fs::remove_file(folder.join("endat.c")).unwrap();
+    let told = bad(&[&with[..], &["--check"]].concat(), 1);
+    assert!(
+        told.contains("endat.c: is missing") && told.contains(" --driver"),
+        "{told}"
+    );
+    let told = bad(
+        &["emit", "--preset", "async_dsp", "--out", &out, "--driver"],
+        2,
+    );
+    assert!(told.contains("--driver"), "{told}");
 }
