@@ -15,6 +15,8 @@
 #define ENDAT_MAP_PATCH 0u
 /* Encoder ports of the largest card */
 #define ENDAT_MAP_CHANNELS_MAX 8u
+/* Bytes that the largest map takes */
+#define ENDAT_MAP_BYTES 0x2000u
 /* What card.id reads as */
 #define ENDAT_MAP_ID 0x456E4474u
 /* Words of a result; on cards with requests its informations follow */

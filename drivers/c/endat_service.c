@@ -8,6 +8,8 @@
 /** Pause between two looks at an initialisation, and at a request. */
 #define STATE_PAUSE_US 500u
 #define REQUEST_PAUSE_US 50u
+/** No trigger is taken for so long behind an aborted frame. */
+#define ABORT_PAUSE_US 30000u
 /** From so many milliseconds on the microseconds of a duration have wrapped, or may have. */
 #define WRAPS_MS 60u
 
@@ -98,12 +100,21 @@ endat_error endat_status(const endat_card *card, uint32_t channel)
 
 endat_error endat_wait_ready(const endat_card *card, uint32_t channel, uint32_t limit_ms)
 {
+    bool was_away;
     endat_wait wait;
     endat_error error = endat_status(card, channel);
 
     endat_wait_begin(&wait, card, endat_ms(limit_ms));
+    was_away = (error == ENDAT_ERROR_UNPLUGGED);
     while (((error == ENDAT_ERROR_BUSY) || (error == ENDAT_ERROR_UNPLUGGED)) && endat_wait_more(&wait, STATE_PAUSE_US)) {
         error = endat_status(card, channel);
+        was_away = was_away || (error == ENDAT_ERROR_UNPLUGGED);
+    }
+    if ((error == ENDAT_OK) && was_away && !endat_has(card, ENDAT_MAP_CARD_CAPABILITIES_FEATURES_INITIALISE)) {
+        /* An initialisation takes longer than the pause; without one nothing tells that triggers are lost. */
+        endat_wait_begin(&wait, card, ABORT_PAUSE_US);
+        while (endat_wait_more(&wait, STATE_PAUSE_US)) {
+        }
     }
     return (error == ENDAT_ERROR_BUSY) ? ENDAT_ERROR_TIMEOUT : error;
 }

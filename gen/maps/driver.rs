@@ -4,7 +4,7 @@
 use super::{header, Map, MapBlock, MapRegister};
 use crate::artifact::Artifact;
 use endat_regs::service::{request_state, NAME_PLATE, STEPS};
-use endat_regs::{causes, Named, BLOCKS, CHANNELS_MAX, ID, INFO_FIRST, VERSION};
+use endat_regs::{causes, Named, BLOCKS, CHANNELS_MAX, ID, INFO_FIRST, MAP_BYTES, VERSION};
 use std::fmt::Write;
 
 /// What all macros begin with; a card's own header has the card's name there.
@@ -69,6 +69,8 @@ fn map() -> String {
 #define {PREFIX}_PATCH {patch}u
 /* Encoder ports of the largest card */
 #define {PREFIX}_CHANNELS_MAX {CHANNELS_MAX}u
+/* Bytes that the largest map takes */
+#define {PREFIX}_BYTES 0x{MAP_BYTES:04X}u
 /* What card.id reads as */
 #define {PREFIX}_ID 0x{ID:08X}u
 /* Words of a result; on cards with requests its informations follow */

@@ -4,6 +4,7 @@ mod rig;
 
 use crate::program::{bad, good, Dir};
 use crate::tools;
+use endat_gen::config::{parse, Project};
 use endat_hdl::bus::HostBus;
 use rig::{Rig, ALL_PARTS};
 use std::path::{Path, PathBuf};
@@ -56,6 +57,8 @@ fn compiled() -> Option<&'static Path> {
             return None;
         }
         let folder = tools::folder("driver");
+        std::fs::write(folder.join("page.c"), block("```c\n", 1)).unwrap();
+        write_header(&folder);
         let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver");
         let include = format!("-I{}", home().display());
         let own = ["program.c", "alone.c"].map(|name| tests.join(name).display().to_string());
@@ -64,7 +67,7 @@ fn compiled() -> Option<&'static Path> {
             .to_vec();
         arguments
             .extend(["-fsanitize=address,undefined", "-fno-sanitize-recover"].map(str::to_owned));
-        arguments.push(include);
+        arguments.extend([include, "-I.".into(), "page.c".into()]);
         arguments.extend(own);
         arguments.extend(sources());
         let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
@@ -73,6 +76,109 @@ fn compiled() -> Option<&'static Path> {
         Some(folder.join("run"))
     };
     PROGRAM.get_or_init(compile).as_deref()
+}
+
+/// A block of the page.
+fn block(fence: &str, number: usize) -> &'static str {
+    let page = include_str!("../../docs/driver.md");
+    let blocks = page.split(fence).skip(1);
+    let text = |rest: &'static str| rest.split("```").next().unwrap().trim_start();
+    blocks.map(text).nth(number).unwrap()
+}
+
+/// The card of the page.
+fn card_of_the_page() -> Project {
+    parse("my_card.toml", block("```toml", 0)).unwrap()
+}
+
+fn write_header(folder: &Path) {
+    let maps = endat_gen::maps::artifacts(&card_of_the_page()).unwrap();
+    let header = maps
+        .iter()
+        .find(|file| file.path.ends_with("_registers.h"))
+        .unwrap();
+    std::fs::write(folder.join(&header.path), &header.text).unwrap();
+}
+
+#[test]
+fn the_program_of_the_page_goes_from_power_up_over_a_plug_to_a_position() {
+    Rig::of(card_of_the_page()).run("page");
+}
+
+/// Catches an example that names what the driver no longer has.
+#[test]
+fn examples_and_the_page_compile() {
+    if !tools::require("gcc", "examples of the C driver") {
+        return;
+    }
+    let folder = tools::folder("driver-examples");
+    write_header(&folder);
+    std::fs::write(folder.join("hooks.c"), block("```c\n", 0)).unwrap();
+    let (spi, link) = block("```c\n", 2).split_once("endat_link link;").unwrap();
+    let spi = format!(
+        "#include \"endat_transports.h\"\n\
+         endat_error board_transfer(void *context, const uint8_t *sent, uint8_t *received, uint32_t count);\n\
+         uint32_t board_us(void *context);\nendat_error open_spi(endat_card *card);\n{spi}\
+         endat_error open_spi(endat_card *card) {{ endat_link link; {link} return endat_open(card, &link, 0); }}\n"
+    );
+    std::fs::write(folder.join("spi.c"), spi).unwrap();
+    let shim = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver/shim");
+    let includes = [home(), shim].map(|path| format!("-I{}", path.display()));
+    let example = |name| home().join("examples").join(name).display().to_string();
+    let examples = ["bare_metal.c", "freertos.c", "linux_uio.c"].map(example);
+    for file in ["hooks.c".into(), "spi.c".into()].iter().chain(&examples) {
+        let more = [
+            "-I.",
+            &includes[0],
+            &includes[1],
+            "-c",
+            "-o",
+            "object",
+            file,
+        ];
+        let (is_good, text) = tools::run("gcc", &folder, &[&STRICT[..], &more].concat());
+        assert!(is_good && text.is_empty(), "{text}");
+    }
+    // On a map without a card the one for Linux says so.
+    let sources = sources();
+    let mut arguments = vec!["-std=c99", &includes[0], "-o", "uio", &examples[2]];
+    arguments.extend(sources.iter().map(String::as_str));
+    let (is_good, text) = tools::run("gcc", &folder, &arguments);
+    assert!(is_good, "{text}");
+    std::fs::write(folder.join("map"), [0; endat_regs::MAP_BYTES as usize]).unwrap();
+    let program = folder.join("uio").display().to_string();
+    let (is_good, text) = tools::run(&program, &folder, &["map"]);
+    assert!(!is_good && text.contains("no card answers"), "{text}");
+}
+
+/// The Verilog as it is emitted, with the encoder of its bench: what the fronts on the bench cannot miss is the emission itself.
+#[test]
+fn the_emitted_card_is_driven_in_verilator() {
+    let check = "C driver at the emitted Verilog";
+    if !tools::require_all(&["gcc", "verilator"], check) {
+        return;
+    }
+    let more = "[service]\nparts = [\"requests\", \"diagnosis\"]\n";
+    let project = parse("card.toml", &rig::text(HostBus::AxiLite, more)).unwrap();
+    let folder = tools::folder("driver-verilated");
+    let mut files = vec![];
+    for file in endat_gen::emit(&project).unwrap() {
+        std::fs::write(folder.join(&file.path), &file.text).unwrap();
+        if file.path.ends_with(".v") {
+            files.push(file.path);
+        }
+    }
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver");
+    let own = ["emitted.v", "emitted.cpp"].map(|name| tests.join(name).display().to_string());
+    let mut arguments: Vec<&str> =
+        "--cc --exe --build --timing -O3 -j 2 -Wno-fatal --top-module emitted -o run"
+            .split(' ')
+            .collect();
+    arguments.extend(["-CFLAGS", "-O1"]);
+    arguments.extend(own.iter().chain(&files).map(String::as_str));
+    let (is_good, text) = tools::run("verilator", &folder, &arguments);
+    assert!(is_good, "{text}");
+    Rig::outside(&project, &folder.join("obj_dir/run")).run("emitted");
 }
 
 #[test]

@@ -325,7 +325,7 @@ static void plug(int has_service)
     measure_well();
     good = moment.channel[0].sequence;
     pause_us(200);
-    ask("unplug 0 18");
+    ask("unplug 0 18 0");
     pause_us(10 * MS);
     error = endat_measure(&card, &moment, 2 * MS);
     CHECK(!moment.channel[0].fresh || (moment.channel[0].stale && moment.channel[0].sequence == good), "%s", endat_error_text(error));
@@ -468,6 +468,50 @@ static void noisy(void)
     CHECK(disturbed() > 0, "%u frames went out again", (unsigned)disturbed());
 }
 
+/* The emitted card with the emitted encoder, which knows 100011 and says address and inverted address. */
+static void emitted(void)
+{
+    endat_answer got;
+    endat_error error;
+
+    wait_for_both();
+    measure_well();
+    pause_us(200);
+    error = endat_send(&card, 0, ENDAT_MAP_SERVICE_REQUEST_COMMAND_SEND_PARAMETER, 0x0D, 0, 200, &got);
+    CHECK(error == ENDAT_OK && got.address == 0x0D && got.data == 0xF20D, "%s: %x", endat_error_text(error), got.data);
+    pause_us(2 * MS);
+    wrong_crc();
+    plug(1);
+}
+
+/* The program of the page, which wants to see a plug pulled. */
+endat_error first_angles(const endat_link *link);
+static unsigned shown;
+
+void show_position(int64_t position)
+{
+    const uint64_t sent = ask("position 0");
+    CHECK(position == endat_signed(sent, 29), "%" PRId64, position);
+    shown++;
+    pause_us(200);
+}
+
+void show_text(const char *text)
+{
+    printf("# %s\n", text);
+}
+
+static void page(void)
+{
+    endat_link link;
+    endat_error error;
+
+    make_link("words", &link);
+    ask("unplug 0 18 c8");
+    error = first_angles(&link);
+    CHECK(error == ENDAT_OK && shown > 10, "%s, %u positions", endat_error_text(error), shown);
+}
+
 int main(int count, char **arguments)
 {
     const char *scenario = (count > 2) ? arguments[2] : "";
@@ -478,6 +522,10 @@ int main(int count, char **arguments)
     }
     if (count != 4)
         return 2;
+    if (strcmp(scenario, "page") == 0) {
+        page();
+        return 0;
+    }
     open_card(arguments[1], (uint32_t)strtoul(arguments[3], NULL, 16));
     if (strcmp(scenario, "journey") == 0)
         journey();
@@ -489,6 +537,8 @@ int main(int count, char **arguments)
         torn();
     else if (strcmp(scenario, "noisy") == 0)
         noisy();
+    else if (strcmp(scenario, "emitted") == 0)
+        emitted();
     else
         return 2;
     CHECK(ask("violations") == 0, "%s", "the encoders saw something wrong");

@@ -19,6 +19,7 @@ use endat_sim::rng::Rng;
 use endat_sim::{MS, US};
 use rust_hdl::prelude::Block;
 use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// System clock of these cards: low, so that milliseconds are few cycles.
@@ -78,6 +79,8 @@ fn encoder(channel: usize) -> EncoderConfig {
 
 /// Whoever is at the pins.
 enum Front {
+    /// A simulator of others: it takes the lines as they are.
+    Outside(ChildStdin, BufReader<ChildStdout>),
     Words(Master),
     Spi(spi::Host),
     Parallel(parallel::Host),
@@ -91,6 +94,7 @@ impl Front {
             Self::Spi(host) => &mut host.0.bench,
             Self::Parallel(host) => &mut host.0.bench,
             Self::Uart(host) => &mut host.bench,
+            Self::Outside(..) => unreachable!("it has a bench of its own"),
         }
     }
 }
@@ -103,6 +107,8 @@ pub struct Rig {
     /// One of so many frames on SPI has a wrong bit; 0 = none.
     noise: u64,
     rng: Rng,
+    system_hz: u64,
+    encoders: usize,
     /// Pause before each read, in cycles.
     slow_cycles: u64,
     /// Wrong bits so far.
@@ -110,7 +116,7 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// A card of this configuration, with an encoder at each channel.
+    /// A card with these parts, with an encoder at each channel.
     pub fn new(bus: HostBus, more: &str) -> Self {
         // A UART asks for a board, which the other cards do not have.
         let like = match bus {
@@ -119,30 +125,53 @@ impl Rig {
         };
         let mut project = parse("card.toml", &text(like, more)).unwrap();
         project.bus = bus;
+        Self::of(project)
+    }
+
+    /// A card of this configuration.
+    pub fn of(mut project: Project) -> Self {
         project.card.uart_bit_cycles = 8;
+        let (system_hz, channels) = (project.card.system_hz, project.card.channels.len());
         let design = quick_design(&project);
-        let encoders = || (0..WIDTHS.len()).map(|n| (n, encoder(n)));
+        let encoders = || (0..channels).map(|n| (n, encoder(n)));
         let master = || Master::of_design(&design, &project, encoders().collect(), 20.0);
-        let (front, kind) = match bus {
+        let (front, kind) = match project.bus {
             HostBus::Spi => (Front::Spi(spi::Host::at(master())), "spi"),
             HostBus::Parallel => (Front::Parallel(parallel::Host::at(master())), "parallel"),
             HostBus::Uart => {
                 let link = |(_, encoder)| Link::new(LineConfig::cable(20.0), encoder);
                 let links = encoders().map(link).collect();
-                let host = crate::host::Host::of_design(&design, SYSTEM_HZ, links);
+                let host = crate::host::Host::of_design(&design, system_hz, links);
                 (Front::Uart(host), "uart")
             }
             _ => (Front::Words(master()), "words"),
         };
+        Self::at(front, kind, &project)
+    }
+
+    fn at(front: Front, kind: &'static str, project: &Project) -> Self {
         Self {
             front,
             hash: project.hash[..8].to_owned(),
             kind,
             noise: 0,
             rng: Rng::new(3),
+            system_hz: project.card.system_hz,
+            encoders: project.card.channels.len(),
             slow_cycles: 0,
             flipped: 0,
         }
+    }
+
+    /// The card of this project in a program that takes the lines of the hooks.
+    pub fn outside(project: &Project, program: &Path) -> Self {
+        let mut child = Command::new(program)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let (to, from) = pipes(&mut child);
+        Self::at(Front::Outside(to, from), "words", project)
     }
 
     /// The same with a wrong bit in one of so many frames.
@@ -180,7 +209,20 @@ impl Rig {
     fn answer(&mut self, line: &str) -> String {
         let words: Vec<&str> = line.split_whitespace().collect();
         let number = |n: usize| u32::from_str_radix(words[n], 16).unwrap();
-        let cycles_per_us = SYSTEM_HZ / 1_000_000;
+        let cycles_per_us = self.system_hz / 1_000_000;
+        if let Front::Outside(to, from) = &mut self.front {
+            writeln!(to, "{line}").unwrap();
+            let mut answer = String::new();
+            while !answer.starts_with("= ") {
+                // What its encoders complain of stands in lines of its own.
+                answer.clear();
+                assert!(
+                    from.read_line(&mut answer).unwrap() > 0,
+                    "{line}: no answer"
+                );
+            }
+            return answer[2..].trim_end().to_owned();
+        }
         match words[0] {
             "delay" => {
                 let cycles = u64::from(number(1)) * cycles_per_us;
@@ -194,7 +236,7 @@ impl Rig {
             "now" => format!("{:x}", (self.front.bench().now() / US) as u32),
             "unplug" => {
                 let bench = self.front.bench();
-                let from = bench.now() + US;
+                let from = bench.now() + US + u64::from(number(3)) * MS;
                 let until = from + u64::from(number(2)) * MS;
                 let link = bench.link_mut(number(1) as usize);
                 link.encoder_mut().unplug(from, until);
@@ -211,6 +253,7 @@ impl Rig {
                 format!("{:x}", frames.last().unwrap().position)
             }
             "violations" => {
+                let encoders = self.encoders;
                 let bench = self.front.bench();
                 // The pulse after power-up is no frame, and a request that the encoder refuses ends without an answer.
                 let is_one = |v: &Violation| !matches!(v, Violation::StoppedBeforeAnswer { .. });
@@ -218,7 +261,7 @@ impl Rig {
                     let violations = bench.violations(n).iter();
                     violations.filter(|(_, v)| is_one(v)).count() + bench.conflicts(n).len()
                 };
-                format!("{:x}", (0..WIDTHS.len()).map(of).sum::<usize>())
+                format!("{:x}", (0..encoders).map(of).sum::<usize>())
             }
             _ => self.access(&words),
         }
