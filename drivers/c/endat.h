@@ -158,7 +158,7 @@ endat_error endat_measure(const endat_card *card, endat_moment *moment, uint32_t
 /** Lets channels measure their line delay again with their next frame; bit n for channel n. */
 endat_error endat_calibrate(const endat_card *card, uint32_t channels);
 
-/** A position as a number around zero, in two's complement of its width. */
+/** A position as a number around zero, in two's complement of its width; 0 if the width is 0, as of T-format: take the position itself. */
 int64_t endat_signed(uint64_t position, uint32_t width_bits);
 
 /** How far it is from one position to another, the shorter way round. */

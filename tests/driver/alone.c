@@ -197,6 +197,79 @@ static void serial(void)
     CHECK(endat_open(&card, &over_spi, 0) == ENDAT_ERROR_CHECKSUM && spi.disturbed == 8, "%u", (unsigned)spi.disturbed);
 }
 
+/*
+ * A card on SPI as the page on buses has it: words, check sums, the state of the last write. Frames of a list are disturbed: the command
+ * byte comes as another one, or a byte of the rest is wrong.
+ */
+static unsigned frames;
+static unsigned spoilt[2];
+static bool loses_command;
+static bool was_bad;
+
+static endat_error fake_card(void *context, const uint8_t *sent, uint8_t *received, uint32_t count)
+{
+    uint8_t came[ENDAT_SPI_BYTES];
+    const bool is_spoilt = (frames == spoilt[0] || frames == spoilt[1]);
+    uint32_t address;
+
+    (void)context;
+    frames++;
+    memcpy(came, sent, count);
+    if (is_spoilt)
+        came[loses_command ? 0 : 6] ^= 0x80;
+    address = (uint32_t)came[1] << 8 | came[2];
+    memset(received, 0, count);
+    received[0] = was_bad ? 0xA2 : 0xA0;
+    if (came[0] == 2) {
+        const uint32_t crc = endat_crc16(ENDAT_CRC16_START, came, 8);
+        was_bad = (crc != ((uint32_t)came[8] << 8 | came[9]));
+        if (!was_bad)
+            memory[address] = (uint32_t)came[4] << 24 | (uint32_t)came[5] << 16 | (uint32_t)came[6] << 8 | came[7];
+    } else if (came[0] == 3) {
+        const uint32_t word = memory[address];
+        uint32_t crc;
+        for (int n = 0; n < 4; n++)
+            received[5 + n] = (uint8_t)(word >> (24 - 8 * n));
+        crc = endat_crc16(endat_crc16(ENDAT_CRC16_START, came, 4), &received[5], 4);
+        received[9] = (uint8_t)(crc >> 8);
+        received[10] = (uint8_t)crc;
+        if (is_spoilt)
+            received[6] ^= 1;
+    }
+    return ENDAT_OK;
+}
+
+/* Any two frames around a write are disturbed, in either way: it is told as done exactly when it has arrived. */
+static void confirmed_writes(void)
+{
+    endat_spi spi = {.transfer = fake_card, .tries = 3};
+    endat_link over_spi;
+
+    endat_spi_link(&spi, &over_spi);
+    for (unsigned ways = 0; ways < 2; ways++) {
+        for (unsigned first = 0; first < 12; first++) {
+            for (unsigned second = first; second < 12; second++) {
+                endat_error error;
+                good_card();
+                was_bad = false;
+                frames = 0;
+                loses_command = (ways == 1);
+                spoilt[0] = first;
+                spoilt[1] = second;
+                error = over_spi.write(over_spi.context, 0x100, 0x12345678);
+                CHECK((error == ENDAT_OK) == (memory[0x100] == 0x12345678), "frames %u and %u: %s", first, second, endat_error_text(error));
+                CHECK(error == ENDAT_OK, "frames %u and %u: %s", first, second, endat_error_text(error));
+            }
+        }
+    }
+    /* Without it nobody knows. */
+    good_card();
+    spi.unconfirmed = true;
+    frames = 0;
+    spoilt[0] = 0;
+    CHECK(over_spi.write(over_spi.context, 0x100, 1) == ENDAT_OK && memory[0x100] == 0 && frames == 1, "%u frames", frames);
+}
+
 void alone(void)
 {
     identities();
@@ -205,4 +278,5 @@ void alone(void)
     texts();
     streams();
     serial();
+    confirmed_writes();
 }

@@ -6,6 +6,7 @@ use crate::program::{bad, good, Dir};
 use crate::tools;
 use endat_gen::config::{parse, Project};
 use endat_hdl::bus::HostBus;
+use endat_sim::encoder::Defect;
 use rig::{Rig, ALL_PARTS};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -198,6 +199,31 @@ fn strict_compilers_have_nothing_to_say_about_the_driver() {
     }
 }
 
+/// Catches a header that only C can read.
+#[test]
+fn the_headers_are_those_of_cpp_too() {
+    if tools::require("g++", "C driver in C++") {
+        let folder = tools::folder("driver-cpp");
+        let text = "#include \"endat_transports.h\"\nint main() { return endat_error_text(ENDAT_OK) == nullptr; }\n";
+        std::fs::write(folder.join("main.cpp"), text).unwrap();
+        let include = format!("-I{}", home().display());
+        let flags = [
+            "-std=c++11",
+            "-Wall",
+            "-Wextra",
+            "-pedantic",
+            "-Werror",
+            "-fsyntax-only",
+        ];
+        let (is_good, text) = tools::run(
+            "g++",
+            &folder,
+            &[&flags[..], &[&include, "main.cpp"]].concat(),
+        );
+        assert!(is_good && text.is_empty(), "{text}");
+    }
+}
+
 #[test]
 fn the_driver_refuses_what_no_card_says() {
     if let Some(program) = compiled() {
@@ -207,14 +233,29 @@ fn the_driver_refuses_what_no_card_says() {
     }
 }
 
+/// Every part that a card behind any bus but the UART can have.
+fn everything() -> String {
+    format!("{ALL_PARTS}[outputs]\nparts = [\"interrupt\"]\n")
+}
+
 #[test]
 fn everything_works_over_axi_lite() {
-    Rig::new(HostBus::AxiLite, ALL_PARTS).run("journey");
+    Rig::new(HostBus::AxiLite, &everything()).run("journey");
 }
 
 #[test]
 fn everything_works_over_spi() {
-    Rig::new(HostBus::Spi, ALL_PARTS).run("journey");
+    Rig::new(HostBus::Spi, &everything()).run("journey");
+}
+
+#[test]
+fn an_encoder_that_never_answers_is_told_with_its_step() {
+    let project = parse("card.toml", &rig::text(HostBus::Apb, ALL_PARTS)).unwrap();
+    let encoder = |n| match n {
+        1 => rig::encoder(n).defects(0..=u64::MAX, Defect::NoStartBit),
+        n => rig::encoder(n),
+    };
+    Rig::with(project, encoder).run("broken");
 }
 
 #[test]

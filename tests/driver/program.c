@@ -315,6 +315,58 @@ static void wrong_crc(void)
     pause_us(200);
 }
 
+static void alarms(void)
+{
+    endat_state state = {0};
+
+    CHECK(endat_set_alarm(&card, 0, 1, 17) == ENDAT_ERROR_ARGUMENT, "%s", "17 frames");
+    CHECK(endat_set_alarm(&card, 0, 1, 4) == ENDAT_OK, "%s", "threshold");
+    wrong_crc();
+    CHECK(endat_read_state(&card, 0, &state) == ENDAT_OK && state.alarm && state.endat22 && state.initialised, "%d", state.alarm);
+    CHECK(endat_read_state(&card, 1, &state) == ENDAT_OK && !state.alarm && !state.unplugged && state.starts == 1, "%u", state.starts);
+    CHECK(endat_set_alarm(&card, 0, 0, 4) == ENDAT_OK && endat_clear(&card, 0) == ENDAT_OK, "%s", "clear");
+    pause_us(1 * MS);
+    CHECK(endat_read_state(&card, 0, &state) == ENDAT_OK && !state.alarm, "%d", state.alarm);
+}
+
+static void interrupts(void)
+{
+    const uint32_t result_1 = ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_1_RESULT << ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_1_SHIFT;
+    uint32_t events = 0;
+
+    CHECK(endat_take_interrupts(&card, &events) == ENDAT_OK, "%s", "take");
+    CHECK(endat_take_interrupts(&card, &events) == ENDAT_OK && events == 0, "%x", (unsigned)events);
+    CHECK(ask("irq") == 0 && endat_enable_interrupts(&card, result_1) == ENDAT_OK, "%s", "irq_o");
+    measure_well();
+    CHECK(ask("irq") == 1, "%s", "irq_o");
+    CHECK(endat_take_interrupts(&card, &events) == ENDAT_OK && (events & result_1) != 0, "%x", (unsigned)events);
+    CHECK(ask("irq") == 0 && endat_enable_interrupts(&card, 0) == ENDAT_OK, "%s", "irq_o");
+    pause_us(200);
+}
+
+static void initialise_again(void)
+{
+    uint32_t step = 1;
+
+    CHECK(endat_initialise(&card, 0) == ENDAT_OK, "%s", "initialise");
+    pause_us(1 * MS);
+    CHECK(endat_status(&card, 0) == ENDAT_ERROR_BUSY, "%s", endat_error_text(endat_status(&card, 0)));
+    wait_for_both();
+    CHECK(endat_failed_step(&card, 0, &step) == ENDAT_OK && step == 0, "%s", endat_step_text(step));
+    measure_well();
+    pause_us(200);
+}
+
+/* The encoder of channel 1 is there, and never answers. */
+static void broken(void)
+{
+    uint32_t step = 0;
+
+    CHECK(endat_wait_ready(&card, 0, 1000) == ENDAT_OK, "%s", endat_error_text(endat_status(&card, 0)));
+    CHECK(endat_wait_ready(&card, 1, 2000) == ENDAT_ERROR_INITIALISATION, "%s", endat_error_text(endat_status(&card, 1)));
+    CHECK(endat_failed_step(&card, 1, &step) == ENDAT_OK && step != 0, "%s", endat_step_text(step));
+}
+
 /* The plug of channel 0 is pulled, and put back. */
 static void plug(int has_service)
 {
@@ -396,6 +448,9 @@ static void journey(void)
     measure_well();
     pause_us(200);
     wrong_crc();
+    alarms();
+    interrupts();
+    initialise_again();
     stream();
     plug(1);
     informations();
@@ -537,6 +592,8 @@ int main(int count, char **arguments)
         torn();
     else if (strcmp(scenario, "noisy") == 0)
         noisy();
+    else if (strcmp(scenario, "broken") == 0)
+        broken();
     else if (strcmp(scenario, "emitted") == 0)
         emitted();
     else
