@@ -1,13 +1,15 @@
-// The emitted card in Verilator: takes the lines of the driver's hooks, and does them on the pins of AXI4-Lite.
+// The emitted cards in Verilator: takes the lines of the driver's hooks, and does them on the pins of AXI4-Lite, or of SPI (argument spi).
 #include "Vemitted.h"
 #include "verilated.h"
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 
 static VerilatedContext *context;
 static Vemitted *top;
+static unsigned card; // 0 AXI4-Lite, 1 SPI
 static uint64_t plug_at_us[2];
 static const uint64_t HALF_PS = 31250; // 16 MHz
 static const unsigned WIDTH[2] = {29, 25};
@@ -20,7 +22,7 @@ static uint64_t position_of(unsigned channel, uint32_t frame)
 
 static uint32_t frames(unsigned channel)
 {
-    return channel == 0 ? top->frames_0 : top->frames_1;
+    return top->frames[2 * card + channel];
 }
 
 static uint64_t now_us()
@@ -43,19 +45,19 @@ static void cycle()
     for (unsigned n = 0; n < 2; n++) {
         if (plug_at_us[n] != 0 && now_us() >= plug_at_us[n]) {
             plug_at_us[n] = 0;
-            top->plugged |= 1u << n;
+            top->plugged |= static_cast<uint8_t>(1u << (2 * card + n));
         }
-        if ((top->spoil_crc >> n & 1) && frames(n) >= spoilt_in[n])
-            top->spoil_crc &= static_cast<uint8_t>(~(1u << n));
+        if (frames(n) >= spoilt_in[n])
+            top->spoil_crc &= static_cast<uint8_t>(~(1u << (2 * card + n)));
     }
     top->position_0 = position_of(0, frames(0));
     top->position_1 = position_of(1, frames(1));
     top->eval();
     run_to(context->time() + HALF_PS);
-    top->clk_i = 0;
+    top->clk = 0;
     top->eval();
     run_to(context->time() + HALF_PS);
-    top->clk_i = 1;
+    top->clk = static_cast<uint8_t>(1u << card);
     top->eval();
 }
 
@@ -116,6 +118,39 @@ static void write(uint32_t word, uint32_t value)
     give_up("BVALID");
 }
 
+// Half a period of the serial clock.
+static void half()
+{
+    for (int n = 0; n < 4; n++)
+        cycle();
+}
+
+// A frame: bytes as hexadecimal digits, and those that came back.
+static std::string transfer(const char *sent)
+{
+    std::string came;
+    top->cs_n = 0;
+    half();
+    for (unsigned value; std::sscanf(sent, "%2x", &value) == 1; sent += 2) {
+        unsigned back = 0;
+        for (int bit = 7; bit >= 0; bit--) {
+            top->mosi = value >> bit & 1;
+            half();
+            back = back << 1 | top->miso;
+            top->sck = 1;
+            half();
+            top->sck = 0;
+        }
+        char digits[3];
+        std::snprintf(digits, sizeof digits, "%02x", back);
+        came += digits;
+    }
+    half();
+    top->cs_n = 1;
+    half();
+    return came;
+}
+
 static uint64_t answer(const char *what, uint32_t first, uint32_t second)
 {
     const uint64_t end = now_us() + first;
@@ -129,10 +164,10 @@ static uint64_t answer(const char *what, uint32_t first, uint32_t second)
     } else if (std::strcmp(what, "now") == 0) {
         return now_us();
     } else if (std::strcmp(what, "unplug") == 0) {
-        top->plugged &= static_cast<uint8_t>(~(1u << first));
+        top->plugged &= static_cast<uint8_t>(~(1u << (2 * card + first)));
         plug_at_us[first] = now_us() + 1000 * second;
     } else if (std::strcmp(what, "crc") == 0) {
-        top->spoil_crc |= static_cast<uint8_t>(1u << first);
+        top->spoil_crc |= static_cast<uint8_t>(1u << (2 * card + first));
         spoilt_in[first] = frames(first) + 1;
     } else if (std::strcmp(what, "position") == 0) {
         // A frame is whole for the encoder when its recovery time is over.
@@ -141,25 +176,30 @@ static uint64_t answer(const char *what, uint32_t first, uint32_t second)
             cycle();
         return position_of(first, frames(first) - 1);
     } else if (std::strcmp(what, "violations") == 0) {
-        return top->errors_0 + top->errors_1;
+        return top->errors[2 * card] + top->errors[2 * card + 1];
     } else {
         give_up(what);
     }
     return 0;
 }
 
-int main()
+int main(int count, char **arguments)
 {
     context = new VerilatedContext;
     top = new Vemitted{context};
-    top->plugged = 3;
+    top->plugged = 15;
+    top->cs_n = 1;
+    card = count > 1 && std::strcmp(arguments[1], "spi") == 0;
     for (int n = 0; n < 1000; n++)
         cycle();
-    char line[256], what[32];
+    char line[4096], what[32];
     while (std::fgets(line, sizeof line, stdin)) {
         unsigned first = 0, second = 0;
         std::sscanf(line, "%31s %x %x", what, &first, &second);
-        std::printf("= %llx\n", static_cast<unsigned long long>(answer(what, first, second)));
+        if (std::strcmp(what, "spi") == 0)
+            std::printf("= %s\n", transfer(line + 4).c_str());
+        else
+            std::printf("= %llx\n", static_cast<unsigned long long>(answer(what, first, second)));
         std::fflush(stdout);
     }
     top->final();

@@ -152,18 +152,19 @@ fn examples_and_the_page_compile() {
     assert!(!is_good && text.contains("no card answers"), "{text}");
 }
 
-/// The Verilog as it is emitted, with the encoder of its bench: what the fronts on the bench cannot miss is the emission itself.
+/// The Verilog as it is emitted, with the encoders of its benches: what the fronts on the bench cannot miss is the emission itself.
 #[test]
-fn the_emitted_card_is_driven_in_verilator() {
+fn the_emitted_cards_are_driven_in_verilator() {
     let check = "C driver at the emitted Verilog";
     if !tools::require_all(&["gcc", "verilator"], check) {
         return;
     }
     let more = "[service]\nparts = [\"requests\", \"diagnosis\"]\n";
-    let project = parse("card.toml", &rig::text(HostBus::AxiLite, more)).unwrap();
-    let folder = tools::folder("driver-verilated");
+    let folder = tools::folder("driver-emitted");
     let mut files = vec![];
-    for file in endat_gen::emit(&project).unwrap() {
+    let projects = [HostBus::AxiLite, HostBus::Spi]
+        .map(|bus| parse("card.toml", &rig::text(bus, more)).unwrap());
+    for file in projects.iter().flat_map(|p| endat_gen::emit(p).unwrap()) {
         std::fs::write(folder.join(&file.path), &file.text).unwrap();
         if file.path.ends_with(".v") {
             files.push(file.path);
@@ -171,15 +172,17 @@ fn the_emitted_card_is_driven_in_verilator() {
     }
     let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver");
     let own = ["emitted.v", "emitted.cpp"].map(|name| tests.join(name).display().to_string());
+    // Warnings of the emission have tests of their own.
     let mut arguments: Vec<&str> =
-        "--cc --exe --build --timing -O3 -j 2 -Wno-fatal --top-module emitted -o run"
+        "--cc --exe --build --timing -O3 -j 2 -Wno-fatal --top-module emitted -CFLAGS -O1 -o run"
             .split(' ')
             .collect();
-    arguments.extend(["-CFLAGS", "-O1"]);
     arguments.extend(own.iter().chain(&files).map(String::as_str));
     let (is_good, text) = tools::run("verilator", &folder, &arguments);
     assert!(is_good, "{text}");
-    Rig::outside(&project, &folder.join("obj_dir/run")).run("emitted");
+    for project in &projects {
+        Rig::outside(project, &folder.join("obj_dir/run")).run("emitted");
+    }
 }
 
 #[test]

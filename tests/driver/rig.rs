@@ -173,13 +173,18 @@ impl Rig {
 
     /// The card of this project in a program that takes the lines of the hooks.
     pub fn outside(project: &Project, program: &Path) -> Self {
+        let kind = match project.bus {
+            HostBus::Spi => "spi",
+            _ => "words",
+        };
         let mut child = Command::new(program)
+            .arg(kind)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
         let (to, from) = pipes(&mut child);
-        Self::at(Front::Outside(to, from), "words", project)
+        Self::at(Front::Outside(to, from), kind, project)
     }
 
     /// The same with a wrong bit in one of so many frames.
