@@ -545,8 +545,13 @@ static unsigned shown;
 
 void show_position(int64_t position)
 {
+    static uint64_t shown_frames;
     const uint64_t sent = ask("position 0");
+    const uint64_t frames = ask("frames 0");
+
     CHECK(position == endat_signed(sent, 29), "%" PRId64, position);
+    CHECK(frames > shown_frames, "%" PRId64 " is an old position", position);
+    shown_frames = frames;
     shown++;
     pause_us(200);
 }

@@ -267,6 +267,10 @@ impl Rig {
                 let frames = bench.link(number(1) as usize).encoder().frames();
                 format!("{:x}", frames.last().unwrap().position)
             }
+            "frames" => {
+                let link = self.front.bench().link(number(1) as usize);
+                format!("{:x}", link.encoder().frames().len())
+            }
             "violations" => {
                 let encoders = self.encoders;
                 let bench = self.front.bench();
