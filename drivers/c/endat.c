@@ -324,7 +324,8 @@ static void take_apart(const uint32_t *words, bool has_infos, endat_result *resu
     const uint32_t high = words[AT(POSITION_HIGH)];
     const uint32_t evidence = words[AT(EVIDENCE)];
     const uint32_t age = words[AT(AGE_RECOVERY)];
-    const uint64_t upper = ENDAT_MAP_GET(ENDAT_MAP_RESULT_POSITION_HIGH_VALUE, high);
+    const uint32_t upper_bits = ENDAT_MAP_GET(ENDAT_MAP_RESULT_POSITION_HIGH_VALUE, high);
+    const uint64_t upper = upper_bits;
     const uint32_t delay_low = ENDAT_MAP_GET(ENDAT_MAP_RESULT_EVIDENCE_DELAY_CYCLES, evidence);
     const uint32_t delay_high = ENDAT_MAP_GET(ENDAT_MAP_RESULT_AGE_RECOVERY_DELAY_HIGH, age);
 
@@ -352,7 +353,7 @@ static void take_apart(const uint32_t *words, bool has_infos, endat_result *resu
 endat_error endat_read_moment(const endat_card *card, endat_moment *moment)
 {
     const bool has_infos = endat_has(card, ENDAT_MAP_CARD_CAPABILITIES_FEATURES_REQUESTS);
-    uint32_t words[ENDAT_BURST_WORDS] = {0u};
+    uint32_t words[ENDAT_BURST_WORDS] = {0};
     endat_error error = ENDAT_OK;
     bool fits = false;
     uint32_t tries;
@@ -380,7 +381,7 @@ endat_error endat_trigger(const endat_card *card)
 
 endat_error endat_measure(const endat_card *card, endat_moment *moment, uint32_t limit_us)
 {
-    uint16_t before[ENDAT_CHANNELS_MAX] = {0u};
+    uint16_t before[ENDAT_CHANNELS_MAX] = {0};
     bool is_over = false;
     bool in_time = true;
     endat_wait wait;
@@ -428,11 +429,13 @@ int64_t endat_signed(uint64_t position, uint32_t width_bits)
     const uint64_t half = (width_bits > 0u) ? ((uint64_t)1 << ((width_bits - 1u) & 63u)) : 0u;
     const uint64_t span = half << 1u;
     const uint64_t value = (width_bits < 64u) ? (position & (span - 1u)) : position;
+    const uint64_t above = value - half;
+    const uint64_t greatest = half - 1u;
 
     if (width_bits == 0u) {
         return 0;
     }
-    return (value < half) ? (int64_t)value : ((int64_t)(value - half) - (int64_t)(half - 1u)) - 1;
+    return (value < half) ? (int64_t)value : (((int64_t)above - (int64_t)greatest) - 1);
 }
 
 int64_t endat_difference(uint64_t from, uint64_t to, uint32_t width_bits)

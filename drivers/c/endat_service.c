@@ -235,7 +235,8 @@ endat_error endat_request_poll(const endat_card *card, const endat_request *requ
     answer->refusal = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR, state);
     answer->address = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_SERVICE_ANSWER_ADDRESS, low);
     answer->data = (uint16_t)ENDAT_MAP_GET(ENDAT_MAP_SERVICE_ANSWER_DATA, low);
-    answer->bits = ((uint64_t)ENDAT_MAP_GET(ENDAT_MAP_SERVICE_ANSWER_MORE_VALUE, more) << 32u) | low;
+    more = ENDAT_MAP_GET(ENDAT_MAP_SERVICE_ANSWER_MORE_VALUE, more);
+    answer->bits = ((uint64_t)more << 32u) | low;
     answer->time_us = (ms < WRAPS_MS) ? ENDAT_MAP_GET(ENDAT_MAP_SERVICE_DURATION_US, duration) : (ms * 1000u);
     return (answer->refusal == 0u) ? ENDAT_OK : ENDAT_ERROR_REFUSED;
 }

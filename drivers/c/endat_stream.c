@@ -18,8 +18,8 @@
 #define TYPE_RUN 3u
 /** Bits of a sample's status: those of the upper half of result.status, and two that stand in free places. */
 #define STATUS_SHIFT 16u
-#define TAKEN (1u << 5u)
-#define MISSING (1u << 15u)
+#define TAKEN 0x0020u
+#define MISSING 0x8000u
 
 uint32_t endat_crc16(uint32_t crc, const uint8_t *bytes, uint32_t count)
 {
