@@ -16,6 +16,7 @@ pub mod cli;
 pub mod config;
 pub mod constraints;
 pub mod crc;
+pub mod driver;
 pub mod error;
 pub mod explain;
 pub mod integration;

@@ -3,7 +3,7 @@
 use endat_gen::config::load_preset;
 use endat_hdl::{
     config::CardConfig,
-    elaborate::elaborate,
+    elaborate::{elaborate, Design},
     regs::{Block, Register},
 };
 use endat_sim::{
@@ -32,8 +32,12 @@ impl Host {
     /// A card with a link on each channel, reset.
     pub fn new(mut card: impl rust_hdl::prelude::Block, system_hz: u64, links: Vec<Link>) -> Self {
         card.connect_all();
-        let design = elaborate(&card, "card").unwrap();
-        let engine = Compiled::new(&design).unwrap();
+        Self::of_design(&elaborate(&card, "card").unwrap(), system_hz, links)
+    }
+
+    /// The same of a card that is elaborated already.
+    pub fn of_design(design: &Design, system_hz: u64, links: Vec<Link>) -> Self {
+        let engine = Compiled::new(design).unwrap();
         let links = links.into_iter().enumerate();
         let links = links.map(|(n, link)| (PinNames::card(n), link)).collect();
         let mut bench = Bench::new(engine, system_hz, links);
@@ -42,7 +46,8 @@ impl Host {
         Self { bench }
     }
 
-    fn send(&mut self, bytes: &[u8]) {
+    /// Sends bytes.
+    pub fn send(&mut self, bytes: &[u8]) {
         for byte in bytes {
             let bits = u16::from(*byte) << 1 | 1 << 9;
             for i in 0..10 {
@@ -52,7 +57,8 @@ impl Host {
         }
     }
 
-    fn receive(&mut self) -> u8 {
+    /// The next byte.
+    pub fn receive(&mut self) -> u8 {
         let started = self.bench.run_until_done(MS, |b| b.get("uart_tx_o") == 0);
         assert!(started, "an answer");
         self.bench.run_cycles(BIT / 2);

@@ -9,6 +9,7 @@ mod config;
 mod constraints;
 mod cycle_time;
 mod documents;
+mod driver;
 mod elaborate;
 mod engines;
 mod files;

@@ -2,10 +2,11 @@
 
 use super::host::interrupted;
 use super::{Outcome, SourceArgs};
-use crate::artifact;
+use crate::artifact::{self, Artifact};
 use crate::config::{check_name, Configuration};
 use crate::error::GenError;
 use clap::Args;
+use endat_hdl::bus::HostBus;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 
@@ -23,6 +24,9 @@ pub struct EmitArgs {
     /// Name of the folder, the files and the top module [default: the name in the configuration]
     #[arg(long, value_name = "PREFIX")]
     name: Option<String>,
+    /// Write the C driver, too: C99 for any bus of a card, see docs/driver.md
+    #[arg(long)]
+    driver: bool,
     /// Overwrite files that have been changed, or that were not written by this command
     #[arg(long, conflicts_with = "check")]
     force: bool,
@@ -49,10 +53,13 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
         return Err(GenError::input("--out = \"\": is empty; give a folder"));
     }
     let folder = out.join(&name);
-    let artifacts = match &configuration {
+    let mut artifacts = match &configuration {
         Configuration::Card(card) => crate::emit(card)?,
         Configuration::Receiver(receiver) => crate::t_format::emit(receiver)?,
     };
+    if arguments.driver {
+        add_driver(&configuration, &mut artifacts)?;
+    }
     if arguments.check {
         let mut found = artifact::differences(&folder, &artifacts);
         if found.is_empty() {
@@ -103,6 +110,26 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
     })
 }
 
+/// The driver is of the emission: the MANIFEST has it, and a later emission without it takes it away.
+fn add_driver(
+    configuration: &Configuration,
+    artifacts: &mut Vec<Artifact>,
+) -> Result<(), GenError> {
+    let has_map = match configuration {
+        Configuration::Card(card) => card.bus != HostBus::Bare,
+        Configuration::Receiver(_) => false,
+    };
+    if !has_map {
+        return Err(GenError::input(
+            "--driver: the driver reads the register map of a card, which this has not; leave --driver out, or give a card with a bus",
+        ));
+    }
+    artifacts.retain(|file| file.path != artifact::MANIFEST);
+    artifacts.extend(crate::driver::artifacts());
+    artifacts.push(artifact::manifest(artifacts));
+    Ok(())
+}
+
 /// The command that makes the check pass; `force` if files would be lost by it.
 fn repair(arguments: &EmitArgs, force: bool) -> String {
     let mut words = Vec::new();
@@ -125,6 +152,9 @@ fn repair(arguments: &EmitArgs, force: bool) -> String {
         arguments.out.as_ref().map(|p| p.display().to_string()),
     );
     add("--name", arguments.name.clone());
+    if arguments.driver {
+        words.push("--driver".into());
+    }
     if force {
         words.push("--force".into());
     }

@@ -55,7 +55,7 @@ fn preamble(map: &Map, prefix: &str) -> String {
     )
 }
 
-fn write_block(text: &mut String, block: &MapBlock, prefix: &str) {
+pub(super) fn write_block(text: &mut String, block: &MapBlock, prefix: &str) {
     let (table, base_bytes) = (&block.block, block.base_bytes());
     let name = format!("{prefix}_{}", block.block.name.to_ascii_uppercase());
     let _ = writeln!(

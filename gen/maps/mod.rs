@@ -12,6 +12,7 @@
 //! adds the form of its language and nothing else.
 
 mod csr;
+pub mod driver;
 mod header;
 mod markdown;
 mod rdl;

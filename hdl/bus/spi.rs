@@ -15,6 +15,7 @@ use super::word_access::WordAccess;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::reg::{Reg, SyncReg};
+use crate::service::program::ServiceTimes;
 use crate::several::each;
 use crate::stream::buffer::CRC16_POLYNOMIAL;
 use endat_macros::{kernel, Block, States};
@@ -369,5 +370,10 @@ impl SpiCard {
     /// A card.
     pub fn new(config: &CardConfig) -> Self {
         Self::behind(Default::default(), CardCore::new(config))
+    }
+
+    /// A card with other waits of its services, for quick tests.
+    pub fn with_times(config: &CardConfig, service: &ServiceTimes) -> Self {
+        Self::behind(Default::default(), CardCore::with_times(config, service))
     }
 }

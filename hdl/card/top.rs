@@ -160,6 +160,14 @@ macro_rules! card_top {
             pub fn new(config: &CardConfig) -> Self {
                 Self::behind(Default::default(), CardCore::new(config))
             }
+
+            /// A card with other waits of its services, for quick tests.
+            pub fn with_times(
+                config: &CardConfig,
+                service: &crate::service::program::ServiceTimes,
+            ) -> Self {
+                Self::behind(Default::default(), CardCore::with_times(config, service))
+            }
         }
     };
 }

@@ -8,18 +8,19 @@ mod configuration;
 mod error_test;
 mod handshake;
 mod outputs;
-mod parallel;
+pub mod parallel;
 mod rates;
 mod safety;
 mod second;
 mod second_receiver;
-mod spi;
+pub mod spi;
 mod three_ways;
 mod uart;
 
 use endat_gen::config::{parse, Project};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::CardConfig;
+use endat_hdl::elaborate::Design;
 use endat_hdl::regs::{Block, CARD};
 use endat_sim::bench::{Bench, Link, PinNames};
 use endat_sim::encoder::EncoderConfig;
@@ -114,7 +115,17 @@ impl Master {
         cable_m: f64,
     ) -> Self {
         let design = endat_gen::design(project).unwrap();
-        let engine = Compiled::new(&design).unwrap();
+        Self::of_design(&design, project, encoders, cable_m)
+    }
+
+    /// The same with another card behind that bus, one with shorter waits.
+    pub fn of_design(
+        design: &Design,
+        project: &Project,
+        encoders: Vec<(usize, EncoderConfig)>,
+        cable_m: f64,
+    ) -> Self {
+        let engine = Compiled::new(design).unwrap();
         let link = |(n, encoder)| {
             let port = PinNames::card(n);
             (port, Link::new(LineConfig::cable(cable_m), encoder))

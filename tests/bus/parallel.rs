@@ -5,11 +5,17 @@ use endat_hdl::bus::HostBus;
 use endat_hdl::regs::{words, CARD, CARD_CONFIG};
 use std::collections::BTreeMap;
 
-struct Host(Master);
+/// A host.
+pub struct Host(pub Master);
 
 impl Host {
     fn new() -> Self {
-        let mut host = Self(Master::new(HostBus::Parallel, ""));
+        Self::at(Master::new(HostBus::Parallel, ""))
+    }
+
+    /// At this card.
+    pub fn at(master: Master) -> Self {
+        let mut host = Self(master);
         for strobe in ["bus_cs_n_i", "bus_rd_n_i", "bus_wr_n_i"] {
             host.0.set(strobe, 1);
         }
@@ -18,7 +24,7 @@ impl Host {
     }
 
     /// Reads as soon as the page says that the data is there: 4 clocks after the register has been selected.
-    fn get(&mut self, register: u32) -> u32 {
+    pub fn get(&mut self, register: u32) -> u32 {
         let master = &mut self.0;
         assert_eq!(master.bench.get("bus_data_oe"), 0);
         master.set("bus_address_i", register);
@@ -40,7 +46,7 @@ impl Host {
     }
 
     /// Writes; the data leaves the lines with the strobe.
-    fn put(&mut self, register: u32, data: u32) {
+    pub fn put(&mut self, register: u32, data: u32) {
         let master = &mut self.0;
         master.set("bus_address_i", register);
         master.set("bus_data_i", data);

@@ -18,8 +18,10 @@ pub fn crc16(bytes: &[u8]) -> u16 {
     })
 }
 
-struct Host(
-    Master,
+/// A host.
+pub struct Host(
+    /// Its card.
+    pub Master,
     /// Clocks of the halves of its periods, in turn.
     &'static [u64],
     /// Chance of a pulse of noise on the clock, in a thousandth of a half period.
@@ -28,7 +30,12 @@ struct Host(
 
 impl Host {
     fn new(more: &str) -> Self {
-        let mut host = Self(Master::new(HostBus::Spi, more), &[HALF], 0);
+        Self::at(Master::new(HostBus::Spi, more))
+    }
+
+    /// At this card.
+    pub fn at(master: Master) -> Self {
+        let mut host = Self(master, &[HALF], 0);
         host.0.set("spi_cs_n_i", 1);
         host.0.bench.run_cycles(20);
         host
@@ -70,7 +77,8 @@ impl Host {
         came
     }
 
-    fn frame(&mut self, bytes: &[u8]) -> Vec<u8> {
+    /// A frame; what came back.
+    pub fn frame(&mut self, bytes: &[u8]) -> Vec<u8> {
         self.bits(bytes, 8 * bytes.len())
     }
 

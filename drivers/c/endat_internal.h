@@ -1,0 +1,37 @@
+/**
+ * @file endat_internal.h
+ * What the files of the driver share; not for programs.
+ */
+#ifndef ENDAT_INTERNAL_H
+#define ENDAT_INTERNAL_H
+
+#include "endat.h"
+
+/** A wait with a limit. */
+typedef struct {
+    const endat_link *link; /**< Its clock. */
+    uint32_t started_us;    /**< When it began. */
+    uint32_t passed_us;     /**< Added up, without a clock. */
+    uint32_t looks;         /**< Counted, without a clock and without waits. */
+    uint32_t limit_us;      /**< When it is over. */
+} endat_wait;
+
+void endat_wait_begin(endat_wait *wait, const endat_card *card, uint32_t limit_us);
+
+/** Pauses; false if the limit has passed. */
+bool endat_wait_more(endat_wait *wait, uint32_t pause_us);
+
+/** Milliseconds as microseconds, as far as they fit. */
+uint32_t endat_ms(uint32_t ms);
+
+/** Whether there is this EnDat channel. */
+endat_error endat_needs_endat(const endat_card *card, uint32_t channel);
+
+/** The same, and the part requests. */
+endat_error endat_needs_service(const endat_card *card, uint32_t channel);
+
+/** CRC-16/CCITT-FALSE, which begins with ENDAT_CRC16_START. */
+#define ENDAT_CRC16_START 0xFFFFu
+uint32_t endat_crc16(uint32_t crc, const uint8_t *bytes, uint32_t count);
+
+#endif

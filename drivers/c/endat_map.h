@@ -1,0 +1,2004 @@
+/**
+ * @file endat_map.h
+ * Register map 0.9.0 of every card, whatever its configuration.
+ *
+ * Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test system driver writes it again.
+ *
+ * ..._WORD counts words of 32 bits, ..._BYTE bytes: 4 * ..._WORD. Of blocks that each channel has, both take the channel.
+ */
+#ifndef ENDAT_MAP_H
+#define ENDAT_MAP_H
+
+/* Version of the register map; within a major version no address and no field moves. */
+#define ENDAT_MAP_MAJOR 0u
+#define ENDAT_MAP_MINOR 9u
+#define ENDAT_MAP_PATCH 0u
+/* Encoder ports of the largest card */
+#define ENDAT_MAP_CHANNELS_MAX 8u
+/* Bytes that the largest map takes */
+#define ENDAT_MAP_BYTES 0x2000u
+/* What card.id reads as */
+#define ENDAT_MAP_ID 0x456E4474u
+/* Words of a result; on cards with requests its informations follow */
+#define ENDAT_MAP_RESULT_WORDS 6u
+#define ENDAT_MAP_RESULT_WORDS_WITH_INFOS 8u
+
+/* Content of a field in a word that was read, and a field's content as part of a word to be written. */
+#define ENDAT_MAP_GET(field, word) (((word) & field##_MASK) >> field##_SHIFT)
+#define ENDAT_MAP_PUT(field, value) (((value) << field##_SHIFT) & field##_MASK)
+
+/* ---- card ------------------------------------------------------------------ */
+
+/* Identification, capabilities, counters and strobes. */
+#define ENDAT_MAP_CARD_BASE_WORD 0x000u
+#define ENDAT_MAP_CARD_BASE_BYTE 0x0000u
+
+/* ro: Identification: the ASCII letters EnDt. */
+#define ENDAT_MAP_CARD_ID_WORD 0x000u
+#define ENDAT_MAP_CARD_ID_BYTE 0x0000u
+/* value: 0x456E4474 */
+#define ENDAT_MAP_CARD_ID_VALUE_SHIFT 0u
+#define ENDAT_MAP_CARD_ID_VALUE_MASK 0xFFFFFFFFu
+
+/* ro: Version of the register map; offsets never move within a major version. */
+#define ENDAT_MAP_CARD_VERSION_WORD 0x001u
+#define ENDAT_MAP_CARD_VERSION_BYTE 0x0004u
+/* patch: Patch */
+#define ENDAT_MAP_CARD_VERSION_PATCH_SHIFT 0u
+#define ENDAT_MAP_CARD_VERSION_PATCH_MASK 0x0000FFFFu
+/* minor: Minor */
+#define ENDAT_MAP_CARD_VERSION_MINOR_SHIFT 16u
+#define ENDAT_MAP_CARD_VERSION_MINOR_MASK 0x00FF0000u
+/* major: Major */
+#define ENDAT_MAP_CARD_VERSION_MAJOR_SHIFT 24u
+#define ENDAT_MAP_CARD_VERSION_MAJOR_MASK 0xFF000000u
+
+/* ro: What this card has. */
+#define ENDAT_MAP_CARD_CAPABILITIES_WORD 0x002u
+#define ENDAT_MAP_CARD_CAPABILITIES_BYTE 0x0008u
+/* channels: Encoder ports */
+#define ENDAT_MAP_CARD_CAPABILITIES_CHANNELS_SHIFT 0u
+#define ENDAT_MAP_CARD_CAPABILITIES_CHANNELS_MASK 0x000000FFu
+/* max_position_bits: Widest position (bits) */
+#define ENDAT_MAP_CARD_CAPABILITIES_MAX_POSITION_BITS_SHIFT 8u
+#define ENDAT_MAP_CARD_CAPABILITIES_MAX_POSITION_BITS_MASK 0x0000FF00u
+/* features: Parts */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_SHIFT 16u
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_MASK 0xFFFF0000u
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_ENDAT22 0x1u /* EnDat 2.2 position frames (111000) */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_LINE_DELAY 0x2u /* line delay is measured */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_TRIGGER_PIN 0x4u /* trigger pin */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_TRIGGER_TIMER 0x8u /* trigger timer */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_REQUESTS 0x10u /* requests */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_INITIALISE 0x20u /* initialisation */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_DIAGNOSIS 0x40u /* diagnosis of the line */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_CONTINUOUS 0x80u /* continuous clock */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_ALIGNMENT 0x100u /* phase at the host's choice, mean over many edges */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_MARGIN 0x200u /* margin of the samples */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_DOUBLE_EDGE 0x400u /* DATA on both edges of the system clock */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_STREAM 0x800u /* stream of sample sets */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_DIRECT 0x1000u /* direct outputs */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_INTERRUPT 0x2000u /* interrupt */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_T_FORMAT 0x4000u /* T-format channels */
+#define ENDAT_MAP_CARD_CAPABILITIES_FEATURES_OWN_TRIGGER 0x8000u /* enable, divider and sources of triggers of each channel */
+
+/* ro: System clock: the unit of every number of cycles. */
+#define ENDAT_MAP_CARD_SYSTEM_HZ_WORD 0x003u
+#define ENDAT_MAP_CARD_SYSTEM_HZ_BYTE 0x000Cu
+/* value: Frequency (Hz) */
+#define ENDAT_MAP_CARD_SYSTEM_HZ_VALUE_SHIFT 0u
+#define ENDAT_MAP_CARD_SYSTEM_HZ_VALUE_MASK 0xFFFFFFFFu
+
+/* ro: Tells which configuration the card was generated from. */
+#define ENDAT_MAP_CARD_CONFIGURATION_HASH_WORD 0x004u
+#define ENDAT_MAP_CARD_CONFIGURATION_HASH_BYTE 0x0010u
+/* value: First 8 digits of the hash that stands in the generated files */
+#define ENDAT_MAP_CARD_CONFIGURATION_HASH_VALUE_SHIFT 0u
+#define ENDAT_MAP_CARD_CONFIGURATION_HASH_VALUE_MASK 0xFFFFFFFFu
+
+/* ro: Which channels speak another protocol than EnDat, what sets of the stream have, and further parts. */
+#define ENDAT_MAP_CARD_PROTOCOLS_WORD 0x005u
+#define ENDAT_MAP_CARD_PROTOCOLS_BYTE 0x0014u
+/* t_format: T-format: bit n for channel n */
+#define ENDAT_MAP_CARD_PROTOCOLS_T_FORMAT_SHIFT 0u
+#define ENDAT_MAP_CARD_PROTOCOLS_T_FORMAT_MASK 0x000000FFu
+/* stream_informations: 1: sets of the stream have the additional informations */
+#define ENDAT_MAP_CARD_PROTOCOLS_STREAM_INFORMATIONS_SHIFT 8u
+#define ENDAT_MAP_CARD_PROTOCOLS_STREAM_INFORMATIONS_MASK 0x00000100u
+/* features: Parts that have no place in capabilities.features */
+#define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_SHIFT 16u
+#define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_MASK 0xFFFF0000u
+#define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER 0x1u /* recovery time measured a second time */
+#define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_SECOND_INTERFACE 0x2u /* results for a second controller, over an SPI that can only be read */
+
+/* ro: Triggers since reset; stands still with the results (see hold). */
+#define ENDAT_MAP_CARD_TRIGGER_COUNT_WORD 0x008u
+#define ENDAT_MAP_CARD_TRIGGER_COUNT_BYTE 0x0020u
+/* value: Wraps */
+#define ENDAT_MAP_CARD_TRIGGER_COUNT_VALUE_SHIFT 0u
+#define ENDAT_MAP_CARD_TRIGGER_COUNT_VALUE_MASK 0xFFFFFFFFu
+
+/* strobe: Triggers all channels that take it, if sources allows it. */
+#define ENDAT_MAP_CARD_TRIGGER_NOW_WORD 0x009u
+#define ENDAT_MAP_CARD_TRIGGER_NOW_BYTE 0x0024u
+/* trigger: Write 1 */
+#define ENDAT_MAP_CARD_TRIGGER_NOW_TRIGGER_SHIFT 0u
+#define ENDAT_MAP_CARD_TRIGGER_NOW_TRIGGER_MASK 0x00000001u
+
+/* strobe: Makes channels measure their line delay again, with their next frame. */
+#define ENDAT_MAP_CARD_CALIBRATE_WORD 0x00Au
+#define ENDAT_MAP_CARD_CALIBRATE_BYTE 0x0028u
+/* channels: Bit n for channel n */
+#define ENDAT_MAP_CARD_CALIBRATE_CHANNELS_SHIFT 0u
+#define ENDAT_MAP_CARD_CALIBRATE_CHANNELS_MASK 0x000000FFu
+
+/* rw: What the stream of sample sets does. */
+#define ENDAT_MAP_CARD_STREAM_CONTROL_WORD 0x00Cu
+#define ENDAT_MAP_CARD_STREAM_CONTROL_BYTE 0x0030u
+/* collect: Triggers make sets */
+#define ENDAT_MAP_CARD_STREAM_CONTROL_COLLECT_SHIFT 0u
+#define ENDAT_MAP_CARD_STREAM_CONTROL_COLLECT_MASK 0x00000001u
+/* push: Frames go out over the UART */
+#define ENDAT_MAP_CARD_STREAM_CONTROL_PUSH_SHIFT 1u
+#define ENDAT_MAP_CARD_STREAM_CONTROL_PUSH_MASK 0x00000002u
+
+/* ro: What is in the stream's buffer, and what did not get in. */
+#define ENDAT_MAP_CARD_STREAM_STATE_WORD 0x00Du
+#define ENDAT_MAP_CARD_STREAM_STATE_BYTE 0x0034u
+/* bytes: Bytes that wait (bytes) */
+#define ENDAT_MAP_CARD_STREAM_STATE_BYTES_SHIFT 0u
+#define ENDAT_MAP_CARD_STREAM_STATE_BYTES_MASK 0x0000FFFFu
+/* lost: Sets lost since clear; stops at 65535 */
+#define ENDAT_MAP_CARD_STREAM_STATE_LOST_SHIFT 16u
+#define ENDAT_MAP_CARD_STREAM_STATE_LOST_MASK 0xFFFF0000u
+
+/* ro: Takes the next bytes of the stream out of the buffer. */
+#define ENDAT_MAP_CARD_STREAM_DATA_WORD 0x00Eu
+#define ENDAT_MAP_CARD_STREAM_DATA_BYTE 0x0038u
+/* bytes: First byte in bits 31..24; what is not there is 0 */
+#define ENDAT_MAP_CARD_STREAM_DATA_BYTES_SHIFT 0u
+#define ENDAT_MAP_CARD_STREAM_DATA_BYTES_MASK 0xFFFFFFFFu
+
+/* strobe: Empties the buffer, forgets what was lost. */
+#define ENDAT_MAP_CARD_STREAM_CLEAR_WORD 0x00Fu
+#define ENDAT_MAP_CARD_STREAM_CLEAR_BYTE 0x003Cu
+/* clear: Write 1 */
+#define ENDAT_MAP_CARD_STREAM_CLEAR_CLEAR_SHIFT 0u
+#define ENDAT_MAP_CARD_STREAM_CLEAR_CLEAR_MASK 0x00000001u
+
+/* ---- interrupt ------------------------------------------------------------- */
+
+/* Interrupt: irq_o is high while a bit of status is set that is set in mask, too. */
+#define ENDAT_MAP_INTERRUPT_BASE_WORD 0x010u
+#define ENDAT_MAP_INTERRUPT_BASE_BYTE 0x0040u
+
+/* ro: What has happened since it was cleared. */
+#define ENDAT_MAP_INTERRUPT_STATUS_WORD 0x010u
+#define ENDAT_MAP_INTERRUPT_STATUS_BYTE 0x0040u
+/* channel_0: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_0_SHIFT 0u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_0_MASK 0x0000000Fu
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_0_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_0_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_0_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_0_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_1: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_1_SHIFT 4u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_1_MASK 0x000000F0u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_1_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_1_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_1_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_1_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_2: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_2_SHIFT 8u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_2_MASK 0x00000F00u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_2_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_2_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_2_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_2_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_3: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_3_SHIFT 12u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_3_MASK 0x0000F000u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_3_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_3_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_3_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_3_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_4: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_4_SHIFT 16u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_4_MASK 0x000F0000u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_4_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_4_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_4_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_4_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_5: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_5_SHIFT 20u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_5_MASK 0x00F00000u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_5_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_5_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_5_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_5_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_6: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_6_SHIFT 24u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_6_MASK 0x0F000000u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_6_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_6_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_6_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_6_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_7: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_7_SHIFT 28u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_7_MASK 0xF0000000u
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_7_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_7_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_7_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_STATUS_CHANNEL_7_REQUEST 0x8u /* the frame of a request has ended */
+
+/* rw: What makes irq_o high. */
+#define ENDAT_MAP_INTERRUPT_MASK_WORD 0x011u
+#define ENDAT_MAP_INTERRUPT_MASK_BYTE 0x0044u
+/* channel_0: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_0_SHIFT 0u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_0_MASK 0x0000000Fu
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_0_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_0_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_0_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_0_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_1: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_1_SHIFT 4u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_1_MASK 0x000000F0u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_1_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_1_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_1_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_1_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_2: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_2_SHIFT 8u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_2_MASK 0x00000F00u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_2_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_2_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_2_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_2_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_3: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_3_SHIFT 12u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_3_MASK 0x0000F000u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_3_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_3_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_3_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_3_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_4: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_4_SHIFT 16u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_4_MASK 0x000F0000u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_4_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_4_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_4_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_4_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_5: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_5_SHIFT 20u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_5_MASK 0x00F00000u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_5_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_5_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_5_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_5_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_6: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_6_SHIFT 24u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_6_MASK 0x0F000000u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_6_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_6_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_6_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_6_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_7: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_7_SHIFT 28u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_7_MASK 0xF0000000u
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_7_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_7_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_7_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_MASK_CHANNEL_7_REQUEST 0x8u /* the frame of a request has ended */
+
+/* strobe: Clears the bits of status that are written 1; an event of the same cycle stays. */
+#define ENDAT_MAP_INTERRUPT_CLEAR_WORD 0x012u
+#define ENDAT_MAP_INTERRUPT_CLEAR_BYTE 0x0048u
+/* channel_0: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_0_SHIFT 0u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_0_MASK 0x0000000Fu
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_0_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_0_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_0_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_0_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_1: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_1_SHIFT 4u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_1_MASK 0x000000F0u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_1_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_1_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_1_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_1_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_2: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_2_SHIFT 8u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_2_MASK 0x00000F00u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_2_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_2_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_2_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_2_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_3: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_3_SHIFT 12u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_3_MASK 0x0000F000u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_3_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_3_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_3_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_3_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_4: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_4_SHIFT 16u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_4_MASK 0x000F0000u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_4_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_4_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_4_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_4_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_5: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_5_SHIFT 20u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_5_MASK 0x00F00000u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_5_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_5_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_5_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_5_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_6: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_6_SHIFT 24u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_6_MASK 0x0F000000u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_6_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_6_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_6_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_6_REQUEST 0x8u /* the frame of a request has ended */
+/* channel_7: Events of the channel */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_7_SHIFT 28u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_7_MASK 0xF0000000u
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_7_RESULT 0x1u /* a new result */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_7_ERROR 0x2u /* a result whose cause is one of direct.error_causes */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_7_ALARM 0x4u /* the alarm has come on */
+#define ENDAT_MAP_INTERRUPT_CLEAR_CHANNEL_7_REQUEST 0x8u /* the frame of a request has ended */
+
+/* ---- recovery -------------------------------------------------------------- */
+
+/* Recovery time of a channel, measured beside the core: a counter that goes on for ever, as it stood at the edges. No meaning where the channel speaks T-format. */
+#define ENDAT_MAP_RECOVERY_BASE_WORD 0x040u
+#define ENDAT_MAP_RECOVERY_BASE_BYTE 0x0100u
+#define ENDAT_MAP_RECOVERY_STRIDE_WORDS 8u
+#define ENDAT_MAP_RECOVERY_STRIDE_BYTES 32u
+
+/* ro: The counter at the edges that begin and end the recovery time; their difference, modulo 65536, is that time with the line delay. */
+#define ENDAT_MAP_RECOVERY_EDGES_WORD(channel) (0x040u + 8u * (channel))
+#define ENDAT_MAP_RECOVERY_EDGES_BYTE(channel) (0x0100u + 32u * (channel))
+/* rise: At the last rising edge of CLOCK (cycles) */
+#define ENDAT_MAP_RECOVERY_EDGES_RISE_SHIFT 0u
+#define ENDAT_MAP_RECOVERY_EDGES_RISE_MASK 0x0000FFFFu
+/* fall: At the last falling edge of DATA while the receiver's driver was off (cycles) */
+#define ENDAT_MAP_RECOVERY_EDGES_FALL_SHIFT 16u
+#define ENDAT_MAP_RECOVERY_EDGES_FALL_MASK 0xFFFF0000u
+
+/* ro: The counter now: it has changed whenever it is looked at again, or stands still because something is broken. */
+#define ENDAT_MAP_RECOVERY_COUNTER_WORD(channel) (0x041u + 8u * (channel))
+#define ENDAT_MAP_RECOVERY_COUNTER_BYTE(channel) (0x0104u + 32u * (channel))
+/* value: Begins at 8192 times the channel's number (cycles) */
+#define ENDAT_MAP_RECOVERY_COUNTER_VALUE_SHIFT 0u
+#define ENDAT_MAP_RECOVERY_COUNTER_VALUE_MASK 0x0000FFFFu
+/* fallen: DATA has fallen since the last rising edge of CLOCK, and is LOW */
+#define ENDAT_MAP_RECOVERY_COUNTER_FALLEN_SHIFT 16u
+#define ENDAT_MAP_RECOVERY_COUNTER_FALLEN_MASK 0x00010000u
+
+/* ---- direct ---------------------------------------------------------------- */
+
+/* Direct outputs of a channel: where its position is cropped, and what is an error. */
+#define ENDAT_MAP_DIRECT_BASE_WORD 0x080u
+#define ENDAT_MAP_DIRECT_BASE_BYTE 0x0200u
+#define ENDAT_MAP_DIRECT_STRIDE_WORDS 8u
+#define ENDAT_MAP_DIRECT_STRIDE_BYTES 32u
+
+/* rw: Which bits of the position come out; taken over with the next result. */
+#define ENDAT_MAP_DIRECT_CROP_WORD(channel) (0x080u + 8u * (channel))
+#define ENDAT_MAP_DIRECT_CROP_BYTE(channel) (0x0200u + 32u * (channel))
+/* first_bit: Position bit that becomes bit 0, 0..47 */
+#define ENDAT_MAP_DIRECT_CROP_FIRST_BIT_SHIFT 0u
+#define ENDAT_MAP_DIRECT_CROP_FIRST_BIT_MASK 0x0000003Fu
+/* length_bits: How many bits, 0..32; zeros above (bits) */
+#define ENDAT_MAP_DIRECT_CROP_LENGTH_BITS_SHIFT 8u
+#define ENDAT_MAP_DIRECT_CROP_LENGTH_BITS_MASK 0x00003F00u
+
+/* rw: What makes direct_error_o high: bit k for cause k, bit 0 for the channel's alarm. */
+#define ENDAT_MAP_DIRECT_ERROR_CAUSES_WORD(channel) (0x081u + 8u * (channel))
+#define ENDAT_MAP_DIRECT_ERROR_CAUSES_BYTE(channel) (0x0204u + 32u * (channel))
+/* causes: Selected causes of the last result */
+#define ENDAT_MAP_DIRECT_ERROR_CAUSES_CAUSES_SHIFT 0u
+#define ENDAT_MAP_DIRECT_ERROR_CAUSES_CAUSES_MASK 0xFFFFFFFFu
+
+/* ---- t_format -------------------------------------------------------------- */
+
+/* Requests to a T-format encoder beside its triggers, and the fields of its replies; 0 on a channel that speaks EnDat. */
+#define ENDAT_MAP_T_FORMAT_BASE_WORD 0x0C0u
+#define ENDAT_MAP_T_FORMAT_BASE_BYTE 0x0300u
+#define ENDAT_MAP_T_FORMAT_STRIDE_WORDS 8u
+#define ENDAT_MAP_T_FORMAT_STRIDE_BYTES 32u
+
+/* strobe: Sends one request, now or as soon as the exchange under way has ended; not taken while answer.busy. */
+#define ENDAT_MAP_T_FORMAT_SEND_WORD(channel) (0x0C0u + 8u * (channel))
+#define ENDAT_MAP_T_FORMAT_SEND_BYTE(channel) (0x0300u + 32u * (channel))
+/* data: EEPROM data, of request 6 */
+#define ENDAT_MAP_T_FORMAT_SEND_DATA_SHIFT 0u
+#define ENDAT_MAP_T_FORMAT_SEND_DATA_MASK 0x000000FFu
+/* address: EEPROM address, of requests 6 and 13; 127 is the page register */
+#define ENDAT_MAP_T_FORMAT_SEND_ADDRESS_SHIFT 8u
+#define ENDAT_MAP_T_FORMAT_SEND_ADDRESS_MASK 0x00007F00u
+/* id: Request ID */
+#define ENDAT_MAP_T_FORMAT_SEND_ID_SHIFT 16u
+#define ENDAT_MAP_T_FORMAT_SEND_ID_MASK 0x000F0000u
+
+/* ro: What became of the request in send. */
+#define ENDAT_MAP_T_FORMAT_ANSWER_WORD(channel) (0x0C1u + 8u * (channel))
+#define ENDAT_MAP_T_FORMAT_ANSWER_BYTE(channel) (0x0304u + 32u * (channel))
+/* data: EEPROM data as they came last */
+#define ENDAT_MAP_T_FORMAT_ANSWER_DATA_SHIFT 0u
+#define ENDAT_MAP_T_FORMAT_ANSWER_DATA_MASK 0x000000FFu
+/* id: ID that the reply repeats */
+#define ENDAT_MAP_T_FORMAT_ANSWER_ID_SHIFT 8u
+#define ENDAT_MAP_T_FORMAT_ANSWER_ID_MASK 0x00000F00u
+/* cause: T-format cause of the exchange */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_SHIFT 12u
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_MASK 0x0000F000u
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_NONE 0u /* none */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_UNKNOWN_COMMAND 1u /* unknown request */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_LINE_NOT_IDLE 2u /* line not idle */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_NO_ANSWER 3u /* no answer */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_NO_HEADER 4u /* no header */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_CONTROL_PARITY 5u /* parity of the control field */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_REPLY_ECHO 6u /* another ID or address in the reply */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_DELIMITER 7u /* delimiter */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_FIELD_MISSING 8u /* field missing */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_REPLY_CRC 9u /* CRC */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_REQUEST_PARITY 10u /* encoder saw a parity error */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_REQUEST_DELIMITER 11u /* encoder saw a delimiter error */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_EEPROM_BUSY 12u /* EEPROM busy */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_COUNTING_ERROR 13u /* counting error */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_MULTI_TURN_ALARM 14u /* multi-turn or battery alarm */
+#define ENDAT_MAP_T_FORMAT_ANSWER_CAUSE_UPSET 15u /* stored data upset */
+/* done: The exchange has ended; 0 from send on */
+#define ENDAT_MAP_T_FORMAT_ANSWER_DONE_SHIFT 16u
+#define ENDAT_MAP_T_FORMAT_ANSWER_DONE_MASK 0x00010000u
+/* busy: The exchange is under way, or waits for its turn */
+#define ENDAT_MAP_T_FORMAT_ANSWER_BUSY_SHIFT 17u
+#define ENDAT_MAP_T_FORMAT_ANSWER_BUSY_MASK 0x00020000u
+
+/* ro: Fields of the last reply, of a trigger or of send. */
+#define ENDAT_MAP_T_FORMAT_FIELDS_WORD(channel) (0x0C2u + 8u * (channel))
+#define ENDAT_MAP_T_FORMAT_FIELDS_BYTE(channel) (0x0308u + 32u * (channel))
+/* status: Status field (SF); 0 if none came */
+#define ENDAT_MAP_T_FORMAT_FIELDS_STATUS_SHIFT 0u
+#define ENDAT_MAP_T_FORMAT_FIELDS_STATUS_MASK 0x000000FFu
+/* encoder_id: Kind of encoder (ENID) as it came last */
+#define ENDAT_MAP_T_FORMAT_FIELDS_ENCODER_ID_SHIFT 8u
+#define ENDAT_MAP_T_FORMAT_FIELDS_ENCODER_ID_MASK 0x0000FF00u
+/* alarm: Alarm field (ALMC) as it came last */
+#define ENDAT_MAP_T_FORMAT_FIELDS_ALARM_SHIFT 16u
+#define ENDAT_MAP_T_FORMAT_FIELDS_ALARM_MASK 0x00FF0000u
+/* crc: CRC as received */
+#define ENDAT_MAP_T_FORMAT_FIELDS_CRC_SHIFT 24u
+#define ENDAT_MAP_T_FORMAT_FIELDS_CRC_MASK 0xFF000000u
+
+/* ro: Which parts of the position have come since reset. */
+#define ENDAT_MAP_T_FORMAT_PARTS_WORD(channel) (0x0C3u + 8u * (channel))
+#define ENDAT_MAP_T_FORMAT_PARTS_BYTE(channel) (0x030Cu + 32u * (channel))
+/* single_valid: There is a single-turn position, bits 23..0 */
+#define ENDAT_MAP_T_FORMAT_PARTS_SINGLE_VALID_SHIFT 0u
+#define ENDAT_MAP_T_FORMAT_PARTS_SINGLE_VALID_MASK 0x00000001u
+/* multi_valid: There is a multi-turn position, bits 47..24 */
+#define ENDAT_MAP_T_FORMAT_PARTS_MULTI_VALID_SHIFT 1u
+#define ENDAT_MAP_T_FORMAT_PARTS_MULTI_VALID_MASK 0x00000002u
+
+/* ---- card_config ----------------------------------------------------------- */
+
+/* Configuration of the card. */
+#define ENDAT_MAP_CARD_CONFIG_BASE_WORD 0x100u
+#define ENDAT_MAP_CARD_CONFIG_BASE_BYTE 0x0400u
+
+/* rw: Enabled trigger sources; one trigger starts all channels that take it in the same clock cycle. */
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD 0x100u
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_BYTE 0x0400u
+/* pin: Rising edge of the trigger pin */
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_PIN_SHIFT 0u
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_PIN_MASK 0x00000001u
+/* timer: Every trigger_period */
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_TIMER_SHIFT 1u
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_TIMER_MASK 0x00000002u
+/* register: trigger_now */
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_REGISTER_SHIFT 2u
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_REGISTER_MASK 0x00000004u
+/* disabled: Channels that take no trigger, bit n for channel n; with part own_trigger only */
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_DISABLED_SHIFT 8u
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_DISABLED_MASK 0x0000FF00u
+
+/* rw: Period of the timer, at least 4; write it while the timer is disabled. */
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_PERIOD_WORD 0x101u
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_PERIOD_BYTE 0x0404u
+/* value: Period (cycles) */
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_PERIOD_VALUE_SHIFT 0u
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_PERIOD_VALUE_MASK 0x00FFFFFFu
+
+/* rw: Keeps the results of all channels, for a host that reads word by word. */
+#define ENDAT_MAP_CARD_CONFIG_HOLD_WORD 0x102u
+#define ENDAT_MAP_CARD_CONFIG_HOLD_BYTE 0x0408u
+/* hold: 1: results and trigger_count stand still */
+#define ENDAT_MAP_CARD_CONFIG_HOLD_HOLD_SHIFT 0u
+#define ENDAT_MAP_CARD_CONFIG_HOLD_HOLD_MASK 0x00000001u
+/* scratch: Free for the host, to try the link */
+#define ENDAT_MAP_CARD_CONFIG_HOLD_SCRATCH_SHIFT 8u
+#define ENDAT_MAP_CARD_CONFIG_HOLD_SCRATCH_MASK 0xFFFFFF00u
+
+/* What value takes */
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_PERIOD_VALUE_MIN 4u
+#define ENDAT_MAP_CARD_CONFIG_TRIGGER_PERIOD_VALUE_MAX 16777215u
+
+/* ---- config ---------------------------------------------------------------- */
+
+/* Configuration of a channel; taken over between two frames. */
+#define ENDAT_MAP_CONFIG_BASE_WORD 0x108u
+#define ENDAT_MAP_CONFIG_BASE_BYTE 0x0420u
+#define ENDAT_MAP_CONFIG_STRIDE_WORDS 8u
+#define ENDAT_MAP_CONFIG_STRIDE_BYTES 32u
+
+/* rw: What is asked of the encoder, and how fast. */
+#define ENDAT_MAP_CONFIG_FRAME_WORD(channel) (0x108u + 8u * (channel))
+#define ENDAT_MAP_CONFIG_FRAME_BYTE(channel) (0x0420u + 32u * (channel))
+/* period_cycles: EnDat clock period; the high phase is the longer one when odd; T-format: a bit, 8..127 (cycles) */
+#define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_SHIFT 0u
+#define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_MASK 0x000007FFu
+/* skip: Triggers left out after each that the channel takes; with part own_trigger only, as the ignored sources */
+#define ENDAT_MAP_CONFIG_FRAME_SKIP_SHIFT 11u
+#define ENDAT_MAP_CONFIG_FRAME_SKIP_MASK 0x0000F800u
+/* position_bits: Position width, 1..48; T-format: no meaning, as command (bits) */
+#define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_SHIFT 16u
+#define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_MASK 0x003F0000u
+/* ignore_pin: 1: the trigger pin is not for this channel */
+#define ENDAT_MAP_CONFIG_FRAME_IGNORE_PIN_SHIFT 22u
+#define ENDAT_MAP_CONFIG_FRAME_IGNORE_PIN_MASK 0x00400000u
+/* ignore_timer: 1: the timer is not */
+#define ENDAT_MAP_CONFIG_FRAME_IGNORE_TIMER_SHIFT 23u
+#define ENDAT_MAP_CONFIG_FRAME_IGNORE_TIMER_MASK 0x00800000u
+/* command: Mode command, sent most significant bit first */
+#define ENDAT_MAP_CONFIG_FRAME_COMMAND_SHIFT 24u
+#define ENDAT_MAP_CONFIG_FRAME_COMMAND_MASK 0x3F000000u
+#define ENDAT_MAP_CONFIG_FRAME_COMMAND_SEND_POSITION 7u /* 000111 send position (EnDat 2.1) */
+#define ENDAT_MAP_CONFIG_FRAME_COMMAND_SEND_POSITION_ADD_INFO 56u /* 111000 send position with additional information (EnDat 2.2) */
+/* ignore_register: 1: trigger_now is not */
+#define ENDAT_MAP_CONFIG_FRAME_IGNORE_REGISTER_SHIFT 30u
+#define ENDAT_MAP_CONFIG_FRAME_IGNORE_REGISTER_MASK 0x40000000u
+
+/* rw: First low phase and tolerance of the start bit. */
+#define ENDAT_MAP_CONFIG_TIMING_WORD(channel) (0x109u + 8u * (channel))
+#define ENDAT_MAP_CONFIG_TIMING_BYTE(channel) (0x0424u + 32u * (channel))
+/* first_low_extra_cycles: First low phase minus half a period (tST) (cycles) */
+#define ENDAT_MAP_CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES_SHIFT 0u
+#define ENDAT_MAP_CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES_MASK 0x000007FFu
+/* start_window_cycles: The start edge must come within plus or minus this of its expected phase (cycles) */
+#define ENDAT_MAP_CONFIG_TIMING_START_WINDOW_CYCLES_SHIFT 16u
+#define ENDAT_MAP_CONFIG_TIMING_START_WINDOW_CYCLES_MASK 0x003F0000u
+/* filter_half: 1: half a cycle more; with part double_edge only */
+#define ENDAT_MAP_CONFIG_TIMING_FILTER_HALF_SHIFT 23u
+#define ENDAT_MAP_CONFIG_TIMING_FILTER_HALF_MASK 0x00800000u
+/* filter_cycles: Pulses on DATA up to this length are ignored; 0 = off (cycles) */
+#define ENDAT_MAP_CONFIG_TIMING_FILTER_CYCLES_SHIFT 24u
+#define ENDAT_MAP_CONFIG_TIMING_FILTER_CYCLES_MASK 0x0F000000u
+/* request_id: T-format: request ID of a trigger; 6 and 13 are not sent */
+#define ENDAT_MAP_CONFIG_TIMING_REQUEST_ID_SHIFT 28u
+#define ENDAT_MAP_CONFIG_TIMING_REQUEST_ID_MASK 0xF0000000u
+
+/* rw: Longest waits. */
+#define ENDAT_MAP_CONFIG_LIMITS_WORD(channel) (0x10Au + 8u * (channel))
+#define ENDAT_MAP_CONFIG_LIMITS_BYTE(channel) (0x0428u + 32u * (channel))
+/* start_timeout_us: Longest wait for the start bit after the turnaround; T-format: longest pause before the reply, 1..63 (us) */
+#define ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_SHIFT 0u
+#define ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_MASK 0x00000FFFu
+/* recovery_limit_cycles: DATA must fall within this after the frame (tm) (cycles) */
+#define ENDAT_MAP_CONFIG_LIMITS_RECOVERY_LIMIT_CYCLES_SHIFT 16u
+#define ENDAT_MAP_CONFIG_LIMITS_RECOVERY_LIMIT_CYCLES_MASK 0x1FFF0000u
+/* field_gap_us: T-format: longest pause between two fields (us) */
+#define ENDAT_MAP_CONFIG_LIMITS_FIELD_GAP_US_SHIFT 29u
+#define ENDAT_MAP_CONFIG_LIMITS_FIELD_GAP_US_MASK 0xE0000000u
+
+/* What period_cycles takes */
+#define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_MIN 2u
+#define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_MAX 2047u
+
+/* What position_bits takes */
+#define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_MIN 1u
+#define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_MAX 48u
+
+/* ---- result ---------------------------------------------------------------- */
+
+/* Result of a channel; all words of all channels change together and never within a read command. */
+#define ENDAT_MAP_RESULT_BASE_WORD 0x180u
+#define ENDAT_MAP_RESULT_BASE_BYTE 0x0600u
+#define ENDAT_MAP_RESULT_STRIDE_WORDS 8u
+#define ENDAT_MAP_RESULT_STRIDE_BYTES 32u
+
+/* ro: What became of the last trigger. */
+#define ENDAT_MAP_RESULT_STATUS_WORD(channel) (0x180u + 8u * (channel))
+#define ENDAT_MAP_RESULT_STATUS_BYTE(channel) (0x0600u + 32u * (channel))
+/* sequence: Number of results, wrapping */
+#define ENDAT_MAP_RESULT_STATUS_SEQUENCE_SHIFT 0u
+#define ENDAT_MAP_RESULT_STATUS_SEQUENCE_MASK 0x0000FFFFu
+/* cause: Primary cause; 8, 17, 29 and 30 come with a good position: fresh tells */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_SHIFT 16u
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_MASK 0x001F0000u
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_NONE 0u /* none */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_DATA_NOT_LOW 1u /* data not low before start */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_NO_START_BIT 2u /* no start bit */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_START_WINDOW 3u /* start bit outside its window */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_CRC 4u /* CRC */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_F1 5u /* F1 */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_F2 6u /* F2 */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_DATA_NOT_FALLING 7u /* data not falling after the frame */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_TRIGGER_OVERRUN 8u /* trigger overrun */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_UNKNOWN_COMMAND 9u /* unknown mode command */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_INFO_MISSING 10u /* additional information missing */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_NO_ENCODER 11u /* no encoder */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_STUCK_HIGH 12u /* data stuck high */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_STUCK_LOW 13u /* data stuck low */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_LATE_START 14u /* late start bit */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_WATCHDOG 15u /* watchdog */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_OWN_ECHO 16u /* echo of the own command */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_RECOVERY_TOO_SHORT 17u /* recovery time too short */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_LINE_NOT_IDLE 18u /* line not idle */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_NO_ANSWER 19u /* no answer */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_NO_HEADER 20u /* no header */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_CONTROL_PARITY 21u /* parity of the control field */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_REPLY_ECHO 22u /* another ID or address in the reply */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_DELIMITER 23u /* delimiter */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_FIELD_MISSING 24u /* field missing */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_REPLY_CRC 25u /* CRC */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_REQUEST_PARITY 26u /* encoder saw a parity error */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_REQUEST_DELIMITER 27u /* encoder saw a delimiter error */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_EEPROM_BUSY 28u /* EEPROM busy */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_COUNTING_ERROR 29u /* counting error */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_MULTI_TURN_ALARM 30u /* multi-turn or battery alarm */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_UPSET 31u /* stored data upset */
+/* valid: There is a good position */
+#define ENDAT_MAP_RESULT_STATUS_VALID_SHIFT 22u
+#define ENDAT_MAP_RESULT_STATUS_VALID_MASK 0x00400000u
+/* fresh: The last result brought the position; 0 = held from an earlier one */
+#define ENDAT_MAP_RESULT_STATUS_FRESH_SHIFT 23u
+#define ENDAT_MAP_RESULT_STATUS_FRESH_MASK 0x00800000u
+/* line: Raw flags: bit k stands for cause k + 11, bit 7 for cause 31; T-format: bits 0, 1 and 2 for causes 29, 30 and 8 */
+#define ENDAT_MAP_RESULT_STATUS_LINE_SHIFT 24u
+#define ENDAT_MAP_RESULT_STATUS_LINE_MASK 0xFF000000u
+#define ENDAT_MAP_RESULT_STATUS_LINE_NO_ENCODER 0x1u /* no encoder */
+#define ENDAT_MAP_RESULT_STATUS_LINE_STUCK_HIGH 0x2u /* data stuck high */
+#define ENDAT_MAP_RESULT_STATUS_LINE_STUCK_LOW 0x4u /* data stuck low */
+#define ENDAT_MAP_RESULT_STATUS_LINE_LATE_START 0x8u /* late start bit */
+#define ENDAT_MAP_RESULT_STATUS_LINE_WATCHDOG 0x10u /* watchdog */
+#define ENDAT_MAP_RESULT_STATUS_LINE_OWN_ECHO 0x20u /* echo of the own command */
+#define ENDAT_MAP_RESULT_STATUS_LINE_RECOVERY_TOO_SHORT 0x40u /* recovery time too short */
+#define ENDAT_MAP_RESULT_STATUS_LINE_UPSET 0x80u /* stored data upset */
+
+/* ro: Last good position, bits 31..0. */
+#define ENDAT_MAP_RESULT_POSITION_LOW_WORD(channel) (0x181u + 8u * (channel))
+#define ENDAT_MAP_RESULT_POSITION_LOW_BYTE(channel) (0x0604u + 32u * (channel))
+/* value: Bit 0 is the LSB */
+#define ENDAT_MAP_RESULT_POSITION_LOW_VALUE_SHIFT 0u
+#define ENDAT_MAP_RESULT_POSITION_LOW_VALUE_MASK 0xFFFFFFFFu
+
+/* ro: Last good position, bits 47..32. */
+#define ENDAT_MAP_RESULT_POSITION_HIGH_WORD(channel) (0x182u + 8u * (channel))
+#define ENDAT_MAP_RESULT_POSITION_HIGH_BYTE(channel) (0x0608u + 32u * (channel))
+/* value: 0 above the position's width; T-format: multi-turn in bits 47..24, single-turn in 23..0 */
+#define ENDAT_MAP_RESULT_POSITION_HIGH_VALUE_SHIFT 0u
+#define ENDAT_MAP_RESULT_POSITION_HIGH_VALUE_MASK 0x0000FFFFu
+/* crc: CRC that came with this position, over F1, F2 and the position, LSB first: whoever reads it checks it once more; T-format: 0 */
+#define ENDAT_MAP_RESULT_POSITION_HIGH_CRC_SHIFT 16u
+#define ENDAT_MAP_RESULT_POSITION_HIGH_CRC_MASK 0x001F0000u
+/* f2: The position came with F2 = 1 (EnDat 2.2); F1 of a good position is 0 */
+#define ENDAT_MAP_RESULT_POSITION_HIGH_F2_SHIFT 22u
+#define ENDAT_MAP_RESULT_POSITION_HIGH_F2_MASK 0x00400000u
+/* width: Width of this position; 0 = there is none yet, or T-format: nothing to check (bits) */
+#define ENDAT_MAP_RESULT_POSITION_HIGH_WIDTH_SHIFT 24u
+#define ENDAT_MAP_RESULT_POSITION_HIGH_WIDTH_MASK 0x3F000000u
+
+/* ro: First falling clock edge of the frame that brought the position; equal in two EnDat channels = same trigger. T-format: start bit of the request. */
+#define ENDAT_MAP_RESULT_TIMESTAMP_WORD(channel) (0x183u + 8u * (channel))
+#define ENDAT_MAP_RESULT_TIMESTAMP_BYTE(channel) (0x060Cu + 32u * (channel))
+/* value: Since reset, wrapping (cycles) */
+#define ENDAT_MAP_RESULT_TIMESTAMP_VALUE_SHIFT 0u
+#define ENDAT_MAP_RESULT_TIMESTAMP_VALUE_MASK 0xFFFFFFFFu
+
+/* ro: How good the last frame was. */
+#define ENDAT_MAP_RESULT_EVIDENCE_WORD(channel) (0x184u + 8u * (channel))
+#define ENDAT_MAP_RESULT_EVIDENCE_BYTE(channel) (0x0610u + 32u * (channel))
+/* crc_received: CRC as received */
+#define ENDAT_MAP_RESULT_EVIDENCE_CRC_RECEIVED_SHIFT 0u
+#define ENDAT_MAP_RESULT_EVIDENCE_CRC_RECEIVED_MASK 0x0000001Fu
+/* crc_computed: CRC as computed */
+#define ENDAT_MAP_RESULT_EVIDENCE_CRC_COMPUTED_SHIFT 5u
+#define ENDAT_MAP_RESULT_EVIDENCE_CRC_COMPUTED_MASK 0x000003E0u
+/* delay_cycles: Tracked line delay tD, synchroniser and filter included (cycles) */
+#define ENDAT_MAP_RESULT_EVIDENCE_DELAY_CYCLES_SHIFT 10u
+#define ENDAT_MAP_RESULT_EVIDENCE_DELAY_CYCLES_MASK 0x000FFC00u
+/* flags: Raw flags; T-format: bit 0 for cause 9, bit k for cause k + 17 */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SHIFT 20u
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_MASK 0xFFF00000u
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_DATA_NOT_LOW 0x1u /* data not low before start */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_NO_START_BIT 0x2u /* no start bit */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_START_WINDOW 0x4u /* start bit outside its window */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_CRC 0x8u /* CRC */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_F1 0x10u /* F1 */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_F2 0x20u /* F2 */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_DATA_NOT_FALLING 0x40u /* data not falling after the frame */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_TRIGGER_OVERRUN 0x80u /* trigger overrun */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_PARALLEL_CRC 0x100u /* parallel CRC */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_TAIL_LOW 0x200u /* data not high after the frame */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_UNKNOWN_COMMAND 0x400u /* unknown mode command */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_INFO_MISSING 0x800u /* additional information missing */
+
+/* ro: Age and recovery time. */
+#define ENDAT_MAP_RESULT_AGE_RECOVERY_WORD(channel) (0x185u + 8u * (channel))
+#define ENDAT_MAP_RESULT_AGE_RECOVERY_BYTE(channel) (0x0614u + 32u * (channel))
+/* age_us: Age of the position: 0 until its frame has ended, counted from there, also while results are held; stops at 65535 (us) */
+#define ENDAT_MAP_RESULT_AGE_RECOVERY_AGE_US_SHIFT 0u
+#define ENDAT_MAP_RESULT_AGE_RECOVERY_AGE_US_MASK 0x0000FFFFu
+/* recovery_cycles: Recovery time tm of the last frame (cycles) */
+#define ENDAT_MAP_RESULT_AGE_RECOVERY_RECOVERY_CYCLES_SHIFT 16u
+#define ENDAT_MAP_RESULT_AGE_RECOVERY_RECOVERY_CYCLES_MASK 0x1FFF0000u
+/* delay_high: Bit 10 of delay_cycles */
+#define ENDAT_MAP_RESULT_AGE_RECOVERY_DELAY_HIGH_SHIFT 29u
+#define ENDAT_MAP_RESULT_AGE_RECOVERY_DELAY_HIGH_MASK 0x20000000u
+/* stale: A trigger of this channel has come since this result */
+#define ENDAT_MAP_RESULT_AGE_RECOVERY_STALE_SHIFT 30u
+#define ENDAT_MAP_RESULT_AGE_RECOVERY_STALE_MASK 0x40000000u
+
+/* ro: Additional information 1 of the frame of this result. */
+#define ENDAT_MAP_RESULT_INFO_1_WORD(channel) (0x186u + 8u * (channel))
+#define ENDAT_MAP_RESULT_INFO_1_BYTE(channel) (0x0618u + 32u * (channel))
+/* content: What it says; 0 unless good */
+#define ENDAT_MAP_RESULT_INFO_1_CONTENT_SHIFT 0u
+#define ENDAT_MAP_RESULT_INFO_1_CONTENT_MASK 0x0000FFFFu
+/* sign: I4..I0: which one it is; I4 = 0 information 1, 1 information 2 */
+#define ENDAT_MAP_RESULT_INFO_1_SIGN_SHIFT 16u
+#define ENDAT_MAP_RESULT_INFO_1_SIGN_MASK 0x001F0000u
+/* busy: The encoder is busy with a request */
+#define ENDAT_MAP_RESULT_INFO_1_BUSY_SHIFT 21u
+#define ENDAT_MAP_RESULT_INFO_1_BUSY_MASK 0x00200000u
+/* reference_mark: RM: the reference mark has been passed */
+#define ENDAT_MAP_RESULT_INFO_1_REFERENCE_MARK_SHIFT 22u
+#define ENDAT_MAP_RESULT_INFO_1_REFERENCE_MARK_MASK 0x00400000u
+/* warning: WRN: one of the encoder's warnings is set */
+#define ENDAT_MAP_RESULT_INFO_1_WARNING_SHIFT 23u
+#define ENDAT_MAP_RESULT_INFO_1_WARNING_MASK 0x00800000u
+/* came: The frame brought it */
+#define ENDAT_MAP_RESULT_INFO_1_CAME_SHIFT 24u
+#define ENDAT_MAP_RESULT_INFO_1_CAME_MASK 0x01000000u
+/* good: Its CRC is right */
+#define ENDAT_MAP_RESULT_INFO_1_GOOD_SHIFT 25u
+#define ENDAT_MAP_RESULT_INFO_1_GOOD_MASK 0x02000000u
+/* crc: Its CRC as received, over bits 23..0 as they came */
+#define ENDAT_MAP_RESULT_INFO_1_CRC_SHIFT 26u
+#define ENDAT_MAP_RESULT_INFO_1_CRC_MASK 0x7C000000u
+
+/* ro: Additional information 2 of the frame of this result. */
+#define ENDAT_MAP_RESULT_INFO_2_WORD(channel) (0x187u + 8u * (channel))
+#define ENDAT_MAP_RESULT_INFO_2_BYTE(channel) (0x061Cu + 32u * (channel))
+/* content: What it says; 0 unless good */
+#define ENDAT_MAP_RESULT_INFO_2_CONTENT_SHIFT 0u
+#define ENDAT_MAP_RESULT_INFO_2_CONTENT_MASK 0x0000FFFFu
+/* sign: I4..I0: which one it is; I4 = 0 information 1, 1 information 2 */
+#define ENDAT_MAP_RESULT_INFO_2_SIGN_SHIFT 16u
+#define ENDAT_MAP_RESULT_INFO_2_SIGN_MASK 0x001F0000u
+/* busy: The encoder is busy with a request */
+#define ENDAT_MAP_RESULT_INFO_2_BUSY_SHIFT 21u
+#define ENDAT_MAP_RESULT_INFO_2_BUSY_MASK 0x00200000u
+/* reference_mark: RM: the reference mark has been passed */
+#define ENDAT_MAP_RESULT_INFO_2_REFERENCE_MARK_SHIFT 22u
+#define ENDAT_MAP_RESULT_INFO_2_REFERENCE_MARK_MASK 0x00400000u
+/* warning: WRN: one of the encoder's warnings is set */
+#define ENDAT_MAP_RESULT_INFO_2_WARNING_SHIFT 23u
+#define ENDAT_MAP_RESULT_INFO_2_WARNING_MASK 0x00800000u
+/* came: The frame brought it */
+#define ENDAT_MAP_RESULT_INFO_2_CAME_SHIFT 24u
+#define ENDAT_MAP_RESULT_INFO_2_CAME_MASK 0x01000000u
+/* good: Its CRC is right */
+#define ENDAT_MAP_RESULT_INFO_2_GOOD_SHIFT 25u
+#define ENDAT_MAP_RESULT_INFO_2_GOOD_MASK 0x02000000u
+/* crc: Its CRC as received, over bits 23..0 as they came */
+#define ENDAT_MAP_RESULT_INFO_2_CRC_SHIFT 26u
+#define ENDAT_MAP_RESULT_INFO_2_CRC_MASK 0x7C000000u
+
+/* ---- line ------------------------------------------------------------------ */
+
+/* Phase of the samples, and how much margin they have. A place is a system clock cycle, or half of one with double_edge; offsets are signed. */
+#define ENDAT_MAP_LINE_BASE_WORD 0x200u
+#define ENDAT_MAP_LINE_BASE_BYTE 0x0800u
+#define ENDAT_MAP_LINE_STRIDE_WORDS 64u
+#define ENDAT_MAP_LINE_STRIDE_BYTES 256u
+
+/* ro: Edges with offset -16 or less (all bins: offset divided by 2^bin_shift). */
+#define ENDAT_MAP_LINE_EDGES_0_WORD(channel) (0x200u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_0_BYTE(channel) (0x0800u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_0_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_0_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -15. */
+#define ENDAT_MAP_LINE_EDGES_1_WORD(channel) (0x201u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_1_BYTE(channel) (0x0804u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_1_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_1_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -14. */
+#define ENDAT_MAP_LINE_EDGES_2_WORD(channel) (0x202u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_2_BYTE(channel) (0x0808u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_2_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_2_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -13. */
+#define ENDAT_MAP_LINE_EDGES_3_WORD(channel) (0x203u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_3_BYTE(channel) (0x080Cu + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_3_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_3_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -12. */
+#define ENDAT_MAP_LINE_EDGES_4_WORD(channel) (0x204u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_4_BYTE(channel) (0x0810u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_4_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_4_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -11. */
+#define ENDAT_MAP_LINE_EDGES_5_WORD(channel) (0x205u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_5_BYTE(channel) (0x0814u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_5_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_5_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -10. */
+#define ENDAT_MAP_LINE_EDGES_6_WORD(channel) (0x206u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_6_BYTE(channel) (0x0818u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_6_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_6_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -9. */
+#define ENDAT_MAP_LINE_EDGES_7_WORD(channel) (0x207u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_7_BYTE(channel) (0x081Cu + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_7_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_7_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -8. */
+#define ENDAT_MAP_LINE_EDGES_8_WORD(channel) (0x208u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_8_BYTE(channel) (0x0820u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_8_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_8_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -7. */
+#define ENDAT_MAP_LINE_EDGES_9_WORD(channel) (0x209u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_9_BYTE(channel) (0x0824u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_9_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_9_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -6. */
+#define ENDAT_MAP_LINE_EDGES_10_WORD(channel) (0x20Au + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_10_BYTE(channel) (0x0828u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_10_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_10_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -5. */
+#define ENDAT_MAP_LINE_EDGES_11_WORD(channel) (0x20Bu + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_11_BYTE(channel) (0x082Cu + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_11_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_11_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -4. */
+#define ENDAT_MAP_LINE_EDGES_12_WORD(channel) (0x20Cu + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_12_BYTE(channel) (0x0830u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_12_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_12_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -3. */
+#define ENDAT_MAP_LINE_EDGES_13_WORD(channel) (0x20Du + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_13_BYTE(channel) (0x0834u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_13_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_13_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -2. */
+#define ENDAT_MAP_LINE_EDGES_14_WORD(channel) (0x20Eu + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_14_BYTE(channel) (0x0838u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_14_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_14_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset -1: at the expected place, or up to one place before. */
+#define ENDAT_MAP_LINE_EDGES_15_WORD(channel) (0x20Fu + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_15_BYTE(channel) (0x083Cu + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_15_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_15_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 0: up to one place after the expected one. */
+#define ENDAT_MAP_LINE_EDGES_16_WORD(channel) (0x210u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_16_BYTE(channel) (0x0840u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_16_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_16_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 1. */
+#define ENDAT_MAP_LINE_EDGES_17_WORD(channel) (0x211u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_17_BYTE(channel) (0x0844u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_17_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_17_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 2. */
+#define ENDAT_MAP_LINE_EDGES_18_WORD(channel) (0x212u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_18_BYTE(channel) (0x0848u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_18_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_18_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 3. */
+#define ENDAT_MAP_LINE_EDGES_19_WORD(channel) (0x213u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_19_BYTE(channel) (0x084Cu + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_19_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_19_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 4. */
+#define ENDAT_MAP_LINE_EDGES_20_WORD(channel) (0x214u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_20_BYTE(channel) (0x0850u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_20_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_20_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 5. */
+#define ENDAT_MAP_LINE_EDGES_21_WORD(channel) (0x215u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_21_BYTE(channel) (0x0854u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_21_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_21_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 6. */
+#define ENDAT_MAP_LINE_EDGES_22_WORD(channel) (0x216u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_22_BYTE(channel) (0x0858u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_22_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_22_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 7. */
+#define ENDAT_MAP_LINE_EDGES_23_WORD(channel) (0x217u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_23_BYTE(channel) (0x085Cu + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_23_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_23_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 8. */
+#define ENDAT_MAP_LINE_EDGES_24_WORD(channel) (0x218u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_24_BYTE(channel) (0x0860u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_24_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_24_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 9. */
+#define ENDAT_MAP_LINE_EDGES_25_WORD(channel) (0x219u + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_25_BYTE(channel) (0x0864u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_25_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_25_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 10. */
+#define ENDAT_MAP_LINE_EDGES_26_WORD(channel) (0x21Au + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_26_BYTE(channel) (0x0868u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_26_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_26_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 11. */
+#define ENDAT_MAP_LINE_EDGES_27_WORD(channel) (0x21Bu + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_27_BYTE(channel) (0x086Cu + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_27_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_27_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 12. */
+#define ENDAT_MAP_LINE_EDGES_28_WORD(channel) (0x21Cu + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_28_BYTE(channel) (0x0870u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_28_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_28_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 13. */
+#define ENDAT_MAP_LINE_EDGES_29_WORD(channel) (0x21Du + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_29_BYTE(channel) (0x0874u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_29_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_29_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 14. */
+#define ENDAT_MAP_LINE_EDGES_30_WORD(channel) (0x21Eu + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_30_BYTE(channel) (0x0878u + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_30_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_30_EDGES_MASK 0xFFFFFFFFu
+
+/* ro: Edges with offset 15 or more. */
+#define ENDAT_MAP_LINE_EDGES_31_WORD(channel) (0x21Fu + 64u * (channel))
+#define ENDAT_MAP_LINE_EDGES_31_BYTE(channel) (0x087Cu + 256u * (channel))
+/* edges: Edges since clear, wrapping */
+#define ENDAT_MAP_LINE_EDGES_31_EDGES_SHIFT 0u
+#define ENDAT_MAP_LINE_EDGES_31_EDGES_MASK 0xFFFFFFFFu
+
+/* rw: Source of the phase; taken over between two frames. */
+#define ENDAT_MAP_LINE_ALIGNMENT_WORD(channel) (0x220u + 64u * (channel))
+#define ENDAT_MAP_LINE_ALIGNMENT_BYTE(channel) (0x0880u + 256u * (channel))
+/* mode: Where the phase of the samples comes from */
+#define ENDAT_MAP_LINE_ALIGNMENT_MODE_SHIFT 0u
+#define ENDAT_MAP_LINE_ALIGNMENT_MODE_MASK 0x00000003u
+#define ENDAT_MAP_LINE_ALIGNMENT_MODE_TRACKED 0u /* mean over many edges */
+#define ENDAT_MAP_LINE_ALIGNMENT_MODE_FIXED 1u /* fixed_delay */
+#define ENDAT_MAP_LINE_ALIGNMENT_MODE_FRAME 2u /* start bit of each frame */
+/* majority: Each sample is the majority of itself and its neighbours; measure the delay again after a change */
+#define ENDAT_MAP_LINE_ALIGNMENT_MAJORITY_SHIFT 4u
+#define ENDAT_MAP_LINE_ALIGNMENT_MAJORITY_MASK 0x00000010u
+/* bin_shift: Bins of the histogram are 2^bin_shift places wide; clear after a change */
+#define ENDAT_MAP_LINE_ALIGNMENT_BIN_SHIFT_SHIFT 8u
+#define ENDAT_MAP_LINE_ALIGNMENT_BIN_SHIFT_MASK 0x00000300u
+
+/* rw: Delay in mode fixed, synchroniser and filter included. */
+#define ENDAT_MAP_LINE_FIXED_DELAY_WORD(channel) (0x221u + 64u * (channel))
+#define ENDAT_MAP_LINE_FIXED_DELAY_BYTE(channel) (0x0884u + 256u * (channel))
+/* value: As phase.tracked shows it (cycles/16) */
+#define ENDAT_MAP_LINE_FIXED_DELAY_VALUE_SHIFT 0u
+#define ENDAT_MAP_LINE_FIXED_DELAY_VALUE_MASK 0x00007FFFu
+
+/* rw: Limits of the alarms; 0 = none. */
+#define ENDAT_MAP_LINE_LIMITS_WORD(channel) (0x222u + 64u * (channel))
+#define ENDAT_MAP_LINE_LIMITS_BYTE(channel) (0x0888u + 256u * (channel))
+/* drift: Most that the tracked delay may be from its reference (cycles/16) */
+#define ENDAT_MAP_LINE_LIMITS_DRIFT_SHIFT 0u
+#define ENDAT_MAP_LINE_LIMITS_DRIFT_MASK 0x00000FFFu
+/* offset: Most that an edge may be from its expected place (places) */
+#define ENDAT_MAP_LINE_LIMITS_OFFSET_SHIFT 16u
+#define ENDAT_MAP_LINE_LIMITS_OFFSET_MASK 0x007F0000u
+
+/* strobe: Clears, or takes a new reference. */
+#define ENDAT_MAP_LINE_CLEAR_WORD(channel) (0x223u + 64u * (channel))
+#define ENDAT_MAP_LINE_CLEAR_BYTE(channel) (0x088Cu + 256u * (channel))
+/* clear: Write 1: histogram, worst edges, alarms, counters */
+#define ENDAT_MAP_LINE_CLEAR_CLEAR_SHIFT 0u
+#define ENDAT_MAP_LINE_CLEAR_CLEAR_MASK 0x00000001u
+/* reference: Write 1: the tracked delay becomes the reference */
+#define ENDAT_MAP_LINE_CLEAR_REFERENCE_SHIFT 1u
+#define ENDAT_MAP_LINE_CLEAR_REFERENCE_MASK 0x00000002u
+
+/* ro: Edges of the last frame. */
+#define ENDAT_MAP_LINE_FRAME_WORD(channel) (0x228u + 64u * (channel))
+#define ENDAT_MAP_LINE_FRAME_BYTE(channel) (0x08A0u + 256u * (channel))
+/* earliest: Smallest offset (places) */
+#define ENDAT_MAP_LINE_FRAME_EARLIEST_SHIFT 0u
+#define ENDAT_MAP_LINE_FRAME_EARLIEST_MASK 0x000000FFu
+/* latest: Largest offset (places) */
+#define ENDAT_MAP_LINE_FRAME_LATEST_SHIFT 8u
+#define ENDAT_MAP_LINE_FRAME_LATEST_MASK 0x0000FF00u
+/* start: Offset of the start bit's edge (places) */
+#define ENDAT_MAP_LINE_FRAME_START_SHIFT 16u
+#define ENDAT_MAP_LINE_FRAME_START_MASK 0x00FF0000u
+
+/* ro: Edges since clear. */
+#define ENDAT_MAP_LINE_WORST_WORD(channel) (0x229u + 64u * (channel))
+#define ENDAT_MAP_LINE_WORST_BYTE(channel) (0x08A4u + 256u * (channel))
+/* earliest: Smallest offset (places) */
+#define ENDAT_MAP_LINE_WORST_EARLIEST_SHIFT 0u
+#define ENDAT_MAP_LINE_WORST_EARLIEST_MASK 0x000000FFu
+/* latest: Largest offset (places) */
+#define ENDAT_MAP_LINE_WORST_LATEST_SHIFT 8u
+#define ENDAT_MAP_LINE_WORST_LATEST_MASK 0x0000FF00u
+/* valid: There were edges */
+#define ENDAT_MAP_LINE_WORST_VALID_SHIFT 16u
+#define ENDAT_MAP_LINE_WORST_VALID_MASK 0x00010000u
+/* drift_alarm: The drift has been beyond its limit */
+#define ENDAT_MAP_LINE_WORST_DRIFT_ALARM_SHIFT 24u
+#define ENDAT_MAP_LINE_WORST_DRIFT_ALARM_MASK 0x01000000u
+/* offset_alarm: An edge has been beyond its limit */
+#define ENDAT_MAP_LINE_WORST_OFFSET_ALARM_SHIFT 25u
+#define ENDAT_MAP_LINE_WORST_OFFSET_ALARM_MASK 0x02000000u
+
+/* ro: Tracked delay, synchroniser and filter included. */
+#define ENDAT_MAP_LINE_PHASE_WORD(channel) (0x22Au + 64u * (channel))
+#define ENDAT_MAP_LINE_PHASE_BYTE(channel) (0x08A8u + 256u * (channel))
+/* tracked: Mean place of the edges after their clock edge (cycles/16) */
+#define ENDAT_MAP_LINE_PHASE_TRACKED_SHIFT 0u
+#define ENDAT_MAP_LINE_PHASE_TRACKED_MASK 0x00007FFFu
+/* reference: What it was when it had been measured (cycles/16) */
+#define ENDAT_MAP_LINE_PHASE_REFERENCE_SHIFT 16u
+#define ENDAT_MAP_LINE_PHASE_REFERENCE_MASK 0x7FFF0000u
+
+/* ro: Counters, wrapping. */
+#define ENDAT_MAP_LINE_COUNTS_WORD(channel) (0x22Bu + 64u * (channel))
+#define ENDAT_MAP_LINE_COUNTS_BYTE(channel) (0x08ACu + 256u * (channel))
+/* glitches: Pulses that the input filter has removed since clear */
+#define ENDAT_MAP_LINE_COUNTS_GLITCHES_SHIFT 0u
+#define ENDAT_MAP_LINE_COUNTS_GLITCHES_MASK 0x0000FFFFu
+/* bad_frames: Frames with a cause other than 0 since clear */
+#define ENDAT_MAP_LINE_COUNTS_BAD_FRAMES_SHIFT 16u
+#define ENDAT_MAP_LINE_COUNTS_BAD_FRAMES_MASK 0xFFFF0000u
+
+/* ro: Frames since clear, wrapping. */
+#define ENDAT_MAP_LINE_FRAMES_WORD(channel) (0x22Cu + 64u * (channel))
+#define ENDAT_MAP_LINE_FRAMES_BYTE(channel) (0x08B0u + 256u * (channel))
+/* value: Frames */
+#define ENDAT_MAP_LINE_FRAMES_VALUE_SHIFT 0u
+#define ENDAT_MAP_LINE_FRAMES_VALUE_MASK 0xFFFFFFFFu
+
+/* ---- service --------------------------------------------------------------- */
+
+/* Requests, health, slots and name plate of a channel. RAM: 0 after power-up, a reset does not clear it. */
+#define ENDAT_MAP_SERVICE_BASE_WORD 0x400u
+#define ENDAT_MAP_SERVICE_BASE_BYTE 0x1000u
+#define ENDAT_MAP_SERVICE_STRIDE_WORDS 128u
+#define ENDAT_MAP_SERVICE_STRIDE_BYTES 512u
+
+/* rw: Sends a request when written. */
+#define ENDAT_MAP_SERVICE_REQUEST_WORD(channel) (0x400u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_REQUEST_BYTE(channel) (0x1000u + 512u * (channel))
+/* data: Data */
+#define ENDAT_MAP_SERVICE_REQUEST_DATA_SHIFT 0u
+#define ENDAT_MAP_SERVICE_REQUEST_DATA_MASK 0x0000FFFFu
+/* address: MRS code, address or port */
+#define ENDAT_MAP_SERVICE_REQUEST_ADDRESS_SHIFT 16u
+#define ENDAT_MAP_SERVICE_REQUEST_ADDRESS_MASK 0x00FF0000u
+/* command: Mode command, any of the fourteen */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_SHIFT 24u
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_MASK 0x3F000000u
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_SEND_POSITION 7u /* 000111 send position (EnDat 2.1) */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_SELECT_MEMORY 14u /* 001110 selection of memory area */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_RECEIVE_PARAMETER 28u /* 011100 receive parameter */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_SEND_PARAMETER 35u /* 100011 send parameter */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_RECEIVE_RESET 42u /* 101010 receive reset */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_SEND_TEST_VALUES 21u /* 010101 send test values */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_RECEIVE_TEST_COMMAND 49u /* 110001 receive test command */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_SEND_POSITION_ADD_INFO 56u /* 111000 send position with additional information (EnDat 2.2) */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_POSITION_SELECT_MEMORY 9u /* 001001 send position, then selection of memory area or additional information */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_POSITION_RECEIVE_PARAMETER 27u /* 011011 send position, then receive parameter */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_POSITION_SEND_PARAMETER 36u /* 100100 send position, then send parameter */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_POSITION_ERROR_RESET 45u /* 101101 send position, then receive error reset */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_POSITION_TEST_COMMAND 54u /* 110110 send position, then receive test command */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_RECEIVE_COMMUNICATION 18u /* 010010 receive communication command */
+
+/* ro: What became of the request. */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_WORD(channel) (0x401u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_BYTE(channel) (0x1004u + 512u * (channel))
+/* busy: It is under way */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_BUSY_SHIFT 0u
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_BUSY_MASK 0x00000001u
+/* error: What went wrong */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_SHIFT 4u
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_MASK 0x000000F0u
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_FULFILLED 0u /* fulfilled */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_NO_ANSWER 1u /* no answer: command not understood or refused */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_ADDRESS_ECHO 2u /* echo of MRS code, address or port wrong */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_DATA_ECHO 3u /* echo of data wrong */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_CRC 4u /* CRC of the answer wrong */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_UNKNOWN_COMMAND 5u /* unknown mode command, nothing was sent */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_FRAME 6u /* frame went wrong or could not begin */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_BUSY_TIMEOUT 7u /* encoder stayed busy */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_NO_TRIGGER 8u /* no trigger came in time for a request that rides on one */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_ERROR_CANCELLED 9u /* cancelled by the host */
+/* finished: Requests finished, wrapping */
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED_SHIFT 16u
+#define ENDAT_MAP_SERVICE_REQUEST_STATE_FINISHED_MASK 0xFFFF0000u
+
+/* ro: Answer to the last request; bits 31..0 of a longer one. */
+#define ENDAT_MAP_SERVICE_ANSWER_WORD(channel) (0x402u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_ANSWER_BYTE(channel) (0x1008u + 512u * (channel))
+/* data: Data, or content of additional information 1 */
+#define ENDAT_MAP_SERVICE_ANSWER_DATA_SHIFT 0u
+#define ENDAT_MAP_SERVICE_ANSWER_DATA_MASK 0x0000FFFFu
+/* address: Echo of MRS code, address or port; or WRN, RM, Busy, I4..I0 */
+#define ENDAT_MAP_SERVICE_ANSWER_ADDRESS_SHIFT 16u
+#define ENDAT_MAP_SERVICE_ANSWER_ADDRESS_MASK 0x00FF0000u
+
+/* ro: Bits 47..32 of a longer answer. */
+#define ENDAT_MAP_SERVICE_ANSWER_MORE_WORD(channel) (0x403u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_ANSWER_MORE_BYTE(channel) (0x100Cu + 512u * (channel))
+/* value: Bits 47..32 */
+#define ENDAT_MAP_SERVICE_ANSWER_MORE_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_ANSWER_MORE_VALUE_MASK 0x0000FFFFu
+
+/* ro: How long the last request took. */
+#define ENDAT_MAP_SERVICE_DURATION_WORD(channel) (0x404u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_DURATION_BYTE(channel) (0x1010u + 512u * (channel))
+/* us: Modulo 65536 (us) */
+#define ENDAT_MAP_SERVICE_DURATION_US_SHIFT 0u
+#define ENDAT_MAP_SERVICE_DURATION_US_MASK 0x0000FFFFu
+/* ms: The same in milliseconds (ms) */
+#define ENDAT_MAP_SERVICE_DURATION_MS_SHIFT 16u
+#define ENDAT_MAP_SERVICE_DURATION_MS_MASK 0xFFFF0000u
+
+/* rw: Acts when written. */
+#define ENDAT_MAP_SERVICE_CONTROL_WORD(channel) (0x405u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_CONTROL_BYTE(channel) (0x1014u + 512u * (channel))
+/* initialise: 1: initialise the encoder */
+#define ENDAT_MAP_SERVICE_CONTROL_INITIALISE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_CONTROL_INITIALISE_MASK 0x00000001u
+/* clear: 1: counters, alarm and position_2 to zero */
+#define ENDAT_MAP_SERVICE_CONTROL_CLEAR_SHIFT 1u
+#define ENDAT_MAP_SERVICE_CONTROL_CLEAR_MASK 0x00000002u
+/* cancel: 1: the request that waits for a trigger is given up; one on the wire is finished */
+#define ENDAT_MAP_SERVICE_CONTROL_CANCEL_SHIFT 2u
+#define ENDAT_MAP_SERVICE_CONTROL_CANCEL_MASK 0x00000004u
+
+/* rw: Errors forced upon what is received, to try the error paths; not for regular operation. */
+#define ENDAT_MAP_SERVICE_FORCE_WORD(channel) (0x406u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FORCE_BYTE(channel) (0x1018u + 512u * (channel))
+/* f1: Inverts F1 */
+#define ENDAT_MAP_SERVICE_FORCE_F1_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FORCE_F1_MASK 0x00000001u
+/* f2: Inverts F2 */
+#define ENDAT_MAP_SERVICE_FORCE_F2_SHIFT 1u
+#define ENDAT_MAP_SERVICE_FORCE_F2_MASK 0x00000002u
+/* crc: Spoils the CRC */
+#define ENDAT_MAP_SERVICE_FORCE_CRC_SHIFT 2u
+#define ENDAT_MAP_SERVICE_FORCE_CRC_MASK 0x00000004u
+
+/* ro: Initialisation. */
+#define ENDAT_MAP_SERVICE_PROGRESS_WORD(channel) (0x407u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_PROGRESS_BYTE(channel) (0x101Cu + 512u * (channel))
+/* step: Step under way */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_SHIFT 0u
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_MASK 0x0000FFFFu
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_NONE 0u /* none */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_RESET 1u /* reset */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_SELECT_B9 2u /* select memory area 0xB9 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_ALARMS 3u /* read alarms */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_WARNINGS 4u /* read warnings */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_CLEAR_ALARMS 5u /* write 0 to word 0 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_CLEAR_WARNINGS 6u /* write 0 to word 1 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_SELECT_A1 7u /* select memory area 0xA1 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_POSITION_BITS 8u /* read position_bits */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_TAKE_WIDTH 9u /* take over the position width */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_ENCODER_TYPE 10u /* read encoder_type */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_SIGNAL_PERIODS_LOW 11u /* read signal_periods_low */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_SELECT_A3 12u /* select memory area 0xA3 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_SIGNAL_PERIODS_HIGH 13u /* read signal_periods_high */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_REVOLUTIONS 14u /* read revolutions */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_STEPS_LOW 15u /* read steps_low */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_STEPS_HIGH 16u /* read steps_high */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_ID_0 17u /* read id_0 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_ID_1 18u /* read id_1 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_ID_2 19u /* read id_2 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_SERIAL_0 20u /* read serial_0 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_SERIAL_1 21u /* read serial_1 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_SERIAL_2 22u /* read serial_2 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_SELECT_A5 23u /* select memory area 0xA5 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_COMMANDS 24u /* read commands */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_TCAL 25u /* read tcal */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_FIND_ENDAT22 26u /* find out whether it knows EnDat 2.2 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_SELECT_BD 27u /* select memory area 0xBD */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_INFOS_1 28u /* read infos_1 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_INFOS_2 29u /* read infos_2 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_CLOCK_MAX_KHZ 30u /* read clock_max_khz */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_CHOOSE_CLOCK 31u /* choose the clock */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_SELECT_B9_AGAIN 32u /* select memory area 0xB9 */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_READ_RECOVERY 33u /* read recovery */
+#define ENDAT_MAP_SERVICE_PROGRESS_STEP_SET_RECOVERY 34u /* set the recovery time */
+/* failed: Step that failed */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_SHIFT 16u
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_MASK 0xFFFF0000u
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_NONE 0u /* none */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_RESET 1u /* reset */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_SELECT_B9 2u /* select memory area 0xB9 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_ALARMS 3u /* read alarms */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_WARNINGS 4u /* read warnings */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_CLEAR_ALARMS 5u /* write 0 to word 0 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_CLEAR_WARNINGS 6u /* write 0 to word 1 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_SELECT_A1 7u /* select memory area 0xA1 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_POSITION_BITS 8u /* read position_bits */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_TAKE_WIDTH 9u /* take over the position width */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_ENCODER_TYPE 10u /* read encoder_type */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_SIGNAL_PERIODS_LOW 11u /* read signal_periods_low */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_SELECT_A3 12u /* select memory area 0xA3 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_SIGNAL_PERIODS_HIGH 13u /* read signal_periods_high */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_REVOLUTIONS 14u /* read revolutions */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_STEPS_LOW 15u /* read steps_low */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_STEPS_HIGH 16u /* read steps_high */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_ID_0 17u /* read id_0 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_ID_1 18u /* read id_1 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_ID_2 19u /* read id_2 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_SERIAL_0 20u /* read serial_0 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_SERIAL_1 21u /* read serial_1 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_SERIAL_2 22u /* read serial_2 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_SELECT_A5 23u /* select memory area 0xA5 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_COMMANDS 24u /* read commands */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_TCAL 25u /* read tcal */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_FIND_ENDAT22 26u /* find out whether it knows EnDat 2.2 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_SELECT_BD 27u /* select memory area 0xBD */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_INFOS_1 28u /* read infos_1 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_INFOS_2 29u /* read infos_2 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_CLOCK_MAX_KHZ 30u /* read clock_max_khz */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_CHOOSE_CLOCK 31u /* choose the clock */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_SELECT_B9_AGAIN 32u /* select memory area 0xB9 */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_READ_RECOVERY 33u /* read recovery */
+#define ENDAT_MAP_SERVICE_PROGRESS_FAILED_SET_RECOVERY 34u /* set the recovery time */
+
+/* ro: What is known and what is wrong. */
+#define ENDAT_MAP_SERVICE_STATE_WORD(channel) (0x408u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_STATE_BYTE(channel) (0x1020u + 512u * (channel))
+/* initialised: The name plate is valid */
+#define ENDAT_MAP_SERVICE_STATE_INITIALISED_SHIFT 0u
+#define ENDAT_MAP_SERVICE_STATE_INITIALISED_MASK 0x00000001u
+/* alarm: Too many bad frames; latched */
+#define ENDAT_MAP_SERVICE_STATE_ALARM_SHIFT 1u
+#define ENDAT_MAP_SERVICE_STATE_ALARM_MASK 0x00000002u
+/* position_2: Position 2 was too far from position 1; latched */
+#define ENDAT_MAP_SERVICE_STATE_POSITION_2_SHIFT 2u
+#define ENDAT_MAP_SERVICE_STATE_POSITION_2_MASK 0x00000004u
+/* endat22: The encoder knows EnDat 2.2 */
+#define ENDAT_MAP_SERVICE_STATE_ENDAT22_SHIFT 3u
+#define ENDAT_MAP_SERVICE_STATE_ENDAT22_MASK 0x00000008u
+/* other_width: The encoder has another width than configured; its own is used */
+#define ENDAT_MAP_SERVICE_STATE_OTHER_WIDTH_SHIFT 4u
+#define ENDAT_MAP_SERVICE_STATE_OTHER_WIDTH_MASK 0x00000010u
+/* slower: The encoder takes only a slower clock than configured; that is used */
+#define ENDAT_MAP_SERVICE_STATE_SLOWER_SHIFT 5u
+#define ENDAT_MAP_SERVICE_STATE_SLOWER_MASK 0x00000020u
+/* unplugged: DATA has been HIGH for long: no encoder, or an open line */
+#define ENDAT_MAP_SERVICE_STATE_UNPLUGGED_SHIFT 6u
+#define ENDAT_MAP_SERVICE_STATE_UNPLUGGED_MASK 0x00000040u
+/* initialising: power-up sequence or initialisation is under way; triggers are lost */
+#define ENDAT_MAP_SERVICE_STATE_INITIALISING_SHIFT 7u
+#define ENDAT_MAP_SERVICE_STATE_INITIALISING_MASK 0x00000080u
+/* starts: How often the program has begun since power-up, wrapping: one more after each reset, and after an upset that led it astray */
+#define ENDAT_MAP_SERVICE_STATE_STARTS_SHIFT 16u
+#define ENDAT_MAP_SERVICE_STATE_STARTS_MASK 0xFFFF0000u
+
+/* ro: What did not get its turn. */
+#define ENDAT_MAP_SERVICE_LOST_WORD(channel) (0x409u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LOST_BYTE(channel) (0x1024u + 512u * (channel))
+/* triggers: Triggers that came while the line was not free, wrapping */
+#define ENDAT_MAP_SERVICE_LOST_TRIGGERS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LOST_TRIGGERS_MASK 0x0000FFFFu
+/* ends: Frames that ended before the one before was counted */
+#define ENDAT_MAP_SERVICE_LOST_ENDS_SHIFT 16u
+#define ENDAT_MAP_SERVICE_LOST_ENDS_MASK 0xFFFF0000u
+
+/* rw: Alarm: n bad frames of the last m. */
+#define ENDAT_MAP_SERVICE_THRESHOLD_WORD(channel) (0x40Au + 128u * (channel))
+#define ENDAT_MAP_SERVICE_THRESHOLD_BYTE(channel) (0x1028u + 512u * (channel))
+/* n: 0 = no alarm (frames) */
+#define ENDAT_MAP_SERVICE_THRESHOLD_N_SHIFT 0u
+#define ENDAT_MAP_SERVICE_THRESHOLD_N_MASK 0x0000FFFFu
+/* m: 1..16; another m begins a new count (frames) */
+#define ENDAT_MAP_SERVICE_THRESHOLD_M_SHIFT 16u
+#define ENDAT_MAP_SERVICE_THRESHOLD_M_MASK 0xFFFF0000u
+
+/* ro: Bad frames of the last m. */
+#define ENDAT_MAP_SERVICE_BAD_FRAMES_WORD(channel) (0x40Bu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_BAD_FRAMES_BYTE(channel) (0x102Cu + 512u * (channel))
+/* count: How many (frames) */
+#define ENDAT_MAP_SERVICE_BAD_FRAMES_COUNT_SHIFT 0u
+#define ENDAT_MAP_SERVICE_BAD_FRAMES_COUNT_MASK 0x0000FFFFu
+/* which: Bit 0 = the last frame */
+#define ENDAT_MAP_SERVICE_BAD_FRAMES_WHICH_SHIFT 16u
+#define ENDAT_MAP_SERVICE_BAD_FRAMES_WHICH_MASK 0xFFFF0000u
+
+/* rw: Position 2 minus position 1 as it should be, bits 31..0. */
+#define ENDAT_MAP_SERVICE_OFFSET_LOW_WORD(channel) (0x40Cu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_OFFSET_LOW_BYTE(channel) (0x1030u + 512u * (channel))
+/* value: Number */
+#define ENDAT_MAP_SERVICE_OFFSET_LOW_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_OFFSET_LOW_VALUE_MASK 0xFFFFFFFFu
+
+/* rw: The same, bits 47..32. */
+#define ENDAT_MAP_SERVICE_OFFSET_HIGH_WORD(channel) (0x40Du + 128u * (channel))
+#define ENDAT_MAP_SERVICE_OFFSET_HIGH_BYTE(channel) (0x1034u + 512u * (channel))
+/* value: Bits 47..32 */
+#define ENDAT_MAP_SERVICE_OFFSET_HIGH_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_OFFSET_HIGH_VALUE_MASK 0x0000FFFFu
+
+/* rw: Largest distance from that; 0 = no comparison. */
+#define ENDAT_MAP_SERVICE_TOLERANCE_WORD(channel) (0x40Eu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_TOLERANCE_BYTE(channel) (0x1038u + 512u * (channel))
+/* value: Number */
+#define ENDAT_MAP_SERVICE_TOLERANCE_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_TOLERANCE_VALUE_MASK 0xFFFFFFFFu
+
+/* ro: Position 2 minus position 1 minus offset, modulo the position's width, bits 31..0. */
+#define ENDAT_MAP_SERVICE_DIFFERENCE_LOW_WORD(channel) (0x40Fu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_DIFFERENCE_LOW_BYTE(channel) (0x103Cu + 512u * (channel))
+/* value: Number */
+#define ENDAT_MAP_SERVICE_DIFFERENCE_LOW_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_DIFFERENCE_LOW_VALUE_MASK 0xFFFFFFFFu
+
+/* ro: The same, bits 47..32. */
+#define ENDAT_MAP_SERVICE_DIFFERENCE_HIGH_WORD(channel) (0x410u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_DIFFERENCE_HIGH_BYTE(channel) (0x1040u + 512u * (channel))
+/* value: Bits 47..32 */
+#define ENDAT_MAP_SERVICE_DIFFERENCE_HIGH_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_DIFFERENCE_HIGH_VALUE_MASK 0x0000FFFFu
+
+/* ro: Comparisons of positions 1 and 2. */
+#define ENDAT_MAP_SERVICE_COMPARISONS_WORD(channel) (0x411u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_COMPARISONS_BYTE(channel) (0x1044u + 512u * (channel))
+/* all: All, wrapping */
+#define ENDAT_MAP_SERVICE_COMPARISONS_ALL_SHIFT 0u
+#define ENDAT_MAP_SERVICE_COMPARISONS_ALL_MASK 0x0000FFFFu
+/* failed: Those that failed, wrapping */
+#define ENDAT_MAP_SERVICE_COMPARISONS_FAILED_SHIFT 16u
+#define ENDAT_MAP_SERVICE_COMPARISONS_FAILED_MASK 0xFFFF0000u
+
+/* ro: Position 2, bits 31..0. */
+#define ENDAT_MAP_SERVICE_POSITION_2_LOW_WORD(channel) (0x412u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_POSITION_2_LOW_BYTE(channel) (0x1048u + 512u * (channel))
+/* value: Number */
+#define ENDAT_MAP_SERVICE_POSITION_2_LOW_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_POSITION_2_LOW_VALUE_MASK 0xFFFFFFFFu
+
+/* ro: Position 2, bits 47..32. */
+#define ENDAT_MAP_SERVICE_POSITION_2_HIGH_WORD(channel) (0x413u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_POSITION_2_HIGH_BYTE(channel) (0x104Cu + 512u * (channel))
+/* value: Bits 47..32 */
+#define ENDAT_MAP_SERVICE_POSITION_2_HIGH_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_POSITION_2_HIGH_VALUE_MASK 0x0000FFFFu
+
+/* rw: Codes of the list that are selected in turn. */
+#define ENDAT_MAP_SERVICE_LIST_LENGTH_WORD(channel) (0x414u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LIST_LENGTH_BYTE(channel) (0x1050u + 512u * (channel))
+/* length: 0..8; more is 8 */
+#define ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MASK 0x0000000Fu
+
+/* ro: WRN, RM, Busy, I4..I0 as they came last with a right CRC. */
+#define ENDAT_MAP_SERVICE_INFO_STATUS_WORD(channel) (0x415u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_INFO_STATUS_BYTE(channel) (0x1054u + 512u * (channel))
+/* info_1: Of additional information 1 */
+#define ENDAT_MAP_SERVICE_INFO_STATUS_INFO_1_SHIFT 0u
+#define ENDAT_MAP_SERVICE_INFO_STATUS_INFO_1_MASK 0x000000FFu
+/* crc_1: CRC of the last additional information 1 wrong: nothing of it was taken */
+#define ENDAT_MAP_SERVICE_INFO_STATUS_CRC_1_SHIFT 8u
+#define ENDAT_MAP_SERVICE_INFO_STATUS_CRC_1_MASK 0x00000100u
+/* info_2: Of additional information 2 */
+#define ENDAT_MAP_SERVICE_INFO_STATUS_INFO_2_SHIFT 16u
+#define ENDAT_MAP_SERVICE_INFO_STATUS_INFO_2_MASK 0x00FF0000u
+/* crc_2: CRC of the last additional information 2 wrong: nothing of it was taken */
+#define ENDAT_MAP_SERVICE_INFO_STATUS_CRC_2_SHIFT 24u
+#define ENDAT_MAP_SERVICE_INFO_STATUS_CRC_2_MASK 0x01000000u
+
+/* rw: What a frame must keep to. */
+#define ENDAT_MAP_SERVICE_LIMITS_WORD(channel) (0x416u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LIMITS_BYTE(channel) (0x1058u + 512u * (channel))
+/* watchdog_us: Longest time from the first falling edge to the end of the recovery time; 0 = not watched. Commands with a parameter and continuous clock are not watched (us) */
+#define ENDAT_MAP_SERVICE_LIMITS_WATCHDOG_US_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LIMITS_WATCHDOG_US_MASK 0x00000FFFu
+/* recovery_min_cycles: Shortest recovery time; 0 = not checked. The program writes the shortest of the configured range at start (cycles) */
+#define ENDAT_MAP_SERVICE_LIMITS_RECOVERY_MIN_CYCLES_SHIFT 16u
+#define ENDAT_MAP_SERVICE_LIMITS_RECOVERY_MIN_CYCLES_MASK 0x1FFF0000u
+
+/* rw: Continuous clock, for the command 000111. */
+#define ENDAT_MAP_SERVICE_CONTINUOUS_WORD(channel) (0x417u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_CONTINUOUS_BYTE(channel) (0x105Cu + 512u * (channel))
+/* go_on: 1: the clock goes on after each position, from the next trigger on */
+#define ENDAT_MAP_SERVICE_CONTINUOUS_GO_ON_SHIFT 0u
+#define ENDAT_MAP_SERVICE_CONTINUOUS_GO_ON_MASK 0x00000001u
+/* stop_at_error: 1: it stops after an error until the next trigger; 0: it goes on after CRC, F1 and F2 */
+#define ENDAT_MAP_SERVICE_CONTINUOUS_STOP_AT_ERROR_SHIFT 1u
+#define ENDAT_MAP_SERVICE_CONTINUOUS_STOP_AT_ERROR_MASK 0x00000002u
+
+/* rw: A code of the list. */
+#define ENDAT_MAP_SERVICE_LIST_0_WORD(channel) (0x418u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LIST_0_BYTE(channel) (0x1060u + 512u * (channel))
+/* mrs: MRS code 0x40..0x5E */
+#define ENDAT_MAP_SERVICE_LIST_0_MRS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LIST_0_MRS_MASK 0x000000FFu
+
+/* rw: A code of the list. */
+#define ENDAT_MAP_SERVICE_LIST_1_WORD(channel) (0x419u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LIST_1_BYTE(channel) (0x1064u + 512u * (channel))
+/* mrs: MRS code 0x40..0x5E */
+#define ENDAT_MAP_SERVICE_LIST_1_MRS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LIST_1_MRS_MASK 0x000000FFu
+
+/* rw: A code of the list. */
+#define ENDAT_MAP_SERVICE_LIST_2_WORD(channel) (0x41Au + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LIST_2_BYTE(channel) (0x1068u + 512u * (channel))
+/* mrs: MRS code 0x40..0x5E */
+#define ENDAT_MAP_SERVICE_LIST_2_MRS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LIST_2_MRS_MASK 0x000000FFu
+
+/* rw: A code of the list. */
+#define ENDAT_MAP_SERVICE_LIST_3_WORD(channel) (0x41Bu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LIST_3_BYTE(channel) (0x106Cu + 512u * (channel))
+/* mrs: MRS code 0x40..0x5E */
+#define ENDAT_MAP_SERVICE_LIST_3_MRS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LIST_3_MRS_MASK 0x000000FFu
+
+/* rw: A code of the list. */
+#define ENDAT_MAP_SERVICE_LIST_4_WORD(channel) (0x41Cu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LIST_4_BYTE(channel) (0x1070u + 512u * (channel))
+/* mrs: MRS code 0x40..0x5E */
+#define ENDAT_MAP_SERVICE_LIST_4_MRS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LIST_4_MRS_MASK 0x000000FFu
+
+/* rw: A code of the list. */
+#define ENDAT_MAP_SERVICE_LIST_5_WORD(channel) (0x41Du + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LIST_5_BYTE(channel) (0x1074u + 512u * (channel))
+/* mrs: MRS code 0x40..0x5E */
+#define ENDAT_MAP_SERVICE_LIST_5_MRS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LIST_5_MRS_MASK 0x000000FFu
+
+/* rw: A code of the list. */
+#define ENDAT_MAP_SERVICE_LIST_6_WORD(channel) (0x41Eu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LIST_6_BYTE(channel) (0x1078u + 512u * (channel))
+/* mrs: MRS code 0x40..0x5E */
+#define ENDAT_MAP_SERVICE_LIST_6_MRS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LIST_6_MRS_MASK 0x000000FFu
+
+/* rw: A code of the list. */
+#define ENDAT_MAP_SERVICE_LIST_7_WORD(channel) (0x41Fu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_LIST_7_BYTE(channel) (0x107Cu + 512u * (channel))
+/* mrs: MRS code 0x40..0x5E */
+#define ENDAT_MAP_SERVICE_LIST_7_MRS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_LIST_7_MRS_MASK 0x000000FFu
+
+/* ro: What the additional information of that code said last. */
+#define ENDAT_MAP_SERVICE_SLOT_0_WORD(channel) (0x420u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SLOT_0_BYTE(channel) (0x1080u + 512u * (channel))
+/* value: Content */
+#define ENDAT_MAP_SERVICE_SLOT_0_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SLOT_0_VALUE_MASK 0x0000FFFFu
+/* sequence: status.sequence of the frame that brought it: its age is the difference */
+#define ENDAT_MAP_SERVICE_SLOT_0_SEQUENCE_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SLOT_0_SEQUENCE_MASK 0xFFFF0000u
+
+/* ro: What the additional information of that code said last. */
+#define ENDAT_MAP_SERVICE_SLOT_1_WORD(channel) (0x421u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SLOT_1_BYTE(channel) (0x1084u + 512u * (channel))
+/* value: Content */
+#define ENDAT_MAP_SERVICE_SLOT_1_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SLOT_1_VALUE_MASK 0x0000FFFFu
+/* sequence: status.sequence of the frame that brought it: its age is the difference */
+#define ENDAT_MAP_SERVICE_SLOT_1_SEQUENCE_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SLOT_1_SEQUENCE_MASK 0xFFFF0000u
+
+/* ro: What the additional information of that code said last. */
+#define ENDAT_MAP_SERVICE_SLOT_2_WORD(channel) (0x422u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SLOT_2_BYTE(channel) (0x1088u + 512u * (channel))
+/* value: Content */
+#define ENDAT_MAP_SERVICE_SLOT_2_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SLOT_2_VALUE_MASK 0x0000FFFFu
+/* sequence: status.sequence of the frame that brought it: its age is the difference */
+#define ENDAT_MAP_SERVICE_SLOT_2_SEQUENCE_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SLOT_2_SEQUENCE_MASK 0xFFFF0000u
+
+/* ro: What the additional information of that code said last. */
+#define ENDAT_MAP_SERVICE_SLOT_3_WORD(channel) (0x423u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SLOT_3_BYTE(channel) (0x108Cu + 512u * (channel))
+/* value: Content */
+#define ENDAT_MAP_SERVICE_SLOT_3_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SLOT_3_VALUE_MASK 0x0000FFFFu
+/* sequence: status.sequence of the frame that brought it: its age is the difference */
+#define ENDAT_MAP_SERVICE_SLOT_3_SEQUENCE_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SLOT_3_SEQUENCE_MASK 0xFFFF0000u
+
+/* ro: What the additional information of that code said last. */
+#define ENDAT_MAP_SERVICE_SLOT_4_WORD(channel) (0x424u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SLOT_4_BYTE(channel) (0x1090u + 512u * (channel))
+/* value: Content */
+#define ENDAT_MAP_SERVICE_SLOT_4_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SLOT_4_VALUE_MASK 0x0000FFFFu
+/* sequence: status.sequence of the frame that brought it: its age is the difference */
+#define ENDAT_MAP_SERVICE_SLOT_4_SEQUENCE_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SLOT_4_SEQUENCE_MASK 0xFFFF0000u
+
+/* ro: What the additional information of that code said last. */
+#define ENDAT_MAP_SERVICE_SLOT_5_WORD(channel) (0x425u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SLOT_5_BYTE(channel) (0x1094u + 512u * (channel))
+/* value: Content */
+#define ENDAT_MAP_SERVICE_SLOT_5_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SLOT_5_VALUE_MASK 0x0000FFFFu
+/* sequence: status.sequence of the frame that brought it: its age is the difference */
+#define ENDAT_MAP_SERVICE_SLOT_5_SEQUENCE_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SLOT_5_SEQUENCE_MASK 0xFFFF0000u
+
+/* ro: What the additional information of that code said last. */
+#define ENDAT_MAP_SERVICE_SLOT_6_WORD(channel) (0x426u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SLOT_6_BYTE(channel) (0x1098u + 512u * (channel))
+/* value: Content */
+#define ENDAT_MAP_SERVICE_SLOT_6_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SLOT_6_VALUE_MASK 0x0000FFFFu
+/* sequence: status.sequence of the frame that brought it: its age is the difference */
+#define ENDAT_MAP_SERVICE_SLOT_6_SEQUENCE_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SLOT_6_SEQUENCE_MASK 0xFFFF0000u
+
+/* ro: What the additional information of that code said last. */
+#define ENDAT_MAP_SERVICE_SLOT_7_WORD(channel) (0x427u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SLOT_7_BYTE(channel) (0x109Cu + 512u * (channel))
+/* value: Content */
+#define ENDAT_MAP_SERVICE_SLOT_7_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SLOT_7_VALUE_MASK 0x0000FFFFu
+/* sequence: status.sequence of the frame that brought it: its age is the difference */
+#define ENDAT_MAP_SERVICE_SLOT_7_SEQUENCE_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SLOT_7_SEQUENCE_MASK 0xFFFF0000u
+
+/* rw: Longest wait of a request for a trigger. */
+#define ENDAT_MAP_SERVICE_REQUEST_WAIT_WORD(channel) (0x428u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_REQUEST_WAIT_BYTE(channel) (0x10A0u + 512u * (channel))
+/* ms: 0 = no limit. The program writes 2000 at start (ms) */
+#define ENDAT_MAP_SERVICE_REQUEST_WAIT_MS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_REQUEST_WAIT_MS_MASK 0x0000FFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_GOOD_WORD(channel) (0x430u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_GOOD_BYTE(channel) (0x10C0u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_GOOD_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_GOOD_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_DATA_NOT_LOW_WORD(channel) (0x431u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_DATA_NOT_LOW_BYTE(channel) (0x10C4u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_DATA_NOT_LOW_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_DATA_NOT_LOW_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_NO_START_BIT_WORD(channel) (0x432u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_NO_START_BIT_BYTE(channel) (0x10C8u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_NO_START_BIT_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_NO_START_BIT_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_START_WINDOW_WORD(channel) (0x433u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_START_WINDOW_BYTE(channel) (0x10CCu + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_START_WINDOW_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_START_WINDOW_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_CRC_WORD(channel) (0x434u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_CRC_BYTE(channel) (0x10D0u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_CRC_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_CRC_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_F1_WORD(channel) (0x435u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_F1_BYTE(channel) (0x10D4u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_F1_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_F1_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_F2_WORD(channel) (0x436u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_F2_BYTE(channel) (0x10D8u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_F2_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_F2_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_DATA_NOT_FALLING_WORD(channel) (0x437u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_DATA_NOT_FALLING_BYTE(channel) (0x10DCu + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_DATA_NOT_FALLING_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_DATA_NOT_FALLING_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_TRIGGER_OVERRUN_WORD(channel) (0x438u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_TRIGGER_OVERRUN_BYTE(channel) (0x10E0u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_TRIGGER_OVERRUN_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_TRIGGER_OVERRUN_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_UNKNOWN_COMMAND_WORD(channel) (0x439u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_UNKNOWN_COMMAND_BYTE(channel) (0x10E4u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_UNKNOWN_COMMAND_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_UNKNOWN_COMMAND_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_INFO_MISSING_WORD(channel) (0x43Au + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_INFO_MISSING_BYTE(channel) (0x10E8u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_INFO_MISSING_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_INFO_MISSING_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_NO_ENCODER_WORD(channel) (0x43Bu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_NO_ENCODER_BYTE(channel) (0x10ECu + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_NO_ENCODER_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_NO_ENCODER_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_STUCK_HIGH_WORD(channel) (0x43Cu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_STUCK_HIGH_BYTE(channel) (0x10F0u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_STUCK_HIGH_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_STUCK_HIGH_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_STUCK_LOW_WORD(channel) (0x43Du + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_STUCK_LOW_BYTE(channel) (0x10F4u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_STUCK_LOW_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_STUCK_LOW_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_LATE_START_WORD(channel) (0x43Eu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_LATE_START_BYTE(channel) (0x10F8u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_LATE_START_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_LATE_START_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_WATCHDOG_WORD(channel) (0x43Fu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_WATCHDOG_BYTE(channel) (0x10FCu + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_WATCHDOG_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_WATCHDOG_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_OWN_ECHO_WORD(channel) (0x440u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_OWN_ECHO_BYTE(channel) (0x1100u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_OWN_ECHO_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_OWN_ECHO_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Frames that ended with this cause (good: with none). */
+#define ENDAT_MAP_SERVICE_FRAMES_RECOVERY_TOO_SHORT_WORD(channel) (0x441u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_RECOVERY_TOO_SHORT_BYTE(channel) (0x1104u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_RECOVERY_TOO_SHORT_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_RECOVERY_TOO_SHORT_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Comparisons of positions 1 and 2 that failed. */
+#define ENDAT_MAP_SERVICE_FRAMES_POSITION_2_WORD(channel) (0x442u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_FRAMES_POSITION_2_BYTE(channel) (0x1108u + 512u * (channel))
+/* frames: Frames since clear, wrapping */
+#define ENDAT_MAP_SERVICE_FRAMES_POSITION_2_FRAMES_SHIFT 0u
+#define ENDAT_MAP_SERVICE_FRAMES_POSITION_2_FRAMES_MASK 0xFFFFFFFFu
+
+/* ro: Additional informations with a wrong CRC. */
+#define ENDAT_MAP_SERVICE_BAD_INFOS_WORD(channel) (0x443u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_BAD_INFOS_BYTE(channel) (0x110Cu + 512u * (channel))
+/* count: Since clear, wrapping */
+#define ENDAT_MAP_SERVICE_BAD_INFOS_COUNT_SHIFT 0u
+#define ENDAT_MAP_SERVICE_BAD_INFOS_COUNT_MASK 0xFFFFFFFFu
+
+/* ro: Alarms before they were cleared */
+#define ENDAT_MAP_SERVICE_ALARMS_WORD(channel) (0x444u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_ALARMS_BYTE(channel) (0x1110u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_ALARMS_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_ALARMS_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_ALARMS_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_ALARMS_IS_READ_MASK 0x00010000u
+
+/* ro: Warnings before they were cleared */
+#define ENDAT_MAP_SERVICE_WARNINGS_WORD(channel) (0x445u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_WARNINGS_BYTE(channel) (0x1114u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_WARNINGS_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_WARNINGS_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_WARNINGS_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_WARNINGS_IS_READ_MASK 0x00010000u
+
+/* ro: Word 13: clock pulses for the position in bits 5..0 */
+#define ENDAT_MAP_SERVICE_POSITION_BITS_WORD(channel) (0x446u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_POSITION_BITS_BYTE(channel) (0x1118u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_POSITION_BITS_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_POSITION_BITS_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_POSITION_BITS_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_POSITION_BITS_IS_READ_MASK 0x00010000u
+
+/* ro: Word 14: bit 15: 1 = rotary, 0 = linear */
+#define ENDAT_MAP_SERVICE_ENCODER_TYPE_WORD(channel) (0x447u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_ENCODER_TYPE_BYTE(channel) (0x111Cu + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_ENCODER_TYPE_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_ENCODER_TYPE_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_ENCODER_TYPE_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_ENCODER_TYPE_IS_READ_MASK 0x00010000u
+
+/* ro: Word 15: signal periods per revolution, or in nm */
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_LOW_WORD(channel) (0x448u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_LOW_BYTE(channel) (0x1120u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_LOW_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_LOW_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_LOW_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_LOW_IS_READ_MASK 0x00010000u
+
+/* ro: Word 16: upper part of word 15 */
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_HIGH_WORD(channel) (0x449u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_HIGH_BYTE(channel) (0x1124u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_HIGH_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_HIGH_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_HIGH_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SIGNAL_PERIODS_HIGH_IS_READ_MASK 0x00010000u
+
+/* ro: Word 17: distinguishable revolutions */
+#define ENDAT_MAP_SERVICE_REVOLUTIONS_WORD(channel) (0x44Au + 128u * (channel))
+#define ENDAT_MAP_SERVICE_REVOLUTIONS_BYTE(channel) (0x1128u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_REVOLUTIONS_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_REVOLUTIONS_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_REVOLUTIONS_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_REVOLUTIONS_IS_READ_MASK 0x00010000u
+
+/* ro: Word 20: measuring steps per revolution, or step in nm */
+#define ENDAT_MAP_SERVICE_STEPS_LOW_WORD(channel) (0x44Bu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_STEPS_LOW_BYTE(channel) (0x112Cu + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_STEPS_LOW_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_STEPS_LOW_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_STEPS_LOW_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_STEPS_LOW_IS_READ_MASK 0x00010000u
+
+/* ro: Word 21: upper part of word 20 */
+#define ENDAT_MAP_SERVICE_STEPS_HIGH_WORD(channel) (0x44Cu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_STEPS_HIGH_BYTE(channel) (0x1130u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_STEPS_HIGH_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_STEPS_HIGH_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_STEPS_HIGH_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_STEPS_HIGH_IS_READ_MASK 0x00010000u
+
+/* ro: Word 24: ID number, two ASCII characters */
+#define ENDAT_MAP_SERVICE_ID_0_WORD(channel) (0x44Du + 128u * (channel))
+#define ENDAT_MAP_SERVICE_ID_0_BYTE(channel) (0x1134u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_ID_0_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_ID_0_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_ID_0_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_ID_0_IS_READ_MASK 0x00010000u
+
+/* ro: Word 25: ID number, low */
+#define ENDAT_MAP_SERVICE_ID_1_WORD(channel) (0x44Eu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_ID_1_BYTE(channel) (0x1138u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_ID_1_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_ID_1_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_ID_1_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_ID_1_IS_READ_MASK 0x00010000u
+
+/* ro: Word 26: ID number, high */
+#define ENDAT_MAP_SERVICE_ID_2_WORD(channel) (0x44Fu + 128u * (channel))
+#define ENDAT_MAP_SERVICE_ID_2_BYTE(channel) (0x113Cu + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_ID_2_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_ID_2_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_ID_2_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_ID_2_IS_READ_MASK 0x00010000u
+
+/* ro: Word 27: serial number: high byte, ASCII character */
+#define ENDAT_MAP_SERVICE_SERIAL_0_WORD(channel) (0x450u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SERIAL_0_BYTE(channel) (0x1140u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_SERIAL_0_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SERIAL_0_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_SERIAL_0_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SERIAL_0_IS_READ_MASK 0x00010000u
+
+/* ro: Word 28: serial number, middle */
+#define ENDAT_MAP_SERVICE_SERIAL_1_WORD(channel) (0x451u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SERIAL_1_BYTE(channel) (0x1144u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_SERIAL_1_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SERIAL_1_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_SERIAL_1_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SERIAL_1_IS_READ_MASK 0x00010000u
+
+/* ro: Word 29: ASCII character, serial number low byte */
+#define ENDAT_MAP_SERVICE_SERIAL_2_WORD(channel) (0x452u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_SERIAL_2_BYTE(channel) (0x1148u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_SERIAL_2_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_SERIAL_2_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_SERIAL_2_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_SERIAL_2_IS_READ_MASK 0x00010000u
+
+/* ro: Word 37: bits 1..0 = 01: EnDat 2.2; bits 3..2 = 01: functional safety */
+#define ENDAT_MAP_SERVICE_COMMANDS_WORD(channel) (0x453u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_COMMANDS_BYTE(channel) (0x114Cu + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_COMMANDS_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_COMMANDS_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_COMMANDS_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_COMMANDS_IS_READ_MASK 0x00010000u
+
+/* ro: Word 39: longest calculation time */
+#define ENDAT_MAP_SERVICE_TCAL_WORD(channel) (0x454u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_TCAL_BYTE(channel) (0x1150u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_TCAL_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_TCAL_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_TCAL_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_TCAL_IS_READ_MASK 0x00010000u
+
+/* ro: EnDat 2.2 word 0: supported additional information 1 */
+#define ENDAT_MAP_SERVICE_INFOS_1_WORD(channel) (0x455u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_INFOS_1_BYTE(channel) (0x1154u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_INFOS_1_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_INFOS_1_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_INFOS_1_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_INFOS_1_IS_READ_MASK 0x00010000u
+
+/* ro: EnDat 2.2 word 1: supported additional information 2 */
+#define ENDAT_MAP_SERVICE_INFOS_2_WORD(channel) (0x456u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_INFOS_2_BYTE(channel) (0x1158u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_INFOS_2_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_INFOS_2_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_INFOS_2_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_INFOS_2_IS_READ_MASK 0x00010000u
+
+/* ro: EnDat 2.2 word 25: fastest clock, in kHz */
+#define ENDAT_MAP_SERVICE_CLOCK_MAX_KHZ_WORD(channel) (0x457u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_CLOCK_MAX_KHZ_BYTE(channel) (0x115Cu + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_CLOCK_MAX_KHZ_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_CLOCK_MAX_KHZ_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_CLOCK_MAX_KHZ_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_CLOCK_MAX_KHZ_IS_READ_MASK 0x00010000u
+
+/* ro: Word 3 of the operating status as set: bits 1..0 = 10: 10 to 30 us, 01: 1.25 to 3.75 us */
+#define ENDAT_MAP_SERVICE_RECOVERY_WORD(channel) (0x458u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_RECOVERY_BYTE(channel) (0x1160u + 512u * (channel))
+/* value: Word of the encoder */
+#define ENDAT_MAP_SERVICE_RECOVERY_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_RECOVERY_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been read */
+#define ENDAT_MAP_SERVICE_RECOVERY_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_RECOVERY_IS_READ_MASK 0x00010000u
+
+/* ro: Line delay measured at initialisation. */
+#define ENDAT_MAP_SERVICE_DELAY_WORD(channel) (0x459u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_DELAY_BYTE(channel) (0x1164u + 512u * (channel))
+/* value: tD, synchroniser and filter included (cycles) */
+#define ENDAT_MAP_SERVICE_DELAY_VALUE_SHIFT 0u
+#define ENDAT_MAP_SERVICE_DELAY_VALUE_MASK 0x0000FFFFu
+/* is_read: It has been measured */
+#define ENDAT_MAP_SERVICE_DELAY_IS_READ_SHIFT 16u
+#define ENDAT_MAP_SERVICE_DELAY_IS_READ_MASK 0x00010000u
+
+/* What m takes */
+#define ENDAT_MAP_SERVICE_THRESHOLD_M_MIN 1u
+#define ENDAT_MAP_SERVICE_THRESHOLD_M_MAX 16u
+
+/* What length takes */
+#define ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MIN 0u
+#define ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MAX 8u
+
+#endif

@@ -1,0 +1,254 @@
+/**
+ * @file endat_texts.c
+ * What the numbers of a card say, and what to do about them.
+ *
+ * Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test system driver writes it again.
+ */
+#include "endat.h"
+#include <stddef.h>
+
+/* Causes of a result */
+static const char *const causes[] = {
+    "none",
+    "data not low before start",
+    "no start bit",
+    "start bit outside its window",
+    "CRC",
+    "F1",
+    "F2",
+    "data not falling after the frame",
+    "trigger overrun",
+    "unknown mode command",
+    "additional information missing",
+    "no encoder",
+    "data stuck high",
+    "data stuck low",
+    "late start bit",
+    "watchdog",
+    "echo of the own command",
+    "recovery time too short",
+    "line not idle",
+    "no answer",
+    "no header",
+    "parity of the control field",
+    "another ID or address in the reply",
+    "delimiter",
+    "field missing",
+    "CRC",
+    "encoder saw a parity error",
+    "encoder saw a delimiter error",
+    "EEPROM busy",
+    "counting error",
+    "multi-turn or battery alarm",
+    "stored data upset",
+};
+
+const char *endat_cause_text(uint32_t number)
+{
+    const char *text = NULL;
+
+    if (number < (uint32_t)(sizeof causes / sizeof causes[0])) {
+        text = causes[number];
+    }
+    return (text != NULL) ? text : "unknown";
+}
+
+/* What they mean */
+static const char *const meanings[] = {
+    "The frame was good.",
+    "DATA was HIGH before the frame began: the line is open, the encoder has no supply, or it is lost within a frame.",
+    "The encoder did not answer: it is silent, does not know the mode command, or needs a longer calculation time than configured.",
+    "The start bit came at another phase than expected: a glitch, another cable, or a tcal that is not the configured one.",
+    "The CRC of the answer is wrong: a bit was disturbed, the width is not the encoder's, or the sample is near an edge.",
+    "The encoder reports an alarm in F1: a malfunction that can make positions wrong.",
+    "The encoder reports an alarm in F2, found independently of F1.",
+    "DATA stayed HIGH after the frame: the encoder has more bits than configured, or a recovery time longer than recovery_max_ns.",
+    "A trigger came while a frame or a T-format exchange was under way; its position is good.",
+    "The configured command is none of the mode commands, the T-format request is none that a trigger sends, or the period is too short for additional informations; nothing was sent.",
+    "An additional information that was expected did not come: the frame has another length than it should have, so its position is not taken.",
+    "Nothing is plugged in: DATA is HIGH, and LOW when the card drives it.",
+    "DATA stays HIGH although the card drives it LOW.",
+    "DATA stays LOW: not even the card's own mode command is heard.",
+    "The start bit came after the limit, but it came.",
+    "The frame took longer than limits.watchdog_us.",
+    "What came back is the card's own mode command.",
+    "DATA fell before limits.recovery_min_cycles: the encoder has another recovery time than the card; the position is good.",
+    "The T-format line was LOW, or had not been idle for long enough after a bad reply, when a request was to go out; nothing was sent.",
+    "The T-format encoder did not answer within the reply gap.",
+    "Something came from the T-format encoder, but no control field with start bit and sync code.",
+    "The parity of the ID in the reply is wrong: a bit was disturbed.",
+    "The reply repeats another request ID or EEPROM address than was sent.",
+    "A field of the reply ends with a LOW bit: it was disturbed, or the rate is another one.",
+    "A field of the reply did not begin in time.",
+    "The CRC of the T-format reply is wrong: a bit was disturbed.",
+    "The encoder says that the parity of the request was wrong: the way to the encoder is disturbed.",
+    "The encoder says that the delimiter of the request was wrong: the way to the encoder is disturbed.",
+    "The encoder's EEPROM is busy with the last byte; the data mean nothing.",
+    "The encoder reports a counting error; the position is taken.",
+    "The encoder reports a multi-turn, overflow or battery alarm; the position is taken, and its turns may be wrong.",
+    "A register of the card, or a word on its way to the host, was disturbed: what is stored does not fit its CRC or parity.",
+};
+
+const char *endat_cause_meaning(uint32_t number)
+{
+    const char *text = NULL;
+
+    if (number < (uint32_t)(sizeof meanings / sizeof meanings[0])) {
+        text = meanings[number];
+    }
+    return (text != NULL) ? text : "unknown";
+}
+
+/* What to do about them */
+static const char *const remedies[] = {
+    "Nothing.",
+    "Look at plug and supply. The card waits 30 ms and tries again.",
+    "Try the command 000111; raise tcal_max_ns; lower the clock. If no frame gets beyond the slow ones that measure the delay: tcal_max_ns counts there, too (a start bit at clock 15 needs 28000 at 200 kHz), and an encoder that leaves a frame after 2 us of HIGH needs a faster calibration_hz.",
+    "Widen start_window_ns, or filter_ns against glitches. The card measures the line delay again.",
+    "Compare position_bits with the data sheet; look at `margin`; lower the clock; check termination and shield.",
+    "Read the alarms (`param read 0xB9 0`), then clear them with the command 101101. After power-up an alarm is usual.",
+    "As for f1.",
+    "Compare position_bits and recovery_max_ns with the data sheet.",
+    "Trigger more slowly: `explain` shows the highest rate.",
+    "Write 7 (000111) or 56 (111000) to config<n>.frame.command, 4 or more to .period_cycles; on a T-format channel 3 to config<n>.timing.request_id.",
+    "The card finds out in the next frames what the encoder sends.",
+    "Plug the encoder in; the card goes on by itself.",
+    "Look for a short circuit to the supply, and for the driver enable.",
+    "Look for a short circuit, a swapped pair, and that the receiver stays enabled while sending.",
+    "Raise tcal_max_ns to the encoder's.",
+    "Look at limits.watchdog_us and at the encoder's times.",
+    "Look for a converter that sends back what it gets, or a pair that is swapped.",
+    "Set recovery_min_ns to what the encoder is set to.",
+    "Trigger more slowly after faults; look for a short circuit, and for an encoder that still sends.",
+    "Look at plug, supply and the pair; compare bit_hz with the data sheet; raise reply_gap_us.",
+    "Compare bit_hz with the data sheet; look at termination and shield; raise filter_ns against short pulses.",
+    "Look at termination and shield.",
+    "Look for a second encoder on the pair, or for a disturbed line.",
+    "Compare bit_hz with the data sheet; look at termination and shield.",
+    "Raise field_gap_us; does the encoder know this request?",
+    "Look at termination and shield; t_format<n>.fields shows what came.",
+    "Look at termination and shield, and that the driver stays enabled while sending.",
+    "As for request_parity; compare bit_hz with the data sheet.",
+    "Send the request again some milliseconds later.",
+    "Turn the power off and on, or send request 7 ten times in a row.",
+    "Look at t_format<n>.fields.alarm and at the battery; then send request 7 or 12 ten times in a row.",
+    "Nothing, if it is rare: the next trigger brings a new position. If it is not: supply, clock and timing of the device.",
+};
+
+const char *endat_cause_remedy(uint32_t number)
+{
+    const char *text = NULL;
+
+    if (number < (uint32_t)(sizeof remedies / sizeof remedies[0])) {
+        text = remedies[number];
+    }
+    return (text != NULL) ? text : "unknown";
+}
+
+/* What became of a request */
+static const char *const refusals[] = {
+    "fulfilled",
+    "no answer: command not understood or refused",
+    "echo of MRS code, address or port wrong",
+    "echo of data wrong",
+    "CRC of the answer wrong",
+    "unknown mode command, nothing was sent",
+    "frame went wrong or could not begin",
+    "encoder stayed busy",
+    "no trigger came in time for a request that rides on one",
+    "cancelled by the host",
+};
+
+const char *endat_refusal_text(uint32_t number)
+{
+    const char *text = NULL;
+
+    if (number < (uint32_t)(sizeof refusals / sizeof refusals[0])) {
+        text = refusals[number];
+    }
+    return (text != NULL) ? text : "unknown";
+}
+
+/* Steps of the initialisation */
+static const char *const steps[] = {
+    "none",
+    "reset",
+    "select memory area 0xB9",
+    "read alarms",
+    "read warnings",
+    "write 0 to word 0",
+    "write 0 to word 1",
+    "select memory area 0xA1",
+    "read position_bits",
+    "take over the position width",
+    "read encoder_type",
+    "read signal_periods_low",
+    "select memory area 0xA3",
+    "read signal_periods_high",
+    "read revolutions",
+    "read steps_low",
+    "read steps_high",
+    "read id_0",
+    "read id_1",
+    "read id_2",
+    "read serial_0",
+    "read serial_1",
+    "read serial_2",
+    "select memory area 0xA5",
+    "read commands",
+    "read tcal",
+    "find out whether it knows EnDat 2.2",
+    "select memory area 0xBD",
+    "read infos_1",
+    "read infos_2",
+    "read clock_max_khz",
+    "choose the clock",
+    "select memory area 0xB9",
+    "read recovery",
+    "set the recovery time",
+};
+
+const char *endat_step_text(uint32_t number)
+{
+    const char *text = NULL;
+
+    if (number < (uint32_t)(sizeof steps / sizeof steps[0])) {
+        text = steps[number];
+    }
+    return (text != NULL) ? text : "unknown";
+}
+
+/* Words of the name plate */
+static const char *const plate[] = {
+    "Alarms before they were cleared",
+    "Warnings before they were cleared",
+    "Word 13: clock pulses for the position in bits 5..0",
+    "Word 14: bit 15: 1 = rotary, 0 = linear",
+    "Word 15: signal periods per revolution, or in nm",
+    "Word 16: upper part of word 15",
+    "Word 17: distinguishable revolutions",
+    "Word 20: measuring steps per revolution, or step in nm",
+    "Word 21: upper part of word 20",
+    "Word 24: ID number, two ASCII characters",
+    "Word 25: ID number, low",
+    "Word 26: ID number, high",
+    "Word 27: serial number: high byte, ASCII character",
+    "Word 28: serial number, middle",
+    "Word 29: ASCII character, serial number low byte",
+    "Word 37: bits 1..0 = 01: EnDat 2.2; bits 3..2 = 01: functional safety",
+    "Word 39: longest calculation time",
+    "EnDat 2.2 word 0: supported additional information 1",
+    "EnDat 2.2 word 1: supported additional information 2",
+    "EnDat 2.2 word 25: fastest clock, in kHz",
+    "Word 3 of the operating status as set: bits 1..0 = 10: 10 to 30 us, 01: 1.25 to 3.75 us",
+};
+
+const char *endat_plate_text(uint32_t number)
+{
+    const char *text = NULL;
+
+    if (number < (uint32_t)(sizeof plate / sizeof plate[0])) {
+        text = plate[number];
+    }
+    return (text != NULL) ? text : "unknown";
+}

@@ -1,0 +1,335 @@
+//! The C driver: its generated files, strict compilers, and its calls against the fronts of real cards.
+
+mod rig;
+
+use crate::program::{bad, good, Dir};
+use crate::tools;
+use endat_gen::config::{parse, Project};
+use endat_hdl::bus::HostBus;
+use endat_sim::encoder::Defect;
+use rig::{Rig, ALL_PARTS};
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// Where the driver lies.
+fn home() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("drivers/c")
+}
+
+/// Catches a register, cause or step that has changed while the driver has the old one.
+#[test]
+fn the_driver_has_the_map_and_the_texts_of_the_tables() {
+    for file in endat_gen::maps::driver::artifacts() {
+        let path = home().join(&file.path);
+        assert!(
+            tools::committed(&path, &file.text) == file.text,
+            "{}: is not what the tables give; UPDATE_EXPECT=1 renews it",
+            file.path
+        );
+    }
+}
+
+/// What the driver has to be clean under.
+const STRICT: [&str; 8] = [
+    "-std=c99",
+    "-Wall",
+    "-Wextra",
+    "-Wpedantic",
+    "-Wconversion",
+    "-Wshadow",
+    "-Werror",
+    "-O2",
+];
+
+/// The driver's files that are compiled.
+fn sources() -> Vec<String> {
+    let names = endat_gen::driver::FILES.iter().map(|file| file.0);
+    let sources = names.filter(|name| name.ends_with(".c"));
+    sources
+        .map(|name| home().join(name).display().to_string())
+        .collect()
+}
+
+/// The scenarios with the driver, compiled once; none without a compiler.
+fn compiled() -> Option<&'static Path> {
+    static PROGRAM: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let compile = || {
+        if !tools::require("gcc", "C driver") {
+            return None;
+        }
+        let folder = tools::folder("driver");
+        std::fs::write(folder.join("page.c"), block("```c\n", 1)).unwrap();
+        write_header(&folder);
+        let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver");
+        let include = format!("-I{}", home().display());
+        let own = ["program.c", "alone.c"].map(|name| tests.join(name).display().to_string());
+        let mut arguments: Vec<String> = ["-std=c99", "-Wall", "-Werror", "-O1", "-g", "-o", "run"]
+            .map(str::to_owned)
+            .to_vec();
+        arguments
+            .extend(["-fsanitize=address,undefined", "-fno-sanitize-recover"].map(str::to_owned));
+        arguments.extend([include, "-I.".into(), "page.c".into()]);
+        arguments.extend(own);
+        arguments.extend(sources());
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let (is_good, text) = tools::run("gcc", &folder, &arguments);
+        assert!(is_good, "{text}");
+        Some(folder.join("run"))
+    };
+    PROGRAM.get_or_init(compile).as_deref()
+}
+
+/// A block of the page.
+fn block(fence: &str, number: usize) -> &'static str {
+    let page = include_str!("../../docs/driver.md");
+    let blocks = page.split(fence).skip(1);
+    let text = |rest: &'static str| rest.split("```").next().unwrap().trim_start();
+    blocks.map(text).nth(number).unwrap()
+}
+
+/// The card of the page.
+fn card_of_the_page() -> Project {
+    parse("my_card.toml", block("```toml", 0)).unwrap()
+}
+
+fn write_header(folder: &Path) {
+    let maps = endat_gen::maps::artifacts(&card_of_the_page()).unwrap();
+    let header = maps
+        .iter()
+        .find(|file| file.path.ends_with("_registers.h"))
+        .unwrap();
+    std::fs::write(folder.join(&header.path), &header.text).unwrap();
+}
+
+#[test]
+fn the_program_of_the_page_goes_from_power_up_over_a_plug_to_a_position() {
+    Rig::of(card_of_the_page()).run("page");
+}
+
+/// Catches an example that names what the driver no longer has.
+#[test]
+fn examples_and_the_page_compile() {
+    if !tools::require("gcc", "examples of the C driver") {
+        return;
+    }
+    let folder = tools::folder("driver-examples");
+    write_header(&folder);
+    std::fs::write(folder.join("hooks.c"), block("```c\n", 0)).unwrap();
+    let (spi, link) = block("```c\n", 2).split_once("endat_link link;").unwrap();
+    let spi = format!(
+        "#include \"endat_transports.h\"\n\
+         endat_error board_transfer(void *context, const uint8_t *sent, uint8_t *received, uint32_t count);\n\
+         uint32_t board_us(void *context);\nendat_error open_spi(endat_card *card);\n{spi}\
+         endat_error open_spi(endat_card *card) {{ endat_link link; {link} return endat_open(card, &link, 0); }}\n"
+    );
+    std::fs::write(folder.join("spi.c"), spi).unwrap();
+    let shim = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver/shim");
+    let includes = [home(), shim].map(|path| format!("-I{}", path.display()));
+    let example = |name| home().join("examples").join(name).display().to_string();
+    let examples = ["bare_metal.c", "freertos.c", "linux_uio.c"].map(example);
+    for file in ["hooks.c".into(), "spi.c".into()].iter().chain(&examples) {
+        let more = [
+            "-I.",
+            &includes[0],
+            &includes[1],
+            "-c",
+            "-o",
+            "object",
+            file,
+        ];
+        let (is_good, text) = tools::run("gcc", &folder, &[&STRICT[..], &more].concat());
+        assert!(is_good && text.is_empty(), "{text}");
+    }
+    // On a map without a card the one for Linux says so.
+    let sources = sources();
+    let mut arguments = vec!["-std=c99", &includes[0], "-o", "uio", &examples[2]];
+    arguments.extend(sources.iter().map(String::as_str));
+    let (is_good, text) = tools::run("gcc", &folder, &arguments);
+    assert!(is_good, "{text}");
+    std::fs::write(folder.join("map"), [0; endat_regs::MAP_BYTES as usize]).unwrap();
+    let program = folder.join("uio").display().to_string();
+    let (is_good, text) = tools::run(&program, &folder, &["map"]);
+    assert!(!is_good && text.contains("no card answers"), "{text}");
+}
+
+/// The Verilog as it is emitted, with the encoders of its benches: what the fronts on the bench cannot miss is the emission itself.
+#[test]
+fn the_emitted_cards_are_driven_in_verilator() {
+    let check = "C driver at the emitted Verilog";
+    if !tools::require_all(&["gcc", "verilator"], check) {
+        return;
+    }
+    let more = "[service]\nparts = [\"requests\", \"diagnosis\"]\n";
+    let folder = tools::folder("driver-emitted");
+    let mut files = vec![];
+    let projects = [HostBus::AxiLite, HostBus::Spi]
+        .map(|bus| parse("card.toml", &rig::text(bus, more)).unwrap());
+    for file in projects.iter().flat_map(|p| endat_gen::emit(p).unwrap()) {
+        std::fs::write(folder.join(&file.path), &file.text).unwrap();
+        if file.path.ends_with(".v") {
+            files.push(file.path);
+        }
+    }
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/driver");
+    let own = ["emitted.v", "emitted.cpp"].map(|name| tests.join(name).display().to_string());
+    // Warnings of the emission have tests of their own.
+    let mut arguments: Vec<&str> =
+        "--cc --exe --build --timing -O3 -j 2 -Wno-fatal --top-module emitted -CFLAGS -O1 -o run"
+            .split(' ')
+            .collect();
+    arguments.extend(own.iter().chain(&files).map(String::as_str));
+    let (is_good, text) = tools::run("verilator", &folder, &arguments);
+    assert!(is_good, "{text}");
+    for project in &projects {
+        Rig::outside(project, &folder.join("obj_dir/run")).run("emitted");
+    }
+}
+
+#[test]
+fn strict_compilers_have_nothing_to_say_about_the_driver() {
+    let folder = tools::folder("driver-strict");
+    for compiler in ["gcc", "clang"] {
+        // gcc is enough: clang is a second opinion where there is one.
+        let is_there = match compiler {
+            "gcc" => tools::require(compiler, "C driver"),
+            _ => tools::has(compiler),
+        };
+        for source in sources().iter().filter(|_| is_there) {
+            let arguments = [&STRICT[..], &["-c", "-o", "object", source]].concat();
+            let (is_good, text) = tools::run(compiler, &folder, &arguments);
+            assert!(is_good && text.is_empty(), "{compiler}: {text}");
+        }
+    }
+}
+
+/// Catches a header that only C can read.
+#[test]
+fn the_headers_are_those_of_cpp_too() {
+    if tools::require("g++", "C driver in C++") {
+        let folder = tools::folder("driver-cpp");
+        let text = "#include \"endat_transports.h\"\nint main() { return endat_error_text(ENDAT_OK) == nullptr; }\n";
+        std::fs::write(folder.join("main.cpp"), text).unwrap();
+        let include = format!("-I{}", home().display());
+        let flags = [
+            "-std=c++11",
+            "-Wall",
+            "-Wextra",
+            "-pedantic",
+            "-Werror",
+            "-fsyntax-only",
+        ];
+        let (is_good, text) = tools::run(
+            "g++",
+            &folder,
+            &[&flags[..], &[&include, "main.cpp"]].concat(),
+        );
+        assert!(is_good && text.is_empty(), "{text}");
+    }
+}
+
+#[test]
+fn the_driver_refuses_what_no_card_says() {
+    if let Some(program) = compiled() {
+        let (is_good, text) =
+            tools::run(program.to_str().unwrap(), &home(), &["words", "alone", "0"]);
+        assert!(is_good, "{text}");
+    }
+}
+
+/// Every part that a card behind any bus but the UART can have.
+fn everything() -> String {
+    format!("{ALL_PARTS}[outputs]\nparts = [\"interrupt\"]\n")
+}
+
+#[test]
+fn everything_works_over_axi_lite() {
+    Rig::new(HostBus::AxiLite, &everything()).run("journey");
+}
+
+#[test]
+fn everything_works_over_spi() {
+    Rig::new(HostBus::Spi, &everything()).run("journey");
+}
+
+#[test]
+fn an_encoder_that_never_answers_is_told_with_its_step() {
+    let project = parse("card.toml", &rig::text(HostBus::Apb, ALL_PARTS)).unwrap();
+    let encoder = |n| match n {
+        1 => rig::encoder(n).defects(0..=u64::MAX, Defect::NoStartBit),
+        n => rig::encoder(n),
+    };
+    Rig::with(project, encoder).run("broken");
+}
+
+#[test]
+fn position_parameter_and_plug_over_every_other_bus() {
+    for bus in [
+        HostBus::Apb,
+        HostBus::Wishbone,
+        HostBus::Parallel,
+        HostBus::Uart,
+    ] {
+        Rig::new(bus, ALL_PARTS).run("short");
+    }
+}
+
+#[test]
+fn a_card_without_parts_says_which_one_is_missing() {
+    Rig::new(HostBus::AxiLite, "").run("bare");
+}
+
+/// Catches words of two results in one moment where reads are slow, and a hold that is not given back.
+#[test]
+fn slow_reads_are_of_one_moment() {
+    Rig::new(HostBus::Apb, ALL_PARTS).run("torn");
+    Rig::new(HostBus::Parallel, ALL_PARTS).run("torn");
+}
+
+#[test]
+fn noise_on_spi_spoils_nothing() {
+    let mut rig = Rig::new(HostBus::Spi, ALL_PARTS).noise(20);
+    rig.run("noisy");
+    assert!(rig.flipped > 50 || compiled().is_none(), "{}", rig.flipped);
+}
+
+#[test]
+fn emit_hands_the_driver_out_with_a_card() {
+    let dir = Dir::new("driver");
+    let out = dir.path("o");
+    let with = [
+        "emit",
+        "--preset",
+        "s6_two_channel",
+        "--out",
+        &out,
+        "--driver",
+    ];
+    good(&with);
+    let folder = dir.0.join("o/s6_two_channel");
+    for (name, text) in endat_gen::driver::FILES {
+        assert_eq!(std::fs::read_to_string(folder.join(name)).unwrap(), *text);
+    }
+    let manifest = std::fs::read_to_string(folder.join("MANIFEST")).unwrap();
+    assert_eq!(manifest.matches("  endat.h\n").count(), 1);
+    good(&[&with[..], &["--check"]].concat());
+    let told = bad(
+        &with[..5]
+            .iter()
+            .copied()
+            .chain(["--check"])
+            .collect::<Vec<_>>(),
+        1,
+    );
+    assert!(told.contains("endat.h: is no longer emitted"), "{told}");
+    std::fs::remove_file(folder.join("endat.c")).unwrap();
+    let told = bad(&[&with[..], &["--check"]].concat(), 1);
+    assert!(
+        told.contains("endat.c: is missing") && told.contains(" --driver"),
+        "{told}"
+    );
+    let told = bad(
+        &["emit", "--preset", "async_dsp", "--out", &out, "--driver"],
+        2,
+    );
+    assert!(told.contains("--driver"), "{told}");
+}
