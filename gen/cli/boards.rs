@@ -2,7 +2,7 @@
 
 use super::build::progress;
 use super::{to_json, Outcome};
-use crate::bitstream;
+use crate::bitstream::{self, Use};
 use crate::board::{self, Board};
 use crate::config::{self, Project};
 use crate::error::{shown, GenError};
@@ -82,10 +82,9 @@ pub fn measure(name: Option<&str>) -> Result<Outcome, GenError> {
         let (report, _) = bitstream::build(&project, board, &artifacts, SEEDS, &mut progress)?;
         let best = &report.best;
         let clock = best.tightest().map_or(0.0, |clock| clock.fmax_mhz);
-        let cells = best
-            .cells
-            .iter()
-            .filter(|(_, cells)| cells.used * 50 > cells.available);
+        // What there are many of, and the card takes some of.
+        let counts = |cells: &Use| cells.available > 20 && cells.used * 50 > cells.available;
+        let cells = best.cells.iter().filter(|(_, cells)| counts(cells));
         let cells = cells.map(|(kind, c)| format!("{kind} {} of {}", c.used, c.available));
         text += &format!(
             "| `{}` | {} | {} | {} % | {} | {} |\n",

@@ -175,4 +175,13 @@ fn the_page_has_the_table_of_the_boards() {
         page.contains(&good(&["boards", "--page"])),
         "cargo run -- boards --page"
     );
+    // What was measured is of the clocks that the boards have now.
+    let measured = page.split_once("| reached, MHz |").unwrap().1;
+    for board in boards().iter().filter(|b| b.family.build.is_some()) {
+        let head = format!("| `{}` | ", board.name);
+        let row = measured.lines().find(|l| l.starts_with(&head));
+        let row = row.unwrap_or_else(|| panic!("{}: no measured row", board.name));
+        let clock = card_on(board).card.system_hz as f64 / 1e6;
+        assert!(row.starts_with(&format!("{head}{clock} | ")), "{row}");
+    }
 }
