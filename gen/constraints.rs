@@ -1,9 +1,11 @@
-//! Board-dependent files: the board top with the clock manager, the UCF, and the page about both.
+//! Board-dependent files: the board top with the clock manager, the constraints, and the page about both.
 
 use crate::artifact::Artifact;
-use crate::board::Assignment;
-use crate::config::pins::{PARALLEL_ADDRESS_LINES, PARALLEL_DATA_LINES};
-use crate::config::{Kind, Project};
+use crate::board::{
+    Assignment, Board, Kind, Pll, CLOCK, CONSTRAINTS, PARALLEL_ADDRESS_LINES, PARALLEL_DATA_LINES,
+    README,
+};
+use crate::config::Project;
 use crate::error::GenError;
 use crate::explain;
 use crate::template;
@@ -16,17 +18,9 @@ use minijinja::context;
 use minijinja::value::{Serde, Value};
 use serde::Serialize;
 
-const TEMPLATES: [(&str, &str); 3] = [
-    (
-        "top.v",
-        include_str!("../constraints/templates/top.v.jinja"),
-    ),
-    ("ucf", include_str!("../constraints/templates/ucf.jinja")),
-    (
-        "readme",
-        include_str!("../constraints/templates/readme.md.jinja"),
-    ),
-];
+/// The templates that are the same for every family.
+const TOP: &str = include_str!("../constraints/templates/top.v.jinja");
+const PAGE: &str = include_str!("../constraints/templates/readme.md.jinja");
 
 /// A port as the templates see it.
 #[derive(Serialize)]
@@ -36,10 +30,11 @@ struct Port {
     position: String,
     meaning: String,
     direction: &'static str,
+    iostandard: String,
     /// The last register belongs into the output cell.
-    iob: bool,
-    /// UCF attributes beside place and I/O standard.
-    attributes: &'static str,
+    output_cell: bool,
+    /// Words of the constraints file beside place and I/O standard.
+    attributes: String,
     /// Why the timing is not analysed; empty when it is.
     asynchronous: &'static str,
 }
@@ -65,20 +60,20 @@ fn meaning(pin: &Assignment, t_format: &[usize]) -> String {
         (Kind::UartInput, _) => "host UART, from the host".into(),
         (Kind::UartOutput, _) => "host UART, to the host".into(),
         (Kind::BusInput, "spi_sck_i") => "host SPI, clock, mode 0".into(),
-        (Kind::BusInput, "spi_cs_n_i") => "host SPI, selects the card when low".into(),
+        (Kind::BusStrobe, "spi_cs_n_i") => "host SPI, selects the card when low".into(),
         (Kind::BusInput, "spi_mosi_i") => "host SPI, from the host".into(),
         (Kind::BusInput, "second_sck_i") => "second controller's SPI, clock, mode 0".into(),
-        (Kind::BusInput, "second_cs_n_i") => {
+        (Kind::BusStrobe, "second_cs_n_i") => {
             "second controller's SPI, selects the card when low".into()
         }
         (Kind::BusOutput, "second_miso_o") => {
             "second controller's SPI, to the controller; driven while selected".into()
         }
         (Kind::BusOutput, _) => "host SPI, to the host; driven while selected".into(),
-        (Kind::BusInput, "bus_cs_n_i") => "host bus, selects the card when low".into(),
-        (Kind::BusInput, "bus_rd_n_i") => "host bus, reads when low".into(),
-        (Kind::BusInput, "bus_wr_n_i") => "host bus, writes when low".into(),
-        (Kind::BusInput, _) => "host bus, register".into(),
+        (Kind::BusStrobe, "bus_cs_n_i") => "host bus, selects the card when low".into(),
+        (Kind::BusStrobe, "bus_rd_n_i") => "host bus, reads when low".into(),
+        (Kind::BusStrobe, "bus_wr_n_i") => "host bus, writes when low".into(),
+        (Kind::BusInput | Kind::BusStrobe, _) => "host bus, register".into(),
         (Kind::BusData, _) => "host bus, data; driven while read".into(),
         (Kind::Interrupt, _) => "interrupt to the host".into(),
         (Kind::Led, "led_status_o") => "status light".into(),
@@ -86,34 +81,17 @@ fn meaning(pin: &Assignment, t_format: &[usize]) -> String {
     }
 }
 
-fn attributes(kind: Kind, signal: &str) -> &'static str {
-    match kind {
-        Kind::Oscillator => "",
-        // Slow edges are fast enough for 16 MHz and ring less on the wires to the wing.
-        Kind::Transceiver => " | SLEW = SLOW | DRIVE = 8 | IOB = TRUE",
-        // An unplugged wing then reads like an open line: high, never a start bit after low.
-        Kind::EncoderData | Kind::UartInput => " | PULLUP",
-        // An open trigger pin must stay quiet.
-        Kind::Trigger => " | PULLDOWN",
-        // Strobes are low when they act; an open bus must stay quiet.
-        Kind::BusInput if signal.ends_with("_n_i") => " | PULLUP",
-        Kind::BusInput => " | PULLDOWN",
-        Kind::BusData => " | SLEW = SLOW | DRIVE = 8 | PULLDOWN",
-        Kind::UartOutput | Kind::BusOutput | Kind::Interrupt => " | SLEW = SLOW | DRIVE = 8",
-        Kind::Led => " | SLEW = QUIETIO | DRIVE = 8",
-    }
-}
-
 impl Port {
-    fn new(pin: &Assignment, t_format: &[usize]) -> Self {
+    fn new(pin: &Assignment, board: &Board, t_format: &[usize]) -> Self {
         Self {
             signal: pin.signal.clone(),
             pin: pin.pin.clone(),
             position: pin.position.clone(),
             meaning: meaning(pin, t_format),
             direction: pin.kind.direction(),
-            iob: pin.kind == Kind::Transceiver,
-            attributes: attributes(pin.kind, &pin.signal),
+            iostandard: board.iostandard_of(&pin.pin).to_owned(),
+            output_cell: pin.kind == Kind::Transceiver,
+            attributes: board.family.attributes(pin.kind).to_owned(),
             asynchronous: pin.kind.asynchronous().unwrap_or(""),
         }
     }
@@ -122,6 +100,11 @@ impl Port {
 /// A number of ns as the vendor's tools read it, without needless digits.
 fn ns(hz: u64) -> String {
     decimal(1e9 / hz as f64, 4)
+}
+
+/// A number of MHz, without needless digits.
+fn mhz(hz: u64) -> String {
+    decimal(hz as f64 / 1e6, 6)
 }
 
 /// Where an interrupt goes that the configuration does not ask for.
@@ -138,6 +121,13 @@ fn shared_outputs(project: &Project) -> impl Iterator<Item = &str> {
     outputs.map(|pin| pin.signal.trim_end_matches("_o"))
 }
 
+/// Lights whose pin is low while they shine.
+fn inverted<'p>(project: &'p Project, board: &Board) -> Vec<&'p str> {
+    let lights = project.pins.iter().filter(|pin| pin.kind == Kind::Led);
+    let low = lights.filter(|pin| board.low_active.contains(&pin.pin));
+    low.map(|pin| pin.signal.as_str()).collect()
+}
+
 /// What the top connects to a port of the card.
 #[derive(Serialize)]
 struct Connection {
@@ -146,13 +136,16 @@ struct Connection {
 }
 
 /// All ports of the card but clock and reset. Lines of a bus are pins one by one, and one vector at the card.
-fn connections(project: &Project) -> Vec<Connection> {
+fn connections(project: &Project, inverted: &[&str]) -> Vec<Connection> {
     let own = project
         .pins
         .iter()
         .filter(|pin| !matches!(pin.kind, Kind::Oscillator | Kind::BusOutput | Kind::BusData))
         .filter(|pin| !pin.signal.starts_with("bus_address"))
-        .map(|pin| (pin.signal.clone(), pin.signal.clone()));
+        .map(|pin| match inverted.contains(&pin.signal.as_str()) {
+            true => (pin.signal.clone(), format!("{}_high", pin.signal)),
+            false => (pin.signal.clone(), pin.signal.clone()),
+        });
     let lines = |name: &str, end: &str, count: usize| {
         let names = (0..count).rev().map(|n| format!("{name}{n}_{end}"));
         format!("{{{}}}", names.collect::<Vec<_>>().join(", "))
@@ -183,77 +176,102 @@ fn connections(project: &Project) -> Vec<Connection> {
         .collect()
 }
 
-/// Board top, UCF and README of a project; without a board only a README that says how to use the card.
+/// Board top, constraints and README of a project; without a board only a README that says how to use the card.
 pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
-    let (Some(board), Some(pll)) = (&project.board, &project.pll) else {
-        let context = context! {
-            name => project.name.as_str(),
-            version => env!("CARGO_PKG_VERSION"),
-            hash => project.hash.as_str(),
-            bus => project.bus.name(),
-            internal => project.bus.is_internal(),
-            bare => project.bus == HostBus::Bare,
-            system_hz => project.card.system_hz,
-            channels => project.card.channels.len(),
-            second => project.card.safety.second_interface,
-            protocols => project.protocols(),
-            t_format => project.card.t_format_numbers().collect::<Vec<_>>(),
-            quiet_ms => ABORT_US / 1_000,
-            initial_values => project.card.initial_values,
-            reset_cycles => RESET_CYCLES,
-            clear_cycles => project.card.service.requests.then_some(CLEAR_CYCLES),
-            timing => explain::report(project).to_string(),
-        };
-        let text = include_str!("../constraints/templates/readme_bus.md.jinja");
-        let text = template::render("readme_bus", text, &context)?;
-        return Ok(vec![Artifact::new("README.md", text)]);
-    };
-    let t_format: Vec<usize> = project.card.t_format_numbers().collect();
-    let ports: Vec<Value> = project
-        .pins
-        .iter()
-        .map(|pin| Value::from(Serde(Port::new(pin, &t_format))))
-        .collect();
+    match (&project.board, &project.pll) {
+        (Some(board), Some(pll)) => of_board(project, board, pll),
+        _ => without_board(project),
+    }
+}
+
+fn without_board(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let context = context! {
         name => project.name.as_str(),
+        version => env!("CARGO_PKG_VERSION"),
+        hash => project.hash.as_str(),
+        bus => project.bus.name(),
+        internal => project.bus.is_internal(),
+        bare => project.bus == HostBus::Bare,
+        system_hz => project.card.system_hz,
+        channels => project.card.channels.len(),
+        second => project.card.safety.second_interface,
+        protocols => project.protocols(),
+        t_format => project.card.t_format_numbers().collect::<Vec<_>>(),
+        quiet_ms => ABORT_US / 1_000,
+        initial_values => project.card.initial_values,
+        reset_cycles => RESET_CYCLES,
+        clear_cycles => project.card.service.requests.then_some(CLEAR_CYCLES),
+        timing => explain::report(project).to_string(),
+    };
+    let text = include_str!("../constraints/templates/readme_bus.md.jinja");
+    let text = template::render("readme_bus", text, &context)?;
+    Ok(vec![Artifact::new("README.md", text)])
+}
+
+/// What the templates know, a family's own among them; docs/boards.md lists it.
+fn of_board(project: &Project, board: &Board, pll: &Pll) -> Result<Vec<Artifact>, GenError> {
+    let name = &project.name;
+    let family = &board.family;
+    let t_format: Vec<usize> = project.card.t_format_numbers().collect();
+    let ports: Vec<Value> = (project.pins.iter())
+        .map(|pin| Value::from(Serde(Port::new(pin, board, &t_format))))
+        .collect();
+    let inverted = inverted(project, board);
+    let facts = context! {
+        name => name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
         initial_values => project.card.initial_values,
         reset_cycles => RESET_CYCLES,
         board => context! { title => board.title.as_str(), name => board.name.as_str(), part => board.part.as_str() },
-        iostandard => board.iostandard.as_str(),
+        device => Serde(&board.device),
         ports => ports,
         bus => project.bus.name(),
         data_lines => PARALLEL_DATA_LINES,
-        connections => Serde(connections(project)),
+        connections => Serde(connections(project, &inverted)),
         shared => Serde(shared_outputs(project).collect::<Vec<_>>()),
+        inverted => Serde(&inverted),
         unused_interrupt => has_unused_interrupt(project).then_some(UNUSED_INTERRUPT),
-        widest => project.pins.iter().map(|p| p.signal.len()).max().unwrap_or(0),
         oscillator_hz => board.oscillator_hz,
         oscillator_ns => ns(board.oscillator_hz),
+        oscillator_mhz => mhz(board.oscillator_hz),
         system_hz => project.card.system_hz,
         system_ns => ns(project.card.system_hz),
-        pll => context! { divide => pll.divide, multiply => pll.multiply, output_divide => pll.output_divide, vco_hz => pll.vco_hz },
+        system_mhz => mhz(project.card.system_hz),
+        pll => context! {
+            divide => pll.divide,
+            multiply => pll.multiply,
+            output_divide => pll.output_divide,
+            output_divide_log2 => pll.output_divide.ilog2(),
+            detector_hz => pll.detector_hz,
+            vco_hz => pll.vco_hz,
+        },
         channels => project.card.channels.len(),
         protocols => project.protocols(),
         t_format,
         timing => explain::report(project).to_string(),
+        constraints => family.constraints.as_str(),
+        constraints_have => family.constraints_have.as_str(),
+        output_cell => family.output_cell.as_str(),
+        reset_registers => family.reset_registers.as_str(),
     };
-    let files = [
-        format!("{}_top.v", project.name),
-        format!("{}.ucf", project.name),
-        "README.md".into(),
-    ];
-    TEMPLATES
-        .iter()
-        .zip(files)
-        .map(|((name, template), path)| {
-            Ok(Artifact::new(
-                path,
-                template::render(name, template, &context)?,
-            ))
-        })
-        .collect()
+    let of_family = |part: &str| family.render(part, &facts);
+    let facts = context! {
+        clock_manager => of_family(CLOCK)?,
+        bitstream => of_family(README)?,
+        ..facts.clone()
+    };
+    Ok(vec![
+        Artifact::new(
+            format!("{name}_top.v"),
+            template::render("top.v", TOP, &facts)?,
+        ),
+        Artifact::new(
+            format!("{name}.{}", family.constraints),
+            of_family(CONSTRAINTS)?,
+        ),
+        Artifact::new("README.md", template::render("readme", PAGE, &facts)?),
+    ])
 }
 
 #[cfg(test)]

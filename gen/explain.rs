@@ -1,5 +1,6 @@
 //! `explain`: what a configuration really becomes, as text and as data.
 
+use crate::board::Pll;
 use crate::config::{phase_name, Project};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::{read_bytes, CardConfig, ChannelConfig};
@@ -259,10 +260,7 @@ pub fn report(project: &Project) -> Report {
         config_hash: project.hash.clone(),
         board: project.board.as_ref().map(|board| board.name.clone()),
         oscillator_hz: project.board.as_ref().map(|board| board.oscillator_hz),
-        clock_manager: project
-            .pll
-            .as_ref()
-            .map(|pll| [pll.multiply, pll.divide, pll.output_divide]),
+        clock_manager: project.pll.as_ref().map(Pll::factors),
         system_hz,
         channels,
         sampling: Rate::new(card.sample_hz, card.actual_sample_hz()),

@@ -4,7 +4,7 @@
 mod interface;
 
 use crate::artifact::Artifact;
-use crate::board::Board;
+use crate::board::{Board, FUSESOC};
 use crate::config::{Project, Receiver};
 use crate::error::GenError;
 use crate::template::render;
@@ -73,28 +73,35 @@ fn class_name(name: &str) -> String {
     }
 }
 
-/// A board's device, as ISE wants it told.
+/// What FuseSoC is told about a board.
 #[derive(Serialize)]
 struct Target<'a> {
     title: &'a str,
-    family: &'static str,
-    device: &'a str,
-    package: &'a str,
-    speed: String,
+    constraints: &'a str,
+    file_type: &'a str,
+    /// Name of the target, padded.
+    target: String,
+    /// The target itself.
+    text: String,
 }
 
 impl<'a> Target<'a> {
-    fn of(board: &'a Board) -> Self {
-        let mut words = board.part.split('-');
-        let mut word = || words.next().unwrap_or_default();
-        Self {
+    /// None when FuseSoC does not know the tools of the board's family.
+    fn of(board: &'a Board, name: &str) -> Result<Option<Self>, GenError> {
+        let Some(fusesoc) = &board.family.fusesoc else {
+            return Ok(None);
+        };
+        let words: Vec<String> = board.part.split('-').map(str::to_owned).collect();
+        let text = board
+            .family
+            .render(FUSESOC, &context! { name, part => words })?;
+        Ok(Some(Self {
             title: &board.title,
-            // The clock manager of the board top is that family's.
-            family: "spartan6",
-            device: word(),
-            package: word(),
-            speed: format!("-{}", word()),
-        }
+            constraints: &board.family.constraints,
+            file_type: &fusesoc.file_type,
+            target: format!("{:<12}", fusesoc.target),
+            text,
+        }))
     }
 }
 
@@ -130,10 +137,18 @@ pub struct Core<'a> {
 
 impl<'a> Core<'a> {
     /// A card.
-    pub fn card(project: &'a Project, sources: &'a [String], has_bench: bool) -> Self {
+    pub fn card(
+        project: &'a Project,
+        sources: &'a [String],
+        has_bench: bool,
+    ) -> Result<Self, GenError> {
+        let target = match &project.board {
+            Some(board) => Target::of(board, &project.name)?,
+            None => None,
+        };
         let channels = project.card.channels.len();
         let title = format!("{} acquisition card", project.protocols());
-        Self {
+        Ok(Self {
             name: &project.name,
             hash: &project.hash,
             description: format!(
@@ -155,10 +170,10 @@ impl<'a> Core<'a> {
             has_interrupt: project.card.outputs.interrupt,
             card: context! {
                 channels,
-                board => Value::from(Serde(project.board.as_ref().map(Target::of))),
+                board => Value::from(Serde(target)),
                 base_address => project.base_address,
             },
-        }
+        })
     }
 
     /// A T-format receiver.

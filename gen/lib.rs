@@ -10,6 +10,7 @@
 pub mod area;
 pub mod artifact;
 pub mod bench;
+pub mod bitstream;
 pub mod board;
 pub mod campaign;
 pub mod cli;
@@ -19,6 +20,7 @@ pub mod crc;
 pub mod driver;
 pub mod error;
 pub mod explain;
+pub(crate) mod form;
 pub mod integration;
 pub mod maps;
 pub mod prove;
@@ -49,7 +51,7 @@ pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
     let sources = verilog::source_files(&artifacts);
     artifacts.push(verilog::source_list(&project.name, &sources));
     let bench = testbench::artifact(project)?;
-    let core = integration::Core::card(project, &sources, bench.is_some());
+    let core = integration::Core::card(project, &sources, bench.is_some())?;
     artifacts.extend(integration::artifacts(&core, &design)?);
     artifacts.extend(constraints::artifacts(project)?);
     artifacts.extend(bench);

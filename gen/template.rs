@@ -7,6 +7,16 @@ use minijinja::{Environment, UndefinedBehavior};
 
 /// A template with its values filled in; nothing is escaped, and a value that is missing is an error.
 pub fn render(name: &str, template: &str, context: &Value) -> Result<String, GenError> {
+    filled(name, template, context).map_err(broken)
+}
+
+/// The same with a template that a user has written.
+pub fn render_own(name: &str, template: &str, context: &Value) -> Result<String, GenError> {
+    filled(name, template, context)
+        .map_err(|error| GenError::input(format!("{name}: {error}; correct the template")))
+}
+
+fn filled(name: &str, template: &str, context: &Value) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     let syntax = SyntaxConfig::builder()
@@ -14,14 +24,13 @@ pub fn render(name: &str, template: &str, context: &Value) -> Result<String, Gen
         .trim_blocks(true)
         .lstrip_blocks(true)
         .build();
-    environment.set_syntax(syntax.map_err(broken)?);
+    environment.set_syntax(syntax?);
     // The output is Verilog, UCF and Markdown: nothing is to be escaped for HTML.
     environment.set_auto_escape_callback(|_| minijinja::AutoEscape::None);
-    environment.add_template(name, template).map_err(broken)?;
+    environment.add_template(name, template)?;
     environment
         .get_template(name)
         .and_then(|t| t.render(context))
-        .map_err(broken)
 }
 
 /// A template that does not render is a fault of the program, and still no reason to panic.

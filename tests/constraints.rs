@@ -347,7 +347,8 @@ pub fn lay_out(project: &Project, test: &str) -> (PathBuf, Vec<String>) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("constraints-{test}"));
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
-    let mut files = vec![("primitives.v".to_owned(), PRIMITIVES.to_owned())];
+    let primitives = format!("{PRIMITIVES}{}", include_str!("data/primitives.v"));
+    let mut files = vec![("primitives.v".to_owned(), primitives)];
     let emitted = endat_gen::emit(project).unwrap();
     files.extend(
         emitted

@@ -1,6 +1,7 @@
 //! Tests of the whole system, one module per topic.
 
 mod alignment;
+mod boards;
 mod bus;
 mod campaign;
 mod cli;

@@ -1,7 +1,7 @@
 //! `emit`: writes the files of a card, or checks them.
 
 use super::host::interrupted;
-use super::{Outcome, SourceArgs};
+use super::{Outcome, SourceArgs, TargetArgs};
 use crate::artifact::{self, Artifact};
 use crate::config::{check_name, Configuration};
 use crate::error::GenError;
@@ -18,6 +18,8 @@ const OUT: &str = "out";
 pub struct EmitArgs {
     #[command(flatten)]
     source: SourceArgs,
+    #[command(flatten)]
+    target: TargetArgs,
     /// Folder to write into; the files go to DIR/PREFIX [default: out]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -38,7 +40,9 @@ pub struct EmitArgs {
 /// Runs the command.
 pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
     let stop = interrupted();
-    let mut configuration = arguments.source.load_any()?;
+    let mut configuration = arguments
+        .source
+        .load_any_on(arguments.target.load()?.as_ref())?;
     let name = match &mut configuration {
         Configuration::Card(card) => &mut card.name,
         Configuration::Receiver(receiver) => &mut receiver.name,
@@ -147,6 +151,7 @@ fn repair(arguments: &EmitArgs, force: bool) -> String {
             .map(|p| p.display().to_string()),
     );
     add("--preset", arguments.source.preset.clone());
+    add("--board", arguments.target.board.clone());
     add(
         "--out",
         arguments.out.as_ref().map(|p| p.display().to_string()),

@@ -2,6 +2,8 @@
 
 mod area;
 mod bench;
+mod boards;
+mod build;
 mod campaign;
 mod crc_command;
 mod documents;
@@ -14,12 +16,13 @@ mod shmoo;
 mod sim;
 mod work;
 
+use crate::board::Board;
 use crate::config::{self, Configuration, Project};
-use crate::error::GenError;
+use crate::error::{shown, GenError};
 use crate::explain;
 use clap::{Args, Parser, Subcommand};
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// What a run of the program gives.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -56,23 +59,45 @@ struct Cli {
 enum Command {
     /// Write the files of a card, or check that they are up to date
     Emit(emit::EmitArgs),
+    /// Make the bitstream of a card on a board: synthesis, place and route, timing, with open tools
+    Build(build::BuildArgs),
     /// List the configurations that come with the program, or print one
     Presets {
         /// Print the file of this preset, to start an own configuration from
         #[arg(long, value_name = "NAME")]
         show: Option<String>,
+        /// With the board of this name or file, and the shipped one with clocks that suit it
+        #[arg(long, value_name = "BOARD", requires = "show")]
+        board: Option<String>,
         /// As JSON
         #[arg(long, conflicts_with = "show")]
+        json: bool,
+    },
+    /// List the boards that come with the program, or print the file of one
+    Boards {
+        /// Print the file of this board, to start one of your own from
+        #[arg(long, value_name = "NAME")]
+        show: Option<String>,
+        /// Build the shipped card on each board that open tools know, or on this one, and print what it takes as a table: takes minutes
+        #[arg(long, value_name = "NAME", num_args = 0..=1, conflicts_with = "show")]
+        measure: Option<Option<String>>,
+        /// As the table of docs/boards.md
+        #[arg(long, conflicts_with_all = ["show", "measure", "json"])]
+        page: bool,
+        /// As JSON
+        #[arg(long, conflicts_with_all = ["show", "measure"])]
         json: bool,
     },
     /// Show what a configuration becomes: clocks, timing, frame lengths, sampling rates, link load; or what a cause, register
     /// or field means
     Explain {
         /// Name of a cause, register or field, for example crc, result.status or tracked
-        #[arg(value_name = "NAME", conflicts_with_all = ["config", "preset", "json"])]
+        #[arg(value_name = "NAME", conflicts_with_all = ["config", "preset", "board", "json"])]
         name: Option<String>,
         #[command(flatten)]
         source: SourceArgs,
+        #[command(flatten)]
+        target: TargetArgs,
         /// As JSON
         #[arg(long)]
         json: bool,
@@ -128,13 +153,44 @@ struct SourceArgs {
     preset: Option<String>,
 }
 
+/// On which board.
+#[derive(Args, Clone, Default)]
+struct TargetArgs {
+    /// Board instead of the configuration's: one that comes with the program, or a file [default: as in the configuration]
+    #[arg(long, value_name = "NAME|FILE")]
+    board: Option<String>,
+}
+
+impl TargetArgs {
+    fn load(&self) -> Result<Option<Board>, GenError> {
+        self.board.as_deref().map(board_of).transpose()
+    }
+}
+
+/// A board by its name, or in a file.
+fn board_of(word: &str) -> Result<Board, GenError> {
+    if word.contains(['/', '\\', '.']) {
+        return Ok(Board::from_file(Path::new(word))?);
+    }
+    Board::named(word).map_err(|text| GenError::input(format!("--board = {}: {text}", shown(word))))
+}
+
 impl SourceArgs {
     /// Either kind.
     fn load_any(&self) -> Result<Configuration, GenError> {
-        match (&self.config, &self.preset) {
-            (Some(file), _) => config::load_any_file(file),
-            (None, preset) => {
-                config::load_any_preset(preset.as_deref().unwrap_or(config::DEFAULT_PRESET))
+        self.load_any_on(None)
+    }
+
+    /// The same on another board than its own. Without a configuration it is the shipped one, with clocks that suit the board.
+    fn load_any_on(&self, board: Option<&Board>) -> Result<Configuration, GenError> {
+        let name = self.preset.as_deref().unwrap_or(config::DEFAULT_PRESET);
+        match (&self.config, board) {
+            (Some(file), board) => config::load_any_file(file, board),
+            (None, None) => config::load_any_preset(name),
+            (None, Some(board)) => {
+                let text = config::preset_for("--preset", name, board)?;
+                let file = format!("{name}.toml");
+                Ok(config::parse_any_on(&file, &text, Some(board))?)
             }
         }
     }
@@ -188,16 +244,36 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
     match cli.command {
         None => emit::run(&emit::EmitArgs::default()),
         Some(Command::Emit(arguments)) => emit::run(&arguments),
+        Some(Command::Build(arguments)) => build::run(&arguments),
+        Some(Command::Presets {
+            show: Some(name),
+            board: Some(board),
+            ..
+        }) => config::preset_for("--show", &name, &board_of(&board)?).map(Outcome::good),
         Some(Command::Presets {
             show: Some(name), ..
         }) => config::preset_of("--show", &name).map(Outcome::good),
+        Some(Command::Boards {
+            show: Some(name), ..
+        }) => boards::show(&name),
+        Some(Command::Boards {
+            measure: Some(name),
+            ..
+        }) => boards::measure(name.as_deref()),
+        Some(Command::Boards { page: true, .. }) => boards::page(),
+        Some(Command::Boards { json, .. }) => boards::list(json),
         Some(Command::Presets { json, .. }) => presets(json),
         Some(Command::Explain {
             name: Some(name), ..
         }) => host::explain_name::text(&name).map(Outcome::good),
-        Some(Command::Explain { source, json, .. }) => {
+        Some(Command::Explain {
+            source,
+            target,
+            json,
+            ..
+        }) => {
             let shown = |report: &dyn Shown| report.shown(json).map(Outcome::good);
-            match source.load_any()? {
+            match source.load_any_on(target.load()?.as_ref())? {
                 Configuration::Card(card) => shown(&explain::report(&card)),
                 Configuration::Receiver(receiver) => shown(&crate::t_format::report(&receiver)),
             }

@@ -61,6 +61,7 @@ pub fn of_card(
     if let Some(board) = board {
         lines.push(format!("part {}", board.part));
         lines.push(format!("oscillator_hz {}", board.oscillator_hz));
+        lines.extend(of_device(board));
     }
     lines.extend(of_line(line, *system_hz));
     let OutputParts {
@@ -122,6 +123,19 @@ pub fn of_card(
     let of_pin = |pin: &Assignment| format!("pin {} {}", pin.signal, pin.pin);
     lines.extend(pins.iter().map(of_pin));
     lines.join("\n")
+}
+
+/// What else is in the files of a board top; all else follows from part, oscillator and pins.
+fn of_device(board: &Board) -> Vec<String> {
+    let device = board.device.iter();
+    let device = device.map(|(key, word)| format!("device {key} {word}"));
+    let standards = board.iostandards.iter();
+    let standards = standards.map(|(pin, standard)| format!("iostandard {pin} {standard}"));
+    let low = board
+        .low_active
+        .iter()
+        .map(|pin| format!("low_active {pin}"));
+    device.chain(standards).chain(low).collect()
 }
 
 fn of_sources(sources: &TriggerSources) -> String {

@@ -1,32 +1,32 @@
 //! Configuration files: TOML text in, a checked [`Project`] out, or every complaint with file, line and remedy.
 
-pub(crate) mod asked;
 mod base;
 mod canonical;
 mod channel;
-mod document;
+mod device;
 mod line;
 mod names;
 mod outputs;
 mod parts;
 pub mod pins;
 pub(crate) mod protocol;
-pub(crate) mod reader;
 mod receiver;
 mod safety;
 pub(crate) mod schema;
 mod service;
+mod start;
 mod stream;
 mod trigger;
 
 pub use line::phase_name;
 pub use names::{check_name, NAME_MAX};
+pub use start::preset_for;
 pub use stream::start_name;
 
-use crate::artifact::read_regular;
-pub use crate::board::Kind;
 use crate::board::{Assignment, Board, Pll};
 use crate::error::{shown, Diagnostic, GenError};
+use crate::form::with_text;
+pub(crate) use crate::form::{asked, document, reader};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::CardConfig;
 pub use protocol::RECEIVER_BUS;
@@ -62,8 +62,8 @@ pub const RECEIVER_PRESETS: &[(&str, &str)] =
     &[("async_dsp", include_str!("../presets/async_dsp.toml"))];
 /// The preset that the program emits when nothing else is asked for.
 pub const DEFAULT_PRESET: &str = "s6_two_channel";
-/// Largest configuration file; a larger one is not a configuration.
-const FILE_BYTES_MAX: u64 = 1 << 20;
+/// What to do when a configuration cannot be read.
+const REMEDY: &str = "give a TOML file; `endat-gen presets --show NAME` prints one to start from";
 
 /// A checked configuration and all that follows from it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -140,54 +140,16 @@ pub fn load_any_preset(name: &str) -> Result<Configuration, GenError> {
     Ok(parse_any(&format!("{name}.toml"), preset(name)?)?)
 }
 
-/// A configuration file of either kind, read and checked.
-pub fn load_any_file(path: &Path) -> Result<Configuration, GenError> {
-    with_text(path, |file, text| Ok(parse_any(file, text)?))
+/// A configuration file of either kind, read and checked; a card comes onto `board`, if one is given.
+pub fn load_any_file(path: &Path, board: Option<&Board>) -> Result<Configuration, GenError> {
+    with_text(path, REMEDY, |file, text| {
+        Ok(parse_any_on(file, text, board)?)
+    })
 }
 
 /// A configuration file, read and checked.
 pub fn load_file(path: &Path) -> Result<Project, GenError> {
-    with_text(path, |file, text| Ok(parse(file, text)?))
-}
-
-fn with_text<T>(
-    path: &Path,
-    parse: impl Fn(&str, &str) -> Result<T, GenError>,
-) -> Result<T, GenError> {
-    let remedy = "give a TOML file; `endat-gen presets --show NAME` prints one to start from";
-    let bytes =
-        read_regular(path, FILE_BYTES_MAX).map_err(|e| GenError::io("read", path, &e, remedy))?;
-    let file = path.display().to_string();
-    parse(&file, text_of(&file, &bytes)?)
-}
-
-/// The text in the bytes of a configuration file.
-fn text_of<'b>(file: &str, bytes: &'b [u8]) -> Result<&'b str, Vec<Diagnostic>> {
-    let fail = |line, text: String| {
-        Err(vec![Diagnostic {
-            file: file.into(),
-            line,
-            text,
-        }])
-    };
-    let line_of = |byte: usize| bytes[..byte].iter().filter(|b| **b == b'\n').count() + 1;
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    if bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF") {
-        return fail(0, "is UTF-16 text; save it as UTF-8".into());
-    }
-    if let Some(byte) = bytes.iter().position(|b| *b == 0) {
-        return fail(
-            line_of(byte),
-            "has a zero byte: this is binary, not text; give a TOML file".into(),
-        );
-    }
-    match std::str::from_utf8(bytes) {
-        Ok(text) => Ok(text),
-        Err(e) => fail(
-            line_of(e.valid_up_to()),
-            "is not UTF-8 text; save it as UTF-8".into(),
-        ),
-    }
+    with_text(path, REMEDY, |file, text| Ok(parse(file, text)?))
 }
 
 /// Refuses text that is no TOML at first sight, where a parser's first complaint would mislead.
@@ -219,8 +181,26 @@ fn check_form(file: &str, text: &str) -> Result<(), Vec<Diagnostic>> {
 
 /// Checks the text of a configuration of either kind; `file` names it in the messages.
 pub fn parse_any(file: &str, text: &str) -> Result<Configuration, Vec<Diagnostic>> {
-    if receiver::receiver_line(text).is_none() {
-        return parse(file, text).map(|card| Configuration::Card(card.into()));
+    parse_any_on(file, text, None)
+}
+
+/// The same, and a card comes onto `board`, if one is given.
+pub fn parse_any_on(
+    file: &str,
+    text: &str,
+    board: Option<&Board>,
+) -> Result<Configuration, Vec<Diagnostic>> {
+    let Some(line) = receiver::receiver_line(text) else {
+        return parse_on(file, text, board).map(|card| Configuration::Card(card.into()));
+    };
+    if let Some(board) = board {
+        let bus = RECEIVER_BUS;
+        let text = format!("host.bus = \"{bus}\": is a T-format receiver, which has no board top; leave --board {} out", board.name);
+        return Err(vec![Diagnostic {
+            file: file.into(),
+            line,
+            text,
+        }]);
     }
     check_form(file, text)?;
     let source = reader::Source::new(file, text);
@@ -232,6 +212,11 @@ pub fn parse_any(file: &str, text: &str) -> Result<Configuration, Vec<Diagnostic
 
 /// Checks the text of a card's configuration; `file` names it in the messages.
 pub fn parse(file: &str, text: &str) -> Result<Project, Vec<Diagnostic>> {
+    parse_on(file, text, None)
+}
+
+/// The same on a board that is not asked for in the text.
+pub fn parse_on(file: &str, text: &str, board: Option<&Board>) -> Result<Project, Vec<Diagnostic>> {
     check_form(file, text)?;
     if let Some(line) = receiver::receiver_line(text) {
         let known = HostBus::ALL.map(HostBus::name).join(", ");
@@ -243,7 +228,7 @@ pub fn parse(file: &str, text: &str) -> Result<Project, Vec<Diagnostic>> {
         }]);
     }
     let source = reader::Source::new(file, text);
-    match schema::read(&source) {
+    match schema::read(&source, board) {
         Some(project) if source.is_good() => Ok(project),
         _ => Err(source.into_diagnostics()),
     }
@@ -255,7 +240,7 @@ pub fn asked_of(text: &str) -> (Vec<asked::Asked>, Vec<Diagnostic>) {
     // What was read does not matter here; what is wrong is among the complaints.
     match receiver::receiver_line(text) {
         Some(_) => drop(receiver::read(&source)),
-        None => drop(schema::read(&source)),
+        None => drop(schema::read(&source, None)),
     }
     source.into_asked()
 }
@@ -286,17 +271,5 @@ mod tests {
         assert!(told("name = \"a\"\r[host]\rbus = \"dsp\"\r")
             .starts_with("f:1: has lines that end with CR alone; save it"));
         assert!(told(" \n").starts_with("f: is empty"));
-    }
-
-    #[test]
-    fn bytes_that_are_not_text_are_refused_with_their_line() {
-        let line = |bytes: &[u8]| text_of("f", bytes).unwrap_err()[0].to_string();
-        assert_eq!(
-            line(b"a = 1\n\xFF"),
-            "f:2: is not UTF-8 text; save it as UTF-8"
-        );
-        assert!(line(b"a\n\n\0").starts_with("f:3: has a zero byte"));
-        assert!(line(b"\xFF\xFEa").contains("UTF-16"));
-        assert_eq!(text_of("f", b"\xEF\xBB\xBFa"), Ok("a"));
     }
 }

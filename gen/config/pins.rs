@@ -1,78 +1,8 @@
 //! Which port of the board top is on which pin.
 
 use super::reader::{Source, Table};
-use super::Kind;
-use crate::board::{Assignment, Board};
-use endat_hdl::bus::HostBus;
+use crate::board::{Assignment, Board, Kind, OSCILLATOR_PORT};
 use std::collections::BTreeSet;
-
-/// Address lines of the parallel bus.
-pub const PARALLEL_ADDRESS_LINES: usize = 3;
-/// Data lines of the parallel bus.
-pub const PARALLEL_DATA_LINES: usize = 16;
-
-/// The ports of a bus that leaves the device.
-fn bus_ports(bus: HostBus) -> Vec<(String, Kind)> {
-    let inputs = |names: &[&str]| -> Vec<(String, Kind)> {
-        let names = names.iter();
-        names.map(|n| ((*n).to_owned(), Kind::BusInput)).collect()
-    };
-    match bus {
-        HostBus::Uart => vec![
-            ("uart_rx_i".to_owned(), Kind::UartInput),
-            ("uart_tx_o".to_owned(), Kind::UartOutput),
-        ],
-        HostBus::Spi => {
-            let mut ports = inputs(&["spi_sck_i", "spi_cs_n_i", "spi_mosi_i"]);
-            ports.push(("spi_miso_o".to_owned(), Kind::BusOutput));
-            ports
-        }
-        HostBus::Parallel => {
-            let mut ports = inputs(&["bus_cs_n_i", "bus_rd_n_i", "bus_wr_n_i"]);
-            let lines = 0..PARALLEL_ADDRESS_LINES;
-            ports.extend(lines.map(|n| (format!("bus_address{n}_i"), Kind::BusInput)));
-            let lines = 0..PARALLEL_DATA_LINES;
-            ports.extend(lines.map(|n| (format!("bus_data{n}_io"), Kind::BusData)));
-            ports
-        }
-        _ => vec![],
-    }
-}
-
-/// What decides which ports a card has besides those of its bus and channels.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct MorePorts {
-    /// An interrupt.
-    pub interrupt: bool,
-    /// The second interface.
-    pub second_interface: bool,
-}
-
-/// The ports of the board top except the oscillator, in their order.
-pub fn card_ports(bus: HostBus, more: MorePorts, channels: usize) -> Vec<(String, Kind)> {
-    let mut ports = vec![("trigger_i".to_owned(), Kind::Trigger)];
-    ports.extend(bus_ports(bus));
-    if more.interrupt {
-        ports.push(("irq_o".to_owned(), Kind::Interrupt));
-    }
-    if more.second_interface {
-        ports.push(("second_sck_i".to_owned(), Kind::BusInput));
-        ports.push(("second_cs_n_i".to_owned(), Kind::BusInput));
-        ports.push(("second_miso_o".to_owned(), Kind::BusOutput));
-    }
-    for n in 0..channels {
-        ports.push((format!("endat_clk{n}_o"), Kind::Transceiver));
-        ports.push((format!("endat_data{n}_o"), Kind::Transceiver));
-        ports.push((format!("endat_data{n}_oe"), Kind::Transceiver));
-        ports.push((format!("endat_data{n}_i"), Kind::EncoderData));
-    }
-    ports.push(("led_status_o".to_owned(), Kind::Led));
-    ports.extend((0..channels).map(|n| (format!("led_channel{n}_o"), Kind::Led)));
-    ports
-}
-
-/// Name of the oscillator port of the board top.
-pub const OSCILLATOR_PORT: &str = "osc_i";
 
 /// The pin of every port; complaints go to `source`.
 pub(super) fn assign_pins(

@@ -3,7 +3,8 @@
 use super::canonical::{hash, NO_INITIAL_VALUES};
 use super::channel::read_encoder;
 use super::check_name;
-use super::document::{parse, read_initial_values};
+use super::device::read_initial_values;
+use super::document::parse;
 use super::protocol::{read_bit_hz, read_request, RECEIVER_BUS, T_FORMAT};
 use super::reader::{Source, Table};
 use endat_hdl::config::limits;

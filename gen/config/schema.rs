@@ -1,16 +1,18 @@
 //! The way from a configuration file to a [`Project`].
 
 use super::channel::{read_endat, read_line_keys, read_t_format, Channel};
-use super::document::{parse, read_initial_values};
-use super::pins::{assign_pins, card_ports, MorePorts};
+use super::device::read_initial_values;
+use super::document::parse;
+use super::pins::assign_pins;
 use super::protocol::RECEIVER_BUS;
 use super::reader::{At, Source, Table};
 use super::{
     base, canonical, check_name, line, outputs, protocol, safety, service, stream, trigger, Project,
 };
-use crate::board::{self, Assignment, Board};
+use crate::board::{self, card_ports, Assignment, Board, MorePorts};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::*;
+use std::path::Path;
 use toml::de::DeTable;
 
 /// The tables of a file; what is not there is empty.
@@ -101,13 +103,18 @@ struct Written<'s, 't> {
 }
 
 impl<'s, 't> Written<'s, 't> {
-    fn read(t: &Tables<'s, 't>) -> Self {
+    fn read(source: &Source<'_>, t: &Tables<'s, 't>, other: Option<&Board>) -> Self {
         let bus = read_bus(&t.host);
         let has_uart = bus == Some(HostBus::Uart);
         // A card with a UART is a whole device; one with another bus that leaves the device may be.
         let may_be_device = bus.is_some_and(|bus| !bus.is_internal());
-        let has_board = has_uart || may_be_device && t.root.has("board");
-        let board = has_board.then(|| read_board(&t.board)).flatten();
+        let has_board = has_uart || may_be_device && (other.is_some() || t.root.has("board"));
+        let board = has_board.then(|| read_board(source, &t.board, other));
+        let board = board.flatten();
+        if let (Some(other), Some(bus)) = (other, bus.filter(|bus| bus.is_internal())) {
+            let text = format!("host.bus = \"{}\": stays inside the chip, so the card has no board top; leave --board {} out", bus.name(), other.name);
+            t.host.complain_plain(text);
+        }
         let system_limits = limits("system_hz", None);
         let system = t
             .clock
@@ -207,7 +214,7 @@ impl<'s, 't> Written<'s, 't> {
     fn pins(&self, source: &Source<'_>, t: &Tables<'s, 't>) -> Option<Vec<Assignment>> {
         if let (Some(board), Some(system), Some(_)) = (&self.board, &self.system, self.system_hz())
         {
-            if let Err(text) = board::pll(board.oscillator_hz, system.value) {
+            if let Err(text) = board.pll(system.value) {
                 let value = system.value.to_string();
                 t.clock.complain(system.line, "system_hz", &value, &text);
             }
@@ -297,13 +304,14 @@ impl<'s, 't> Written<'s, 't> {
 }
 
 /// Reads a whole file; complaints go to `source`, and `None` means that there was at least one.
-pub fn read(source: &Source<'_>) -> Option<Project> {
+/// The card comes onto the board `other`, if there is one, instead of its own.
+pub fn read(source: &Source<'_>, other: Option<&Board>) -> Option<Project> {
     let document = parse(source)?;
     let empty = DeTable::new();
     let root = Table::root(source, &document);
     let name = read_name(&root);
     let tables = Tables::new(root, &empty);
-    let written = Written::read(&tables);
+    let written = Written::read(source, &tables, other);
     written.refuse_useless(&tables);
     tables.finish(&written);
     let assignments = written.pins(source, &tables);
@@ -320,7 +328,7 @@ pub fn read(source: &Source<'_>) -> Option<Project> {
         false => (None, None, vec![]),
         true => {
             let board = written.board?;
-            let pll = board::pll(board.oscillator_hz, card.system_hz).ok()?;
+            let pll = board.pll(card.system_hz).ok()?;
             (Some(board), Some(pll), assignments?)
         }
     };
@@ -412,7 +420,26 @@ fn refuse_unused(root: &Table<'_, '_>, bus: HostBus, tables: &[(&str, &Table<'_,
     }
 }
 
-fn read_board(table: &Table<'_, '_>) -> Option<Board> {
+/// The board that is asked for, by name or by file; `other` takes its place.
+fn read_board(source: &Source<'_>, table: &Table<'_, '_>, other: Option<&Board>) -> Option<Board> {
+    if let Some(other) = other {
+        table.know(&["name", "file"]);
+        return Some(other.clone());
+    }
+    // Not asked for where it does not stand: nobody can guess a file.
+    table.know(&["file"]);
+    if table.has("file") {
+        let file = table.string("file")?;
+        table.refuse("name", "file names a board, too; remove one of the two");
+        let folder = Path::new(source.file).parent().unwrap_or(Path::new(""));
+        return match Board::from_file(&folder.join(&file.value)) {
+            Ok(board) => Some(board),
+            Err(wrong) => {
+                source.adopt(wrong);
+                None
+            }
+        };
+    }
     let name = table.required_string("name", "\"papilio_pro\"");
     table.offer(board::names());
     let name = name?;

@@ -1,6 +1,6 @@
 //! A file as TOML, and what is said if it is none.
 
-use super::reader::{Source, Table};
+use super::reader::Source;
 use crate::error::shorten;
 use toml::de::DeTable;
 
@@ -40,9 +40,4 @@ fn not_toml(source: &Source<'_>, error: &toml::de::Error, line: usize) -> String
         () => "correct the line".into(),
     };
     format!("not TOML: {message}; {}", shorten(&remedy))
-}
-
-/// The key of the table `[device]`.
-pub fn read_initial_values(table: &Table<'_, '_>) -> bool {
-    table.boolean("initial_values").is_none_or(|at| at.value)
 }

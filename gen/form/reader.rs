@@ -8,6 +8,7 @@ use endat_hdl::config::Limits;
 use endat_host::did_you_mean::closest;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
+use std::fmt::Display;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 use toml::Spanned;
@@ -68,6 +69,11 @@ impl<'t> Source<'t> {
             text,
         };
         self.diagnostics.borrow_mut().push(diagnostic);
+    }
+
+    /// Takes over what is wrong with another file that this one names.
+    pub fn adopt(&self, diagnostics: Vec<Diagnostic>) {
+        self.diagnostics.borrow_mut().extend(diagnostics);
     }
 
     /// Whether nothing is wrong so far.
@@ -136,8 +142,8 @@ pub struct At<T> {
 
 /// One table being read; [`Table::finish`] complains about the keys nobody asked for.
 pub struct Table<'s, 't> {
-    source: &'s Source<'t>,
-    table: &'s DeTable<'t>,
+    pub(super) source: &'s Source<'t>,
+    pub(super) table: &'s DeTable<'t>,
     path: String,
     /// Line of the table's head; 0 when it is missing.
     pub line: usize,
@@ -170,7 +176,7 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// Notes what is asked for.
-    fn ask(&self, key: &'static str, kind: Kind) {
+    pub(super) fn ask(&self, key: &'static str, kind: Kind) {
         let mut asked = self.source.asked.borrow_mut();
         asked.push(Asked {
             table: self.path.clone(),
@@ -181,18 +187,18 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// Notes all that the key asked for last may be, if it is one of a few.
-    pub fn offer(&self, words: impl IntoIterator<Item = impl std::fmt::Display>) {
+    pub fn offer(&self, words: impl IntoIterator<Item = impl Display>) {
         if let Some(last) = self.source.asked.borrow_mut().last_mut() {
             last.words = words.into_iter().map(|word| word.to_string()).collect();
         }
     }
 
-    fn get(&self, key: &'static str) -> Option<&'s Spanned<DeValue<'t>>> {
+    pub(super) fn get(&self, key: &'static str) -> Option<&'s Spanned<DeValue<'t>>> {
         self.known.borrow_mut().insert(key);
         self.table.get(key)
     }
 
-    fn wrong_type(&self, key: &str, value: &Spanned<DeValue<'_>>, wanted: &str) {
+    pub(super) fn wrong_type(&self, key: &str, value: &Spanned<DeValue<'_>>, wanted: &str) {
         let text = format!(
             "{} = {}: is {}, must be {wanted}",
             self.name(key),
@@ -203,11 +209,11 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// The value as it stands in the file, shortened.
-    fn excerpt(&self, span: &Range<usize>) -> String {
+    pub(super) fn excerpt(&self, span: &Range<usize>) -> String {
         shorten(self.source.text.get(span.clone()).unwrap_or("?"))
     }
 
-    fn at<T>(&self, value: T, spanned: &Spanned<DeValue<'_>>) -> Option<At<T>> {
+    pub(super) fn at<T>(&self, value: T, spanned: &Spanned<DeValue<'_>>) -> Option<At<T>> {
         Some(At {
             value,
             line: self.source.line(spanned.span().start),
@@ -217,6 +223,11 @@ impl<'s, 't> Table<'s, 't> {
     /// An integer, if the key is there; `limits` are told when it is negative or beyond every number of hardware.
     pub fn integer(&self, key: &'static str, limits: &Limits) -> Option<At<u64>> {
         self.ask(key, Kind::Integer(limits.clone()));
+        self.whole(key, limits)
+    }
+
+    /// The same without limits that the asker is told of.
+    pub(super) fn whole(&self, key: &'static str, limits: &dyn Display) -> Option<At<u64>> {
         let spanned = self.get(key)?;
         let Some(integer) = spanned.get_ref().as_integer() else {
             self.wrong_type(
@@ -247,6 +258,7 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// An integer that must be there.
+    /// Complains about a key that must be there, if it is not.
     pub fn required_integer(
         &self,
         key: &'static str,
@@ -272,6 +284,7 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// A string that must be there.
+    /// Complains about a key that must be there, if it is not.
     pub fn required_string(&self, key: &'static str, example: &str) -> Option<At<String>> {
         let found = self.string(key);
         self.require(key, example)?;
@@ -304,32 +317,6 @@ impl<'s, 't> Table<'s, 't> {
             match item.get_ref().as_str() {
                 Some(text) => all.extend(self.at(text.to_owned(), item)),
                 None => self.wrong_type(key, item, "text in quotes"),
-            }
-        }
-        Some(all)
-    }
-
-    /// A list of integers, if the key is there; `limits` are told of one that is negative or beyond every number.
-    pub fn integers(&self, key: &'static str, limits: &str) -> Option<Vec<At<u64>>> {
-        self.ask(key, Kind::Integers);
-        let spanned = self.get(key)?;
-        let wanted = "a list of whole numbers, as [0x4C, 0x5B]";
-        let Some(array) = spanned.get_ref().as_array() else {
-            self.wrong_type(key, spanned, wanted);
-            return None;
-        };
-        let mut all = Vec::new();
-        for item in array.iter() {
-            let Some(integer) = item.get_ref().as_integer() else {
-                self.wrong_type(key, item, "a whole number");
-                continue;
-            };
-            match u64::from_str_radix(integer.as_str(), integer.radix()) {
-                Ok(value) => all.extend(self.at(value, item)),
-                Err(_) => {
-                    let line = self.source.line(item.span().start);
-                    self.complain(line, key, &self.excerpt(&item.span()), limits);
-                }
             }
         }
         Some(all)
@@ -393,22 +380,8 @@ impl<'s, 't> Table<'s, 't> {
         Some(all)
     }
 
-    /// Every key with its text, for tables whose keys are names of things.
-    pub fn free_strings(&self) -> Vec<(String, At<String>)> {
-        let mut all = Vec::new();
-        for (key, spanned) in self.table.iter() {
-            match spanned.get_ref().as_str() {
-                Some(text) => all.extend(
-                    self.at(text.to_owned(), spanned)
-                        .map(|at| (key.get_ref().to_string(), at)),
-                ),
-                None => self.wrong_type(key.get_ref(), spanned, "text in quotes"),
-            }
-        }
-        all
-    }
-
-    fn require(&self, key: &'static str, example: &str) -> Option<()> {
+    /// Complains about a key that must be there, if it is not.
+    pub fn require(&self, key: &'static str, example: &str) -> Option<()> {
         if self.get(key).is_none() {
             // Without its table there is no line to add it to.
             let place = match self.line {

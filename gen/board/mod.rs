@@ -1,0 +1,219 @@
+//! Boards: which pins one has, and what is on them. A board is a file, and so is what its family of devices is.
+
+mod clock;
+mod family;
+mod package;
+mod ports;
+mod read;
+mod shipped;
+
+pub use clock::{ClockManager, Feedback, Pll};
+pub use family::{Build, Family, CLOCK, CONSTRAINTS, FUSESOC, README};
+pub use package::Package;
+pub use ports::{
+    card_ports, Assignment, Kind, MorePorts, OSCILLATOR_PORT, PARALLEL_ADDRESS_LINES,
+    PARALLEL_DATA_LINES,
+};
+pub use shipped::names;
+
+use crate::error::Diagnostic;
+use crate::form::with_text;
+use package::Word;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// Stands in a connector's list for a position without a pin.
+const NO_PIN: &str = "-";
+
+/// Clocks that suit a board: the shipped configuration is started from with them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// System clock, in hertz.
+    pub system_hz: u64,
+    /// EnDat clock, in hertz.
+    pub clock_hz: u64,
+}
+
+/// A board.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Board {
+    /// Name by which a configuration asks for it, or that of its file.
+    pub name: String,
+    /// Its file, if it did not come with the program.
+    pub file: Option<String>,
+    /// Name for people.
+    pub title: String,
+    /// The family of its device.
+    pub family: Family,
+    /// Device, speed grade and package, as the vendor's tools spell it.
+    pub part: String,
+    /// What the family's tools want to know about the device besides.
+    pub device: BTreeMap<String, String>,
+    /// Pins of the package.
+    pub package: Package,
+    /// Pin of the oscillator.
+    pub oscillator_pin: String,
+    /// Frequency of the oscillator, in hertz.
+    pub oscillator_hz: u64,
+    /// Fastest host UART of the board, in bit/s.
+    pub uart_baud_max: u64,
+    /// I/O standard of all pins but those of `iostandards`.
+    pub iostandard: String,
+    /// Pins with another I/O standard.
+    pub iostandards: BTreeMap<String, String>,
+    /// Pins whose light shines when they are low.
+    pub low_active: BTreeSet<String>,
+    /// Free pins by connector, position 0 first.
+    pub connectors: BTreeMap<String, Vec<String>>,
+    /// Signals that the board itself wires.
+    pub fixed: BTreeMap<String, String>,
+    /// Usual places of the other signals.
+    pub wing: BTreeMap<String, String>,
+    /// Clocks to start from, if those of the shipped configuration do not suit it.
+    pub start: Option<Start>,
+}
+
+impl Board {
+    /// The board of this name; `Err` has the message.
+    pub fn named(name: &str) -> Result<Self, String> {
+        let Some(text) = shipped::board(name) else {
+            return Err(format!(
+                "unknown board; known boards: {}; a file of your own: --board FILE, or file = in [board]",
+                names().join(", ")
+            ));
+        };
+        let file = format!("constraints/boards/{name}.toml");
+        let board = read::read(name, &file, text, Path::new(""));
+        board.map_err(|wrong| {
+            wrong
+                .iter()
+                .map(ToString::to_string)
+                .collect::<Vec<_>>()
+                .join("; ")
+        })
+    }
+
+    /// The board in this file; `Err` has all that is wrong with it.
+    pub fn from_file(path: &Path) -> Result<Self, Vec<Diagnostic>> {
+        let remedy =
+            "give a board's TOML file; `endat-gen boards --show NAME` prints one to start from";
+        // The name goes into comments of emitted files.
+        let plain = |c: char| {
+            if c.is_ascii_alphanumeric() || c == '-' {
+                c
+            } else {
+                '_'
+            }
+        };
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let name: String = name.chars().map(plain).collect();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let read = |file: &str, text: &str| Ok(read::read(&name, file, text, folder));
+        let board = with_text(path, remedy, read).map_err(|error| {
+            let plain = |text: &String| Diagnostic {
+                file: String::new(),
+                line: 0,
+                text: text.clone(),
+            };
+            error.messages().iter().map(plain).collect::<Vec<_>>()
+        })??;
+        Ok(Self {
+            file: Some(path.display().to_string()),
+            ..board
+        })
+    }
+
+    /// Text of the file of a board that comes with the program.
+    pub fn text(name: &str) -> Option<&'static str> {
+        shipped::board(name)
+    }
+
+    /// The package pin that a user's word means (`P48` or `A0`); `Err` has the message.
+    pub fn pin(&self, word: &str) -> Result<String, String> {
+        let word = word.to_ascii_uppercase();
+        if let Some(pin) = self.by_position(&word) {
+            return Ok(pin.clone());
+        }
+        match self.package.look_up(&word) {
+            Word::NoPin => Err(self.no_such_pin()),
+            Word::Pin(pin) if self.is_free(&pin) => Ok(pin),
+            Word::Pin(_) => Err(format!(
+                "is not on a connector of {}; {}",
+                self.name,
+                self.free_pins()
+            )),
+            Word::Other => {
+                let first = self.places().next();
+                let (position, pin) =
+                    first.map_or(("A0".into(), "1"), |(place, pin)| (place, pin.as_str()));
+                Err(format!(
+                    "is neither a pin ({pin}) nor a connector position ({position}); {}",
+                    self.free_pins()
+                ))
+            }
+        }
+    }
+
+    fn no_such_pin(&self) -> String {
+        format!(
+            "no such pin; the package of {} has {}",
+            self.part,
+            self.package.ends()
+        )
+    }
+
+    fn by_position(&self, word: &str) -> Option<&String> {
+        let split = word.rfind(|c: char| !c.is_ascii_digit())? + 1;
+        let (name, position) = (word.get(..split)?, word.get(split..)?);
+        let position: usize = position.parse().ok()?;
+        self.connectors
+            .get(name)?
+            .get(position)
+            .filter(|pin| *pin != NO_PIN)
+    }
+
+    fn is_free(&self, pin: &str) -> bool {
+        self.places().any(|(_, p)| p == pin) || self.fixed.values().any(|p| p == pin)
+    }
+
+    fn free_pins(&self) -> String {
+        let ranges = self.connectors.iter().map(|(name, pins)| {
+            let first = pins.iter().position(|pin| pin != NO_PIN).unwrap_or(0);
+            format!("{name}{first}..{name}{}", pins.len().saturating_sub(1))
+        });
+        format!("use {}", ranges.collect::<Vec<_>>().join(", "))
+    }
+
+    /// Every connector position with its pin.
+    pub fn places(&self) -> impl Iterator<Item = (String, &String)> {
+        self.connectors.iter().flat_map(|(name, pins)| {
+            let pins = pins.iter().enumerate();
+            let pins = pins.filter(|(_, pin)| *pin != NO_PIN);
+            pins.map(move |(n, pin)| (format!("{name}{n}"), pin))
+        })
+    }
+
+    /// Connector and position of a pin, such as `C3`.
+    pub fn position(&self, pin: &str) -> String {
+        let found = self.places().find(|(_, p)| *p == pin);
+        found.map_or_else(String::new, |(place, _)| place)
+    }
+
+    /// The usual word for the place of a signal.
+    pub fn usual_place(&self, signal: &str) -> Option<&String> {
+        self.fixed.get(signal).or_else(|| self.wing.get(signal))
+    }
+
+    /// The I/O standard of a pin.
+    pub fn iostandard_of(&self, pin: &str) -> &str {
+        self.iostandards.get(pin).unwrap_or(&self.iostandard)
+    }
+
+    /// Factors that make exactly this system clock; `Err` has the message with the nearest frequencies.
+    pub fn pll(&self, system_hz: u64) -> Result<Pll, String> {
+        self.family.clock_manager.pll(self.oscillator_hz, system_hz)
+    }
+}
+
+#[cfg(test)]
+mod tests;

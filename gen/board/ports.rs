@@ -1,0 +1,173 @@
+//! Ports of a board top: what each is for, and which a card has.
+
+use endat_hdl::bus::HostBus;
+
+/// What a port of the top level is for; decides its constraints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Board oscillator.
+    Oscillator,
+    /// Output to a transceiver: clock, data, driver enable.
+    Transceiver,
+    /// Answer of the encoder, asynchronous.
+    EncoderData,
+    /// Trigger pin, asynchronous.
+    Trigger,
+    /// UART input, asynchronous.
+    UartInput,
+    /// UART output.
+    UartOutput,
+    /// Input from a bus outside the device, asynchronous.
+    BusInput,
+    /// The same, low when it acts.
+    BusStrobe,
+    /// Output to a bus outside the device, driven only while the card is read.
+    BusOutput,
+    /// Data line of a bus outside the device, driven by either side.
+    BusData,
+    /// Interrupt to a processor outside the device.
+    Interrupt,
+    /// Light.
+    Led,
+}
+
+impl Kind {
+    /// All of them, with the names by which a family's file gives their attributes.
+    pub const NAMES: [(Self, &'static str); 12] = [
+        (Self::Oscillator, "oscillator"),
+        (Self::Transceiver, "transceiver"),
+        (Self::EncoderData, "encoder_data"),
+        (Self::Trigger, "trigger"),
+        (Self::UartInput, "uart_input"),
+        (Self::UartOutput, "uart_output"),
+        (Self::BusInput, "bus_input"),
+        (Self::BusStrobe, "bus_strobe"),
+        (Self::BusOutput, "bus_output"),
+        (Self::BusData, "bus_data"),
+        (Self::Interrupt, "interrupt"),
+        (Self::Led, "led"),
+    ];
+
+    /// Its name in a family's file.
+    pub fn name(self) -> &'static str {
+        let found = Self::NAMES.iter().find(|(kind, _)| *kind == self);
+        found.map_or("", |(_, name)| name)
+    }
+
+    /// Whether the port is an input of the device.
+    pub const fn is_input(self) -> bool {
+        matches!(
+            self,
+            Self::Oscillator
+                | Self::EncoderData
+                | Self::Trigger
+                | Self::UartInput
+                | Self::BusInput
+                | Self::BusStrobe
+        )
+    }
+
+    /// Its direction in a module's port list, padded.
+    pub const fn direction(self) -> &'static str {
+        match self {
+            Self::BusData => "inout  wire",
+            kind if kind.is_input() => "input  wire",
+            _ => "output wire",
+        }
+    }
+
+    /// Why the timing of the port must not be analysed; `None` when it must.
+    pub const fn asynchronous(self) -> Option<&'static str> {
+        match self {
+            Self::EncoderData => Some("answers arrive with the delay of the cable, in any phase; synchronised and tracked inside"),
+            Self::Trigger => Some("belongs to no clock; synchronised inside, one system clock of jitter is documented"),
+            Self::UartInput => Some("belongs to the host's clock; synchronised and sampled in mid bit inside"),
+            Self::BusInput | Self::BusStrobe | Self::BusData => Some("belongs to the clock of the other end; synchronised inside, see the rules of its bus for set-up times"),
+            _ => None,
+        }
+    }
+}
+
+/// One signal of the top level on one pin.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Assignment {
+    /// Port of the top level.
+    pub signal: String,
+    /// What the signal is for.
+    pub kind: Kind,
+    /// Package pin.
+    pub pin: String,
+    /// Connector and position, or empty.
+    pub position: String,
+}
+
+/// Address lines of the parallel bus.
+pub const PARALLEL_ADDRESS_LINES: usize = 3;
+/// Data lines of the parallel bus.
+pub const PARALLEL_DATA_LINES: usize = 16;
+/// Name of the oscillator port of the board top.
+pub const OSCILLATOR_PORT: &str = "osc_i";
+
+/// The ports of a bus that leaves the device.
+fn bus_ports(bus: HostBus) -> Vec<(String, Kind)> {
+    let inputs = |names: &[&str]| -> Vec<(String, Kind)> {
+        let kind = |name: &str| match name.ends_with("_n_i") {
+            true => Kind::BusStrobe,
+            false => Kind::BusInput,
+        };
+        let names = names.iter();
+        names.map(|n| ((*n).to_owned(), kind(n))).collect()
+    };
+    match bus {
+        HostBus::Uart => vec![
+            ("uart_rx_i".to_owned(), Kind::UartInput),
+            ("uart_tx_o".to_owned(), Kind::UartOutput),
+        ],
+        HostBus::Spi => {
+            let mut ports = inputs(&["spi_sck_i", "spi_cs_n_i", "spi_mosi_i"]);
+            ports.push(("spi_miso_o".to_owned(), Kind::BusOutput));
+            ports
+        }
+        HostBus::Parallel => {
+            let mut ports = inputs(&["bus_cs_n_i", "bus_rd_n_i", "bus_wr_n_i"]);
+            let lines = 0..PARALLEL_ADDRESS_LINES;
+            ports.extend(lines.map(|n| (format!("bus_address{n}_i"), Kind::BusInput)));
+            let lines = 0..PARALLEL_DATA_LINES;
+            ports.extend(lines.map(|n| (format!("bus_data{n}_io"), Kind::BusData)));
+            ports
+        }
+        _ => vec![],
+    }
+}
+
+/// What decides which ports a card has besides those of its bus and channels.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MorePorts {
+    /// An interrupt.
+    pub interrupt: bool,
+    /// The second interface.
+    pub second_interface: bool,
+}
+
+/// The ports of the board top except the oscillator, in their order.
+pub fn card_ports(bus: HostBus, more: MorePorts, channels: usize) -> Vec<(String, Kind)> {
+    let mut ports = vec![("trigger_i".to_owned(), Kind::Trigger)];
+    ports.extend(bus_ports(bus));
+    if more.interrupt {
+        ports.push(("irq_o".to_owned(), Kind::Interrupt));
+    }
+    if more.second_interface {
+        ports.push(("second_sck_i".to_owned(), Kind::BusInput));
+        ports.push(("second_cs_n_i".to_owned(), Kind::BusStrobe));
+        ports.push(("second_miso_o".to_owned(), Kind::BusOutput));
+    }
+    for n in 0..channels {
+        ports.push((format!("endat_clk{n}_o"), Kind::Transceiver));
+        ports.push((format!("endat_data{n}_o"), Kind::Transceiver));
+        ports.push((format!("endat_data{n}_oe"), Kind::Transceiver));
+        ports.push((format!("endat_data{n}_i"), Kind::EncoderData));
+    }
+    ports.push(("led_status_o".to_owned(), Kind::Led));
+    ports.extend((0..channels).map(|n| (format!("led_channel{n}_o"), Kind::Led)));
+    ports
+}

@@ -1,0 +1,431 @@
+//! The way from a board's file to a [`Board`]; every complaint with its line.
+
+use super::family::Family;
+use super::package::{Package, Word};
+use super::ports::{card_ports, MorePorts};
+use super::{Board, Start, NO_PIN};
+use crate::error::Diagnostic;
+use crate::form::document::parse;
+use crate::form::reader::{At, Source, Table};
+use endat_hdl::bus::HostBus;
+use endat_hdl::config::{limits, CHANNELS};
+use endat_host::did_you_mean::closest;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use toml::de::DeTable;
+
+/// Slowest and fastest oscillator that any clock manager may be told of.
+const OSCILLATOR_HZ: std::ops::RangeInclusive<u64> = 1_000..=1_000_000_000;
+/// Rates of UARTs.
+const BAUD: std::ops::RangeInclusive<u64> = 9_600..=100_000_000;
+/// Most pins and columns of a package.
+const PINS_MAX: u64 = 4_096;
+/// Longest word that goes into emitted files.
+const WORD_MAX: usize = 60;
+
+/// Reads a board's file; `folder` is where it stands.
+pub fn read(name: &str, file: &str, text: &str, folder: &Path) -> Result<Board, Vec<Diagnostic>> {
+    let source = Source::new(file, text);
+    match read_board(&source, name, folder) {
+        Some(board) if source.is_good() => Ok(board),
+        _ => Err(source.into_diagnostics()),
+    }
+}
+
+/// A pin or place, where it stands, and its line.
+struct Place {
+    key: String,
+    at: At<String>,
+}
+
+/// Tables of a board's file.
+struct Tables<'s, 't> {
+    root: Table<'s, 't>,
+    connectors: Table<'s, 't>,
+    fixed: Table<'s, 't>,
+    wing: Table<'s, 't>,
+    iostandards: Table<'s, 't>,
+    device: Table<'s, 't>,
+    start: Table<'s, 't>,
+}
+
+fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
+    let document = parse(source)?;
+    let empty = DeTable::new();
+    let root = Table::root(source, &document);
+    let table = |key| root.table(key, &empty);
+    let t = Tables {
+        connectors: table("connectors"),
+        fixed: table("fixed"),
+        wing: table("wing"),
+        iostandards: table("iostandards"),
+        device: table("device"),
+        start: table("start"),
+        root,
+    };
+    let title = read_word(&t.root, "title", "\"Papilio Pro\"", " ()-+.,/");
+    let part = read_word(&t.root, "part", "\"xc6slx9-tqg144-2\"", "-/._");
+    let family = read_family(source, &t.root, folder);
+    let package = read_package(&t.root, family.as_ref());
+    let oscillator_pin = t.root.required_string("oscillator_pin", "\"P94\"");
+    let oscillator_hz = t.root.number("oscillator_hz", "32_000_000", OSCILLATOR_HZ);
+    let uart_baud_max = t.root.number("uart_baud_max", "3_000_000", BAUD);
+    let iostandard = read_word(&t.root, "iostandard", "\"LVCMOS33\"", "_");
+    let low_active = t.root.strings("low_active").unwrap_or_default();
+    let connectors = t.connectors.free_lists();
+    let fixed = places(&t.fixed);
+    let wing = places(&t.wing);
+    let iostandards = places(&t.iostandards);
+    let device = read_device(&t.device, family.as_ref());
+    let start = read_start(&t.start);
+    t.root.finish();
+    let (family, package, oscillator_hz) = (family?, package?, oscillator_hz?);
+    let manager = &family.clock_manager;
+    if !manager.takes(oscillator_hz.value) {
+        let (low, high) = (manager.detector_hz.start(), manager.detector_hz.end());
+        let text = format!(
+            "the clock manager of {} makes no system clock of it; its phase detector takes {low}..{high} Hz, the input divided by {} at most",
+            family.title,
+            manager.divide.end()
+        );
+        let value = oscillator_hz.value.to_string();
+        t.root
+            .complain(oscillator_hz.line, "oscillator_hz", &value, &text);
+    }
+    let mut board = Board {
+        name: name.into(),
+        file: None,
+        title: title?,
+        part: part?,
+        device: device?,
+        oscillator_pin: String::new(),
+        oscillator_hz: oscillator_hz.value,
+        uart_baud_max: uart_baud_max?.value,
+        iostandard: iostandard?,
+        iostandards: BTreeMap::new(),
+        low_active: BTreeSet::new(),
+        connectors: BTreeMap::new(),
+        fixed: BTreeMap::new(),
+        wing: BTreeMap::new(),
+        start: None,
+        family,
+        package,
+    };
+    take_pins(&t, &mut board, oscillator_pin?, connectors, fixed);
+    take_words_of_pins(&t, &mut board, &low_active, iostandards);
+    take_wing(&t, &mut board, wing);
+    board.start = take_start(&t.start, &board, start);
+    Some(board)
+}
+
+/// A word that goes into emitted files: letters, digits, and what else is allowed.
+fn read_word(
+    table: &Table<'_, '_>,
+    key: &'static str,
+    example: &str,
+    more: &str,
+) -> Option<String> {
+    let word = table.required_string(key, example)?;
+    check_word(table, key, &word, more)?;
+    Some(word.value)
+}
+
+fn check_word(table: &Table<'_, '_>, key: &str, word: &At<String>, more: &str) -> Option<()> {
+    let value = &word.value;
+    let bad = |c: &char| !c.is_ascii_alphanumeric() && !more.contains(*c);
+    let text = match value.chars().find(bad) {
+        Some(bad) => format!("has the character {bad:?}; use letters, digits and any of {more:?}"),
+        None if value.is_empty() => "is empty; write what the vendor calls it".into(),
+        None if value.len() > WORD_MAX => format!(
+            "has {} characters, at most {WORD_MAX} are allowed; shorten it",
+            value.len()
+        ),
+        None => return Some(()),
+    };
+    table.complain(word.line, key, &format!("{value:?}"), &text);
+    None
+}
+
+fn read_family(source: &Source<'_>, root: &Table<'_, '_>, folder: &Path) -> Option<Family> {
+    let name = root.required_string("family", "\"spartan6\"")?;
+    match Family::named(&name.value, folder) {
+        Ok(family) => Some(family),
+        Err(wrong) => {
+            let (own, others) = wrong
+                .into_iter()
+                .partition::<Vec<_>, _>(|d| d.file.is_empty());
+            for diagnostic in own {
+                let value = format!("{:?}", name.value);
+                root.complain(name.line, "family", &value, &diagnostic.text);
+            }
+            source.adopt(others);
+            None
+        }
+    }
+}
+
+/// Pins by number, or a grid of balls.
+fn read_package(root: &Table<'_, '_>, family: Option<&Family>) -> Option<Package> {
+    root.know(&["package_pins", "package_rows", "package_columns"]);
+    if root.has("package_rows") || root.has("package_columns") {
+        let text = "a grid of balls has package_rows and package_columns; remove it";
+        root.refuse("package_pins", text);
+        let columns = root.number("package_columns", "20", 1..=PINS_MAX);
+        let rows = root.required_string("package_rows", "\"ABCDEFGHJKLMNPRTUVWY\"")?;
+        let letters: Vec<String> = rows.value.split_whitespace().map(str::to_owned).collect();
+        let letters = match letters.len() {
+            1 => rows.value.trim().chars().map(String::from).collect(),
+            _ => letters,
+        };
+        let good = |row: &String| {
+            (1..=2).contains(&row.len()) && row.bytes().all(|b| b.is_ascii_uppercase())
+        };
+        if letters.is_empty() || !letters.iter().all(good) {
+            let text = "is no list of rows; write their capital letters, with blanks between if any has two";
+            root.complain(
+                rows.line,
+                "package_rows",
+                &format!("{:?}", rows.value),
+                text,
+            );
+            return None;
+        }
+        return Some(Package::Grid {
+            rows: letters,
+            columns: u32::try_from(columns?.value).unwrap_or(u32::MAX),
+        });
+    }
+    let pins = root.number("package_pins", "144", 1..=PINS_MAX)?;
+    Some(Package::Numbered {
+        prefix: family?.pin_prefix.clone(),
+        pins: u32::try_from(pins.value).unwrap_or(u32::MAX),
+    })
+}
+
+fn places(table: &Table<'_, '_>) -> Vec<Place> {
+    let all = table.free_strings().into_iter();
+    let mut all: Vec<Place> = all.map(|(key, at)| Place { key, at }).collect();
+    // The one further down is the one to complain about.
+    all.sort_by_key(|place| place.at.line);
+    all
+}
+
+/// What the family wants to know of the device.
+fn read_device(table: &Table<'_, '_>, family: Option<&Family>) -> Option<BTreeMap<String, String>> {
+    let family = family?;
+    let mut device = BTreeMap::new();
+    for (key, at) in table.free_strings() {
+        if !family.device.contains_key(&key) {
+            let known: Vec<&str> = family.device.keys().map(String::as_str).collect();
+            let text = format!("unknown key; known keys here: {}", known.join(", "));
+            table.complain(at.line, &key, &format!("{:?}", at.value), &text);
+        } else if check_word(table, &key, &at, "-/._").is_some() {
+            device.insert(key, at.value);
+        }
+    }
+    for (key, example) in &family.device {
+        if !table.has(key) {
+            let text = format!(
+                "device.{key}: is missing, {} asks for it; add, for example, `{key} = {example:?}` below `[device]`",
+                family.title
+            );
+            table.complain_plain(text);
+        }
+    }
+    Some(device)
+}
+
+/// Clocks to start from.
+struct StartAt {
+    system: At<u64>,
+    clock_hz: u64,
+}
+
+fn read_start(table: &Table<'_, '_>) -> Option<StartAt> {
+    if table.line == 0 {
+        return None;
+    }
+    let [system, clock] =
+        [("system_hz", "100_000_000"), ("clock_hz", "3_125_000")].map(|(key, example)| {
+            let limits = limits(key, None);
+            let found = table.required_integer(key, example, &limits)?;
+            table.check(key, &found, &limits);
+            Some(found)
+        });
+    table.finish();
+    Some(StartAt {
+        system: system?,
+        clock_hz: clock?.value,
+    })
+}
+
+fn take_start(table: &Table<'_, '_>, board: &Board, start: Option<StartAt>) -> Option<Start> {
+    let StartAt { system, clock_hz } = start?;
+    if let Err(text) = board.pll(system.value) {
+        table.complain(system.line, "system_hz", &system.value.to_string(), &text);
+    }
+    Some(Start {
+        system_hz: system.value,
+        clock_hz,
+    })
+}
+
+/// Pins of connectors, oscillator and signals that are wired: each is in the package, and none stands twice.
+fn take_pins(
+    t: &Tables<'_, '_>,
+    board: &mut Board,
+    oscillator: At<String>,
+    connectors: Vec<(String, Vec<At<String>>)>,
+    fixed: Vec<Place>,
+) {
+    let mut seen: BTreeMap<String, String> = BTreeMap::new();
+    let mut take = |board: &Board, table: &Table<'_, '_>, key: &str, at: &At<String>| {
+        let told = |text: &str| table.complain(at.line, key, &format!("{:?}", at.value), text);
+        match board.package.look_up(&at.value.to_ascii_uppercase()) {
+            Word::Pin(pin) => {
+                if let Some(other) = seen.insert(pin.clone(), table.name(key)) {
+                    told(&format!(
+                        "already stands at {other}; a pin has one place, remove one of the two"
+                    ));
+                }
+                Some(pin)
+            }
+            _ => {
+                told(&board.no_such_pin());
+                None
+            }
+        }
+    };
+    board.oscillator_pin = take(board, &t.root, "oscillator_pin", &oscillator).unwrap_or_default();
+    for (name, pins) in connectors {
+        let line = pins.first().map_or(t.connectors.line, |at| at.line);
+        let plain = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_';
+        if !name.chars().all(plain) || name.ends_with(|c: char| c.is_ascii_digit()) {
+            let text = format!("connectors.{name}: is no name of a connector; use capital letters, digits and _, no digit last: the position comes behind it");
+            t.connectors.complain_at(line, text);
+            continue;
+        }
+        let is_pin =
+            |n: usize| matches!(board.package.look_up(&format!("{name}{n}")), Word::Pin(_));
+        if let Some(n) = (0..pins.len()).find(|n| is_pin(*n)) {
+            let text = format!("connectors.{name}: {name}{n} is a pin of the package, too; give the connector another name, {name}_ for example");
+            t.connectors.complain_at(line, text);
+        }
+        let mut pin = |at: &At<String>| match at.value.as_str() {
+            NO_PIN => NO_PIN.to_owned(),
+            _ => take(board, &t.connectors, &name, at).unwrap_or_default(),
+        };
+        let pins = pins.iter().map(&mut pin).collect();
+        board.connectors.insert(name, pins);
+    }
+    for Place { key, at } in fixed {
+        check_signal(&t.fixed, &key, &at);
+        if let Some(pin) = take(board, &t.fixed, &key, &at) {
+            board.fixed.insert(key, pin);
+        }
+    }
+}
+
+/// I/O standards of pins, and lights that shine when low.
+fn take_words_of_pins(
+    t: &Tables<'_, '_>,
+    board: &mut Board,
+    low_active: &[At<String>],
+    iostandards: Vec<Place>,
+) {
+    let known = |pin: &str| board.is_free(pin) || pin == board.oscillator_pin;
+    let mut standards = BTreeMap::new();
+    for Place { key, at } in iostandards {
+        let pin = key.to_ascii_uppercase();
+        if !known(&pin) {
+            let text = "no pin of this file's connectors and signals; remove the line";
+            t.iostandards
+                .complain(at.line, &key, &format!("{:?}", at.value), text);
+        } else if check_word(&t.iostandards, &key, &at, "_").is_some() {
+            standards.insert(pin, at.value);
+        }
+    }
+    let mut low = BTreeSet::new();
+    for at in low_active {
+        let pin = at.value.to_ascii_uppercase();
+        if !known(&pin) {
+            let text = "no pin of this file's connectors and signals; remove it from the list";
+            t.root
+                .complain(at.line, "low_active", &format!("{:?}", at.value), text);
+        }
+        low.insert(pin);
+    }
+    board.iostandards = standards;
+    board.low_active = low;
+}
+
+/// All signals that any card has on a board.
+fn signals() -> BTreeSet<String> {
+    let more = MorePorts {
+        interrupt: true,
+        second_interface: true,
+    };
+    let buses = [HostBus::Uart, HostBus::Spi, HostBus::Parallel];
+    let ports = buses.map(|bus| card_ports(bus, more, *CHANNELS.end()));
+    ports
+        .into_iter()
+        .flatten()
+        .map(|(signal, _)| signal)
+        .collect()
+}
+
+fn check_signal(table: &Table<'_, '_>, key: &str, at: &At<String>) {
+    let known = signals();
+    if !known.contains(key) {
+        let known: Vec<String> = known.into_iter().collect();
+        let near = closest(key, &known, |known| known);
+        let near = near.first().map(|near| format!("did you mean {near}?"));
+        let near = near.unwrap_or_else(|| format!("signals: {}", known.join(", ")));
+        table.complain(
+            at.line,
+            key,
+            &format!("{:?}", at.value),
+            &format!("no such signal; {near}"),
+        );
+    }
+}
+
+/// The bus that a signal belongs to: signals of two of them are never there together.
+fn bus_of(signal: &str) -> Option<&str> {
+    let buses = ["uart_", "spi_", "bus_"];
+    buses.into_iter().find(|bus| signal.starts_with(bus))
+}
+
+/// Usual places: each is a free pin, and no two signals of one card share it.
+fn take_wing(t: &Tables<'_, '_>, board: &mut Board, wing: Vec<Place>) {
+    let mut taken: Vec<(String, String)> = board
+        .fixed
+        .iter()
+        .map(|(s, p)| (s.clone(), p.clone()))
+        .collect();
+    for Place { key, at } in wing {
+        let told = |text: &str| {
+            t.wing
+                .complain(at.line, &key, &format!("{:?}", at.value), text)
+        };
+        check_signal(&t.wing, &key, &at);
+        let pin = match board.pin(&at.value) {
+            Ok(pin) => pin,
+            Err(text) => {
+                told(&text);
+                continue;
+            }
+        };
+        let meets = |other: &str| match (bus_of(&key), bus_of(other)) {
+            (Some(one), Some(two)) => one == two,
+            _ => true,
+        };
+        if let Some((other, _)) = taken.iter().find(|(signal, p)| *p == pin && meets(signal)) {
+            told(&format!(
+                "{pin} already carries {other}; choose a free pin for one of the two"
+            ));
+        }
+        taken.push((key.clone(), pin));
+        board.wing.insert(key, at.value);
+    }
+}

@@ -1,0 +1,30 @@
+//! The boards and families that come with the program.
+
+include!(concat!(env!("OUT_DIR"), "/boards.rs"));
+
+/// Names of all boards.
+pub fn names() -> Vec<&'static str> {
+    let files = BOARDS.iter().map(|(file, _)| *file);
+    files
+        .filter_map(|file| file.strip_suffix(".toml"))
+        .collect()
+}
+
+/// Text of a board's file.
+pub fn board(name: &str) -> Option<&'static str> {
+    let found = BOARDS
+        .iter()
+        .find(|(file, _)| file.strip_suffix(".toml") == Some(name));
+    found.map(|(_, text)| *text)
+}
+
+/// Names of all families.
+pub fn families() -> Vec<&'static str> {
+    FAMILIES.iter().map(|(name, _)| *name).collect()
+}
+
+/// The files of a family.
+pub fn family(name: &str) -> Option<&'static [(&'static str, &'static str)]> {
+    let found = FAMILIES.iter().find(|(family, _)| *family == name);
+    found.map(|(_, files)| *files)
+}

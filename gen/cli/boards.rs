@@ -1,0 +1,130 @@
+//! `boards`: lists the boards that come with the program, prints the file of one, or builds the shipped card on them.
+
+use super::build::progress;
+use super::{to_json, Outcome};
+use crate::bitstream::{self, Use};
+use crate::board::{self, Board};
+use crate::config::{self, Project};
+use crate::error::{shown, GenError};
+use endat_sim::decimal;
+
+/// Seeds that are tried for the table.
+const SEEDS: u32 = 5;
+
+/// Prints a board's file.
+pub fn show(name: &str) -> Result<Outcome, GenError> {
+    let text = Board::text(name).ok_or_else(|| {
+        GenError::input(format!(
+            "--show = {}: unknown board; known boards: {}",
+            shown(name),
+            board::names().join(", ")
+        ))
+    })?;
+    Ok(Outcome::good(text))
+}
+
+fn all() -> Result<Vec<Board>, GenError> {
+    let boards = board::names().into_iter().map(Board::named);
+    let boards = boards.collect::<Result<Vec<_>, _>>();
+    boards.map_err(|e| GenError::fault("boards", &e))
+}
+
+/// The shipped card on a board.
+fn shipped_card(board: &Board) -> Result<Project, GenError> {
+    let text = config::preset_for("--preset", config::DEFAULT_PRESET, board)?;
+    Ok(config::parse_on(&board.name, &text, Some(board))?)
+}
+
+fn mhz(hz: u64) -> String {
+    decimal(hz as f64 / 1e6, 6)
+}
+
+/// A row for each, as Markdown.
+pub fn page() -> Result<Outcome, GenError> {
+    let mut text = String::from(
+        "| board | family, device | oscillator, MHz | shipped card at, MHz | its EnDat clock, MHz | constraints | bitstream by |\n|---|---|---|---|---|---|---|\n",
+    );
+    for board in all()? {
+        let card = shipped_card(&board)?.card;
+        let clock_hz = card.channels.first().map_or(0, |c| c.request.clock_hz);
+        let tools = match &board.family.build {
+            Some(_) => "`build`",
+            None => board.family.tools.as_str(),
+        };
+        text += &format!(
+            "| `{}`: {} | {}, {} | {} | {} | {} | {} | {tools} |\n",
+            board.name,
+            board.title,
+            board.family.title,
+            board.part,
+            mhz(board.oscillator_hz),
+            mhz(card.system_hz),
+            mhz(clock_hz),
+            board.family.constraints.to_ascii_uppercase(),
+        );
+    }
+    Ok(Outcome::good(text))
+}
+
+/// Builds the shipped card, and prints a row for each board as Markdown; exits with 1 if one is too slow.
+pub fn measure(name: Option<&str>) -> Result<Outcome, GenError> {
+    let boards = match name {
+        Some(name) => vec![super::board_of(name)?],
+        None => all()?,
+    };
+    let mut text = String::from(
+        "| board | system clock, MHz | reached, MHz | margin | seeds | cells |\n|---|---|---|---|---|---|\n",
+    );
+    let mut exit_code = 0;
+    for board in boards.iter().filter(|b| b.family.build.is_some()) {
+        let project = shipped_card(board)?;
+        let artifacts = crate::emit(&project)?;
+        let (report, _) = bitstream::build(&project, board, &artifacts, SEEDS, &mut progress)?;
+        let best = &report.best;
+        let clock = best.tightest().map_or(0.0, |clock| clock.fmax_mhz);
+        // What there are many of, and the card takes some of.
+        let counts = |cells: &Use| cells.available > 20 && cells.used * 50 > cells.available;
+        let cells = best.cells.iter().filter(|(_, cells)| counts(cells));
+        let cells = cells.map(|(kind, c)| format!("{kind} {} of {}", c.used, c.available));
+        text += &format!(
+            "| `{}` | {} | {} | {} % | {} | {} |\n",
+            board.name,
+            mhz(project.card.system_hz),
+            decimal(clock, 1),
+            decimal(best.margin(), 1),
+            report.seeds,
+            cells.collect::<Vec<_>>().join(", ")
+        );
+        exit_code |= u8::from(!best.is_met);
+    }
+    Ok(Outcome {
+        exit_code,
+        ..Outcome::good(text)
+    })
+}
+
+/// One line for each.
+pub fn list(json: bool) -> Result<Outcome, GenError> {
+    let boards = all()?;
+    if json {
+        let rows: Vec<_> = (boards.iter())
+            .map(|b| {
+                serde_json::json!({
+                    "name": b.name,
+                    "title": b.title,
+                    "family": b.family.title,
+                    "part": b.part,
+                    "oscillator_hz": b.oscillator_hz,
+                })
+            })
+            .collect();
+        return Ok(Outcome::good(to_json(&rows)?));
+    }
+    let line = |b: &Board| {
+        format!(
+            "{:<16} {}, {} {}, {} Hz\n",
+            b.name, b.title, b.family.title, b.part, b.oscillator_hz
+        )
+    };
+    Ok(Outcome::good(boards.iter().map(line).collect::<String>()))
+}

