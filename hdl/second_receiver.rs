@@ -206,7 +206,10 @@ impl Logic for SecondReceiver {
             | (self.f1.val() != self.receiver.f1.val())
             | (self.f2.val() != self.receiver.f2.val())
             | (self.crc_received.val() != self.receiver.crc_received.val())
-            | (self.serial_ok.val() != self.receiver.serial_ok.val())
+            // That of the next block begins as soon as its separator has come.
+            | ((self.serial_ok.val() != self.receiver.serial_ok.val())
+                & !self.separator.q.val()
+                & !self.leaves.q.val())
             | (self.parallel_ok.val() != self.receiver.parallel_ok.val());
         // What has come stays where it is until a new block, or frame, begins.
         self.ends.next = self.receiver.done.val() | self.receiver.info_done.val();

@@ -110,6 +110,8 @@
 #define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_MASK 0xFFFF0000u
 #define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_RECOVERY_COUNTER 0x1u /* recovery time measured a second time */
 #define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_SECOND_INTERFACE 0x2u /* results for a second controller, over an SPI that can only be read */
+#define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_SECOND_RECEIVER 0x4u /* second receiver in lockstep */
+#define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_ERROR_TEST 0x8u /* forced errors on a schedule */
 
 /* ro: Triggers since reset; stands still with the results (see hold). */
 #define ENDAT_MAP_CARD_TRIGGER_COUNT_WORD 0x008u
@@ -1246,6 +1248,12 @@
 /* crc: Spoils the CRC */
 #define ENDAT_MAP_SERVICE_FORCE_CRC_SHIFT 2u
 #define ENDAT_MAP_SERVICE_FORCE_CRC_MASK 0x00000004u
+/* second_receiver: The second receiver disagrees, if there is one */
+#define ENDAT_MAP_SERVICE_FORCE_SECOND_RECEIVER_SHIFT 3u
+#define ENDAT_MAP_SERVICE_FORCE_SECOND_RECEIVER_MASK 0x00000008u
+/* own_frames: 1: only in frames that requests have of their own */
+#define ENDAT_MAP_SERVICE_FORCE_OWN_FRAMES_SHIFT 4u
+#define ENDAT_MAP_SERVICE_FORCE_OWN_FRAMES_MASK 0x00000010u
 
 /* ro: Initialisation. */
 #define ENDAT_MAP_SERVICE_PROGRESS_WORD(channel) (0x407u + 128u * (channel))
@@ -1354,6 +1362,9 @@
 /* initialising: power-up sequence or initialisation is under way; triggers are lost */
 #define ENDAT_MAP_SERVICE_STATE_INITIALISING_SHIFT 7u
 #define ENDAT_MAP_SERVICE_STATE_INITIALISING_MASK 0x00000080u
+/* error_test: A forced error was not told; latched */
+#define ENDAT_MAP_SERVICE_STATE_ERROR_TEST_SHIFT 8u
+#define ENDAT_MAP_SERVICE_STATE_ERROR_TEST_MASK 0x00000100u
 /* starts: How often the program has begun since power-up, wrapping: one more after each reset, and after an upset that led it astray */
 #define ENDAT_MAP_SERVICE_STATE_STARTS_SHIFT 16u
 #define ENDAT_MAP_SERVICE_STATE_STARTS_MASK 0xFFFF0000u
@@ -1632,6 +1643,23 @@
 /* ms: 0 = no limit. The program writes 2000 at start (ms) */
 #define ENDAT_MAP_SERVICE_REQUEST_WAIT_MS_SHIFT 0u
 #define ENDAT_MAP_SERVICE_REQUEST_WAIT_MS_MASK 0x0000FFFFu
+
+/* rw: Forced errors on the card's own schedule. */
+#define ENDAT_MAP_SERVICE_ERROR_TEST_WORD(channel) (0x429u + 128u * (channel))
+#define ENDAT_MAP_SERVICE_ERROR_TEST_BYTE(channel) (0x10A4u + 512u * (channel))
+/* period_ms: One error each so many milliseconds, in a frame of its own; 0 = none. The program writes the configured one at start (ms) */
+#define ENDAT_MAP_SERVICE_ERROR_TEST_PERIOD_MS_SHIFT 0u
+#define ENDAT_MAP_SERVICE_ERROR_TEST_PERIOD_MS_MASK 0x0000FFFFu
+
+/* ro: What became of them. */
+#define ENDAT_MAP_SERVICE_ERROR_TEST_STATE_WORD(channel) (0x42Au + 128u * (channel))
+#define ENDAT_MAP_SERVICE_ERROR_TEST_STATE_BYTE(channel) (0x10A8u + 512u * (channel))
+/* told: Forced errors that were told with their cause, since clear, wrapping */
+#define ENDAT_MAP_SERVICE_ERROR_TEST_STATE_TOLD_SHIFT 0u
+#define ENDAT_MAP_SERVICE_ERROR_TEST_STATE_TOLD_MASK 0x0000FFFFu
+/* silent: Forced errors after which the frame was told as good, since clear */
+#define ENDAT_MAP_SERVICE_ERROR_TEST_STATE_SILENT_SHIFT 16u
+#define ENDAT_MAP_SERVICE_ERROR_TEST_STATE_SILENT_MASK 0xFFFF0000u
 
 /* ro: Frames that ended with this cause (good: with none). */
 #define ENDAT_MAP_SERVICE_FRAMES_GOOD_WORD(channel) (0x430u + 128u * (channel))
