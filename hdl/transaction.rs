@@ -280,7 +280,6 @@ pub struct Transaction {
     running: Signal<Local, Bit>,
     in_us: Signal<Local, Bit>,
     timer_clear: Signal<Local, Bit>,
-    rise_back: Signal<Local, Bit>,
     accept: Signal<Local, Bit>,
     give_up: Signal<Local, Bit>,
     idle: Signal<Local, Bit>,
@@ -584,6 +583,8 @@ impl Logic for Transaction {
                     self.tail_sampled.d.next = true;
                     self.proof.next = !self.tail_sampled.q.val() & self.level.val();
                 }
+                // Where CLOCK was held LOW for the answer, its last rising edge comes back a cell later: in the middle of that.
+                self.timer_clear.next = self.was_center.q.val() & !self.tail_sampled.q.val();
                 if self.tail_sampled.q.val() & !self.level.val() {
                     self.recovery.d.next = self.timer.q.val().get_bits::<13>(0);
                     self.timer_clear.next = true;
@@ -695,20 +696,19 @@ impl Logic for Transaction {
         // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
         self.timer_hit.d.next =
             (self.timer.q.val() >= self.timer_limit.q.val()) & !self.cleared.q.val();
-        self.last_cell.next = (self.phase.q.val() == Phase::Tail) & self.was_center.q.val();
-        // In the middle of a cell the last rising edge of CLOCK comes back: a cell later where CLOCK was held LOW for the answer.
-        self.rise_back.next = self.was_center.q.val() & !self.tail_sampled.q.val();
-        if (self.phase.q.val() != Phase::Tail) & (self.phase.q.val() != Phase::Recovery) {
-            self.rise_back.next = false;
-        }
-        self.cleared.d.next = self.timer_clear.val() | self.accept.val() | self.rise_back.val();
+        self.cleared.d.next = self.timer_clear.val() | self.accept.val();
         if self.timer_clear.val() {
             self.timer.d.next = 0.into();
             self.timer_hit.d.next = false;
         }
         // Cycles that pass before the timer sees the beginning of its span.
-        if self.accept.val() | self.rise_back.val() {
+        if self.accept.val() {
             self.timer.d.next = 2.into();
+        }
+        self.last_cell.next = (self.phase.q.val() == Phase::Tail) & self.was_center.q.val();
+        if self.last_cell.val() {
+            self.timer.d.next = 2.into();
+            self.cleared.d.next = true;
         }
 
         // Pulses: never more on the cable than the answer needs.

@@ -197,7 +197,6 @@ module s6_two_channel_transaction (
     reg          running;
     reg          in_us;
     reg          timer_clear;
-    reg          rise_back;
     reg          accept;
     reg          give_up;
     reg          idle;
@@ -391,13 +390,6 @@ module s6_two_channel_transaction (
     end
     assign vanished = (owing & !once_more) | under_way;
     assign last_cell = (phase == PHASE_TAIL) & was_center;
-
-    always @* begin
-        rise_back = was_center & !tail_sampled;
-        if ((phase != PHASE_TAIL) & (phase != PHASE_RECOVERY)) begin
-            rise_back = 1'b0;
-        end
-    end
     assign verdict_settings_upset = settings_upset | delay_upset;
     assign known = is_calibrated | (HAS_ALIGNMENT & is_fixed);
     assign going = 1'b0;
@@ -604,6 +596,7 @@ module s6_two_channel_transaction (
                     tail_sampled_next = 1'b1;
                     proof = !tail_sampled & level;
                 end
+                timer_clear = was_center & !tail_sampled;
                 if (tail_sampled & !level) begin
                     recovery_next = timer[12:0];
                     timer_clear = 1'b1;
@@ -692,13 +685,17 @@ module s6_two_channel_transaction (
             timer_next = timer + 16'd1;
         end
         timer_hit_next = (timer >= timer_limit) & !cleared;
-        cleared_next = timer_clear | accept | rise_back;
+        cleared_next = timer_clear | accept;
         if (timer_clear) begin
             timer_next = 16'd0;
             timer_hit_next = 1'b0;
         end
-        if (accept | rise_back) begin
+        if (accept) begin
             timer_next = 16'd2;
+        end
+        if (last_cell) begin
+            timer_next = 16'd2;
+            cleared_next = 1'b1;
         end
         if (verdict_once_more) begin
             once_more_next = 1'b1;

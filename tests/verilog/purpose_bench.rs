@@ -85,6 +85,12 @@ const BROKEN_SERVICES: &[Mutation] = &[
         "(1'b1 | line_wanted",
     ),
     mutation(
+        "receivers that disagree, and nobody tells it",
+        "second_receiver",
+        "different_next = 1'b1;",
+        "different_next = 1'b0;",
+    ),
+    mutation(
         "a run that the host cannot end",
         "transaction",
         "(!continuous | line_wanted",
@@ -109,7 +115,7 @@ fn bench_of_a_card_for_a_control_loop_passes_only_as_it_stands() {
 #[test]
 fn bench_of_a_card_with_services_passes_only_as_it_stands() {
     if tools::require("iverilog", "emitted test bench") {
-        let more = "[service]\nparts = [\"requests\", \"continuous\"]\n";
+        let more = "[service]\nparts = [\"requests\", \"continuous\"]\n[safety]\nparts = [\"second_receiver\", \"error_test\"]\n";
         let text = crate::bus::text(HostBus::Apb, more).replace("= [\"register\"]", "= [\"pin\"]");
         let card = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
         check_mutations("services", &card, BROKEN_SERVICES);

@@ -11,16 +11,11 @@ use crate::service::map::{force, input, output, output::go, state, word};
 use crate::transaction::cause;
 
 /// What is forced, and the cause that must be told.
-const ERRORS: [(u16, u64, ModeCommand); 4] = [
-    (force::CRC, cause::CRC, ModeCommand::SendPosition),
-    (force::F1, cause::F1, ModeCommand::SendPosition),
-    // Only answers to EnDat 2.2 commands have F2.
-    (force::F2, cause::F2, ModeCommand::SendPositionAddInfo),
-    (
-        force::SECOND_RECEIVER,
-        cause::UPSET,
-        ModeCommand::SendPosition,
-    ),
+const ERRORS: [(u16, u64); 4] = [
+    (force::CRC, cause::CRC),
+    (force::F1, cause::F1),
+    (force::F2, cause::F2),
+    (force::SECOND_RECEIVER, cause::UPSET),
 ];
 
 /// What a start sets.
@@ -57,27 +52,30 @@ pub(super) fn error_test(a: &mut Assembler, times: &ServiceTimes) {
     set(a, own::GO, go::OWN);
     a.ldi(mailbox::OWN).st(own::MAILBOX);
 
+    // The command of the triggers.
+    let old = a.label();
+    a.ldi(code(ModeCommand::SendPosition)).st(own::MODE);
+    a.inp(input::CONFIGURED).andi(1 << 6).jz(old);
+    a.ldi(code(ModeCommand::SendPositionAddInfo)).st(own::MODE);
+    a.place(old).ld(own::MODE).out(output::COMMAND);
+
     let count = ERRORS.len() - usize::from(!times.second_receiver);
     let first = a.label();
-    for (n, (force, cause, command)) in ERRORS.into_iter().enumerate().take(count) {
+    for (n, error) in ERRORS.into_iter().enumerate().take(count).skip(1) {
         let other = a.label();
-        if n > 0 {
-            a.ld(own::TEST_NEXT).xori(n as u16).jnz(other);
-            set(a, own::TEST_NEXT, (n + 1) as u16 % count as u16);
-        }
-        if command == ModeCommand::SendPositionAddInfo {
+        a.ld(own::TEST_NEXT).xori(n as u16).jnz(other);
+        set(a, own::TEST_NEXT, (n + 1) as u16 % count as u16);
+        if error.0 == force::F2 {
+            // Answers of EnDat 2.1 have none.
             a.inp(input::CONFIGURED).andi(1 << 6).jz(first);
         }
-        if n > 0 {
-            force_error(a, force, cause, command);
-            a.jmp(send).place(other);
-        }
+        force_error(a, error);
+        a.jmp(send).place(other);
     }
     // The first one comes last: whatever the word says, something is done.
     set(a, own::TEST_NEXT, 1);
     a.place(first);
-    let (forced, cause, command) = ERRORS[0];
-    force_error(a, forced, cause, command);
+    force_error(a, ERRORS[0]);
 
     a.place(send).call("own_frame");
     a.ld(low(word::FORCE)).out(output::FORCE);
@@ -97,9 +95,8 @@ pub(super) fn error_test(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::FROM_TEST).jmpa();
 }
 
-/// Forces this error in the next frame of a request's own, and prepares the request.
-fn force_error(a: &mut Assembler, forced: u16, cause: u64, command: ModeCommand) {
+/// Forces this error in the next frame of a request's own.
+fn force_error(a: &mut Assembler, (forced, cause): (u16, u64)) {
     a.ldi(forced | force::OWN_FRAMES).out(output::FORCE);
     set(a, own::TEST_CAUSE, cause as u16);
-    a.ldi(code(command)).out(output::COMMAND).st(own::MODE);
 }
