@@ -155,6 +155,8 @@ pub struct Report {
     pub outputs: Vec<&'static str>,
     /// What watches each channel beside it.
     pub safety: Vec<&'static str>,
+    /// Time between two forced errors of a channel, in milliseconds.
+    pub error_test_ms: Option<u16>,
 }
 
 impl Report {
@@ -292,6 +294,7 @@ pub fn report(project: &Project) -> Report {
             (card.safety.second_receiver, "second_receiver"),
             (card.safety.error_test_ms != 0, "error_test"),
         ]),
+        error_test_ms: Some(card.safety.error_test_ms).filter(|ms| *ms != 0),
         bus: project.bus.name(),
         stream: StreamReport::of(card, project.bus == HostBus::Uart),
         link: (project.bus == HostBus::Uart).then(|| LinkReport {

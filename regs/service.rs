@@ -111,7 +111,7 @@ pub const SERVICE: Block = Block {
         ]),
         word("control", at::CONTROL, ReadWrite, "Acts when written.", &[
             field("initialise", 0, 1, "", "1: initialise the encoder"),
-            field("clear", 1, 1, "", "1: counters, alarm and position_2 to zero"),
+            field("clear", 1, 1, "", "1: counters, alarm, position_2 and error_test to zero; lost.triggers goes on"),
             field("cancel", 2, 1, "", "1: the request that waits for a trigger is given up; one on the wire is finished"),
         ]),
         word("force", at::FORCE, ReadWrite, "Errors forced upon what is received, to try the error paths; not for regular operation.", &[
@@ -197,7 +197,7 @@ pub const SERVICE: Block = Block {
             field("ms", 0, 16, "ms", "0 = no limit. The program writes 2000 at start"),
         ]),
         word("error_test", at::ERROR_TEST, ReadWrite, "Forced errors on the card's own schedule.", &[
-            field("period_ms", 0, 16, "ms", "One error each so many milliseconds, in a frame of its own; 0 = none. The program writes the configured one at start").takes(&[(0, 0), (10, 32_000)], &[]),
+            field("period_ms", 0, 16, "ms", "One error each so many milliseconds, in a frame of its own: 10 to 32000, 0 = none. Begins with safety.error_test_ms of the configuration").takes(&[(0, 0), (10, 32_000)], &[]),
         ]).of(Part::ErrorTest),
         word("error_test_state", at::ERROR_TEST_STATE, ReadOnly, "What became of them.", &[
             field("told", 0, 16, "", "Forced errors that were told with their cause, since clear, wrapping"),

@@ -124,9 +124,12 @@ impl ClockManager {
         let near: Vec<String> = (below.into_iter().chain(above))
             .map(|hz| format!("{hz}"))
             .collect();
+        let remedy = match near.is_empty() {
+            true => "it makes none that a card can have".into(),
+            false => format!("use {} Hz", near.join(" or ")),
+        };
         Err(format!(
-            "the clock manager cannot make it from the board's {oscillator_hz} Hz; use {} Hz",
-            near.join(" or ")
+            "the clock manager cannot make it from the board's {oscillator_hz} Hz; {remedy}"
         ))
     }
 }

@@ -52,6 +52,12 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
         check_name(other).map_err(|text| GenError::input(format!("--name = {other:?}: {text}")))?;
         project.name.clone_from(other);
     }
+    if project.bus.is_internal() {
+        return Err(GenError::input(format!(
+            "host.bus = \"{}\": stays inside the chip, so this card is a part of a bitstream of yours; choose \"uart\", \"spi\" or \"parallel\"",
+            project.bus.name()
+        )));
+    }
     let Some(board) = project.board.clone() else {
         return Err(GenError::input(
             "board: the configuration names none, and a bitstream is for a board; add [board], or --board NAME",

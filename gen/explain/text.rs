@@ -171,7 +171,11 @@ impl fmt::Display for Report {
             writeln!(f, "outputs: {}", list(&self.outputs))?;
         }
         if !self.safety.is_empty() {
-            writeln!(f, "safety: {}", list(&self.safety))?;
+            write!(f, "safety: {}", list(&self.safety))?;
+            match self.error_test_ms {
+                Some(ms) => writeln!(f, ", one forced error each {ms} ms")?,
+                None => writeln!(f)?,
+            }
         }
         if !self.service.is_empty() {
             writeln!(

@@ -57,7 +57,7 @@ super::causes! {
         "Set recovery_min_ns to what the encoder is set to.";
     UPSET = 31, "upset", "stored data upset";
         "A register of the card, or a word on its way to the host, was disturbed: what is stored does not fit its CRC or parity.",
-        "Nothing, if it is rare: the next trigger brings a new position. If it is not: supply, clock and timing of the device.";
+        "Nothing, if it is rare: the next trigger brings a new position. If it is not: supply, clock and timing of the device. With a second receiver it also tells that the two disagreed, or were made to by `force`.";
 }
 
 /// Codes of frames: those below are counted, each by a register of its own.

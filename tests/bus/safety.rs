@@ -226,3 +226,42 @@ fn the_part_is_refused_where_nobody_could_read_it() {
         assert!(all[0].to_string().contains(told), "{all:?}");
     }
 }
+
+/// Catches a part that is taken where it cannot work, and a message that names only the first of two.
+#[test]
+fn parts_are_refused_each_with_its_reason() {
+    let safety = |more: &str| text(HostBus::Apb, more);
+    let double = "[line]\nparts = [\"alignment\", \"double_edge\"]\n";
+    for (text, told) in [
+        (
+            safety(&format!("{double}[safety]\nparts = [\"second_receiver\", \"error_test\"]\n")),
+            vec![
+                "safety.parts = \"second_receiver\": bits of line.parts",
+                "safety.parts = \"error_test\": frames of its own take the service",
+            ],
+        ),
+        (
+            safety("[safety]\nparts = []\nerror_test_ms = 100\n"),
+            vec!["safety.error_test_ms = 100: takes the part error_test"],
+        ),
+        (
+            safety("[service]\nparts = [\"requests\"]\n[safety]\nparts = [\"error_test\"]\nerror_test_ms = 9\n"),
+            vec!["safety.error_test_ms = 9: outside 10..32000"],
+        ),
+        (
+            text(HostBus::Bare, "[safety]\nparts = [\"error_test\", \"second_receiver\"]\n").replacen(
+                "[[channel]]\nposition_bits = 25\ncommand = \"000111\"\n",
+                "",
+                1,
+            ),
+            vec!["safety.parts = \"error_test\": host.bus = \"none\" has no registers"],
+        ),
+    ] {
+        let all = parse("card.toml", &text).unwrap_err();
+        let all: Vec<String> = all.iter().map(ToString::to_string).collect();
+        assert_eq!(all.len(), told.len(), "{all:?}");
+        for (said, part) in all.iter().zip(told) {
+            assert!(said.contains(part), "{said}: {part}");
+        }
+    }
+}
