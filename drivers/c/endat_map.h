@@ -1229,7 +1229,7 @@
 /* initialise: 1: initialise the encoder */
 #define ENDAT_MAP_SERVICE_CONTROL_INITIALISE_SHIFT 0u
 #define ENDAT_MAP_SERVICE_CONTROL_INITIALISE_MASK 0x00000001u
-/* clear: 1: counters, alarm and position_2 to zero */
+/* clear: 1: counters, alarm, position_2 and error_test to zero; lost.triggers goes on */
 #define ENDAT_MAP_SERVICE_CONTROL_CLEAR_SHIFT 1u
 #define ENDAT_MAP_SERVICE_CONTROL_CLEAR_MASK 0x00000002u
 /* cancel: 1: the request that waits for a trigger is given up; one on the wire is finished */
@@ -1647,7 +1647,7 @@
 /* rw: Forced errors on the card's own schedule. */
 #define ENDAT_MAP_SERVICE_ERROR_TEST_WORD(channel) (0x429u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_ERROR_TEST_BYTE(channel) (0x10A4u + 512u * (channel))
-/* period_ms: One error each so many milliseconds, in a frame of its own; 0 = none. The program writes the configured one at start (ms) */
+/* period_ms: One error each so many milliseconds, in a frame of its own: 10 to 32000, 0 = none. Begins with safety.error_test_ms of the configuration (ms) */
 #define ENDAT_MAP_SERVICE_ERROR_TEST_PERIOD_MS_SHIFT 0u
 #define ENDAT_MAP_SERVICE_ERROR_TEST_PERIOD_MS_MASK 0x0000FFFFu
 

@@ -132,7 +132,7 @@ static const char *const remedies[] = {
     "Send the request again some milliseconds later.",
     "Turn the power off and on, or send request 7 ten times in a row.",
     "Look at t_format<n>.fields.alarm and at the battery; then send request 7 or 12 ten times in a row.",
-    "Nothing, if it is rare: the next trigger brings a new position. If it is not: supply, clock and timing of the device.",
+    "Nothing, if it is rare: the next trigger brings a new position. If it is not: supply, clock and timing of the device. With a second receiver it also tells that the two disagreed, or were made to by `force`.",
 };
 
 const char *endat_cause_remedy(uint32_t number)
