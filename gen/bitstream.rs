@@ -4,6 +4,7 @@ use crate::artifact::{self, Artifact};
 use crate::board::{Board, Build};
 use crate::config::Project;
 use crate::error::GenError;
+use crate::readers::is_bench;
 use crate::scratch;
 use endat_sim::decimal;
 use minijinja::context;
@@ -155,8 +156,11 @@ pub fn build(
     };
     let run = |words: &[String]| run(folder, words, &build.install);
     progress(format!("{name}: synthesis for {}", board.family.title));
-    let sources = artifacts.iter().map(|a| a.path.as_str());
-    let mut sources: Vec<&str> = sources.filter(|path| is_source(path)).collect();
+    // The test bench is not for a device.
+    let sources = artifacts
+        .iter()
+        .filter(|a| a.path.ends_with(".v") && !is_bench(a));
+    let mut sources: Vec<&str> = sources.map(|a| a.path.as_str()).collect();
     sources.sort_unstable();
     // nextpnr of some versions does not know $scopeinfo cells.
     let script = format!(
@@ -224,11 +228,6 @@ pub fn build(
         bitstream,
     };
     Ok((report, bytes))
-}
-
-/// Verilog of the card and its top; the test bench is not for a device.
-fn is_source(path: &str) -> bool {
-    path.ends_with(".v") && !path.ends_with("_tb.v")
 }
 
 /// Runs a tool by its name or, rather, as YoWASP calls it.

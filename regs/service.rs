@@ -197,7 +197,7 @@ pub const SERVICE: Block = Block {
             field("ms", 0, 16, "ms", "0 = no limit. The program writes 2000 at start"),
         ]),
         word("error_test", at::ERROR_TEST, ReadWrite, "Forced errors on the card's own schedule.", &[
-            field("period_ms", 0, 16, "ms", "One error each so many milliseconds, in a frame of its own: 10 to 32000, 0 = none. Begins with safety.error_test_ms of the configuration").takes(&[(0, 0), (10, 32_000)], &[]),
+            field("period_ms", 0, 16, "ms", "One error each so many milliseconds, in a frame of its own: 10 to 32000, 0 = none. Begins with safety.error_test_ms of the configuration").takes(&[(0, 0), (ERROR_TEST_PATIENCE_MS as u32, ERROR_TEST_MS_MAX as u32)], &[]),
         ]).of(Part::ErrorTest),
         word("error_test_state", at::ERROR_TEST_STATE, ReadOnly, "What became of them.", &[
             field("told", 0, 16, "", "Forced errors that were told with their cause, since clear, wrapping"),

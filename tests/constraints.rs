@@ -342,6 +342,18 @@ fn empty_card(project: &Project) -> String {
     format!("`timescale 1ns / 1ps\nmodule {name} ({});\n{body}wire unused = &{{1'b0, {}}};\nendmodule\n", ports.join(", "), inputs.join(", "))
 }
 
+/// What a bench, module `bench`, says at the top of a card's board; none without iverilog.
+pub fn play(project: &Project, name: &str, bench: &str) -> Option<String> {
+    let (folder, files) = lay_out(project, name);
+    fs::write(folder.join("bench.v"), bench).unwrap();
+    let files: Vec<&str> = files.iter().map(String::as_str).collect();
+    let head = ["-g2005", "-o", "x.vvp", "-s", "bench", "bench.v"];
+    let (good, said) = tool("iverilog", &folder, &[&head[..], &files].concat())?;
+    assert!(good, "{said}");
+    let (_, said) = tool("vvp", &folder, &["-n", "x.vvp"]).expect("vvp comes with iverilog");
+    Some(said)
+}
+
 /// All Verilog of a project and the primitives, in a folder of its own.
 pub fn lay_out(project: &Project, test: &str) -> (PathBuf, Vec<String>) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("constraints-{test}"));

@@ -108,8 +108,11 @@ pub const PARALLEL_DATA_LINES: usize = 16;
 /// Name of the oscillator port of the board top.
 pub const OSCILLATOR_PORT: &str = "osc_i";
 
+/// Buses that leave the device.
+pub const BUSES: [HostBus; 3] = [HostBus::Uart, HostBus::Spi, HostBus::Parallel];
+
 /// The ports of a bus that leaves the device.
-fn bus_ports(bus: HostBus) -> Vec<(String, Kind)> {
+pub fn bus_ports(bus: HostBus) -> Vec<(String, Kind)> {
     let inputs = |names: &[&str]| -> Vec<(String, Kind)> {
         let kind = |name: &str| match name.ends_with("_n_i") {
             true => Kind::BusStrobe,

@@ -2,7 +2,7 @@
 
 use super::family::Family;
 use super::package::{Package, Word};
-use super::ports::{card_ports, MorePorts};
+use super::ports::{bus_ports, card_ports, MorePorts, BUSES};
 use super::{Board, Start, NO_PIN};
 use crate::error::Diagnostic;
 use crate::form::document::parse;
@@ -318,8 +318,9 @@ fn take_pins(
         let pins = pins.iter().map(&mut pin).collect();
         board.connectors.insert(name, pins);
     }
+    let known = signals();
     for Place { key, at } in fixed {
-        check_signal(&t.fixed, &key, &at);
+        check_signal(&t.fixed, &key, &at, &known);
         if let Some(pin) = take(board, &t.fixed, &key, &at) {
             board.fixed.insert(key, pin);
         }
@@ -360,25 +361,21 @@ fn take_words_of_pins(
 }
 
 /// All signals that any card has on a board.
-fn signals() -> BTreeSet<String> {
+fn signals() -> Vec<String> {
     let more = MorePorts {
         interrupt: true,
         second_interface: true,
     };
-    let buses = [HostBus::Uart, HostBus::Spi, HostBus::Parallel];
-    let ports = buses.map(|bus| card_ports(bus, more, *CHANNELS.end()));
-    ports
-        .into_iter()
-        .flatten()
+    let ports = BUSES.map(|bus| card_ports(bus, more, *CHANNELS.end()));
+    let all: BTreeSet<String> = (ports.into_iter().flatten())
         .map(|(signal, _)| signal)
-        .collect()
+        .collect();
+    all.into_iter().collect()
 }
 
-fn check_signal(table: &Table<'_, '_>, key: &str, at: &At<String>) {
-    let known = signals();
-    if !known.contains(key) {
-        let known: Vec<String> = known.into_iter().collect();
-        let near = closest(key, &known, |known| known);
+fn check_signal(table: &Table<'_, '_>, key: &str, at: &At<String>, known: &[String]) {
+    if !known.iter().any(|signal| signal == key) {
+        let near = closest(key, known, |known| known);
         let near = near.first().map(|near| format!("did you mean {near}?"));
         let near = near.unwrap_or_else(|| format!("signals: {}", known.join(", ")));
         table.complain(
@@ -391,9 +388,9 @@ fn check_signal(table: &Table<'_, '_>, key: &str, at: &At<String>) {
 }
 
 /// The bus that a signal belongs to: signals of two of them are never there together.
-fn bus_of(signal: &str) -> Option<&str> {
-    let buses = ["uart_", "spi_", "bus_"];
-    buses.into_iter().find(|bus| signal.starts_with(bus))
+fn bus_of(signal: &str) -> Option<HostBus> {
+    let has = |bus: &HostBus| bus_ports(*bus).iter().any(|(port, _)| port == signal);
+    BUSES.into_iter().find(has)
 }
 
 /// Usual places: each is a free pin, and no two signals of one card share it.
@@ -403,12 +400,13 @@ fn take_wing(t: &Tables<'_, '_>, board: &mut Board, wing: Vec<Place>) {
         .iter()
         .map(|(s, p)| (s.clone(), p.clone()))
         .collect();
+    let known = signals();
     for Place { key, at } in wing {
         let told = |text: &str| {
             t.wing
                 .complain(at.line, &key, &format!("{:?}", at.value), text)
         };
-        check_signal(&t.wing, &key, &at);
+        check_signal(&t.wing, &key, &at, &known);
         let pin = match board.pin(&at.value) {
             Ok(pin) => pin,
             Err(text) => {

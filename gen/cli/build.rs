@@ -1,13 +1,12 @@
 //! `build`: makes the bitstream of a card on a board.
 
-use super::{to_json, Outcome, SourceArgs, TargetArgs};
+use super::{to_json, EmissionArgs, Outcome};
 use crate::artifact;
 use crate::bitstream;
-use crate::config::{check_name, Configuration, RECEIVER_BUS};
+use crate::config::{Configuration, RECEIVER_BUS};
 use crate::error::GenError;
 use clap::Args;
 use std::io::Write;
-use std::path::{Path, PathBuf};
 
 /// Arguments of `build`.
 ///
@@ -15,15 +14,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 pub struct BuildArgs {
     #[command(flatten)]
-    source: SourceArgs,
-    #[command(flatten)]
-    target: TargetArgs,
-    /// Folder to write into; the emission, the bitstream and its report go to DIR/PREFIX [default: out]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Name of the folder, the files and the top module [default: the name in the configuration]
-    #[arg(long, value_name = "PREFIX")]
-    name: Option<String>,
+    emission: EmissionArgs,
     /// Seeds of the placer that are tried, one after another, until timing is met
     #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(1..=1000))]
     seeds: u32,
@@ -39,8 +30,8 @@ pub(super) fn progress(text: String) {
 
 /// Runs the command.
 pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
-    let board = arguments.target.load()?;
-    let mut project = match arguments.source.load_any_on(board.as_ref())? {
+    let (configuration, folder) = arguments.emission.load()?;
+    let project = match configuration {
         Configuration::Card(project) => *project,
         Configuration::Receiver(_) => {
             return Err(GenError::input(format!(
@@ -48,10 +39,6 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
             )))
         }
     };
-    if let Some(other) = &arguments.name {
-        check_name(other).map_err(|text| GenError::input(format!("--name = {other:?}: {text}")))?;
-        project.name.clone_from(other);
-    }
     if project.bus.is_internal() {
         return Err(GenError::input(format!(
             "host.bus = \"{}\": stays inside the chip, so this card is a part of a bitstream of yours; choose \"uart\", \"spi\" or \"parallel\"",
@@ -64,11 +51,6 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
         ));
     };
     bitstream::tools(&board)?;
-    let folder = arguments
-        .out
-        .as_deref()
-        .unwrap_or(Path::new("out"))
-        .join(&project.name);
     let artifacts = crate::emit(&project)?;
     let foreign = artifact::foreign(&folder, &artifacts);
     if !foreign.is_empty() {

@@ -1,31 +1,19 @@
 //! `emit`: writes the files of a card, or checks them.
 
 use super::host::interrupted;
-use super::{Outcome, SourceArgs, TargetArgs};
+use super::{EmissionArgs, Outcome};
 use crate::artifact::{self, Artifact};
-use crate::config::{check_name, Configuration};
+use crate::config::Configuration;
 use crate::error::GenError;
 use clap::Args;
 use endat_hdl::bus::HostBus;
-use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
-
-/// Folder that everything is emitted into unless another is given.
-const OUT: &str = "out";
 
 /// Arguments of `emit`.
 #[derive(Args, Default)]
 pub struct EmitArgs {
     #[command(flatten)]
-    source: SourceArgs,
-    #[command(flatten)]
-    target: TargetArgs,
-    /// Folder to write into; the files go to DIR/PREFIX [default: out]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Name of the folder, the files and the top module [default: the name in the configuration]
-    #[arg(long, value_name = "PREFIX")]
-    name: Option<String>,
+    emission: EmissionArgs,
     /// Write the C driver, too: C99 for any bus of a card, see docs/driver.md
     #[arg(long)]
     driver: bool,
@@ -40,23 +28,7 @@ pub struct EmitArgs {
 /// Runs the command.
 pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
     let stop = interrupted();
-    let mut configuration = arguments
-        .source
-        .load_any_on(arguments.target.load()?.as_ref())?;
-    let name = match &mut configuration {
-        Configuration::Card(card) => &mut card.name,
-        Configuration::Receiver(receiver) => &mut receiver.name,
-    };
-    if let Some(other) = &arguments.name {
-        check_name(other).map_err(|text| GenError::input(format!("--name = {other:?}: {text}")))?;
-        name.clone_from(other);
-    }
-    let name = name.clone();
-    let out = arguments.out.as_deref().unwrap_or(Path::new(OUT));
-    if out.as_os_str().is_empty() {
-        return Err(GenError::input("--out = \"\": is empty; give a folder"));
-    }
-    let folder = out.join(&name);
+    let (configuration, folder) = arguments.emission.load()?;
     let mut artifacts = match &configuration {
         Configuration::Card(card) => crate::emit(card)?,
         Configuration::Receiver(receiver) => crate::t_format::emit(receiver)?,
@@ -136,6 +108,7 @@ fn add_driver(
 
 /// The command that makes the check pass; `force` if files would be lost by it.
 fn repair(arguments: &EmitArgs, force: bool) -> String {
+    let emission = &arguments.emission;
     let mut words = Vec::new();
     let mut add = |flag: &str, value: Option<String>| {
         if let Some(value) = value {
@@ -144,19 +117,19 @@ fn repair(arguments: &EmitArgs, force: bool) -> String {
     };
     add(
         "--config",
-        arguments
+        emission
             .source
             .config
             .as_ref()
             .map(|p| p.display().to_string()),
     );
-    add("--preset", arguments.source.preset.clone());
-    add("--board", arguments.target.board.clone());
+    add("--preset", emission.source.preset.clone());
+    add("--board", emission.target.board.clone());
     add(
         "--out",
-        arguments.out.as_ref().map(|p| p.display().to_string()),
+        emission.out.as_ref().map(|p| p.display().to_string()),
     );
-    add("--name", arguments.name.clone());
+    add("--name", emission.name.clone());
     if arguments.driver {
         words.push("--driver".into());
     }
@@ -182,6 +155,7 @@ fn quoted(word: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::PathBuf;
 
     #[test]
     fn the_repair_command_can_be_pasted_into_a_shell() {
@@ -192,8 +166,11 @@ mod tests {
         );
         let out = Some(PathBuf::from("my 'files'"));
         let arguments = EmitArgs {
-            out,
-            name: Some("a".into()),
+            emission: EmissionArgs {
+                out,
+                name: Some("a".into()),
+                ..EmissionArgs::default()
+            },
             ..EmitArgs::default()
         };
         assert_eq!(

@@ -17,7 +17,7 @@ mod sim;
 mod work;
 
 use crate::board::Board;
-use crate::config::{self, Configuration, Project};
+use crate::config::{self, check_name, Configuration, Project};
 use crate::error::{shown, GenError};
 use crate::explain;
 use clap::{Args, Parser, Subcommand};
@@ -159,6 +159,47 @@ struct TargetArgs {
     /// Board instead of the configuration's: one that comes with the program, or a file [default: as in the configuration]
     #[arg(long, value_name = "NAME|FILE")]
     board: Option<String>,
+}
+
+/// Folder that everything is emitted into unless another is given.
+const OUT: &str = "out";
+
+/// A card, on which board, and where its files go.
+#[derive(Args, Default)]
+struct EmissionArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    #[command(flatten)]
+    target: TargetArgs,
+    /// Folder to write into; the files go to DIR/PREFIX [default: out]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Name of the folder, the files and the top module [default: the name in the configuration]
+    #[arg(long, value_name = "PREFIX")]
+    name: Option<String>,
+}
+
+impl EmissionArgs {
+    /// The configuration under its name, and the folder of its files.
+    fn load(&self) -> Result<(Configuration, PathBuf), GenError> {
+        let board = self.target.load()?;
+        let mut configuration = self.source.load_any_on(board.as_ref())?;
+        let name = match &mut configuration {
+            Configuration::Card(card) => &mut card.name,
+            Configuration::Receiver(receiver) => &mut receiver.name,
+        };
+        if let Some(other) = &self.name {
+            check_name(other)
+                .map_err(|text| GenError::input(format!("--name = {other:?}: {text}")))?;
+            name.clone_from(other);
+        }
+        let out = self.out.as_deref().unwrap_or(Path::new(OUT));
+        if out.as_os_str().is_empty() {
+            return Err(GenError::input("--out = \"\": is empty; give a folder"));
+        }
+        let folder = out.join(name);
+        Ok((configuration, folder))
+    }
 }
 
 impl TargetArgs {

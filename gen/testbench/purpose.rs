@@ -14,6 +14,7 @@ use endat_hdl::line_delay::mode;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{start, CHANNEL_CONFIG, LINE, RECOVERY, RESULT, SERVICE};
 use endat_hdl::second_interface::{MARK, RECORD_WORDS};
+use endat_hdl::service::program::forced_errors;
 use endat_hdl::timing::{
     cycles_to_ns, PARAMETER_GAP_MS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
@@ -319,7 +320,7 @@ impl Parts {
             infos => infos(card),
             counters => counters(card),
             tests => tests(card),
-            forced_errors => 3 + u8::from(card.safety.second_receiver),
+            forced_errors => forced_errors(card.safety.second_receiver),
             second => second(card),
             phases => phases(card),
             phase_bits => LINE.field("phase", "tracked").width,

@@ -8,6 +8,7 @@ use crate::t_format::protocol::{
     BIT_HZ, FAST_BIT_HZ, FIELD_GAP_US_MAX, FILTER_CYCLES_MAX, REPLY_GAP_US_MAX,
 };
 use crate::timing::*;
+use endat_regs::service::{ERROR_TEST_MS_MAX, ERROR_TEST_PATIENCE_MS};
 
 /// System clock cycles in the shortest period of the serial clock, behind SPI.
 pub const SCK_CYCLES_MIN: u64 = 8;

@@ -17,7 +17,7 @@ pub use card::{needed_baud, read_bytes, stream_baud, BAUD_NOTE};
 pub use limits::{limits, Limits};
 pub use parts::{
     LineParts, OutputParts, PhaseSource, SafetyParts, ServiceParts, StreamParts, StreamStart,
-    ERROR_TEST_MS, ERROR_TEST_MS_MAX, ERROR_TEST_PATIENCE_MS,
+    ERROR_TEST_MS,
 };
 pub use t_format::{is_rate, is_triggered, TFormatRequest};
 

@@ -72,11 +72,6 @@ impl OutputParts {
 
 /// Time between two forced errors, in milliseconds, if nothing else is said.
 pub const ERROR_TEST_MS: u16 = 1_000;
-/// The longest one: a service's milliseconds wrap at 65536.
-pub const ERROR_TEST_MS_MAX: u16 = 32_000;
-/// How long a forced error that is due waits for the end of a trigger's frame, behind which the next trigger is far; without triggers it is
-/// sent then. The time between two is at least that.
-pub const ERROR_TEST_PATIENCE_MS: u16 = 10;
 
 /// What watches a channel beside it, for a safe control (`docs/safety.md`); what is not asked for takes no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

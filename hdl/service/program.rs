@@ -17,6 +17,7 @@ mod own;
 mod position_2;
 mod requests;
 
+pub use error_test::forced_errors;
 pub use initialise::{step_name, steps, Step};
 
 use super::map::{

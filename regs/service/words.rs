@@ -110,6 +110,12 @@ pub mod request_state {
     }
 }
 
+/// Shortest time between two of the card's own forced errors, in milliseconds: so long one that is due waits for the end of a trigger's frame,
+/// behind which the next trigger is far; without triggers it is sent then.
+pub const ERROR_TEST_PATIENCE_MS: u16 = 10;
+/// The longest one: a service's milliseconds wrap at 65536.
+pub const ERROR_TEST_MS_MAX: u16 = 32_000;
+
 /// Bits of [`word::FORCE`].
 pub mod force {
     /// Inverts F1.

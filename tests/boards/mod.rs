@@ -3,11 +3,10 @@
 mod bitstream;
 mod files;
 
-use crate::constraints::{lay_out, lint_top, tool};
+use crate::constraints::{lint_top, play};
 use crate::program::good;
 use endat_gen::board::{self, Board};
 use endat_gen::config::{parse_on, preset_for, Project, DEFAULT_PRESET};
-use std::fs;
 
 /// The shipped card on a board.
 fn card_on(board: &Board) -> Project {
@@ -130,17 +129,12 @@ endmodule
 fn every_clock_manager_makes_the_system_clock_and_lights_shine_the_right_way() {
     for board in boards() {
         let project = card_on(&board);
-        let (folder, files) = lay_out(&project, &format!("board-clock-{}", board.name));
         let half = format!("{:?}", 5e8 / board.oscillator_hz as f64);
         let bench = BENCH.replace("NAME", &project.name).replace("HALF", &half);
-        fs::write(folder.join("bench.v"), bench).unwrap();
-        let files: Vec<&str> = files.iter().map(String::as_str).collect();
-        let head = ["-g2005", "-o", "x.vvp", "-s", "bench", "bench.v"];
-        let Some((good, said)) = tool("iverilog", &folder, &[&head[..], &files].concat()) else {
+        let folder = format!("board-clock-{}", board.name);
+        let Some(said) = play(&project, &folder, &bench) else {
             return;
         };
-        assert!(good, "{said}");
-        let (_, said) = tool("vvp", &folder, &["-n", "x.vvp"]).expect("vvp comes with iverilog");
         let words: Vec<&str> = said.split_whitespace().collect();
         let [cycles, "reset", "0", "light", pin, "of", light] = words[..] else {
             panic!("{}: {said}", board.name);

@@ -1,11 +1,10 @@
 //! Cards with SPI or the parallel bus on a board: pins, top, and a host at the pins of the top.
 
 use super::text;
-use crate::constraints::{judge, lay_out, lint_top, tool};
+use crate::constraints::{judge, lint_top, play};
 use endat_gen::config::{parse, Project};
 use endat_hdl::bus::HostBus;
 use endat_hdl::regs::ID;
-use std::fs;
 
 const BOARD: &str = "[board]\nname = \"papilio_pro\"\n";
 
@@ -202,16 +201,10 @@ endmodule
 fn a_host_at_the_pins_reads_the_identification() {
     for (bus, master) in [(HostBus::Spi, SPI), (HostBus::Parallel, PARALLEL)] {
         let project = project(bus, "");
-        let (folder, files) = lay_out(&project, &format!("pins-{}", bus.name()));
         let bench = format!("{FRAME}{master}").replace("NAME", &project.name);
-        fs::write(folder.join("bench.v"), bench).unwrap();
-        let files: Vec<&str> = files.iter().map(String::as_str).collect();
-        let head = ["-g2005", "-o", "x.vvp", "-s", "bench", "bench.v"];
-        let Some((good, said)) = tool("iverilog", &folder, &[&head[..], &files].concat()) else {
+        let Some(said) = play(&project, &format!("pins-{}", bus.name()), &bench) else {
             return;
         };
-        assert!(good, "{said}");
-        let (_, said) = tool("vvp", &folder, &["-n", "x.vvp"]).expect("vvp comes with iverilog");
         assert_eq!(said.trim(), format!("{ID:08x}"), "{bus:?}");
     }
 }

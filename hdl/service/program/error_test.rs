@@ -4,10 +4,9 @@
 
 use super::requests::{code, mailbox};
 use super::{high, low, minus, own, set, set_bits, ServiceTimes};
-use crate::config::ERROR_TEST_PATIENCE_MS;
 use crate::protocol::ModeCommand;
 use crate::sequencer::assembler::Assembler;
-use crate::service::map::{force, input, output, output::go, state, word};
+use crate::service::map::{force, input, output, output::go, state, word, ERROR_TEST_PATIENCE_MS};
 use crate::transaction::cause;
 
 /// What is forced, and the cause that must be told.
@@ -17,6 +16,11 @@ const ERRORS: [(u16, u64); 4] = [
     (force::F2, cause::F2),
     (force::SECOND_RECEIVER, cause::UPSET),
 ];
+
+/// How many of them a card forces in turn.
+pub const fn forced_errors(second_receiver: bool) -> usize {
+    ERRORS.len() - !second_receiver as usize
+}
 
 /// What a start sets.
 pub(super) fn start(a: &mut Assembler, times: &ServiceTimes) {
@@ -59,7 +63,7 @@ pub(super) fn error_test(a: &mut Assembler, times: &ServiceTimes) {
     a.ldi(code(ModeCommand::SendPositionAddInfo)).st(own::MODE);
     a.place(old).ld(own::MODE).out(output::COMMAND);
 
-    let count = ERRORS.len() - usize::from(!times.second_receiver);
+    let count = forced_errors(times.second_receiver);
     let first = a.label();
     for (n, error) in ERRORS.into_iter().enumerate().take(count).skip(1) {
         let other = a.label();
