@@ -24,6 +24,7 @@ use crate::config::{Project, Receiver};
 use crate::error::GenError;
 use crate::readers::is_core;
 use crate::scratch;
+use crate::verilog::as_printed;
 use endat_hdl::elaborate::properties::{of_label, properties, Begins, Property};
 use endat_hdl::elaborate::{Design, Module};
 use endat_sim::diagram::waves_svg;
@@ -59,7 +60,7 @@ const SEARCH_CYCLES: usize = 12;
 pub struct Subject {
     /// Name of the card.
     pub name: String,
-    /// It.
+    /// It, as its text has it.
     pub design: Design,
     /// Its Verilog, and nothing else.
     pub files: Vec<Artifact>,
@@ -72,14 +73,14 @@ impl Subject {
     pub fn new(project: &Project) -> Result<Self, GenError> {
         let design = crate::design(project)?;
         let files = crate::artifacts_of(project, &design)?;
-        Ok(Self::of(&project.name, design, files))
+        Ok(Self::of(&project.name, &design, files))
     }
 
     /// A receiver as it is emitted.
     pub fn receiver(receiver: &Receiver) -> Result<Self, GenError> {
         let design = crate::t_format::design(receiver)?;
         let files = crate::t_format::emit(receiver)?;
-        Ok(Self::of(&receiver.name, design, files))
+        Ok(Self::of(&receiver.name, &design, files))
     }
 
     /// Leaves only those parts to prove that hold a module.
@@ -92,8 +93,9 @@ impl Subject {
         self.parts.retain(|part| holds(*part));
     }
 
-    fn of(name: &str, design: Design, mut files: Vec<Artifact>) -> Self {
+    fn of(name: &str, design: &Design, mut files: Vec<Artifact>) -> Self {
         files.retain(is_core);
+        let design = as_printed(design);
         let parts = parts(&design);
         Self {
             name: name.into(),

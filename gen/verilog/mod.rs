@@ -30,9 +30,14 @@ pub struct Header {
 /// The licence of emitted text.
 pub const LICENCE: &str = "MIT OR Apache-2.0";
 
+/// The design as its text has it: without what its configuration never uses, with names that every tool takes.
+pub fn as_printed(design: &Design) -> Design {
+    names::with_emitted_names(design).trimmed()
+}
+
 /// Prints a design as one file, the top module first.
 pub fn print(design: &Design, header: &Header) -> String {
-    let design = &names::with_emitted_names(design);
+    let design = &as_printed(design);
     let mut out = String::new();
     print_header(&mut out, design, header);
     out.push_str(PROLOGUE);
@@ -51,7 +56,7 @@ pub fn file_name(module: &str) -> String {
 
 /// Prints a design as one file per module, the top module first: file names and texts. Linters want a module in a file of its name.
 pub fn print_files(design: &Design, header: &Header) -> Vec<(String, String)> {
-    let design = &names::with_emitted_names(design);
+    let design = &as_printed(design);
     let file = |(index, module): (usize, &Module)| {
         let mut out = String::new();
         match index {

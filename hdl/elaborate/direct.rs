@@ -152,18 +152,6 @@ impl Draft<'_> {
             }
         }
         let used = self.module.mentioned_nets();
-        let map: BTreeMap<NetId, NetId> = used
-            .iter()
-            .enumerate()
-            .map(|(new, old)| (*old, new))
-            .collect();
-        let nets = std::mem::take(&mut self.module.nets);
-        self.module.nets = nets
-            .into_iter()
-            .enumerate()
-            .filter(|(net, _)| used.contains(net))
-            .map(|(_, net)| net)
-            .collect();
-        self.module.renumber(&|net| map[&net]);
+        self.module.keep_nets(&used);
     }
 }

@@ -18,15 +18,18 @@ mod finish;
 mod index;
 mod loops;
 mod names;
+mod pieces;
 mod plan;
 pub mod properties;
 mod scope;
 mod tree;
+mod trim;
 mod uses;
 
 pub use design::*;
 pub use execute::{binary, evaluate, execute};
 pub use finish::block_name;
+pub use pieces::{pieces, Piece};
 use rust_hdl::prelude::Block;
 
 /// Why a block cannot be elaborated.

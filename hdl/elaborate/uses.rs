@@ -52,7 +52,17 @@ impl Module {
         nets
     }
 
-    pub(super) fn renumber(&mut self, map: &dyn Fn(NetId) -> NetId) {
+    /// Removes all other nets; nothing may mention them.
+    pub(super) fn keep_nets(&mut self, used: &BTreeSet<NetId>) {
+        let numbers = used.iter().enumerate();
+        let map: BTreeMap<NetId, NetId> = numbers.map(|(new, old)| (*old, new)).collect();
+        let nets = std::mem::take(&mut self.nets).into_iter().enumerate();
+        let kept = nets.filter(|(net, _)| used.contains(net));
+        self.nets = kept.map(|(_, net)| net).collect();
+        self.renumber(&|net| map[&net]);
+    }
+
+    fn renumber(&mut self, map: &dyn Fn(NetId) -> NetId) {
         for statement in self.processes.iter_mut().flat_map(|p| &mut p.statements) {
             statement.for_each_net_mut(&mut |net| *net = map(*net));
         }

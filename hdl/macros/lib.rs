@@ -38,6 +38,8 @@ use syn::{
 ///
 /// `#[optional]` on a list of at most one signal: its name is emitted without a number.
 ///
+/// Where it is the only block of its file, what stands at the head of the file is its documentation, drawing included.
+///
 /// `#[properties("x.sv")]` on the block names the file, beside the source, with what is proved about it.
 #[proc_macro_derive(Block, attributes(start, given, optional, properties))]
 pub fn block(input: TokenStream) -> TokenStream {
@@ -142,7 +144,10 @@ fn docs<'a>(
 ) -> TokenStream2 {
     let name = &input.ident;
     let (generics, arguments, bounds) = input.generics.split_for_impl();
-    let own = lines(&input.attrs);
+    let own = match lines_of_file(name) {
+        file if file.is_empty() => lines(&input.attrs).into_iter().cloned().collect(),
+        file => file,
+    };
     let properties = input.attrs.iter().find(|a| a.path().is_ident("properties"));
     let properties = match properties.map(Attribute::parse_args::<LitStr>) {
         None => quote!(""),
@@ -165,6 +170,19 @@ fn docs<'a>(
             };
         }
     }
+}
+
+/// The documentation at the head of the file, with its drawing, of a block that is the only one there.
+fn lines_of_file(name: &Ident) -> Vec<Lit> {
+    let file = name.span().unwrap().local_file();
+    let text = file.and_then(|file| std::fs::read_to_string(file).ok());
+    let text = text.filter(|text| text.matches("Block)]\n").count() == 1);
+    let text = text.unwrap_or_default();
+    let head = text.lines().map_while(|line| line.strip_prefix("//!"));
+    let shown = head.filter(|line| !line.trim_start().starts_with("```"));
+    shown
+        .map(|line| Lit::Str(LitStr::new(line, name.span())))
+        .collect()
 }
 
 /// The lines of a documentation.

@@ -9,4 +9,5 @@ mod mismatch;
 mod program;
 mod random;
 mod source_check;
+mod trim;
 mod zoo;
