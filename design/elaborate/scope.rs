@@ -8,7 +8,7 @@ use super::design::{
 use super::tree::BlockNode;
 use super::ElaborateError;
 use expr::Value;
-use rust_hdl::core::ast::{
+use rust_hdl::ast::{
     VerilogBlock, VerilogBlockOrConditional, VerilogCase, VerilogConditional,
     VerilogExpression as Ast, VerilogLink, VerilogLinkDetails, VerilogMatch, VerilogStatement,
 };

@@ -259,7 +259,8 @@ pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
     let setup = match registers.is_empty() {
         true => quote!(),
         false => quote! {
-            dff_setup!(self, #clock, #(#registers),*);
+            #(self.#registers.clock.next = self.#clock.val();)*
+            #(self.#registers.d.next = self.#registers.q.val();)*
             #(self.#reset_here.reset.next = self.#reset.val();)*
         },
     };

@@ -2,7 +2,7 @@
 //! would have made, and the update function, computed with rust-hdl's own `Bits`.
 
 use rtl_design::reg::Reg;
-use rust_hdl::core::ast::{
+use rust_hdl::ast::{
     VerilogBlockOrConditional, VerilogCase, VerilogConditional, VerilogExpression as Ast,
     VerilogMatch, VerilogOp, VerilogOpUnary, VerilogStatement,
 };

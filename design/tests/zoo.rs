@@ -14,6 +14,14 @@ pub fn check(name: &str, design: &Design, mut engine: impl Engine, cycles: usize
     three_way(name, &mut engine, design, &stimulus).unwrap();
 }
 
+/// As in rust-hdl's widgets; its kernels know it by name.
+macro_rules! dff_setup {
+    ($self:ident, $clock:ident, $($register:ident),+) => {
+        $($self.$register.clock.next = $self.$clock.val();)+
+        $($self.$register.d.next = $self.$register.q.val();)+
+    };
+}
+
 /// States of the machine under test.
 #[derive(Copy, Clone, Debug, PartialEq, LogicState)]
 pub enum Phase {

@@ -4,7 +4,7 @@ use super::{Scope, Symbol};
 use crate::elaborate::design::{mask, BinaryOp, Expr, ExprKind, UnaryOp};
 use crate::elaborate::tree::{literal_value, literal_width};
 use crate::elaborate::ElaborateError;
-use rust_hdl::core::ast::{VerilogExpression as Ast, VerilogOp, VerilogOpUnary};
+use rust_hdl::ast::{VerilogExpression as Ast, VerilogOp, VerilogOpUnary};
 
 type Result<T> = std::result::Result<T, ElaborateError>;
 
