@@ -10,11 +10,11 @@ use crate::error::GenError;
 use crate::template::render;
 use crate::testbench::RESET_CYCLES;
 use endat_hdl::bus::HostBus;
-use endat_hdl::elaborate::{Design, Direction};
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
 use endat_sim::decimal;
 use minijinja::context;
 use minijinja::value::{Serde, Value};
+use rtl_design::elaborate::{Design, Direction};
 use serde::Serialize;
 
 /// End of the file's name, and its template.

@@ -39,10 +39,9 @@ use endat_hdl::bus::{
     wishbone::WishboneCard, HostBus,
 };
 use endat_hdl::card::{bare_port, Card};
-use endat_hdl::elaborate::{elaborate, Design};
 use error::GenError;
+use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
-use verilog::Header;
 
 /// All files of a project, the MANIFEST last.
 pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
@@ -89,25 +88,17 @@ pub fn design(project: &Project) -> Result<Design, GenError> {
 fn artifacts_of(project: &Project, design: &Design) -> Result<Vec<Artifact>, GenError> {
     let report = explain::report(project).to_string();
     let channels = project.card.channels.len();
-    let header = Header {
-        title: match project.bus {
-            HostBus::Bare => format!("{}: {} encoder port.", project.name, project.protocols()),
-            _ => format!(
-                "{}: {} acquisition card, {channels} channel{}.",
-                project.name,
-                project.protocols(),
-                if channels == 1 { "" } else { "s" }
-            ),
-        },
-        version: env!("CARGO_PKG_VERSION").into(),
-        configuration_hash: project.hash.clone(),
-        timing: report.lines().map(str::to_owned).collect(),
+    let title = match project.bus {
+        HostBus::Bare => format!("{}: {} encoder port.", project.name, project.protocols()),
+        _ => format!(
+            "{}: {} acquisition card, {channels} channel{}.",
+            project.name,
+            project.protocols(),
+            if channels == 1 { "" } else { "s" }
+        ),
     };
-    let files = verilog::print_files(design, &header);
-    let mut artifacts: Vec<Artifact> = files
-        .into_iter()
-        .map(|(path, text)| Artifact::new(path, text))
-        .collect();
+    let header = verilog::header(title, &project.hash, &report);
+    let mut artifacts = verilog::artifacts(design, &header);
     if project.bus != HostBus::Bare {
         artifacts.extend(maps::artifacts(project)?);
     }

@@ -20,8 +20,8 @@
 //!
 //! Ref: TI motor-control SDK, `endat_drv.c` (order, selection); HEIDENHAIN EnDat FAQ (end of selection).
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Record of selections and contents of one channel.

@@ -31,7 +31,7 @@ use crate::stream::{buffer::SetParts, channel::SetChannel, run::RunChannel, Stre
 use crate::timebase::Timebase;
 use crate::trigger::Trigger;
 use crate::whole_result::WholeResult;
-use endat_macros::{kernel, Block};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 use parts::{blink_bit, channel_triggers, port, served_channels};

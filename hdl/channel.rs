@@ -25,13 +25,13 @@ use crate::input_filter::InputFilter;
 use crate::line_delay::{self, LineDelay};
 use crate::protocol::{PARAMETER_BITS, TEST_VALUE_BITS};
 use crate::receiver::Receiver;
-use crate::reg::Reg;
 use crate::second_receiver::SecondReceiver;
 use crate::several::{each, numbered};
 use crate::snapshot::Snapshot;
 use crate::sure_bit::SureBit;
 use crate::transaction::Transaction;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// From the cycle with the trigger strobe to the first cycle with the EnDat clock low, at every width and rate.

@@ -12,10 +12,11 @@
 
 use crate::config::CardConfig;
 use crate::config_ring::ConfigRing;
-use crate::reg::Reg;
 use crate::regs::config_words;
 use crate::several::each;
-use endat_macros::{kernel, Block};
+use endat_macros::kernel;
+use rtl_design::reg::Reg;
+use rtl_design::Block;
 use rust_hdl::prelude::*;
 
 /// Words of a result.

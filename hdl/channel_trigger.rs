@@ -8,8 +8,8 @@
 //! Channels with equal settings trigger in the same cycle: they take settings over in the same cycle, busy or not, and a write to one of
 //! these settings starts the count of all channels anew. The strobe is in the cycle of the card's.
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Bits of `skip`.

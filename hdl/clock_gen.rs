@@ -13,8 +13,8 @@
 
 use crate::features::Features;
 use crate::half_period::HalfPeriod;
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// EnDat clock generator of one channel.

@@ -17,8 +17,8 @@
 //! [`crate::protocol::SUPPLEMENT_ZEROS`].
 
 use crate::protocol::PARAMETER_BITS;
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Sends what the receiver has to say, MSB first, on falling clock edges.

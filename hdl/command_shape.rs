@@ -12,7 +12,7 @@
 //!
 //! Ref: [`crate::protocol::ModeCommand`].
 
-use endat_macros::{kernel, Block};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Decoder of a mode command.

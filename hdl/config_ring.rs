@@ -11,8 +11,8 @@
 //!
 //! Each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is written again.
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Words in a block.

@@ -9,8 +9,8 @@
 //! based on FPGA", 2024 (five equations for 31 bits, equal to [`Crc5Fixed`] of that length).
 
 use crate::protocol::{CRC5_POLYNOMIAL, CRC5_PRESET};
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// The smallest `k > 0` with `x^k = 1` modulo the generator.

@@ -8,9 +8,10 @@
 //! The bits are taken one after the other because a shift by any number of bits takes as much logic as all the rest; a
 //! frame takes longer than 32 cycles, so none is overtaken by the next.
 
-use crate::reg::Reg;
 use crate::regs::{DIRECT, ERROR_CAUSES};
-use endat_macros::{kernel, Block};
+use endat_macros::kernel;
+use rtl_design::reg::Reg;
+use rtl_design::Block;
 use rust_hdl::prelude::*;
 
 /// Cycles from a result's strobe to its cropped position.

@@ -18,7 +18,7 @@ use crate::service::{channel::ServiceChannel, Service};
 use crate::several::each;
 use crate::t_format::port::TFormatPort;
 use crate::transaction::cause;
-use endat_macros::{kernel, Block};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// One encoder.

@@ -9,8 +9,8 @@
 //!
 //! What decides where a position stands in the answer, command and width, is guarded: its parity is taken as the frame begins.
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Settings of one channel's frames.

@@ -9,8 +9,8 @@
 //! A period of an odd number of cycles has its second half one cycle longer. The comparison is registered, which
 //! is why the counter starts at 2.
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Marks the last cycle of each half of a clock period.

@@ -8,8 +8,8 @@
 //! The delay it adds is part of the propagation delay that the receiver measures, so it needs no correction.
 
 use crate::features::Features;
-use crate::reg::{FallReg, Reg, SyncReg};
-use endat_macros::{kernel, Block};
+use rtl_design::reg::{FallReg, Reg, SyncReg};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Synchroniser of three stages and a run-time filter for one input pin.

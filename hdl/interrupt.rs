@@ -6,10 +6,10 @@
 //!
 //! An event that comes in the cycle of its clear is not lost.
 
-use crate::reg::Reg;
 use crate::regs::INTERRUPT;
 use crate::several::each;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Status, mask and line.

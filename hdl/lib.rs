@@ -9,8 +9,8 @@
 //!                +-- Receiver -> Crc5 -> Snapshot -> registers -> host link
 //! ```
 //!
-//! Reading order: [`protocol`] and [`timing`] (facts), [`reg`] (the only registers), then the blocks
-//! from left to right in the drawing, [`channel`], [`card`]. [`elaborate`] turns any block into a typed `Design`.
+//! Reading order: [`protocol`] and [`timing`] (facts), then the blocks
+//! from left to right in the drawing, [`channel`], [`card`]. [`rtl_design`] has the registers, and turns any block into a typed `Design`.
 
 pub mod add_info;
 pub mod bus;
@@ -25,7 +25,6 @@ pub mod config;
 pub mod config_ring;
 pub mod crc5;
 pub mod direct;
-pub mod elaborate;
 pub mod encoder_port;
 pub mod features;
 pub mod frame_settings;
@@ -35,12 +34,10 @@ pub mod interrupt;
 pub mod line_delay;
 pub mod line_health;
 pub mod line_monitor;
-pub mod memory;
 pub mod phase_tracker;
 pub use endat_regs::protocol;
 pub mod receiver;
 pub mod recovery_counter;
-pub mod reg;
 pub mod register_bank;
 pub mod regs;
 pub mod second_interface;

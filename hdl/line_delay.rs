@@ -18,8 +18,8 @@
 use crate::features::Features;
 use crate::half_period::HalfPeriod;
 use crate::phase_tracker::PhaseTracker;
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Sample strobes and start edge window of one channel.

@@ -13,8 +13,8 @@
 //! A receiver hears its own mode command, so a frame without any HIGH means that the line, or what listens to it, is stuck.
 //! This asks for a transceiver that keeps listening while it sends.
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Stuck lines, absent encoders and the watchdog of one channel.

@@ -12,9 +12,10 @@
 //! What is measured is worth the same at every clock; the settings take effect between two frames.
 
 use crate::features::Features;
-use crate::memory::Memory;
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use endat_macros::kernel;
+use rtl_design::memory::Memory;
+use rtl_design::reg::Reg;
+use rtl_design::Block;
 use rust_hdl::prelude::*;
 
 pub use endat_regs::line::word;

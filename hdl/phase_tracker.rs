@@ -13,8 +13,8 @@
 //! In mode `fixed` the delay comes from a register, and the phase stays as it is.
 
 use crate::features::Features;
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Bits of the phase behind the point.

@@ -21,8 +21,8 @@
 use crate::crc5::{Crc5Check, Crc5Serial, ORDER_OF_X};
 use crate::features::Features;
 use crate::protocol;
-use crate::reg::Reg;
-use endat_macros::{kernel, Block, States};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// What the next sample is.

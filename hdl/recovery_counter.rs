@@ -8,9 +8,10 @@
 //! DATA falls within the answer, too, and with a long cable behind the last edge of CLOCK: the last fall is the one that counts. The
 //! counters of two channels are never equal, so a control sees that it reads the one it means, and that it runs.
 
-use crate::reg::{Reg, SyncReg};
 use crate::regs::{COUNTER_SPACING, RECOVERY};
-use endat_macros::{kernel, Block};
+use endat_macros::kernel;
+use rtl_design::reg::{Reg, SyncReg};
+use rtl_design::Block;
 use rust_hdl::prelude::*;
 
 /// Recovery counter of one channel.

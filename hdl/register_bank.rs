@@ -21,9 +21,10 @@
 
 use crate::config::CardConfig;
 use crate::config_ring::{ConfigRing, RING_BYTES};
-use crate::reg::Reg;
 use crate::regs::{config_words, start, CARD};
-use endat_macros::{kernel, Block};
+use endat_macros::kernel;
+use rtl_design::reg::Reg;
+use rtl_design::Block;
 use rust_hdl::prelude::*;
 
 /// Decoder and card registers.

@@ -14,10 +14,10 @@
 
 pub mod record;
 
-use crate::reg::{Reg, SyncReg};
 use crate::regs::RESULT;
 use crate::stream::buffer::CRC16_POLYNOMIAL;
-use endat_macros::{kernel, Block, States};
+use rtl_design::reg::{Reg, SyncReg};
+use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// What begins an answer.

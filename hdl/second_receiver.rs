@@ -13,9 +13,9 @@
 
 use crate::features::Features;
 use crate::receiver::Receiver;
-use crate::reg::Reg;
 use crate::transaction::cause::{self, flag};
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// The second receiver of a channel, and the comparison.

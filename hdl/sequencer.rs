@@ -55,9 +55,9 @@ mod model;
 #[cfg(test)]
 mod tests;
 
-use crate::memory::{Memory, Rom};
-use crate::reg::Reg;
-use endat_macros::{kernel, Block, States};
+use rtl_design::memory::{Memory, Rom};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// Words of a program.

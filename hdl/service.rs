@@ -20,12 +20,12 @@ pub mod channel;
 pub mod map;
 pub mod program;
 
-use crate::reg::Reg;
 use crate::sequencer::Sequencer;
 use crate::several::each;
-use endat_macros::{kernel, Block};
 use map::output;
 use program::ServiceTimes;
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Channels that a service has room for.

@@ -11,9 +11,9 @@
 //!
 //! Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 
-use crate::reg::Reg;
 use crate::transaction::cause;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Result registers of one channel.

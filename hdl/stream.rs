@@ -11,10 +11,11 @@
 //! What a set and a frame look like is told in `docs/stream.md`. A set that is closed is taken whole in one cycle, then written in its own
 //! time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 
-use crate::reg::Reg;
 use crate::several::each;
 use buffer::{FrameBuffer, SetParts};
-use endat_macros::{kernel, Block};
+use endat_macros::kernel;
+use rtl_design::reg::Reg;
+use rtl_design::Block;
 use rust_hdl::prelude::*;
 
 pub mod buffer;

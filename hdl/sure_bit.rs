@@ -10,8 +10,8 @@
 //!
 //! For what would begin something that nobody has asked for: a request sent once more, a clock that goes on.
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// A flag in two registers.

@@ -6,8 +6,8 @@
 //! timestamp counts every cycle and wraps
 //! ```
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Fastest system clock that the microsecond counter can divide, in hertz.

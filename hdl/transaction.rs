@@ -25,12 +25,12 @@ pub mod verdict;
 
 use crate::features::{Features, FixedTimes};
 use crate::line_health::LineHealth;
-use crate::reg::Reg;
 use crate::several::each;
 use crate::sure_bit::SureBit;
 use crate::timing;
 use cause::flag;
-use endat_macros::{kernel, Block, States};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
 use verdict::Verdict;
 

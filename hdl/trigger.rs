@@ -10,8 +10,8 @@
 //! Sources that coincide make one trigger. The strobe begins with the third clock edge that sees the pin high, and with the
 //! first that sees the register strobe.
 
-use crate::reg::{Reg, SyncReg};
-use endat_macros::{kernel, Block};
+use rtl_design::reg::{Reg, SyncReg};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Shortest period that the timer can make, in system clock cycles.

@@ -10,8 +10,8 @@
 //! A start bit that is high again at its middle was noise and is forgotten; a byte whose stop bit is low is
 //! dropped and reported as `framing_error`. A line that stays low (break) gives one framing error, no bytes.
 
-use crate::reg::{Reg, SyncReg};
-use endat_macros::{kernel, Block};
+use rtl_design::reg::{Reg, SyncReg};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Fewest system clock cycles in a bit that the receiver can halve and sample.

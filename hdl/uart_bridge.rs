@@ -20,9 +20,9 @@
 //!
 //! Ref: LiteX, `litex/soc/cores/uart.py` (gateware) and `litex/tools/remote/comm_uart.py` (client).
 
-use crate::reg::Reg;
 use crate::uart::{UartReceiver, UartTransmitter};
-use endat_macros::{kernel, Block, States};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// Longest pause within a command, in microseconds (LiteX: 100 ms).

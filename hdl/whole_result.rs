@@ -16,10 +16,10 @@
 //!
 //! Without the additional informations (T-format) all of it is wires.
 
-use crate::reg::Reg;
 use crate::regs::{BLOCK_STRIDE, INFO_FIRST, RESULT_BASE};
 use crate::several::each;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Result and informations of one channel.

@@ -1,4 +1,4 @@
-//! The bench of the EnDat receiver core: everything the core talks to, and the engines that run it.
+//! The bench of the EnDat receiver core: everything the core talks to. Engines of [`rtl_design`] run the core.
 //!
 //! Time is real here: [`Time`] counts picoseconds, and nothing in the encoder or line model is quantised to the
 //! system clock.
@@ -8,7 +8,6 @@ pub mod campaign;
 mod decimal;
 pub mod diagram;
 pub mod encoder;
-pub mod engine;
 pub mod frame;
 pub mod line;
 pub mod rng;

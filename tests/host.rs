@@ -3,14 +3,14 @@
 use endat_gen::config::load_preset;
 use endat_hdl::{
     config::CardConfig,
-    elaborate::{elaborate, Design},
     regs::{Block, Register},
 };
 use endat_sim::{
     bench::{Bench, Link, PinNames},
-    engine::Compiled,
     MS,
 };
+use rtl_design::elaborate::{elaborate, Design};
+use rtl_design::engine::Compiled;
 
 /// System clock cycles in a UART bit.
 const BIT: u64 = 8;

@@ -33,6 +33,12 @@ mod sim;
 mod strangers;
 mod stream;
 mod t_format;
-mod three_way;
 mod tools;
 mod verilog;
+
+// What the tests of design/ are made of, for whole cards.
+#[path = "../design/tests/stimulus.rs"]
+mod stimulus;
+#[path = "../design/tests/three_way.rs"]
+mod three_way;
+use endat_sim::rng;

@@ -137,7 +137,7 @@ fn the_program_runs_without_its_sources() {
 /// What is compiled into the libraries names no folder of the machine that built them. Sources of tests may.
 #[test]
 fn no_library_knows_its_own_folder() {
-    let mut folders = ["gen", "hdl", "host", "sim"]
+    let mut folders = ["design", "gen", "hdl", "host", "sim"]
         .map(|f| Path::new(env!("CARGO_MANIFEST_DIR")).join(f))
         .to_vec();
     while let Some(folder) = folders.pop() {

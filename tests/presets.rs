@@ -7,7 +7,6 @@ use crate::stream::rig::{Set, FRESH, MISSING, TAKEN, VALID};
 use endat_gen::config::{load_preset, Project, PRESETS};
 use endat_hdl::card::{service_times, Card};
 use endat_hdl::config::{ChannelConfig, StreamStart};
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::service::program::ServiceTimes;
 use endat_hdl::t_format::protocol::RATE_TOLERANCE_PPM;
@@ -15,10 +14,11 @@ use endat_hdl::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS, SHORT_RECOVERY_MIN_NS}
 use endat_hdl::uart::BIT_CYCLES_MIN;
 use endat_sim::bench::{Bench, Link, PinNames, TFormatLink, Uart};
 use endat_sim::encoder::EncoderConfig;
-use endat_sim::engine::Compiled;
 use endat_sim::line::LineConfig;
 use endat_sim::t_format;
 use endat_sim::{MS, NS, US};
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 
 /// What a crystal may be off, in parts per million.

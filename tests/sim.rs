@@ -2,11 +2,11 @@
 
 use crate::program::{bad, good, run, Dir};
 use endat_hdl::channel::{Channel, FixedTimes};
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::service::program::{steps, Step};
 use endat_sim::encoder::Defect;
-use endat_sim::engine::Compiled;
 use endat_sim::scenario::{self, RunOptions};
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use std::fs;
 

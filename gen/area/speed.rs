@@ -6,8 +6,8 @@
 use super::{read, run, synthesise, Family, ECP5, ICE40};
 use crate::artifact::Artifact;
 use crate::error::GenError;
-use crate::verilog::emitted_name;
-use endat_hdl::elaborate::{Design, Direction};
+use rtl_design::elaborate::{Design, Direction};
+use rtl_design::verilog::emitted_name;
 use serde::Serialize;
 use serde_json::Value;
 use std::path::Path;

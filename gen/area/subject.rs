@@ -4,7 +4,7 @@ use super::guard::{Guard, GUARDS};
 use crate::artifact::Artifact;
 use crate::config::{load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
-use crate::verilog::{file_name, print_files, Header};
+use crate::verilog;
 use endat_hdl::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard,
@@ -14,7 +14,6 @@ use endat_hdl::channel::{Channel, Features, FixedTimes};
 use endat_hdl::config::CardConfig;
 use endat_hdl::crc5::{Crc5Check, Crc5Fixed, Crc5Serial};
 use endat_hdl::direct::DirectOutput;
-use endat_hdl::elaborate::{block_name, elaborate, Design};
 use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::interrupt::Interrupt;
 use endat_hdl::line_delay::LineDelay;
@@ -32,6 +31,8 @@ use endat_hdl::t_format::{
     port::TFormatPort,
 };
 use endat_hdl::transaction::Transaction;
+use rtl_design::elaborate::{block_name, elaborate, Design};
+use rtl_design::verilog::file_name;
 use rust_hdl::prelude::Block;
 
 /// A design whose area is measured.
@@ -72,11 +73,7 @@ impl Subject {
 
     /// Its Verilog.
     pub fn files(&self) -> Vec<Artifact> {
-        let files = print_files(&self.design, &Header::default());
-        let files = files.into_iter();
-        let mut files: Vec<Artifact> = files
-            .map(|(path, text)| Artifact::new(path, text))
-            .collect();
+        let mut files = verilog::untitled(&self.design);
         for (block, from, to) in self.without.iter().flat_map(|guard| guard.edits) {
             let path = file_name(&block_name(self.name, block));
             let file = files.iter_mut().find(|file| file.path == path);

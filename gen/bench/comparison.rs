@@ -14,15 +14,15 @@ use crate::error::GenError;
 use endat_hdl::config::CHANNELS;
 use endat_hdl::config::{filter_longest, ChannelConfig, ChannelRequest};
 use endat_hdl::direct::CROP_CYCLES;
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::timing::{
     PERIOD_CYCLES_MIN, PERIOD_CYCLES_MIN_DOUBLE, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
 use endat_hdl::{channel::Channel, channel::FixedTimes};
-use endat_sim::engine::Compiled;
 use endat_sim::scenario::{self, RunOptions};
 use endat_sim::{decimal, Time, NS, US};
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 
 /// Cables, in metres, from short to long, that a preset is tried on.

@@ -18,8 +18,8 @@ use endat_hdl::timing::{
 };
 use endat_sim::campaign::{Case, Traces};
 use endat_sim::encoder::FrameLog;
-use endat_sim::engine::Compiled;
 use endat_sim::{Time, NS, US};
+use rtl_design::engine::Compiled;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;

@@ -2,9 +2,8 @@
 
 use crate::config::{load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
-use crate::verilog::{print_files, Header};
 use endat_hdl::card::Card;
-use endat_hdl::elaborate::{elaborate, Design};
+use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
 use std::path::Path;
 
@@ -42,10 +41,7 @@ impl CardDesign {
 
     /// Writes its Verilog into a folder; the names of the files.
     pub fn write(&self, folder: &Path) -> Result<Vec<String>, GenError> {
-        let files: Vec<_> = print_files(&self.design, &Header::default())
-            .into_iter()
-            .map(|(path, text)| crate::artifact::Artifact::new(path, text))
-            .collect();
+        let files = crate::verilog::untitled(&self.design);
         crate::artifact::write(folder, &files, crate::scratch::REMEDY)?;
         Ok(files.into_iter().map(|f| f.path).collect())
     }

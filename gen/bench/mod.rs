@@ -22,8 +22,8 @@ pub use rust_engines::card_kernels;
 
 use crate::error::GenError;
 use design::CardDesign;
-use endat_sim::engine::LaneWords;
 use outside::Verilator;
+use rtl_design::engine::LaneWords;
 use stimulus::{Digest, Stimulus};
 
 fn fault(e: &dyn std::fmt::Display) -> GenError {

@@ -8,9 +8,9 @@ use endat_hdl::config::TriggerSources;
 use endat_hdl::protocol::ModeCommand;
 use endat_sim::bench::{Bench, Link, PinNames};
 use endat_sim::encoder::{EncoderConfig, PositionSource};
-use endat_sim::engine::Compiled;
 use endat_sim::line::LineConfig;
 use endat_sim::{Time, US};
+use rtl_design::engine::Compiled;
 
 /// Triggers before the measured ones: with alignment four frames measure the delay.
 const WARM_UPS: usize = 5;

@@ -6,10 +6,10 @@ use super::{fault, Measured};
 use crate::error::GenError;
 use endat_hdl::card::Card;
 use endat_sim::bench::{Bench, LaneBench, Link, PinNames};
-use endat_sim::engine::{
+use rtl_design::engine::{
     Compiled, Engine, Interpreter, Keep, KernelEngine, LaneWords, Lanes, PortId,
 };
-use endat_sim::kernel_engine;
+use rtl_design::kernel_engine;
 use std::thread;
 use std::time::Instant;
 

@@ -5,9 +5,9 @@ use crate::error::GenError;
 use endat_hdl::uart::bit_cycles;
 use endat_sim::bench::{Bench, Link, PinNames};
 use endat_sim::encoder::{EncoderConfig, PositionSource};
-use endat_sim::engine::{Compiled, Engine};
 use endat_sim::line::LineConfig;
 use endat_sim::{NS, US};
+use rtl_design::engine::{Compiled, Engine};
 
 /// Cables of the two channels, in metres.
 pub const CABLES_M: [f64; 2] = [5.0, 20.0];
@@ -98,7 +98,7 @@ impl Stimulus {
             engine.set(inputs[2], u128::from(host_level(cycle, bit)));
             bench.tick();
             // Inputs stay as they are until the next tick.
-            let level = |id: &endat_sim::engine::PortId| bench.engine().get(*id) as u8;
+            let level = |id: &rtl_design::engine::PortId| bench.engine().get(*id) as u8;
             rows.push(0);
             let row = inputs.iter().map(level).enumerate();
             let row = row.fold(0, |row, (place, level)| row | level << place);

@@ -273,7 +273,7 @@ pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> 
 
 /// Says so if the simulation was not at its full speed.
 fn with_engine(mut outcome: Outcome) -> Outcome {
-    if let Err(why) = endat_sim::engine::has_native_code() {
+    if let Err(why) = rtl_design::engine::has_native_code() {
         let text =
             format!("no native code on this machine ({why}): simulated in the slower interpreter");
         outcome.messages.push(text);

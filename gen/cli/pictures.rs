@@ -4,8 +4,8 @@ use crate::artifact::{self, Artifact};
 use crate::error::{shown, GenError};
 use endat_sim::bench::Bench;
 use endat_sim::diagram::{frame_svg, is_drawing, overview_svg};
-use endat_sim::engine::Compiled;
 use endat_sim::wave::{is_layout, is_vcd, write_t_format_wires, write_wires, Wave};
+use rtl_design::engine::Compiled;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 

@@ -5,15 +5,15 @@ use super::{to_json, Outcome};
 use crate::error::{shown, GenError};
 use clap::Args;
 use endat_hdl::channel::{Channel, FixedTimes};
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::service::program::ServiceTimes;
 use endat_sim::bench::Bench;
-use endat_sim::engine::Compiled;
 use endat_sim::scenario::{
     self, t_format, t_format::TFormatReport, ChannelReport, FrameReport, Report, RunOptions,
     Scenario,
 };
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use serde_json::{json, Value};
 use std::path::PathBuf;

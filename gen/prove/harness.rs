@@ -1,8 +1,8 @@
 //! The module around what is proved: every input may be anything in every cycle.
 
 use crate::artifact::Artifact;
-use crate::verilog::emitted_name;
-use endat_hdl::elaborate::{Direction, Module};
+use rtl_design::elaborate::{Direction, Module};
+use rtl_design::verilog::emitted_name;
 
 /// Its name, and that of its file.
 pub(super) const TOP: &str = "proof";

@@ -2,7 +2,7 @@
 
 use super::tools::Answer;
 use super::{property_of, Block};
-use endat_hdl::elaborate::properties::Begins;
+use rtl_design::elaborate::properties::Begins;
 use serde::Serialize;
 use std::fmt;
 

@@ -3,7 +3,7 @@
 use super::harness::TOP;
 use crate::artifact::Artifact;
 use crate::error::GenError;
-use endat_hdl::elaborate::properties::{Begins, ANY_STATE};
+use rtl_design::elaborate::properties::{Begins, ANY_STATE};
 use std::path::Path;
 use std::process::{Command, Stdio};
 

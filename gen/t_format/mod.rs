@@ -16,11 +16,11 @@ use crate::error::GenError;
 use crate::integration;
 use crate::template::render;
 use crate::testbench::RESET_CYCLES;
-use crate::verilog::{print_files, source_files, source_list, Header};
-use endat_hdl::elaborate::{elaborate, Design};
+use crate::verilog;
 use endat_hdl::t_format::dsp::AsyncDsp;
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
 use minijinja::context;
+use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
 
 /// The receiver's design.
@@ -38,21 +38,14 @@ pub fn design(receiver: &Receiver) -> Result<Design, GenError> {
 pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
     let design = design(receiver)?;
     let report = report(receiver).to_string();
-    let header = Header {
-        title: format!(
-            "{}: T-format receiver with a bus for a signal processor.",
-            receiver.name
-        ),
-        version: env!("CARGO_PKG_VERSION").into(),
-        configuration_hash: receiver.hash.clone(),
-        timing: report.lines().map(str::to_owned).collect(),
-    };
-    let files = print_files(&design, &header).into_iter();
-    let mut artifacts: Vec<Artifact> = files
-        .map(|(path, text)| Artifact::new(path, text))
-        .collect();
-    let sources = source_files(&artifacts);
-    artifacts.push(source_list(&receiver.name, &sources));
+    let title = format!(
+        "{}: T-format receiver with a bus for a signal processor.",
+        receiver.name
+    );
+    let header = verilog::header(title, &receiver.hash, &report);
+    let mut artifacts = verilog::artifacts(&design, &header);
+    let sources = verilog::source_files(&artifacts);
+    artifacts.push(verilog::source_list(&receiver.name, &sources));
     let map = include_str!("../templates/t_format_registers.md");
     artifacts.push(Artifact::new(
         format!("{}_registers.md", receiver.name),

@@ -16,9 +16,9 @@
 use super::word_access::WordAccess;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
-use crate::reg::Reg;
 use crate::several::each;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// AXI4-Lite slave in front of the register bank.

@@ -14,11 +14,11 @@
 use super::word_access::WordAccess;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
-use crate::reg::{Reg, SyncReg};
 use crate::service::program::ServiceTimes;
 use crate::several::each;
 use crate::stream::buffer::CRC16_POLYNOMIAL;
-use endat_macros::{kernel, Block, States};
+use rtl_design::reg::{Reg, SyncReg};
+use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// What the byte means.

@@ -8,8 +8,8 @@
 //! Data of a write need one register: the strobe itself closes it, when they have stood still for a clock, so whether a bit is still taken
 //! at that edge makes no difference; and it is looked at two clocks later.
 
-use crate::reg::{Reg, SyncReg};
-use endat_macros::{kernel, Block};
+use rtl_design::reg::{Reg, SyncReg};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Bus with chip select, read and write strobe, eight registers of 16 bits.

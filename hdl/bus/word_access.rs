@@ -14,8 +14,8 @@
 //! monitor; 5 for a strobe; a turn of the configuration ring (12 cycles for the card and each channel) and 4 for a configuration word,
 //! read or written, and for a word that is written to a service or line monitor.
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Bit of the microsecond counter that ends a moment.

@@ -9,7 +9,7 @@ use crate::config::CardConfig;
 use crate::service::program::ServiceTimes;
 use crate::several::each;
 use crate::uart_bridge::{UartBridge, TIMEOUT_US};
-use endat_macros::{kernel, Block};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 card_top! {

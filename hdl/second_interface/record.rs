@@ -8,9 +8,9 @@
 //! The words are held from the beginning of an answer on: a result that comes in between is in the next one.
 
 use super::RECORD_WORDS;
-use crate::reg::Reg;
 use crate::several::each;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Record of one channel.

@@ -6,9 +6,9 @@
 //! ```
 
 use super::map::input;
-use crate::reg::Reg;
 use crate::several::each;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// A channel's part of the service.

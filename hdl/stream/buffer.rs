@@ -14,10 +14,10 @@
 //!
 //! Ref: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7 (2), 1999.
 
-use crate::memory::Memory;
-use crate::reg::Reg;
 use crate::several::each;
-use endat_macros::{kernel, Block};
+use rtl_design::memory::Memory;
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Sizes that a buffer can have, in bytes.

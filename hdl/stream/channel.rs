@@ -13,10 +13,10 @@
 //! one that is not fresh, with the cause of an upset.
 
 use super::buffer::SetParts;
-use crate::reg::Reg;
 use crate::several::each;
 use crate::transaction::cause;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// A channel's place in a set.

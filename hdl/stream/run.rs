@@ -10,8 +10,8 @@
 //! one is lost.
 
 use super::RUN_SET_TYPE;
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Running clock of one channel.

@@ -6,8 +6,8 @@
 //! strobe  _________/\______________/\_   middle of the bit, then every bit_cycles
 //! ```
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Counter of system clock cycles in a bit.

@@ -11,7 +11,7 @@ use super::outcome::Outcome;
 use super::reply::Reply;
 use crate::features::Features;
 use crate::input_filter::InputFilter;
-use endat_macros::{kernel, Block};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Receiver of one T-format encoder.

@@ -30,8 +30,8 @@ use super::reply_bytes::ReplyBytes;
 use crate::bus::strobes::BusStrobes;
 use crate::features::Features;
 use crate::input_filter::InputFilter;
-use crate::reg::{Reg, SyncReg};
-use endat_macros::{kernel, Block};
+use rtl_design::reg::{Reg, SyncReg};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// What a T-format receiver starts with; all of it can be set by the processor.

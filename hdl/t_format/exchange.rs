@@ -19,8 +19,8 @@
 use super::bit_grid::BitGrid;
 use super::field_order::FieldOrder;
 use super::request_bits::RequestBits;
-use crate::reg::Reg;
-use endat_macros::{kernel, Block, States};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// Where the exchange is.

@@ -9,8 +9,8 @@
 //!         Control -> Address -> Data -> Crc                                               6, D
 //! ```
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block, States};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
 
 /// The field under way.

@@ -14,9 +14,9 @@
 //! processor still reads address 0, whose word is in no RAM.
 
 use super::verdict_bytes::VerdictBytes;
-use crate::memory::Memory;
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::memory::Memory;
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Words of results.

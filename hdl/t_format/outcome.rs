@@ -1,7 +1,7 @@
 //! Outcome: the result registers, changed in one clock cycle, with the last good position held, and the parity that it came with.
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Result registers of one T-format channel.

@@ -15,9 +15,10 @@ use super::primary::LowestCause;
 use super::reply::Reply;
 use crate::features::Features;
 use crate::input_filter::InputFilter;
-use crate::reg::Reg;
 use crate::snapshot::Snapshot;
-use endat_macros::{kernel, Block};
+use endat_macros::kernel;
+use rtl_design::reg::Reg;
+use rtl_design::Block;
 use rust_hdl::prelude::*;
 
 pub use endat_regs::t_format::word;

@@ -1,6 +1,6 @@
 //! Primary cause: the lowest of the raw flags, since causes are numbered so that the lowest explains the others.
 
-use endat_macros::{kernel, Block};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Picks the lowest flag.

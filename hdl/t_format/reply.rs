@@ -1,8 +1,8 @@
 //! Reply: the fields of a reply while they come, each in a shift register of its own, and the parities of the positions as they
 //! came, which go with them wherever they are kept.
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Fields of the reply under way.

@@ -7,8 +7,8 @@
 //!
 //! So no multiplexer is needed to fetch a field, and a bit takes one logic cell: its look-up table chooses the direction.
 
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Fields of the reply under way, fetched byte by byte.

@@ -1,6 +1,6 @@
 //! Request bits: the bit of a field that is sent, or that a reply has to repeat.
 
-use endat_macros::{kernel, Block};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// One data bit of the control, address, data or CRC field.

@@ -1,7 +1,7 @@
 //! Verdict bytes: what is told about a reply, as the bytes that the processor reads.
 
 use super::primary::LowestCause;
-use endat_macros::{kernel, Block};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Control data, communication alarm, and cause with valid positions.

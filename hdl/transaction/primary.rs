@@ -1,6 +1,6 @@
 //! Primary cause: one out of all the flags of a frame.
 
-use endat_macros::{kernel, Block};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Picks the cause that explains the others; what stands later wins.

@@ -13,8 +13,8 @@
 use super::cause::{self, flag};
 use super::primary::PrimaryCause;
 use crate::features::{Features, FixedTimes};
-use crate::reg::Reg;
-use endat_macros::{kernel, Block};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
 /// Result, cause and flags of one channel's frames.

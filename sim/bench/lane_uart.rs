@@ -1,7 +1,7 @@
 //! Hosts' ends of the serial lines of many cards, one in each lane, bit by bit in system clock cycles; as [`super::Uart`] is for one.
 
 use super::{bits, LaneBench};
-use crate::engine::PortId;
+use rtl_design::engine::PortId;
 use std::collections::VecDeque;
 
 /// Bits of a byte on the line: start, eight, stop.

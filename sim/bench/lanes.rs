@@ -6,11 +6,8 @@ use super::pins::{find, Pins, TimeBase};
 use super::record::ResultPorts;
 use super::sampler::Sampler;
 use super::{edge_time, half_time, is_tick_us, ChannelResult, ChannelSettings, Link, PinNames};
-use crate::{
-    encoder::Drive,
-    engine::{Lanes, PortId},
-    Time,
-};
+use crate::{encoder::Drive, Time};
+use rtl_design::engine::{Lanes, PortId};
 
 /// One EnDat port in all lanes.
 #[derive(Clone)]

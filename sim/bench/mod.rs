@@ -30,12 +30,12 @@ pub use uart::Uart;
 
 use crate::{
     encoder::{Drive, FrameLog, Violation},
-    engine::Engine,
     line::{Conflict, Sample},
     Time,
 };
 use pins::{Pins, TimeBase};
 use record::ResultPorts;
+use rtl_design::engine::Engine;
 use sampler::Sampler;
 use t_format::TFormatPort;
 

@@ -1,6 +1,6 @@
 //! The ports of a design that a bench knows by name.
 
-use crate::engine::{Port, PortId};
+use rtl_design::engine::{Port, PortId};
 
 /// Names of the pins of one EnDat port in a design.
 #[derive(Clone, Debug, PartialEq, Eq)]

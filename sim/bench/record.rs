@@ -1,11 +1,9 @@
 //! What the bench keeps of a design's ports.
 
 use super::pins::find;
-use crate::{
-    engine::{Engine, Port, PortId},
-    Time,
-};
+use crate::Time;
 use endat_hdl::transaction::cause;
+use rtl_design::engine::{Engine, Port, PortId};
 
 /// A result of the block `Channel`; the fields have the names of its ports.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -3,10 +3,10 @@
 use super::pins::Pins;
 use crate::{
     encoder::Drive,
-    engine::Engine,
     t_format::{Encoder, EncoderConfig},
     Time,
 };
+use rtl_design::engine::Engine;
 use std::collections::VecDeque;
 use std::sync::Arc;
 

@@ -2,7 +2,6 @@ use super::*;
 use crate::US;
 use crate::{
     encoder::{Defect, EncoderConfig, FrameEnd, PositionSource, Symbol},
-    engine::PortId,
     line::{End, LineConfig, Who},
     test_receiver::{Bug, TestReceiver, LATENCY},
     MS, NS,
@@ -11,6 +10,7 @@ use endat_hdl::{
     protocol::ModeCommand::{self, SendPosition, SendPositionAddInfo},
     transaction::cause,
 };
+use rtl_design::engine::PortId;
 
 const SYSTEM_HZ: u64 = 128_000_000;
 

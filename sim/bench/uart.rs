@@ -1,7 +1,7 @@
 //! A host's end of a serial line at the pins `uart_rx_i` and `uart_tx_o` of a card, in system clock cycles.
 
 use super::Bench;
-use crate::engine::{Engine, PortId};
+use rtl_design::engine::{Engine, PortId};
 use std::collections::VecDeque;
 
 /// Bits of a byte on the line: start, eight, stop.

@@ -3,19 +3,19 @@
 use crate::{
     bench::{Bench, ChannelResult, ChannelSettings, Link},
     encoder::{EncoderConfig, FrameEnd, FrameLog, Symbol, Violation},
-    engine::Engine,
     frame::CRC_BITS,
     line::{Conflict, LineConfig, Sample, Who},
     Time, MS,
 };
 use endat_hdl::{
     channel::{Channel, Features, FixedTimes, CALIBRATION_FRAMES},
-    elaborate::{elaborate, Design, ElaborateError},
     line_delay::mode,
     protocol::ModeCommand,
     timing,
     transaction::cause,
 };
+use rtl_design::elaborate::{elaborate, Design, ElaborateError};
+use rtl_design::engine::Engine;
 use rust_hdl::prelude::Block;
 
 /// From the pin to the register that takes a sample, without filter.

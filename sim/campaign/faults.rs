@@ -3,7 +3,8 @@
 use super::port::{Conditions, FrameKind, Mishap, Port, Ready, LEAD_PS};
 use super::work::{digest, hash, Campaign};
 use super::{CampaignError, Row, Tally};
-use crate::{engine::Lanes, line::FaultKind, rng::Rng, Time, NS, US};
+use crate::{line::FaultKind, rng::Rng, Time, NS, US};
+use rtl_design::engine::Lanes;
 use std::ops::Range;
 use std::sync::OnceLock;
 

@@ -6,11 +6,11 @@ use super::work::{digest, hash, Campaign};
 use super::{CampaignError, Row, Tally};
 use crate::{
     encoder::Defect,
-    engine::Lanes,
     line::{FaultKind, Jitter},
     rng::Rng,
     Time, NS, US,
 };
+use rtl_design::engine::Lanes;
 use std::ops::Range;
 use std::sync::OnceLock;
 

@@ -1,11 +1,9 @@
 //! Runs cases in lanes, on all processors. What comes out does not depend on how many of either there are.
 
 use super::case::{Case, DesignKey, Traces, RESET_CYCLES};
-use crate::{
-    bench::{LaneBench, PinNames},
-    engine::{EngineError, Keep, LaneWords, Lanes},
-};
-use endat_hdl::elaborate::ElaborateError;
+use crate::bench::{LaneBench, PinNames};
+use rtl_design::elaborate::ElaborateError;
+use rtl_design::engine::{EngineError, Keep, LaneWords, Lanes};
 use std::collections::btree_map::{BTreeMap, Entry};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Mutex;

@@ -6,15 +6,13 @@ use super::work::{digest, Campaign};
 use super::{CampaignError, Row, Tally};
 use crate::{
     encoder::Drive,
-    engine::{Keep, LaneWords, Lanes, PortId},
     rng::Rng,
     t_format::{Encoder, EncoderConfig},
     Time,
 };
-use endat_hdl::{
-    elaborate::{elaborate, Design},
-    t_format::port::TFormatPort,
-};
+use endat_hdl::t_format::port::TFormatPort;
+use rtl_design::elaborate::{elaborate, Design};
+use rtl_design::engine::{Keep, LaneWords, Lanes, PortId};
 use rust_hdl::prelude::Block;
 use std::ops::Range;
 

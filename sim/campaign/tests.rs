@@ -1,5 +1,5 @@
 use super::*;
-use crate::engine::{Compiled, LaneWords};
+use rtl_design::engine::{Compiled, LaneWords};
 
 /// A failing check shows what the lanes left behind.
 fn digest(traces: &Traces<'_>) -> Result<(), String> {

@@ -4,7 +4,8 @@
 use super::port::{Conditions, Mishap, Port, Ready};
 use super::work::{digest, hash, Campaign};
 use super::{CampaignError, Row, Tally};
-use crate::{engine::Lanes, rng::Rng};
+use crate::rng::Rng;
+use rtl_design::engine::Lanes;
 use std::ops::Range;
 
 /// Which flips are tried.

@@ -1,7 +1,7 @@
 //! Numbered cases on all processors: batches of one group each, counted together in any order.
 
 use super::{Shard, Tally};
-use endat_hdl::elaborate::Design;
+use rtl_design::elaborate::Design;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::Mutex;

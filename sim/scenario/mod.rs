@@ -12,11 +12,11 @@ pub use report::{Answer, ChannelReport, FrameReport, Report, SampleSummary};
 use crate::{
     bench::{Bench, ChannelSettings, Link, PinNames},
     encoder::EncoderConfig,
-    engine::Engine,
     line::LineConfig,
     Time, MS, US,
 };
 use endat_hdl::{channel::Features, protocol::ModeCommand};
+use rtl_design::engine::Engine;
 
 /// One EnDat port of a scenario.
 #[derive(Clone, Debug)]

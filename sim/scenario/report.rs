@@ -4,11 +4,11 @@ use super::{Request, Scenario};
 use crate::{
     bench::{Bench, ChannelResult},
     encoder::{AnswerKind, FrameEnd, FrameLog, Violation},
-    engine::Engine,
     line::Conflict,
     Time,
 };
 use endat_hdl::{timing, transaction::cause};
+use rtl_design::engine::Engine;
 use std::fmt;
 
 /// What came back to a request with a frame of its own.

@@ -2,7 +2,6 @@
 
 use crate::{
     bench::{Bench, ChannelResult, PinNames, TFormatLink},
-    engine::Engine,
     t_format::{Defect, EncoderConfig},
     Time, MS, US,
 };
@@ -12,6 +11,7 @@ use endat_hdl::t_format::{
     port::word,
     protocol::{Request, BIT_HZ, REPLY_GAP_US_MAX},
 };
+use rtl_design::engine::Engine;
 use std::fmt;
 
 /// What it is called on the command line.

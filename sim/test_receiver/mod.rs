@@ -8,10 +8,8 @@ mod command;
 mod decode;
 mod supplement;
 
-use crate::{
-    bench::ChannelSettings,
-    engine::{Engine, Port, PortId},
-};
+use crate::bench::ChannelSettings;
+use rtl_design::engine::{Engine, Port, PortId};
 
 /// What can be made wrong in it, to see the bench object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,11 +2,11 @@
 
 use crate::{
     bench::{Bench, Link, TFormatLink},
-    engine::Engine,
     line::End,
     segments::{data_segments, By, Level, Segment},
     Time, NS,
 };
+use rtl_design::engine::Engine;
 use std::{
     fmt::Write as _,
     io::{self, Write},

@@ -3,10 +3,10 @@
 use super::{count, run, Count, Kind};
 use endat_sim::{
     campaign::{Case, Traces},
-    engine::Compiled,
     line::{Glitch, Jitter, Wire},
     Time,
 };
+use rtl_design::engine::Compiled;
 
 const FILTER_CYCLES: u64 = 3;
 

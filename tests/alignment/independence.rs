@@ -4,16 +4,16 @@ use endat_gen::config::load_preset;
 use endat_hdl::{
     card::Card,
     config::{CardConfig, ChannelConfig, LineParts},
-    elaborate::elaborate,
     protocol::ModeCommand,
 };
 use endat_sim::{
     bench::{Bench, Link, PinNames},
     encoder::EncoderConfig,
-    engine::{Compiled, Engine},
     line::LineConfig,
     US,
 };
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Compiled, Engine};
 use rust_hdl::prelude::Block;
 
 /// Clock in hertz, position bits, command, cable in metres.

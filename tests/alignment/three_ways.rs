@@ -3,8 +3,9 @@
 use super::Kind;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::channel::{Channel, FixedTimes};
-use endat_hdl::elaborate::elaborate;
-use endat_sim::{engine::Compiled, kernel_engine};
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
+use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;
 
 #[test]

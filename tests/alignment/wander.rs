@@ -2,7 +2,8 @@
 
 use super::{count, Kind};
 use endat_hdl::{line_delay::mode, transaction::cause};
-use endat_sim::{campaign::Traces, engine::Compiled, line::Jitter, MS, US};
+use endat_sim::{campaign::Traces, line::Jitter, MS, US};
+use rtl_design::engine::Compiled;
 
 /// A microsecond in 10 000 frames, and then half a bit at once.
 fn wanders(kind: Kind, jitter_bits: f64) {

@@ -20,14 +20,14 @@ mod uart;
 use endat_gen::config::{parse, Project};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::CardConfig;
-use endat_hdl::elaborate::Design;
 use endat_hdl::regs::{Block, CARD};
 use endat_sim::bench::{Bench, Link, PinNames};
 use endat_sim::encoder::EncoderConfig;
-use endat_sim::engine::Compiled;
 use endat_sim::line::LineConfig;
 use endat_sim::rng::Rng;
 use endat_sim::US;
+use rtl_design::elaborate::Design;
+use rtl_design::engine::Compiled;
 
 /// Every front with words of 32 bits.
 pub const WORD_BUSES: [HostBus; 3] = [HostBus::Apb, HostBus::Wishbone, HostBus::AxiLite];

@@ -6,13 +6,13 @@ use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
 use endat_hdl::direct::{DirectOutput, CROP_CYCLES};
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::interrupt::Interrupt;
 use endat_hdl::regs::{Block, CARD, DIRECT, INTERRUPT, RESULT};
 use endat_hdl::transaction::cause;
 use endat_sim::encoder::{Defect, EncoderConfig};
-use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
+use rtl_design::elaborate::elaborate;
+use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block as _;
 
 const OUTPUTS: &str = "[outputs]\nparts = [\"position\", \"interrupt\"]\n";

@@ -4,13 +4,13 @@ use super::{at, frame, sound, text, Master, WORD_BUSES};
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::recovery_counter::RecoveryCounter;
 use endat_hdl::regs::{COUNTER_SPACING, RECOVERY, RESULT};
 use endat_sim::encoder::{Defect, EncoderConfig};
-use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
 use endat_sim::{NS, US};
+use rtl_design::elaborate::elaborate;
+use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block as _;
 
 const SAFETY: &str = "[safety]\nparts = [\"recovery_counter\"]\n";

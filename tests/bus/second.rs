@@ -6,13 +6,13 @@ use crate::three_way::{three_way, Stimulus};
 use crate::tools::{self, require};
 use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::regs::{CARD, RESULT};
 use endat_hdl::second_interface::record::SecondRecord;
 use endat_hdl::second_interface::SecondInterface;
 use endat_sim::encoder::Defect;
-use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
+use rtl_design::elaborate::elaborate;
+use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block as _;
 
 const SECOND: &str = "[safety]\nparts = [\"second_interface\"]\n";

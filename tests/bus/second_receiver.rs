@@ -3,7 +3,6 @@
 use super::{at, frame, Master, WORD_BUSES};
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::bus::HostBus;
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::features::Features;
 use endat_hdl::regs::{RESULT, SERVICE};
 use endat_hdl::second_receiver::SecondReceiver;
@@ -13,9 +12,10 @@ use endat_sim::campaign::faults::Faults;
 use endat_sim::campaign::port::Port;
 use endat_sim::campaign::upsets::{Draw, Upsets};
 use endat_sim::campaign::{run_shard, Campaign, Shard, Tally};
-use endat_sim::engine::{Compiled, Engine};
-use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Compiled, Engine};
+use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block as _;
 
 const SECOND: &str = "[safety]\nparts = [\"second_receiver\"]\n";

@@ -7,10 +7,10 @@ use endat_hdl::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard, HostBus,
 };
-use endat_hdl::elaborate::Design;
-use endat_sim::engine::{Engine, KernelEngine};
-use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
+use rtl_design::elaborate::Design;
+use rtl_design::engine::{Engine, KernelEngine};
+use rtl_design::kernel_engine;
 
 const CYCLES: usize = 1_200;
 

@@ -5,13 +5,13 @@ use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
 use endat_hdl::card::Card;
 use endat_hdl::config::{CardConfig, UART_TOLERANCE_PPM};
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::regs::{CARD_CONFIG, CHANNEL_CONFIG};
 use endat_hdl::timing::{deviation_ppm, period_cycles};
 use endat_hdl::uart::BIT_CYCLES_MIN;
 use endat_sim::bench::{Bench, Uart};
-use endat_sim::engine::Compiled;
 use endat_sim::rng::Rng;
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use std::collections::{BTreeMap, BTreeSet};
 

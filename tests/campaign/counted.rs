@@ -7,7 +7,7 @@ use endat_gen::campaign::part::Part;
 use endat_sim::campaign::port::Port;
 use endat_sim::campaign::upsets::{Draw, Upsets};
 use endat_sim::campaign::{count, run_shard, Shard, Tally};
-use endat_sim::engine::{Keep, LaneWords, Lanes};
+use rtl_design::engine::{Keep, LaneWords, Lanes};
 use std::fs;
 use std::path::Path;
 

@@ -8,7 +8,7 @@ mod schedulers;
 use endat_gen::cli;
 use endat_sim::campaign;
 use endat_sim::encoder::Defect;
-use endat_sim::engine::Compiled;
+use rtl_design::engine::Compiled;
 use serde_json::Value;
 
 fn run(arguments: &[&str]) -> cli::Outcome {

@@ -9,14 +9,14 @@ use endat_hdl::bus::{
     wishbone::WishboneCard, HostBus,
 };
 use endat_hdl::card::{service_times, Card};
-use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::service::program::ServiceTimes;
 use endat_sim::bench::{Bench, Link};
 use endat_sim::encoder::{Defect, EncoderConfig, Violation};
-use endat_sim::engine::Compiled;
 use endat_sim::line::LineConfig;
 use endat_sim::rng::Rng;
 use endat_sim::{MS, US};
+use rtl_design::elaborate::{elaborate, Design};
+use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use std::io::{BufRead, BufReader, Write};
 use std::path::Path;

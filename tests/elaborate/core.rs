@@ -1,15 +1,15 @@
 //! The real core, three ways, under stimulus that wanders through as many states as it can without an encoder.
 
-use super::zoo::random_stimulus;
+use crate::stimulus::random_stimulus;
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::load_preset;
 use endat_hdl::card::Card;
 use endat_hdl::channel::{Channel, Features, FixedTimes};
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::sequencer::{Sequencer, PROGRAM_WORDS};
-use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
+use rtl_design::elaborate::elaborate;
+use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;
 use std::collections::BTreeSet;
 

@@ -2,10 +2,10 @@
 
 use crate::strangers::configurations::{emission, texts};
 use endat_gen::config::Configuration;
-use endat_gen::verilog::as_printed;
-use endat_hdl::elaborate::{Design, Module};
-use endat_sim::engine::{Compiled, Engine};
 use endat_sim::rng::Rng;
+use rtl_design::elaborate::{Design, Module};
+use rtl_design::engine::{Compiled, Engine};
+use rtl_design::verilog::as_printed;
 
 const CYCLES: usize = 6000;
 

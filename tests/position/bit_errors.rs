@@ -5,7 +5,8 @@ use endat_hdl::{
     protocol::ModeCommand::{SendPosition, SendPositionAddInfo},
     transaction::cause,
 };
-use endat_sim::{encoder::Defect, engine::Compiled};
+use endat_sim::encoder::Defect;
+use rtl_design::engine::Compiled;
 
 /// Longest burst that a CRC5 is sure to see.
 const BURST_BITS: u32 = 5;

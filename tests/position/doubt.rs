@@ -3,16 +3,12 @@
 use super::rig::*;
 use endat_hdl::{
     channel::{Channel, Features, FixedTimes},
-    elaborate::elaborate,
     protocol::ModeCommand::{SendPosition, SendPositionAddInfo},
     transaction::cause,
 };
-use endat_sim::{
-    encoder::Defect,
-    engine::{Compiled, Keep},
-    rng::Rng,
-    Time, MS, NS, US,
-};
+use endat_sim::{encoder::Defect, rng::Rng, Time, MS, NS, US};
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Compiled, Keep};
 use rust_hdl::prelude::Block;
 
 /// Period of a frame that measures the delay.

@@ -2,9 +2,8 @@
 
 use super::rig::*;
 use endat_hdl::transaction::cause;
-use endat_sim::{
-    bench::ChannelResult, encoder::Defect, engine::Engine, rng::Rng, Time, MS, NS, US,
-};
+use endat_sim::{bench::ChannelResult, encoder::Defect, rng::Rng, Time, MS, NS, US};
+use rtl_design::engine::Engine;
 
 /// Runs a frame that is disturbed, then until the encoder is back and the channel idle. Gives the result and the levels sampled for it.
 fn disturbed(rig: &mut Rig, back: Time) -> (ChannelResult, Vec<bool>) {

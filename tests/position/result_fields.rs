@@ -2,11 +2,8 @@
 
 use super::rig::*;
 use endat_hdl::{channel, protocol::ModeCommand::SendPositionAddInfo, transaction::cause};
-use endat_sim::{
-    encoder::Defect,
-    engine::{Compiled, Engine},
-    Time, NS, US,
-};
+use endat_sim::{encoder::Defect, Time, NS, US};
+use rtl_design::engine::{Compiled, Engine};
 
 /// Cycles of a span, to the nearest.
 fn cycles(span: Time, system_hz: u64) -> u64 {

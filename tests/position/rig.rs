@@ -2,7 +2,6 @@
 
 use endat_hdl::{
     channel::{Channel, Features, FixedTimes},
-    elaborate::elaborate,
     protocol::ModeCommand,
 };
 pub use endat_sim::campaign::{ABORT_US, RATES};
@@ -10,11 +9,12 @@ use endat_sim::{
     bench::{Bench, ChannelResult, ChannelSettings, Link},
     campaign::{Case, Traces, SAMPLE_LATENCY_CYCLES},
     encoder::{Defect, EncoderConfig, FrameLog},
-    engine::Compiled,
     frame::{crc5, CRC_BITS},
     line::LineConfig,
     Time, MS, US,
 };
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use std::{
     collections::BTreeMap,

@@ -7,9 +7,9 @@ use crate::program::{bad, good, run, Dir};
 use crate::tools;
 use endat_gen::config::{load_any_preset, parse, Configuration, PRESETS, RECEIVER_PRESETS};
 use endat_gen::prove::{prove, Report, Subject, Verdict};
-use endat_hdl::elaborate::properties::{properties, Begins};
-use endat_hdl::elaborate::Design;
 use mutations::MUTATIONS;
+use rtl_design::elaborate::properties::{properties, Begins};
+use rtl_design::elaborate::Design;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Mutex;
 
@@ -36,8 +36,8 @@ fn proved(subject: &Subject) -> Report {
 }
 
 /// Every property of the blocks of a design, with its block.
-fn all(design: &Design) -> Vec<(String, endat_hdl::elaborate::properties::Property)> {
-    let of = |m: &endat_hdl::elaborate::Module| {
+fn all(design: &Design) -> Vec<(String, rtl_design::elaborate::properties::Property)> {
+    let of = |m: &rtl_design::elaborate::Module| {
         let found = properties(&m.properties);
         let name = m.type_name.clone();
         found.into_iter().map(move |p| (name.clone(), p))

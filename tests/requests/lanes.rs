@@ -3,7 +3,6 @@
 
 use endat_hdl::{
     channel::{Channel, Features, FixedTimes},
-    elaborate::{elaborate, Design},
     protocol::ModeCommand::{self, *},
     transaction::cause,
 };
@@ -11,10 +10,11 @@ use endat_sim::{
     bench::{ChannelResult, ChannelSettings, LaneBench, Link, PinNames},
     campaign::{ABORT_US, SAMPLE_LATENCY_CYCLES},
     encoder::{EncoderConfig, FrameLog},
-    engine::{Keep, LaneWords, Lanes},
     line::LineConfig,
     Time, NS, US,
 };
+use rtl_design::elaborate::{elaborate, Design};
+use rtl_design::engine::{Keep, LaneWords, Lanes};
 use rust_hdl::prelude::Block;
 use std::sync::OnceLock;
 

@@ -2,7 +2,6 @@
 
 use endat_hdl::{
     channel::{Channel, Features, FixedTimes},
-    elaborate::elaborate,
     protocol::ModeCommand,
     transaction::cause,
 };
@@ -10,11 +9,12 @@ use endat_sim::{
     bench::{Bench, ChannelSettings, Link},
     campaign::{ABORT_US, SAMPLE_LATENCY_CYCLES},
     encoder::{EncoderConfig, FrameEnd, FrameLog},
-    engine::Compiled,
     frame::Parameter,
     line::LineConfig,
     Time, MS,
 };
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use std::{
     collections::BTreeMap,

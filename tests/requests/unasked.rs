@@ -3,17 +3,17 @@
 use super::rig::{fixed_times, Rig};
 use endat_hdl::{
     channel::{Channel, Features},
-    elaborate::elaborate,
     protocol::ModeCommand,
     transaction::cause,
 };
 use endat_sim::{
     bench::{Bench, ChannelSettings, Link, PinNames},
     encoder::{area, EncoderConfig},
-    engine::{Compiled, Keep},
     line::LineConfig,
     MS, US,
 };
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Compiled, Keep};
 use rust_hdl::prelude::Block;
 
 const SYSTEM_HZ: u64 = 32_000_000;

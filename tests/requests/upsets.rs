@@ -1,11 +1,8 @@
 //! Every state that a channel with requests can be brought into, reached or not: a new trigger works, nothing hangs.
 
 use super::lanes::*;
-use endat_sim::{
-    engine::{Compiled, Keep},
-    rng::Rng,
-    US,
-};
+use endat_sim::{rng::Rng, US};
+use rtl_design::engine::{Compiled, Keep};
 
 /// Registers up to this width get every value, wider ones have each of their bits inverted.
 const ALL_VALUES_BITS: usize = 6;

@@ -6,7 +6,6 @@ use crate::requests::lanes::{
 };
 use endat_hdl::{
     channel::FixedTimes,
-    elaborate::elaborate,
     encoder_port::EncoderPort,
     protocol::ModeCommand::{self, *},
     service::{
@@ -15,12 +14,9 @@ use endat_hdl::{
     },
     transaction::cause,
 };
-use endat_sim::{
-    campaign::ABORT_US,
-    encoder::EncoderConfig,
-    engine::{Keep, LaneWords, Lanes},
-    Time, MS, US,
-};
+use endat_sim::{campaign::ABORT_US, encoder::EncoderConfig, Time, MS, US};
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Keep, LaneWords, Lanes};
 use rust_hdl::prelude::Block;
 use std::{ops::Range, sync::OnceLock};
 

@@ -3,7 +3,6 @@
 use endat_hdl::{
     channel::FixedTimes,
     config::LIST,
-    elaborate::elaborate,
     encoder_port::EncoderPort,
     protocol::ModeCommand,
     service::{
@@ -15,10 +14,11 @@ use endat_sim::{
     bench::{Bench, ChannelSettings, Link},
     campaign::ABORT_US,
     encoder::EncoderConfig,
-    engine::Compiled,
     line::LineConfig,
     Time, MS,
 };
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use std::{
     collections::BTreeMap,

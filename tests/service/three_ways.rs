@@ -4,7 +4,6 @@ use super::rig::{quick, times, ENDAT_HZ, SYSTEM_HZ};
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::{
     channel::FixedTimes,
-    elaborate::elaborate,
     encoder_port::EncoderPort,
     protocol::ModeCommand,
     service::{map::word, program::ServiceTimes},
@@ -12,11 +11,12 @@ use endat_hdl::{
 use endat_sim::{
     bench::{Bench, ChannelSettings, Link, PinNames},
     encoder::EncoderConfig,
-    engine::Compiled,
-    kernel_engine,
     line::LineConfig,
     US,
 };
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
+use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;
 
 fn block() -> EncoderPort {

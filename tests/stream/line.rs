@@ -4,16 +4,16 @@ use super::rig::Set;
 use endat_hdl::{
     card::Card,
     config::*,
-    elaborate::elaborate,
     protocol::ModeCommand,
     regs::{Block as Words, CARD},
 };
 use endat_sim::{
     bench::{Bench, Link, PinNames},
     encoder::{RCN_8510, ROQ_437},
-    engine::{Compiled, Engine, PortId},
     line::LineConfig,
 };
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
 use std::collections::VecDeque;
 

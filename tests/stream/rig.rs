@@ -2,11 +2,9 @@
 
 use crate::three_way::Stimulus;
 use crc::{Crc, CRC_16_IBM_3740};
-use endat_hdl::{
-    elaborate::elaborate,
-    stream::{buffer::SetParts, channel::SetChannel, Stream},
-};
-use endat_sim::engine::{Compiled, Engine, PortId};
+use endat_hdl::stream::{buffer::SetParts, channel::SetChannel, Stream};
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
 use std::collections::HashMap;
 

@@ -2,11 +2,9 @@
 
 use super::rig::{Access, Channel, Rig};
 use crate::three_way::{three_way, Stimulus};
-use endat_hdl::{
-    elaborate::elaborate,
-    stream::{buffer::SetParts, channel::SetChannel, Stream},
-};
-use endat_sim::kernel_engine;
+use endat_hdl::stream::{buffer::SetParts, channel::SetChannel, Stream};
+use rtl_design::elaborate::elaborate;
+use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;
 
 /// Numbers that are the same each time.

@@ -1,13 +1,13 @@
 //! Single upsets of every flip-flop at every moment of every kind of exchange, in lanes: no wrong position in silence, no hang,
 //! nobody drives against the encoder, and no byte of an EEPROM is written that nobody asked for.
 
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
 use endat_hdl::t_format::port::TFormatPort;
 use endat_sim::encoder::Drive;
-use endat_sim::engine::{Keep, LaneWords, Lanes, PortId};
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{Encoder, EncoderConfig};
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Keep, LaneWords, Lanes, PortId};
 use rust_hdl::prelude::Block;
 use std::collections::BTreeMap;
 

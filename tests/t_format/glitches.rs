@@ -1,14 +1,14 @@
 //! Replies with several short pulses: those taken with a wrong position are at most the share that an ideal CRC of 8 bits lets through.
 
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::t_format::{
     channel::TFormatChannel,
     protocol::{control, crc},
 };
-use endat_sim::engine::{Keep, LaneWords, Lanes, PortId};
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{edges, Wire};
 use endat_sim::Time;
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Keep, LaneWords, Lanes, PortId};
 use rust_hdl::prelude::Block;
 
 const LANES: usize = 128;

@@ -1,11 +1,11 @@
 //! Many frames at once: each lane has its own encoder's edges, all lanes the same request.
 
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::t_format::{channel::TFormatChannel, protocol::control};
-use endat_sim::engine::{Keep, LaneWords, Lanes, PortId};
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{edges, Wire};
 use endat_sim::Time;
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::{Keep, LaneWords, Lanes, PortId};
 use rust_hdl::prelude::Block;
 
 /// A bit at the nominal rate.

@@ -1,12 +1,12 @@
 //! The receiver behind its bus, a signal processor and an encoder on its line.
 
 use crate::three_way::Stimulus;
-use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
 use endat_sim::encoder::Drive;
-use endat_sim::engine::{Compiled, Engine, PortId};
 use endat_sim::t_format::{Encoder, EncoderConfig};
 use endat_sim::Time;
+use rtl_design::elaborate::{elaborate, Design};
+use rtl_design::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
 use std::sync::OnceLock;
 

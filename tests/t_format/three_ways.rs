@@ -3,9 +3,9 @@
 use super::rig::{design, Rig};
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
-use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{Defect, EncoderConfig};
+use rtl_design::kernel_engine;
 
 /// What the receiver was given in a life with requests of all kinds, defects and a processor that reads all the time.
 fn recorded() -> Stimulus {

@@ -1,11 +1,11 @@
 //! Every state that a T-format port can be brought into, reached or not: the next triggers work, nothing hangs.
 
-use endat_hdl::elaborate::{elaborate, Design};
 use endat_hdl::t_format::{channel::TFormatChannel, port::TFormatPort};
 use endat_sim::encoder::Drive;
-use endat_sim::engine::{Compiled, Engine, Keep, PortId};
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{Encoder, EncoderConfig};
+use rtl_design::elaborate::{elaborate, Design};
+use rtl_design::engine::{Compiled, Engine, Keep, PortId};
 use rust_hdl::prelude::Block;
 
 /// Registers up to this width get every value, wider ones have each of their bits inverted.

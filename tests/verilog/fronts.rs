@@ -8,7 +8,7 @@ use crate::bus::text;
 use crate::tools;
 use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
-use endat_hdl::elaborate::block_name;
+use rtl_design::elaborate::block_name;
 use std::fs;
 
 const BANK: &str = include_str!("../formal/bank.vh");

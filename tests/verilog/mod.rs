@@ -16,8 +16,8 @@ use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, Project, DEFAULT_PRESET};
 pub use endat_gen::readers::is_core;
-use endat_gen::verilog::file_name;
-use endat_hdl::elaborate::block_name;
+use rtl_design::elaborate::block_name;
+use rtl_design::verilog::file_name;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 

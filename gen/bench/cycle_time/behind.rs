@@ -2,7 +2,6 @@
 
 use super::{Rate, Subject, CYCLES, MHZ};
 use endat_hdl::channel::{Channel, Features, FixedTimes};
-use endat_hdl::elaborate::{elaborate, Design, ElaborateError};
 use endat_hdl::protocol::{
     ModeCommand::{self, PositionErrorReset, PositionSelectMemory, SendPositionAddInfo},
     INFO_BITS, SUPPLEMENT_PULSES,
@@ -11,8 +10,9 @@ use endat_hdl::timing::PARK_NS;
 use endat_hdl::transaction::cause;
 use endat_sim::bench::{Bench, Link, PinNames};
 use endat_sim::campaign::{Case, Traces};
-use endat_sim::engine::Compiled;
 use endat_sim::{Time, MS, NS};
+use rtl_design::elaborate::{elaborate, Design, ElaborateError};
+use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 
 /// What follows the position.

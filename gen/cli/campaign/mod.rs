@@ -10,7 +10,7 @@ use crate::cli::{to_json, Outcome};
 use crate::error::GenError;
 use clap::{Args, ValueEnum};
 use endat_sim::campaign::{self, Case, RunOptions, Traces};
-use endat_sim::engine::{Compiled, LaneWords};
+use rtl_design::engine::{Compiled, LaneWords};
 use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;

@@ -1,9 +1,9 @@
 //! The Verilog around a channel for the proof of a frame: encoder and cable.
 
 use super::{Case, Settings};
-use crate::verilog::emitted_name;
-use endat_hdl::elaborate::{Direction, Module};
 use endat_hdl::transaction::cause::TRIGGER_OVERRUN;
+use rtl_design::elaborate::{Direction, Module};
+use rtl_design::verilog::emitted_name;
 use std::fmt::Write;
 
 /// The channel with its encoder at the end of the cable.
@@ -35,7 +35,7 @@ pub(super) const SHOWN: [&str; 15] = [
 
 /// Module [`FRAMES`]. DATA is `undriven` while nobody drives it.
 pub(super) fn frames(channel: &Module, case: &Case, settings: &Settings) -> String {
-    let connection = |port: &endat_hdl::elaborate::Port| {
+    let connection = |port: &rtl_design::elaborate::Port| {
         let net = &channel.nets[port.net];
         let width = net.width_bits;
         let value = match net.name.as_str() {

@@ -13,15 +13,15 @@ use crate::{
     bench::{ChannelSettings, LaneBench, Link, PinNames},
     campaign::{CampaignError, ABORT_US},
     encoder::{Defect, EncoderConfig, LatchEdge},
-    engine::{Keep, LaneWords, Lanes, PortId},
     line::{FaultKind, Jitter, LineConfig},
     Time, NS, US,
 };
 use endat_hdl::{
     channel::{Channel, Features, FixedTimes},
-    elaborate::{elaborate, Design},
     protocol::ModeCommand,
 };
+use rtl_design::elaborate::{elaborate, Design};
+use rtl_design::engine::{Keep, LaneWords, Lanes, PortId};
 use rust_hdl::prelude::Block;
 
 /// System clock: eight cycles to a bit.

@@ -4,10 +4,10 @@ use super::judge::{are_needed, are_whole, is_count, Mark, Outcome, Reading};
 use super::{begin, cycles, FrameKind, Mishap, Ready, BIT, HANG_US, LEAD, SLOW_US, SYSTEM_HZ};
 use crate::{
     bench::{bits, ChannelResult, LaneBench, Link},
-    engine::PortId,
     line::{Conflict, Jitter, LineFault},
     US,
 };
+use rtl_design::engine::PortId;
 
 /// Units of time in a second.
 const PER_SECOND: u64 = 1_000_000 * US;

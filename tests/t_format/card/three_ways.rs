@@ -2,15 +2,15 @@
 
 use super::shaft;
 use crate::three_way::{three_way, Stimulus};
-use endat_hdl::elaborate::elaborate;
 use endat_hdl::encoder_port::EncoderPort;
 use endat_hdl::t_format::port::word;
 use endat_sim::bench::{Bench, PinNames, TFormatLink};
-use endat_sim::engine::Compiled;
-use endat_sim::kernel_engine;
 use endat_sim::rng::Rng;
 use endat_sim::t_format::{Defect, EncoderConfig};
 use endat_sim::US;
+use rtl_design::elaborate::elaborate;
+use rtl_design::engine::Compiled;
+use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;
 
 fn block() -> EncoderPort {

@@ -1,0 +1,186 @@
+//! What is off is not there: a design without what its configuration never uses.
+//!
+//! ```text
+//! start values, constants, ties --(until nothing changes)--> bits that never change --> branches never taken, registers that never move
+//! outputs of the top, properties --(until nothing changes)--> nets, ports, instances, modules that matter
+//! ```
+//!
+//! At its ports the design does the same in every cycle; the engines run the whole one, so every comparison with emitted Verilog compares
+//! the two. Bits are followed through all modules at once, beginning with registers at their start values; what a module knows is what is
+//! so in each of its instances. Named constants keep their names, but for flags, which are only there to be decided.
+
+mod fold;
+mod known;
+mod live;
+
+use super::design::*;
+use known::{either, known, run, Known, Values};
+use std::collections::BTreeSet;
+
+impl Design {
+    /// The design without what is never used.
+    pub fn trimmed(&self) -> Self {
+        let mut design = self.clone();
+        loop {
+            let facts = facts(&design);
+            let folded = live::without_dead(&folded(&design, &facts), &facts);
+            if folded == design {
+                return design;
+            }
+            design = folded;
+        }
+    }
+
+    /// Without modules of which there is no instance.
+    fn keep_used_modules(&mut self) {
+        let mut is_used = vec![false; self.modules.len()];
+        is_used[0] = true;
+        // A module stands before those that it instantiates.
+        for id in 0..self.modules.len() {
+            if is_used[id] {
+                let children = self.modules[id].instances.iter();
+                children.for_each(|instance| is_used[instance.module] = true);
+            }
+        }
+        let number = |old: ModuleId| is_used[..old].iter().filter(|u| **u).count();
+        let modules = std::mem::take(&mut self.modules).into_iter().zip(&is_used);
+        self.modules = modules
+            .filter_map(|(module, is_used)| is_used.then_some(module))
+            .collect();
+        for instance in self.modules.iter_mut().flat_map(|m| &mut m.instances) {
+            instance.module = number(instance.module);
+        }
+    }
+}
+
+impl Module {
+    /// Ports that it drives: their place among the ports, and the net.
+    fn outputs(&self) -> impl Iterator<Item = (usize, NetId)> + '_ {
+        let ports = self.ports.iter().enumerate();
+        let outputs = ports.filter(|(_, port)| port.direction == Direction::Output);
+        outputs.map(|(place, port)| (place, port.net))
+    }
+
+    /// The value of a net of which all is known.
+    fn whole(&self, net: NetId, values: &Values) -> Option<u128> {
+        values[net]?.whole(self.nets[net].width_bits)
+    }
+
+    /// Nets whose names stand in what is proved about the module.
+    fn named_in_properties(&self) -> BTreeSet<NetId> {
+        let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let words: BTreeSet<&str> = self.properties.split(|c| !is_letter(c)).collect();
+        let nets = self.nets.iter().enumerate();
+        nets.filter(|(_, net)| words.contains(net.name.as_str()))
+            .map(|(id, _)| id)
+            .collect()
+    }
+}
+
+impl Process {
+    /// The nets that it drives.
+    fn targets(&self) -> BTreeSet<NetId> {
+        let mut targets = BTreeSet::new();
+        for statement in &self.statements {
+            statement.for_each_target(&mut |net, _, _| {
+                targets.insert(net);
+            });
+        }
+        targets
+    }
+}
+
+/// What is known of every net of every module, in every cycle.
+fn facts(design: &Design) -> Vec<Values> {
+    let empty = |module: &Module| vec![None; module.nets.len()];
+    let mut facts: Vec<Values> = design.modules.iter().map(empty).collect();
+    for port in &design.top().ports {
+        if port.direction == Direction::Input {
+            facts[0][port.net] = Some(Known::UNKNOWN);
+        }
+    }
+    for (module, values) in design.modules.iter().zip(&mut facts) {
+        for register in &module.registers {
+            let has_start = design.has_initial_values || register.reset.is_some();
+            values[register.q] = Some(match has_start {
+                true => Known::of(register.start),
+                false => Known::UNKNOWN,
+            });
+        }
+        for memory in &module.memories {
+            values[memory.read_data] = Some(Known::UNKNOWN);
+        }
+    }
+    loop {
+        let before = facts.clone();
+        for id in 0..design.modules.len() {
+            step(design, id, &mut facts);
+        }
+        if facts == before {
+            return facts;
+        }
+    }
+}
+
+/// Carries what is known in a module on: through its processes, into its registers, into and out of its children.
+fn step(design: &Design, id: ModuleId, facts: &mut [Values]) {
+    let module = &design.modules[id];
+    let mut values = std::mem::take(&mut facts[id]);
+    for process in &module.processes {
+        let mut after = values.clone();
+        let targets = process.targets();
+        for net in &targets {
+            after[*net] = Some(Known::UNKNOWN);
+        }
+        run(module, &process.statements, &mut after);
+        for net in targets {
+            values[net] = either(values[net], after[net]);
+        }
+    }
+    for register in &module.registers {
+        values[register.q] = either(values[register.q], values[register.next]);
+    }
+    for instance in &module.instances {
+        let child = &design.modules[instance.module];
+        for (port, connection) in child.ports.iter().zip(&instance.connections) {
+            let inside = &mut facts[instance.module][port.net];
+            match (port.direction, &connection.value.kind) {
+                (Direction::Input, _) => {
+                    *inside = either(*inside, known(module, &connection.value, &values));
+                }
+                (Direction::Output, ExprKind::Net(net)) => {
+                    values[*net] = either(values[*net], *inside);
+                }
+                (Direction::Output, _) => {}
+            }
+        }
+    }
+    facts[id] = values;
+}
+
+/// The design with what is known in its place.
+fn folded(design: &Design, facts: &[Values]) -> Design {
+    let mut design = design.clone();
+    for (module, values) in design.modules.iter_mut().zip(facts) {
+        let old = module.clone();
+        for process in &mut module.processes {
+            let mut own = values.clone();
+            for net in process.targets() {
+                own[net] = Some(Known::UNKNOWN);
+            }
+            process.statements = fold::fold(&old, &process.statements, &mut own);
+        }
+        for register in &mut module.registers {
+            let is_off = |reset: &NetId| old.whole(*reset, values) == Some(0);
+            register.reset = register.reset.filter(|reset| !is_off(reset));
+        }
+        for instance in &mut module.instances {
+            for connection in &mut instance.connections {
+                if connection.direction == Direction::Input {
+                    connection.value = fold::shorter(&old, &connection.value, values);
+                }
+            }
+        }
+    }
+    design
+}

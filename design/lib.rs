@@ -1,0 +1,12 @@
+#![doc = include_str!("README.md")]
+//!
+//! Reading order: [`reg`] and [`memory`] (the only state there is), [`elaborate`] (a block becomes a [`Design`](elaborate::Design)),
+//! [`engine`] (runs it), [`verilog`] (prints it).
+
+pub mod elaborate;
+pub mod engine;
+pub mod memory;
+pub mod reg;
+pub mod verilog;
+
+pub use rtl_design_macros::{kernel, Block, States};

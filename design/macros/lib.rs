@@ -1,0 +1,348 @@
+//! What a block of rust-hdl would otherwise say again and again; `rtl-design` hands it on, and what it writes names `rtl_design`.
+//!
+//! [`macro@Block`] makes a block of its parts, so that its `new` names only those of which something is to be said. [`macro@kernel`] stands
+//! where rust-hdl has `#[hdl_gen]`, and connects clock and reset of every register that the kernel assigns.
+
+mod connect;
+
+use proc_macro::TokenStream;
+use proc_macro2::{Ident, TokenStream as TokenStream2};
+use quote::{format_ident, quote, quote_spanned};
+use std::collections::BTreeSet;
+use syn::punctuated::Punctuated;
+use syn::visit::{visit_angle_bracketed_generic_arguments, visit_expr_field, Visit};
+use syn::{
+    parse_macro_input, AngleBracketedGenericArguments, Attribute, Data, DeriveInput, Expr,
+    ExprField, Field, Fields, GenericArgument, GenericParam, ItemFn, Lit, LitStr, Member, Token,
+    Type, TypePath,
+};
+
+/// The parts of a block, and what is written about them. Signals begin empty, registers with 0 or what `#[start(...)]` says,
+/// children marked `#[start]` as they are by default. What else there is (constants, children, lists, and registers marked
+/// `#[given]`) must be given, by name and all of it, to `Self::from_parts`:
+///
+/// ```ignore
+/// #[derive(LogicBlock, Block)]
+/// struct Timer {
+///     clock: Signal<In, Clock>,
+///     #[start(true)]
+///     level: Reg<Bit>,
+///     last: Constant<Bits<8>>,
+/// }
+///
+/// Self::from_parts(TimerParts { last: Constant::new(last.into()) })
+/// ```
+///
+/// A block that needs nothing else has `Default` instead.
+///
+/// `#[optional]` on a list of at most one signal: its name is emitted without a number.
+///
+/// Where it is the only block of its file, what stands at the head of the file is its documentation, drawing included.
+///
+/// `#[properties("x.sv")]` on the block names the file, beside the source, with what is proved about it.
+#[proc_macro_derive(Block, attributes(start, given, optional, properties))]
+pub fn block(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    let name = &input.ident;
+    let (generics, arguments, bounds) = input.generics.split_for_impl();
+    let Data::Struct(data) = &input.data else {
+        return refuse(name, "a block is a struct");
+    };
+    let Fields::Named(fields) = &data.fields else {
+        return refuse(name, "the parts of a block have names");
+    };
+    let described = described(&input, &fields.named);
+    let (mut own, mut given) = (vec![], vec![]);
+    for field in &fields.named {
+        let (part, kind) = (&field.ident, &field.ty);
+        let attribute = |name: &str| field.attrs.iter().find(|a| a.path().is_ident(name));
+        match attribute("start") {
+            Some(start) if start.meta.require_path_only().is_err() => {
+                match start.parse_args::<Expr>() {
+                    Ok(start) => own.push(quote!(#part: <#kind>::new(#start))),
+                    Err(error) => return error.into_compile_error().into(),
+                }
+            }
+            None if attribute("given").is_some() || !begins_empty(kind) => given.push((part, kind)),
+            _ => own.push(quote!(#part: ::core::default::Default::default())),
+        }
+    }
+    if given.is_empty() {
+        return quote! {
+            #described
+
+            impl #generics ::core::default::Default for #name #arguments #bounds {
+                fn default() -> Self {
+                    Self { #(#own),* }
+                }
+            }
+        }
+        .into();
+    }
+    let parts = format_ident!("{name}Parts");
+    let (names, kinds): (Vec<_>, Vec<_>) = given.into_iter().unzip();
+    quote! {
+        #described
+
+        /// What is given to this block.
+        struct #parts #generics #bounds {
+            #(#names: #kinds),*
+        }
+
+        impl #generics #name #arguments #bounds {
+            fn from_parts(parts: #parts #arguments) -> Self {
+                Self { #(#names: parts.#names,)* #(#own),* }
+            }
+        }
+    }
+    .into()
+}
+
+/// What is written about an enum and its variants.
+#[proc_macro_derive(States)]
+pub fn states(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    match &input.data {
+        Data::Enum(data) => {
+            let states = data.variants.iter().map(|v| (&v.ident, &v.attrs[..]));
+            docs(&input, states, &[], &[]).into()
+        }
+        _ => refuse(&input.ident, "states are those of an enum"),
+    }
+}
+
+/// The documentation of a block.
+fn described<'a>(
+    input: &'a DeriveInput,
+    fields: impl IntoIterator<Item = &'a Field> + Clone,
+) -> TokenStream2 {
+    let parameters = input.generics.params.iter();
+    let mut found = Enums {
+        parameters: parameters.filter_map(parameter).collect(),
+        enums: vec![],
+    };
+    for field in fields.clone() {
+        found.visit_type(&field.ty);
+    }
+    let named = fields
+        .into_iter()
+        .filter_map(|f| Some((f.ident.as_ref()?, &f.attrs[..])));
+    let named: Vec<_> = named.collect();
+    let is_optional = |attribute: &Attribute| attribute.path().is_ident("optional");
+    let optional = named.iter().filter(|(_, a)| a.iter().any(is_optional));
+    let optional: Vec<&Ident> = optional.map(|(name, _)| *name).collect();
+    docs(input, named.into_iter(), &optional, &found.enums)
+}
+
+/// The documentation of a type, its parts, those that are optional, and these enums.
+fn docs<'a>(
+    input: &DeriveInput,
+    parts: impl Iterator<Item = (&'a Ident, &'a [Attribute])>,
+    optional: &[&Ident],
+    enums: &[&Ident],
+) -> TokenStream2 {
+    let name = &input.ident;
+    let (generics, arguments, bounds) = input.generics.split_for_impl();
+    let own = match lines_of_file(name) {
+        file if file.is_empty() => lines(&input.attrs).into_iter().cloned().collect(),
+        file => file,
+    };
+    let properties = input.attrs.iter().find(|a| a.path().is_ident("properties"));
+    let properties = match properties.map(Attribute::parse_args::<LitStr>) {
+        None => quote!(""),
+        Some(Ok(file)) => quote_spanned!(file.span()=> include_str!(#file)),
+        Some(Err(error)) => return error.into_compile_error(),
+    };
+    let parts = parts.map(|(part, attributes)| {
+        let lines = lines(attributes);
+        quote!((stringify!(#part), &[#(#lines),*]))
+    });
+    quote! {
+        impl #generics ::rtl_design::elaborate::docs::Described for #name #arguments #bounds {
+            const DOCS: ::rtl_design::elaborate::docs::TypeDocs = ::rtl_design::elaborate::docs::TypeDocs {
+                name: stringify!(#name),
+                lines: &[#(#own),*],
+                parts: &[#(#parts),*],
+                optional: &[#(stringify!(#optional)),*],
+                properties: #properties,
+                enums: &[#(&<#enums as ::rtl_design::elaborate::docs::Described>::DOCS),*],
+            };
+        }
+    }
+}
+
+/// The documentation at the head of the file, with its drawing, of a block that is the only one there.
+fn lines_of_file(name: &Ident) -> Vec<Lit> {
+    let file = name.span().unwrap().local_file();
+    let text = file.and_then(|file| std::fs::read_to_string(file).ok());
+    let text = text.filter(|text| text.matches("Block)]\n").count() == 1);
+    let text = text.unwrap_or_default();
+    let head = text.lines().map_while(|line| line.strip_prefix("//!"));
+    let shown = head.filter(|line| !line.trim_start().starts_with("```"));
+    shown
+        .map(|line| Lit::Str(LitStr::new(line, name.span())))
+        .collect()
+}
+
+/// The lines of a documentation.
+fn lines(attributes: &[Attribute]) -> Vec<&Lit> {
+    let docs = attributes.iter().filter(|a| a.path().is_ident("doc"));
+    let values = docs.filter_map(|a| Some(&a.meta.require_name_value().ok()?.value));
+    values
+        .filter_map(|value| match value {
+            Expr::Lit(literal) => Some(&literal.lit),
+            _ => None,
+        })
+        .collect()
+}
+
+/// The name of a type or a number that a block is generic over.
+fn parameter(parameter: &GenericParam) -> Option<&Ident> {
+    match parameter {
+        GenericParam::Type(parameter) => Some(&parameter.ident),
+        GenericParam::Const(parameter) => Some(&parameter.ident),
+        GenericParam::Lifetime(_) => None,
+    }
+}
+
+/// Enums that signals and registers have as their type.
+struct Enums<'a> {
+    parameters: Vec<&'a Ident>,
+    enums: Vec<&'a Ident>,
+}
+
+impl<'a> Visit<'a> for Enums<'a> {
+    fn visit_angle_bracketed_generic_arguments(&mut self, all: &'a AngleBracketedGenericArguments) {
+        for argument in &all.args {
+            let GenericArgument::Type(Type::Path(TypePath { path, .. })) = argument else {
+                continue;
+            };
+            let Some(name) = path.get_ident() else {
+                continue;
+            };
+            let is_known = self.parameters.contains(&name) || self.enums.contains(&name);
+            if !is_known && NO_ENUMS.iter().all(|other| name != other) {
+                self.enums.push(name);
+            }
+        }
+        visit_angle_bracketed_generic_arguments(self, all);
+    }
+}
+
+/// Types of signals and directions that are no enums.
+const NO_ENUMS: [&str; 6] = ["In", "Out", "Local", "Bit", "bool", "Clock"];
+
+/// Whether a part of this type needs nobody to say with what it begins: signals and registers.
+fn begins_empty(kind: &Type) -> bool {
+    let Type::Path(path) = kind else { return false };
+    let last = path.path.segments.last();
+    last.is_some_and(|last| {
+        ["Signal", "Reg", "SyncReg", "FallReg"]
+            .iter()
+            .any(|name| last.ident == name)
+    })
+}
+
+/// The kernel of a block: `#[hdl_gen]` of rust-hdl, in which each register that has its `d.next` assigned holds its value
+/// otherwise, has the block's clock, and, unless the kernel assigns its `reset.next`, the block's reset.
+///
+/// It hands on what [`macro@Block`] knows.
+///
+/// `connect!(self.receiver <= self.settings; width, command = mode_command)` wires ports to ports: those of one name, and the first to the
+/// second where they have two.
+///
+/// `#[kernel(clk_i, rst_i)]` where clock and reset have other names than `clock` and `reset`. Registers in lists are the kernel's.
+#[proc_macro_attribute]
+pub fn kernel(arguments: TokenStream, item: TokenStream) -> TokenStream {
+    let parser = Punctuated::<Ident, Token![,]>::parse_terminated;
+    let names = parse_macro_input!(arguments with parser);
+    let mut item = parse_macro_input!(item as ItemFn);
+    if let Err(wrong) = connect::expand(&mut item.block) {
+        return wrong.into_compile_error().into();
+    }
+    let usual = || ["clock", "reset"].map(|name| Ident::new(name, proc_macro2::Span::call_site()));
+    let names: Vec<Ident> = names.into_iter().collect();
+    let [clock, reset] = match &names[..] {
+        [] => usual(),
+        [clock, reset] => [clock.clone(), reset.clone()],
+        [one, ..] => return refuse(one, "kernel takes two names, of clock and reset"),
+    };
+    let mut found = Assigned::default();
+    found.visit_block(&item.block);
+    let Assigned {
+        registers, resets, ..
+    } = found;
+    let reset_here: Vec<&Ident> = registers.iter().filter(|r| !resets.contains(r)).collect();
+    let statements = &item.block.stmts;
+    let setup = match registers.is_empty() {
+        true => quote!(),
+        false => quote! {
+            #(self.#registers.clock.next = self.#clock.val();)*
+            #(self.#registers.d.next = self.#registers.q.val();)*
+            #(self.#reset_here.reset.next = self.#reset.val();)*
+        },
+    };
+    *item.block = syn::parse_quote!({ #setup #(#statements)* });
+    quote! {
+        #[hdl_gen]
+        #item
+
+        fn timing(&self) -> Vec<TimingInfo> {
+            ::rtl_design::elaborate::docs::timing(&<Self as ::rtl_design::elaborate::docs::Described>::DOCS)
+        }
+    }
+    .into()
+}
+
+/// The registers that a kernel assigns, in the order in which it does.
+#[derive(Default)]
+struct Assigned {
+    registers: Vec<Ident>,
+    known: BTreeSet<String>,
+    /// Those whose reset it assigns itself.
+    resets: BTreeSet<Ident>,
+}
+
+impl<'ast> Visit<'ast> for Assigned {
+    fn visit_expr_field(&mut self, field: &'ast ExprField) {
+        if let Some((part, port)) = next_of(field) {
+            if port == "d" && self.known.insert(part.to_string()) {
+                self.registers.push(part.clone());
+            }
+            if port == "reset" {
+                self.resets.insert(part.clone());
+            }
+        }
+        visit_expr_field(self, field);
+    }
+}
+
+/// What a field is of, and its name.
+fn split(field: &ExprField) -> Option<(&Expr, &Ident)> {
+    match &field.member {
+        Member::Named(name) => Some((&field.base, name)),
+        Member::Unnamed(_) => None,
+    }
+}
+
+fn as_field(expr: &Expr) -> Option<&ExprField> {
+    match expr {
+        Expr::Field(field) => Some(field),
+        _ => None,
+    }
+}
+
+/// `self.part.port.next`: part and port.
+fn next_of(field: &ExprField) -> Option<(&Ident, &Ident)> {
+    let (port, next) = split(field)?;
+    let (part, port) = split(as_field(port)?)?;
+    let (block, part) = split(as_field(part)?)?;
+    let is_self = matches!(block, Expr::Path(path) if path.path.is_ident("self"));
+    (next == "next" && is_self).then_some((part, port))
+}
+
+fn refuse(place: &Ident, text: &str) -> TokenStream {
+    syn::Error::new(place.span(), text)
+        .into_compile_error()
+        .into()
+}

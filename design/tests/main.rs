@@ -1,0 +1,18 @@
+//! Tests of the whole way: blocks, designs, engines, Verilog.
+
+mod clean;
+mod designs;
+mod errors;
+mod generator;
+mod header;
+mod lint;
+mod memories;
+mod mismatch;
+mod program;
+mod random;
+mod rng;
+mod stimulus;
+mod three_way;
+mod tools;
+mod trim;
+mod zoo;

@@ -1,0 +1,156 @@
+//! Registers and memories as Verilog text.
+
+use super::module::expression::{bits, literal, named_literal, Helpers};
+use super::module::ModulePrinter;
+use super::text::{comment, vector, INDENT};
+use crate::elaborate::{Memory, NetId, Register};
+
+/// Clock, its falling edge, and reset, and the registers that have all of them.
+type Group<'a> = ((NetId, bool, Option<NetId>), Vec<&'a Register>);
+
+impl ModulePrinter<'_> {
+    pub fn start(&mut self, register: &Register) -> String {
+        let net = &self.module.nets[register.q];
+        match net.enum_id {
+            Some(id) if (register.start as usize) < self.design.enums[id].variants.len() => {
+                self.variant(id, register.start as usize)
+            }
+            _ => named_literal(&net.name, register.start, net.width_bits),
+        }
+    }
+
+    /// One clocked process for all registers of one clock and reset.
+    pub fn registers(&mut self) -> String {
+        let mut groups: Vec<Group> = vec![];
+        for register in &self.module.registers {
+            let key = (register.clock, register.on_fall, register.reset);
+            match groups.iter_mut().find(|(k, _)| *k == key) {
+                Some((_, group)) => group.push(register),
+                None => groups.push((key, vec![register])),
+            }
+        }
+        let mut out = String::new();
+        for ((clock, on_fall, reset), group) in groups {
+            let name = |net: NetId| &self.module.nets[net].name;
+            let (pad, deep) = (INDENT.repeat(2), INDENT.repeat(3));
+            let edge = if on_fall { "negedge" } else { "posedge" };
+            let head = format!("\n{INDENT}always @({edge} {}) begin\n", name(clock));
+            let reset = reset.map(|net| name(net).clone());
+            let body = match reset {
+                None => self.next_values(&group, &pad),
+                Some(reset) => {
+                    let next = self.next_values(&group, &deep);
+                    let mut start = |r: &&Register| {
+                        let start = self.start(r);
+                        format!("{deep}{} <= {start};\n", self.module.nets[r.q].name)
+                    };
+                    let starts: String = group.iter().map(&mut start).collect();
+                    format!(
+                        "{pad}if ({reset}) begin\n{starts}{pad}end else begin\n{next}{pad}end\n"
+                    )
+                }
+            };
+            out.push_str(&format!("{head}{body}{INDENT}end\n"));
+        }
+        out
+    }
+
+    fn next_values(&mut self, group: &[&Register], pad: &str) -> String {
+        let mut out = String::new();
+        self.process_targets.clear();
+        for register in group {
+            let name = self.module.nets[register.q].name.clone();
+            let next = match self.direct_next.get(&register.next).cloned() {
+                Some(expr) => self.expression(&expr, &name, &mut Helpers::default()),
+                None => self.module.nets[register.next].name.clone(),
+            };
+            out.push_str(&format!("{pad}{name} <= {next};\n"));
+        }
+        out
+    }
+
+    pub fn memory(&mut self, memory: &Memory) -> String {
+        let name = |net: NetId| self.module.nets[net].name.clone();
+        let (clock, read_data) = (name(memory.clock), name(memory.read_data));
+        let read_address = name(memory.read_address);
+        let word = &memory.name;
+        let docs = comment(&memory.docs, INDENT);
+        if !self.design.has_initial_values && memory.write.is_none() {
+            return self.table(memory, &docs);
+        }
+        let write = memory.write.map_or(String::new(), |port| {
+            let (enable, address, data) = (name(port.enable), name(port.address), name(port.data));
+            format!(
+                "        if ({enable}) begin
+            {word}[{address}] <= {data};
+        end
+"
+            )
+        });
+        let start: String = (memory.start.iter().enumerate())
+            .map(|(index, value)| {
+                let value = bits(*value, memory.width_bits);
+                format!("        {word}[{index}] = {value};\n")
+            })
+            .collect();
+        let (counter, zeros) = self.zero_words(memory);
+        let initial = match self.design.has_initial_values {
+            true => format!("{counter}    initial begin\n{start}{zeros}    end\n"),
+            false => String::new(),
+        };
+        let vector = vector(memory.width_bits);
+        format!(
+            "\n{docs}    reg {vector} {word} [0:{last}];
+{initial}    always @(posedge {clock}) begin
+{write}        {read_data} <= {word}[{read_address}];
+    end
+",
+            last = memory.words - 1
+        )
+    }
+
+    /// Memory that is only read, where no device fills it: a table that synthesis makes logic of, or a memory in its own way.
+    fn table(&self, memory: &Memory, docs: &str) -> String {
+        let name = |net: NetId| &self.module.nets[net].name;
+        let (clock, read_data) = (name(memory.clock), name(memory.read_data));
+        let read_address = name(memory.read_address);
+        let address_bits = self.module.nets[memory.read_address].width_bits;
+        let words: String = (memory.start.iter().enumerate())
+            .map(|(index, value)| {
+                let (index, value) = (
+                    literal(index as u128, address_bits),
+                    bits(*value, memory.width_bits),
+                );
+                format!("            {index}: {read_data} <= {value};\n")
+            })
+            .collect();
+        let zero = literal(0, memory.width_bits);
+        format!(
+            "\n{docs}    always @(posedge {clock})
+        case ({read_address})
+{words}            default: {read_data} <= {zero};
+        endcase
+"
+        )
+    }
+
+    /// Declares a counter and fills the words that have no start value of their own.
+    fn zero_words(&mut self, memory: &Memory) -> (String, String) {
+        let first = memory.start.len();
+        if first == memory.words {
+            return Default::default();
+        }
+        let counter = self.unique(&format!("{}_word", memory.name));
+        let (word, words) = (&memory.name, memory.words);
+        let zero = literal(0, memory.width_bits);
+        (
+            format!("{INDENT}integer {counter};\n"),
+            format!(
+                "        for ({counter} = {first}; {counter} < {words}; {counter} = {counter} + 1) begin
+            {word}[{counter}] = {zero};
+        end
+"
+            ),
+        )
+    }
+}

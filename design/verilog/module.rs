@@ -1,0 +1,487 @@
+//! One module as Verilog text.
+
+pub(super) mod expression;
+
+use super::text::{comment, properties, ranges, upper, vector, INDENT};
+use crate::elaborate::{mask, Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Statement};
+use expression::{literal, named_literal, range, Helper, Helpers};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Keeps a synchroniser stage a flip-flop: Vivado and XST, then yosys and other tools.
+const SYNCHRONISER: &str = "(* ASYNC_REG = \"TRUE\", SHREG_EXTRACT = \"NO\", keep = \"true\" *)";
+
+/// The text of a module.
+pub(super) fn print(design: &Design, module: &Module) -> String {
+    ModulePrinter::new(design, module).print()
+}
+
+pub(super) struct ModulePrinter<'a> {
+    pub design: &'a Design,
+    pub module: &'a Module,
+    /// Names in use, in lower case.
+    taken: BTreeSet<String>,
+    /// Helper nets that are assigned continuously.
+    pub continuous: Vec<Helper>,
+    /// Helper nets that are assigned inside a process.
+    inside: Vec<Helper>,
+    /// Targets of the process that is being printed.
+    pub process_targets: BTreeSet<NetId>,
+    /// Names of the states that are used.
+    variants: BTreeMap<(EnumId, usize), String>,
+    used_parameters: BTreeSet<usize>,
+    /// Next values of registers that are one expression: they need no net.
+    pub direct_next: BTreeMap<NetId, Expr>,
+}
+
+impl<'a> ModulePrinter<'a> {
+    fn new(design: &'a Design, module: &'a Module) -> Self {
+        let names = module.nets.iter().map(|n| &n.name);
+        let names = names.chain(module.parameters.iter().map(|p| &p.name));
+        let names = names.chain(module.instances.iter().map(|i| &i.name));
+        let names = names.chain(module.memories.iter().map(|m| &m.name));
+        Self {
+            design,
+            module,
+            taken: names.map(|name| name.to_lowercase()).collect(),
+            continuous: vec![],
+            inside: vec![],
+            process_targets: BTreeSet::new(),
+            variants: BTreeMap::new(),
+            used_parameters: BTreeSet::new(),
+            direct_next: direct_next(module),
+        }
+    }
+
+    /// `base`, or `base` with a number if that is taken.
+    pub fn unique(&mut self, base: &str) -> String {
+        let numbered = (2..).map(|number| format!("{base}_{number}"));
+        let name = std::iter::once(base.to_string())
+            .chain(numbered)
+            .find(|name| !self.taken.contains(&name.to_lowercase()))
+            .unwrap_or_default();
+        self.taken.insert(name.to_lowercase());
+        name
+    }
+
+    /// The `localparam` of a state.
+    pub fn variant(&mut self, enum_id: EnumId, variant: usize) -> String {
+        if let Some(name) = self.variants.get(&(enum_id, variant)) {
+            return name.clone();
+        }
+        let enum_type = &self.design.enums[enum_id];
+        let name = format!(
+            "{}_{}",
+            upper(&enum_type.name),
+            upper(&enum_type.variants[variant])
+        );
+        let name = self.unique(&name);
+        self.variants.insert((enum_id, variant), name.clone());
+        name
+    }
+
+    fn print(mut self) -> String {
+        self.find_used_parameters();
+        let instances: String = (0..self.module.instances.len())
+            .map(|i| self.instance(i))
+            .collect();
+        let direct = self.direct_next.clone();
+        let mut processes = String::new();
+        let mut in_always = BTreeSet::new();
+        let is_direct =
+            |s: &Statement| matches!(s, Statement::Assign { net, .. } if direct.contains_key(net));
+        let processes_left = self
+            .module
+            .processes
+            .iter()
+            .filter(|p| !p.statements.iter().any(is_direct));
+        for process in processes_left {
+            let text = self.process(&process.statements, &mut in_always);
+            processes.push_str(&text);
+        }
+        let registers = self.registers();
+        let memories: String = self
+            .module
+            .memories
+            .iter()
+            .map(|m| self.memory(m))
+            .collect();
+
+        let mut out = comment(&self.module.docs, "");
+        out.push_str(&format!("module {} (\n", self.module.name));
+        out.push_str(&self.ports(&in_always));
+        out.push_str(");\n");
+        out.push_str(&self.constants());
+        out.push_str(&self.declarations(&in_always));
+        for helper in &self.continuous {
+            out.push_str(&format!(
+                "{INDENT}assign {} = {};\n",
+                helper.name, helper.text
+            ));
+        }
+        for section in [instances, processes, registers, memories] {
+            if !section.is_empty() {
+                out.push('\n');
+                out.push_str(section.trim_start_matches('\n'));
+            }
+        }
+        out.push_str(&properties(&self.module.properties));
+        out.push_str("endmodule\n");
+        out
+    }
+
+    fn find_used_parameters(&mut self) {
+        fn visit(expr: &Expr, used: &mut BTreeSet<usize>) {
+            if let ExprKind::Parameter(index) = expr.kind {
+                used.insert(index);
+            }
+            // bits of a constant are printed as a literal
+            if !matches!(expr.kind, ExprKind::Slice(..)) {
+                expr.operands().into_iter().for_each(|e| visit(e, used));
+            }
+        }
+        let used = &mut self.used_parameters;
+        for statement in self.module.processes.iter().flat_map(|p| &p.statements) {
+            statement.for_each_expr(&mut |expr| visit(expr, used));
+        }
+        for connection in self.module.instances.iter().flat_map(|i| &i.connections) {
+            visit(&connection.value, used);
+        }
+    }
+
+    fn ports(&self, in_always: &BTreeSet<NetId>) -> String {
+        let mut out = String::new();
+        for (index, port) in self.module.ports.iter().enumerate() {
+            let net = &self.module.nets[port.net];
+            let kind = match port.direction {
+                Direction::Input => "input  wire",
+                Direction::Output if in_always.contains(&port.net) => "output reg ",
+                Direction::Output => "output wire",
+            };
+            let comma = if index + 1 < self.module.ports.len() {
+                ","
+            } else {
+                ""
+            };
+            out.push_str(&comment(&net.docs, INDENT));
+            out.push_str(&format!(
+                "{INDENT}{kind} {:>7} {}{comma}\n",
+                vector(net.width_bits),
+                net.name
+            ));
+        }
+        out
+    }
+
+    fn constants(&self) -> String {
+        let mut out = String::new();
+        for index in &self.used_parameters {
+            let parameter = &self.module.parameters[*index];
+            out.push_str(&comment(&parameter.docs, INDENT));
+            let (vector, value) = (
+                vector(parameter.width_bits),
+                named_literal(&parameter.name, parameter.value, parameter.width_bits),
+            );
+            out.push_str(&format!(
+                "{INDENT}localparam {vector:>7} {} = {value};\n",
+                parameter.name
+            ));
+        }
+        let mut last = None;
+        for ((enum_id, variant), name) in &self.variants {
+            let enum_type = &self.design.enums[*enum_id];
+            if last.replace(*enum_id) != Some(*enum_id) {
+                let docs = if enum_type.docs.is_empty() {
+                    std::slice::from_ref(&enum_type.name)
+                } else {
+                    &enum_type.docs[..]
+                };
+                out.push_str(&comment(docs, INDENT));
+            }
+            let doc = enum_type
+                .variant_docs
+                .get(*variant)
+                .and_then(|docs| docs.first());
+            let doc = doc.map_or(String::new(), |doc| format!(" // {doc}"));
+            let (vector, value) = (
+                vector(enum_type.width_bits),
+                literal(*variant as u128, enum_type.width_bits),
+            );
+            out.push_str(&format!(
+                "{INDENT}localparam {vector:>7} {name} = {value};{doc}\n"
+            ));
+        }
+        if out.is_empty() {
+            out
+        } else {
+            format!("{out}\n")
+        }
+    }
+
+    fn declarations(&mut self, in_always: &BTreeSet<NetId>) -> String {
+        let module = self.module;
+        let ports: BTreeSet<NetId> = module.ports.iter().map(|p| p.net).collect();
+        let mut starts: BTreeMap<NetId, (String, bool)> = BTreeMap::new();
+        for register in &module.registers {
+            starts.insert(register.q, (self.start(register), register.is_synchroniser));
+        }
+        for memory in &module.memories {
+            starts.insert(memory.read_data, (literal(0, memory.width_bits), false));
+        }
+        let mut out = String::new();
+        for (id, net) in module
+            .nets
+            .iter()
+            .enumerate()
+            .filter(|(id, _)| !ports.contains(id) && !self.direct_next.contains_key(id))
+        {
+            out.push_str(&comment(&net.docs, INDENT));
+            let vector = vector(net.width_bits);
+            out.push_str(&match starts.get(&id) {
+                // A start value in the declaration is set before time 0 in SystemVerilog, where `always @*` waits for a change
+                // and never sees one. Set by a process it is a change in every language.
+                Some((start, is_synchroniser)) => {
+                    let attributes = match is_synchroniser {
+                        true => format!("{INDENT}{SYNCHRONISER}\n"),
+                        false => String::new(),
+                    };
+                    let name = &net.name;
+                    let initial = match self.design.has_initial_values {
+                        true => format!(" initial {name} = {start};"),
+                        false => String::new(),
+                    };
+                    format!("{attributes}{INDENT}reg  {vector:>7} {name};{initial}\n")
+                }
+                None if in_always.contains(&id) => {
+                    format!("{INDENT}reg  {vector:>7} {};\n", net.name)
+                }
+                None => format!("{INDENT}wire {vector:>7} {};\n", net.name),
+            });
+        }
+        for (kind, helpers) in [("wire", &self.continuous), ("reg ", &self.inside)] {
+            for helper in helpers {
+                out.push_str(&format!(
+                    "{INDENT}{kind} {:>7} {};\n",
+                    vector(helper.width_bits),
+                    helper.name
+                ));
+            }
+        }
+        let unused = self.unused();
+        if !unused.is_empty() {
+            let name = self.unique("unused_ok");
+            out.push_str(&format!(
+                "{INDENT}wire {:>7} _{name} = &{{1'b0, {}}};\n",
+                "",
+                unused.join(", ")
+            ));
+        }
+        out
+    }
+
+    /// What is driven but never read, as Verilog expressions.
+    fn unused(&self) -> Vec<String> {
+        let read = self.module.read_bits();
+        let outputs: BTreeSet<NetId> = self
+            .module
+            .ports
+            .iter()
+            .filter(|p| p.direction == Direction::Output)
+            .map(|p| p.net)
+            .collect();
+        let mut out = vec![];
+        for (id, net) in self
+            .module
+            .nets
+            .iter()
+            .enumerate()
+            .filter(|(id, _)| !outputs.contains(id))
+        {
+            let unread = mask(net.width_bits) & !read.get(&id).copied().unwrap_or(0);
+            out.extend(
+                ranges(unread).map(|(low, width)| range(&net.name, low, width, net.width_bits)),
+            );
+        }
+        for helper in self.continuous.iter().chain(&self.inside) {
+            let unread = mask(helper.width_bits) & !helper.read_bits;
+            out.extend(
+                ranges(unread)
+                    .map(|(low, width)| range(&helper.name, low, width, helper.width_bits)),
+            );
+        }
+        out
+    }
+
+    fn instance(&mut self, index: usize) -> String {
+        let instance = &self.module.instances[index];
+        let child = &self.design.modules[instance.module];
+        let mut lines = vec![];
+        for (port, connection) in child.ports.iter().zip(&instance.connections) {
+            let value = self.expression(&connection.value, "", &mut Helpers::default());
+            lines.push(format!(
+                "{INDENT}{INDENT}.{}({value})",
+                child.nets[port.net].name
+            ));
+        }
+        format!(
+            "{INDENT}{} {} (\n{}\n{INDENT});\n",
+            child.name,
+            instance.name,
+            lines.join(",\n")
+        )
+    }
+
+    fn process(&mut self, statements: &[Statement], in_always: &mut BTreeSet<NetId>) -> String {
+        self.process_targets.clear();
+        let mut reads = BTreeSet::new();
+        for statement in statements {
+            statement.for_each_target(&mut |net, _, _| {
+                self.process_targets.insert(net);
+            });
+            statement.for_each_expr(&mut |e| {
+                e.for_each_net(&mut |net| {
+                    reads.insert(net);
+                });
+            });
+        }
+        if let [Statement::Assign {
+            net,
+            low_bit: 0,
+            value,
+        }] = statements
+        {
+            if value.width_bits == self.module.nets[*net].width_bits && !reads.contains(net) {
+                let name = self.module.nets[*net].name.clone();
+                let text = self.expression(value, &name, &mut Helpers::default());
+                return format!("{INDENT}assign {name} = {text};\n");
+            }
+        }
+        if reads.is_subset(&self.process_targets) {
+            // `always @*` would never run: the values are constants.
+            return self.constant_process(statements);
+        }
+        in_always.extend(&self.process_targets);
+        let first_helper = self.inside.len();
+        let body = self.block(statements, 2);
+        let defaults: String = self.inside[first_helper..]
+            .iter()
+            .map(|h| {
+                format!(
+                    "{INDENT}{INDENT}{} = {};\n",
+                    h.name,
+                    literal(0, h.width_bits)
+                )
+            })
+            .collect();
+        format!("\n{INDENT}always @* begin\n{defaults}{body}{INDENT}end\n")
+    }
+
+    fn constant_process(&self, statements: &[Statement]) -> String {
+        let mut values: BTreeMap<NetId, u128> = BTreeMap::new();
+        let parameters: Vec<u128> = self.module.parameters.iter().map(|p| p.value).collect();
+        crate::elaborate::execute(statements, &parameters, &mut values);
+        let line = |(net, value): (&NetId, &u128)| {
+            let net = &self.module.nets[*net];
+            format!(
+                "{INDENT}assign {} = {};\n",
+                net.name,
+                literal(*value, net.width_bits)
+            )
+        };
+        values.iter().map(line).collect()
+    }
+
+    fn block(&mut self, statements: &[Statement], depth: usize) -> String {
+        statements
+            .iter()
+            .map(|s| self.statement(s, depth))
+            .collect()
+    }
+
+    /// A statement at an indentation depth, after the helper nets that it needs.
+    fn statement(&mut self, statement: &Statement, depth: usize) -> String {
+        let pad = INDENT.repeat(depth);
+        let mut helpers = Helpers::default();
+        let text = match statement {
+            Statement::Assign {
+                net,
+                low_bit,
+                value,
+            } => {
+                let target = &self.module.nets[*net];
+                let place = range(&target.name, *low_bit, value.width_bits, target.width_bits);
+                let value = self.expression(value, &target.name, &mut helpers);
+                format!("{pad}{place} = {value};\n")
+            }
+            Statement::If {
+                condition,
+                then,
+                otherwise,
+            } => {
+                let condition = self.expression(condition, "condition", &mut helpers);
+                format!(
+                    "{pad}if ({condition}) begin\n{}{}",
+                    self.block(then, depth + 1),
+                    self.otherwise(otherwise, depth)
+                )
+            }
+            Statement::Case {
+                subject,
+                arms,
+                default,
+            } => {
+                let subject = self.expression(subject, "subject", &mut helpers);
+                let mut text = format!("{pad}case ({subject})\n");
+                let inner = INDENT.repeat(depth + 1);
+                for (value, body) in arms {
+                    let value = self.expression(value, "", &mut helpers);
+                    let body = self.block(body, depth + 2);
+                    text.push_str(&format!("{inner}{value}: begin\n{body}{inner}end\n"));
+                }
+                let body = self.block(default, depth + 2);
+                text.push_str(&format!(
+                    "{inner}default: begin\n{body}{inner}end\n{pad}endcase\n"
+                ));
+                text
+            }
+        };
+        let before: String = helpers
+            .nets
+            .iter()
+            .map(|h| format!("{pad}{} = {};\n", h.name, h.text))
+            .collect();
+        self.inside.extend(helpers.nets);
+        before + &text
+    }
+
+    fn otherwise(&mut self, otherwise: &[Statement], depth: usize) -> String {
+        let pad = INDENT.repeat(depth);
+        match otherwise {
+            [] => format!("{pad}end\n"),
+            [Statement::If { .. }] => {
+                let text = self.statement(&otherwise[0], depth);
+                match text.trim_start().starts_with("if (") {
+                    true => format!("{pad}end else {}", text.trim_start()),
+                    false => format!("{pad}end else begin\n{text}{pad}end\n"),
+                }
+            }
+            _ => format!(
+                "{pad}end else begin\n{}{pad}end\n",
+                self.block(otherwise, depth + 1)
+            ),
+        }
+    }
+}
+
+/// Registers whose next value is a single expression, and that expression.
+fn direct_next(module: &Module) -> BTreeMap<NetId, Expr> {
+    let next: BTreeSet<NetId> = module.registers.iter().map(|r| r.next).collect();
+    let single = |process: &crate::elaborate::Process| match &process.statements[..] {
+        [Statement::Assign { net, value, .. }]
+            if next.contains(net) && value.width_bits == module.nets[*net].width_bits =>
+        {
+            Some((*net, value.clone()))
+        }
+        _ => None,
+    };
+    module.processes.iter().filter_map(single).collect()
+}

@@ -1,0 +1,63 @@
+//! Pieces of text that every part of a module uses.
+
+use crate::elaborate::{mask, properties::ANY_STATE};
+
+pub(super) const INDENT: &str = "    ";
+
+/// The ranges of set bits, as lowest bit and width.
+pub(super) fn ranges(mut bits: u128) -> impl Iterator<Item = (usize, usize)> {
+    std::iter::from_fn(move || {
+        if bits == 0 {
+            return None;
+        }
+        let low = bits.trailing_zeros() as usize;
+        let width = (bits >> low).trailing_ones() as usize;
+        bits &= !(mask(width) << low);
+        Some((low, width))
+    })
+}
+
+pub(super) fn vector(width_bits: usize) -> String {
+    match width_bits {
+        1 => String::new(),
+        _ => format!("[{}:0]", width_bits - 1),
+    }
+}
+
+pub(super) fn comment(lines: &[String], pad: &str) -> String {
+    let line = |line: &String| format!("{}\n", format!("{pad}// {line}").trim_end());
+    lines.iter().map(line).collect()
+}
+
+/// `NoStartBit` becomes `NO_START_BIT`.
+pub(super) fn upper(name: &str) -> String {
+    let mut out = String::new();
+    let mut previous_is_lower = false;
+    for c in name.chars() {
+        if c.is_ascii_uppercase() && previous_is_lower {
+            out.push('_');
+        }
+        previous_is_lower = !c.is_ascii_uppercase();
+        out.push(c.to_ascii_uppercase());
+    }
+    out
+}
+
+/// What is proved about a module: compilers other than provers never see it.
+pub(super) fn properties(text: &str) -> String {
+    if text.is_empty() {
+        return String::new();
+    }
+    let line = |line: &str| match line {
+        "" => "\n".to_string(),
+        line if line.starts_with('`') => format!("{line}\n"),
+        line => format!("{INDENT}{line}\n"),
+    };
+    let lines: String = text.lines().map(line).collect();
+    // What does not speak of any state holds from the start values.
+    let lines = match text.contains(ANY_STATE) {
+        true => lines,
+        false => format!("`ifndef {ANY_STATE}\n{lines}`endif\n"),
+    };
+    format!("\n`ifdef FORMAL\n{lines}`endif\n")
+}
