@@ -86,7 +86,7 @@ impl ModulePrinter<'_> {
                     return self.side_by_side(&row, expr, for_net, helpers);
                 }
                 let is_bare = |e: &Expr, is_left: bool| match e.kind {
-                    ExprKind::Binary(..) if pieces(e).len() > 1 => true,
+                    ExprKind::Binary(..) if pieces(e).iter().all(|piece| piece.expr != *e) => true,
                     ExprKind::Binary(inner, ..) => is_left && inner == *op && is_chain(inner),
                     ExprKind::Unary(inner, _) => inner == UnaryOp::Not,
                     _ => true,
