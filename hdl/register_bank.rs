@@ -23,8 +23,7 @@ use crate::config::CardConfig;
 use crate::config_ring::{ConfigRing, RING_BYTES};
 use crate::regs::{config_words, start, CARD};
 use endat_macros::kernel;
-use rtl_design::reg::Reg;
-use rtl_design::Block;
+use rtl_design::{reg::Reg, Block};
 use rust_hdl::prelude::*;
 
 /// Decoder and card registers.
