@@ -29,7 +29,6 @@ mod uses;
 pub use design::*;
 pub use execute::{binary, evaluate, execute};
 pub use finish::block_name;
-pub use pieces::{pieces, Piece};
 use rust_hdl::prelude::Block;
 
 /// Why a block cannot be elaborated.

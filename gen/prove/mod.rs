@@ -27,7 +27,6 @@ use crate::scratch;
 use endat_sim::diagram::waves_svg;
 use rtl_design::elaborate::properties::{of_label, properties, Begins, Property};
 use rtl_design::elaborate::{Design, Module};
-use rtl_design::verilog::as_printed;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use tools::Answer;
@@ -60,7 +59,7 @@ const SEARCH_CYCLES: usize = 12;
 pub struct Subject {
     /// Name of the card.
     pub name: String,
-    /// It, as its text has it.
+    /// It.
     pub design: Design,
     /// Its Verilog, and nothing else.
     pub files: Vec<Artifact>,
@@ -73,14 +72,14 @@ impl Subject {
     pub fn new(project: &Project) -> Result<Self, GenError> {
         let design = crate::design(project)?;
         let files = crate::artifacts_of(project, &design)?;
-        Ok(Self::of(&project.name, &design, files))
+        Ok(Self::of(&project.name, design, files))
     }
 
     /// A receiver as it is emitted.
     pub fn receiver(receiver: &Receiver) -> Result<Self, GenError> {
         let design = crate::t_format::design(receiver)?;
         let files = crate::t_format::emit(receiver)?;
-        Ok(Self::of(&receiver.name, &design, files))
+        Ok(Self::of(&receiver.name, design, files))
     }
 
     /// Leaves only those parts to prove that hold a module.
@@ -93,9 +92,8 @@ impl Subject {
         self.parts.retain(|part| holds(*part));
     }
 
-    fn of(name: &str, design: &Design, mut files: Vec<Artifact>) -> Self {
+    fn of(name: &str, design: Design, mut files: Vec<Artifact>) -> Self {
         files.retain(is_core);
-        let design = as_printed(design);
         let parts = parts(&design);
         Self {
             name: name.into(),

@@ -4,7 +4,23 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Record of selections and contents of one channel.
+// Additional information: which of the two the encoder sends, and what they said.
+//
+// supplement 001001 with 0x40..0x4E -> info 1 follows every position, 0x4F -> no more
+//                        0x50..0x5E -> info 2, in front of info 1,    0x5F -> no more
+// 101010 -> none
+// one is missing -> only those that came    the answer is longer than expected -> both
+//
+// The last line finds the truth again after a reset, another plug or a request that the encoder refused: each frame that contradicts
+// the record corrects it, the second one at the latest; bit I4 of an information tells which of the two it is. A frame whose CRC is
+// wrong contradicts nothing, and no answer is longer than both: then only those that were right are there.
+//
+// slow frame   last CRC bit  X LOW, or HIGH for tm ~~~~\_____
+// center       ______________/\_____________________________
+// look         _______________________/\____________________    a short tm is not over yet
+// sample       ______________________________________/\_____
+//
+// Ref: TI motor-control SDK, endat_drv.c (order, selection); HEIDENHAIN EnDat FAQ (end of selection).
 module s6_two_channel_add_info (
     // System clock.
     input  wire         clock,

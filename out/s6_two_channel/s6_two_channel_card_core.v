@@ -4,7 +4,21 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// The card but for its front; the number of channels is that of channels.
+// Card: encoder ports, each for EnDat or T-format, triggers and registers. A front connects the registers to a host: Card with a UART, the tops in
+// bus with another bus.
+//
+// trigger_i -> Trigger --+--> EncoderPort 0 -> endat_clk0_o, endat_data0_o, endat_data0_oe <- endat_data0_i
+//               ^        +--> EncoderPort 1 -> ...
+//               |             |   ^
+//               |             v   | configuration
+//               |     ChannelRegisters 0, 1
+//               |             ^
+//               +------- RegisterBank <-> the front: word_address, access, read_byte, done, ...
+//               +--> Stream, if there is one: sets of results, by register or pushed through the front
+//               +--> DirectOutput 0, 1, Interrupt, if there are any: to logic and a processor in the same device
+//
+// led_status_o blinks slowly while every channel is well, quickly while the last result of one is an error;
+// led_channelN_o is on while the channel's last result is a good position.
 module s6_two_channel_card_core (
     // System clock.
     input  wire         clk_i,

@@ -4,7 +4,20 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// One EnDat port.
+// Channel: one encoder port, from the trigger to the snapshot.
+//
+// trigger -> Transaction -> ClockGen -> endat_clk
+//                |    \---> CommandSender -> data_o, data_oe
+//                |              data_i -> InputFilter
+//                |                             |
+//                +------ LineDelay -> Receiver -> Snapshot -> position, cause, ...
+//
+// With requests the channel sends all mode commands: a request rides on the next triggered position frame (EnDat 2.2), or
+// has a frame of its own. AddInfo keeps the record of the additional informations that follow each position.
+//
+// The first frame after reset, after an aborted frame and after calibrate runs at the calibration clock and
+// measures the propagation delay; all others run at the configured clock. A frame takes its settings over with its first falling
+// edge; inputs that change later count for the next one.
 module s6_two_channel_channel (
     // System clock.
     input  wire         clock,

@@ -4,7 +4,15 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Host side of one channel.
+// Registers of one channel: the result as the host reads it, and the configuration.
+//
+// channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
+// ring block of the channel --(ring stands still, channel not busy)--> configuration of the channel
+//                           \--(its parity is wrong)--> no command
+//
+// The held words of all channels are loaded by the same signal, so they belong together: register_bank says when. What stands for longer
+// than a trigger says so: the age counts the time that the words are held, stale a trigger that has come since. A byte that is not selected
+// is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
 module s6_two_channel_channel_registers (
     // System clock.
     input  wire         clock,

@@ -4,7 +4,16 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// EnDat clock generator of one channel.
+// Clock generator: the EnDat clock of one frame, and a strobe for each of its edges.
+//
+// start       /\___________________________________
+// hold_low    __/~~~~~~~~\________________________    tST, or too many pulses in flight
+// endat_clk   ~~\_____________/~~~~\____/~~~~\____
+// fall        /\___________________/\________/\___
+// rise        _________________/\________/\_______
+//
+// The line idles HIGH and a frame ends with it HIGH, an aborted one as well. A low phase that was held is followed
+// by a whole half period, and a low phase that has begun is finished: no pulse is ever shortened.
 module s6_two_channel_clock_gen (
     // System clock.
     input  wire         clock,

@@ -4,7 +4,21 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Sends what the receiver has to say, MSB first, on falling clock edges.
+// Command sender: puts mode command, parameter and supplement on the data line and switches the driver.
+//
+// falling edge   F1   F2   F3   F4   F5   F6   F7   F8   F9  ... F32  F33
+// oe           ______/~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~\_____________________   without parameter
+// oe           ______/~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~\____   with parameter
+// data                0   M2   M1   M0  (M2) (M1) (M0) | 24 bits ..... |
+//
+// falling edge   F'1  F'2  ...  F'7  F'8  F'9 .... F'32 F'33
+// oe           _/~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~\____                  supplement
+// data           0    0    ...  0    1   | 24 bits .... |
+//
+// The encoder has one clock, from F1 to F2, to release the line before the driver is switched on.
+//
+// Ref: DRIVER_ON_FALL, FIRST_COMMAND_FALL, DRIVER_OFF_FALL,
+// SUPPLEMENT_ZEROS.
 module s6_two_channel_command_sender (
     // System clock.
     input  wire         clock,

@@ -4,7 +4,17 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Decoder of a mode command.
+// Command shape: what belongs to a mode command, from its two triplets alone.
+//
+// left   right        frame
+// 000    111          position with F1
+// 111    000          position with F1, F2, additional information
+// 010    101          F1 and 40 bits of test values
+// 010    010          24 bits there, 24 bits back
+// other  complement   24 bits there, 24 bits back
+// other  the same     position with F1, F2, additional information; supplement
+//
+// Ref: ModeCommand.
 module s6_two_channel_command_shape (
     // Mode command.
     input  wire   [5:0] command,

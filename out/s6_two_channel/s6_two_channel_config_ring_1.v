@@ -4,7 +4,16 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Three configuration words on the byte ring.
+// One block of configuration words on the ring: three words, a byte leaves at the front as another enters at the end.
+//
+//             +--------------------------- byte ring, one step in each cycle with turn ---------------------------+
+//             v                                                                                                     |
+// head <- [card block: word 0 .. 2] <- [channel 0: word 0 .. 2] <- ... <- [last channel] <- head, or a written byte +
+//
+// A turn brings every byte past the one head that reads and writes: no read multiplexer, no write decoder. The words are
+// in place only while the ring stands still, so the blocks work from copies that are taken then.
+//
+// Each byte has its parity with it, made where it was written: a bit that an upset has inverted shows until its byte is written again.
 module s6_two_channel_config_ring_1 (
     // System clock.
     input  wire         clock,

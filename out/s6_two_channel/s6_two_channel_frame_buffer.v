@@ -4,7 +4,19 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Encoder and buffer.
+// Frame buffer: takes a set byte by byte, adds the CRC, encodes it with COBS on the way into a block RAM, and gives
+// whole frames out again.
+//
+//                     +--------> CRC-16 -----+
+// block, byte_at --> set byte ---------------+--> byte --> COBS --> block RAM --> data, ready
+//                                                  start of frame ^  written ^        ^ read
+// RAM   .... frame frame | n  b  b  b  n  b ...                                  take-+
+//            ^ read_at     ^ start_at    ^ code_at: kept for the distance to the next zero
+//
+// The place of the next code byte is kept free and written when the zero is met. A reader sees the frame only when its end is written:
+// start_at is taken forward over all of it at once. A byte takes 16 cycles: one for each bit of the CRC, and time for the rest.
+//
+// Ref: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7 (2), 1999.
 module s6_two_channel_frame_buffer (
     // System clock.
     input  wire         clock,

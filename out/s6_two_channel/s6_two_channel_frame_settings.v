@@ -4,7 +4,14 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Settings of one channel's frames.
+// Settings of a frame: the inputs as they were when it began.
+//
+// trigger     _____/\__________________________
+// is_at_rest  ~~~~~~~\________________/~~~~~~~
+// inputs      A   B    C                        whatever they do
+// *_now       . A   B                  . C      the frame has those of the cycle with the trigger
+//
+// What decides where a position stands in the answer, command and width, is guarded: its parity is taken as the frame begins.
 module s6_two_channel_frame_settings (
     // System clock.
     input  wire         clock,

@@ -4,7 +4,14 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Marks the last cycle of each half of a clock period.
+// Half-period timer: ends every half of an EnDat clock period, for the clock generator and for the receiver's cells.
+//
+// restart   ~\________________________________
+// second    ____________/~~~~~~~~~~~~~\______    (first half, second half)
+// tick      ___________/\____________/\______
+//
+// A period of an odd number of cycles has its second half one cycle longer. The comparison is registered, which
+// is why the counter starts at 2.
 module s6_two_channel_half_period (
     // System clock.
     input  wire         clock,

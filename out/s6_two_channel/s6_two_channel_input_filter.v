@@ -4,7 +4,12 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Synchroniser of three stages and a run-time filter for one input pin.
+// Input filter: brings the asynchronous data line into the system clock domain and removes short pulses.
+//
+// pin --[SyncReg x3]--> majority of 3 --> stable for filter_cycles + 1 samples? --[Reg]--> level, edge_strobe
+//   \--[FallReg, SyncReg x3]--^   (two samples in each cycle: level_first is half a cycle older than level)
+//
+// The delay it adds is part of the propagation delay that the receiver measures, so it needs no correction.
 module s6_two_channel_input_filter (
     // System clock.
     input  wire         clock,

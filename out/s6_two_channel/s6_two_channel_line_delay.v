@@ -4,7 +4,20 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Sample strobes and start edge window of one channel.
+// Line delay: knows how long an answer takes to come back, and says when to sample.
+//
+// rise        /\_________/\_________/\______      clock edges leaving the receiver
+//             |<-- tD -->|
+// center      ___________/\_________/\______      where a data edge is expected
+// sample      ________________/\_________/\_      half a period later: the middle of the bit, the end of its cell
+//
+// The propagation delay tD is measured once, in a frame whose period is longer than any cable's delay
+// (acquire), and followed by one cycle per frame afterwards. Sampling from this tracked phase tolerates twice
+// the jitter that sampling from the start edge of the same frame would.
+//
+// A rising edge of the clock and the cell that it launched are a delay apart: pulse and sample say when each counts.
+//
+// Ref: HEIDENHAIN PWM 20 user's manual, propagation delay compensation; TI motor-control SDK, endat_main.asm.
 module s6_two_channel_line_delay (
     // System clock.
     input  wire         clock,

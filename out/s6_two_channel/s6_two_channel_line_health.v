@@ -4,7 +4,18 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Stuck lines, absent encoders and the watchdog of one channel.
+// Line health: what only a closer look at the data line tells, and the watchdog over a frame.
+//
+// start       /\_____________________________
+// level       ________/~~\___________________    HIGH once: the line is not stuck LOW
+// under_way   _/~~~~~~~~~~~~~~~~~~~~\________
+// expired     ___________________/~~\________    watchdog_us after the start
+//
+// probe       ___/~~~~~~~~\__________________    DATA is HIGH at rest: driven LOW for a moment
+// level       ~~~~~\______/~~~~~~~~~~~~~~~~~~    it follows: nobody else drives it
+//
+// A receiver hears its own mode command, so a frame without any HIGH means that the line, or what listens to it, is stuck.
+// This asks for a transceiver that keeps listening while it sends.
 module s6_two_channel_line_health (
     // System clock.
     input  wire         clock,

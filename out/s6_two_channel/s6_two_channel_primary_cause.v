@@ -4,7 +4,7 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Picks the cause that explains the others; what stands later wins.
+// Primary cause: one out of all the flags of a frame.
 module s6_two_channel_primary_cause (
     // Raw flags, see flag.
     input  wire  [19:0] flags,

@@ -4,7 +4,23 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Receiver of one channel.
+// Receiver: takes the bits of an answer from the start bit to the last CRC bit.
+//
+// field     Skip      Start     F1   F2   Payload  ............  Crc ........  Done
+// sample    /\ x10    /\        /\   /\   /\ /\ /\ ... /\        /\ /\ /\ /\ /\
+// align     __________________________________________/~~~~\____________________
+//
+// An additional information goes the same way behind the CRC: Separator, Payload of 24 bits, Crc. So does the answer to a
+// command with a parameter, without F1 and F2; what comes MSB first there is turned round where it is read. During a supplement
+// cells are only counted.
+//
+// The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
+// with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC looks at the word where it
+// then stands, and for as long as it stands there: what is published is what was checked.
+// left counts cells down to the end of the frame, to_send the clock pulses that they need: the difference is under way. The
+// clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
+// shortest answer while its start bit may still be on the cable. under_way counts the difference once more: at the end of the
+// frame all three agree, unless one was upset.
 module s6_two_channel_receiver (
     // System clock.
     input  wire         clock,
@@ -111,7 +127,23 @@ module s6_two_channel_receiver (
     localparam   [6:0] SUPPLEMENT_CELLS = 7'd35;
     localparam   [5:0] INFO_BITS = 6'd24;
     localparam   [6:0] CELLS_FROM_START = 7'd7;
-    // What the next sample is.
+    // Receiver: takes the bits of an answer from the start bit to the last CRC bit.
+    //
+    // field     Skip      Start     F1   F2   Payload  ............  Crc ........  Done
+    // sample    /\ x10    /\        /\   /\   /\ /\ /\ ... /\        /\ /\ /\ /\ /\
+    // align     __________________________________________/~~~~\____________________
+    //
+    // An additional information goes the same way behind the CRC: Separator, Payload of 24 bits, Crc. So does the answer to a
+    // command with a parameter, without F1 and F2; what comes MSB first there is turned round where it is read. During a supplement
+    // cells are only counted.
+    //
+    // The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
+    // with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC looks at the word where it
+    // then stands, and for as long as it stands there: what is published is what was checked.
+    // left counts cells down to the end of the frame, to_send the clock pulses that they need: the difference is under way. The
+    // clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
+    // shortest answer while its start bit may still be on the cable. under_way counts the difference once more: at the end of the
+    // frame all three agree, unless one was upset.
     localparam   [3:0] FIELD_SKIP = 4'd0; // Cells before the earliest start bit: the line is undefined.
     localparam   [3:0] FIELD_START = 4'd1; // Low, until the start bit.
     localparam   [3:0] FIELD_F1 = 4'd2; // Error bit 1.

@@ -4,7 +4,24 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Decoder and card registers.
+// Register bank: the card's own words, and the decoder in front of all words.
+//
+// access, word_address, lane --> turning: one turn of the configuration ring; other words: until their byte is there --> done
+//                                   |
+//        constants ---------+       +-- the byte passing the head is read, or replaced by the one to write
+//        trigger count -----+
+//        ring byte ---------OR--> read_byte
+//        results of channels+
+//
+// **A front cannot turn the ring by half, nor write elsewhere.** Address and direction of an access are taken with access and stand until
+// done; an access that comes before is not begun. Only which byte is shown follows the front: whoever changes the address reads something else.
+//
+// Results of all channels are held together. They follow the channels, but not while they are being read or the host holds them, and not from
+// the first to the last result of a trigger: half of it is new, the other half is not.
+//
+// The wait for the last result ends with the next trigger that a channel takes: with channels that are never ready together it would have no
+// end. For a host that reads in step with the triggers, so that there never is a moment between two reads in which the words may follow,
+// they follow as the read begins, if the second trigger has come by then. See docs/host-link.md.
 module s6_two_channel_register_bank (
     // System clock.
     input  wire         clock,

@@ -4,7 +4,17 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// A channel's place in a set.
+// One channel's part of a sample set: which trigger it took, and its result at the moment when the set is closed.
+//
+// trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
+//                     ^   |                 ^
+// result strobe ------+---+-- owes nothing: the set may be closed
+//
+// Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own, one of them may
+// be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty place in the next one.
+//
+// A set waits for the buffer, and has no CRC of the encoder: a position that an upset has changed meanwhile shows by its parity, and goes out as
+// one that is not fresh, with the cause of an upset.
 module s6_two_channel_set_channel_number_1 (
     // System clock.
     input  wire         clock,

@@ -4,7 +4,16 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Result registers of one channel.
+// Snapshot: one result per trigger, changed in one clock cycle, with the last good position held.
+//
+// publish    __/\__________________    position, time stamp and what checks them change places with those before
+// confirm    ____________/\________    the frame has ended as it should: what was before is forgotten
+// withdraw   ____________/\________    or: it has not; what was before comes back
+//
+// What is held is guarded: its parity is taken when it has been loaded and compared in every cycle from then on. A register that
+// was upset makes the position invalid, with a cause of its own.
+//
+// Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 module s6_two_channel_snapshot (
     // System clock.
     input  wire         clock,

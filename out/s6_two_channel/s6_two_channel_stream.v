@@ -4,7 +4,16 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Collector, buffer and their registers.
+// Stream: the results of each trigger as one set in a buffer, for a host that wants all of them.
+//
+// trigger, time stamp, count --> set under way --(all channels have their result, or the next trigger)--> closed set
+//                                                                                                            |
+// SetChannel 0, 1, ... (owes, replaced; byte of the closed set) ------------------------------- byte --> FrameBuffer
+//                                                                                                            |
+// host's registers: control, state, data, clear <---- bytes ------------------------------------------------+----> push
+//
+// What a set and a frame look like is told in docs/stream.md. A set that is closed is taken whole in one cycle, then written in its own
+// time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 module s6_two_channel_stream (
     // System clock.
     input  wire         clock,

@@ -4,7 +4,11 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Microsecond strobe and time stamp counter.
+// Time base: the microsecond strobe and the free-running time in system clock cycles.
+//
+// count     0 1 2 ..  98 99 0 1 2 ..
+// tick_us   _____________/~\________   one cycle in each microsecond
+// timestamp counts every cycle and wraps
 module s6_two_channel_timebase (
     // System clock.
     input  wire         clock,

@@ -4,7 +4,24 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Sequence, time-outs and verdict of one channel.
+// Transaction: the order of one frame, all its time-outs, and what went wrong.
+//
+// wire      NotReady Ready FirstLow Frame ................ Tail Recovery NotReady Ready
+// endat_clk ~~~~~~~~~~~~~~\________/~\_/~\_ ... _/~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~
+// data      \_____________? command    0 S F1 .. CRC ~~~~~~~~~~~~~~~\_________________
+// done      _______________________________________________/\_________________________
+//
+// With a supplement the clock stays LOW after the last CRC bit (Park), and Frame goes on until its cells are over.
+//
+// A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The frame at the full
+// clock follows by itself, and its result is the trigger's. A frame is begun by a trigger, or by own, for a request that needs the line for
+// itself. What becomes of the first is published; what becomes of either is told with over.
+//
+// Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
+// off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. DATA that was HIGH
+// between two frames means that something was plugged: the delay is measured again.
+//
+// Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
 module s6_two_channel_transaction (
     // System clock.
     input  wire         clock,
@@ -182,7 +199,24 @@ module s6_two_channel_transaction (
     localparam  [19:0] TOO_LONG = 20'h10000;
     localparam  [19:0] TAIL_LOW = 20'h200;
     localparam  [19:0] UPSET = 20'h80000;
-    // What the wire is doing.
+    // Transaction: the order of one frame, all its time-outs, and what went wrong.
+    //
+    // wire      NotReady Ready FirstLow Frame ................ Tail Recovery NotReady Ready
+    // endat_clk ~~~~~~~~~~~~~~\________/~\_/~\_ ... _/~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~
+    // data      \_____________? command    0 S F1 .. CRC ~~~~~~~~~~~~~~~\_________________
+    // done      _______________________________________________/\_________________________
+    //
+    // With a supplement the clock stays LOW after the last CRC bit (Park), and Frame goes on until its cells are over.
+    //
+    // A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The frame at the full
+    // clock follows by itself, and its result is the trigger's. A frame is begun by a trigger, or by own, for a request that needs the line for
+    // itself. What becomes of the first is published; what becomes of either is told with over.
+    //
+    // Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
+    // off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. DATA that was HIGH
+    // between two frames means that something was plugged: the delay is measured again.
+    //
+    // Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
     localparam   [2:0] PHASE_NOT_READY = 3'd0; // Idle, but data has not yet been low for tR.
     localparam   [2:0] PHASE_READY = 3'd1; // Idle and ready for a trigger.
     localparam   [2:0] PHASE_FIRST_LOW = 3'd2; // First low phase, held for tST.

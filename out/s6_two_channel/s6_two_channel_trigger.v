@@ -4,7 +4,15 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Trigger sources of the card.
+// Triggers: three sources, one strobe for all channels; a card whose channels have triggers of their own takes them from the same hits
+// (channel_trigger).
+//
+// trigger pin -> synchroniser -> rising edge --+
+// timer, every period_cycles ------------------+-- enabled? --> register --> trigger, trigger_count
+// register strobe -----------------------------+
+//
+// Sources that coincide make one trigger. The strobe begins with the third clock edge that sees the pin high, and with the
+// first that sees the register strobe.
 module s6_two_channel_trigger (
     // System clock.
     input  wire         clock,

@@ -4,7 +4,25 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// UART and UARTBone command interpreter.
+// UART bridge: register accesses from a host, in the UARTBone byte format.
+//
+// write   01 len  a3 a2 a1 a0  d3 d2 d1 d0  d3 d2 d1 d0 ...          03: all words to one address
+// read    02 len  a3 a2 a1 a0                                        04: all words from one address
+// answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
+//
+// Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
+// after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+//
+// Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
+//
+// With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
+//
+// A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that byte
+// waits, the second one comes later than any turn ends.
+//
+// A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
+//
+// Ref: LiteX, litex/soc/cores/uart.py (gateware) and litex/tools/remote/comm_uart.py (client).
 module s6_two_channel_uart_bridge (
     // System clock.
     input  wire         clock,
@@ -48,7 +66,25 @@ module s6_two_channel_uart_bridge (
     output wire         push_take
 );
     localparam  [16:0] TIMEOUT_US = 17'd100000;
-    // What the next byte means.
+    // UART bridge: register accesses from a host, in the UARTBone byte format.
+    //
+    // write   01 len  a3 a2 a1 a0  d3 d2 d1 d0  d3 d2 d1 d0 ...          03: all words to one address
+    // read    02 len  a3 a2 a1 a0                                        04: all words from one address
+    // answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
+    //
+    // Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
+    // after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+    //
+    // Between answers it pushes the frames of a Stream, each in one piece; an answer then begins with 0xFF.
+    //
+    // With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
+    //
+    // A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that byte
+    // waits, the second one comes later than any turn ends.
+    //
+    // A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
+    //
+    // Ref: LiteX, litex/soc/cores/uart.py (gateware) and litex/tools/remote/comm_uart.py (client).
     localparam   [2:0] BRIDGE_STATE_COMMAND = 3'd0; // Command code.
     localparam   [2:0] BRIDGE_STATE_LENGTH = 3'd1; // Number of words.
     localparam   [2:0] BRIDGE_STATE_ADDRESS = 3'd2; // Word address.

@@ -4,7 +4,15 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Result, cause and flags of one channel's frames.
+// Verdict: what has happened to a frame is registered, then told with its primary cause.
+//
+// answer_taken, give_up ...  ____/~~\____________
+// taken, gave_up             _______/~~\_________    the flags are put together
+// prove                      ___________/~~\_____    what follows the answer fits, too
+// publish, late_fault, over  ______________/~~\__    cause and flags stay until the next one
+//
+// An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA does
+// not fall, informations of another length) withdraws it.
 module s6_two_channel_verdict (
     // System clock.
     input  wire         clock,

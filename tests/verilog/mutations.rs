@@ -68,8 +68,8 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "mode command shifted by one bit",
         "command_sender",
-        "{1'b0, command, 1'b0}",
-        "{command, 2'd0}",
+        "{2'd0, command} << 1'b1",
+        "{2'd0, command} << 2'd2",
     ),
     mutation(
         "sample half a bit off",

@@ -1,7 +1,6 @@
 //! Every way through a process must assign all its targets, and each before it is read.
 
 use super::super::design::{mask, Expr, ExprKind, NetId, Statement};
-use super::super::pieces::pieces;
 use super::PlanError;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -111,16 +110,9 @@ pub(in crate::elaborate) fn for_each_read(expr: &Expr, visit: &mut dyn FnMut(Net
                 for_each_read(inner, visit);
             }
         }
-        _ => {
-            let row = pieces(expr);
-            if row.iter().all(|piece| piece.expr != *expr) {
-                return row
-                    .iter()
-                    .for_each(|piece| for_each_read(&piece.expr, visit));
-            }
-            for operand in expr.operands() {
-                for_each_read(operand, visit);
-            }
-        }
+        _ => expr
+            .operands()
+            .into_iter()
+            .for_each(|operand| for_each_read(operand, visit)),
     }
 }

@@ -7,7 +7,8 @@
 //!
 //! At its ports the design does the same in every cycle; the engines run the whole one, so every comparison with emitted Verilog compares
 //! the two. Bits are followed through all modules at once, beginning with registers at their start values; what a module knows is what is
-//! so in each of its instances. Named constants keep their names, but for flags, which are only there to be decided.
+//! so in each of its instances. A register is known as a whole or not at all, so whatever the others hold, the design goes on from
+//! there as it would have. Named constants keep their names, but for flags, which are only there to be decided.
 
 mod fold;
 mod known;
@@ -138,7 +139,11 @@ fn step(design: &Design, id: ModuleId, facts: &mut [Values]) {
         }
     }
     for register in &module.registers {
-        values[register.q] = either(values[register.q], values[register.next]);
+        let q = register.q;
+        let moved = either(values[q], values[register.next]);
+        // One that moves may hold anything: an upset takes it where no logic does.
+        let stays = moved.filter(|bits| bits.whole(module.nets[q].width_bits).is_some());
+        values[q] = stays.or(Some(Known::UNKNOWN));
     }
     for instance in &module.instances {
         let child = &design.modules[instance.module];

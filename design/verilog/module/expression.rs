@@ -1,7 +1,7 @@
 //! Expressions as Verilog text.
 
 use super::ModulePrinter;
-use crate::elaborate::{mask, pieces, BinaryOp, Expr, ExprKind, NetId, Piece, UnaryOp};
+use crate::elaborate::{mask, BinaryOp, Expr, ExprKind, NetId, UnaryOp};
 
 /// Ends of the names of quantities.
 const UNITS: [&str; 8] = ["hz", "ns", "us", "ms", "cycles", "bits", "bytes", "words"];
@@ -60,7 +60,11 @@ impl ModulePrinter<'_> {
             ExprKind::Variant(enum_id, variant) => self.variant(*enum_id, *variant),
             ExprKind::Parameter(index) => self.module.parameters[*index].name.clone(),
             ExprKind::Net(net) => self.module.nets[*net].name.clone(),
-            ExprKind::Extend(_) => self.side_by_side(&pieces(expr), expr, for_net, helpers),
+            ExprKind::Extend(inner) => {
+                let padding = literal(0, expr.width_bits - inner.width_bits);
+                let inner = self.expression(inner, for_net, helpers);
+                format!("{{{padding}, {inner}}}")
+            }
             ExprKind::Slice(inner, low_bit) => {
                 self.slice(inner, *low_bit, expr.width_bits, for_net, helpers)
             }
@@ -81,12 +85,7 @@ impl ModulePrinter<'_> {
                 format!("{sign}{inner}")
             }
             ExprKind::Binary(op, left, right) => {
-                let row = pieces(expr);
-                if row.iter().all(|piece| piece.expr != *expr) {
-                    return self.side_by_side(&row, expr, for_net, helpers);
-                }
                 let is_bare = |e: &Expr, is_left: bool| match e.kind {
-                    ExprKind::Binary(..) if pieces(e).iter().all(|piece| piece.expr != *e) => true,
                     ExprKind::Binary(inner, ..) => is_left && inner == *op && is_chain(inner),
                     ExprKind::Unary(inner, _) => inner == UnaryOp::Not,
                     _ => true,
@@ -104,50 +103,6 @@ impl ModulePrinter<'_> {
                 let right = self.operand(right, is_bare(right, false), for_net, helpers);
                 format!("{left} {} {right}", sign(*op))
             }
-        }
-    }
-
-    /// Pieces of a value as a concatenation, zeros between them.
-    fn side_by_side(
-        &mut self,
-        row: &[Piece],
-        expr: &Expr,
-        for_net: &str,
-        helpers: &mut Helpers,
-    ) -> String {
-        // What is constant side by side is one number.
-        let mut parts: Vec<Expr> = vec![];
-        let mut push = |next: &Expr| match (parts.last_mut(), &next.kind) {
-            (
-                Some(Expr {
-                    width_bits,
-                    kind: ExprKind::Constant(before),
-                }),
-                ExprKind::Constant(value),
-            ) => {
-                *before = *before << next.width_bits | value;
-                *width_bits += next.width_bits;
-            }
-            _ => parts.push(next.clone()),
-        };
-        let mut above = expr.width_bits;
-        for piece in row.iter().rev() {
-            let end = piece.low_bit + piece.expr.width_bits;
-            if end < above {
-                push(&Expr::constant(0, above - end));
-            }
-            push(&piece.expr);
-            above = piece.low_bit;
-        }
-        if above > 0 {
-            push(&Expr::constant(0, above));
-        }
-        let parts = parts
-            .iter()
-            .map(|part| self.expression(part, for_net, helpers));
-        match &parts.collect::<Vec<_>>()[..] {
-            [only] => only.clone(),
-            parts => format!("{{{}}}", parts.join(", ")),
         }
     }
 
