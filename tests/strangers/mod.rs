@@ -1,6 +1,6 @@
 //! Programs that are not of this project, and what they make of what is emitted.
 
 mod benches;
-mod configurations;
+pub mod configurations;
 mod emissions;
 pub mod table;
