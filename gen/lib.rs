@@ -22,6 +22,7 @@ pub mod error;
 pub mod explain;
 pub(crate) mod form;
 pub mod integration;
+pub mod json_schema;
 pub mod maps;
 pub mod prove;
 pub mod readers;

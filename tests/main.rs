@@ -18,6 +18,7 @@ mod host;
 mod hosts;
 mod house;
 mod integrators;
+mod keys;
 mod maps;
 mod own_triggers;
 mod packages;

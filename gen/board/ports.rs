@@ -1,6 +1,8 @@
 //! Ports of a board top: what each is for, and which a card has.
 
 use endat_hdl::bus::HostBus;
+use endat_hdl::config::CHANNELS;
+use std::collections::BTreeSet;
 
 /// What a port of the top level is for; decides its constraints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -173,4 +175,17 @@ pub fn card_ports(bus: HostBus, more: MorePorts, channels: usize) -> Vec<(String
     ports.push(("led_status_o".to_owned(), Kind::Led));
     ports.extend((0..channels).map(|n| (format!("led_channel{n}_o"), Kind::Led)));
     ports
+}
+
+/// All signals that any card has on a board.
+pub fn signals() -> Vec<String> {
+    let more = MorePorts {
+        interrupt: true,
+        second_interface: true,
+    };
+    let ports = BUSES.map(|bus| card_ports(bus, more, *CHANNELS.end()));
+    let all: BTreeSet<String> = (ports.into_iter().flatten())
+        .map(|(signal, _)| signal)
+        .collect();
+    all.into_iter().collect()
 }

@@ -1,27 +1,19 @@
 //! The way from a board's file to a [`Board`]; every complaint with its line.
 
 use super::family::Family;
+use super::keys::{self, WORD_MAX};
 use super::package::{Package, Word};
-use super::ports::{bus_ports, card_ports, MorePorts, BUSES};
+use super::ports::{bus_ports, signals, BUSES};
 use super::{Board, Start, NO_PIN};
 use crate::error::Diagnostic;
 use crate::form::document::parse;
+use crate::form::key::Key;
 use crate::form::reader::{At, Source, Table};
 use endat_hdl::bus::HostBus;
-use endat_hdl::config::{limits, CHANNELS};
 use endat_host::did_you_mean::closest;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use toml::de::DeTable;
-
-/// Slowest and fastest oscillator that any clock manager may be told of.
-const OSCILLATOR_HZ: std::ops::RangeInclusive<u64> = 1_000..=1_000_000_000;
-/// Rates of UARTs.
-const BAUD: std::ops::RangeInclusive<u64> = 9_600..=100_000_000;
-/// Most pins and columns of a package.
-const PINS_MAX: u64 = 4_096;
-/// Longest word that goes into emitted files.
-const WORD_MAX: usize = 60;
 
 /// Reads a board's file; `folder` is where it stands.
 pub fn read(name: &str, file: &str, text: &str, folder: &Path) -> Result<Board, Vec<Diagnostic>> {
@@ -63,15 +55,15 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
         start: table("start"),
         root,
     };
-    let title = read_word(&t.root, "title", "\"Papilio Pro\"", " ()-+.,/");
-    let part = read_word(&t.root, "part", "\"xc6slx9-tqg144-2\"", "-/._");
+    let title = read_word(&t.root, &keys::TITLE, " ()-+.,/");
+    let part = read_word(&t.root, &keys::PART, "-/._");
     let family = read_family(source, &t.root, folder);
     let package = read_package(&t.root, family.as_ref());
-    let oscillator_pin = t.root.required_string("oscillator_pin", "\"P94\"");
-    let oscillator_hz = t.root.number("oscillator_hz", "32_000_000", OSCILLATOR_HZ);
-    let uart_baud_max = t.root.number("uart_baud_max", "3_000_000", BAUD);
-    let iostandard = read_word(&t.root, "iostandard", "\"LVCMOS33\"", "_");
-    let low_active = t.root.strings("low_active").unwrap_or_default();
+    let oscillator_pin = t.root.required_string(&keys::OSCILLATOR_PIN);
+    let oscillator_hz = t.root.number(&keys::OSCILLATOR_HZ);
+    let uart_baud_max = t.root.number(&keys::UART_BAUD_MAX);
+    let iostandard = read_word(&t.root, &keys::IOSTANDARD, "_");
+    let low_active = t.root.strings(&keys::LOW_ACTIVE).unwrap_or_default();
     let connectors = t.connectors.free_lists();
     let fixed = places(&t.fixed);
     let wing = places(&t.wing);
@@ -119,14 +111,9 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
 }
 
 /// A word that goes into emitted files: letters, digits, and what else is allowed.
-fn read_word(
-    table: &Table<'_, '_>,
-    key: &'static str,
-    example: &str,
-    more: &str,
-) -> Option<String> {
-    let word = table.required_string(key, example)?;
-    check_word(table, key, &word, more)?;
+fn read_word(table: &Table<'_, '_>, key: &'static Key, more: &str) -> Option<String> {
+    let word = table.required_string(key)?;
+    check_word(table, key.name, &word, more)?;
     Some(word.value)
 }
 
@@ -147,7 +134,7 @@ fn check_word(table: &Table<'_, '_>, key: &str, word: &At<String>, more: &str) -
 }
 
 fn read_family(source: &Source<'_>, root: &Table<'_, '_>, folder: &Path) -> Option<Family> {
-    let name = root.required_string("family", "\"spartan6\"")?;
+    let name = root.required_string(&keys::FAMILY)?;
     match Family::named(&name.value, folder) {
         Ok(family) => Some(family),
         Err(wrong) => {
@@ -166,12 +153,16 @@ fn read_family(source: &Source<'_>, root: &Table<'_, '_>, folder: &Path) -> Opti
 
 /// Pins by number, or a grid of balls.
 fn read_package(root: &Table<'_, '_>, family: Option<&Family>) -> Option<Package> {
-    root.know(&["package_pins", "package_rows", "package_columns"]);
-    if root.has("package_rows") || root.has("package_columns") {
+    root.know(&[
+        &keys::PACKAGE_PINS,
+        &keys::PACKAGE_ROWS,
+        &keys::PACKAGE_COLUMNS,
+    ]);
+    if root.has(keys::PACKAGE_ROWS.name) || root.has(keys::PACKAGE_COLUMNS.name) {
         let text = "a grid of balls has package_rows and package_columns; remove it";
-        root.refuse("package_pins", text);
-        let columns = root.number("package_columns", "20", 1..=PINS_MAX);
-        let rows = root.required_string("package_rows", "\"ABCDEFGHJKLMNPRTUVWY\"")?;
+        root.refuse(&keys::PACKAGE_PINS, text);
+        let columns = root.number(&keys::PACKAGE_COLUMNS);
+        let rows = root.required_string(&keys::PACKAGE_ROWS)?;
         let letters: Vec<String> = rows.value.split_whitespace().map(str::to_owned).collect();
         let letters = match letters.len() {
             1 => rows.value.trim().chars().map(String::from).collect(),
@@ -195,7 +186,7 @@ fn read_package(root: &Table<'_, '_>, family: Option<&Family>) -> Option<Package
             columns: u32::try_from(columns?.value).unwrap_or(u32::MAX),
         });
     }
-    let pins = root.number("package_pins", "144", 1..=PINS_MAX)?;
+    let pins = root.number(&keys::PACKAGE_PINS)?;
     Some(Package::Numbered {
         prefix: family?.pin_prefix.clone(),
         pins: u32::try_from(pins.value).unwrap_or(u32::MAX),
@@ -245,13 +236,12 @@ fn read_start(table: &Table<'_, '_>) -> Option<StartAt> {
     if table.line == 0 {
         return None;
     }
-    let [system, clock] =
-        [("system_hz", "100_000_000"), ("clock_hz", "3_125_000")].map(|(key, example)| {
-            let limits = limits(key, None);
-            let found = table.required_integer(key, example, &limits)?;
-            table.check(key, &found, &limits);
-            Some(found)
-        });
+    let [system, clock] = [&keys::SYSTEM_HZ, &keys::CLOCK_HZ].map(|key| {
+        let limits = key.limits(None);
+        let found = table.required_integer(key, &limits)?;
+        table.check(key, &found, &limits);
+        Some(found)
+    });
     table.finish();
     Some(StartAt {
         system: system?,
@@ -358,19 +348,6 @@ fn take_words_of_pins(
     }
     board.iostandards = standards;
     board.low_active = low;
-}
-
-/// All signals that any card has on a board.
-fn signals() -> Vec<String> {
-    let more = MorePorts {
-        interrupt: true,
-        second_interface: true,
-    };
-    let ports = BUSES.map(|bus| card_ports(bus, more, *CHANNELS.end()));
-    let all: BTreeSet<String> = (ports.into_iter().flatten())
-        .map(|(signal, _)| signal)
-        .collect();
-    all.into_iter().collect()
 }
 
 fn check_signal(table: &Table<'_, '_>, key: &str, at: &At<String>, known: &[String]) {

@@ -8,10 +8,12 @@ mod campaign;
 mod crc_command;
 mod documents;
 mod emit;
+mod explain_key;
 mod host;
 mod number;
 mod pictures;
 mod prove;
+mod schema;
 mod shmoo;
 mod sim;
 mod work;
@@ -88,10 +90,10 @@ enum Command {
         #[arg(long, conflicts_with_all = ["show", "measure"])]
         json: bool,
     },
-    /// Show what a configuration becomes: clocks, timing, frame lengths, sampling rates, link load; or what a cause, register
-    /// or field means
+    /// Show what a configuration becomes: clocks, timing, frame lengths, sampling rates, link load; or what a key of it, a cause,
+    /// register or field means
     Explain {
-        /// Name of a cause, register or field, for example crc, result.status or tracked
+        /// Name of a key, table, cause, register or field, for example endat.clock_hz, safety, crc, result.status or tracked
         #[arg(value_name = "NAME", conflicts_with_all = ["config", "preset", "board", "json"])]
         name: Option<String>,
         #[command(flatten)]
@@ -102,6 +104,8 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// Print the JSON Schema of configurations, or of boards' files, for editors that complete and check TOML
+    Schema(schema::SchemaArgs),
     /// Run a scenario of the bench
     Sim(sim::SimArgs),
     /// Compute and explain the CRC of a frame
@@ -319,6 +323,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
                 Configuration::Receiver(receiver) => shown(&crate::t_format::report(&receiver)),
             }
         }
+        Some(Command::Schema(arguments)) => schema::run(&arguments),
         Some(Command::Sim(arguments)) => sim::run(&arguments).map(with_engine),
         Some(Command::Crc(arguments)) => crc_command::run(&arguments),
         Some(Command::Prove(arguments)) => prove::run(&arguments),

@@ -1,16 +1,15 @@
-//! The key `host.base_address`.
+//! The keys of `[host]` besides the bus: `base_address` and `sck_hz`.
 
+use super::keys::{BASE_ADDRESS as KEY, SCK_HZ};
 use super::reader::Table;
 use endat_hdl::bus::HostBus;
-use endat_hdl::config::limits;
 use endat_regs::MAP_BYTES;
 
 /// Reads where a system has the registers; `None` if something is wrong.
 pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>) -> Option<u32> {
-    const KEY: &str = "base_address";
-    let limits = limits(KEY, None);
-    let Some(base) = table.integer(KEY, &limits) else {
-        return (!table.has(KEY)).then_some(0);
+    let limits = KEY.limits(None);
+    let Some(base) = table.integer(&KEY, &limits) else {
+        return (!table.has(KEY.name)).then_some(0);
     };
     let has_addresses = |bus: HostBus| bus.is_internal() && bus != HostBus::Bare;
     let problem = match u32::try_from(base.value) {
@@ -24,6 +23,19 @@ pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>) -> Option<u32> {
         }
         Ok(value) => return Some(value),
     };
-    table.complain(base.line, KEY, &format!("0x{:08X}", base.value), &problem);
+    table.complain(
+        base.line,
+        KEY.name,
+        &format!("0x{:08X}", base.value),
+        &problem,
+    );
     None
+}
+
+/// The rate of SPI's clock, which only decides whether the card can follow it.
+pub fn check_sck(host: &Table<'_, '_>, system_hz: Option<u64>) {
+    let limits = SCK_HZ.limits(system_hz);
+    if let Some(sck) = host.integer(&SCK_HZ, &limits) {
+        host.check(&SCK_HZ, &sck, &limits);
+    }
 }

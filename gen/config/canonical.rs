@@ -2,7 +2,7 @@
 //!
 //! Every struct is taken apart field by field, so that the compiler names one that was added and is not in the text.
 
-use super::stream;
+use super::words::start_name;
 use crate::board::{Assignment, Board};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::*;
@@ -183,7 +183,7 @@ fn of_stream(stream: &StreamParts) -> Vec<String> {
     }
     let mut lines = vec![format!(
         "stream fifo_bytes {fifo_bytes} start {}",
-        stream::start_name(*start)
+        start_name(*start)
     )];
     if *informations {
         lines.push("stream informations true".into());

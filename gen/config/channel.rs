@@ -1,30 +1,13 @@
 //! The table `[[channel]]`, and `[endat]`, which says for all channels what they do not say themselves.
 
+use super::keys::*;
 use super::reader::{At, Table};
 use super::{protocol, trigger};
-use endat_hdl::config::*;
+use crate::form::key::Key;
+use endat_hdl::config::{ChannelRequest, START_WINDOW_BITS};
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::timing::{cycles_at_most, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 use std::collections::BTreeMap;
-
-/// Keys that `[endat]` gives for all channels and a `[[channel]]` may give for itself.
-const LINE_KEYS: [&str; 9] = [
-    "clock_hz",
-    "calibration_hz",
-    "tst_ns",
-    "filter_ns",
-    "start_window_ns",
-    "tcal_max_ns",
-    "recovery_min_ns",
-    "recovery_max_ns",
-    "cable_m",
-];
-/// The usual longest calculation time of EnDat 2.2 encoders, in ns.
-const TCAL_MAX_NS: u64 = 5_000;
-/// Longest name of an encoder, in characters: a column of a report.
-const ENCODER_MAX: usize = 40;
-/// Longest cable when none is given, in metres.
-const CABLE_M: u64 = 100;
 
 /// Where a key of the resolved request was written: path and line.
 pub type Places = BTreeMap<&'static str, (String, usize)>;
@@ -43,12 +26,32 @@ pub struct Channel {
 pub type LineKeys = BTreeMap<&'static str, Option<(String, At<u64>)>>;
 
 pub fn read_line_keys(table: &Table<'_, '_>, system_hz: Option<u64>) -> LineKeys {
-    let written = LINE_KEYS.iter().filter_map(|key| {
-        let value = table.integer(key, &limits(key, system_hz));
-        let place = |at| (table.name(key), at);
-        table.has(key).then(|| (*key, value.map(place)))
+    let written = of_lines().filter_map(|key| {
+        let value = table.integer(key, &key.limits(system_hz));
+        let place = |at| (table.name(key.name), at);
+        table.has(key.name).then(|| (key.name, value.map(place)))
     });
     written.collect()
+}
+
+/// Checks what `[endat]` says and every channel says for itself: nobody else looks at it.
+pub fn check_overridden(
+    table: &Table<'_, '_>,
+    defaults: &LineKeys,
+    channels: &[Option<Channel>],
+    system_hz: Option<u64>,
+) {
+    for key in of_lines() {
+        let Some(Some((path, at))) = defaults.get(key.name) else {
+            continue;
+        };
+        let takes =
+            |channel: &Channel| channel.places.get(key.name).is_some_and(|(p, _)| p == path);
+        // One that could not be read may take it.
+        if !channels.iter().any(|c| c.as_ref().is_none_or(takes)) {
+            table.check(key, at, &key.limits(system_hz));
+        }
+    }
 }
 
 pub fn read_endat(
@@ -59,59 +62,60 @@ pub fn read_endat(
 ) -> Option<Channel> {
     let encoder = read_encoder(table);
     let own = trigger::read_own(table);
-    let position_limits = limits("position_bits", system_hz);
-    let position = table.required_integer("position_bits", "29", &position_limits);
-    let command = table.required_string("command", "\"111000\"");
-    table.offer(ModeCommand::POSITION.map(|c| format!("{:06b}", c.code())));
+    let position = table.required_integer(&POSITION_BITS, &POSITION_BITS.limits(system_hz));
+    let command = table.required_string(&COMMAND);
     let command = command.and_then(|c| read_command(table, c));
     let mut keys = defaults.clone();
     let own_keys = read_line_keys(table, system_hz);
     keys.extend(own_keys.clone());
-    if !keys.contains_key("clock_hz") {
+    if !keys.contains_key(CLOCK_HZ.name) {
         let text = format!(
-            "{}: is missing; add `clock_hz = 3_125_000` here or in [endat]",
-            table.name("clock_hz")
+            "{}: is missing; add `{} = {}` here or in [{COMMON}]",
+            table.name(CLOCK_HZ.name),
+            CLOCK_HZ.name,
+            CLOCK_HZ.example()
         );
         table.complain_plain(text);
     }
-    if command.is_none() && table.has("command") {
+    if command.is_none() && table.has(COMMAND.name) {
         // No channel comes of it, so nobody else will look at these.
-        let read = own_keys.iter();
-        let read = read.filter_map(|(key, written)| Some((*key, &written.as_ref()?.1)));
-        for (key, at) in read.chain(position.iter().map(|at| ("position_bits", at))) {
-            table.check(key, at, &limits(key, system_hz));
+        let read = of_lines().filter_map(|key| {
+            let (_, at) = own_keys.get(key.name)?.as_ref()?;
+            Some((key, at))
+        });
+        for (key, at) in read.chain(position.iter().map(|at| (&POSITION_BITS, at))) {
+            table.check(key, at, &key.limits(system_hz));
         }
     }
     let (encoder, position, command) = (encoder?, position?, command?);
     let mut values = BTreeMap::new();
     let mut places = Places::new();
     let (own, divider_line) = own?;
-    places.insert("divider", (table.name("divider"), divider_line));
+    places.insert(DIVIDER.name, (table.name(DIVIDER.name), divider_line));
     for (key, written) in keys {
         let (path, at) = written?;
         values.insert(key, at.value);
         places.insert(key, (path, at.line));
     }
-    let value = |key: &str| values.get(key).copied();
-    let clock_hz = value("clock_hz")?;
-    places.insert(
-        "position_bits",
-        (table.name("position_bits"), position.line),
-    );
-    places.insert("channel", (table.name("position_bits"), table.line));
+    let value = |key: &Key| values.get(key.name).copied();
+    let usual = |key: &Key| value(key).unwrap_or(key.usual_number());
+    let clock_hz = value(&CLOCK_HZ)?;
+    let bits = POSITION_BITS.name;
+    places.insert(bits, (table.name(bits), position.line));
+    places.insert("channel", (table.name(bits), table.line));
     let request = ChannelRequest {
         clock_hz,
-        calibration_hz: value("calibration_hz"),
-        tst_ns: value("tst_ns").unwrap_or(ChannelRequest::usual_tst_ns(clock_hz)),
+        calibration_hz: value(&CALIBRATION_HZ),
+        tst_ns: value(&TST_NS).unwrap_or(ChannelRequest::usual_tst_ns(clock_hz)),
         command,
         position_bits: position.value,
-        filter_ns: value("filter_ns").unwrap_or(0),
-        start_window_ns: value("start_window_ns")
+        filter_ns: usual(&FILTER_NS),
+        start_window_ns: value(&START_WINDOW_NS)
             .unwrap_or_else(|| usual_window_ns(clock_hz, system_hz.unwrap_or(0), is_aligned)),
-        tcal_max_ns: value("tcal_max_ns").unwrap_or(TCAL_MAX_NS),
-        recovery_min_ns: value("recovery_min_ns").unwrap_or(RECOVERY_MIN_NS),
-        recovery_max_ns: value("recovery_max_ns").unwrap_or(RECOVERY_MAX_NS),
-        cable_m: value("cable_m").unwrap_or(CABLE_M),
+        tcal_max_ns: usual(&TCAL_MAX),
+        recovery_min_ns: usual(&RECOVERY_MIN),
+        recovery_max_ns: usual(&RECOVERY_MAX),
+        cable_m: usual(&CABLE),
         t_format: None,
         trigger: own,
     };
@@ -128,11 +132,11 @@ pub fn read_t_format(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Ch
     let (wanted, filter_ns, lines) = protocol::read(table, system_hz);
     let (own, divider_line) = trigger::read_own(table)?;
     let mut places = Places::new();
-    places.insert("divider", (table.name("divider"), divider_line));
+    places.insert(DIVIDER.name, (table.name(DIVIDER.name), divider_line));
     for (key, line) in lines {
         places.insert(key, (table.name(key), line));
     }
-    places.insert("channel", (table.name("protocol"), table.line));
+    places.insert("channel", (table.name(PROTOCOL.name), table.line));
     let request = ChannelRequest {
         clock_hz: wanted.bit_hz,
         calibration_hz: None,
@@ -157,8 +161,8 @@ pub fn read_t_format(table: &Table<'_, '_>, system_hz: Option<u64>) -> Option<Ch
 
 /// The encoder's name, which goes into reports and comments; empty when none is given.
 pub fn read_encoder(table: &Table<'_, '_>) -> Option<String> {
-    let Some(encoder) = table.string("encoder") else {
-        return (!table.has("encoder")).then(String::new);
+    let Some(encoder) = table.string(&ENCODER) else {
+        return (!table.has(ENCODER.name)).then(String::new);
     };
     let invisible = |c: &char| {
         c.is_control()
@@ -167,17 +171,16 @@ pub fn read_encoder(table: &Table<'_, '_>) -> Option<String> {
     let count = encoder.value.chars().count();
     let text = if let Some(bad) = encoder.value.chars().find(invisible) {
         format!("has the character {bad:?}, which cannot be seen; remove it")
-    } else if count > ENCODER_MAX {
-        format!("has {count} characters, at most {ENCODER_MAX} are allowed; shorten it")
+    } else if count > ENCODER.most {
+        format!(
+            "has {count} characters, at most {} are allowed; shorten it",
+            ENCODER.most
+        )
     } else {
         return Some(encoder.value);
     };
-    table.complain(
-        encoder.line,
-        "encoder",
-        &format!("{:?}", encoder.value),
-        &text,
-    );
+    let shown = format!("{:?}", encoder.value);
+    table.complain(encoder.line, ENCODER.name, &shown, &text);
     None
 }
 
@@ -212,12 +215,8 @@ fn read_command(table: &Table<'_, '_>, command: At<String>) -> Option<ModeComman
             Some(_) => format!("is not a mode command that a trigger can send; {known}"),
             None => format!("a mode command is six binary digits in quotes; {known}"),
         };
-        table.complain(
-            command.line,
-            "command",
-            &format!("{:?}", command.value),
-            &text,
-        );
+        let shown = format!("{:?}", command.value);
+        table.complain(command.line, COMMAND.name, &shown, &text);
     }
     found
 }

@@ -4,12 +4,13 @@ mod base;
 mod canonical;
 mod channel;
 mod device;
+pub mod keys;
 mod line;
 mod names;
 mod outputs;
 mod parts;
 pub mod pins;
-pub(crate) mod protocol;
+mod protocol;
 mod receiver;
 mod safety;
 pub(crate) mod schema;
@@ -17,11 +18,10 @@ mod service;
 mod start;
 mod stream;
 mod trigger;
+pub(crate) mod words;
 
-pub use line::phase_name;
 pub use names::{check_name, NAME_MAX};
 pub use start::preset_for;
-pub use stream::start_name;
 
 use crate::board::{Assignment, Board, Pll};
 use crate::error::{shown, Diagnostic, GenError};
@@ -29,9 +29,9 @@ use crate::form::with_text;
 pub(crate) use crate::form::{asked, document, reader};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::CardConfig;
-pub use protocol::RECEIVER_BUS;
 pub use receiver::Receiver;
 use std::path::Path;
+pub use words::{phase_name, start_name, RECEIVER_BUS};
 
 /// The presets that come with the program: name and text.
 pub const PRESETS: &[(&str, &str)] = &[

@@ -3,6 +3,9 @@
 /// Longest name; file systems and XST both stand more.
 pub const NAME_MAX: usize = 40;
 
+/// What a name is like, reserved words aside, as a regular expression.
+pub const NAME_PATTERN: &str = "^[A-Za-z](_?[A-Za-z0-9])*$";
+
 /// Words of Verilog-2005, VHDL-2008 and C that a module, file or macro must not be called; all in lower case.
 const RESERVED: &[&str] = &[
     // Verilog-2005

@@ -1,5 +1,6 @@
 //! The table `[outputs]`.
 
+use super::keys::OUTPUT_PARTS;
 use super::parts::read_parts;
 use super::reader::Table;
 use endat_hdl::bus::HostBus;
@@ -9,7 +10,7 @@ use endat_hdl::config::OutputParts;
 pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>, has_board: bool) -> Option<OutputParts> {
     let mut parts = OutputParts::default();
     let marks = &mut [&mut parts.position, &mut parts.interrupt];
-    let named = read_parts(table, &["position", "interrupt"], marks)?;
+    let named = read_parts(table, &OUTPUT_PARTS, marks)?;
     let Some(last) = named.last() else {
         return Some(parts);
     };
@@ -30,6 +31,6 @@ pub fn read(table: &Table<'_, '_>, bus: Option<HostBus>, has_board: bool) -> Opt
         ),
         _ => return Some(parts),
     };
-    table.complain(part.0, "parts", &part.1, remedy);
+    table.complain(part.0, OUTPUT_PARTS.name, &part.1, remedy);
     None
 }

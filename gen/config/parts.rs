@@ -1,28 +1,45 @@
 //! The key `parts`: a list of names.
 
 use super::reader::Table;
+use crate::form::key::Key;
 
-/// Marks the parts that a list names; line and text of each, `None` if something is wrong.
+/// Marks the parts that a list names, in the order of the key's words; line and text of each, `None` if something is wrong.
 pub(super) fn read_parts(
     table: &Table<'_, '_>,
-    names: &[&str],
+    key: &'static Key,
     marks: &mut [&mut bool],
 ) -> Option<Vec<(usize, String)>> {
     let mut all = Vec::new();
-    let words = table.strings("parts");
-    table.offer(names);
-    for word in words.unwrap_or_default() {
+    let names = key.words();
+    for word in table.strings(key).unwrap_or_default() {
         let shown = format!("{:?}", word.value);
-        let Some(index) = names.iter().position(|name| *name == word.value) else {
+        let index = names.iter().position(|name| *name == word.value);
+        let Some(mark) = index.and_then(|index| marks.get_mut(index)) else {
             let text = format!("unknown part; use {}", names.join(", "));
-            table.complain(word.line, "parts", &shown, &text);
+            table.complain(word.line, key.name, &shown, &text);
             return None;
         };
-        if std::mem::replace(marks[index], true) {
-            table.complain(word.line, "parts", &shown, "stands twice; remove one");
+        if std::mem::replace(*mark, true) {
+            table.complain(word.line, key.name, &shown, "stands twice; remove one");
             return None;
         }
         all.push((word.line, shown));
     }
     Some(all)
+}
+
+/// Complains about parts without the one that leads them.
+pub(super) fn check_leader(
+    table: &Table<'_, '_>,
+    key: &Key,
+    has_leader: bool,
+    named: &[(usize, String)],
+) -> Option<()> {
+    let (Some((line, shown)), false) = (named.first(), has_leader) else {
+        return Some(());
+    };
+    let leader = key.words().into_iter().next().unwrap_or_default();
+    let text = format!("every other part takes {leader}; add {leader:?}");
+    table.complain(*line, key.name, shown, &text);
+    None
 }

@@ -1,45 +1,26 @@
 //! The keys of a `[[channel]]` that speaks T-format, of a card or of a receiver.
 
+use super::keys::{
+    of_channels, BIT_RATE, CARD_FORM, ENDAT_FORM, FIELD_GAP_US, FILTER_NS, PROTOCOL, REPLY_GAP_US,
+    REQUEST, T_FORMAT_FILTER_NS, T_FORMAT_FORM,
+};
 use super::reader::{At, Table};
-use endat_hdl::config::{is_rate, is_triggered, limits, TFormatRequest};
+use super::words::{ENDAT, T_FORMAT};
+use crate::form::key::Key;
+use endat_hdl::config::{is_rate, is_triggered, TFormatRequest};
 use endat_hdl::t_format::protocol::{Request, BIT_HZ, FAST_BIT_HZ};
 
-/// Bus that makes a configuration one of a receiver.
-pub const RECEIVER_BUS: &str = "dsp";
-/// Word of the key `protocol` for T-format.
-pub const T_FORMAT: &str = "t_format";
-/// Word of the key `protocol` for EnDat, which may be left out.
-pub const ENDAT: &str = "endat";
-/// Keys of a channel that T-format has and EnDat has not.
-const T_FORMAT_KEYS: [&str; 4] = ["bit_hz", "request", "reply_gap_us", "field_gap_us"];
-/// Keys of a channel that EnDat has and T-format has not.
-const ENDAT_KEYS: [&str; 10] = [
-    "position_bits",
-    "command",
-    "clock_hz",
-    "tst_ns",
-    "start_window_ns",
-    "calibration_hz",
-    "tcal_max_ns",
-    "recovery_min_ns",
-    "recovery_max_ns",
-    "cable_m",
-];
-/// Input filter when none is given, in ns: a clock of the slower receiver.
-pub const FILTER_NS: u64 = 50;
-
-/// Keys of a channel of either protocol.
-fn all_keys() -> Vec<&'static str> {
-    [&ENDAT_KEYS[..], &T_FORMAT_KEYS, &["encoder", "filter_ns"]].concat()
+/// Takes the keys of a channel of either protocol as asked for.
+fn know_all(table: &Table<'_, '_>) {
+    table.know(&of_channels(CARD_FORM).collect::<Vec<_>>());
 }
 
 /// Whether a channel of a card speaks T-format; `None` for what is no protocol. Keys of the other protocol are refused.
 pub fn is_t_format(table: &Table<'_, '_>) -> Option<bool> {
-    let protocol = table.string("protocol");
-    table.offer([ENDAT, T_FORMAT]);
+    let protocol = table.string(&PROTOCOL);
     let is_t_format = match &protocol {
-        None if table.has("protocol") => {
-            table.know(&all_keys());
+        None if table.has(PROTOCOL.name) => {
+            know_all(table);
             return None;
         }
         None => false,
@@ -47,35 +28,35 @@ pub fn is_t_format(table: &Table<'_, '_>) -> Option<bool> {
         Some(word) if word.value == T_FORMAT => true,
         Some(word) => {
             let text = format!("unknown protocol; use \"{ENDAT}\" (default) or \"{T_FORMAT}\"");
-            table.complain(word.line, "protocol", &format!("{:?}", word.value), &text);
-            table.know(&all_keys());
+            let shown = format!("{:?}", word.value);
+            table.complain(word.line, PROTOCOL.name, &shown, &text);
+            know_all(table);
             return None;
         }
     };
-    let (foreign, text) = match is_t_format {
-        true => (&ENDAT_KEYS[..], "is a key of EnDat, and this channel speaks T-format; remove it (T-format has bit_hz, request, reply_gap_us, field_gap_us, filter_ns)"),
-        false => (&T_FORMAT_KEYS[..], "is a key of T-format, and this channel speaks EnDat; remove it, or add protocol = \"t_format\""),
+    let (own, text) = match is_t_format {
+        true => (T_FORMAT_FORM, "is a key of EnDat, and this channel speaks T-format; remove it (T-format has bit_hz, request, reply_gap_us, field_gap_us, filter_ns)"),
+        false => (ENDAT_FORM, "is a key of T-format, and this channel speaks EnDat; remove it, or add protocol = \"t_format\""),
     };
-    for key in foreign {
-        table.refuse(key, text);
+    for foreign in of_channels(CARD_FORM).filter(|key| key.forms & own == 0) {
+        table.refuse(foreign, text);
     }
     Some(is_t_format)
 }
 
 /// The bit rate, if it is one of T-format.
 pub fn read_bit_hz(table: &Table<'_, '_>) -> Option<At<u64>> {
-    let bit = table.integer("bit_hz", &limits("bit_hz", None));
-    table.offer([BIT_HZ, FAST_BIT_HZ]);
+    let bit = table.integer(&BIT_RATE, &BIT_RATE.limits(None));
     if let Some(bit) = bit.as_ref().filter(|bit| !is_rate(bit.value)) {
         let text = format!("is no rate of T-format encoders; use {BIT_HZ} or {FAST_BIT_HZ}");
-        table.complain(bit.line, "bit_hz", &bit.value.to_string(), &text);
+        table.complain(bit.line, BIT_RATE.name, &bit.value.to_string(), &text);
     }
     bit.filter(|bit| is_rate(bit.value))
 }
 
 /// A request, if there is such a one, with the line it stands on; a wrong one is answered with those that `may` be.
 pub fn read_request(table: &Table<'_, '_>, may: fn(Request) -> bool) -> Option<At<Request>> {
-    let request = table.integer("request", &limits("request", None));
+    let request = table.integer(&REQUEST, &REQUEST.limits(None));
     let usual = Request::ALL.iter().filter(|r| may(**r));
     table.offer(usual.map(|r| r.id()));
     let request = request?;
@@ -84,7 +65,12 @@ pub fn read_request(table: &Table<'_, '_>, may: fn(Request) -> bool) -> Option<A
         let usual = Request::ALL.iter().filter(|r| may(**r));
         let ids: Vec<String> = usual.map(|r| r.id().to_string()).collect();
         let text = format!("is no request ID; use one of {}", ids.join(", "));
-        table.complain(request.line, "request", &request.value.to_string(), &text);
+        table.complain(
+            request.line,
+            REQUEST.name,
+            &request.value.to_string(),
+            &text,
+        );
     }
     known.map(|value| At {
         value,
@@ -98,25 +84,28 @@ pub fn read(
     system_hz: Option<u64>,
 ) -> (TFormatRequest, u64, Vec<(&'static str, usize)>) {
     let usual = TFormatRequest::default();
-    let mut lines = vec![("protocol", table.line)];
-    let mut number = |key: &'static str, usual: u64| {
-        let at = table.integer(key, &limits(key, system_hz));
+    let mut lines = vec![(PROTOCOL.name, table.line)];
+    let mut number = |key: &'static Key, usual: u64| {
+        let at = table.integer(key, &key.limits(system_hz));
         let at = at.unwrap_or(At {
             value: usual,
             line: table.line,
         });
-        lines.push((key, at.line));
+        lines.push((key.name, at.line));
         at.value
     };
-    let reply_gap_us = number("reply_gap_us", usual.reply_gap_us);
-    let field_gap_us = number("field_gap_us", usual.field_gap_us);
-    let filter_ns = number("filter_ns", FILTER_NS);
+    let reply_gap_us = number(&REPLY_GAP_US, REPLY_GAP_US.usual_number());
+    let field_gap_us = number(&FIELD_GAP_US, FIELD_GAP_US.usual_number());
+    let filter_ns = number(&FILTER_NS, T_FORMAT_FILTER_NS);
     let bit = read_bit_hz(table);
     let request = read_request(table, is_triggered);
-    lines.push(("bit_hz", bit.as_ref().map_or(table.line, |b| b.line)));
-    lines.push(("request", request.as_ref().map_or(table.line, |r| r.line)));
+    lines.push((BIT_RATE.name, bit.as_ref().map_or(table.line, |b| b.line)));
+    lines.push((
+        REQUEST.name,
+        request.as_ref().map_or(table.line, |r| r.line),
+    ));
     let wanted = TFormatRequest {
-        bit_hz: bit.map_or(usual.bit_hz, |b| b.value),
+        bit_hz: bit.map_or(BIT_RATE.usual_number(), |b| b.value),
         request: request.map_or(usual.request, |r| r.value),
         reply_gap_us,
         field_gap_us,

@@ -5,9 +5,14 @@ use super::channel::read_encoder;
 use super::check_name;
 use super::device::read_initial_values;
 use super::document::parse;
-use super::protocol::{read_bit_hz, read_request, RECEIVER_BUS, T_FORMAT};
+use super::keys::{
+    tables, BUS, CARD_FORM, CHANNELS, FIELD_GAP_US, FILTER_CYCLES, NAME, PROTOCOL, RECEIVER_FORM,
+    REPLY_GAP_US,
+};
+use super::protocol::{read_bit_hz, read_request};
 use super::reader::{Source, Table};
-use endat_hdl::config::limits;
+use super::words::{RECEIVER_BUS, T_FORMAT};
+use crate::form::key::Key;
 use endat_hdl::t_format::dsp::TFormatStart;
 use endat_hdl::t_format::protocol::FAST_BIT_HZ;
 use toml::de::DeTable;
@@ -27,10 +32,6 @@ pub struct Receiver {
     pub hash: String,
 }
 
-/// Tables of a card that a receiver has nothing for.
-const TABLES_OF_CARDS: [&str; 10] = [
-    "board", "clock", "endat", "line", "link", "outputs", "safety", "service", "stream", "trigger",
-];
 /// Longest filter at the fast rate and a clock of 20 MHz, where a bit has four clocks.
 const FAST_FILTER_CYCLES_MAX: u64 = 1;
 
@@ -48,15 +49,17 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
     let document = parse(source)?;
     let empty = DeTable::new();
     let root = Table::root(source, &document);
-    let name = root.required_string("name", "\"my_receiver\"");
+    let name = root.string(&NAME);
+    // Not the example of a card.
+    root.require_as(&NAME, "\"my_receiver\"");
     if let Some(name) = &name {
         if let Err(text) = check_name(&name.value) {
-            root.complain(name.line, "name", &format!("{:?}", name.value), &text);
+            root.complain(name.line, NAME.name, &format!("{:?}", name.value), &text);
         }
     }
     let host = root.table("host", &empty);
-    host.string("bus");
-    let channels = root.tables("channel").unwrap_or_default();
+    host.string(&BUS);
+    let channels = root.tables(CHANNELS).unwrap_or_default();
     if channels.is_empty() && source.is_good() {
         let text = "[[channel]]: is missing; add one table with protocol = \"t_format\"";
         root.complain_plain(text.into());
@@ -66,7 +69,8 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
         second.complain_plain(text.into());
     }
     let channel = channels.first().and_then(read_channel);
-    for key in TABLES_OF_CARDS {
+    let ours = tables(RECEIVER_FORM);
+    for key in tables(CARD_FORM).into_iter().filter(|t| !ours.contains(t)) {
         let text = "is a table of cards, and host.bus = \"dsp\" makes this a T-format receiver; remove it, or choose another host.bus";
         root.refuse_table(key, text);
     }
@@ -95,39 +99,33 @@ pub fn read(source: &Source<'_>) -> Option<Receiver> {
 
 fn read_channel(table: &Table<'_, '_>) -> Option<(String, TFormatStart)> {
     let usual = TFormatStart::default();
-    let protocol = table.required_string("protocol", "\"t_format\"");
+    let protocol = table.string(&PROTOCOL);
+    table.require_as(&PROTOCOL, "\"t_format\"");
     if let Some(protocol) = protocol.filter(|p| p.value != T_FORMAT) {
         let text = "the bus \"dsp\" is that of a T-format receiver; use \"t_format\", or another host.bus for EnDat";
-        table.complain(
-            protocol.line,
-            "protocol",
-            &format!("{:?}", protocol.value),
-            text,
-        );
+        let shown = format!("{:?}", protocol.value);
+        table.complain(protocol.line, PROTOCOL.name, &shown, text);
     }
     let encoder = read_encoder(table);
     let fast = read_bit_hz(table).is_some_and(|bit| bit.value == FAST_BIT_HZ);
     let request = read_request(table, |_| true);
-    let number = |key: &'static str, usual: u64| {
-        let limits = match (key, fast) {
-            ("filter_cycles", true) => {
-                limits(key, None).at_most(FAST_FILTER_CYCLES_MAX, "a bit has four clocks of 20 MHz")
-            }
-            _ => limits(key, None),
+    let number = |key: &'static Key| {
+        let limits = key.limits(None);
+        let limits = match fast && key.name == FILTER_CYCLES.name {
+            true => limits.at_most(FAST_FILTER_CYCLES_MAX, "a bit has four clocks of 20 MHz"),
+            false => limits,
         };
         let Some(at) = table.integer(key, &limits) else {
-            return usual;
+            return key.usual_number();
         };
-        if !limits.contains(at.value) {
-            table.complain(at.line, key, &at.value.to_string(), &limits.to_string());
-        }
+        table.check(key, &at, &limits);
         at.value
     };
     let start = TFormatStart {
         fast,
-        reply_gap_us: number("reply_gap_us", usual.reply_gap_us),
-        field_gap_us: number("field_gap_us", usual.field_gap_us),
-        filter_cycles: number("filter_cycles", usual.filter_cycles),
+        reply_gap_us: number(&REPLY_GAP_US),
+        field_gap_us: number(&FIELD_GAP_US),
+        filter_cycles: number(&FILTER_CYCLES),
         request_id: request.map_or(usual.request_id, |r| r.value.id()),
     };
     Some((encoder?, start))

@@ -1,19 +1,10 @@
 //! The table `[safety]`.
 
+use super::keys::{ERROR_TEST_PERIOD as PERIOD, SAFETY_PARTS as PARTS};
 use super::parts::read_parts;
 use super::reader::Table;
 use endat_hdl::bus::HostBus;
-use endat_hdl::config::{limits, SafetyParts, ERROR_TEST_MS};
-
-/// Names of the parts.
-const PARTS: [&str; 4] = [
-    "recovery_counter",
-    "second_interface",
-    "second_receiver",
-    "error_test",
-];
-/// How often a forced error is tried.
-const PERIOD: &str = "error_test_ms";
+use endat_hdl::config::SafetyParts;
 
 /// What else the card has, as far as it could be read.
 #[derive(Clone, Copy)]
@@ -55,26 +46,26 @@ pub fn read(table: &Table<'_, '_>, around: Around) -> Option<SafetyParts> {
         &mut tests,
     ];
     let named = read_parts(table, &PARTS, marks);
-    let period_limits = limits(PERIOD, None);
-    let period = table.integer(PERIOD, &period_limits);
+    let period_limits = PERIOD.limits(None);
+    let period = table.integer(&PERIOD, &period_limits);
     let mut good = true;
     for (line, shown) in &named? {
         if let Some(remedy) = around.refuses(shown.trim_matches('"')) {
-            table.complain(*line, "parts", shown, remedy);
+            table.complain(*line, PARTS.name, shown, remedy);
             good = false;
         }
     }
     if let Some(period) = &period {
         if !tests {
             let text = "takes the part error_test; add it to safety.parts, or remove the key";
-            table.complain(period.line, PERIOD, &period.value.to_string(), text);
+            table.complain(period.line, PERIOD.name, &period.value.to_string(), text);
             return None;
         }
-        table.check(PERIOD, period, &period_limits);
+        table.check(&PERIOD, period, &period_limits);
         good &= period_limits.contains(period.value);
     }
     if tests {
-        parts.error_test_ms = period.map_or(ERROR_TEST_MS, |p| p.value as u16);
+        parts.error_test_ms = period.map_or(PERIOD.usual_number(), |p| p.value) as u16;
     }
     good.then_some(parts)
 }

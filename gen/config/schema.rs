@@ -1,15 +1,15 @@
 //! The way from a configuration file to a [`Project`].
 
-use super::channel::{read_endat, read_line_keys, read_t_format, Channel};
+use super::channel::{check_overridden, read_endat, read_line_keys, read_t_format, Channel};
 use super::device::read_initial_values;
 use super::document::parse;
+use super::keys;
 use super::pins::assign_pins;
-use super::protocol::RECEIVER_BUS;
 use super::reader::{At, Source, Table};
 use super::{
     base, canonical, check_name, line, outputs, protocol, safety, service, stream, trigger, Project,
 };
-use crate::board::{self, card_ports, Assignment, Board, MorePorts};
+use crate::board::{card_ports, Assignment, Board, MorePorts};
 use endat_hdl::bus::HostBus;
 use endat_hdl::config::*;
 use std::path::Path;
@@ -115,20 +115,18 @@ impl<'s, 't> Written<'s, 't> {
             let text = format!("host.bus = \"{}\": stays inside the chip, so the card has no board top; leave --board {} out", bus.name(), other.name);
             t.host.complain_plain(text);
         }
-        let system_limits = limits("system_hz", None);
-        let system = t
-            .clock
-            .required_integer("system_hz", "100_000_000", &system_limits);
+        let system_limits = keys::SYSTEM_HZ.limits(None);
+        let system = t.clock.required_integer(&keys::SYSTEM_HZ, &system_limits);
         let system_hz = system.as_ref().map(|s| s.value);
         let system_hz = system_hz.filter(|hz| system_limits.contains(*hz));
         if bus == Some(HostBus::Spi) {
-            check_sck(&t.host, system_hz);
+            base::check_sck(&t.host, system_hz);
         }
         let base_address = base::read(&t.host, bus);
         let defaults = read_line_keys(&t.endat, system_hz);
         let line = line::read(&t.line, system_hz);
         let is_aligned = line.is_some_and(|parts| parts.alignment);
-        let channel_tables = t.root.tables("channel");
+        let channel_tables = t.root.tables(keys::CHANNELS);
         let read_channel = |table| match protocol::is_t_format(table)? {
             true => read_t_format(table, system_hz),
             false => read_endat(table, &defaults, system_hz, is_aligned),
@@ -136,18 +134,19 @@ impl<'s, 't> Written<'s, 't> {
         let channels = channel_tables.as_ref();
         let channels: Option<Vec<Option<Channel>>> =
             channels.map(|tables| tables.iter().map(read_channel).collect());
+        let read = channels.as_deref().unwrap_or_default();
+        check_overridden(&t.endat, &defaults, read, system_hz);
         // One that could not be read may be of either protocol.
         let speaks = |c: &Option<Channel>| c.as_ref().is_none_or(|c| c.request.t_format.is_none());
         let has_endat = channels.iter().flatten().any(speaks);
-        let sample_limits = limits("sample_hz", system_hz);
-        let sample = t
-            .trigger
-            .required_integer("sample_hz", "10_000", &sample_limits);
-        let sources = trigger::read_sources(&t.trigger);
+        let sample_limits = keys::SAMPLE_HZ.limits(system_hz);
+        let sample = t.trigger.required_integer(&keys::SAMPLE_HZ, &sample_limits);
+        let sources = trigger::read_sources(&t.trigger, &keys::TRIGGER_SOURCES);
         let baud_max = board.as_ref().map_or(u64::MAX, |b| b.uart_baud_max);
-        let baud_limits = limits("baud", system_hz).at_most(baud_max, BAUD_NOTE);
-        let baud = || t.link.required_integer("baud", "2_000_000", &baud_limits);
-        let read_hz = || t.link.integer("read_hz", &limits("read_hz", system_hz));
+        let baud_limits = keys::BAUD.limits(system_hz).at_most(baud_max, BAUD_NOTE);
+        let baud = || t.link.required_integer(&keys::BAUD, &baud_limits);
+        let read_limits = keys::READ_HZ.limits(system_hz);
+        let read_hz = || t.link.integer(&keys::READ_HZ, &read_limits);
         let service = service::read(&t.service);
         let around = safety::Around {
             bus,
@@ -184,7 +183,7 @@ impl<'s, 't> Written<'s, 't> {
     /// The system clock, if it may be.
     fn system_hz(&self) -> Option<u64> {
         let system_hz = self.system.as_ref().map(|s| s.value);
-        system_hz.filter(|hz| limits("system_hz", None).contains(*hz))
+        system_hz.filter(|hz| keys::SYSTEM_HZ.limits(None).contains(*hz))
     }
 
     /// Complains about tables that this card has nothing for.
@@ -216,7 +215,8 @@ impl<'s, 't> Written<'s, 't> {
         {
             if let Err(text) = board.pll(system.value) {
                 let value = system.value.to_string();
-                t.clock.complain(system.line, "system_hz", &value, &text);
+                let key = keys::SYSTEM_HZ.name;
+                t.clock.complain(system.line, key, &value, &text);
             }
         }
         // The pins of a card with too many channels would only repeat that complaint.
@@ -234,8 +234,10 @@ impl<'s, 't> Written<'s, 't> {
         let has_uart = self.has_uart();
         let system_hz = self.system_hz();
         let value = |at: &Option<At<u64>>| at.as_ref().map(|at| at.value);
-        let usual_read_hz = value(&self.sample)
-            .filter(|hz| !t.link.has("read_hz") && limits("read_hz", system_hz).contains(*hz));
+        let read_limits = keys::READ_HZ.limits(system_hz);
+        let has_read_hz = t.link.has(keys::READ_HZ.name);
+        let usual_read_hz =
+            value(&self.sample).filter(|hz| !has_read_hz && read_limits.contains(*hz));
         let request = |c: &Option<Channel>| c.as_ref().map(|c| c.request.clone());
         CardDraft {
             system_hz: value(&self.system),
@@ -271,25 +273,24 @@ impl<'s, 't> Written<'s, 't> {
 
     /// Complains about numbers that do not go together, each at its line.
     fn tell(&self, source: &Source<'_>, problems: &[Problem]) {
-        let line = |at: &Option<At<u64>>| at.as_ref().map_or(0, |at| at.line);
+        fn line<T>(at: &Option<At<T>>) -> usize {
+            at.as_ref().map_or(0, |at| at.line)
+        }
         let stream = &self.stream;
         let lines = [
-            (Section::Clock, "system_hz", line(&self.system)),
-            (Section::Trigger, "sample_hz", line(&self.sample)),
-            (Section::Link, "baud", line(&self.baud)),
-            (Section::Link, "read_hz", line(&self.read_hz)),
-            (Section::Stream, "fifo_bytes", line(&stream.fifo_bytes)),
+            (Section::Clock, &keys::SYSTEM_HZ, line(&self.system)),
+            (Section::Trigger, &keys::SAMPLE_HZ, line(&self.sample)),
+            (Section::Link, &keys::BAUD, line(&self.baud)),
+            (Section::Link, &keys::READ_HZ, line(&self.read_hz)),
+            (Section::Stream, &keys::FIFO_BYTES, line(&stream.fifo_bytes)),
             (
                 Section::Stream,
-                "informations",
-                stream.informations.as_ref().map_or(0, |i| i.line),
+                &keys::INFORMATIONS,
+                line(&stream.informations),
             ),
-            (
-                Section::Stream,
-                "start",
-                stream.start.as_ref().map_or(0, |s| s.line),
-            ),
-        ];
+            (Section::Stream, &keys::STREAM_START, line(&stream.start)),
+        ]
+        .map(|(section, key, line)| (section, key.name, line));
         let heads: Vec<usize> = self
             .channel_tables
             .iter()
@@ -352,22 +353,17 @@ pub fn read(source: &Source<'_>, other: Option<&Board>) -> Option<Project> {
     })
 }
 
-/// The rate of SPI's clock, which only decides whether the card can follow it.
-fn check_sck(host: &Table<'_, '_>, system_hz: Option<u64>) {
-    let sck_limits = limits("sck_hz", system_hz);
-    let sck = host.integer("sck_hz", &sck_limits);
-    if let Some(sck) = sck.filter(|sck| !sck_limits.contains(sck.value)) {
-        let (value, text) = (sck.value.to_string(), sck_limits.to_string());
-        host.complain(sck.line, "sck_hz", &value, &text);
-    }
-}
-
 fn read_name(root: &Table<'_, '_>) -> Option<String> {
-    let name = root.required_string("name", "\"my_card\"")?;
+    let name = root.required_string(&keys::NAME)?;
     match check_name(&name.value) {
         Ok(()) => Some(name.value),
         Err(text) => {
-            root.complain(name.line, "name", &format!("{:?}", name.value), &text);
+            root.complain(
+                name.line,
+                keys::NAME.name,
+                &format!("{:?}", name.value),
+                &text,
+            );
             None
         }
     }
@@ -376,12 +372,12 @@ fn read_name(root: &Table<'_, '_>) -> Option<String> {
 /// Complains about what only EnDat channels have, on a card without any.
 fn refuse_endat(root: &Table<'_, '_>, service: &Table<'_, '_>, line: &Table<'_, '_>) {
     let text = "takes a channel that speaks EnDat, and this card has none; leave the list empty";
-    for table in [service, line] {
-        if let Some(part) = table.strings("parts").unwrap_or_default().first() {
-            table.complain(part.line, "parts", &format!("{:?}", part.value), text);
+    for (table, key) in [(service, &keys::SERVICE_PARTS), (line, &keys::LINE_PARTS)] {
+        if let Some(part) = table.strings(key).unwrap_or_default().first() {
+            table.complain(part.line, key.name, &format!("{:?}", part.value), text);
         }
     }
-    if root.has("endat") {
+    if root.has(keys::COMMON) {
         root.complain_plain(
             "[endat]: no channel of this card speaks EnDat; remove the table".into(),
         );
@@ -390,10 +386,8 @@ fn refuse_endat(root: &Table<'_, '_>, service: &Table<'_, '_>, line: &Table<'_, 
 
 /// The bus; `None` for what is no bus.
 fn read_bus(table: &Table<'_, '_>) -> Option<HostBus> {
-    let name = table.string("bus");
-    table.offer(HostBus::ALL.iter().map(|b| b.name()).chain([RECEIVER_BUS]));
-    let Some(name) = name else {
-        return (!table.has("bus")).then(HostBus::default);
+    let Some(name) = table.string(&keys::BUS) else {
+        return (!table.has(keys::BUS.name)).then(HostBus::default);
     };
     let bus = HostBus::from_name(&name.value);
     if bus.is_none() {
@@ -402,7 +396,12 @@ fn read_bus(table: &Table<'_, '_>) -> Option<HostBus> {
             "unknown bus; use {}, or dsp for a T-format receiver",
             known.join(", ")
         );
-        table.complain(name.line, "bus", &format!("{:?}", name.value), &text);
+        table.complain(
+            name.line,
+            keys::BUS.name,
+            &format!("{:?}", name.value),
+            &text,
+        );
     }
     bus
 }
@@ -423,14 +422,17 @@ fn refuse_unused(root: &Table<'_, '_>, bus: HostBus, tables: &[(&str, &Table<'_,
 /// The board that is asked for, by name or by file; `other` takes its place.
 fn read_board(source: &Source<'_>, table: &Table<'_, '_>, other: Option<&Board>) -> Option<Board> {
     if let Some(other) = other {
-        table.know(&["name", "file"]);
+        table.know(&[&keys::BOARD_NAME, &keys::BOARD_FILE]);
         return Some(other.clone());
     }
     // Not asked for where it does not stand: nobody can guess a file.
-    table.know(&["file"]);
-    if table.has("file") {
-        let file = table.string("file")?;
-        table.refuse("name", "file names a board, too; remove one of the two");
+    table.know(&[&keys::BOARD_FILE]);
+    if table.has(keys::BOARD_FILE.name) {
+        let file = table.string(&keys::BOARD_FILE)?;
+        table.refuse(
+            &keys::BOARD_NAME,
+            "file names a board, too; remove one of the two",
+        );
         let folder = Path::new(source.file).parent().unwrap_or(Path::new(""));
         return match Board::from_file(&folder.join(&file.value)) {
             Ok(board) => Some(board),
@@ -440,13 +442,12 @@ fn read_board(source: &Source<'_>, table: &Table<'_, '_>, other: Option<&Board>)
             }
         };
     }
-    let name = table.required_string("name", "\"papilio_pro\"");
-    table.offer(board::names());
-    let name = name?;
+    let name = table.required_string(&keys::BOARD_NAME)?;
     match Board::named(&name.value) {
         Ok(board) => Some(board),
         Err(text) => {
-            table.complain(name.line, "name", &format!("{:?}", name.value), &text);
+            let shown = format!("{:?}", name.value);
+            table.complain(name.line, keys::BOARD_NAME.name, &shown, &text);
             None
         }
     }

@@ -1,6 +1,7 @@
 //! The table `[service]`.
 
-use super::parts::read_parts;
+use super::keys::{INFOS, INFOS_RANGES, SERVICE_PARTS};
+use super::parts::{check_leader, read_parts};
 use super::reader::{At, Table};
 use endat_hdl::config::{ServiceParts, LIST};
 
@@ -10,7 +11,7 @@ pub fn read(table: &Table<'_, '_>) -> Option<ServiceParts> {
     let mut parts = ServiceParts::default();
     let named = read_parts(
         table,
-        &["requests", "diagnosis", "continuous", "initialise"],
+        &SERVICE_PARTS,
         &mut [
             &mut parts.requests,
             &mut parts.diagnosis,
@@ -18,15 +19,16 @@ pub fn read(table: &Table<'_, '_>) -> Option<ServiceParts> {
             &mut parts.initialise,
         ],
     )?;
-    if let (Some((line, shown)), false) = (named.first(), parts.requests) {
-        let text = "every other part takes requests; add \"requests\"";
-        table.complain(*line, "parts", shown, text);
-        return None;
-    }
+    check_leader(table, &SERVICE_PARTS, parts.requests, &named)?;
     let infos = infos?;
     if let (Some(first), false) = (infos.first(), parts.requests) {
         let text = "a card without requests has no list of additional informations; add \"requests\" to service.parts";
-        table.complain(first.line, "infos", &format!("0x{:02X}", first.value), text);
+        table.complain(
+            first.line,
+            INFOS.name,
+            &format!("0x{:02X}", first.value),
+            text,
+        );
         return None;
     }
     for (place, info) in parts.infos.iter_mut().zip(&infos) {
@@ -38,8 +40,8 @@ pub fn read(table: &Table<'_, '_>) -> Option<ServiceParts> {
 /// Additional informations that are selected from the start on; `None` for what cannot be.
 fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
     const CODES: &str = "no additional information; use MRS codes 0x40..0x4E and 0x50..0x5E";
-    let Some(infos) = table.integers("infos", CODES) else {
-        return if table.has("infos") {
+    let Some(infos) = table.integers(&INFOS, CODES) else {
+        return if table.has(INFOS.name) {
             None
         } else {
             Some(vec![])
@@ -54,10 +56,10 @@ fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
             code if infos[..index].iter().any(|i| i.value == code) => {
                 "stands twice; remove one".into()
             }
-            0x40..=0x4E | 0x50..=0x5E => continue,
+            code if INFOS_RANGES.iter().any(|range| range.contains(&code)) => continue,
             _ => CODES.into(),
         };
-        table.complain(info.line, "infos", &shown, &text);
+        table.complain(info.line, INFOS.name, &shown, &text);
         return None;
     }
     Some(infos)

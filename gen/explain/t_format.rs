@@ -48,7 +48,7 @@ impl TFormatReport {
         let exchange_us = us(config.cycle_max_cycles(card.system_hz));
         Self {
             encoder: encoder.into(),
-            protocol: crate::config::protocol::T_FORMAT,
+            protocol: crate::config::words::T_FORMAT,
             bit_rate: Rate::new(t_format.bit_hz, config.actual_hz(card.system_hz)),
             bit_cycles: config.period_cycles,
             request: request.id(),

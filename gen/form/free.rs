@@ -1,34 +1,31 @@
 //! Tables whose keys are names of things, and lists.
 
 use super::asked::Kind;
+use super::key::Key;
 use super::reader::{At, Table};
-use std::ops::RangeInclusive;
 use toml::de::DeValue;
 use toml::Spanned;
 
 impl<'s, 't> Table<'s, 't> {
-    /// A number that must be there and within a range.
-    pub fn number(
-        &self,
-        key: &'static str,
-        example: &str,
-        range: RangeInclusive<u64>,
-    ) -> Option<At<u64>> {
-        let (low, high) = (range.start(), range.end());
-        let limits = format!("outside {low}..{high}; choose a value in that range");
-        let found = self.whole(key, &limits);
-        self.require(key, example)?;
-        let found = found?;
-        if !range.contains(&found.value) {
-            self.complain(found.line, key, &found.value.to_string(), &limits);
-            return None;
-        }
-        Some(found)
+    /// A number that must be there and within the limits of its key.
+    pub fn number(&self, key: &'static Key) -> Option<At<u64>> {
+        let limits = key.limits(None);
+        let found = self.required_integer(key, &limits)?;
+        self.check(key, &found, &limits);
+        limits.contains(found.value).then_some(found)
+    }
+
+    /// A text that must be there, in tables whose keys are names of things.
+    pub fn text_of(&self, name: &'static str, example: &str) -> Option<At<String>> {
+        self.note(name, Kind::Text, vec![]);
+        self.require_name(name, example)?;
+        self.text(name, self.get(name)?)
     }
 
     /// A list of integers, if the key is there; `limits` are told of one that is negative or beyond every number.
-    pub fn integers(&self, key: &'static str, limits: &str) -> Option<Vec<At<u64>>> {
+    pub fn integers(&self, key: &'static Key, limits: &str) -> Option<Vec<At<u64>>> {
         self.ask(key, Kind::Integers);
+        let key = key.name;
         let spanned = self.get(key)?;
         let wanted = "a list of whole numbers, as [0x4C, 0x5B]";
         let Some(array) = spanned.get_ref().as_array() else {

@@ -3,6 +3,7 @@
 pub(crate) mod asked;
 pub(crate) mod document;
 mod free;
+pub mod key;
 pub(crate) mod reader;
 
 use crate::artifact::read_regular;

@@ -3,6 +3,7 @@
 //! `serde` stops at the first problem; a configuration is a form, and a form is checked as a whole.
 
 use super::asked::{Asked, Kind};
+use super::key::Key;
 use crate::error::{shorten, Diagnostic};
 use endat_hdl::config::Limits;
 use endat_host::did_you_mean::closest;
@@ -176,17 +177,22 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// Notes what is asked for.
-    pub(super) fn ask(&self, key: &'static str, kind: Kind) {
+    pub(super) fn ask(&self, key: &'static Key, kind: Kind) {
+        debug_assert!(key.belongs_to(&self.path), "{}", self.name(key.name));
+        self.note(key.name, kind, key.words());
+    }
+
+    pub(super) fn note(&self, key: &'static str, kind: Kind, words: Vec<String>) {
         let mut asked = self.source.asked.borrow_mut();
         asked.push(Asked {
             table: self.path.clone(),
             key,
             kind,
-            words: Vec::new(),
+            words,
         });
     }
 
-    /// Notes all that the key asked for last may be, if it is one of a few.
+    /// Notes that the key asked for last may be fewer words than its own.
     pub fn offer(&self, words: impl IntoIterator<Item = impl Display>) {
         if let Some(last) = self.source.asked.borrow_mut().last_mut() {
             last.words = words.into_iter().map(|word| word.to_string()).collect();
@@ -221,13 +227,9 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// An integer, if the key is there; `limits` are told when it is negative or beyond every number of hardware.
-    pub fn integer(&self, key: &'static str, limits: &Limits) -> Option<At<u64>> {
+    pub fn integer(&self, key: &'static Key, limits: &Limits) -> Option<At<u64>> {
         self.ask(key, Kind::Integer(limits.clone()));
-        self.whole(key, limits)
-    }
-
-    /// The same without limits that the asker is told of.
-    pub(super) fn whole(&self, key: &'static str, limits: &dyn Display) -> Option<At<u64>> {
+        let key = key.name;
         let spanned = self.get(key)?;
         let Some(integer) = spanned.get_ref().as_integer() else {
             self.wrong_type(
@@ -251,28 +253,28 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// Complains about a number outside its limits.
-    pub fn check(&self, key: &'static str, at: &At<u64>, limits: &Limits) {
+    pub fn check(&self, key: &Key, at: &At<u64>, limits: &Limits) {
         if !limits.contains(at.value) {
-            self.complain(at.line, key, &at.value.to_string(), &limits.to_string());
+            self.complain(
+                at.line,
+                key.name,
+                &at.value.to_string(),
+                &limits.to_string(),
+            );
         }
     }
 
     /// An integer that must be there.
-    /// Complains about a key that must be there, if it is not.
-    pub fn required_integer(
-        &self,
-        key: &'static str,
-        example: &str,
-        limits: &Limits,
-    ) -> Option<At<u64>> {
+    pub fn required_integer(&self, key: &'static Key, limits: &Limits) -> Option<At<u64>> {
         let found = self.integer(key, limits);
-        self.require(key, example)?;
+        self.require(key)?;
         found
     }
 
     /// A string, if the key is there.
-    pub fn string(&self, key: &'static str) -> Option<At<String>> {
+    pub fn string(&self, key: &'static Key) -> Option<At<String>> {
         self.ask(key, Kind::Text);
+        let key = key.name;
         let spanned = self.get(key)?;
         match spanned.get_ref().as_str() {
             Some(text) => self.at(text.to_owned(), spanned),
@@ -284,16 +286,16 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// A string that must be there.
-    /// Complains about a key that must be there, if it is not.
-    pub fn required_string(&self, key: &'static str, example: &str) -> Option<At<String>> {
+    pub fn required_string(&self, key: &'static Key) -> Option<At<String>> {
         let found = self.string(key);
-        self.require(key, example)?;
+        self.require(key)?;
         found
     }
 
     /// True or false, if the key is there.
-    pub fn boolean(&self, key: &'static str) -> Option<At<bool>> {
+    pub fn boolean(&self, key: &'static Key) -> Option<At<bool>> {
         self.ask(key, Kind::Boolean);
+        let key = key.name;
         let spanned = self.get(key)?;
         match spanned.get_ref().as_bool() {
             Some(value) => self.at(value, spanned),
@@ -305,8 +307,9 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// A list of strings, if the key is there.
-    pub fn strings(&self, key: &'static str) -> Option<Vec<At<String>>> {
+    pub fn strings(&self, key: &'static Key) -> Option<Vec<At<String>>> {
         self.ask(key, Kind::Texts);
+        let key = key.name;
         let spanned = self.get(key)?;
         let Some(array) = spanned.get_ref().as_array() else {
             self.wrong_type(key, spanned, "a list of texts in quotes");
@@ -343,7 +346,7 @@ impl<'s, 't> Table<'s, 't> {
 
     /// An array of tables; empty when missing, `None` when it is something else.
     pub fn tables(&self, key: &'static str) -> Option<Vec<Table<'s, 't>>> {
-        self.ask(key, Kind::Tables);
+        self.note(key, Kind::Tables, vec![]);
         let Some(spanned) = self.get(key) else {
             return Some(Vec::new());
         };
@@ -381,7 +384,17 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// Complains about a key that must be there, if it is not.
-    pub fn require(&self, key: &'static str, example: &str) -> Option<()> {
+    pub fn require(&self, key: &'static Key) -> Option<()> {
+        self.require_name(key.name, key.example())
+    }
+
+    /// The same with another example.
+    pub fn require_as(&self, key: &'static Key, example: &str) -> Option<()> {
+        self.require_name(key.name, example)
+    }
+
+    /// The same by its name.
+    pub(super) fn require_name(&self, key: &'static str, example: &str) -> Option<()> {
         if self.get(key).is_none() {
             // Without its table there is no line to add it to.
             let place = match self.line {
@@ -404,12 +417,13 @@ impl<'s, 't> Table<'s, 't> {
     }
 
     /// Takes these keys as asked for.
-    pub fn know(&self, keys: &[&'static str]) {
-        self.known.borrow_mut().extend(keys);
+    pub fn know(&self, keys: &[&'static Key]) {
+        self.known.borrow_mut().extend(keys.iter().map(|k| k.name));
     }
 
     /// Complains about a key that must not stand here, if it does.
-    pub fn refuse(&self, key: &'static str, text: &str) {
+    pub fn refuse(&self, key: &'static Key, text: &str) {
+        let key = key.name;
         if !self.has(key) {
             return;
         }

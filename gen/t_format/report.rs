@@ -1,7 +1,7 @@
 //! What a receiver's configuration becomes, as text and as data.
 
 use super::Receiver;
-use crate::config::protocol::T_FORMAT;
+use crate::config::words::T_FORMAT;
 use endat_hdl::t_format::protocol::{
     Request, BIT_HZ, FAST_BIT_HZ, FIELD_BITS, SYSTEM_HZ, WAIT_GRACE_US,
 };

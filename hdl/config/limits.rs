@@ -23,7 +23,8 @@ pub struct Limits {
 }
 
 impl Limits {
-    pub(super) const fn new(range: RangeInclusive<u64>) -> Self {
+    /// A range.
+    pub const fn new(range: RangeInclusive<u64>) -> Self {
         Self {
             range,
             or_zero: false,
@@ -41,6 +42,16 @@ impl Limits {
             },
             false => self,
         }
+    }
+
+    /// The range.
+    pub fn range(&self) -> RangeInclusive<u64> {
+        self.range.clone()
+    }
+
+    /// Whether 0 is good, too, and stands for "none".
+    pub const fn or_zero(&self) -> bool {
+        self.or_zero
     }
 
     /// Whether a value is good.
@@ -74,7 +85,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "tst_ns" => TST_MIN_NS..=TST_MAX_NS,
         "position_bits" => u64::from(*POSITION_BITS.start())..=u64::from(*POSITION_BITS.end()),
         "cable_m" => 0..=cable_most_m(slow),
-        "tcal_max_ns" => 1..=tcal_most_ns(CALIBRATION_HZ, 0),
+        "tcal_max_ns" => 1..=tcal_most_ns(calibration_most_hz(DELAY_BASE_NS), 0),
         "recovery_min_ns" | "recovery_max_ns" => SHORT_RECOVERY_MIN_NS..=recovery_most_ns(slow, 0),
         "filter_ns" => 0..=cycles_at_most_ns(max_of(FILTER_BITS), slow),
         "start_window_ns" => {
@@ -93,6 +104,7 @@ pub fn limits(key: &str, system_hz: Option<u64>) -> Limits {
         "reply_gap_us" => 1..=REPLY_GAP_US_MAX,
         "field_gap_us" => 0..=FIELD_GAP_US_MAX,
         "filter_cycles" => 0..=FILTER_CYCLES_MAX,
+        "samples" => 1..=3,
         "divider" => 1..=1 << SKIP_BITS,
         "error_test_ms" => ERROR_TEST_PATIENCE_MS.into()..=ERROR_TEST_MS_MAX.into(),
         _ => 0..=u64::MAX,

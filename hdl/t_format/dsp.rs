@@ -51,17 +51,20 @@ pub struct TFormatStart {
 
 impl Default for TFormatStart {
     fn default() -> Self {
-        Self {
-            fast: false,
-            reply_gap_us: 20,
-            field_gap_us: 2,
-            filter_cycles: 1,
-            request_id: 3,
-        }
+        Self::USUAL
     }
 }
 
 impl TFormatStart {
+    /// What counts where nothing is asked for.
+    pub const USUAL: Self = Self {
+        fast: false,
+        reply_gap_us: 20,
+        field_gap_us: 2,
+        filter_cycles: 1,
+        request_id: 3,
+    };
+
     /// The word of address 6.
     pub fn word(&self) -> u64 {
         self.reply_gap_us

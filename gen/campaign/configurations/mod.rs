@@ -3,6 +3,8 @@
 
 mod draw;
 
+pub use draw::{mutated, valid};
+
 use crate::artifact::Artifact;
 use crate::config::{parse_any, Configuration};
 use crate::error::GenError;

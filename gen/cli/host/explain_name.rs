@@ -1,7 +1,9 @@
-//! `explain NAME`: what a cause, a register or a field is.
+//! `explain NAME`: what a key, a cause, a register or a field is.
 
+use crate::cli::explain_key;
 use crate::error::{shown, GenError};
 use endat_host::causes;
+use endat_host::did_you_mean::closest;
 use endat_host::feed::NO_CAUSES;
 use endat_host::registers::{Access, Block, Field, Register, Values};
 use endat_regs::BLOCKS;
@@ -10,7 +12,7 @@ use std::fmt::Write;
 /// Causes of EnDat frames, which the services count; those behind them are T-format's.
 const SERVICE_CAUSES: std::ops::Range<u32> = 0..endat_hdl::transaction::cause::COUNT as u32;
 
-/// Everything called `name`: causes, registers, fields, values, with or without block and channel in front.
+/// Everything called `name`: keys of a configuration, causes, registers, fields, values, with or without block and channel in front.
 pub fn text(typed: &str) -> Result<String, GenError> {
     let name = typed.to_ascii_lowercase();
     let name = name.as_str();
@@ -84,15 +86,37 @@ pub fn text(typed: &str) -> Result<String, GenError> {
         }
     }
     text += &values;
+    text += &explain_key::text(name);
     if text.is_empty() {
         let causes: Vec<&str> = causes::all().iter().map(|c| c.name).collect();
+        let guess: Vec<String> = closest(name, names(), |known| known);
+        let guess = match guess.is_empty() {
+            true => String::new(),
+            false => format!("did you mean {}? ", guess.join(" or ")),
+        };
         return Err(GenError::input(format!(
-            "name = {}: is no cause, block, register, field or value of one; causes are {}; registers: `endat-gen reg list`",
+            "name = {}: is no key of a configuration, and no cause, block, register, field or value of one; {guess}causes are {}; registers: `endat-gen reg list`; keys: docs/configuration.md",
             shown(typed),
             causes.join(", ")
         )));
     }
     Ok(text)
+}
+
+/// All that may be asked for, each once.
+fn names() -> std::collections::BTreeSet<String> {
+    let causes = causes::all().iter().map(|c| c.name.to_owned());
+    let registers = BLOCKS.iter().flat_map(|block| {
+        let of_register = |r: &Register| {
+            let fields = r.fields.iter().map(|f| f.name.to_owned());
+            let own = [r.name.to_owned(), full(block, r)];
+            fields.chain(own).collect::<Vec<_>>()
+        };
+        let all = block.registers.iter().flat_map(of_register);
+        all.chain([block.name.to_owned()]).collect::<Vec<_>>()
+    });
+    let keys = explain_key::names().into_iter();
+    causes.chain(registers).chain(keys).collect()
 }
 
 /// What `name` stands for in a field: a number, or a bit.
