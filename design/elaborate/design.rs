@@ -336,6 +336,23 @@ impl Expr {
     }
 }
 
+/// The part of statements that assigns nets of `set`.
+pub fn restricted(statements: &[Statement], set: &BTreeSet<NetId>) -> Vec<Statement> {
+    let parts = statements.iter().filter_map(|s| s.restricted_to(set));
+    parts.collect()
+}
+
+/// The nets that statements assign.
+pub fn targets(statements: &[Statement]) -> BTreeSet<NetId> {
+    let mut nets = BTreeSet::new();
+    for statement in statements {
+        statement.for_each_target(&mut |net, _, _| {
+            nets.insert(net);
+        });
+    }
+    nets
+}
+
 impl Statement {
     /// Calls `visit` for every net that the statement assigns, with the lowest bit and the width.
     pub fn for_each_target(&self, visit: &mut dyn FnMut(NetId, usize, usize)) {
@@ -421,12 +438,7 @@ impl Statement {
 
     /// The part of the statement that assigns nets of `set`.
     pub fn restricted_to(&self, set: &BTreeSet<NetId>) -> Option<Statement> {
-        let block = |statements: &[Statement]| -> Vec<Statement> {
-            statements
-                .iter()
-                .filter_map(|s| s.restricted_to(set))
-                .collect()
-        };
+        let block = |statements: &[Statement]| restricted(statements, set);
         match self {
             Statement::Assign { net, .. } => set.contains(net).then(|| self.clone()),
             Statement::If {

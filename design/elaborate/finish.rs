@@ -13,6 +13,20 @@ pub(super) fn finish(
     name: &str,
     tree: &BlockNode,
 ) -> Result<(), ElaborateError> {
+    order_modules(design, top);
+    name_modules(design, name);
+    if let Some(problem) = problem(name) {
+        return Err(tree.error(
+            "",
+            format!("module name = {name}: {problem}"),
+            "choose another name",
+        ));
+    }
+    Ok(())
+}
+
+/// Leaves the top and what is below it, the top first.
+pub(super) fn order_modules(design: &mut Design, top: ModuleId) {
     let order = top_down(design, top);
     let mut position = vec![0; design.modules.len()];
     for (new, old) in order.iter().enumerate() {
@@ -31,15 +45,6 @@ pub(super) fn finish(
             instance.module = position[instance.module];
         }
     }
-    name_modules(design, name);
-    if let Some(problem) = problem(name) {
-        return Err(tree.error(
-            "",
-            format!("module name = {name}: {problem}"),
-            "choose another name",
-        ));
-    }
-    Ok(())
 }
 
 /// Every module before those that it instantiates, otherwise in the order of the source.

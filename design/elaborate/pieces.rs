@@ -4,11 +4,11 @@ use super::design::{mask, BinaryOp, Expr, ExprKind, NetId};
 
 /// Some bits of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Piece {
+struct Piece {
     /// Where its lowest bit stands.
-    pub low_bit: usize,
+    low_bit: usize,
     /// What stands there.
-    pub expr: Expr,
+    expr: Expr,
 }
 
 impl Piece {
@@ -64,7 +64,7 @@ fn runs(bits: u128) -> Vec<(usize, usize)> {
 }
 
 /// The pieces of an expression, lowest first; bits of none are 0. What is no such row is one piece.
-pub fn pieces(expr: &Expr) -> Vec<Piece> {
+fn pieces(expr: &Expr) -> Vec<Piece> {
     let mut row = apart(expr).unwrap_or_else(|| {
         vec![Piece {
             low_bit: 0,

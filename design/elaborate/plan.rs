@@ -5,7 +5,7 @@ mod assigned;
 
 pub(super) use assigned::for_each_read;
 
-use super::design::{NetId, Process, Statement};
+use super::design::{restricted, NetId, Process, Statement};
 use assigned::check_assigned;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -36,14 +36,16 @@ pub(super) fn plan(
     let sets = place(&targets, &classes, &order, through_children);
     let mut processes = vec![];
     for set in sets {
-        let statements: Vec<Statement> = statements
-            .iter()
-            .filter_map(|s| s.restricted_to(&set))
-            .collect();
+        let statements = restricted(statements, &set);
         check_assigned(&statements, &set)?;
         processes.push(Process { statements });
     }
     Ok((processes, targets.depends))
+}
+
+/// What each target of statements depends on.
+pub(super) fn dependencies(statements: &[Statement]) -> Dependencies {
+    Targets::new(statements).depends
 }
 
 /// The smallest processes that the statements of one process can be taken apart into.
@@ -62,10 +64,7 @@ pub(super) fn split(statements: &[Statement]) -> Vec<Process> {
         let members = classes.iter().filter(|(_, c)| *c == class);
         let set: BTreeSet<NetId> = members.map(|(net, _)| *net).collect();
         Process {
-            statements: statements
-                .iter()
-                .filter_map(|s| s.restricted_to(&set))
-                .collect(),
+            statements: restricted(statements, &set),
         }
     };
     order.iter().map(part).collect()
@@ -91,10 +90,7 @@ impl Targets {
             together: vec![],
         };
         for (at, statement) in statements.iter().enumerate() {
-            let mut set = BTreeSet::new();
-            statement.for_each_target(&mut |net, _, _| {
-                set.insert(net);
-            });
+            let set = super::design::targets(std::slice::from_ref(statement));
             for &target in &set {
                 targets.span.entry(target).or_insert((at, at)).1 = at;
                 let part = statement.restricted_to(&BTreeSet::from([target]));

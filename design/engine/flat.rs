@@ -2,7 +2,8 @@
 
 use super::{EngineError, Port};
 use crate::elaborate::{
-    Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Process, Statement, WritePort,
+    targets, Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Process, Statement,
+    WritePort,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -63,13 +64,7 @@ pub(super) struct FlatProcess {
 
 impl FlatProcess {
     pub fn targets(&self) -> BTreeSet<usize> {
-        let mut set = BTreeSet::new();
-        for statement in &self.statements {
-            statement.for_each_target(&mut |net, _, _| {
-                set.insert(net);
-            });
-        }
-        set
+        targets(&self.statements)
     }
 
     pub fn reads(&self) -> BTreeSet<usize> {

@@ -1,10 +1,20 @@
 //! The printed text under the tools that read it: not one warning.
 
 use crate::tools;
-use rtl_design::elaborate::Design;
+use rtl_design::elaborate::{elaborate, Design};
 use rtl_design::verilog::{print_files, Header};
+use rust_hdl::prelude::Block;
 use std::fs;
 use std::path::PathBuf;
+
+/// Blocks as designs of these names.
+pub fn elaborated(mut blocks: Vec<(Box<dyn Block>, &str)>) -> Vec<Design> {
+    let design = |(block, name): &mut (Box<dyn Block>, &str)| {
+        block.connect_all();
+        elaborate(&**block, name).unwrap()
+    };
+    blocks.iter_mut().map(design).collect()
+}
 
 /// Prints a design into a folder of its own; the file names.
 pub fn write(design: &Design, test: &str) -> (PathBuf, Vec<String>) {

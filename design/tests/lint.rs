@@ -1,6 +1,6 @@
 //! What tools make of the printed text.
 
-use crate::clean::{simulators_are_content, write, yosys_is_content};
+use crate::clean::{elaborated, simulators_are_content, write, yosys_is_content};
 use crate::memories::{Store, Tables};
 use crate::rng::Rng;
 use crate::tools;
@@ -11,21 +11,14 @@ use rtl_design::reg::{Reg, SyncReg};
 use rust_hdl::prelude::*;
 
 fn designs() -> Vec<Design> {
-    let mut blocks: Vec<(Box<dyn Block>, &str)> = vec![
+    elaborated(vec![
         (Box::new(Machine::new(5)), "machine"),
         (Box::new(Everything::new(3)), "everything"),
         (Box::new(Store::default()), "store"),
         (Box::new(Tables::default()), "tables"),
         (Box::new(ThereAndBack::default()), "there_and_back"),
         (Box::new(Chain::default()), "chain"),
-    ];
-    blocks
-        .iter_mut()
-        .map(|(block, name)| {
-            block.connect_all();
-            elaborate(&**block, name).unwrap()
-        })
-        .collect()
+    ])
 }
 
 #[test]

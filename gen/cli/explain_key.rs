@@ -1,8 +1,8 @@
 //! `explain KEY`: what a key, a table or a word of a configuration is.
 
 use crate::board::BOARD_KEYS;
-use crate::config::keys::{CHANNELS, KEYS, TABLES};
-use crate::form::key::{Key, Usual};
+use crate::config::keys::{KEYS, TABLES};
+use crate::form::key::{head, Key, Usual};
 use crate::json_schema::plain;
 use std::fmt::Write;
 
@@ -41,13 +41,6 @@ pub fn names() -> Vec<String> {
     };
     let tables = TABLES.iter().map(|(table, _)| (*table).to_owned());
     keys.flat_map(of_key).chain(tables).collect()
-}
-
-fn head(table: &str) -> String {
-    match table {
-        CHANNELS => format!("[[{table}]]"),
-        table => format!("[{table}]"),
-    }
 }
 
 /// Whether a name is that of a key: alone, or behind one of its tables, with a number if that has several.

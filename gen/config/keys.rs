@@ -3,6 +3,7 @@
 use super::names::{NAME_MAX, NAME_PATTERN};
 use super::words::*;
 use crate::board;
+pub use crate::form::key::CHANNELS;
 use crate::form::key::{self, keys, Choice};
 pub use crate::form::key::{Key, Kind, Usual};
 use endat_hdl::config::{ERROR_TEST_MS, LIST};
@@ -24,8 +25,6 @@ pub const CARD_FORM: u8 = ENDAT_FORM | T_FORMAT_FORM;
 /// What speaks T-format.
 const SPEAKS_T_FORMAT: u8 = T_FORMAT_FORM | RECEIVER_FORM;
 
-/// The table in double brackets.
-pub const CHANNELS: &str = "channel";
 /// The table that says for all channels what they do not say themselves.
 pub const COMMON: &str = "endat";
 const TOP: &[&str] = &[""];

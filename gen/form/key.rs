@@ -420,6 +420,17 @@ impl Key {
     }
 }
 
+/// The one table that a form may have several of.
+pub const CHANNELS: &str = "channel";
+
+/// What stands above the keys of a table.
+pub fn head(table: &str) -> String {
+    match table {
+        CHANNELS => format!("[[{table}]]"),
+        table => format!("[{table}]"),
+    }
+}
+
 /// Keys as a table of Markdown.
 pub fn page<'k>(keys: impl IntoIterator<Item = &'k Key>) -> String {
     let head = "| key | what it is | what may stand there | default |\n|---|---|---|---|\n";

@@ -3,7 +3,7 @@
 //! `serde` stops at the first problem; a configuration is a form, and a form is checked as a whole.
 
 use super::asked::{Asked, Kind};
-use super::key::Key;
+use super::key::{head, Key};
 use crate::error::{shorten, Diagnostic};
 use endat_hdl::config::Limits;
 use endat_host::did_you_mean::closest;
@@ -127,8 +127,7 @@ impl<'t> Source<'t> {
 fn home(table: &str) -> String {
     match table {
         "" => "to the top of the file, above all tables".into(),
-        "channel" => "to [[channel]]".into(),
-        table => format!("to [{table}]"),
+        table => format!("to {}", head(table)),
     }
 }
 

@@ -5,7 +5,7 @@ mod clean;
 
 use super::core::random_program;
 use crate::tools;
-use clean::{simulators_are_content, write, yosys_is_content};
+use clean::{elaborated, simulators_are_content, write, yosys_is_content};
 use endat_gen::area;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::load_preset;
@@ -29,7 +29,7 @@ fn designs() -> Vec<Design> {
         position: true,
         interrupt: true,
     };
-    let mut blocks: Vec<(Box<dyn Block>, &str)> = vec![
+    elaborated(vec![
         (
             Box::new(Sequencer::new(&random_program(4), false)),
             "sequencer",
@@ -48,14 +48,7 @@ fn designs() -> Vec<Design> {
         (Box::new(AxiLiteCard::new(&card)), "axi_lite_card"),
         (Box::new(SpiCard::new(&card)), "spi_card"),
         (Box::new(ParallelCard::new(&card)), "parallel_card"),
-    ];
-    blocks
-        .iter_mut()
-        .map(|(block, name)| {
-            block.connect_all();
-            elaborate(&**block, name).unwrap()
-        })
-        .collect()
+    ])
 }
 
 #[test]

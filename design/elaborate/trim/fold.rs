@@ -2,7 +2,7 @@
 
 use super::super::design::{mask, BinaryOp, Expr, ExprKind, Module, NetId, Statement, UnaryOp};
 use super::super::pieces::replaced;
-use super::known::{assign, known, run, ways, Known, Values, Ways};
+use super::known::{assign, known, meet, ways, Known, Values};
 
 /// The statements as they are where this is known; what they assign is known behind them.
 pub(super) fn fold(
@@ -38,11 +38,9 @@ fn one(module: &Module, statement: &Statement, values: &mut Values, out: &mut Ve
         return;
     }
     let blocks = statement.blocks();
-    let ways = match ways(module, statement, values) {
-        Ways::Some(ways) => ways,
-        // Nothing ever comes here.
-        Ways::None => vec![true; blocks.len()],
-    };
+    let reached = ways(module, statement, values);
+    let is_reached = reached.is_some();
+    let ways = reached.unwrap_or_else(|| vec![true; blocks.len()]);
     let mut possible = ways
         .iter()
         .enumerate()
@@ -53,15 +51,24 @@ fn one(module: &Module, statement: &Statement, values: &mut Values, out: &mut Ve
         }
         return;
     }
+    let mut after = vec![];
+    let mut folded_block = |block: &[Statement]| {
+        let mut own = values.clone();
+        let folded = fold(module, block, &mut own);
+        if is_reached {
+            after.push(own);
+        }
+        folded
+    };
     let folded = blocks
         .iter()
         .zip(&ways)
-        .map(|(block, is_possible)| is_possible.then(|| fold(module, block, &mut values.clone())));
+        .map(|(block, is_possible)| is_possible.then(|| folded_block(block)));
     let folded: Vec<Option<Vec<Statement>>> = folded.collect();
     if folded.iter().flatten().any(|block| !block.is_empty()) {
         out.push(with_blocks(module, statement, values, folded));
     }
-    run(module, std::slice::from_ref(statement), values);
+    meet(statement, &after, values);
 }
 
 /// The statement with other blocks; none = is never taken.

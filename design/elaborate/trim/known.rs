@@ -193,29 +193,16 @@ pub(super) fn assign(
     });
 }
 
-/// Which ways a statement may take.
-pub(super) enum Ways {
-    /// Nothing has come to the condition yet: none.
-    None,
-    /// The branches of an `if`, or the arms of a `case` and its default, that are possible.
-    Some(Vec<bool>),
-}
-
-/// The branches of a statement with blocks that may be taken, in the order of [`Statement::blocks`].
-pub(super) fn ways(module: &Module, statement: &Statement, values: &Values) -> Ways {
+/// Which blocks of a statement may be taken, in the order of [`Statement::blocks`]; none as long as nothing has come to its condition.
+pub(super) fn ways(module: &Module, statement: &Statement, values: &Values) -> Option<Vec<bool>> {
     match statement {
-        Statement::Assign { .. } => Ways::None,
-        Statement::If { condition, .. } => match known(module, condition, values) {
-            None => Ways::None,
-            Some(bits) => Ways::Some(match bits.whole(1) {
-                Some(value) => vec![value == 1, value == 0],
-                None => vec![true, true],
-            }),
-        },
+        Statement::Assign { .. } => None,
+        Statement::If { condition, .. } => {
+            let value = known(module, condition, values)?.whole(1);
+            Some(vec![value != Some(0), value != Some(1)])
+        }
         Statement::Case { subject, arms, .. } => {
-            let Some(seen) = known(module, subject, values) else {
-                return Ways::None;
-            };
+            let seen = known(module, subject, values)?;
             let width_bits = subject.width_bits;
             let mut is_open = true;
             let mut ways = vec![];
@@ -227,7 +214,7 @@ pub(super) fn ways(module: &Module, statement: &Statement, values: &Values) -> W
                 is_open &= is_equal != Some(1);
             }
             ways.push(is_open);
-            Ways::Some(ways)
+            Some(ways)
         }
     }
 }
@@ -245,11 +232,7 @@ pub(super) fn run(module: &Module, statements: &[Statement], values: &mut Values
             assign(values, *net, *low_bit, part, value.width_bits);
             continue;
         }
-        let Ways::Some(ways) = ways(module, statement, values) else {
-            // Until its condition is there, it assigns nothing.
-            statement.for_each_target(&mut |net, _, _| values[net] = None);
-            continue;
-        };
+        let ways = ways(module, statement, values).unwrap_or_default();
         let blocks = statement.blocks().into_iter();
         let taken = blocks.zip(ways).filter(|(_, is_possible)| *is_possible);
         let after = taken.map(|(block, _)| {
@@ -258,9 +241,14 @@ pub(super) fn run(module: &Module, statements: &[Statement], values: &mut Values
             after
         });
         let after: Vec<Values> = after.collect();
-        statement.for_each_target(&mut |net, _, _| {
-            let ends = after.iter().map(|values| values[net]);
-            values[net] = ends.fold(None, either);
-        });
+        meet(statement, &after, values);
     }
+}
+
+/// What a statement's targets hold behind it, out of what they hold behind each block that may be taken; without one nothing has come there.
+pub(super) fn meet(statement: &Statement, after: &[Values], values: &mut Values) {
+    statement.for_each_target(&mut |net, _, _| {
+        let ends = after.iter().map(|values| values[net]);
+        values[net] = ends.fold(None, either);
+    });
 }

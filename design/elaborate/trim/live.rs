@@ -1,7 +1,8 @@
 //! What of a design comes to its ports, or into what is proved about it.
 
 use super::super::design::*;
-use super::super::plan::for_each_read;
+use super::super::finish::order_modules;
+use super::super::plan::{dependencies, Dependencies};
 use super::known::Values;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,27 +24,16 @@ impl Live {
 /// Who drives the nets of a module.
 struct Drivers {
     /// Of each net, what its process reads for it.
-    reads: BTreeMap<NetId, BTreeSet<NetId>>,
+    reads: Dependencies,
     /// Of each net that a child drives: instance and port.
     children: BTreeMap<NetId, (usize, usize)>,
 }
 
 impl Drivers {
     fn new(module: &Module) -> Self {
-        let mut reads: BTreeMap<NetId, BTreeSet<NetId>> = BTreeMap::new();
+        let mut reads = Dependencies::new();
         for process in &module.processes {
-            for target in process.targets() {
-                let own = BTreeSet::from([target]);
-                let statements = process.statements.iter();
-                let sources = reads.entry(target).or_default();
-                for statement in statements.filter_map(|s| s.restricted_to(&own)) {
-                    statement.for_each_expr(&mut |expr| {
-                        for_each_read(expr, &mut |net, _| {
-                            sources.insert(net);
-                        });
-                    });
-                }
-            }
+            reads.extend(dependencies(&process.statements));
         }
         for register in &module.registers {
             let sources = [register.clock, register.next].into_iter();
@@ -73,7 +63,9 @@ fn live(design: &Design, facts: &[Values]) -> Vec<Live> {
     let drivers: Vec<Drivers> = design.modules.iter().map(Drivers::new).collect();
     let mut all = vec![Live::default(); design.modules.len()];
     let top = design.top();
-    all[0].nets = top.outputs().map(|(_, net)| net).collect();
+    let outputs = top.ports.iter();
+    let outputs = outputs.filter(|port| port.direction == Direction::Output);
+    all[0].nets = outputs.map(|port| port.net).collect();
     let mut is_used = vec![false; design.modules.len()];
     is_used[0] = true;
     loop {
@@ -125,7 +117,7 @@ fn follow(
             let ports = child.ports.iter().zip(&instance.connections);
             for (port, connection) in ports.filter(|(p, _)| p.direction == Direction::Input) {
                 if all[instance.module].nets.contains(&port.net) {
-                    for_each_read(&connection.value, &mut |net, _| {
+                    connection.value.for_each_net(&mut |net| {
                         if all[id].nets.insert(net) {
                             open.push(net);
                         }
@@ -152,9 +144,7 @@ pub(super) fn without_dead(design: &Design, facts: &[Values]) -> Design {
         module.registers.retain(|register| is_live(register.q));
         module.memories.retain(|memory| is_live(memory.read_data));
         for process in &mut module.processes {
-            let statements = process.statements.iter();
-            let kept = statements.filter_map(|s| s.restricted_to(&used.nets));
-            process.statements = kept.collect();
+            process.statements = restricted(&process.statements, &used.nets);
         }
         module.processes.retain(|p| !p.statements.is_empty());
         let instances = std::mem::take(&mut module.instances);
@@ -186,6 +176,6 @@ pub(super) fn without_dead(design: &Design, facts: &[Values]) -> Design {
         modules,
         ..design.clone()
     };
-    design.keep_used_modules();
+    order_modules(&mut design, 0);
     design
 }

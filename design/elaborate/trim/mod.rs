@@ -31,37 +31,9 @@ impl Design {
             design = folded;
         }
     }
-
-    /// Without modules of which there is no instance.
-    fn keep_used_modules(&mut self) {
-        let mut is_used = vec![false; self.modules.len()];
-        is_used[0] = true;
-        // A module stands before those that it instantiates.
-        for id in 0..self.modules.len() {
-            if is_used[id] {
-                let children = self.modules[id].instances.iter();
-                children.for_each(|instance| is_used[instance.module] = true);
-            }
-        }
-        let number = |old: ModuleId| is_used[..old].iter().filter(|u| **u).count();
-        let modules = std::mem::take(&mut self.modules).into_iter().zip(&is_used);
-        self.modules = modules
-            .filter_map(|(module, is_used)| is_used.then_some(module))
-            .collect();
-        for instance in self.modules.iter_mut().flat_map(|m| &mut m.instances) {
-            instance.module = number(instance.module);
-        }
-    }
 }
 
 impl Module {
-    /// Ports that it drives: their place among the ports, and the net.
-    fn outputs(&self) -> impl Iterator<Item = (usize, NetId)> + '_ {
-        let ports = self.ports.iter().enumerate();
-        let outputs = ports.filter(|(_, port)| port.direction == Direction::Output);
-        outputs.map(|(place, port)| (place, port.net))
-    }
-
     /// The value of a net of which all is known.
     fn whole(&self, net: NetId, values: &Values) -> Option<u128> {
         values[net]?.whole(self.nets[net].width_bits)
@@ -75,19 +47,6 @@ impl Module {
         nets.filter(|(_, net)| words.contains(net.name.as_str()))
             .map(|(id, _)| id)
             .collect()
-    }
-}
-
-impl Process {
-    /// The nets that it drives.
-    fn targets(&self) -> BTreeSet<NetId> {
-        let mut targets = BTreeSet::new();
-        for statement in &self.statements {
-            statement.for_each_target(&mut |net, _, _| {
-                targets.insert(net);
-            });
-        }
-        targets
     }
 }
 
@@ -129,7 +88,7 @@ fn step(design: &Design, id: ModuleId, facts: &mut [Values]) {
     let mut values = std::mem::take(&mut facts[id]);
     for process in &module.processes {
         let mut after = values.clone();
-        let targets = process.targets();
+        let targets = targets(&process.statements);
         for net in &targets {
             after[*net] = Some(Known::UNKNOWN);
         }
@@ -170,7 +129,7 @@ fn folded(design: &Design, facts: &[Values]) -> Design {
         let old = module.clone();
         for process in &mut module.processes {
             let mut own = values.clone();
-            for net in process.targets() {
+            for net in targets(&process.statements) {
                 own[net] = Some(Known::UNKNOWN);
             }
             process.statements = fold::fold(&old, &process.statements, &mut own);
