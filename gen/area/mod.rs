@@ -136,6 +136,14 @@ pub(crate) fn read(path: &Path) -> Result<String, GenError> {
     std::fs::read_to_string(path).map_err(|e| GenError::io("read", path, &e, remedy))
 }
 
+/// The text without its lines of comment: yosys names cells by their lines, and what comes out depends a little on names.
+fn logic_of(verilog: &str) -> String {
+    let lines = verilog
+        .lines()
+        .filter(|l| !l.trim_start().starts_with("//"));
+    lines.flat_map(|line| [line, "\n"]).collect()
+}
+
 /// Writes the Verilog files into a folder and synthesises the module `top` of them for a family.
 pub fn synthesise(
     folder: &Path,
@@ -143,7 +151,11 @@ pub fn synthesise(
     top: &str,
     family: &Family,
 ) -> Result<Synthesis, GenError> {
-    crate::artifact::write(folder, files, "make room there")?;
+    let without_comments = files
+        .iter()
+        .map(|f| Artifact::new(&*f.path, logic_of(&f.text)));
+    let files: Vec<Artifact> = without_comments.collect();
+    crate::artifact::write(folder, &files, "make room there")?;
     // What comes out depends a little on the order of what goes in.
     let mut names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
     names.sort_unstable();
