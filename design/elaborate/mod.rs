@@ -29,6 +29,7 @@ mod uses;
 pub use design::*;
 pub use execute::{binary, evaluate, execute};
 pub use finish::block_name;
+pub(crate) use pieces::{row, Piece};
 use rust_hdl::prelude::Block;
 
 /// Why a block cannot be elaborated.

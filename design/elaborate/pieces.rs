@@ -4,16 +4,16 @@ use super::design::{mask, BinaryOp, Expr, ExprKind, NetId};
 
 /// Some bits of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Piece {
+pub(crate) struct Piece {
     /// Where its lowest bit stands.
-    low_bit: usize,
+    pub low_bit: usize,
     /// What stands there.
-    expr: Expr,
+    pub expr: Expr,
 }
 
 impl Piece {
     /// The bit above it.
-    fn end(&self) -> usize {
+    pub fn end(&self) -> usize {
         self.low_bit + self.expr.width_bits
     }
 
@@ -63,6 +63,19 @@ fn runs(bits: u128) -> Vec<(usize, usize)> {
     starts.map(run).collect()
 }
 
+/// What an expression puts side by side, lowest first; bits of no piece are 0. `None` if it puts nothing together.
+pub(crate) fn row(expr: &Expr) -> Option<Vec<Piece>> {
+    if !matches!(
+        expr.kind,
+        ExprKind::Extend(_) | ExprKind::Slice(..) | ExprKind::Binary(..)
+    ) {
+        return None;
+    }
+    let row = pieces(expr);
+    let is_one = matches!(&row[..], [piece] if piece.expr == *expr);
+    (!is_one).then_some(row)
+}
+
 /// The pieces of an expression, lowest first; bits of none are 0. What is no such row is one piece.
 fn pieces(expr: &Expr) -> Vec<Piece> {
     let mut row = apart(expr).unwrap_or_else(|| {
@@ -89,6 +102,9 @@ fn apart(expr: &Expr) -> Option<Vec<Piece>> {
             Some(runs(*value).into_iter().map(ones).collect())
         }
         ExprKind::Extend(inner) => Some(pieces(inner)),
+        ExprKind::Slice(inner, low_bit) if !matches!(inner.kind, ExprKind::Net(_)) => {
+            cut_out(&pieces(inner), *low_bit, low_bit + expr.width_bits)
+        }
         ExprKind::Binary(BinaryOp::Or, left, right) => {
             let mut row = [pieces(left), pieces(right)].concat();
             row.sort_by_key(|piece| piece.low_bit);
@@ -98,27 +114,15 @@ fn apart(expr: &Expr) -> Option<Vec<Piece>> {
         ExprKind::Binary(BinaryOp::Shl, inner, places) => {
             let places = usize::try_from(constant(places)?).ok()?;
             let below = expr.width_bits.saturating_sub(places);
-            let stay = pieces(inner)
-                .into_iter()
-                .filter(|piece| piece.low_bit < below);
-            let moved = stay.map(|piece| {
-                let mut piece = piece.cut(0, below)?;
+            let mut moved = cut_out(&pieces(inner), 0, below)?;
+            for piece in &mut moved {
                 piece.low_bit += places;
-                Some(piece)
-            });
-            moved.collect()
+            }
+            Some(moved)
         }
         ExprKind::Binary(BinaryOp::Shr, inner, places) => {
             let places = usize::try_from(constant(places)?).ok()?;
-            let stay = pieces(inner)
-                .into_iter()
-                .filter(|piece| piece.end() > places);
-            let moved = stay.map(|piece| {
-                let mut piece = piece.cut(places, usize::MAX)?;
-                piece.low_bit -= places;
-                Some(piece)
-            });
-            moved.collect()
+            cut_out(&pieces(inner), places, usize::MAX)
         }
         ExprKind::Binary(BinaryOp::And, left, right) => {
             let (inner, bits) = match (constant(left), constant(right)) {
@@ -130,17 +134,29 @@ fn apart(expr: &Expr) -> Option<Vec<Piece>> {
             if runs.len() > RUNS_MAX {
                 return None;
             }
-            let row = pieces(inner);
-            let of_run = |(low_bit, end): (usize, usize)| {
-                let inside = row
-                    .iter()
-                    .filter(move |p| p.low_bit < end && p.end() > low_bit);
-                inside.map(move |piece| piece.cut(low_bit, end))
-            };
-            runs.into_iter().flat_map(of_run).collect()
+            let (whole, mut row) = (pieces(inner), vec![]);
+            for (low_bit, end) in runs {
+                for mut piece in cut_out(&whole, low_bit, end)? {
+                    piece.low_bit += low_bit;
+                    row.push(piece);
+                }
+            }
+            Some(row)
         }
         _ => None,
     }
+}
+
+/// The bits of a row from `low_bit` up to `end`, the lowest of them at 0.
+fn cut_out(row: &[Piece], low_bit: usize, end: usize) -> Option<Vec<Piece>> {
+    let inside = row.iter();
+    let inside = inside.filter(|piece| piece.low_bit < end && piece.end() > low_bit);
+    let moved = inside.map(|piece| {
+        let mut piece = piece.cut(low_bit, end)?;
+        piece.low_bit -= low_bit;
+        Some(piece)
+    });
+    moved.collect()
 }
 
 /// If an assignment to a whole net changes one range of its bits only: where that begins, and what it becomes.
@@ -219,6 +235,22 @@ mod tests {
         let row = pieces(&both);
         assert_eq!(row.len(), 1);
         assert_eq!(row[0].expr, both);
+    }
+
+    /// Bits of what was put together are bits of its pieces; of a sum none can be taken.
+    #[test]
+    fn bits_of_a_row_are_bits_of_its_pieces() {
+        let byte = of(
+            BinaryOp::Or,
+            of(BinaryOp::Shl, net(0, 8), Expr::constant(4, 3)),
+            bit(net(1, 1)),
+        );
+        let found = row(&slice(byte, 3, 3)).unwrap();
+        let places: Vec<_> = found.iter().map(|p| (p.low_bit, p.expr.clone())).collect();
+        assert_eq!(places, [(1, slice(net(0, 8), 0, 2))]);
+        let sum = of(BinaryOp::Add, net(0, 8), net(2, 8));
+        assert_eq!(row(&slice(sum, 3, 3)), None);
+        assert_eq!(row(&net(0, 8)), None);
     }
 
     #[test]

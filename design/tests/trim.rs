@@ -2,6 +2,7 @@
 
 use rtl_design::elaborate::{elaborate, Design, Module, NetId};
 use rtl_design::reg::Reg;
+use rtl_design::verilog::{print, Header};
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
@@ -44,6 +45,31 @@ impl Logic for Adder {
             self.sum.next = 0.into();
         }
         self.spare.next = self.total.q.val() + 1;
+    }
+}
+
+/// Tells why there is no answer; of a line that is watched, another reason.
+#[derive(LogicBlock, Block)]
+struct Teller {
+    fails: Signal<In, Bit>,
+    stuck: Signal<In, Bit>,
+    told: Signal<Out, Bits<4>>,
+    cause: Signal<Local, Bits<4>>,
+    no_answer: Constant<Bits<4>>,
+    is_watched: Constant<Bit>,
+}
+
+impl Logic for Teller {
+    #[kernel]
+    fn update(&mut self) {
+        self.cause.next = self.no_answer.val();
+        if self.is_watched.val() & self.stuck.val() {
+            self.cause.next = self.no_answer.val() | 1;
+        }
+        self.told.next = 0.into();
+        if self.fails.val() {
+            self.told.next = self.cause.val();
+        }
     }
 }
 
@@ -170,4 +196,20 @@ fn properties_keep_what_they_speak_of() {
 fn nothing_is_left_to_trim() {
     let once = trimmed(true, false);
     assert_eq!(once.trimmed(), once);
+}
+
+#[test]
+fn a_constant_keeps_its_name_where_a_net_was() {
+    let mut teller = Teller::from_parts(TellerParts {
+        no_answer: Constant::new(12.into()),
+        is_watched: Constant::new(false),
+    });
+    teller.connect_all();
+    let design = elaborate(&teller, "teller").unwrap();
+    let text = print(&design, &Header::default());
+    assert!(text.contains("told = NO_ANSWER;"), "{text}");
+    assert!(
+        !text.contains("cause") && !text.contains("IS_WATCHED"),
+        "{text}"
+    );
 }

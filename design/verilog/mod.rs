@@ -26,9 +26,14 @@ pub struct Header {
     pub notes: Vec<String>,
 }
 
+/// The design that the text is of: with the names of the text, and without what its configuration never uses.
+pub fn as_printed(design: &Design) -> Design {
+    names::with_emitted_names(design).trimmed()
+}
+
 /// Prints a design as one file, the top module first.
 pub fn print(design: &Design, header: &Header) -> String {
-    let design = &names::with_emitted_names(design);
+    let design = &as_printed(design);
     let mut out = header.long(design);
     out.push_str(PROLOGUE);
     for module in &design.modules {
@@ -46,7 +51,7 @@ pub fn file_name(module: &str) -> String {
 
 /// Prints a design as one file per module, the top module first: file names and texts. Linters want a module in a file of its name.
 pub fn print_files(design: &Design, header: &Header) -> Vec<(String, String)> {
-    let design = &names::with_emitted_names(design);
+    let design = &as_printed(design);
     let file = |(index, module): (usize, &Module)| {
         let mut out = match index {
             0 => header.long(design),

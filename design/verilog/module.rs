@@ -1,10 +1,11 @@
 //! One module as Verilog text.
 
+mod constants;
 pub(super) mod expression;
 
-use super::text::{comment, properties, ranges, upper, vector, INDENT};
-use crate::elaborate::{mask, Design, Direction, EnumId, Expr, ExprKind, Module, NetId, Statement};
-use expression::{literal, named_literal, range, Helper, Helpers};
+use super::text::{comment, properties, ranges, vector, INDENT};
+use crate::elaborate::{mask, Design, Direction, EnumId, Expr, Module, NetId, Statement};
+use expression::{literal, range, Helper, Helpers};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Keeps a synchroniser stage a flip-flop: Vivado and XST, then yosys and other tools.
@@ -68,12 +69,7 @@ impl<'a> ModulePrinter<'a> {
         if let Some(name) = self.variants.get(&(enum_id, variant)) {
             return name.clone();
         }
-        let enum_type = &self.design.enums[enum_id];
-        let name = format!(
-            "{}_{}",
-            upper(&enum_type.name),
-            upper(&enum_type.variants[variant])
-        );
+        let name = self.variant_name(enum_id, variant);
         let name = self.unique(&name);
         self.variants.insert((enum_id, variant), name.clone());
         name
@@ -124,28 +120,9 @@ impl<'a> ModulePrinter<'a> {
                 out.push_str(section.trim_start_matches('\n'));
             }
         }
-        out.push_str(&properties(&self.module.properties));
+        out.push_str(&properties(&self.with_constants(&self.module.properties)));
         out.push_str("endmodule\n");
         out
-    }
-
-    fn find_used_parameters(&mut self) {
-        fn visit(expr: &Expr, used: &mut BTreeSet<usize>) {
-            if let ExprKind::Parameter(index) = expr.kind {
-                used.insert(index);
-            }
-            // bits of a constant are printed as a literal
-            if !matches!(expr.kind, ExprKind::Slice(..)) {
-                expr.operands().into_iter().for_each(|e| visit(e, used));
-            }
-        }
-        let used = &mut self.used_parameters;
-        for statement in self.module.processes.iter().flat_map(|p| &p.statements) {
-            statement.for_each_expr(&mut |expr| visit(expr, used));
-        }
-        for connection in self.module.instances.iter().flat_map(|i| &i.connections) {
-            visit(&connection.value, used);
-        }
     }
 
     fn ports(&self, in_always: &BTreeSet<NetId>) -> String {
@@ -170,51 +147,6 @@ impl<'a> ModulePrinter<'a> {
             ));
         }
         out
-    }
-
-    fn constants(&self) -> String {
-        let mut out = String::new();
-        for index in &self.used_parameters {
-            let parameter = &self.module.parameters[*index];
-            out.push_str(&comment(&parameter.docs, INDENT));
-            let (vector, value) = (
-                vector(parameter.width_bits),
-                named_literal(&parameter.name, parameter.value, parameter.width_bits),
-            );
-            out.push_str(&format!(
-                "{INDENT}localparam {vector:>7} {} = {value};\n",
-                parameter.name
-            ));
-        }
-        let mut last = None;
-        for ((enum_id, variant), name) in &self.variants {
-            let enum_type = &self.design.enums[*enum_id];
-            if last.replace(*enum_id) != Some(*enum_id) {
-                let docs = if enum_type.docs.is_empty() {
-                    std::slice::from_ref(&enum_type.name)
-                } else {
-                    &enum_type.docs[..]
-                };
-                out.push_str(&comment(docs, INDENT));
-            }
-            let doc = enum_type
-                .variant_docs
-                .get(*variant)
-                .and_then(|docs| docs.first());
-            let doc = doc.map_or(String::new(), |doc| format!(" // {doc}"));
-            let (vector, value) = (
-                vector(enum_type.width_bits),
-                literal(*variant as u128, enum_type.width_bits),
-            );
-            out.push_str(&format!(
-                "{INDENT}localparam {vector:>7} {name} = {value};{doc}\n"
-            ));
-        }
-        if out.is_empty() {
-            out
-        } else {
-            format!("{out}\n")
-        }
     }
 
     fn declarations(&mut self, in_always: &BTreeSet<NetId>) -> String {

@@ -105,8 +105,8 @@ pub const GUARDS: [Guard; 10] = [
         edits: &[
             (
                 TRANSACTION,
-                "if (accept & !own) begin\n            owing_next = 1'b1;",
-                "if (accept & !own) begin\n            owing_next = 1'b0;",
+                "if (accept) begin\n            owing_next = 1'b1;",
+                "if (accept) begin\n            owing_next = 1'b0;",
             ),
             (
                 TRANSACTION,

@@ -27,6 +27,7 @@ use crate::scratch;
 use endat_sim::diagram::waves_svg;
 use rtl_design::elaborate::properties::{of_label, properties, Begins, Property};
 use rtl_design::elaborate::{Design, Module};
+use rtl_design::verilog::as_printed;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use tools::Answer;
@@ -56,6 +57,7 @@ const ANYWHERE_CYCLES: usize = 3;
 const SEARCH_CYCLES: usize = 12;
 
 /// What is proved.
+#[derive(Clone)]
 pub struct Subject {
     /// Name of the card.
     pub name: String,
@@ -94,6 +96,7 @@ impl Subject {
 
     fn of(name: &str, design: Design, mut files: Vec<Artifact>) -> Self {
         files.retain(is_core);
+        let design = as_printed(&design);
         let parts = parts(&design);
         Self {
             name: name.into(),

@@ -343,7 +343,6 @@ impl Logic for Exchange {
                 self.index.d.next = 15.into();
                 if self.expired.val() {
                     self.missed.d.next = true;
-                    self.timer.d.next = self.rest_us.val();
                     self.phase.d.next = Phase::Judge;
                 } else {
                     if self.previous.q.val() & !self.level.val() {
@@ -368,7 +367,6 @@ impl Logic for Exchange {
                                     // Shorter than a bit and a half is noise; what is longer spoils the header.
                                     if self.index.q.val().any() {
                                         self.missed.d.next = true;
-                                        self.timer.d.next = self.rest_us.val();
                                         self.phase.d.next = Phase::Judge;
                                     }
                                 }
@@ -402,7 +400,6 @@ impl Logic for Exchange {
                             self.order.step.next = true;
                             if !self.level.val() | self.order.is_last.val() {
                                 self.bad_delimiter.d.next = !self.level.val();
-                                self.timer.d.next = self.rest_us.val();
                                 self.order.step.next = false;
                                 self.phase.d.next = Phase::Judge;
                             }
@@ -426,6 +423,10 @@ impl Logic for Exchange {
                 self.phase.d.next = Phase::Rest;
                 self.overrun.d.next = false;
                 if self.phase.q.val() == Phase::Judge {
+                    // What follows a request waits for the line to be at rest; one that was refused changes nothing on it.
+                    if !self.refused.q.val() {
+                        self.timer.d.next = self.rest_us.val();
+                    }
                     self.owed.d.next = self.hold.val();
                     if self.hold.val() {
                         self.overrun.d.next = self.overrun.q.val();
@@ -446,7 +447,6 @@ impl Logic for Exchange {
         {
             self.in_request.next = false;
             self.upset.d.next = true;
-            self.timer.d.next = self.rest_us.val();
             self.phase.d.next = Phase::Judge;
         }
         self.enabled.d.next = self.in_request.val();

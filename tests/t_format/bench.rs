@@ -138,8 +138,8 @@ const MUTATIONS: &[Mutation] = &[
     mutation(
         "communication alarm: delimiter missing",
         VERDICT,
-        "({7'd0, flags[6]} << 2'd3)",
-        "8'd0",
+        "flags[5:4], flags[6],",
+        "flags[5:4], 1'b0,",
     ),
     mutation(
         "another ID taken for that of the request",

@@ -46,8 +46,8 @@ const APB: &[Mutation] = &[
     mutation(
         "interrupt: channels at the wrong bits",
         "interrupt",
-        "assign events_0 = (events_1 << 3'd4)",
-        "assign events_0 = (events_1 << 3'd5)",
+        "assign events_0 = {events_1[27:0], 4'd0}",
+        "assign events_0 = {events_1[26:0], 5'd0}",
     ),
     mutation(
         "direct output: told anew after a bad result",
@@ -145,8 +145,8 @@ const SPI: &[Mutation] = &[
     mutation(
         "SPI: upper part of the address at the wrong place",
         "spi_front",
-        "address_next = {8'd0, byte_in[2:0]} << 4'd8;",
-        "address_next = {8'd0, byte_in[2:0]} << 4'd7;",
+        "address_next = {byte_in[2:0], 8'd0};",
+        "address_next = {1'b0, byte_in[2:0], 7'd0};",
     ),
     mutation(
         "SPI: one word too many",

@@ -27,6 +27,19 @@ pub const fn mutation(
     }
 }
 
+impl Mutation {
+    /// The text of its block, broken.
+    pub fn applied(&self, text: &str) -> Result<String, String> {
+        match text.matches(self.from).count() {
+            1 => Ok(text.replace(self.from, self.to)),
+            count => Err(format!(
+                "{}: {:?} stands {count} times in {}",
+                self.name, self.from, self.block
+            )),
+        }
+    }
+}
+
 /// All of them.
 pub const MUTATIONS: &[Mutation] = &[
     mutation(
@@ -68,8 +81,8 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "mode command shifted by one bit",
         "command_sender",
-        "{2'd0, command} << 1'b1",
-        "{2'd0, command} << 2'd2",
+        "{1'b0, command, 1'b0}",
+        "{command, 2'd0}",
     ),
     mutation(
         "sample half a bit off",
@@ -92,8 +105,8 @@ pub const MUTATIONS: &[Mutation] = &[
     mutation(
         "wrong cause for a missing start bit",
         "transaction",
-        "no_start = NO_START_BIT;",
-        "no_start = START_WINDOW;",
+        "found = NO_START_BIT;",
+        "found = START_WINDOW;",
     ),
     mutation(
         "a bad frame replaces the last good position",

@@ -75,8 +75,8 @@ const BROKEN_SERVICES: &[Mutation] = &[
     mutation(
         "address of a request one place too low",
         "service_channel",
-        "{16'd0, out_address} << 5'd16",
-        "{16'd0, out_address} << 5'd15",
+        "{out_address, out_data}",
+        "{1'b0, out_address, 15'd0} | {8'd0, out_data}",
     ),
     mutation(
         "a run that ends behind its first position",

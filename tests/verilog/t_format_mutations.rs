@@ -18,8 +18,8 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "wrong sync code",
         "request_bits",
-        "<< 3'd7) | 8'd2;",
-        "<< 3'd7) | 8'd6;",
+        "{parity, request_id, 3'd2}",
+        "{parity, request_id, 3'd6}",
     ),
     mutation(
         "CRC: wrong tap",
@@ -42,8 +42,8 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "echo of the ID not compared",
         EXCHANGE,
-        "({3'd0, level} << 2'd3);\n                                bad_echo_next = bad_echo | differs;",
-        "({3'd0, level} << 2'd3);",
+        "{level, echo[3:1]};\n                                bad_echo_next = bad_echo | differs;",
+        "{level, echo[3:1]};",
     ),
     mutation(
         "parity of the reply not checked",
@@ -174,7 +174,7 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "single-turn position MSB first",
         REPLY,
-        "single_bits_next = {1'b0, single_bits[23:1]} | ({23'd0, level} << 5'd23);",
+        "single_bits_next = {level, single_bits[23:1]};",
         "single_bits_next = {single_bits[22:0], level};",
     ),
     mutation(
@@ -198,8 +198,8 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "positions exchanged",
         PORT,
-        "snapshot_position_in = {24'd0, single} | ({24'd0, multi} << 5'd24);",
-        "snapshot_position_in = {24'd0, multi} | ({24'd0, single} << 5'd24);",
+        "snapshot_position_in = {multi, single};",
+        "snapshot_position_in = {single, multi};",
     ),
     mutation(
         "trigger overrun not told",
@@ -228,8 +228,8 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "T-format channel not triggered",
         "card_core",
-        ".trigger(trigger_of_0),\n        .calibrate(bank_calibrate[0]),",
-        ".trigger(1'b0),\n        .calibrate(bank_calibrate[0]),",
+        ".trigger(trigger_of_0),\n        .data_i(",
+        ".trigger(1'b0),\n        .data_i(",
     ),
 ];
 

@@ -1,6 +1,7 @@
 //! Every way through a process must assign all its targets, and each before it is read.
 
 use super::super::design::{mask, Expr, ExprKind, NetId, Statement};
+use super::super::pieces::row;
 use super::PlanError;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -99,8 +100,15 @@ fn check_reads(expr: &Expr, set: &BTreeSet<NetId>, assigned: &Assigned) -> Resul
     result
 }
 
-/// Calls `visit` for every net that an expression reads, with the bits that matter.
+/// Calls `visit` for every net that an expression names, with the bits that matter: of what it puts side by side, those of the pieces.
 pub(in crate::elaborate) fn for_each_read(expr: &Expr, visit: &mut dyn FnMut(NetId, u128)) {
+    if let Some(row) = row(expr) {
+        for piece in row {
+            for_each_read(&piece.expr, visit);
+        }
+        expr.for_each_net(&mut |net| visit(net, 0));
+        return;
+    }
     match &expr.kind {
         ExprKind::Net(net) => visit(*net, mask(expr.width_bits)),
         ExprKind::Slice(inner, low_bit) => {

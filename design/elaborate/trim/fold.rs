@@ -162,7 +162,8 @@ pub(super) fn shorter(module: &Module, expr: &Expr, values: &Values) -> Expr {
         .whole(expr.width_bits)
         .filter(|_| is_flag || reads_nets(expr))
     {
-        return Expr::constant(value, expr.width_bits);
+        let name = (!is_flag).then(|| named(module, expr, value)).flatten();
+        return name.unwrap_or_else(|| Expr::constant(value, expr.width_bits));
     }
     let short = |expr: &Expr| Box::new(shorter(module, expr, values));
     let kind = match &expr.kind {
@@ -198,6 +199,25 @@ pub(super) fn shorter(module: &Module, expr: &Expr, values: &Values) -> Expr {
         width_bits: expr.width_bits,
         kind,
     }
+}
+
+/// The named constant that a net is, if it is assigned one of this value.
+fn named(module: &Module, expr: &Expr, value: u128) -> Option<Expr> {
+    let ExprKind::Net(own) = expr.kind else {
+        return None;
+    };
+    let assigned = module.processes.iter().flat_map(|p| &p.statements);
+    let mut assigned = assigned.filter_map(|statement| match statement {
+        Statement::Assign { net, value, .. } if *net == own => Some(value),
+        _ => None,
+    });
+    let is_it = |constant: &&Expr| match constant.kind {
+        ExprKind::Parameter(index) => module.parameters[index].value == value,
+        ExprKind::Variant(_, variant) => variant as u128 == value,
+        _ => false,
+    };
+    let constant = assigned.find(is_it)?;
+    (constant.width_bits == expr.width_bits).then(|| constant.clone())
 }
 
 fn reads_nets(expr: &Expr) -> bool {

@@ -1,7 +1,7 @@
 //! Expressions as Verilog text.
 
 use super::ModulePrinter;
-use crate::elaborate::{mask, BinaryOp, Expr, ExprKind, NetId, UnaryOp};
+use crate::elaborate::{mask, row, BinaryOp, Expr, ExprKind, NetId, Piece, UnaryOp};
 
 /// Ends of the names of quantities.
 const UNITS: [&str; 8] = ["hz", "ns", "us", "ms", "cycles", "bits", "bytes", "words"];
@@ -55,6 +55,9 @@ pub(in crate::verilog) struct Helpers {
 impl ModulePrinter<'_> {
     /// The text of an expression; `for_net` names helper nets.
     pub fn expression(&mut self, expr: &Expr, for_net: &str, helpers: &mut Helpers) -> String {
+        if let Some(row) = row(expr) {
+            return self.side_by_side(row, expr.width_bits, for_net, helpers);
+        }
         match &expr.kind {
             ExprKind::Constant(value) => literal(*value, expr.width_bits),
             ExprKind::Variant(enum_id, variant) => self.variant(*enum_id, *variant),
@@ -73,7 +76,8 @@ impl ModulePrinter<'_> {
             }
             ExprKind::Unary(op, inner) => {
                 let is_flag = inner.width_bits == 1;
-                let is_bare = !matches!(inner.kind, ExprKind::Unary(..) | ExprKind::Binary(..));
+                let is_bare = is_row(inner)
+                    || !matches!(inner.kind, ExprKind::Unary(..) | ExprKind::Binary(..));
                 let inner = self.operand(inner, is_bare, for_net, helpers);
                 let sign = match op {
                     UnaryOp::Not if is_flag => "!",
@@ -86,6 +90,7 @@ impl ModulePrinter<'_> {
             }
             ExprKind::Binary(op, left, right) => {
                 let is_bare = |e: &Expr, is_left: bool| match e.kind {
+                    _ if is_row(e) => true,
                     ExprKind::Binary(inner, ..) => is_left && inner == *op && is_chain(inner),
                     ExprKind::Unary(inner, _) => inner == UnaryOp::Not,
                     _ => true,
@@ -103,6 +108,48 @@ impl ModulePrinter<'_> {
                 let right = self.operand(right, is_bare(right, false), for_net, helpers);
                 format!("{left} {} {right}", sign(*op))
             }
+        }
+    }
+
+    /// Pieces side by side, zeros between them: a concatenation.
+    fn side_by_side(
+        &mut self,
+        row: Vec<Piece>,
+        width_bits: usize,
+        for_net: &str,
+        helpers: &mut Helpers,
+    ) -> String {
+        let mut texts = vec![];
+        // Bits that are known, from where on, and their value.
+        let (mut known_from, mut known) = (0, 0);
+        let top = Piece {
+            low_bit: width_bits,
+            expr: Expr::constant(0, 0),
+        };
+        for piece in row.into_iter().chain([top]) {
+            if let ExprKind::Constant(value) = piece.expr.kind {
+                let places = (piece.low_bit - known_from) as u32;
+                known |= value.checked_shl(places).unwrap_or(0);
+                if piece.low_bit < width_bits {
+                    continue;
+                }
+            }
+            if piece.low_bit > known_from {
+                let places = piece.low_bit - known_from;
+                texts.push(match known <= SMALL_MASK_MAX {
+                    true => literal(known, places),
+                    false => bits(known, places),
+                });
+            }
+            if piece.low_bit < width_bits {
+                texts.push(self.expression(&piece.expr, for_net, helpers));
+            }
+            (known_from, known) = (piece.end(), 0);
+        }
+        texts.reverse();
+        match &texts[..] {
+            [text] if !text.contains(' ') => text.clone(),
+            _ => format!("{{{}}}", texts.join(", ")),
         }
     }
 
@@ -275,6 +322,11 @@ pub(in crate::verilog) fn range(
         1 => format!("{name}[{low_bit}]"),
         _ => format!("{name}[{}:{low_bit}]", low_bit + width_bits - 1),
     }
+}
+
+/// Whether it is printed as a concatenation.
+fn is_row(expr: &Expr) -> bool {
+    row(expr).is_some()
 }
 
 /// Operators that read well in a row.

@@ -1,0 +1,102 @@
+//! Constants of a module: its parameters and states.
+
+use super::expression::{literal, named_literal};
+use super::ModulePrinter;
+use crate::elaborate::{EnumId, Expr, ExprKind};
+use crate::verilog::text::{comment, upper, vector, INDENT};
+use std::collections::BTreeSet;
+
+impl ModulePrinter<'_> {
+    pub(super) fn find_used_parameters(&mut self) {
+        fn visit(expr: &Expr, used: &mut BTreeSet<usize>) {
+            if let ExprKind::Parameter(index) = expr.kind {
+                used.insert(index);
+            }
+            // bits of a constant are printed as a literal
+            let is_literal = matches!(&expr.kind, ExprKind::Slice(inner, _) if matches!(inner.kind, ExprKind::Parameter(_)));
+            if !is_literal {
+                expr.operands().into_iter().for_each(|e| visit(e, used));
+            }
+        }
+        let used = &mut self.used_parameters;
+        for statement in self.module.processes.iter().flat_map(|p| &p.statements) {
+            statement.for_each_expr(&mut |expr| visit(expr, used));
+        }
+        for connection in self.module.instances.iter().flat_map(|i| &i.connections) {
+            visit(&connection.value, used);
+        }
+    }
+
+    /// What is named in the logic, with what it is.
+    pub(super) fn constants(&self) -> String {
+        let mut out = String::new();
+        for index in &self.used_parameters {
+            out.push_str(&comment(&self.module.parameters[*index].docs, INDENT));
+            out.push_str(&format!("{INDENT}{}\n", self.parameter_line(*index)));
+        }
+        let mut last = None;
+        for ((enum_id, variant), name) in &self.variants {
+            let enum_type = &self.design.enums[*enum_id];
+            if last.replace(*enum_id) != Some(*enum_id) {
+                let docs = match enum_type.docs.is_empty() {
+                    true => std::slice::from_ref(&enum_type.name),
+                    false => &enum_type.docs[..],
+                };
+                out.push_str(&comment(docs, INDENT));
+            }
+            let docs = enum_type.variant_docs.get(*variant);
+            let doc = docs.and_then(|docs| docs.first());
+            let doc = doc.map_or(String::new(), |doc| format!(" // {doc}"));
+            let line = self.variant_line(*enum_id, *variant, name);
+            out.push_str(&format!("{INDENT}{line}{doc}\n"));
+        }
+        match out.is_empty() {
+            true => out,
+            false => format!("{out}\n"),
+        }
+    }
+
+    /// Properties, below the constants that nothing but they name.
+    pub(super) fn with_constants(&self, properties: &str) -> String {
+        let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        let words: BTreeSet<&str> = properties.split(|c| !is_letter(c)).collect();
+        let mut lines = vec![];
+        for (index, parameter) in self.module.parameters.iter().enumerate() {
+            if words.contains(&*parameter.name) && !self.used_parameters.contains(&index) {
+                lines.push(self.parameter_line(index));
+            }
+        }
+        for (enum_id, enum_type) in self.design.enums.iter().enumerate() {
+            for variant in 0..enum_type.variants.len() {
+                let name = self.variant_name(enum_id, variant);
+                let is_there = self.variants.values().any(|known| *known == name);
+                if words.contains(&*name) && !is_there {
+                    lines.push(self.variant_line(enum_id, variant, &name));
+                }
+            }
+        }
+        lines.push(properties.into());
+        lines.join("\n")
+    }
+
+    fn parameter_line(&self, index: usize) -> String {
+        let parameter = &self.module.parameters[index];
+        let width_bits = parameter.width_bits;
+        let value = named_literal(&parameter.name, parameter.value, width_bits);
+        let vector = vector(width_bits);
+        format!("localparam {vector:>7} {} = {value};", parameter.name)
+    }
+
+    fn variant_line(&self, enum_id: EnumId, variant: usize, name: &str) -> String {
+        let width_bits = self.design.enums[enum_id].width_bits;
+        let value = literal(variant as u128, width_bits);
+        format!("localparam {:>7} {name} = {value};", vector(width_bits))
+    }
+
+    /// What a state is called where nothing else has that name.
+    pub(super) fn variant_name(&self, enum_id: EnumId, variant: usize) -> String {
+        let enum_type = &self.design.enums[enum_id];
+        let name = upper(&enum_type.variants[variant]);
+        format!("{}_{name}", upper(&enum_type.name))
+    }
+}
