@@ -17,12 +17,10 @@ s6_two_channel_receiver.v
 s6_two_channel_crc5_check.v
 s6_two_channel_crc5_serial.v
 s6_two_channel_transaction.v
-s6_two_channel_line_health.v
 s6_two_channel_verdict.v
 s6_two_channel_primary_cause.v
 s6_two_channel_snapshot.v
 s6_two_channel_command_shape.v
-s6_two_channel_add_info.v
 s6_two_channel_frame_settings.v
 s6_two_channel_stream.v
 s6_two_channel_frame_buffer.v

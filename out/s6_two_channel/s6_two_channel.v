@@ -90,14 +90,12 @@ module s6_two_channel (
 );
     wire         core_tick_us;
     wire         core_take_byte;
-    wire   [7:0] core_passing_byte;
     wire   [7:0] core_read_byte;
     wire         core_done;
     wire         core_push;
     wire         core_in_frame;
     wire         core_push_valid;
     wire   [7:0] core_push_byte;
-    wire         core_irq_o;
     wire  [10:0] bridge_word_address;
     wire         bridge_in_range;
     wire   [1:0] bridge_lane;
@@ -106,7 +104,6 @@ module s6_two_channel (
     wire  [31:0] bridge_write_data;
     wire         bridge_reading;
     wire         bridge_push_take;
-    wire         _unused_ok = &{1'b0, core_passing_byte, core_irq_o};
 
     s6_two_channel_card_core u_core (
         .clk_i(clk_i),
@@ -121,7 +118,6 @@ module s6_two_channel (
         .write_data(bridge_write_data),
         .reading(bridge_reading),
         .take_byte(core_take_byte),
-        .passing_byte(core_passing_byte),
         .read_byte(core_read_byte),
         .done(core_done),
         .push(core_push),
@@ -129,7 +125,6 @@ module s6_two_channel (
         .push_valid(core_push_valid),
         .push_byte(core_push_byte),
         .push_take(bridge_push_take),
-        .irq_o(core_irq_o),
         .endat_clk0_o(endat_clk0_o),
         .endat_clk1_o(endat_clk1_o),
         .endat_data0_o(endat_data0_o),

@@ -44,8 +44,6 @@ module s6_two_channel_card_core (
     input  wire         reading,
     // A byte of the configuration word passes, most significant first: in a write it is replaced by that of write_data.
     output wire         take_byte,
-    // With take_byte: the byte that stood there.
-    output wire   [7:0] passing_byte,
     // Byte that was read, from done to the next access.
     output wire   [7:0] read_byte,
     // One-cycle strobe: the access has ended.
@@ -60,8 +58,6 @@ module s6_two_channel_card_core (
     output wire   [7:0] push_byte,
     // Strobe, with push_valid only: the byte is taken.
     input  wire         push_take,
-    // Interrupt; low without this part.
-    output wire         irq_o,
     // EnDat clock to the transceiver; HIGH if the channel speaks T-format.
     output wire         endat_clk0_o,
     // EnDat clock to the transceiver; HIGH if the channel speaks T-format.
@@ -85,61 +81,36 @@ module s6_two_channel_card_core (
     // The channel's last result is a good position.
     output wire         led_channel1_o
 );
-    localparam   [4:0] SLOW_BIT = 5'd25;
-    localparam   [4:0] QUICK_BIT = 5'd22;
-
     wire         trigger_of_0;
     wire         trigger_of_1;
-    wire         is_off_0;
-    wire         is_off_1;
     wire   [7:0] set_byte_0;
     wire   [7:0] set_byte_1;
-    wire   [7:0] set_byte_2;
     wire         set_owes_0;
     wire         set_owes_1;
-    wire         set_owes_2;
     wire         set_replaced_0;
     wire         set_replaced_1;
-    wire         set_replaced_2;
     wire         set_taken_0;
     wire   [3:0] set_block_0;
     wire   [2:0] set_byte_at_0;
-    wire   [7:0] direct_byte_0;
     wire   [7:0] part_byte_0;
-    wire   [7:0] part_byte_1;
-    wire   [7:0] part_byte_2;
-    wire   [7:0] recovery_byte_0;
     wire   [8:0] ring_link_0;
     wire   [8:0] ring_link_1;
     wire   [8:0] ring_link_2;
-    wire   [7:0] read_link_0;
     wire   [7:0] read_link_1;
     wire   [7:0] read_link_2;
-    wire  [31:0] service_link_0;
-    wire  [31:0] service_link_1;
-    wire  [31:0] service_link_2;
-    reg   [31:0] selected_0;
-    reg   [31:0] selected_1;
-    wire  [31:0] word_link_0;
-    wire         taken_0;
     wire         taken_1;
     wire         taken_2;
-    wire         owes_0;
     wire         owes_1;
     wire         owes_2;
-    wire         brought_0;
     wire         brought_1;
     wire         brought_2;
     wire         new_set;
-    wire         faulty_0;
     wire         faulty_1;
     wire         faulty_2;
     wire  [31:0] now;
-    wire   [2:0] trigger_hits;
     wire  [31:0] trigger_trigger_count;
     wire         bank_begins;
     wire  [10:0] bank_address;
-    wire         bank_is_inside;
     wire         bank_load;
     wire         bank_show;
     wire   [5:0] bank_word_skip;
@@ -148,29 +119,17 @@ module s6_two_channel_card_core (
     wire         bank_ring_home;
     wire   [8:0] bank_ring_in;
     wire         bank_is_damaged;
-    wire         bank_service_line;
-    wire   [6:0] bank_service_address;
-    wire   [7:0] bank_service_channels;
-    wire         bank_service_clear;
-    wire   [7:0] bank_service_read;
-    wire   [7:0] bank_service_write;
-    wire         bank_service_half;
-    wire  [15:0] bank_service_data;
     wire         bank_stream_selected;
     wire   [7:0] bank_part_byte;
     wire         bank_trigger_now;
     wire   [7:0] bank_calibrate;
     wire   [2:0] bank_sources;
-    wire   [7:0] bank_disabled;
-    wire         bank_restart;
     wire  [23:0] bank_period_cycles;
     wire         registers_0_new_set;
     wire         registers_0_taken;
     wire         registers_0_owes;
     wire         registers_0_brought;
     wire   [8:0] registers_0_ring_in;
-    wire   [4:0] registers_0_trigger_skip;
-    wire   [2:0] registers_0_ignored_sources;
     wire  [10:0] registers_0_period_cycles;
     wire  [10:0] registers_0_first_low_extra_cycles;
     wire   [5:0] registers_0_command;
@@ -178,8 +137,6 @@ module s6_two_channel_card_core (
     wire   [3:0] registers_0_filter_cycles;
     wire         registers_0_filter_half;
     wire   [5:0] registers_0_start_window_cycles;
-    wire   [3:0] registers_0_request_id;
-    wire   [2:0] registers_0_field_gap_us;
     wire  [11:0] registers_0_start_timeout_us;
     wire  [12:0] registers_0_recovery_limit_cycles;
     wire         registers_1_new_set;
@@ -187,8 +144,6 @@ module s6_two_channel_card_core (
     wire         registers_1_owes;
     wire         registers_1_brought;
     wire   [8:0] registers_1_ring_in;
-    wire   [4:0] registers_1_trigger_skip;
-    wire   [2:0] registers_1_ignored_sources;
     wire  [10:0] registers_1_period_cycles;
     wire  [10:0] registers_1_first_low_extra_cycles;
     wire   [5:0] registers_1_command;
@@ -196,8 +151,6 @@ module s6_two_channel_card_core (
     wire   [3:0] registers_1_filter_cycles;
     wire         registers_1_filter_half;
     wire   [5:0] registers_1_start_window_cycles;
-    wire   [3:0] registers_1_request_id;
-    wire   [2:0] registers_1_field_gap_us;
     wire  [11:0] registers_1_start_timeout_us;
     wire  [12:0] registers_1_recovery_limit_cycles;
     wire         port_0_result_strobe;
@@ -217,25 +170,6 @@ module s6_two_channel_card_core (
     wire  [12:0] port_0_recovery_cycles;
     wire  [10:0] port_0_delay_cycles;
     wire         port_0_busy;
-    wire         port_0_request_runs;
-    wire         port_0_line_high;
-    wire         port_0_displaced;
-    wire         port_0_over;
-    wire         port_0_over_request;
-    wire   [4:0] port_0_over_cause;
-    wire  [19:0] port_0_over_flags;
-    wire  [47:0] port_0_reply;
-    wire         port_0_reply_good;
-    wire   [1:0] port_0_info_active;
-    wire  [23:0] port_0_info_1;
-    wire  [23:0] port_0_info_2;
-    wire   [1:0] port_0_info_came;
-    wire   [1:0] port_0_info_good;
-    wire   [9:0] port_0_info_crcs;
-    wire         port_0_calibrated;
-    wire         port_0_sample_strobe;
-    wire         port_0_alarm;
-    wire  [31:0] port_0_host_word;
     wire         port_1_result_strobe;
     wire  [47:0] port_1_position;
     wire         port_1_position_valid;
@@ -253,25 +187,6 @@ module s6_two_channel_card_core (
     wire  [12:0] port_1_recovery_cycles;
     wire  [10:0] port_1_delay_cycles;
     wire         port_1_busy;
-    wire         port_1_request_runs;
-    wire         port_1_line_high;
-    wire         port_1_displaced;
-    wire         port_1_over;
-    wire         port_1_over_request;
-    wire   [4:0] port_1_over_cause;
-    wire  [19:0] port_1_over_flags;
-    wire  [47:0] port_1_reply;
-    wire         port_1_reply_good;
-    wire   [1:0] port_1_info_active;
-    wire  [23:0] port_1_info_1;
-    wire  [23:0] port_1_info_2;
-    wire   [1:0] port_1_info_came;
-    wire   [1:0] port_1_info_good;
-    wire   [9:0] port_1_info_crcs;
-    wire         port_1_calibrated;
-    wire         port_1_sample_strobe;
-    wire         port_1_alarm;
-    wire  [31:0] port_1_host_word;
     wire         stream_0_owes;
     wire         stream_0_replaced;
     wire   [7:0] stream_0_channel_byte;
@@ -283,7 +198,7 @@ module s6_two_channel_card_core (
     wire   [7:0] set_1_set_byte;
     wire         set_1_owes;
     wire         set_1_replaced;
-    wire         _unused_ok = &{1'b0, trigger_hits, bank_address[10:2], bank_is_inside, bank_channel_skip[7:2], bank_service_channels[7:2], bank_service_clear, bank_service_read[7:2], bank_service_write[7:2], bank_calibrate[7:2], bank_disabled, bank_restart, registers_0_trigger_skip, registers_0_ignored_sources, registers_1_trigger_skip, registers_1_ignored_sources, port_0_request_runs, port_0_line_high, port_0_displaced, port_0_over, port_0_over_request, port_0_over_cause, port_0_over_flags, port_0_reply, port_0_reply_good, port_0_info_active, port_0_info_1, port_0_info_2, port_0_info_came, port_0_info_good, port_0_info_crcs, port_0_calibrated, port_0_sample_strobe, port_1_request_runs, port_1_line_high, port_1_displaced, port_1_over, port_1_over_request, port_1_over_cause, port_1_over_flags, port_1_reply, port_1_reply_good, port_1_info_active, port_1_info_1, port_1_info_2, port_1_info_came, port_1_info_good, port_1_info_crcs, port_1_calibrated, port_1_sample_strobe};
+    wire         _unused_ok = &{1'b0, bank_address[10:2], bank_channel_skip[7:2], bank_calibrate[7:2]};
 
     s6_two_channel_timebase u_timebase (
         .clock(clk_i),
@@ -298,7 +213,6 @@ module s6_two_channel_card_core (
         .register(bank_trigger_now),
         .sources(bank_sources),
         .period_cycles(bank_period_cycles),
-        .hits(trigger_hits),
         .trigger(trigger_of_0),
         .trigger_count(trigger_trigger_count)
     );
@@ -311,11 +225,9 @@ module s6_two_channel_card_core (
         .access(access),
         .begins(bank_begins),
         .address(bank_address),
-        .is_inside(bank_is_inside),
         .write(write),
         .write_data(write_data),
         .take_byte(take_byte),
-        .passing_byte(passing_byte),
         .read_byte(read_byte),
         .done(done),
         .reading(reading),
@@ -332,23 +244,12 @@ module s6_two_channel_card_core (
         .ring_in(bank_ring_in),
         .ring_out(ring_link_2),
         .is_damaged(bank_is_damaged),
-        .service_line(bank_service_line),
-        .service_address(bank_service_address),
-        .service_channels(bank_service_channels),
-        .service_clear(bank_service_clear),
-        .service_read(bank_service_read),
-        .service_word(word_link_0),
-        .service_write(bank_service_write),
-        .service_half(bank_service_half),
-        .service_data(bank_service_data),
         .stream_selected(bank_stream_selected),
         .part_byte(bank_part_byte),
         .trigger_count(trigger_trigger_count),
         .trigger_now(bank_trigger_now),
         .calibrate(bank_calibrate),
         .sources(bank_sources),
-        .disabled(bank_disabled),
-        .restart(bank_restart),
         .period_cycles(bank_period_cycles)
     );
     s6_two_channel_channel_registers u_registers_0 (
@@ -382,15 +283,13 @@ module s6_two_channel_card_core (
         .word_skip(bank_word_skip),
         .lane(lane),
         .skip(bank_channel_skip[0]),
-        .read_in(read_link_0),
+        .read_in(8'd0),
         .read_out(read_link_1),
         .ring_turn(bank_ring_turn),
         .ring_home(bank_ring_home),
         .ring_in(registers_0_ring_in),
         .ring_out(ring_link_0),
         .card_damaged(bank_is_damaged),
-        .trigger_skip(registers_0_trigger_skip),
-        .ignored_sources(registers_0_ignored_sources),
         .period_cycles(registers_0_period_cycles),
         .first_low_extra_cycles(registers_0_first_low_extra_cycles),
         .command(registers_0_command),
@@ -398,8 +297,6 @@ module s6_two_channel_card_core (
         .filter_cycles(registers_0_filter_cycles),
         .filter_half(registers_0_filter_half),
         .start_window_cycles(registers_0_start_window_cycles),
-        .request_id(registers_0_request_id),
-        .field_gap_us(registers_0_field_gap_us),
         .start_timeout_us(registers_0_start_timeout_us),
         .recovery_limit_cycles(registers_0_recovery_limit_cycles)
     );
@@ -441,8 +338,6 @@ module s6_two_channel_card_core (
         .ring_in(registers_1_ring_in),
         .ring_out(ring_link_1),
         .card_damaged(bank_is_damaged),
-        .trigger_skip(registers_1_trigger_skip),
-        .ignored_sources(registers_1_ignored_sources),
         .period_cycles(registers_1_period_cycles),
         .first_low_extra_cycles(registers_1_first_low_extra_cycles),
         .command(registers_1_command),
@@ -450,8 +345,6 @@ module s6_two_channel_card_core (
         .filter_cycles(registers_1_filter_cycles),
         .filter_half(registers_1_filter_half),
         .start_window_cycles(registers_1_start_window_cycles),
-        .request_id(registers_1_request_id),
-        .field_gap_us(registers_1_field_gap_us),
         .start_timeout_us(registers_1_start_timeout_us),
         .recovery_limit_cycles(registers_1_recovery_limit_cycles)
     );
@@ -472,8 +365,6 @@ module s6_two_channel_card_core (
         .start_window_cycles(registers_0_start_window_cycles),
         .start_timeout_us(registers_0_start_timeout_us),
         .recovery_limit_cycles(registers_0_recovery_limit_cycles),
-        .request_id(registers_0_request_id),
-        .field_gap_us(registers_0_field_gap_us),
         .endat_clk(endat_clk0_o),
         .data_o(endat_data0_o),
         .data_oe(endat_data0_oe),
@@ -493,32 +384,7 @@ module s6_two_channel_card_core (
         .position_has_f2(port_0_position_has_f2),
         .recovery_cycles(port_0_recovery_cycles),
         .delay_cycles(port_0_delay_cycles),
-        .busy(port_0_busy),
-        .request_runs(port_0_request_runs),
-        .line_high(port_0_line_high),
-        .displaced(port_0_displaced),
-        .over(port_0_over),
-        .over_request(port_0_over_request),
-        .over_cause(port_0_over_cause),
-        .over_flags(port_0_over_flags),
-        .reply(port_0_reply),
-        .reply_good(port_0_reply_good),
-        .info_active(port_0_info_active),
-        .info_1(port_0_info_1),
-        .info_2(port_0_info_2),
-        .info_came(port_0_info_came),
-        .info_good(port_0_info_good),
-        .info_crcs(port_0_info_crcs),
-        .calibrated(port_0_calibrated),
-        .sample_strobe(port_0_sample_strobe),
-        .alarm(port_0_alarm),
-        .host_address(bank_service_address),
-        .host_line(bank_service_line),
-        .host_read(bank_service_read[0]),
-        .host_word(port_0_host_word),
-        .host_write(bank_service_write[0]),
-        .host_half(bank_service_half),
-        .host_data(bank_service_data)
+        .busy(port_0_busy)
     );
     s6_two_channel_encoder_port u_port_1 (
         .clock(clk_i),
@@ -537,8 +403,6 @@ module s6_two_channel_card_core (
         .start_window_cycles(registers_1_start_window_cycles),
         .start_timeout_us(registers_1_start_timeout_us),
         .recovery_limit_cycles(registers_1_recovery_limit_cycles),
-        .request_id(registers_1_request_id),
-        .field_gap_us(registers_1_field_gap_us),
         .endat_clk(endat_clk1_o),
         .data_o(endat_data1_o),
         .data_oe(endat_data1_oe),
@@ -558,32 +422,7 @@ module s6_two_channel_card_core (
         .position_has_f2(port_1_position_has_f2),
         .recovery_cycles(port_1_recovery_cycles),
         .delay_cycles(port_1_delay_cycles),
-        .busy(port_1_busy),
-        .request_runs(port_1_request_runs),
-        .line_high(port_1_line_high),
-        .displaced(port_1_displaced),
-        .over(port_1_over),
-        .over_request(port_1_over_request),
-        .over_cause(port_1_over_cause),
-        .over_flags(port_1_over_flags),
-        .reply(port_1_reply),
-        .reply_good(port_1_reply_good),
-        .info_active(port_1_info_active),
-        .info_1(port_1_info_1),
-        .info_2(port_1_info_2),
-        .info_came(port_1_info_came),
-        .info_good(port_1_info_good),
-        .info_crcs(port_1_info_crcs),
-        .calibrated(port_1_calibrated),
-        .sample_strobe(port_1_sample_strobe),
-        .alarm(port_1_alarm),
-        .host_address(bank_service_address),
-        .host_line(bank_service_line),
-        .host_read(bank_service_read[1]),
-        .host_word(port_1_host_word),
-        .host_write(bank_service_write[1]),
-        .host_half(bank_service_half),
-        .host_data(bank_service_data)
+        .busy(port_1_busy)
     );
     s6_two_channel_stream u_stream_0 (
         .clock(clk_i),
@@ -651,75 +490,42 @@ module s6_two_channel_card_core (
         .replaced(set_1_replaced)
     );
 
-    assign is_off_0 = 1'b0;
     assign trigger_of_1 = trigger_of_0;
-    assign is_off_1 = 1'b0;
-    assign read_link_0 = 8'd0;
-    assign service_link_0 = 32'd0;
-    assign taken_0 = 1'b0;
-    assign owes_0 = 1'b0;
-    assign brought_0 = 1'b0;
-    assign faulty_0 = 1'b0;
     assign bank_ring_in = ring_link_0;
-
-    always @* begin
-        selected_0 = 32'd0;
-        if (bank_service_channels[0]) begin
-            selected_0 = port_0_host_word;
-        end
-    end
-    assign service_link_1 = service_link_0 | selected_0;
     assign registers_0_ring_in = ring_link_1;
-    assign taken_1 = taken_0 | registers_0_taken;
-    assign owes_1 = owes_0 | registers_0_owes;
-    assign brought_1 = brought_0 | registers_0_brought;
-    assign faulty_1 = faulty_0 | (((|port_0_cause) | port_0_alarm) & !is_off_0);
-    assign led_channel0_o = port_0_fresh & !is_off_0;
-
-    always @* begin
-        selected_1 = 32'd0;
-        if (bank_service_channels[1]) begin
-            selected_1 = port_1_host_word;
-        end
-    end
-    assign service_link_2 = service_link_1 | selected_1;
+    assign taken_1 = registers_0_taken;
+    assign owes_1 = registers_0_owes;
+    assign brought_1 = registers_0_brought;
+    assign faulty_1 = |port_0_cause;
+    assign led_channel0_o = port_0_fresh;
     assign registers_1_ring_in = ring_link_2;
     assign taken_2 = taken_1 | registers_1_taken;
     assign owes_2 = owes_1 | registers_1_owes;
     assign brought_2 = brought_1 | registers_1_brought;
-    assign faulty_2 = faulty_1 | (((|port_1_cause) | port_1_alarm) & !is_off_1);
-    assign led_channel1_o = port_1_fresh & !is_off_1;
+    assign faulty_2 = faulty_1 | (|port_1_cause);
+    assign led_channel1_o = port_1_fresh;
 
     always @* begin
-        led_status_o = now[SLOW_BIT];
+        led_status_o = now[25];
         if (faulty_2) begin
-            led_status_o = now[QUICK_BIT];
+            led_status_o = now[22];
         end
     end
-    assign word_link_0 = service_link_2;
     assign new_set = taken_2;
     assign registers_0_new_set = new_set;
     assign registers_1_new_set = new_set;
     assign set_0_busy = port_0_busy | !trigger_of_0;
     assign set_1_busy = port_1_busy | !trigger_of_1;
-    assign set_byte_2 = 8'd0;
-    assign set_byte_1 = set_byte_2 | set_1_set_byte;
+    assign set_byte_1 = set_1_set_byte;
     assign set_byte_0 = set_byte_1 | set_0_set_byte;
     assign stream_0_channel_byte = set_byte_0;
-    assign set_owes_2 = 1'b0;
-    assign set_owes_1 = set_owes_2 | set_1_owes;
+    assign set_owes_1 = set_1_owes;
     assign set_owes_0 = set_owes_1 | set_0_owes;
     assign stream_0_owes = set_owes_0;
-    assign set_replaced_2 = 1'b0;
-    assign set_replaced_1 = set_replaced_2 | set_1_replaced;
+    assign set_replaced_1 = set_1_replaced;
     assign set_replaced_0 = set_replaced_1 | set_0_replaced;
     assign stream_0_replaced = set_replaced_0;
-    assign direct_byte_0 = 8'd0;
-    assign part_byte_1 = 8'd0;
-    assign irq_o = 1'b0;
-    assign recovery_byte_0 = 8'd0;
-    assign part_byte_2 = 8'd0;
-    assign bank_part_byte = part_byte_0 | part_byte_1 | (part_byte_2 | direct_byte_0 | recovery_byte_0);
+    assign bank_part_byte = part_byte_0;
 endmodule
 
 `default_nettype wire

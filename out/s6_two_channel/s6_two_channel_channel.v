@@ -39,48 +39,18 @@ module s6_two_channel_channel (
     input  wire  [10:0] first_low_extra_cycles,
     // Mode command of a triggered frame.
     input  wire   [5:0] command,
-    // Mode command of a request.
-    input  wire   [5:0] request_command,
-    // What it sends besides: MRS code, address or port in the upper 8 bits, data below.
-    input  wire  [23:0] request_parameter,
-    // Strobe: send the request, a position command with supplement or not, with the next trigger.
-    input  wire         request_ride,
-    // Strobe: send the request in a frame of its own as soon as the line is free. It is not published.
-    input  wire         request_own,
-    // Strobe: forget the request if it has not begun.
-    input  wire         request_cancel,
-    // No triggered frame may begin: triggers are lost, and counted as such.
-    input  wire         hold_off,
-    // Puts the EnDat clock LOW, for the pulse of the power-up sequence.
-    input  wire         clock_low,
-    // Errors forced upon what is received, to try the error paths, as the service's word force has them.
-    input  wire   [4:0] forced,
     // Position width, 1..=48 bits.
     input  wire   [5:0] position_bits,
     // Pulses on the data line of at most this many system clock cycles are ignored.
     input  wire   [3:0] filter_cycles,
     // And half a system clock cycle more, where DATA is looked at on both edges.
     input  wire         filter_half,
-    // Where the phase comes from, see mode.
-    input  wire   [1:0] phase_mode,
-    // Delay in mode fixed, in sixteenths of a system clock cycle.
-    input  wire  [14:0] fixed_delay,
-    // Each sample is the majority of itself and its neighbours.
-    input  wire         majority,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
     // Longest wait for the start bit after the turnaround, in microseconds.
     input  wire  [11:0] start_timeout_us,
     // Data must fall within this many system clock cycles after the frame.
     input  wire  [12:0] recovery_limit_cycles,
-    // Data must not fall before this after the frame; 0 = not checked.
-    input  wire  [12:0] recovery_min_cycles,
-    // Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
-    input  wire  [11:0] watchdog_us,
-    // With 000111: the clock goes on after each position, and the next one follows without a command.
-    input  wire         continuous,
-    // It stops after an error, until the next trigger.
-    input  wire         stop_at_error,
     // EnDat clock to the transceiver, from a register.
     output wire         endat_clk,
     // Data line to the transceiver, from a register.
@@ -119,76 +89,22 @@ module s6_two_channel_channel (
     output wire  [12:0] recovery_cycles,
     // Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
     output wire  [10:0] delay_cycles,
-    // The delay as the mean of many edges, in sixteenths of a system clock cycle.
-    output wire  [14:0] phase,
-    // Strobe: an edge of the answer has been measured.
-    output wire         edge_measured,
-    // Places (cycles, or half ones with the double edge) from the tracked one to this edge, less one, in two's complement.
-    output wire   [7:0] edge_offset,
-    // Strobe: the filter has removed a pulse.
-    output wire         glitch,
     // A trigger would not be taken.
     output wire         busy,
-    // The frame under way has the request.
-    output wire         request_runs,
-    // DATA is HIGH, and no frame is on the wire.
-    output wire         line_high,
-    // Strobe: a trigger has been lost.
-    output wire         displaced,
-    // Strobe: a frame, triggered or not, has ended; over_cause to reply_good are of it.
-    output wire         over,
-    // The frame had the request.
-    output wire         over_request,
     // Primary cause of the frame, as cause.
     output wire   [4:0] over_cause,
     // Raw flags of the frame, as flags.
-    output wire  [19:0] over_flags,
-    // Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
-    output reg   [47:0] reply,
-    // The same as it came, bit 0 first: what comes MSB first stands the other way round.
-    output wire  [47:0] answer,
-    // Its CRC is right.
-    output wire         reply_good,
-    // The encoder sends after each EnDat 2.2 position: bit 0 additional information 1, bit 1 additional information 2.
-    output wire   [1:0] info_active,
-    // Additional information 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
-    output wire  [23:0] info_1,
-    // Additional information 2 as it came last.
-    output wire  [23:0] info_2,
-    // Additional informations in the last frame: bit 0 information 1, bit 1 information 2.
-    output wire   [1:0] info_came,
-    // Their CRCs are right.
-    output wire   [1:0] info_good,
-    // The CRCs with which they came: information 1 in bits 4..0, information 2 in bits 9..5.
-    output wire   [9:0] info_crcs,
-    // The propagation delay is known: frames run at the full clock, requests may ride.
-    output wire         calibrated,
-    // Strobe: the data line is sampled for a bit of the answer.
-    output wire         sample_strobe,
-    // With that, and double edge: at the clock edge, not half a cycle before it.
-    output wire         sample_second
+    output wire  [19:0] over_flags
 );
-    localparam         HAS_REQUESTS = 1'b0;
-    localparam         HAS_DOUBLE = 1'b0;
-    localparam         NEEDS_FOUR = 1'b0;
-    localparam   [1:0] FIXED_MODE = 2'd1;
-    localparam   [5:0] PARAMETER_BITS = 6'd24;
-    localparam   [5:0] TEST_VALUE_BITS = 6'd40;
     localparam  [10:0] CALIBRATION_PERIOD_CYCLES = 11'd500;
 
-    wire         own_wanted;
-    wire         ride_wanted;
-    reg    [5:0] command_now;
-    reg    [5:0] payload_bits;
-    reg   [23:0] word;
-    reg   [23:0] turned;
-    wire         crc_ok;
-    reg    [3:0] forced_now;
+    // Strobe: a trigger has been lost.
+    wire         displaced;
+    wire   [5:0] command_now;
+    wire   [5:0] payload_bits;
     reg   [10:0] period;
     wire         filter_level;
-    wire         filter_level_first;
     wire         filter_edge_strobe;
-    wire         filter_edge_second;
     wire         clock_gen_endat_clk;
     wire         clock_gen_will_rise;
     wire         clock_gen_rise;
@@ -196,33 +112,23 @@ module s6_two_channel_channel (
     wire         sender_aborts;
     wire         sender_data;
     wire         sender_oe;
-    wire         delay_in_answer;
     wire         delay_sample;
     wire         delay_center;
     wire         delay_edge_in_window;
     wire         delay_pulse;
     wire         delay_is_upset;
-    reg          receiver_level;
+    wire         receiver_level;
     wire         receiver_skipping;
     wire         receiver_hunting;
     wire         receiver_start_found;
     wire         receiver_start_refused;
     wire         receiver_started;
     wire         receiver_all_sent;
-    wire         receiver_one_to_send;
     wire         receiver_none_under_way;
     wire         receiver_all_used;
     wire         receiver_all_ended;
     wire         receiver_done;
-    wire         receiver_info_done;
-    wire         receiver_separated;
-    wire         receiver_info_missing;
     wire         receiver_finished;
-    wire         receiver_gap_good;
-    wire         receiver_gap_low;
-    wire         receiver_gap_high;
-    wire         receiver_latched;
-    wire         receiver_is_echo;
     wire  [47:0] receiver_payload;
     wire         receiver_f1;
     wire         receiver_f2;
@@ -230,11 +136,7 @@ module s6_two_channel_channel (
     wire   [4:0] receiver_crc_computed;
     wire         receiver_serial_ok;
     wire         receiver_parallel_ok;
-    wire         transaction_is_fixed;
     wire         transaction_is_known;
-    wire         transaction_begin_own;
-    wire         transaction_continuous;
-    wire         transaction_line_wanted;
     reg          transaction_serial_ok;
     reg          transaction_f1;
     reg          transaction_f2;
@@ -244,9 +146,6 @@ module s6_two_channel_channel (
     wire         transaction_hold_low;
     wire         transaction_drain;
     wire         transaction_stop;
-    wire         transaction_probe;
-    wire         transaction_is_probed;
-    wire         transaction_going_on;
     wire         transaction_last_cell;
     wire         transaction_start_supplement;
     wire         transaction_acquire;
@@ -256,27 +155,12 @@ module s6_two_channel_channel (
     wire         transaction_late_fault;
     wire         transaction_withdraw;
     wire         transaction_confirm;
-    wire         transaction_begun;
     wire         transaction_is_at_rest;
-    wire         shape_is_known;
     wire         shape_is_position;
-    wire         shape_has_f1;
     wire         shape_has_f2;
-    wire         shape_has_parameter;
-    wire         shape_has_test_values;
-    wire         shape_has_supplement;
-    reg    [5:0] wanted_shape_command;
-    wire         wanted_shape_is_known;
+    wire   [5:0] wanted_shape_command;
     wire         wanted_shape_is_position;
-    wire         wanted_shape_has_f1;
     wire         wanted_shape_has_f2;
-    wire         wanted_shape_has_parameter;
-    wire         wanted_shape_has_test_values;
-    wire         wanted_shape_has_supplement;
-    wire         add_info_info_done;
-    wire         add_info_over;
-    wire   [1:0] add_info_infos;
-    wire         add_info_look;
     wire   [5:0] settings_frame_command;
     wire  [10:0] settings_period_cycles_now;
     wire  [10:0] settings_first_low_extra_cycles_now;
@@ -286,45 +170,22 @@ module s6_two_channel_channel (
     wire   [5:0] settings_start_window_cycles_now;
     wire  [11:0] settings_start_timeout_us_now;
     wire  [12:0] settings_recovery_limit_cycles_now;
-    wire  [12:0] settings_recovery_min_cycles_now;
-    wire  [11:0] settings_watchdog_us_now;
     wire         settings_filter_half_now;
     wire         settings_is_upset;
     reg          clk_pin; initial clk_pin = 1'b1;
-    reg          clk_pin_next;
     reg          data_pin; initial data_pin = 1'b0;
     reg          data_pin_next;
     reg          oe_pin; initial oe_pin = 1'b0;
     reg          oe_pin_next;
-    reg    [5:0] frame_command; initial frame_command = 6'd0;
-    reg    [5:0] frame_command_next;
-    reg          frame_own; initial frame_own = 1'b0;
-    reg          frame_own_next;
-    reg          frame_ride; initial frame_ride = 1'b0;
-    reg          frame_ride_next;
-    reg          info_taken; initial info_taken = 1'b0;
-    reg          reply_taken; initial reply_taken = 1'b0;
-    reg   [47:0] reply_word; initial reply_word = 48'd0;
-    reg   [47:0] reply_word_next;
-    reg          reply_right; initial reply_right = 1'b0;
-    reg          reply_right_next;
-    reg          reply_has_parameter; initial reply_has_parameter = 1'b0;
-    reg          reply_has_parameter_next;
-    wire         _unused_ok = &{1'b0, request_ride, request_own, request_cancel, forced_now[3], shape_is_known, shape_is_position, wanted_shape_has_f1, wanted_shape_has_parameter, wanted_shape_has_test_values, wanted_shape_has_supplement};
+    wire         _unused_ok = &{1'b0, displaced, shape_is_position, wanted_shape_has_f2, settings_filter_half_now};
 
     s6_two_channel_input_filter u_filter (
         .clock(clock),
         .reset(reset),
         .pin(data_i),
         .filter_cycles(settings_filter_cycles_now),
-        .filter_half(settings_filter_half_now),
-        .majority(majority),
-        .both_edges(receiver_started),
         .level(filter_level),
-        .level_first(filter_level_first),
-        .edge_strobe(filter_edge_strobe),
-        .edge_second(filter_edge_second),
-        .glitch(glitch)
+        .edge_strobe(filter_edge_strobe)
     );
     s6_two_channel_clock_gen u_clock_gen (
         .clock(clock),
@@ -346,8 +207,6 @@ module s6_two_channel_channel (
         .fall(clock_gen_fall),
         .aborts(sender_aborts),
         .command(command_now),
-        .has_parameter(shape_has_parameter),
-        .parameter_word(request_parameter),
         .data(sender_data),
         .oe(sender_oe)
     );
@@ -363,25 +222,15 @@ module s6_two_channel_channel (
         .will_rise(clock_gen_will_rise),
         .rise(clock_gen_rise),
         .data_edge(filter_edge_strobe),
-        .edge_second(filter_edge_second),
-        .in_answer(delay_in_answer),
-        .slow(transaction_slow),
-        .mode(phase_mode),
-        .fixed_delay(fixed_delay),
         .follow(receiver_start_found),
-        .going_on(transaction_going_on),
         .period_cycles(period),
         .start_window_cycles(settings_start_window_cycles_now),
         .sample(delay_sample),
-        .sample_second(sample_second),
         .center(delay_center),
         .edge_in_window(delay_edge_in_window),
         .pulse(delay_pulse),
         .is_upset(delay_is_upset),
-        .delay_cycles(delay_cycles),
-        .phase(phase),
-        .measured(edge_measured),
-        .offset(edge_offset)
+        .delay_cycles(delay_cycles)
     );
     s6_two_channel_receiver u_receiver (
         .clock(clock),
@@ -395,35 +244,19 @@ module s6_two_channel_channel (
         .level(receiver_level),
         .edge_in_window(delay_edge_in_window),
         .payload_bits(payload_bits),
-        .has_f1(shape_has_f1),
         .has_f2(shape_has_f2),
-        .has_parameter(shape_has_parameter),
-        .has_supplement(shape_has_supplement),
-        .infos(add_info_infos),
-        .look(add_info_look),
         .start_supplement(transaction_start_supplement),
-        .going_on(transaction_going_on),
-        .command(command_now),
         .skipping(receiver_skipping),
         .hunting(receiver_hunting),
         .start_found(receiver_start_found),
         .start_refused(receiver_start_refused),
         .started(receiver_started),
         .all_sent(receiver_all_sent),
-        .one_to_send(receiver_one_to_send),
         .none_under_way(receiver_none_under_way),
         .all_used(receiver_all_used),
         .all_ended(receiver_all_ended),
         .done(receiver_done),
-        .info_done(receiver_info_done),
-        .separated(receiver_separated),
-        .info_missing(receiver_info_missing),
         .finished(receiver_finished),
-        .gap_good(receiver_gap_good),
-        .gap_low(receiver_gap_low),
-        .gap_high(receiver_gap_high),
-        .latched(receiver_latched),
-        .is_echo(receiver_is_echo),
         .payload(receiver_payload),
         .f1(receiver_f1),
         .f2(receiver_f2),
@@ -438,7 +271,6 @@ module s6_two_channel_channel (
         .tick_us(tick_us),
         .trigger(trigger),
         .calibrate(calibrate),
-        .is_fixed(transaction_is_fixed),
         .level(filter_level),
         .sample(delay_sample),
         .center(delay_center),
@@ -447,30 +279,13 @@ module s6_two_channel_channel (
         .start_refused(receiver_start_refused),
         .answer_done(receiver_done),
         .finished(receiver_finished),
-        .separated(receiver_separated),
-        .info_missing(receiver_info_missing),
         .is_known(transaction_is_known),
-        .has_parameter(shape_has_parameter),
-        .has_supplement(shape_has_supplement),
-        .begin_own(transaction_begin_own),
-        .is_own(frame_own),
-        .hold_off(hold_off),
-        .continuous(transaction_continuous),
-        .stop_at_error(stop_at_error),
-        .line_wanted(transaction_line_wanted),
-        .gap_good(receiver_gap_good),
-        .again(receiver_latched),
-        .gap_low(receiver_gap_low),
-        .gap_high(receiver_gap_high),
         .settings_upset(settings_is_upset),
-        .is_echo(receiver_is_echo),
         .serial_ok(transaction_serial_ok),
         .parallel_ok(receiver_parallel_ok),
         .f1(transaction_f1),
         .f2(transaction_f2),
-        .will_rise(clock_gen_will_rise),
         .no_pulse_left(receiver_all_sent),
-        .one_pulse_left(receiver_one_to_send),
         .none_under_way(receiver_none_under_way),
         .all_used(receiver_all_used),
         .all_ended(receiver_all_ended),
@@ -478,17 +293,12 @@ module s6_two_channel_channel (
         .first_low_extra_cycles(settings_first_low_extra_cycles_now),
         .start_timeout_us(settings_start_timeout_us_now),
         .recovery_limit_cycles(settings_recovery_limit_cycles_now),
-        .recovery_min_cycles(settings_recovery_min_cycles_now),
-        .watchdog_us(settings_watchdog_us_now),
         .start(transaction_start),
         .run(transaction_run),
         .aborts(transaction_aborts),
         .hold_low(transaction_hold_low),
         .drain(transaction_drain),
         .stop(transaction_stop),
-        .probe(transaction_probe),
-        .is_probed(transaction_is_probed),
-        .going_on(transaction_going_on),
         .last_cell(transaction_last_cell),
         .start_supplement(transaction_start_supplement),
         .acquire(transaction_acquire),
@@ -499,11 +309,8 @@ module s6_two_channel_channel (
         .late_fault(transaction_late_fault),
         .withdraw(transaction_withdraw),
         .confirm(transaction_confirm),
-        .begun(transaction_begun),
         .is_at_rest(transaction_is_at_rest),
-        .over(over),
         .displaced(displaced),
-        .calibrated(calibrated),
         .cause(over_cause),
         .flags(over_flags),
         .recovery_cycles(recovery_cycles)
@@ -514,8 +321,6 @@ module s6_two_channel_channel (
         .tick_us(tick_us),
         .timestamp(timestamp),
         .first_fall(transaction_start),
-        .latched(receiver_latched),
-        .delay_cycles(delay_cycles),
         .publish(transaction_publish),
         .good(transaction_good),
         .late_fault(transaction_late_fault),
@@ -545,49 +350,13 @@ module s6_two_channel_channel (
     );
     s6_two_channel_command_shape u_shape (
         .command(command_now),
-        .is_known(shape_is_known),
         .is_position(shape_is_position),
-        .has_f1(shape_has_f1),
-        .has_f2(shape_has_f2),
-        .has_parameter(shape_has_parameter),
-        .has_test_values(shape_has_test_values),
-        .has_supplement(shape_has_supplement)
+        .has_f2(shape_has_f2)
     );
     s6_two_channel_command_shape u_wanted_shape (
         .command(wanted_shape_command),
-        .is_known(wanted_shape_is_known),
         .is_position(wanted_shape_is_position),
-        .has_f1(wanted_shape_has_f1),
-        .has_f2(wanted_shape_has_f2),
-        .has_parameter(wanted_shape_has_parameter),
-        .has_test_values(wanted_shape_has_test_values),
-        .has_supplement(wanted_shape_has_supplement)
-    );
-    s6_two_channel_add_info u_add_info (
-        .clock(clock),
-        .reset(reset),
-        .start(transaction_start),
-        .center(delay_center),
-        .sample(delay_sample),
-        .answer_done(receiver_done),
-        .has_f2(shape_has_f2),
-        .has_supplement(shape_has_supplement),
-        .command(command_now),
-        .mrs(request_parameter[23:16]),
-        .info_done(add_info_info_done),
-        .crc_ok(crc_ok),
-        .word(word),
-        .crc(receiver_crc_received),
-        .over(add_info_over),
-        .flags(over_flags[11:0]),
-        .active(info_active),
-        .infos(add_info_infos),
-        .look(add_info_look),
-        .info_1(info_1),
-        .info_2(info_2),
-        .came(info_came),
-        .good(info_good),
-        .crcs(info_crcs)
+        .has_f2(wanted_shape_has_f2)
     );
     s6_two_channel_frame_settings u_settings (
         .clock(clock),
@@ -603,8 +372,6 @@ module s6_two_channel_channel (
         .start_window_cycles(start_window_cycles),
         .start_timeout_us(start_timeout_us),
         .recovery_limit_cycles(recovery_limit_cycles),
-        .recovery_min_cycles(recovery_min_cycles),
-        .watchdog_us(watchdog_us),
         .filter_half(filter_half),
         .period_cycles_now(settings_period_cycles_now),
         .first_low_extra_cycles_now(settings_first_low_extra_cycles_now),
@@ -614,8 +381,6 @@ module s6_two_channel_channel (
         .start_window_cycles_now(settings_start_window_cycles_now),
         .start_timeout_us_now(settings_start_timeout_us_now),
         .recovery_limit_cycles_now(settings_recovery_limit_cycles_now),
-        .recovery_min_cycles_now(settings_recovery_min_cycles_now),
-        .watchdog_us_now(settings_watchdog_us_now),
         .filter_half_now(settings_filter_half_now),
         .is_upset(settings_is_upset)
     );
@@ -626,217 +391,45 @@ module s6_two_channel_channel (
             period = CALIBRATION_PERIOD_CYCLES;
         end
     end
-
-    always @* begin
-        command_now = settings_command_now;
-        if (HAS_REQUESTS) begin
-            command_now = frame_command;
-        end
-    end
-
-    always @* begin
-        payload_bits = settings_position_bits_now;
-        if (HAS_REQUESTS) begin
-            if (shape_has_parameter) begin
-                payload_bits = PARAMETER_BITS;
-            end
-            if (shape_has_test_values) begin
-                payload_bits = TEST_VALUE_BITS;
-            end
-        end
-    end
+    assign command_now = settings_command_now;
+    assign payload_bits = settings_position_bits_now;
     assign settings_frame_command = command_now;
-    assign own_wanted = 1'b0;
-    assign ride_wanted = 1'b0;
     assign sender_aborts = transaction_aborts | (!receiver_skipping & !transaction_start_supplement);
-    assign delay_in_answer = receiver_started & !receiver_skipping;
-
-    always @* begin
-        receiver_level = filter_level;
-        if (HAS_DOUBLE & !sample_second) begin
-            receiver_level = filter_level_first;
-        end
-    end
-    assign transaction_is_fixed = phase_mode == FIXED_MODE;
-
-    always @* begin
-        wanted_shape_command = command;
-        if (HAS_REQUESTS) begin
-            wanted_shape_command = frame_command;
-        end
-    end
-    assign transaction_is_known = (wanted_shape_is_position | (wanted_shape_is_known & (frame_own | (frame_ride & wanted_shape_has_f2)))) & (!NEEDS_FOUR | (|period_cycles[10:2]));
-    assign transaction_begin_own = frame_own & own_wanted;
-
-    always @* begin
-        frame_command_next = frame_command;
-        frame_own_next = frame_own;
-        frame_ride_next = frame_ride;
-        if (!transaction_begun & transaction_is_at_rest & HAS_REQUESTS) begin
-            frame_command_next = command;
-            frame_own_next = own_wanted;
-            frame_ride_next = ride_wanted & calibrated & !own_wanted;
-            if (own_wanted | (ride_wanted & calibrated)) begin
-                frame_command_next = request_command;
-            end
-        end
-    end
-    assign transaction_continuous = continuous & shape_has_f1 & !shape_has_f2 & !shape_has_test_values;
-    assign transaction_line_wanted = own_wanted | hold_off;
-
-    always @* begin
-        forced_now = forced[3:0];
-        if (forced[4] & !frame_own) begin
-            forced_now = 4'd0;
-        end
-    end
+    assign receiver_level = filter_level;
+    assign wanted_shape_command = command;
+    assign transaction_is_known = wanted_shape_is_position;
 
     always @* begin
         transaction_serial_ok = receiver_serial_ok;
         transaction_f1 = receiver_f1;
         transaction_f2 = receiver_f2;
-        if (HAS_REQUESTS) begin
-            transaction_f1 = receiver_f1 ^ forced_now[0];
-            transaction_f2 = receiver_f2 ^ forced_now[1];
-            transaction_serial_ok = receiver_serial_ok & !forced_now[2];
-        end
-    end
-
-    always @* begin
-        word = 24'd0;
-        word = (word & 24'h7fffff) | ({23'd0, receiver_payload[0]} << 5'd23);
-        word = (word & 24'hbfffff) | ({23'd0, receiver_payload[1]} << 5'd22);
-        word = (word & 24'hdfffff) | ({23'd0, receiver_payload[2]} << 5'd21);
-        word = (word & 24'hefffff) | ({23'd0, receiver_payload[3]} << 5'd20);
-        word = (word & 24'hf7ffff) | ({23'd0, receiver_payload[4]} << 5'd19);
-        word = (word & 24'hfbffff) | ({23'd0, receiver_payload[5]} << 5'd18);
-        word = (word & 24'hfdffff) | ({23'd0, receiver_payload[6]} << 5'd17);
-        word = (word & 24'hfeffff) | ({23'd0, receiver_payload[7]} << 5'd16);
-        word = (word & 24'hff7fff) | ({23'd0, receiver_payload[8]} << 4'd15);
-        word = (word & 24'hffbfff) | ({23'd0, receiver_payload[9]} << 4'd14);
-        word = (word & 24'hffdfff) | ({23'd0, receiver_payload[10]} << 4'd13);
-        word = (word & 24'hffefff) | ({23'd0, receiver_payload[11]} << 4'd12);
-        word = (word & 24'hfff7ff) | ({23'd0, receiver_payload[12]} << 4'd11);
-        word = (word & 24'hfffbff) | ({23'd0, receiver_payload[13]} << 4'd10);
-        word = (word & 24'hfffdff) | ({23'd0, receiver_payload[14]} << 4'd9);
-        word = (word & 24'hfffeff) | ({23'd0, receiver_payload[15]} << 4'd8);
-        word = (word & 24'hffff7f) | ({23'd0, receiver_payload[16]} << 3'd7);
-        word = (word & 24'hffffbf) | ({23'd0, receiver_payload[17]} << 3'd6);
-        word = (word & 24'hffffdf) | ({23'd0, receiver_payload[18]} << 3'd5);
-        word = (word & 24'hffffef) | ({23'd0, receiver_payload[19]} << 3'd4);
-        word = (word & 24'hfffff7) | ({23'd0, receiver_payload[20]} << 2'd3);
-        word = (word & 24'hfffffb) | ({23'd0, receiver_payload[21]} << 2'd2);
-        word = (word & 24'hfffffd) | ({23'd0, receiver_payload[22]} << 1'b1);
-        word = (word & 24'hfffffe) | {23'd0, receiver_payload[23]};
-    end
-    assign crc_ok = receiver_serial_ok & receiver_parallel_ok;
-
-    always @* begin
-        reply_word_next = reply_word;
-        reply_has_parameter_next = reply_has_parameter;
-        reply_right_next = reply_right;
-        if (reply_taken) begin
-            reply_word_next = receiver_payload;
-            reply_has_parameter_next = shape_has_parameter;
-            reply_right_next = crc_ok;
-        end
-        if (transaction_start) begin
-            reply_right_next = 1'b0;
-        end
-    end
-    assign add_info_info_done = info_taken & HAS_REQUESTS;
-    assign add_info_over = over & HAS_REQUESTS;
-
-    always @* begin
-        clk_pin_next = clock_gen_endat_clk;
-        if (clock_low & HAS_REQUESTS) begin
-            clk_pin_next = 1'b0;
-        end
     end
 
     always @* begin
         data_pin_next = sender_data;
         oe_pin_next = sender_oe;
-        if (transaction_probe) begin
-            data_pin_next = 1'b0;
-            oe_pin_next = 1'b1;
-        end
     end
     assign endat_clk = clk_pin;
     assign data_o = data_pin;
     assign data_oe = oe_pin;
-    assign request_runs = (frame_own | frame_ride) & !transaction_is_at_rest;
-    assign line_high = (filter_level | transaction_is_probed) & !transaction_run;
-    assign over_request = frame_own | frame_ride;
-    assign answer = reply_word;
-
-    always @* begin
-        turned = 24'd0;
-        turned = (turned & 24'h7fffff) | ({23'd0, reply_word[0]} << 5'd23);
-        turned = (turned & 24'hbfffff) | ({23'd0, reply_word[1]} << 5'd22);
-        turned = (turned & 24'hdfffff) | ({23'd0, reply_word[2]} << 5'd21);
-        turned = (turned & 24'hefffff) | ({23'd0, reply_word[3]} << 5'd20);
-        turned = (turned & 24'hf7ffff) | ({23'd0, reply_word[4]} << 5'd19);
-        turned = (turned & 24'hfbffff) | ({23'd0, reply_word[5]} << 5'd18);
-        turned = (turned & 24'hfdffff) | ({23'd0, reply_word[6]} << 5'd17);
-        turned = (turned & 24'hfeffff) | ({23'd0, reply_word[7]} << 5'd16);
-        turned = (turned & 24'hff7fff) | ({23'd0, reply_word[8]} << 4'd15);
-        turned = (turned & 24'hffbfff) | ({23'd0, reply_word[9]} << 4'd14);
-        turned = (turned & 24'hffdfff) | ({23'd0, reply_word[10]} << 4'd13);
-        turned = (turned & 24'hffefff) | ({23'd0, reply_word[11]} << 4'd12);
-        turned = (turned & 24'hfff7ff) | ({23'd0, reply_word[12]} << 4'd11);
-        turned = (turned & 24'hfffbff) | ({23'd0, reply_word[13]} << 4'd10);
-        turned = (turned & 24'hfffdff) | ({23'd0, reply_word[14]} << 4'd9);
-        turned = (turned & 24'hfffeff) | ({23'd0, reply_word[15]} << 4'd8);
-        turned = (turned & 24'hffff7f) | ({23'd0, reply_word[16]} << 3'd7);
-        turned = (turned & 24'hffffbf) | ({23'd0, reply_word[17]} << 3'd6);
-        turned = (turned & 24'hffffdf) | ({23'd0, reply_word[18]} << 3'd5);
-        turned = (turned & 24'hffffef) | ({23'd0, reply_word[19]} << 3'd4);
-        turned = (turned & 24'hfffff7) | ({23'd0, reply_word[20]} << 2'd3);
-        turned = (turned & 24'hfffffb) | ({23'd0, reply_word[21]} << 2'd2);
-        turned = (turned & 24'hfffffd) | ({23'd0, reply_word[22]} << 1'b1);
-        turned = (turned & 24'hfffffe) | {23'd0, reply_word[23]};
-    end
-
-    always @* begin
-        reply = reply_word;
-        if (reply_has_parameter) begin
-            reply = {24'd0, turned};
-        end
-    end
-    assign reply_good = reply_right;
-    assign sample_strobe = delay_sample & !receiver_skipping;
 
     always @(posedge clock) begin
         if (reset) begin
             clk_pin <= 1'b1;
             data_pin <= 1'b0;
             oe_pin <= 1'b0;
-            frame_command <= 6'd0;
-            frame_own <= 1'b0;
-            frame_ride <= 1'b0;
-            info_taken <= 1'b0;
-            reply_taken <= 1'b0;
-            reply_word <= 48'd0;
-            reply_right <= 1'b0;
-            reply_has_parameter <= 1'b0;
         end else begin
-            clk_pin <= clk_pin_next;
+            clk_pin <= clock_gen_endat_clk;
             data_pin <= data_pin_next;
             oe_pin <= oe_pin_next;
-            frame_command <= frame_command_next;
-            frame_own <= frame_own_next;
-            frame_ride <= frame_ride_next;
-            info_taken <= receiver_info_done;
-            reply_taken <= receiver_done & frame_own;
-            reply_word <= reply_word_next;
-            reply_right <= reply_right_next;
-            reply_has_parameter <= reply_has_parameter_next;
         end
     end
 
 `ifdef FORMAL
 `ifndef FORMAL_ANY_STATE
+    wire [47:0] answer = 48'd0;
+    wire [0:0] transaction_probe = 1'd0;
+    wire [0:0] frame_own = 1'd0;
     // safe_after_reset: In the cycle after a reset CLOCK is HIGH and DATA is not driven.
     // driver_as_sent: DATA is driven only as the command sender, or the line probe, said in the cycle before.
     // frame_is_driven: A frame is on the wire only while the settings that it is received with are held.

@@ -88,10 +88,6 @@ module s6_two_channel_channel_registers (
     output wire   [8:0] ring_out,
     // The card's own settings are not what was written.
     input  wire         card_damaged,
-    // Triggers left out after each that the channel takes; this and the next one as they stand on the ring.
-    output wire   [4:0] trigger_skip,
-    // Trigger sources that are not for this channel.
-    output wire   [2:0] ignored_sources,
     // EnDat clock period, or a bit of T-format, in system clock cycles.
     output wire  [10:0] period_cycles,
     // First low phase minus half a period, in system clock cycles.
@@ -106,10 +102,6 @@ module s6_two_channel_channel_registers (
     output wire         filter_half,
     // Half width of the start window, in system clock cycles.
     output wire   [5:0] start_window_cycles,
-    // T-format: request ID of a trigger.
-    output reg    [3:0] request_id,
-    // T-format: longest pause between two fields, in microseconds.
-    output wire   [2:0] field_gap_us,
     // Longest wait for the start bit, or for a reply of T-format, in microseconds.
     output wire  [11:0] start_timeout_us,
     // Longest recovery time, in system clock cycles.
@@ -241,12 +233,12 @@ module s6_two_channel_channel_registers (
             age_shown_next = age_now;
         end
     end
-    assign word_0 = {16'd0, sequence_value} | ({27'd0, cause} << 5'd16) | ({31'd0, position_valid} << 5'd22) | ({31'd0, fresh} << 5'd23) | ({24'd0, flags[19:12]} << 5'd24);
+    assign word_0 = {flags[19:12], fresh, position_valid, 1'b0, cause, sequence_value};
     assign word_1 = position[31:0];
-    assign word_2 = {16'd0, position[47:32]} | ({27'd0, position_crc} << 5'd16) | ({31'd0, position_has_f2} << 5'd22) | ({26'd0, position_width} << 5'd24);
+    assign word_2 = {2'd0, position_width, 1'b0, position_has_f2, 1'b0, position_crc, position[47:32]};
     assign word_3 = first_fall_timestamp;
-    assign word_4 = {27'd0, crc_received} | ({27'd0, crc_computed} << 3'd5) | ({22'd0, delay_cycles[9:0]} << 4'd10) | ({20'd0, flags[11:0]} << 5'd20);
-    assign word_5 = ({19'd0, recovery_cycles} << 5'd16) | ({31'd0, delay_cycles[10]} << 5'd29);
+    assign word_4 = {flags[11:0], delay_cycles[9:0], crc_computed, crc_received};
+    assign word_5 = {2'd0, delay_cycles[10], recovery_cycles, 16'd0};
 
     always @* begin
         held_0_next = held_0;
@@ -294,7 +286,7 @@ module s6_two_channel_channel_registers (
             held_5_next = word_5;
         end
     end
-    assign shown_5 = held_5 | {16'd0, age_shown} | ({31'd0, stale_shown} << 5'd30);
+    assign shown_5 = held_5 | {16'd0, age_shown} | {1'b0, stale_shown, 30'd0};
 
     always @* begin
         case (lane)
@@ -398,24 +390,19 @@ module s6_two_channel_channel_registers (
         endcase
     end
     assign read_out = read_in | read_byte;
-    assign trigger_skip = ring_word0[15:11];
-    assign ignored_sources = {1'b0, ring_word0[23:22]} | ({2'd0, ring_word0[30]} << 2'd2);
     assign period_cycles = config0[10:0];
     assign position_bits = config0[21:16];
     assign first_low_extra_cycles = config1[10:0];
     assign start_window_cycles = config1[21:16];
     assign filter_cycles = config1[27:24];
     assign filter_half = config1[23];
-    assign field_gap_us = config2[31:29];
     assign start_timeout_us = config2[11:0];
     assign recovery_limit_cycles = config2[28:16];
 
     always @* begin
         command = config0[29:24];
-        request_id = config1[31:28];
         if (ring_is_damaged | card_damaged) begin
             command = 6'd0;
-            request_id = 4'd15;
         end
     end
     assign byte_0_reset = word_skip[0];

@@ -53,8 +53,6 @@ module s6_two_channel_clock_gen (
         .restart(half_restart),
         .began(1'b0),
         .second(level),
-        .shorten(1'b0),
-        .lengthen(1'b0),
         .period_cycles(period_cycles),
         .tick(half_tick),
         .left_cycles(half_left_cycles)

@@ -34,90 +34,48 @@ module s6_two_channel_command_sender (
     input  wire         aborts,
     // The mode command.
     input  wire   [5:0] command,
-    // The parameter follows the mode command.
-    input  wire         has_parameter,
-    // MRS code, address or port in the upper 8 bits, data below.
-    input  wire  [23:0] parameter_word,
     // Level for the data line while oe is high.
     output reg          data,
     // Driver enable.
     output reg          oe
 );
-    localparam         HAS_ALL = 1'b0;
-    localparam   [4:0] PARAMETER_BITS = 5'd24;
-
-    reg    [7:0] cells;
+    wire   [7:0] cells;
     wire   [2:0] cell_now;
-    wire  [31:0] bits;
     reg    [3:0] cells_left; initial cells_left = 4'd0;
     reg    [3:0] cells_left_next;
-    reg    [4:0] bits_left; initial bits_left = 5'd0;
-    reg    [4:0] bits_left_next;
-    reg          in_supplement; initial in_supplement = 1'b0;
-    reg          in_supplement_next;
+    wire         _unused_ok = &{1'b0, start_supplement};
 
-    always @* begin
-        cells = {2'd0, command} << 1'b1;
-        if (in_supplement) begin
-            cells = 8'd2;
-        end
-    end
-    assign bits = {8'd0, parameter_word} << 1'b1;
+    assign cells = {1'b0, command, 1'b0};
     assign cell_now = cells_left[2:0];
 
     always @* begin
         cells_left_next = cells_left;
-        bits_left_next = bits_left;
-        in_supplement_next = in_supplement;
         if (fall & (|cells_left)) begin
             cells_left_next = cells_left - 4'd1;
         end
         data = cells[cell_now];
         oe = |cell_now;
-        if (HAS_ALL) begin
-            if (fall & (|bits_left)) begin
-                bits_left_next = bits_left - 5'd1;
-            end
-            if (fall & (cells_left == 4'd1) & (has_parameter | in_supplement)) begin
-                bits_left_next = PARAMETER_BITS;
-            end
-            if (in_supplement) begin
-                oe = (|cells_left) & (cells_left != 4'd9);
-            end
-            if (|bits_left) begin
-                data = bits[bits_left];
-                oe = 1'b1;
-            end
-            if (start_supplement) begin
-                cells_left_next = 4'd9;
-                in_supplement_next = 1'b1;
-            end
-        end
         if (aborts) begin
             cells_left_next = 4'd0;
-            bits_left_next = 5'd0;
         end
         if (start) begin
             cells_left_next = 4'd8;
-            bits_left_next = 5'd0;
-            in_supplement_next = 1'b0;
         end
     end
 
     always @(posedge clock) begin
         if (reset) begin
             cells_left <= 4'd0;
-            bits_left <= 5'd0;
-            in_supplement <= 1'b0;
         end else begin
             cells_left <= cells_left_next;
-            bits_left <= bits_left_next;
-            in_supplement <= in_supplement_next;
         end
     end
 
 `ifdef FORMAL
 `ifndef FORMAL_ANY_STATE
+    localparam         HAS_ALL = 1'b0;
+    wire [4:0] bits_left = 5'd0;
+    wire [0:0] in_supplement = 1'd0;
     // driver_window: DATA is driven only between the second and the ninth falling edge of CLOCK in a frame; further only for a parameter.
     reg [5:0] f_falls; initial f_falls = 6'd0;
     always @(posedge clock) begin

@@ -18,52 +18,20 @@
 module s6_two_channel_command_shape (
     // Mode command.
     input  wire   [5:0] command,
-    // It is a mode command that this design sends.
-    output reg          is_known,
     // It is 000111 or 111000.
     output wire         is_position,
-    // The answer begins with F1.
-    output reg          has_f1,
     // F2 follows F1; the selected additional information follows the position.
-    output reg          has_f2,
-    // 24 bits follow the command, and the answer is 24 bits.
-    output reg          has_parameter,
-    // The answer is 40 bits of test values.
-    output reg          has_test_values,
-    // A supplement follows the answer.
-    output reg          has_supplement
+    output wire         has_f2
 );
-    localparam         HAS_ALL = 1'b0;
-
     wire   [2:0] left;
     wire   [2:0] right;
-    wire         is_same;
     wire         is_complement;
-    wire         is_two;
 
     assign left = command[5:3];
     assign right = command[2:0];
-    assign is_same = left == right;
     assign is_complement = &(left ^ right);
     assign is_position = is_complement & ((&left) | !(|left));
-    assign is_two = left == 3'd2;
-
-    always @* begin
-        is_known = is_position;
-        has_f1 = 1'b1;
-        has_f2 = command[5];
-        has_parameter = 1'b0;
-        has_test_values = 1'b0;
-        has_supplement = 1'b0;
-        if (HAS_ALL) begin
-            is_known = is_complement | (is_same & (|left) & !(&left));
-            has_test_values = is_complement & is_two;
-            has_supplement = is_same & !is_two;
-            has_parameter = (is_complement & !is_position & !is_two) | (is_same & is_two);
-            has_f2 = (is_position & (|left)) | (is_same & !is_two);
-            has_f1 = !((is_complement & !is_position & !is_two) | (is_same & is_two));
-        end
-    end
+    assign has_f2 = command[5];
 endmodule
 
 `default_nettype wire

@@ -52,16 +52,16 @@ module s6_two_channel_config_ring_1 (
         parities_next = parities;
         damaged_next = damaged;
         if (turn) begin
-            w0_next = (w0 << 4'd8) | {24'd0, w1[31:24]};
-            w1_next = (w1 << 4'd8) | {24'd0, w2[31:24]};
-            w2_next = (w2 << 4'd8) | {24'd0, byte_in[7:0]};
-            parities_next = (parities << 1'b1) | {11'd0, byte_in[8]};
+            w0_next = {w0[23:0], w1[31:24]};
+            w1_next = {w1[23:0], w2[31:24]};
+            w2_next = {w2[23:0], byte_in[7:0]};
+            parities_next = {parities[10:0], byte_in[8]};
         end else begin
             damaged_next = (^w0) ^ (^w1) ^ (^w2) ^ (^parities);
         end
     end
     assign is_damaged = damaged;
-    assign byte_out = {1'b0, w0[31:24]} | ({8'd0, parities[11]} << 4'd8);
+    assign byte_out = {parities[11], w0[31:24]};
     assign word0 = w0;
     assign word1 = w1;
     assign word2 = w2;

@@ -24,8 +24,6 @@ module s6_two_channel_crc5_check (
     input  wire         bit_value,
     // The word, bit 0 = the bit received first, zeros above its width.
     input  wire  [47:0] word,
-    // The answer begins with F1.
-    input  wire         has_f1,
     // F2 follows it.
     input  wire         has_f2,
     // Error bit 1.
@@ -45,7 +43,6 @@ module s6_two_channel_crc5_check (
     localparam   [4:0] WEIGHT_2 = 5'd4;
     localparam   [4:0] WEIGHT_3 = 5'd8;
     localparam   [4:0] WEIGHT_4 = 5'd16;
-    localparam   [4:0] TERM_0 = 5'd28;
     localparam   [4:0] TERM_1 = 5'd19;
     localparam   [4:0] TERM_2 = 5'd13;
     localparam   [4:0] FIRST = 5'd2;
@@ -80,20 +77,17 @@ module s6_two_channel_crc5_check (
     assign folded = word[14:0] ^ word[29:15] ^ word[44:30] ^ {12'd0, word[47:45]};
 
     always @* begin
-        sum = TERM_0;
-        if (has_f1) begin
-            sum = TERM_1;
+        sum = TERM_1;
+        if (f1) begin
+            sum = TERM_1 ^ FIRST;
+        end
+        if (has_f2) begin
+            sum = TERM_2;
             if (f1) begin
-                sum = TERM_1 ^ FIRST;
+                sum = TERM_2 ^ SECOND;
             end
-            if (has_f2) begin
-                sum = TERM_2;
-                if (f1) begin
-                    sum = TERM_2 ^ SECOND;
-                end
-                if (f2) begin
-                    sum = sum ^ FIRST;
-                end
+            if (f2) begin
+                sum = sum ^ FIRST;
             end
         end
         if (^(folded & MASK_0)) begin

@@ -28,7 +28,7 @@ module s6_two_channel_crc5_serial (
     reg    [4:0] register; initial register = 5'd31;
     reg    [4:0] register_next;
 
-    assign shifted = register << 1'b1;
+    assign shifted = {register[3:0], 1'b0};
 
     always @* begin
         register_next = register;

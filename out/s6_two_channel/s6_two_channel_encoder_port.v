@@ -46,10 +46,6 @@ module s6_two_channel_encoder_port (
     input  wire  [11:0] start_timeout_us,
     // Data must fall within this many system clock cycles after the frame.
     input  wire  [12:0] recovery_limit_cycles,
-    // T-format: request ID of a trigger.
-    input  wire   [3:0] request_id,
-    // T-format: longest pause between two fields, in microseconds.
-    input  wire   [2:0] field_gap_us,
     // EnDat clock to the transceiver, from a register.
     output wire         endat_clk,
     // Data line to the transceiver, from a register.
@@ -89,65 +85,13 @@ module s6_two_channel_encoder_port (
     // Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
     output wire  [10:0] delay_cycles,
     // A trigger would not be taken.
-    output wire         busy,
-    // The frame under way has the request.
-    output wire         request_runs,
-    // DATA is HIGH, and no frame is on the wire.
-    output wire         line_high,
-    // Strobe: a trigger has been lost.
-    output wire         displaced,
-    // Strobe: a frame, triggered or not, has ended; over_cause to reply_good are of it.
-    output wire         over,
-    // The frame had the request.
-    output wire         over_request,
-    // Primary cause of the frame, as cause.
-    output wire   [4:0] over_cause,
-    // Raw flags of the frame, as flags.
-    output wire  [19:0] over_flags,
-    // Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
-    output wire  [47:0] reply,
-    // Its CRC is right.
-    output wire         reply_good,
-    // The encoder sends after each EnDat 2.2 position: bit 0 additional information 1, bit 1 additional information 2.
-    output wire   [1:0] info_active,
-    // Additional information 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
-    output wire  [23:0] info_1,
-    // Additional information 2 as it came last.
-    output wire  [23:0] info_2,
-    // Additional informations in the last frame: bit 0 information 1, bit 1 information 2.
-    output wire   [1:0] info_came,
-    // Their CRCs are right.
-    output wire   [1:0] info_good,
-    // The CRCs with which they came: information 1 in bits 4..0, information 2 in bits 9..5.
-    output wire   [9:0] info_crcs,
-    // The propagation delay is known: frames run at the full clock, requests may ride.
-    output wire         calibrated,
-    // Strobe: the data line is sampled for a bit of the answer.
-    output wire         sample_strobe,
-    // The service's alarm: too many bad frames, or positions 1 and 2 apart; or that of the line: drift or edges beyond their limits.
-    output wire         alarm,
-    // Word of the service's RAM, or of the T-format port, that the host accesses; stays put from one strobe to the next, 8 cycles at least.
-    input  wire   [6:0] host_address,
-    // The word is one of the line monitor, not of the service.
-    input  wire         host_line,
-    // Strobe: read it.
-    input  wire         host_read,
-    // The word read; 0 without service, or where it stands elsewhere.
-    output wire  [31:0] host_word,
-    // Strobe: write one half of it.
-    input  wire         host_write,
-    // The half: 1 = high. Write the low one last: it acts.
-    input  wire         host_half,
-    // What to write.
-    input  wire  [15:0] host_data
+    output wire         busy
 );
-    wire  [14:0] channel_0_phase;
-    wire         channel_0_edge_measured;
-    wire   [7:0] channel_0_edge_offset;
-    wire         channel_0_glitch;
-    wire  [47:0] channel_0_answer;
-    wire         channel_0_sample_second;
-    wire         _unused_ok = &{1'b0, request_id, field_gap_us, host_address, host_line, host_read, host_write, host_half, host_data, channel_0_phase, channel_0_edge_measured, channel_0_edge_offset, channel_0_glitch, channel_0_answer, channel_0_sample_second};
+    // Primary cause of the frame, as cause.
+    wire   [4:0] over_cause;
+    // Raw flags of the frame, as flags.
+    wire  [19:0] over_flags;
+    wire         _unused_ok = &{1'b0, over_cause, over_flags};
 
     s6_two_channel_channel u_channel_0 (
         .clock(clock),
@@ -160,27 +104,12 @@ module s6_two_channel_encoder_port (
         .period_cycles(period_cycles),
         .first_low_extra_cycles(first_low_extra_cycles),
         .command(command),
-        .request_command(6'd0),
-        .request_parameter(24'd0),
-        .request_ride(1'b0),
-        .request_own(1'b0),
-        .request_cancel(1'b0),
-        .hold_off(1'b0),
-        .clock_low(1'b0),
-        .forced(5'd0),
         .position_bits(position_bits),
         .filter_cycles(filter_cycles),
         .filter_half(filter_half),
-        .phase_mode(2'd0),
-        .fixed_delay(15'd0),
-        .majority(1'b0),
         .start_window_cycles(start_window_cycles),
         .start_timeout_us(start_timeout_us),
         .recovery_limit_cycles(recovery_limit_cycles),
-        .recovery_min_cycles(13'd0),
-        .watchdog_us(12'd0),
-        .continuous(1'b0),
-        .stop_at_error(1'b0),
         .endat_clk(endat_clk),
         .data_o(data_o),
         .data_oe(data_oe),
@@ -200,34 +129,10 @@ module s6_two_channel_encoder_port (
         .position_has_f2(position_has_f2),
         .recovery_cycles(recovery_cycles),
         .delay_cycles(delay_cycles),
-        .phase(channel_0_phase),
-        .edge_measured(channel_0_edge_measured),
-        .edge_offset(channel_0_edge_offset),
-        .glitch(channel_0_glitch),
         .busy(busy),
-        .request_runs(request_runs),
-        .line_high(line_high),
-        .displaced(displaced),
-        .over(over),
-        .over_request(over_request),
         .over_cause(over_cause),
-        .over_flags(over_flags),
-        .reply(reply),
-        .answer(channel_0_answer),
-        .reply_good(reply_good),
-        .info_active(info_active),
-        .info_1(info_1),
-        .info_2(info_2),
-        .info_came(info_came),
-        .info_good(info_good),
-        .info_crcs(info_crcs),
-        .calibrated(calibrated),
-        .sample_strobe(sample_strobe),
-        .sample_second(channel_0_sample_second)
+        .over_flags(over_flags)
     );
-
-    assign alarm = 1'b0;
-    assign host_word = 32'd0;
 endmodule
 
 `default_nettype wire

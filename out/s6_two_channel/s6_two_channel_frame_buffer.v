@@ -156,9 +156,9 @@ module s6_two_channel_frame_buffer (
     always @* begin
         crc_next = crc;
         if (cycle_at[3] & !in_tail) begin
-            crc_next = crc << 1'b1;
+            crc_next = {crc[14:0], 1'b0};
             if (feedback) begin
-                crc_next = (crc << 1'b1) ^ POLYNOMIAL;
+                crc_next = {crc[14:0], 1'b0} ^ POLYNOMIAL;
             end
         end
     end

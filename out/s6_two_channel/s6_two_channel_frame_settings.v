@@ -39,10 +39,6 @@ module s6_two_channel_frame_settings (
     input  wire  [11:0] start_timeout_us,
     // Longest recovery time, in system clock cycles.
     input  wire  [12:0] recovery_limit_cycles,
-    // Shortest recovery time, in system clock cycles.
-    input  wire  [12:0] recovery_min_cycles,
-    // Longest time of a frame, in microseconds; 0 = not watched.
-    input  wire  [11:0] watchdog_us,
     // Half a system clock cycle more of the filter.
     input  wire         filter_half,
     // The same, of the frame.
@@ -61,10 +57,6 @@ module s6_two_channel_frame_settings (
     output wire  [11:0] start_timeout_us_now,
     // The same, of the frame.
     output wire  [12:0] recovery_limit_cycles_now,
-    // The same, of the frame.
-    output wire  [12:0] recovery_min_cycles_now,
-    // The same, of the frame.
-    output wire  [11:0] watchdog_us_now,
     // The same, of the frame.
     output wire         filter_half_now,
     // Command or width are not what they were when the frame began.
@@ -87,10 +79,6 @@ module s6_two_channel_frame_settings (
     reg   [11:0] start_timeout_held_next;
     reg   [12:0] recovery_limit_held; initial recovery_limit_held = 13'd0;
     reg   [12:0] recovery_limit_held_next;
-    reg   [12:0] recovery_min_held; initial recovery_min_held = 13'd0;
-    reg   [12:0] recovery_min_held_next;
-    reg   [11:0] watchdog_held; initial watchdog_held = 12'd0;
-    reg   [11:0] watchdog_held_next;
     reg          filter_half_held; initial filter_half_held = 1'b0;
     reg          filter_half_held_next;
     reg          parity; initial parity = 1'b0;
@@ -105,8 +93,6 @@ module s6_two_channel_frame_settings (
         start_window_held_next = start_window_held;
         start_timeout_held_next = start_timeout_held;
         recovery_limit_held_next = recovery_limit_held;
-        recovery_min_held_next = recovery_min_held;
-        watchdog_held_next = watchdog_held;
         filter_half_held_next = filter_half_held;
         if (is_at_rest) begin
             period_held_next = period_cycles;
@@ -117,8 +103,6 @@ module s6_two_channel_frame_settings (
             start_window_held_next = start_window_cycles;
             start_timeout_held_next = start_timeout_us;
             recovery_limit_held_next = recovery_limit_cycles;
-            recovery_min_held_next = recovery_min_cycles;
-            watchdog_held_next = watchdog_us;
             filter_half_held_next = filter_half;
         end
     end
@@ -139,8 +123,6 @@ module s6_two_channel_frame_settings (
     assign start_window_cycles_now = start_window_held;
     assign start_timeout_us_now = start_timeout_held;
     assign recovery_limit_cycles_now = recovery_limit_held;
-    assign recovery_min_cycles_now = recovery_min_held;
-    assign watchdog_us_now = watchdog_held;
     assign filter_half_now = filter_half_held;
 
     always @(posedge clock) begin
@@ -153,8 +135,6 @@ module s6_two_channel_frame_settings (
             start_window_held <= 6'd0;
             start_timeout_held <= 12'd0;
             recovery_limit_held <= 13'd0;
-            recovery_min_held <= 13'd0;
-            watchdog_held <= 12'd0;
             filter_half_held <= 1'b0;
             parity <= 1'b0;
         end else begin
@@ -166,8 +146,6 @@ module s6_two_channel_frame_settings (
             start_window_held <= start_window_held_next;
             start_timeout_held <= start_timeout_held_next;
             recovery_limit_held <= recovery_limit_held_next;
-            recovery_min_held <= recovery_min_held_next;
-            watchdog_held <= watchdog_held_next;
             filter_half_held <= filter_half_held_next;
             parity <= parity_next;
         end
@@ -175,6 +153,8 @@ module s6_two_channel_frame_settings (
 
 `ifdef FORMAL
 `ifndef FORMAL_ANY_STATE
+    wire [12:0] recovery_min_cycles_now = 13'd0;
+    wire [11:0] watchdog_us_now = 12'd0;
     // settings_held: What the frame on the wire is received with changes only while nothing is on the wire.
     reg f_past_valid; initial f_past_valid = 1'b0;
     always @(posedge clock) begin

@@ -23,10 +23,6 @@ module s6_two_channel_half_period (
     input  wire         began,
     // Whether this is the second half of the period.
     input  wire         second,
-    // The next half is one cycle shorter; for those of at least 4.
-    input  wire         shorten,
-    // The next half is one cycle longer.
-    input  wire         lengthen,
     // Period, in system clock cycles.
     input  wire  [10:0] period_cycles,
     // High in the last cycle of a half.
@@ -34,12 +30,8 @@ module s6_two_channel_half_period (
     // Cycles until tick and one more: 1 with tick.
     output wire   [9:0] left_cycles
 );
-    localparam         HAS_SNAP = 1'b0;
-    localparam         HAS_ONE = 1'b0;
-
     wire   [9:0] half_cycles;
     reg          tick_now;
-    wire         is_one;
     reg    [9:0] count; initial count = 10'd2;
     reg    [9:0] count_next;
     reg          hit; initial hit = 1'b0;
@@ -55,26 +47,19 @@ module s6_two_channel_half_period (
             tick_now = hit_late;
         end
     end
-    assign is_one = HAS_ONE & (half_cycles == 10'd1);
 
     always @* begin
-        hit_next = (count == half_cycles) | is_one;
+        hit_next = count == half_cycles;
         hit_late_next = hit;
         count_next = count + 10'd1;
         if (restart | tick_now) begin
             count_next = 10'd2;
-            hit_next = is_one;
+            hit_next = 1'b0;
             hit_late_next = 1'b0;
-        end
-        if (tick_now & shorten) begin
-            count_next = 10'd3;
-        end
-        if (tick_now & lengthen) begin
-            count_next = 10'd1;
         end
         if (restart & began) begin
             count_next = 10'd3;
-            hit_next = HAS_SNAP & (half_cycles == 10'd2);
+            hit_next = 1'b0;
         end
     end
     assign tick = tick_now;
@@ -94,6 +79,8 @@ module s6_two_channel_half_period (
 
 `ifdef FORMAL
 `ifndef FORMAL_ANY_STATE
+    wire [0:0] shorten = 1'd0;
+    wire [0:0] lengthen = 1'd0;
     // half_counted: Half a period is counted in full: the strobe comes as many cycles after the one before, or after a restart.
     reg [10:0] f_since; initial f_since = 11'd2046;
     reg [9:0] f_least; initial f_least = 10'd0;

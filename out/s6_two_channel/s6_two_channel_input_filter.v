@@ -19,34 +19,16 @@ module s6_two_channel_input_filter (
     input  wire         pin,
     // A pulse of at most this many system clock cycles is ignored; 0 switches the filter off.
     input  wire   [3:0] filter_cycles,
-    // And half a cycle more; where there are two samples in each cycle.
-    input  wire         filter_half,
-    // Each sample counts as what most of it and its two neighbours are.
-    input  wire         majority,
-    // Falling edges count, too.
-    input  wire         both_edges,
     // The level after synchroniser and filter.
     output wire         level,
-    // The level half a cycle before; level unless there are two samples in each cycle.
-    output wire         level_first,
     // High in the first cycle in which level is high, or has changed.
-    output wire         edge_strobe,
-    // This edge stands between level_first and level, not before both.
-    output wire         edge_second,
-    // Strobe: a pulse has been removed.
-    output wire         glitch
+    output wire         edge_strobe
 );
-    localparam         HAS_ALIGNMENT = 1'b0;
-    localparam         HAS_DOUBLE = 1'b0;
-
     reg    [4:0] limit;
-    wire         first;
-    reg          sample_first;
-    reg          sample;
+    wire         sample;
     reg          middle;
     reg    [4:0] middle_different;
     reg          settled;
-    wire         both;
     wire         edge_first;
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync1; initial sync1 = 1'b0;
@@ -54,113 +36,52 @@ module s6_two_channel_input_filter (
     reg          sync2; initial sync2 = 1'b0;
     (* ASYNC_REG = "TRUE", SHREG_EXTRACT = "NO", keep = "true" *)
     reg          sync3; initial sync3 = 1'b0;
-    reg          earlier; initial earlier = 1'b0;
-    reg          earlier_first; initial earlier_first = 1'b0;
-    reg          earlier_first_next;
     reg    [4:0] different; initial different = 5'd0;
     reg    [4:0] different_next;
     reg          level_now; initial level_now = 1'b0;
-    reg          first_now; initial first_now = 1'b0;
     reg          edge_now; initial edge_now = 1'b0;
-    reg          second_now; initial second_now = 1'b0;
-    reg          removed; initial removed = 1'b0;
-    reg          removed_next;
 
-    assign first = 1'b0;
-
-    always @* begin
-        earlier_first_next = earlier;
-        if (HAS_DOUBLE) begin
-            earlier_first_next = first;
-        end
-    end
-
-    always @* begin
-        sample = sync3;
-        sample_first = first;
-        if (HAS_ALIGNMENT & majority) begin
-            sample = (sync3 & earlier) | (sync3 & earlier_first) | (earlier & earlier_first);
-            if (HAS_DOUBLE) begin
-                sample_first = (earlier_first & earlier) | (earlier_first & first) | (earlier & first);
-                sample = (earlier & first) | (earlier & sync3) | (first & sync3);
-            end
-        end
-    end
+    assign sample = sync3;
 
     always @* begin
         limit = {1'b0, filter_cycles};
         middle = level_now;
         middle_different = different;
-        removed_next = 1'b0;
-        if (HAS_DOUBLE) begin
-            limit = ({1'b0, filter_cycles} << 1'b1) | {4'd0, filter_half};
-            middle_different = 5'd0;
-            if (sample_first != level_now) begin
-                if (different == limit) begin
-                    middle = sample_first;
-                end else begin
-                    middle_different = different + 5'd1;
-                end
-            end else begin
-                removed_next = |different;
-            end
-        end
         settled = middle;
         different_next = 5'd0;
         if (sample != middle) begin
             if (middle_different == limit) begin
                 settled = sample;
             end else begin
-                different_next = middle_different + 5'd1;
-                if (!HAS_DOUBLE) begin
-                    different_next = ((middle_different + 5'd1) & 5'd15) | 5'd0;
-                end
+                different_next = (middle_different + 5'd1) & 5'd15;
             end
-        end else if (|middle_different) begin
-            removed_next = 1'b1;
-        end
-        if (!HAS_ALIGNMENT) begin
-            removed_next = 1'b0;
         end
     end
-    assign both = HAS_ALIGNMENT & both_edges;
-    assign edge_first = (middle & !level_now) | (both & !middle & level_now);
+    assign edge_first = middle & !level_now;
     assign level = level_now;
-    assign level_first = first_now;
     assign edge_strobe = edge_now;
-    assign edge_second = second_now;
-    assign glitch = removed;
 
     always @(posedge clock) begin
         if (reset) begin
             sync1 <= 1'b0;
             sync2 <= 1'b0;
             sync3 <= 1'b0;
-            earlier <= 1'b0;
-            earlier_first <= 1'b0;
             different <= 5'd0;
             level_now <= 1'b0;
-            first_now <= 1'b0;
             edge_now <= 1'b0;
-            second_now <= 1'b0;
-            removed <= 1'b0;
         end else begin
             sync1 <= pin;
             sync2 <= sync1;
             sync3 <= sync2;
-            earlier <= sync3 & HAS_ALIGNMENT;
-            earlier_first <= earlier_first_next;
             different <= different_next;
             level_now <= settled;
-            first_now <= middle & HAS_DOUBLE;
-            edge_now <= edge_first | (settled & !middle) | (both & !settled & middle);
-            second_now <= !edge_first & HAS_DOUBLE;
-            removed <= removed_next;
+            edge_now <= edge_first | (settled & !middle);
         end
     end
 
 `ifdef FORMAL
 `ifndef FORMAL_ANY_STATE
+    localparam         HAS_DOUBLE = 1'b0;
     // short_pulses_ignored: The level follows DATA only after more samples in a row than the filter ignores.
     reg [4:0] f_other; initial f_other = 5'd0;
     wire f_differs = sample != level_now;

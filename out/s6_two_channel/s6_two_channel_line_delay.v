@@ -41,28 +41,14 @@ module s6_two_channel_line_delay (
     input  wire         rise,
     // Strobe: the data line has just gone high, or has changed within the answer.
     input  wire         data_edge,
-    // This edge is half a cycle later than others (double edge only).
-    input  wire         edge_second,
-    // The cell is one of the answer behind the start bit: its edge counts (alignment only).
-    input  wire         in_answer,
-    // The frame runs at the calibration clock.
-    input  wire         slow,
-    // Where the phase comes from, see mode (alignment only).
-    input  wire   [1:0] mode,
-    // Delay in mode fixed, in sixteenths of a system clock cycle.
-    input  wire  [14:0] fixed_delay,
     // Strobe, together with sample: this sample is a good start bit, follow its edge.
     input  wire         follow,
-    // The clock goes on after the frame: the phase of the running cells follows, too.
-    input  wire         going_on,
     // EnDat clock period, in system clock cycles.
     input  wire  [10:0] period_cycles,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
     // Strobe: sample the data line.
     output wire         sample,
-    // With sample: half a cycle later than others (double edge only).
-    output wire         sample_second,
     // Strobe: the middle of the expected place of a data edge.
     output wire         center,
     // A rising data edge lies within the window of this cell.
@@ -72,19 +58,8 @@ module s6_two_channel_line_delay (
     // The tracked delay is not what was measured: a register was upset. Until it is measured again.
     output wire         is_upset,
     // Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
-    output wire  [10:0] delay_cycles,
-    // The same, mean of many edges, in sixteenths of a cycle (alignment only).
-    output wire  [14:0] phase,
-    // Strobe one cycle after sample: an edge of the answer has been measured (alignment only).
-    output wire         measured,
-    // Places from the tracked one to this edge, less one, in two's complement.
-    output wire   [7:0] offset
+    output wire  [10:0] delay_cycles
 );
-    localparam         HAS_ALIGNMENT = 1'b0;
-    localparam         HAS_DOUBLE = 1'b0;
-    localparam   [1:0] FRAME_MODE = 2'd2;
-    localparam   [1:0] FIXED_MODE = 2'd1;
-
     wire         parity_now;
     wire         first_rise;
     wire         acquired;
@@ -95,21 +70,12 @@ module s6_two_channel_line_delay (
     wire         edge_now;
     wire         over;
     wire  [11:0] places;
-    reg   [10:0] delay_now;
-    wire         is_frame;
-    wire         snap;
-    wire         next_cell;
+    wire  [10:0] delay_now;
     reg          late_now;
-    reg          place_now;
-    reg          center_place;
-    reg    [7:0] distance;
-    wire         good_edge;
-    wire         is_open;
-    wire         is_later;
-    reg          due;
+    wire         due;
     wire         half_restart;
     wire         half_began;
-    reg          half_second;
+    wire         half_second;
     wire         half_tick;
     wire   [9:0] half_left_cycles;
     reg   [10:0] delay; initial delay = 11'd0;
@@ -141,25 +107,12 @@ module s6_two_channel_line_delay (
     reg    [5:0] edge_error_next;
     reg          edge_outside; initial edge_outside = 1'b0;
     reg          edge_outside_next;
-    reg          shorten; initial shorten = 1'b0;
-    reg          shorten_next;
-    reg          lengthen; initial lengthen = 1'b0;
-    reg          lengthen_next;
     reg          parity; initial parity = 1'b0;
     reg          parity_next;
     reg          moved; initial moved = 1'b0;
     reg          wrong; initial wrong = 1'b0;
     reg          wrong_next;
-    reg    [7:0] offset_now; initial offset_now = 8'd0;
-    reg    [7:0] offset_now_next;
-    reg          measured_now; initial measured_now = 1'b0;
-    reg          second; initial second = 1'b0;
-    reg          second_next;
-    reg          edge_place; initial edge_place = 1'b0;
-    reg          edge_place_next;
-    reg          was_over; initial was_over = 1'b0;
-    reg          was_over_next;
-    wire         _unused_ok = &{1'b0, fixed_delay};
+    wire         _unused_ok = &{1'b0, half_left_cycles};
 
     s6_two_channel_half_period u_half (
         .clock(clock),
@@ -167,8 +120,6 @@ module s6_two_channel_line_delay (
         .restart(half_restart),
         .began(half_began),
         .second(half_second),
-        .shorten(shorten),
-        .lengthen(lengthen),
         .period_cycles(period_cycles),
         .tick(half_tick),
         .left_cycles(half_left_cycles)
@@ -176,23 +127,10 @@ module s6_two_channel_line_delay (
 
     assign first_rise = rise & (acquire | !timing_armed);
     assign places = {1'b0, delay};
-
-    always @* begin
-        delay_now = places[10:0];
-        if (HAS_DOUBLE) begin
-            delay_now = places[11:1];
-        end
-    end
+    assign delay_now = places[10:0];
     assign parity_now = ^places;
     assign is_upset = wrong;
-    assign is_later = 1'b0;
-
-    always @* begin
-        due = delay_over;
-        if (is_later) begin
-            due = was_over;
-        end
-    end
+    assign due = delay_over;
     assign acquired = acquire & hunting & data_edge & !cells_run;
 
     always @* begin
@@ -203,22 +141,14 @@ module s6_two_channel_line_delay (
         end else if (parity_now ^ parity) begin
             wrong_next = 1'b1;
         end
-        if (acquired | (HAS_ALIGNMENT & (mode == FIXED_MODE))) begin
+        if (acquired) begin
             wrong_next = 1'b0;
         end
     end
     assign first_center = acquired | (due & !cells_run & !acquire);
-    assign is_frame = HAS_ALIGNMENT & (mode == FRAME_MODE);
-    assign snap = is_frame & hunting & data_edge & !edge_seen & cells_run & !acquire;
-    assign sample_now = sample_strobe & !snap & !(HAS_DOUBLE & afresh);
-    assign center_now = acquired | center_strobe | snap;
-
-    always @* begin
-        half_second = second_half;
-        if (HAS_DOUBLE) begin
-            half_second = second;
-        end
-    end
+    assign sample_now = sample_strobe;
+    assign center_now = acquired | center_strobe;
+    assign half_second = second_half;
 
     always @* begin
         timing_armed_next = timing_armed;
@@ -233,57 +163,33 @@ module s6_two_channel_line_delay (
             end
         end
         delay_over_next = timing_armed & (since_rise == delay_now);
-        was_over_next = delay_over & HAS_ALIGNMENT;
         sample_strobe_next = half_tick & !second_half & cells_run;
         center_strobe_next = (half_tick & second_half) | (first_center & !acquired);
         if (half_tick & cells_run) begin
             second_half_next = !second_half;
         end
-        if (first_center | snap) begin
+        if (first_center) begin
             cells_run_next = 1'b1;
             second_half_next = 1'b0;
-        end
-        if (snap) begin
-            sample_strobe_next = 1'b0;
-            center_strobe_next = 1'b0;
         end
         if (afresh) begin
             cells_run_next = 1'b0;
             second_half_next = 1'b0;
             timing_armed_next = 1'b0;
             delay_over_next = 1'b0;
-            was_over_next = 1'b0;
             sample_strobe_next = 1'b0;
             center_strobe_next = 1'b0;
         end
     end
-
-    always @* begin
-        second_next = second;
-        if (HAS_DOUBLE) begin
-            if (half_tick & cells_run) begin
-                second_next = second ^ period_cycles[0];
-            end
-            if (first_center) begin
-                second_next = places[0];
-            end
-            if (acquired | snap) begin
-                second_next = edge_second;
-            end
-        end
-    end
-    assign half_restart = !cells_run | last_cell | snap;
-    assign half_began = acquired | snap;
+    assign half_restart = !cells_run | last_cell;
+    assign half_began = acquired;
     assign pulse = acquired | (will_rise & (!acquire | cells_run));
-    assign next_cell = HAS_DOUBLE & sample_now & edge_second & !second;
-    assign edge_now = edge_seen | (data_edge & !next_cell);
+    assign edge_now = edge_seen | data_edge;
 
     always @* begin
         late_now = edge_late;
-        place_now = edge_place;
         if (!edge_seen) begin
             late_now = center_seen;
-            place_now = edge_second;
         end
     end
 
@@ -295,35 +201,12 @@ module s6_two_channel_line_delay (
     end
 
     always @* begin
-        shorten_next = shorten;
-        lengthen_next = lengthen;
         delay_next = delay;
-        if (half_tick) begin
-            shorten_next = 1'b0;
-            lengthen_next = 1'b0;
-        end
         if (follow_now) begin
             delay_next = delay + step;
-            shorten_next = going_on & !edge_late;
-            lengthen_next = going_on & edge_late;
         end
         if (acquired) begin
             delay_next = since_rise;
-        end
-        if (HAS_ALIGNMENT) begin
-            delay_next = 11'd0;
-        end
-    end
-
-    always @* begin
-        center_place = 1'b0;
-        distance = {2'd0, edge_error};
-        if (HAS_DOUBLE) begin
-            center_place = second ^ period_cycles[0];
-            distance = (({2'd0, edge_error} << 1'b1) + {7'd0, center_place}) - {7'd0, place_now};
-            if (late_now) begin
-                distance = ({2'd0, edge_error} << 1'b1) + {7'd0, place_now} + {7'd0, !center_place};
-            end
         end
     end
 
@@ -331,7 +214,6 @@ module s6_two_channel_line_delay (
         center_seen_next = center_seen;
         edge_seen_next = edge_seen;
         edge_late_next = edge_late;
-        edge_place_next = edge_place;
         edge_error_next = edge_error;
         edge_outside_next = edge_outside;
         if (center_now) begin
@@ -340,11 +222,6 @@ module s6_two_channel_line_delay (
         if (data_edge) begin
             edge_seen_next = 1'b1;
             edge_late_next = late_now;
-            edge_place_next = place_now;
-            if (next_cell) begin
-                edge_late_next = 1'b0;
-                edge_place_next = 1'b1;
-            end
         end
         if ((center_seen & !edge_now) | (edge_seen & !center_seen)) begin
             edge_error_next = edge_error + 6'd1;
@@ -352,38 +229,18 @@ module s6_two_channel_line_delay (
                 edge_outside_next = 1'b1;
             end
         end
-        if (snap & !center_seen & !center_strobe) begin
-            edge_error_next = half_left_cycles[5:0];
-            if (half_left_cycles > {4'd0, start_window_cycles}) begin
-                edge_outside_next = 1'b1;
-            end
-        end
-        offset_now_next = distance;
-        if (!late_now) begin
-            offset_now_next = ~distance;
-        end
-        if (!HAS_ALIGNMENT) begin
-            offset_now_next = 8'd0;
-            edge_place_next = 1'b0;
-        end
         if (sample_now | not_yet) begin
             center_seen_next = 1'b0;
-            edge_seen_next = next_cell & data_edge & !not_yet;
+            edge_seen_next = 1'b0;
             edge_error_next = 6'd0;
             edge_outside_next = 1'b0;
         end
     end
-    assign is_open = HAS_ALIGNMENT & slow;
-    assign good_edge = HAS_ALIGNMENT & sample_now & edge_now & (!edge_outside | is_open) & (follow | (in_answer & !is_frame));
     assign over = !run | (drain & none_under_way);
     assign sample = sample_now;
     assign center = center_now;
-    assign edge_in_window = edge_now & (!edge_outside | is_open);
-    assign sample_second = second;
+    assign edge_in_window = edge_now & !edge_outside;
     assign delay_cycles = delay_now;
-    assign measured = measured_now;
-    assign offset = offset_now;
-    assign phase = 15'd0;
 
     always @(posedge clock) begin
         if (reset) begin
@@ -403,16 +260,9 @@ module s6_two_channel_line_delay (
             edge_late <= 1'b0;
             edge_error <= 6'd0;
             edge_outside <= 1'b0;
-            shorten <= 1'b0;
-            lengthen <= 1'b0;
             parity <= 1'b0;
             moved <= 1'b0;
             wrong <= 1'b0;
-            offset_now <= 8'd0;
-            measured_now <= 1'b0;
-            second <= 1'b0;
-            edge_place <= 1'b0;
-            was_over <= 1'b0;
         end else begin
             delay <= delay_next;
             since_rise <= since_rise_next;
@@ -430,16 +280,9 @@ module s6_two_channel_line_delay (
             edge_late <= edge_late_next;
             edge_error <= edge_error_next;
             edge_outside <= edge_outside_next;
-            shorten <= shorten_next;
-            lengthen <= lengthen_next;
             parity <= parity_next;
             moved <= follow_now | acquired;
             wrong <= wrong_next;
-            offset_now <= offset_now_next;
-            measured_now <= good_edge;
-            second <= second_next;
-            edge_place <= edge_place_next;
-            was_over <= was_over_next;
         end
     end
 endmodule

@@ -44,24 +44,10 @@ module s6_two_channel_receiver (
     input  wire         edge_in_window,
     // Bits between error bits and CRC, 1..=48.
     input  wire   [5:0] payload_bits,
-    // The answer begins with F1.
-    input  wire         has_f1,
     // The frame carries F2.
     input  wire         has_f2,
-    // 24 bits are sent before the answer, and the answer is 24 bits.
-    input  wire         has_parameter,
-    // The clock is parked LOW after the answer.
-    input  wire         has_supplement,
-    // Additional informations that follow the position, 0..=2.
-    input  wire   [1:0] infos,
-    // Strobe: what is HIGH now is a recovery time, which may be over in the middle of this cell.
-    input  wire         look,
     // One-cycle strobe: the supplement begins.
     input  wire         start_supplement,
-    // The clock goes on after this answer, and another one follows.
-    input  wire         going_on,
-    // Mode command that was sent.
-    input  wire   [5:0] command,
     // The line is undefined: samples are not looked at.
     output wire         skipping,
     // The start bit may come now.
@@ -74,8 +60,6 @@ module s6_two_channel_receiver (
     output wire         started,
     // All clock pulses have been sent.
     output wire         all_sent,
-    // All but one.
-    output wire         one_to_send,
     // The cell of each pulse that was sent has ended.
     output wire         none_under_way,
     // The counts of cells and pulses agree that this cell is the last one.
@@ -84,24 +68,8 @@ module s6_two_channel_receiver (
     output wire         all_ended,
     // Strobe: payload, error bits, CRC and verdict of the answer without additional information are valid.
     output reg          done,
-    // Strobe: payload and verdict of an additional information are valid.
-    output reg          info_done,
-    // Strobe: the LOW in front of an additional information has come. Payload and verdict stay for two more cycles.
-    output reg          separated,
-    // Strobe: an additional information should begin, but the line is HIGH.
-    output reg          info_missing,
     // Strobe: the answer with all its additional informations, or the supplement, is complete.
     output reg          finished,
-    // Strobe: while the clock goes on, the cell after the last CRC bit is HIGH, as it should.
-    output wire         gap_good,
-    // Strobe: while the clock goes on, the cell after the last CRC bit is LOW.
-    output wire         gap_low,
-    // Strobe: while the clock goes on, the second cell after the last CRC bit is HIGH.
-    output wire         gap_high,
-    // Strobe: the encoder has taken the next position, one propagation delay ago.
-    output wire         latched,
-    // What came begins with the mode command, leading zeros aside.
-    output wire         is_echo,
     // Payload, bit 0 = the bit received first, zeros above its width.
     output wire  [47:0] payload,
     // Error bit 1, high = alarm.
@@ -117,16 +85,8 @@ module s6_two_channel_receiver (
     // The stored word fits the received CRC, now.
     output wire         parallel_ok
 );
-    localparam         HAS_ALL = 1'b0;
-    localparam         HAS_DIAGNOSIS = 1'b0;
-    localparam         HAS_CONTINUOUS = 1'b0;
-    localparam         HAS_DOUBLE = 1'b0;
     localparam   [3:0] SKIP_FROM = 4'd5;
-    localparam   [3:0] LONG_SKIP_FROM = 4'd11;
     localparam   [6:0] FIXED_CELLS = 7'd17;
-    localparam   [6:0] SUPPLEMENT_CELLS = 7'd35;
-    localparam   [5:0] INFO_BITS = 6'd24;
-    localparam   [6:0] CELLS_FROM_START = 7'd7;
     // Receiver: takes the bits of an answer from the start bit to the last CRC bit.
     //
     // field     Skip      Start     F1   F2   Payload  ............  Crc ........  Done
@@ -156,7 +116,6 @@ module s6_two_channel_receiver (
     localparam   [3:0] FIELD_DONE = 4'd9; // The answer is complete.
     localparam   [3:0] FIELD_SUPPLEMENT = 4'd10; // Cells of the supplement: the line is ours or undefined.
 
-    reg          again;
     reg          skip_step;
     reg          covered_bit;
     wire         shift;
@@ -169,17 +128,14 @@ module s6_two_channel_receiver (
     reg    [3:0] covered_next;
     reg          crc_bit;
     wire         start_sample;
-    reg          separator;
     reg   [49:0] shifted;
     wire         one_more;
     wire         one_less;
     wire         counts;
-    reg    [5:0] width;
-    reg    [6:0] cells_after;
+    wire   [5:0] width;
     reg    [6:0] cells_around;
     wire         check_clear;
     wire         check_word_bit;
-    wire         check_has_f1;
     wire         check_is_ok;
     wire         serial_clear;
     wire         serial_enable;
@@ -211,10 +167,7 @@ module s6_two_channel_receiver (
     reg          align_first; initial align_first = 1'b0;
     reg          last_taken; initial last_taken = 1'b0;
     reg          last_taken_next;
-    reg          waiting; initial waiting = 1'b0;
-    reg          waiting_next;
     reg          done_now; initial done_now = 1'b0;
-    reg          done_now_next;
     reg          parallel_equal; initial parallel_equal = 1'b0;
     reg          serial_good; initial serial_good = 1'b0;
     reg          refused; initial refused = 1'b0;
@@ -228,25 +181,7 @@ module s6_two_channel_receiver (
     reg    [1:0] skip_rounds_next;
     reg    [1:0] infos_left; initial infos_left = 2'd0;
     reg    [1:0] infos_left_next;
-    reg          in_info; initial in_info = 1'b0;
-    reg          in_info_next;
-    reg          missing; initial missing = 1'b0;
-    reg          missing_next;
-    reg          supplement_over; initial supplement_over = 1'b0;
-    reg          supplement_over_next;
-    reg          low_gap; initial low_gap = 1'b0;
-    reg          low_gap_next;
-    reg          high_gap; initial high_gap = 1'b0;
-    reg          high_gap_next;
-    reg          good_gap; initial good_gap = 1'b0;
-    reg          good_gap_next;
-    reg          low_separator; initial low_separator = 1'b0;
-    reg          separator_then; initial separator_then = 1'b0;
-    reg          new_block; initial new_block = 1'b0;
-    reg    [6:0] heard; initial heard = 7'd0;
-    reg    [6:0] heard_next;
-    reg          echo; initial echo = 1'b0;
-    reg          echo_next;
+    wire         _unused_ok = &{1'b0, start_supplement};
 
     s6_two_channel_crc5_check u_check (
         .clock(clock),
@@ -256,7 +191,6 @@ module s6_two_channel_receiver (
         .crc_bit(crc_bit),
         .bit_value(level),
         .word(word[47:0]),
-        .has_f1(check_has_f1),
         .has_f2(has_f2),
         .f1(f1_bit),
         .f2(f2_bit),
@@ -278,40 +212,7 @@ module s6_two_channel_receiver (
             crc_calc_next = serial_crc;
         end
     end
-
-    always @* begin
-        waiting_next = waiting;
-        done_now_next = last_taken;
-        if (HAS_DOUBLE) begin
-            done_now_next = (last_taken | waiting) & !align;
-            waiting_next = (last_taken | waiting) & align;
-        end
-    end
-
-    always @* begin
-        cells_after = 7'd1;
-        width = payload_bits;
-        if (HAS_ALL) begin
-            if (infos_left == 2'd1) begin
-                cells_after = 7'd31;
-            end
-            if (infos_left == 2'd2) begin
-                cells_after = 7'd61;
-            end
-            if (has_supplement) begin
-                cells_after = 7'd0;
-                if (infos_left == 2'd1) begin
-                    cells_after = 7'd30;
-                end
-                if (infos_left == 2'd2) begin
-                    cells_after = 7'd60;
-                end
-            end
-            if (in_info) begin
-                width = INFO_BITS;
-            end
-        end
-    end
+    assign width = payload_bits;
 
     always @* begin
         skip_step = sample;
@@ -333,16 +234,16 @@ module s6_two_channel_receiver (
     always @* begin
         shifted = {1'b0, word[49:1]};
         if (in50) begin
-            shifted = ({1'b0, word[49:1]} & 50'h1ffffffffffff) | ({49'd0, bit_in} << 6'd49);
+            shifted = {bit_in, word[49:1]};
         end
         if (in35) begin
-            shifted = ({1'b0, word[49:1]} & 50'h3fffbffffffff) | ({49'd0, bit_in} << 6'd34);
+            shifted = {1'b0, word[49:36], bit_in, word[34:1]};
         end
         if (in20) begin
-            shifted = ({1'b0, word[49:1]} & 50'h3fffffff7ffff) | ({49'd0, bit_in} << 5'd19);
+            shifted = {1'b0, word[49:21], bit_in, word[19:1]};
         end
         if (in5) begin
-            shifted = ({1'b0, word[49:1]} & 50'h3ffffffffffef) | ({49'd0, bit_in} << 3'd4);
+            shifted = {1'b0, word[49:6], bit_in, word[4:1]};
         end
     end
 
@@ -358,37 +259,13 @@ module s6_two_channel_receiver (
         if (has_f2) begin
             aligned_at = 4'd6;
         end
-        if (HAS_ALL & (!has_f1 | in_info)) begin
-            aligned_at = 4'd4;
-        end
     end
     assign check_word_bit = sample & (field == FIELD_PAYLOAD);
-    assign check_has_f1 = !HAS_ALL | (has_f1 & !in_info);
 
     always @* begin
         cells_around = FIXED_CELLS;
         if (has_f2) begin
             cells_around = FIXED_CELLS + 7'd1;
-        end
-        if (HAS_ALL) begin
-            if (has_supplement) begin
-                cells_around = FIXED_CELLS;
-            end
-            if (infos == 2'd1) begin
-                cells_around = FIXED_CELLS + 7'd31;
-                if (has_supplement) begin
-                    cells_around = FIXED_CELLS + 7'd30;
-                end
-            end
-            if (infos == 2'd2) begin
-                cells_around = FIXED_CELLS + 7'd61;
-                if (has_supplement) begin
-                    cells_around = FIXED_CELLS + 7'd60;
-                end
-            end
-            if (has_parameter) begin
-                cells_around = FIXED_CELLS + 7'd23;
-            end
         end
     end
 
@@ -404,18 +281,10 @@ module s6_two_channel_receiver (
         word_next = word;
         covered_d = covered;
         align_next = align;
-        in_info_next = in_info;
         covered_bit = 1'b0;
         crc_bit = 1'b0;
         last_payload_next = 1'b0;
         last_taken_next = 1'b0;
-        separator = 1'b0;
-        missing_next = 1'b0;
-        supplement_over_next = 1'b0;
-        low_gap_next = 1'b0;
-        high_gap_next = 1'b0;
-        good_gap_next = 1'b0;
-        again = 1'b0;
         if (counts & (field != FIELD_SKIP) & (field != FIELD_START)) begin
             left_next = left - 7'd1;
         end
@@ -437,18 +306,13 @@ module s6_two_channel_receiver (
                     left_next = left - 7'd1;
                     if (covered == 4'd14) begin
                         skip_rounds_next = skip_rounds - 2'd1;
-                        if (!(|skip_rounds) | !HAS_ALL) begin
-                            field_next = FIELD_START;
-                        end
+                        field_next = FIELD_START;
                     end
                 end
             end
             FIELD_START: begin
                 if (start_sample & edge_in_window) begin
                     field_next = FIELD_F1;
-                    if (!has_f1 & HAS_ALL) begin
-                        field_next = FIELD_PAYLOAD;
-                    end
                 end
             end
             FIELD_F1: begin
@@ -471,7 +335,7 @@ module s6_two_channel_receiver (
             FIELD_PAYLOAD: begin
                 if (sample) begin
                     covered_bit = 1'b1;
-                    if (left == (cells_after + 7'd6)) begin
+                    if (left == 7'd7) begin
                         last_payload_next = 1'b1;
                         field_next = FIELD_CRC;
                     end
@@ -480,63 +344,37 @@ module s6_two_channel_receiver (
             FIELD_CRC: begin
                 if (sample) begin
                     crc_bit = 1'b1;
-                    if (left == (cells_after + 7'd1)) begin
+                    if (left == 7'd2) begin
                         last_taken_next = 1'b1;
                         field_next = FIELD_DONE;
-                        if ((|infos_left) & HAS_ALL) begin
-                            field_next = FIELD_SEPARATOR;
-                        end
-                        if (going_on & HAS_CONTINUOUS) begin
-                            field_next = FIELD_GAP_HIGH;
-                        end
                     end
                 end
             end
             FIELD_SEPARATOR: begin
-                if (look & level & HAS_ALL) begin
-                    missing_next = 1'b1;
-                    field_next = FIELD_DONE;
-                end
                 if (sample) begin
-                    separator = 1'b1;
                     infos_left_next = infos_left - 2'd1;
-                    field_next = FIELD_PAYLOAD;
-                    if (level | !HAS_ALL) begin
-                        missing_next = 1'b1;
-                        field_next = FIELD_DONE;
-                    end
+                    field_next = FIELD_DONE;
                 end
             end
             FIELD_GAP_HIGH: begin
                 if (sample) begin
-                    low_gap_next = !level;
-                    good_gap_next = level;
                     field_next = FIELD_GAP_LOW;
                 end
-                if (!HAS_CONTINUOUS) begin
-                    field_next = FIELD_DONE;
-                end
+                field_next = FIELD_DONE;
             end
             FIELD_GAP_LOW: begin
                 if (sample) begin
-                    high_gap_next = level;
-                    again = 1'b1;
                     field_next = FIELD_START;
                 end
-                if (!HAS_CONTINUOUS) begin
-                    field_next = FIELD_DONE;
-                end
+                field_next = FIELD_DONE;
             end
             FIELD_DONE: begin
             end
             FIELD_SUPPLEMENT: begin
                 if (sample & (left == 7'd2)) begin
-                    supplement_over_next = 1'b1;
                     field_next = FIELD_DONE;
                 end
-                if (!HAS_ALL) begin
-                    field_next = FIELD_DONE;
-                end
+                field_next = FIELD_DONE;
             end
             default: begin
                 field_next = FIELD_DONE;
@@ -554,12 +392,6 @@ module s6_two_channel_receiver (
         if (align & !align_first & (covered == aligned_at)) begin
             align_next = 1'b0;
         end
-        if (HAS_ALL & new_block) begin
-            word_next = 50'd0;
-            covered_d = 4'd0;
-            align_next = 1'b0;
-            in_info_next = 1'b1;
-        end
         if (start) begin
             field_next = FIELD_SKIP;
             left_next = {1'b0, payload_bits} + cells_around;
@@ -570,56 +402,21 @@ module s6_two_channel_receiver (
             skip_rounds_next = 2'd0;
             f2_bit_next = 1'b1;
             align_next = 1'b0;
-            in_info_next = 1'b0;
-            infos_left_next = infos;
-            if (HAS_ALL) begin
-                f1_bit_next = 1'b0;
-                if (has_parameter) begin
-                    covered_d = LONG_SKIP_FROM;
-                    skip_rounds_next = 2'd2;
-                end
-            end
-        end
-        if (again & HAS_CONTINUOUS) begin
-            left_next = {1'b0, payload_bits} + CELLS_FROM_START;
-            word_next = 50'd0;
-            covered_d = 4'd0;
-            in_info_next = 1'b0;
+            infos_left_next = 2'd0;
         end
         if (aborts) begin
             field_next = FIELD_DONE;
-        end
-        if (start_supplement & HAS_ALL) begin
-            field_next = FIELD_SUPPLEMENT;
-            left_next = SUPPLEMENT_CELLS;
-            to_send_next = SUPPLEMENT_CELLS;
-            under_way_next = 3'd0;
         end
     end
 
     always @* begin
         crc_bits_next = crc_bits;
         if (crc_bit) begin
-            crc_bits_next = ((crc_bits << 1'b1) & 5'd30) | {4'd0, level};
+            crc_bits_next = {crc_bits[3:0], level};
         end
     end
-
-    always @* begin
-        heard_next = heard;
-        echo_next = echo;
-        if (sample & (field != FIELD_SKIP) & !heard[6]) begin
-            heard_next = ((heard << 1'b1) & 7'd126) | {6'd0, level};
-        end
-        if (heard == ({1'b0, command} << 1'b1)) begin
-            echo_next = 1'b1;
-        end
-        if (start | again) begin
-            heard_next = 7'd0;
-            echo_next = 1'b0;
-        end
-    end
-    assign check_clear = start | (new_block & HAS_ALL) | (again & HAS_CONTINUOUS);
-    assign serial_clear = start | (separator & HAS_ALL) | (again & HAS_CONTINUOUS);
+    assign check_clear = start;
+    assign serial_clear = start;
     assign serial_enable = covered_bit | crc_bit;
     assign skipping = (field == FIELD_SKIP) | (field == FIELD_SUPPLEMENT);
     assign hunting = hunting_now;
@@ -627,30 +424,14 @@ module s6_two_channel_receiver (
     assign start_refused = refused;
     assign started = started_now;
     assign all_sent = !(|to_send);
-    assign one_to_send = to_send == 7'd1;
     assign none_under_way = to_send == left;
     assign all_used = all_sent & (left == 7'd1) & (under_way == 3'd1);
     assign all_ended = all_sent & none_under_way & !(|under_way);
 
     always @* begin
         done = done_now;
-        info_done = 1'b0;
-        separated = 1'b0;
-        info_missing = 1'b0;
         finished = done_now;
-        if (HAS_ALL) begin
-            done = done_now & !in_info;
-            info_done = done_now & in_info;
-            separated = low_separator;
-            info_missing = missing;
-            finished = (done_now & !(|infos_left)) | supplement_over;
-        end
     end
-    assign gap_good = good_gap & HAS_CONTINUOUS;
-    assign gap_low = low_gap & HAS_CONTINUOUS;
-    assign gap_high = high_gap & HAS_CONTINUOUS;
-    assign latched = again & HAS_CONTINUOUS;
-    assign is_echo = echo & HAS_DIAGNOSIS;
     assign payload = word[47:0];
     assign f1 = f1_bit;
     assign f2 = f2_bit;
@@ -675,7 +456,6 @@ module s6_two_channel_receiver (
             align <= 1'b0;
             align_first <= 1'b0;
             last_taken <= 1'b0;
-            waiting <= 1'b0;
             done_now <= 1'b0;
             parallel_equal <= 1'b0;
             serial_good <= 1'b0;
@@ -687,17 +467,6 @@ module s6_two_channel_receiver (
             started_now <= 1'b0;
             skip_rounds <= 2'd0;
             infos_left <= 2'd0;
-            in_info <= 1'b0;
-            missing <= 1'b0;
-            supplement_over <= 1'b0;
-            low_gap <= 1'b0;
-            high_gap <= 1'b0;
-            good_gap <= 1'b0;
-            low_separator <= 1'b0;
-            separator_then <= 1'b0;
-            new_block <= 1'b0;
-            heard <= 7'd0;
-            echo <= 1'b0;
         end else begin
             field <= field_next;
             left <= left_next;
@@ -713,8 +482,7 @@ module s6_two_channel_receiver (
             align <= align_next;
             align_first <= take_crc;
             last_taken <= last_taken_next;
-            waiting <= waiting_next;
-            done_now <= done_now_next;
+            done_now <= last_taken;
             parallel_equal <= check_is_ok;
             serial_good <= serial_residue_ok;
             refused <= start_sample & !edge_in_window;
@@ -725,22 +493,18 @@ module s6_two_channel_receiver (
             started_now <= (field != FIELD_SKIP) & (field != FIELD_START);
             skip_rounds <= skip_rounds_next;
             infos_left <= infos_left_next;
-            in_info <= in_info_next;
-            missing <= missing_next;
-            supplement_over <= supplement_over_next;
-            low_gap <= low_gap_next;
-            high_gap <= high_gap_next;
-            good_gap <= good_gap_next;
-            low_separator <= separator & !level & HAS_ALL;
-            separator_then <= low_separator;
-            new_block <= separator_then;
-            heard <= heard_next;
-            echo <= echo_next;
         end
     end
 
 `ifdef FORMAL
 `ifndef FORMAL_ANY_STATE
+    wire [0:0] has_f1 = 1'd1;
+    wire [0:0] has_parameter = 1'd0;
+    wire [0:0] has_supplement = 1'd0;
+    wire [1:0] infos = 2'd0;
+    wire [0:0] going_on = 1'd0;
+    wire [0:0] waiting = 1'd0;
+    wire [0:0] in_info = 1'd0;
     // crc_as_received: The CRC is found right exactly if it equals one that is computed apart from it over the bits as sampled.
     // error_bits_as_received: F1, and F2 of EnDat 2.2, are the first samples after the start bit of this frame.
     // bits_counted: An answer is whole after F1, F2, as many position bits as were set and five CRC bits: no sample more or less.

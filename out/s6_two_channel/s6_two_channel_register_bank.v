@@ -39,16 +39,12 @@ module s6_two_channel_register_bank (
     output wire         begins,
     // Word address of the access that begins or is being carried out.
     output wire  [10:0] address,
-    // Its in_range.
-    output wire         is_inside,
     // With access: write a word; low = read a byte.
     input  wire         write,
     // Word to write.
     input  wire  [31:0] write_data,
     // A byte of the configuration word passes the head, most significant first: in a write that of write_data replaces it.
     output wire         take_byte,
-    // With take_byte: the byte that stood there.
-    output wire   [7:0] passing_byte,
     // Byte that was read, from done to the next access.
     output wire   [7:0] read_byte,
     // One-cycle strobe: the access has ended.
@@ -81,24 +77,6 @@ module s6_two_channel_register_bank (
     output wire   [8:0] ring_out,
     // The card's own settings are not what was written.
     output wire         is_damaged,
-    // The word is one of a line monitor or a T-format port, not of a service.
-    output wire         service_line,
-    // Word of a service's RAM, a line monitor or a T-format port.
-    output wire   [6:0] service_address,
-    // The channel that it belongs to, one bit per channel.
-    output wire   [7:0] service_channels,
-    // Strobe: an access begins; the word that was read before is not asked for any more.
-    output wire         service_clear,
-    // Strobe, one bit per channel: read it.
-    output reg    [7:0] service_read,
-    // The word read.
-    input  wire  [31:0] service_word,
-    // Strobe, one bit per channel: write one half of it; the high one comes first.
-    output reg    [7:0] service_write,
-    // The half: 1 = high.
-    output wire         service_half,
-    // What is written.
-    output reg   [15:0] service_data,
     // The word is one of the stream's four.
     output wire         stream_selected,
     // Byte that was read from the words of stream, direct outputs and interrupt; 0 if it is none of them.
@@ -111,18 +89,9 @@ module s6_two_channel_register_bank (
     output wire   [7:0] calibrate,
     // Enabled trigger sources.
     output wire   [2:0] sources,
-    // Channels that take no trigger, as they stand on the ring.
-    output wire   [7:0] disabled,
-    // Strobe: a word with settings of triggers has been written.
-    output wire         restart,
     // Period of the trigger timer.
     output wire  [23:0] period_cycles
 );
-    localparam         HAS_SERVICE = 1'b0;
-    localparam         HAS_LINE = 1'b0;
-    localparam         HAS_T_FORMAT = 1'b0;
-    localparam   [7:0] T_FORMAT_CHANNELS = 8'd0;
-    localparam   [7:0] ENDAT_CHANNELS = 8'd255;
     localparam  [31:0] PROTOCOLS = 32'd0;
     localparam  [31:0] ID = 32'h456e4474;
     localparam  [31:0] VERSION = 32'h90000;
@@ -141,7 +110,6 @@ module s6_two_channel_register_bank (
     wire         starts;
     wire         low_page;
     wire   [8:0] low_address;
-    wire         service_page;
     reg          at_end;
     wire         whole_turn;
     wire         at_word;
@@ -152,21 +120,12 @@ module s6_two_channel_register_bank (
     wire   [7:0] written;
     reg    [8:0] head;
     reg   [31:0] rom_word;
-    wire         line_page;
-    wire         t_format_page;
-    wire         word_page;
-    reg    [7:0] selected;
-    reg    [2:0] service_channel;
     wire   [8:0] ring_byte_out;
     wire  [31:0] ring_word0;
     wire  [31:0] ring_word1;
     wire  [31:0] ring_word2;
     reg   [10:0] held_address; initial held_address = 11'd0;
     reg   [10:0] held_address_next;
-    reg          held_inside; initial held_inside = 1'b0;
-    reg          held_inside_next;
-    reg          line_selected; initial line_selected = 1'b0;
-    reg          line_selected_next;
     reg          turning; initial turning = 1'b0;
     reg          turning_next;
     reg    [3:0] byte_at; initial byte_at = 4'd0;
@@ -213,14 +172,7 @@ module s6_two_channel_register_bank (
     reg          one_gone_next;
     reg          overdue; initial overdue = 1'b0;
     reg          overdue_next;
-    reg          service_skip; initial service_skip = 1'b1;
-    reg          service_skip_next;
-    reg    [7:0] service_byte; initial service_byte = 8'd0;
-    reg    [7:0] service_byte_next;
-    reg    [7:0] service_selected; initial service_selected = 8'd0;
-    reg    [7:0] service_selected_next;
-    reg          service_first; initial service_first = 1'b0;
-    wire         _unused_ok = &{1'b0, ring_word0[7:3], ring_word0[31:16], ring_word1[31:24], ring_word2[31:1]};
+    wire         _unused_ok = &{1'b0, write_data[23:8], ring_word0[31:3], ring_word1[31:24], ring_word2[31:1]};
 
     s6_two_channel_config_ring_1 u_ring (
         .clock(clock),
@@ -244,32 +196,12 @@ module s6_two_channel_register_bank (
             hold_next = ring_word2[0];
         end
     end
-
-    always @* begin
-        service_byte_next = service_byte;
-        case (lane)
-            2'd0: begin
-                service_byte_next = service_word[31:24];
-            end
-            2'd1: begin
-                service_byte_next = service_word[23:16];
-            end
-            2'd2: begin
-                service_byte_next = service_word[15:8];
-            end
-            default: begin
-                service_byte_next = service_word[7:0];
-            end
-        endcase
-    end
     assign busy = turning | ended;
 
     always @* begin
         held_address_next = held_address;
-        held_inside_next = held_inside;
         if (!busy) begin
             held_address_next = word_address;
-            held_inside_next = in_range;
         end
     end
     assign starts = access & !busy;
@@ -285,14 +217,13 @@ module s6_two_channel_register_bank (
     end
     assign begins = starts;
     assign address = held_address;
-    assign is_inside = held_inside;
-    assign whole_turn = config_page | (write_now & !service_skip);
+    assign whole_turn = config_page;
     assign block_end = byte_at == 4'd11;
 
     always @* begin
         at_end = block_end & (block_at == LAST_BLOCK);
         if (!whole_turn) begin
-            at_end = service_skip | (|lane) | (byte_at == 4'd9);
+            at_end = 1'b1;
         end
     end
 
@@ -337,11 +268,10 @@ module s6_two_channel_register_bank (
     always @* begin
         head = ring_byte_out;
         if (passes & write_now) begin
-            head = {1'b0, written} | ({8'd0, ^written} << 4'd8);
+            head = {^written, written};
         end
     end
     assign take_byte = passes;
-    assign passing_byte = ring_byte_out[7:0];
     assign ring_out = head;
     assign card_page = low_page & !(|word_address[8:4]);
     assign stream_selected = card_page & (&word_address[3:2]);
@@ -405,8 +335,6 @@ module s6_two_channel_register_bank (
     assign trigger_now = trigger_strobe;
     assign calibrate = calibrate_strobe;
     assign sources = active_sources;
-    assign disabled = ring_word0[15:8];
-    assign restart = done_now & write_now & config_page & !(|word_address[1:0]);
     assign period_cycles = active_period;
     assign show = !read_before;
     assign blocked_now = reading | hold;
@@ -496,99 +424,11 @@ module s6_two_channel_register_bank (
     end
     assign word_skip = skipped_words;
     assign channel_skip = skipped_channels;
-    assign service_page = HAS_SERVICE & in_range & word_address[10];
-    assign line_page = HAS_LINE & in_range & !word_address[10] & word_address[9];
-    assign t_format_page = HAS_T_FORMAT & low_page & !word_address[8] & (&word_address[7:6]);
-    assign word_page = service_page | line_page | t_format_page;
-    assign service_line = line_selected;
-
-    always @* begin
-        service_channel = word_address[9:7];
-        if (line_page) begin
-            service_channel = word_address[8:6];
-        end
-        if (t_format_page) begin
-            service_channel = word_address[5:3];
-        end
-    end
-
-    always @* begin
-        selected = 8'd0;
-        if (word_page) begin
-            case (service_channel)
-                3'd0: begin
-                    selected = 8'd1;
-                end
-                3'd1: begin
-                    selected = 8'd2;
-                end
-                3'd2: begin
-                    selected = 8'd4;
-                end
-                3'd3: begin
-                    selected = 8'd8;
-                end
-                3'd4: begin
-                    selected = 8'd16;
-                end
-                3'd5: begin
-                    selected = 8'd32;
-                end
-                3'd6: begin
-                    selected = 8'd64;
-                end
-                default: begin
-                    selected = 8'd128;
-                end
-            endcase
-        end
-    end
-
-    always @* begin
-        line_selected_next = line_selected;
-        service_skip_next = service_skip;
-        service_selected_next = service_selected;
-        if (!busy) begin
-            line_selected_next = line_page | t_format_page;
-            service_skip_next = !word_page;
-            service_selected_next = selected & ENDAT_CHANNELS;
-            if (t_format_page) begin
-                service_selected_next = selected & T_FORMAT_CHANNELS;
-            end
-        end
-    end
-    assign service_address = held_address[6:0];
-    assign service_channels = service_selected;
-    assign service_clear = service_first & !(|lane);
-
-    always @* begin
-        service_read = 8'd0;
-        if (service_first & !write_now & !(|lane)) begin
-            service_read = service_selected;
-        end
-    end
-
-    always @* begin
-        service_write = 8'd0;
-        if (write_now & (service_first | ((block_at == 4'd1) & !(|byte_at)))) begin
-            service_write = service_selected;
-        end
-    end
-    assign service_half = !(|block_at);
-
-    always @* begin
-        service_data = write_data[15:0];
-        if (service_half) begin
-            service_data = write_data[31:16];
-        end
-    end
     assign read_byte = byte_value;
 
     always @(posedge clock) begin
         if (reset) begin
             held_address <= 11'd0;
-            held_inside <= 1'b0;
-            line_selected <= 1'b0;
             turning <= 1'b0;
             byte_at <= 4'd0;
             block_at <= 4'd0;
@@ -616,13 +456,8 @@ module s6_two_channel_register_bank (
             mixed <= 1'b0;
             one_gone <= 1'b0;
             overdue <= 1'b0;
-            service_skip <= 1'b1;
-            service_selected <= 8'd0;
-            service_first <= 1'b0;
         end else begin
             held_address <= held_address_next;
-            held_inside <= held_inside_next;
-            line_selected <= line_selected_next;
             turning <= turning_next;
             byte_at <= byte_at_next;
             block_at <= block_at_next;
@@ -639,7 +474,7 @@ module s6_two_channel_register_bank (
             count_skip <= !low_page | (low_address != TRIGGER_COUNT_AT);
             count_held <= count_held_next;
             ring_byte <= ring_byte_next;
-            byte_value <= rom_byte | count_byte | ring_byte | channel_byte | service_byte | part_byte;
+            byte_value <= rom_byte | count_byte | ring_byte | channel_byte | part_byte;
             trigger_strobe <= strobe & (low_address == TRIGGER_NOW_AT) & write_data[0];
             calibrate_strobe <= calibrate_strobe_next;
             active_sources <= active_sources_next;
@@ -650,9 +485,6 @@ module s6_two_channel_register_bank (
             mixed <= mixed_now & !taken;
             one_gone <= one_gone_next;
             overdue <= overdue_next;
-            service_skip <= service_skip_next;
-            service_selected <= service_selected_next;
-            service_first <= starts;
         end
     end
 
@@ -669,14 +501,6 @@ module s6_two_channel_register_bank (
             count_byte <= 8'd0;
         end else begin
             count_byte <= count_byte_next;
-        end
-    end
-
-    always @(posedge clock) begin
-        if (service_skip) begin
-            service_byte <= 8'd0;
-        end else begin
-            service_byte <= service_byte_next;
         end
     end
 

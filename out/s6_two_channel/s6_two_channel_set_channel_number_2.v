@@ -53,25 +53,19 @@ module s6_two_channel_set_channel_number_2 (
     // The result of the trigger has been replaced by another one (continuous clock).
     output wire         replaced
 );
-    localparam         HAS_CRC = 1'b1;
     localparam   [7:0] TAKEN_BIT = 8'd32;
     localparam   [7:0] UPSET_CAUSE = 8'd31;
     localparam   [3:0] NUMBER = 4'd2;
-    localparam         TAKES_LATE = 1'b0;
 
-    wire         late_now;
     wire         is_own;
     wire         open;
     wire  [15:0] status;
-    reg          parity;
+    wire         parity;
     reg    [7:0] shown;
     reg          took; initial took = 1'b0;
     reg          took_next;
     reg          waiting; initial waiting = 1'b0;
     reg          waiting_next;
-    reg          owed; initial owed = 1'b0;
-    reg          owed_next;
-    reg          late; initial late = 1'b0;
     reg   [47:0] position_taken; initial position_taken = 48'd0;
     reg   [47:0] position_taken_next;
     wire         position_taken_reset;
@@ -126,39 +120,22 @@ module s6_two_channel_set_channel_number_2 (
                 byte_now_next = position_taken[47:40];
             end
             3'd6: begin
-                byte_now_next = status_taken[7:0] | ({7'd0, took_taken} << 3'd5);
+                byte_now_next = status_taken[7:0] | {2'd0, took_taken, 5'd0};
             end
             default: begin
-                byte_now_next = status_taken[15:8] | ({7'd0, missing_taken} << 3'd7);
+                byte_now_next = status_taken[15:8] | {missing_taken, 7'd0};
             end
         endcase
     end
     assign open = waiting & !result_strobe;
-
-    always @* begin
-        owed_next = owed;
-        if (result_strobe) begin
-            owed_next = 1'b0;
-        end
-        if (take & open) begin
-            owed_next = TAKES_LATE;
-        end
-    end
     assign owes = open;
     assign replaced = took & !waiting & result_strobe;
-    assign late_now = late | (owed & result_strobe);
     assign is_own = took & !open;
-    assign position_taken_reset = take & !is_own & !late_now;
-    assign parity_taken_reset = take & !is_own & !late_now;
-    assign status_taken_reset = take & !is_own & !late_now;
-    assign status = {11'd0, cause} | ({15'd0, position_valid} << 3'd6) | ({15'd0, fresh} << 3'd7) | ({9'd0, flags[18:12]} << 4'd8);
-
-    always @* begin
-        parity = (^position_crc) ^ position_has_f2;
-        if (!HAS_CRC) begin
-            parity = ^position;
-        end
-    end
+    assign position_taken_reset = take & !is_own;
+    assign parity_taken_reset = take & !is_own;
+    assign status_taken_reset = take & !is_own;
+    assign status = {1'b0, flags[18:12], fresh, position_valid, 1'b0, cause};
+    assign parity = (^position_crc) ^ position_has_f2;
 
     always @* begin
         position_taken_next = position_taken;
@@ -189,15 +166,11 @@ module s6_two_channel_set_channel_number_2 (
         if (reset) begin
             took <= 1'b0;
             waiting <= 1'b0;
-            owed <= 1'b0;
-            late <= 1'b0;
             took_taken <= 1'b0;
             missing_taken <= 1'b0;
         end else begin
             took <= took_next;
             waiting <= waiting_next;
-            owed <= owed_next;
-            late <= late_now & !take;
             took_taken <= took_taken_next;
             missing_taken <= missing_taken_next;
         end

@@ -25,10 +25,6 @@ module s6_two_channel_snapshot (
     input  wire  [31:0] timestamp,
     // Strobe: the first falling edge of a frame, which latches the position in the encoder.
     input  wire         first_fall,
-    // Strobe: the encoder has taken a position by itself, delay_cycles ago.
-    input  wire         latched,
-    // Propagation delay, in system clock cycles.
-    input  wire  [10:0] delay_cycles,
     // Strobe: take the result of a trigger.
     input  wire         publish,
     // With publish: the position is good.
@@ -90,7 +86,6 @@ module s6_two_channel_snapshot (
     wire         parity_now;
     wire         upset_now;
     wire         moment_wrong;
-    reg   [10:0] ago;
     reg          strobe; initial strobe = 1'b0;
     reg          loaded; initial loaded = 1'b0;
     reg   [47:0] held; initial held = 48'd0;
@@ -178,16 +173,9 @@ module s6_two_channel_snapshot (
     end
 
     always @* begin
-        ago = 11'd0;
-        if (latched) begin
-            ago = delay_cycles;
-        end
-    end
-
-    always @* begin
         moment_next = moment;
-        if (first_fall | latched) begin
-            moment_next = timestamp - {21'd0, ago};
+        if (first_fall) begin
+            moment_next = timestamp;
         end
     end
     assign age_shown_reset = reset | unconfirmed | take_good;
@@ -326,7 +314,7 @@ module s6_two_channel_snapshot (
             earlier_parity <= earlier_parity_next;
             unconfirmed <= unconfirmed_next;
             parity <= parity_next;
-            timed <= first_fall | latched;
+            timed <= first_fall;
             moment_parity <= moment_parity_next;
             is_upset <= (parity_now ^ parity) & !loaded & !take_good & !take_back;
             valid <= valid_next;

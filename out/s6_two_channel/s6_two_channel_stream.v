@@ -234,7 +234,7 @@ module s6_two_channel_stream (
     always @* begin
         state_held_next = state_held;
         if (reads & !(|lane)) begin
-            state_held_next = {8'd0, buffer_waiting_bytes} | ({16'd0, lost_all[7:0]} << 5'd16);
+            state_held_next = {lost_all[7:0], buffer_waiting_bytes};
         end
     end
     assign writes = access & selected & write;
@@ -269,7 +269,7 @@ module s6_two_channel_stream (
             case (word)
                 2'd0: begin
                     if (&lane) begin
-                        byte_read_next = {7'd0, collect} | ({7'd0, push_on} << 1'b1);
+                        byte_read_next = {6'd0, push_on, collect};
                     end
                 end
                 2'd1: begin

@@ -33,8 +33,6 @@ module s6_two_channel_transaction (
     input  wire         trigger,
     // Strobe: measure the propagation delay again with the next frame.
     input  wire         calibrate,
-    // The delay comes from a register: no frame measures it.
-    input  wire         is_fixed,
     // The data line.
     input  wire         level,
     // Strobe: the data line is sampled.
@@ -51,40 +49,10 @@ module s6_two_channel_transaction (
     input  wire         answer_done,
     // Strobe: the answer with all that follows it has been taken, or the supplement is over.
     input  wire         finished,
-    // Strobe: the LOW in front of an additional information has come.
-    input  wire         separated,
-    // Strobe: an additional information has not come.
-    input  wire         info_missing,
     // The mode command of the next frame is one that the core sends.
     input  wire         is_known,
-    // 24 bits belong to the command; its answer may take long.
-    input  wire         has_parameter,
-    // A supplement follows the answer.
-    input  wire         has_supplement,
-    // Begin a frame without a trigger; is_own is high.
-    input  wire         begin_own,
-    // The frame under way, or the next one, is not a trigger's.
-    input  wire         is_own,
-    // No frame may begin.
-    input  wire         hold_off,
-    // The clock goes on after each position, and the next one follows without a command.
-    input  wire         continuous,
-    // It stops after an error.
-    input  wire         stop_at_error,
-    // The line is wanted for something else.
-    input  wire         line_wanted,
-    // Strobe: the cell after the last CRC bit is HIGH, while the clock goes on.
-    input  wire         gap_good,
-    // Strobe: the next answer has begun, while the clock goes on.
-    input  wire         again,
-    // Strobe: the cell after the last CRC bit is LOW, while the clock goes on.
-    input  wire         gap_low,
-    // Strobe: the cell before the next start bit is HIGH, while the clock goes on.
-    input  wire         gap_high,
     // Settings of the frame are not what they were at its start.
     input  wire         settings_upset,
-    // The answer begins with the own mode command.
-    input  wire         is_echo,
     // Serial CRC verdict.
     input  wire         serial_ok,
     // Parallel CRC verdict.
@@ -93,12 +61,8 @@ module s6_two_channel_transaction (
     input  wire         f1,
     // Error bit 2, low = alarm.
     input  wire         f2,
-    // Strobe one cycle before each rising clock edge.
-    input  wire         will_rise,
     // All clock pulses have been sent.
     input  wire         no_pulse_left,
-    // All but one.
-    input  wire         one_pulse_left,
     // The cell of each pulse that was sent has ended.
     input  wire         none_under_way,
     // This cell is the last one: all had their pulse, and every pulse its cell.
@@ -113,10 +77,6 @@ module s6_two_channel_transaction (
     input  wire  [11:0] start_timeout_us,
     // Data must fall within this after the frame.
     input  wire  [12:0] recovery_limit_cycles,
-    // Data must not fall before this after the frame.
-    input  wire  [12:0] recovery_min_cycles,
-    // Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
-    input  wire  [11:0] watchdog_us,
     // One-cycle strobe: the first falling clock edge comes at the end of this cycle.
     output wire         start,
     // A frame is under way on the wire.
@@ -126,15 +86,9 @@ module s6_two_channel_transaction (
     // Keeps the clock low.
     output wire         hold_low,
     // The clock waits for the cells of all pulses sent.
-    output reg          drain,
+    output wire         drain,
     // Keeps the clock high: no frame, or all its edges have been sent.
     output wire         stop,
-    // Drives the line LOW, to see whether it follows.
-    output wire         probe,
-    // It has just done so, or does.
-    output wire         is_probed,
-    // The clock goes on after this frame.
-    output wire         going_on,
     // One-cycle strobe: the last cell has begun; the period may change with it.
     output wire         last_cell,
     // One-cycle strobe: the supplement begins.
@@ -155,16 +109,10 @@ module s6_two_channel_transaction (
     output wire         withdraw,
     // Strobe: the published position stands.
     output wire         confirm,
-    // Strobe, in the same cycle: a frame is begun, or refused.
-    output wire         begun,
     // No frame is under way, and all that there is to tell of the last one has been told.
     output wire         is_at_rest,
-    // Strobe: a frame has ended in whatever way, cause and flags are valid.
-    output wire         over,
     // Strobe: a trigger has been lost.
     output wire         displaced,
-    // The propagation delay is known.
-    output wire         calibrated,
     // Primary cause, with publish, late_fault or over.
     output wire   [4:0] cause,
     // Raw flags, see flag.
@@ -172,31 +120,15 @@ module s6_two_channel_transaction (
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles
 );
-    localparam         HAS_ALL = 1'b0;
-    localparam         HAS_DIAGNOSIS = 1'b0;
-    localparam         HAS_CONTINUOUS = 1'b0;
-    localparam         HAS_ALIGNMENT = 1'b0;
-    localparam         HAS_DOUBLE = 1'b0;
     localparam  [15:0] READY_LOW_CYCLES = 16'd51;
     localparam  [15:0] ABORT_US = 16'd30000;
     localparam  [15:0] PARK_CYCLES = 16'd200;
-    localparam  [15:0] PARAMETER_TIMEOUT_US = 16'd50000;
-    localparam  [15:0] OWN_RECOVERY_LIMIT_CYCLES = 16'd3500;
     localparam  [15:0] FRAME_US = 16'd4096;
-    localparam  [15:0] PROBE_US = 16'd2;
-    localparam  [15:0] SETTLE_US = 16'd20;
-    localparam  [15:0] LEAVE_US = 16'd40;
     localparam  [19:0] DATA_NOT_LOW = 20'd1;
-    localparam  [19:0] NO_ENCODER = 20'h1000;
-    localparam  [19:0] STUCK_HIGH = 20'h2000;
     localparam  [19:0] NO_START_BIT = 20'd2;
-    localparam  [19:0] STUCK_LOW = 20'h4000;
-    localparam  [19:0] LATE_START = 20'h8000;
     localparam  [19:0] START_WINDOW = 20'd4;
     localparam  [19:0] UNKNOWN_COMMAND = 20'h400;
-    localparam  [19:0] INFO_NOT_THERE = 20'h800;
     localparam  [19:0] NOT_FALLING = 20'd64;
-    localparam  [19:0] TOO_LONG = 20'h10000;
     localparam  [19:0] TAIL_LOW = 20'h200;
     localparam  [19:0] UPSET = 20'h80000;
     // Transaction: the order of one frame, all its time-outs, and what went wrong.
@@ -226,7 +158,6 @@ module s6_two_channel_transaction (
     localparam   [2:0] PHASE_ABORT = 3'd6; // Quiet after an aborted frame.
     localparam   [2:0] PHASE_PARK = 3'd7; // Clock LOW between answer and supplement.
 
-    wire         going;
     reg   [15:0] limit;
     reg          running;
     reg          in_us;
@@ -238,40 +169,23 @@ module s6_two_channel_transaction (
     wire         triggered;
     reg          refuse;
     reg          normal_end;
-    reg          parking;
-    reg          sent;
-    wire         own;
+    wire         sent;
     reg   [19:0] found;
-    reg   [19:0] not_low;
-    reg   [19:0] no_start;
-    reg          announce;
     reg          answer_taken;
-    reg          probed;
     wire         endless;
-    reg          watched;
     wire         known;
-    reg          found_late;
-    wire         leave;
     wire         lost;
     wire         owed;
     reg          proof;
     reg          plugged;
     wire         vanished;
     wire         afresh;
-    wire         health_under_way;
-    wire         health_is_ready;
-    wire         health_expired;
-    wire         health_never_high;
-    wire         health_is_open;
-    wire         health_is_stuck;
     wire         verdict_settings_upset;
     wire         verdict_is_late;
-    wire         verdict_is_going;
     wire         verdict_taken;
     wire         verdict_is_pending;
     wire         verdict_is_received;
     wire         verdict_is_doubtful;
-    wire         verdict_is_bad;
     wire         verdict_is_telling;
     wire         verdict_once_more;
     reg    [2:0] phase; initial phase = PHASE_NOT_READY;
@@ -283,7 +197,6 @@ module s6_two_channel_transaction (
     reg          timer_hit_next;
     reg          timer_step; initial timer_step = 1'b0;
     reg          hold; initial hold = 1'b0;
-    reg          hold_next;
     reg          start_now; initial start_now = 1'b0;
     reg          run_now; initial run_now = 1'b0;
     reg          extra; initial extra = 1'b0;
@@ -294,34 +207,19 @@ module s6_two_channel_transaction (
     reg          acquiring_next;
     reg          slow_now; initial slow_now = 1'b0;
     reg          slow_now_next;
-    reg    [1:0] passes; initial passes = 2'd0;
-    reg    [1:0] passes_next;
     reg          stalled; initial stalled = 1'b0;
     reg          stalled_next;
     reg          all_sent; initial all_sent = 1'b0;
-    reg          all_sent_next;
-    reg          one_left; initial one_left = 1'b0;
-    reg          one_left_next;
     reg          tail_sampled; initial tail_sampled = 1'b0;
     reg          tail_sampled_next;
     reg   [12:0] recovery; initial recovery = 13'd0;
     reg   [12:0] recovery_next;
-    reg          in_supplement; initial in_supplement = 1'b0;
-    reg          in_supplement_next;
     reg          supplement_now; initial supplement_now = 1'b0;
     reg          supplement_now_next;
     reg          answered; initial answered = 1'b0;
     reg          answered_next;
     reg          was_hunting; initial was_hunting = 1'b0;
     reg          was_center; initial was_center = 1'b0;
-    reg          late; initial late = 1'b0;
-    reg          late_next;
-    reg          probing; initial probing = 1'b0;
-    reg          probing_next;
-    reg          settling; initial settling = 1'b0;
-    reg          settling_next;
-    reg          leaving; initial leaving = 1'b0;
-    reg          leaving_next;
     reg          cleared; initial cleared = 1'b1;
     reg          cleared_next;
     reg          high_at_tick; initial high_at_tick = 1'b0;
@@ -335,21 +233,6 @@ module s6_two_channel_transaction (
     reg          under_way; initial under_way = 1'b0;
     reg          under_way_next;
 
-    s6_two_channel_line_health u_health (
-        .clock(clock),
-        .reset(reset),
-        .tick_us(tick_us),
-        .level(level),
-        .start(start_now),
-        .under_way(health_under_way),
-        .watchdog_us(watchdog_us),
-        .probed(probed),
-        .is_ready(health_is_ready),
-        .expired(health_expired),
-        .never_high(health_never_high),
-        .is_open(health_is_open),
-        .is_stuck(health_is_stuck)
-    );
     s6_two_channel_verdict u_verdict (
         .clock(clock),
         .reset(reset),
@@ -361,23 +244,16 @@ module s6_two_channel_transaction (
         .give_up(give_up),
         .is_late(verdict_is_late),
         .refuse(refuse),
-        .announce(announce),
         .normal_end(normal_end),
-        .is_going(verdict_is_going),
-        .is_own(own),
         .lost(lost),
         .serial_ok(serial_ok),
         .parallel_ok(parallel_ok),
         .f1(f1),
         .f2(f2),
-        .is_echo(is_echo),
-        .recovery_cycles(recovery),
-        .recovery_min_cycles(recovery_min_cycles),
         .taken(verdict_taken),
         .is_pending(verdict_is_pending),
         .is_received(verdict_is_received),
         .is_doubtful(verdict_is_doubtful),
-        .is_bad(verdict_is_bad),
         .gave_up(aborts),
         .is_telling(verdict_is_telling),
         .publish(publish),
@@ -386,61 +262,27 @@ module s6_two_channel_transaction (
         .late_fault(late_fault),
         .withdraw(withdraw),
         .confirm(confirm),
-        .over(over),
         .displaced(displaced),
         .cause(cause),
         .flags(flags)
     );
 
-    always @* begin
-        one_left_next = one_left;
-        all_sent_next = no_pulse_left;
-        if (HAS_DOUBLE) begin
-            one_left_next = one_pulse_left;
-            all_sent_next = no_pulse_left | (one_left & will_rise);
-        end
-    end
-    assign own = is_own & HAS_ALL;
-    assign triggered = trigger & !(hold_off & HAS_ALL);
-    assign owed = once_more & owing & !(hold_off & HAS_ALL);
-    assign wanted = triggered | owed | (begin_own & HAS_ALL);
+    assign triggered = trigger;
+    assign owed = once_more & owing;
+    assign wanted = triggered | owed;
     assign endless = |(timer & FRAME_US);
-
-    always @* begin
-        not_low = DATA_NOT_LOW;
-        if (HAS_DIAGNOSIS & health_is_open) begin
-            not_low = DATA_NOT_LOW | NO_ENCODER;
-        end
-        if (HAS_DIAGNOSIS & health_is_stuck) begin
-            not_low = DATA_NOT_LOW | STUCK_HIGH;
-        end
-    end
-
-    always @* begin
-        no_start = NO_START_BIT;
-        if (HAS_DIAGNOSIS & health_never_high) begin
-            no_start = NO_START_BIT | STUCK_LOW;
-        end
-    end
     assign vanished = (owing & !once_more) | under_way;
     assign last_cell = (phase == PHASE_TAIL) & was_center;
     assign verdict_settings_upset = settings_upset | delay_upset;
-    assign known = is_calibrated | (HAS_ALIGNMENT & is_fixed);
-    assign going = 1'b0;
-    assign leave = going & gap_good & (!continuous | line_wanted | !known | (stop_at_error & verdict_is_bad));
+    assign known = is_calibrated;
 
     always @* begin
         phase_next = phase;
-        in_supplement_next = in_supplement;
         acquiring_next = acquiring;
         slow_now_next = slow_now;
         tail_sampled_next = tail_sampled;
         recovery_next = recovery;
-        leaving_next = leaving;
-        settling_next = settling;
-        probing_next = probing;
         answered_next = answered;
-        late_next = late;
         under_way_next = under_way;
         timer_next = timer;
         once_more_next = once_more;
@@ -451,26 +293,19 @@ module s6_two_channel_transaction (
         normal_end = 1'b0;
         supplement_now_next = 1'b0;
         limit = {4'd0, start_timeout_us};
-        if (HAS_ALL & has_parameter) begin
-            limit = PARAMETER_TIMEOUT_US;
-        end
         in_us = 1'b0;
         timer_clear = 1'b0;
         accept = 1'b0;
         give_up = 1'b0;
         idle = 1'b0;
         answer_taken = 1'b0;
-        announce = 1'b0;
-        probed = 1'b0;
-        watched = 1'b0;
-        found_late = 1'b0;
         found = 20'd0;
         running = 1'b0;
         case (phase)
             PHASE_NOT_READY: begin
                 limit = READY_LOW_CYCLES;
                 timer_clear = level;
-                idle = level & !(hold_off & HAS_ALL);
+                idle = level;
                 if (timer_hit) begin
                     phase_next = PHASE_READY;
                 end
@@ -478,7 +313,7 @@ module s6_two_channel_transaction (
                     phase_next = PHASE_NOT_READY;
                     plugged = high_at_tick & tick_us;
                     if (triggered | owed) begin
-                        found = not_low;
+                        found = DATA_NOT_LOW;
                         give_up = 1'b1;
                     end
                 end
@@ -489,28 +324,23 @@ module s6_two_channel_transaction (
             end
             PHASE_READY: begin
                 timer_clear = 1'b1;
-                idle = !(hold_off & HAS_ALL) & !verdict_is_telling;
+                idle = !verdict_is_telling;
                 if (level) begin
                     phase_next = PHASE_NOT_READY;
                     plugged = 1'b1;
                     if ((triggered | owed) & !verdict_is_telling) begin
-                        found = not_low;
+                        found = DATA_NOT_LOW;
                         give_up = 1'b1;
                     end
-                end else begin
-                    if (wanted & !verdict_is_telling) begin
-                        if (is_known) begin
-                            accept = 1'b1;
-                            phase_next = PHASE_FRAME;
-                            if (extra) begin
-                                phase_next = PHASE_FIRST_LOW;
-                            end
-                        end else begin
-                            found = UNKNOWN_COMMAND;
-                            refuse = 1'b1;
+                end else if (wanted & !verdict_is_telling) begin
+                    if (is_known) begin
+                        accept = 1'b1;
+                        phase_next = PHASE_FRAME;
+                        if (extra) begin
+                            phase_next = PHASE_FIRST_LOW;
                         end
-                    end
-                    if (once_more & hold_off & HAS_ALL & !own) begin
+                    end else begin
+                        found = UNKNOWN_COMMAND;
                         refuse = 1'b1;
                     end
                 end
@@ -521,7 +351,6 @@ module s6_two_channel_transaction (
             end
             PHASE_FIRST_LOW: begin
                 running = 1'b1;
-                watched = 1'b1;
                 limit = {5'd0, first_low_extra_cycles};
                 if (timer_hit) begin
                     phase_next = PHASE_FRAME;
@@ -530,7 +359,6 @@ module s6_two_channel_transaction (
             end
             PHASE_FRAME: begin
                 running = 1'b1;
-                watched = 1'b1;
                 in_us = 1'b1;
                 timer_clear = (hunting ^ was_hunting) | finished;
                 if (endless & !hunting) begin
@@ -538,76 +366,37 @@ module s6_two_channel_transaction (
                     give_up = 1'b1;
                 end
                 if (timer_hit & hunting & was_hunting) begin
-                    found = no_start;
-                    give_up = 1'b1;
-                    if (HAS_DIAGNOSIS & !has_parameter & !late) begin
-                        give_up = 1'b0;
-                        announce = 1'b1;
-                        timer_clear = 1'b1;
-                    end
-                end
-                if (late & (started | start_refused)) begin
-                    found = NO_START_BIT | LATE_START;
+                    found = NO_START_BIT;
                     give_up = 1'b1;
                 end
-                if (start_refused & !late) begin
+                if (start_refused) begin
                     found = START_WINDOW;
                     give_up = 1'b1;
                 end
                 if (answer_done) begin
                     answer_taken = 1'b1;
                 end
-                if (separated & HAS_ALL) begin
-                    proof = 1'b1;
-                end
-                if (HAS_CONTINUOUS & gap_good) begin
-                    proof = 1'b1;
-                end
-                if (HAS_CONTINUOUS & again) begin
-                    normal_end = 1'b1;
-                end
-                if (info_missing & HAS_ALL) begin
-                    found = INFO_NOT_THERE;
-                    give_up = 1'b1;
-                end
-                if (HAS_CONTINUOUS & gap_low) begin
-                    found = TAIL_LOW;
-                    give_up = 1'b1;
-                end
-                if (HAS_CONTINUOUS & gap_high) begin
-                    found = NOT_FALLING;
-                    give_up = 1'b1;
-                    found_late = 1'b1;
-                end
-                if (finished & !going) begin
+                if (finished) begin
                     phase_next = PHASE_TAIL;
-                    if (HAS_ALL & has_supplement & !in_supplement) begin
-                        phase_next = PHASE_PARK;
-                    end
                 end
             end
             PHASE_PARK: begin
                 running = 1'b1;
-                watched = 1'b1;
                 proof = verdict_taken;
                 limit = PARK_CYCLES;
                 if (timer_hit) begin
                     phase_next = PHASE_FRAME;
                     timer_clear = 1'b1;
-                    in_supplement_next = 1'b1;
                     supplement_now_next = 1'b1;
                     if (!all_ended) begin
                         found = UPSET;
                         give_up = 1'b1;
                     end
                 end
-                if (!HAS_ALL) begin
-                    give_up = 1'b1;
-                end
+                give_up = 1'b1;
             end
             PHASE_TAIL: begin
                 running = 1'b1;
-                watched = 1'b1;
                 in_us = 1'b1;
                 if (endless) begin
                     found = TAIL_LOW;
@@ -621,11 +410,7 @@ module s6_two_channel_transaction (
             end
             PHASE_RECOVERY: begin
                 running = !tail_sampled;
-                watched = 1'b1;
                 limit = {3'd0, recovery_limit_cycles};
-                if (own) begin
-                    limit = OWN_RECOVERY_LIMIT_CYCLES;
-                end
                 if (sample) begin
                     tail_sampled_next = 1'b1;
                     proof = !tail_sampled & level;
@@ -652,57 +437,24 @@ module s6_two_channel_transaction (
             PHASE_ABORT: begin
                 in_us = 1'b1;
                 limit = ABORT_US;
-                if (HAS_CONTINUOUS & leaving) begin
-                    limit = LEAVE_US;
-                end
-                if (HAS_DIAGNOSIS & probing) begin
-                    limit = PROBE_US;
-                end
-                if (HAS_DIAGNOSIS & settling) begin
-                    limit = SETTLE_US;
-                end
                 if (timer_hit) begin
                     phase_next = PHASE_NOT_READY;
                     timer_clear = 1'b1;
-                    leaving_next = 1'b0;
-                    settling_next = 1'b0;
-                    if (HAS_DIAGNOSIS & level & !settling) begin
-                        phase_next = PHASE_ABORT;
-                        probing_next = 1'b1;
-                    end
-                    if (probing) begin
-                        phase_next = PHASE_ABORT;
-                        probed = 1'b1;
-                        probing_next = 1'b0;
-                        settling_next = 1'b1;
-                    end
                 end
             end
             default: begin
                 give_up = 1'b1;
             end
         endcase
-        if (HAS_DIAGNOSIS & health_expired & watched) begin
-            found = found | TOO_LONG;
-            give_up = 1'b1;
-        end
         if (give_up | aborts) begin
             proof = 1'b0;
-            announce = 1'b0;
         end
-        if (leave) begin
-            normal_end = 1'b1;
-        end
-        if (proof & verdict_is_pending & !going) begin
+        if (proof & verdict_is_pending) begin
             answered_next = 1'b1;
-        end
-        if (announce) begin
-            answered_next = 1'b1;
-            late_next = 1'b1;
         end
         if (normal_end) begin
             answered_next = 1'b0;
-            under_way_next = going & !leave;
+            under_way_next = 1'b0;
         end
         if (aborts) begin
             phase_next = PHASE_ABORT;
@@ -712,7 +464,6 @@ module s6_two_channel_transaction (
             idle = 1'b0;
             normal_end = 1'b0;
             answered_next = 1'b0;
-            late_next = 1'b0;
             under_way_next = 1'b0;
         end
         if (timer_step) begin
@@ -735,35 +486,19 @@ module s6_two_channel_transaction (
             once_more_next = 1'b1;
             answered_next = 1'b0;
         end
-        if ((accept & !own) | refuse | aborts | !owing) begin
+        if (accept | refuse | aborts | !owing) begin
             once_more_next = 1'b0;
         end
         if (accept) begin
             measuring_next = !known;
             under_way_next = 1'b1;
             answered_next = 1'b0;
-            in_supplement_next = 1'b0;
-            acquiring_next = !known & !(HAS_ALIGNMENT & (|passes));
+            acquiring_next = !known;
             slow_now_next = !known;
             tail_sampled_next = 1'b0;
-            late_next = 1'b0;
-        end
-        if (leave) begin
-            phase_next = PHASE_ABORT;
-            timer_clear = 1'b1;
-            leaving_next = 1'b1;
-        end
-        if (aborts) begin
-            leaving_next = 1'b0;
-            probing_next = 1'b0;
-            settling_next = 1'b0;
         end
         if (reset) begin
             phase_next = PHASE_ABORT;
-        end
-        if (phase != PHASE_ABORT) begin
-            probing_next = 1'b0;
-            settling_next = 1'b0;
         end
     end
 
@@ -772,23 +507,22 @@ module s6_two_channel_transaction (
         if (publish | refuse) begin
             owing_next = 1'b0;
         end
-        if (accept & !own) begin
+        if (accept) begin
             owing_next = 1'b1;
         end
     end
-    assign verdict_is_late = answered | found_late;
+    assign verdict_is_late = answered;
 
     always @* begin
         stalled_next = stalled;
-        if (all_sent & !started & !going) begin
+        if (all_sent & !started) begin
             stalled_next = 1'b1;
         end
         if (none_under_way | !running) begin
             stalled_next = 1'b0;
         end
     end
-    assign verdict_is_going = going;
-    assign lost = trigger & !going & ((!accept & !idle) | (accept & own) | owing);
+    assign lost = trigger & ((!accept & !idle) | owing);
 
     always @* begin
         high_at_tick_next = high_at_tick & level;
@@ -800,67 +534,31 @@ module s6_two_channel_transaction (
 
     always @* begin
         is_calibrated_next = is_calibrated;
-        passes_next = passes;
         if (aborts) begin
             is_calibrated_next = 1'b0;
         end
-        if (verdict_is_received & measuring & !(HAS_ALIGNMENT & is_fixed)) begin
+        if (verdict_is_received & measuring) begin
             is_calibrated_next = 1'b1;
-            if (HAS_ALIGNMENT & slow_now) begin
-                passes_next = passes + 2'd1;
-                is_calibrated_next = &passes;
-            end
         end
-        if (verdict_is_doubtful & !going) begin
+        if (verdict_is_doubtful) begin
             is_calibrated_next = 1'b0;
         end
-        if (afresh | (HAS_ALIGNMENT & is_fixed)) begin
+        if (afresh) begin
             is_calibrated_next = 1'b0;
-        end
-        if (afresh | aborts | verdict_is_doubtful) begin
-            passes_next = 2'd0;
         end
     end
     assign run = run_now;
     assign start = start_now;
-
-    always @* begin
-        sent = all_sent & started & !going;
-        parking = 1'b0;
-        if (HAS_ALL & has_supplement & !in_supplement) begin
-            parking = (sent & (phase == PHASE_FRAME)) | (phase == PHASE_PARK);
-            sent = 1'b0;
-        end
-    end
-
-    always @* begin
-        hold_next = (phase == PHASE_FIRST_LOW) | stalled | parking;
-        if (HAS_DOUBLE & all_sent & !started & !going) begin
-            hold_next = 1'b1;
-        end
-    end
+    assign sent = all_sent & started;
     assign hold_low = hold;
-
-    always @* begin
-        drain = stalled;
-        if (HAS_ALL) begin
-            drain = stalled | (phase == PHASE_PARK);
-        end
-    end
+    assign drain = stalled;
     assign stop = stop_now | sent;
     assign acquire = acquiring;
     assign slow = slow_now;
-    assign busy = !idle | once_more | (begin_own & HAS_ALL);
+    assign busy = !idle | once_more;
     assign start_supplement = supplement_now;
-    assign begun = accept | refuse;
     assign is_at_rest = ((phase == PHASE_NOT_READY) | (phase == PHASE_READY)) & !verdict_is_telling;
-    assign calibrated = known;
     assign recovery_cycles = recovery;
-    assign probe = probing & (phase == PHASE_ABORT) & HAS_DIAGNOSIS;
-    assign is_probed = (probing | settling) & HAS_DIAGNOSIS;
-    assign going_on = going;
-    assign health_under_way = watched & !has_parameter & !going;
-    assign health_is_ready = phase == PHASE_READY;
 
     always @(posedge clock) begin
         phase <= phase_next;
@@ -880,21 +578,14 @@ module s6_two_channel_transaction (
             is_calibrated <= 1'b0;
             acquiring <= 1'b0;
             slow_now <= 1'b0;
-            passes <= 2'd0;
             stalled <= 1'b0;
             all_sent <= 1'b0;
-            one_left <= 1'b0;
             tail_sampled <= 1'b0;
             recovery <= 13'd0;
-            in_supplement <= 1'b0;
             supplement_now <= 1'b0;
             answered <= 1'b0;
             was_hunting <= 1'b0;
             was_center <= 1'b0;
-            late <= 1'b0;
-            probing <= 1'b0;
-            settling <= 1'b0;
-            leaving <= 1'b0;
             cleared <= 1'b1;
             high_at_tick <= 1'b0;
             owing <= 1'b0;
@@ -906,29 +597,22 @@ module s6_two_channel_transaction (
             timer_limit <= limit;
             timer_hit <= timer_hit_next;
             timer_step <= !in_us | tick_us;
-            hold <= hold_next;
+            hold <= (phase == PHASE_FIRST_LOW) | stalled;
             start_now <= accept;
             run_now <= running;
             extra <= |first_low_extra_cycles;
-            stop_now <= !running | aborts | leave;
+            stop_now <= !running | aborts;
             is_calibrated <= is_calibrated_next;
             acquiring <= acquiring_next;
             slow_now <= slow_now_next;
-            passes <= passes_next;
             stalled <= stalled_next;
-            all_sent <= all_sent_next;
-            one_left <= one_left_next;
+            all_sent <= no_pulse_left;
             tail_sampled <= tail_sampled_next;
             recovery <= recovery_next;
-            in_supplement <= in_supplement_next;
             supplement_now <= supplement_now_next;
             answered <= answered_next;
             was_hunting <= hunting;
             was_center <= center;
-            late <= late_next;
-            probing <= probing_next;
-            settling <= settling_next;
-            leaving <= leaving_next;
             cleared <= cleared_next;
             high_at_tick <= high_at_tick_next;
             owing <= owing_next;
@@ -939,6 +623,18 @@ module s6_two_channel_transaction (
     end
 
 `ifdef FORMAL
+    localparam         HAS_ALL = 1'b0;
+    localparam         HAS_DIAGNOSIS = 1'b0;
+    localparam         HAS_CONTINUOUS = 1'b0;
+    wire [0:0] is_own = 1'd0;
+    wire [0:0] again = 1'd0;
+    wire [0:0] own = 1'd0;
+    wire [0:0] announce = 1'd0;
+    wire [0:0] found_late = 1'd0;
+    wire [0:0] late = 1'd0;
+    wire [0:0] probing = 1'd0;
+    wire [0:0] settling = 1'd0;
+    wire [0:0] leaving = 1'd0;
     // starts_at_rest: A frame starts only when the line was ready: idle, and DATA LOW.
     // low_for_tr: The line is ready only after DATA was LOW for tR.
     // abort_pause: After an aborted frame CLOCK stays quiet for 30 ms, less three microseconds, before DATA is looked at again.

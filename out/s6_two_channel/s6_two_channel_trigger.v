@@ -26,8 +26,6 @@ module s6_two_channel_trigger (
     input  wire   [2:0] sources,
     // Period of the timer, at least 4 system clock cycles.
     input  wire  [23:0] period_cycles,
-    // Enabled sources that trigger in the next cycle, as sources.
-    output wire   [2:0] hits,
     // One-cycle strobe to all channels, from a register.
     output wire         trigger,
     // Triggers since reset, wrapping.
@@ -70,8 +68,7 @@ module s6_two_channel_trigger (
         end
     end
     assign pin_hit = sync1 & !sync2;
-    assign hit = ({2'd0, pin_hit} | ({2'd0, timer_hit} << 1'b1) | ({2'd0, register} << 2'd2)) & sources;
-    assign hits = hit;
+    assign hit = {register, timer_hit, pin_hit} & sources;
     assign trigger = strobe;
     assign trigger_count = count;
 

@@ -348,7 +348,7 @@ module s6_two_channel_uart_bridge (
                     out_of_range_next = out_of_range | (|receiver_data[7:3]);
                 end
                 default: begin
-                    address_next = {3'd0, receiver_data} | ({8'd0, address[2:0]} << 4'd8);
+                    address_next = {address[2:0], receiver_data};
                 end
             endcase
         end
@@ -377,7 +377,7 @@ module s6_two_channel_uart_bridge (
     always @* begin
         data_next = data;
         if (data_moves | take_byte) begin
-            data_next = (data << 4'd8) | {24'd0, next_byte};
+            data_next = {data[23:0], next_byte};
         end
     end
     assign word_address = address;

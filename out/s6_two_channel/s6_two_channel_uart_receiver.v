@@ -60,7 +60,7 @@ module s6_two_channel_uart_receiver (
             count_next = 15'd0;
         end
     end
-    assign shifted = {1'b0, shift[9:1]} | ({9'd0, sync1} << 4'd9);
+    assign shifted = {sync1, shift[9:1]};
 
     always @* begin
         in_start_bit_next = in_start_bit;

@@ -47,7 +47,7 @@ module s6_two_channel_uart_transmitter (
             shift_next = {1'b0, shift[9:1]};
         end
         if (take) begin
-            shift_next = ({2'd0, data} << 1'b1) | STOP_BIT;
+            shift_next = {1'b0, data, 1'b0} | STOP_BIT;
         end
     end
     assign accept = take;

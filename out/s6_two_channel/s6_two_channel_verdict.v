@@ -34,14 +34,8 @@ module s6_two_channel_verdict (
     input  wire         is_late,
     // Strobe: no frame is begun for this trigger.
     input  wire         refuse,
-    // Strobe: the result is told, and the frame goes on.
-    input  wire         announce,
     // Strobe: the frame has ended as it should.
     input  wire         normal_end,
-    // The clock goes on after this frame.
-    input  wire         is_going,
-    // The frame is not a trigger's.
-    input  wire         is_own,
     // Strobe: a trigger has been lost.
     input  wire         lost,
     // Serial CRC verdict.
@@ -52,12 +46,6 @@ module s6_two_channel_verdict (
     input  wire         f1,
     // Error bit 2, low = alarm.
     input  wire         f2,
-    // The answer begins with the own mode command.
-    input  wire         is_echo,
-    // Recovery time tm of the frame that has ended.
-    input  wire  [12:0] recovery_cycles,
-    // Data must not fall before this.
-    input  wire  [12:0] recovery_min_cycles,
     // Strobe: answer_taken, a cycle later.
     output wire         taken,
     // An answer has been taken, and not been published yet.
@@ -66,8 +54,6 @@ module s6_two_channel_verdict (
     output wire         is_received,
     // With taken: the CRC is wrong, and was so in the frame before.
     output wire         is_doubtful,
-    // With prove: the answer has a wrong CRC, or an alarm.
-    output wire         is_bad,
     // Strobe: give_up, a cycle later.
     output wire         gave_up,
     // There is still something to tell.
@@ -84,8 +70,6 @@ module s6_two_channel_verdict (
     output wire         withdraw,
     // Strobe: the published position stands.
     output wire         confirm,
-    // Strobe: a frame has ended in whatever way.
-    output wire         over,
     // Strobe: a trigger has been lost.
     output wire         displaced,
     // Primary cause, with publish, late_fault or over.
@@ -93,16 +77,12 @@ module s6_two_channel_verdict (
     // Raw flags, see flag.
     output wire  [19:0] flags
 );
-    localparam         HAS_DIAGNOSIS = 1'b0;
-    localparam  [12:0] OWN_RECOVERY_MIN_CYCLES = 13'd117;
     localparam  [19:0] POSSIBLE = 20'h80647;
     localparam  [19:0] CRC_WRONG = 20'd8;
     localparam  [19:0] PARALLEL_WRONG = 20'h100;
-    localparam  [19:0] OWN_ECHO = 20'h20000;
     localparam  [19:0] F1_SET = 20'd16;
     localparam  [19:0] F2_CLEAR = 20'd32;
     localparam  [19:0] TRIGGER_OVERRUN = 20'd128;
-    localparam  [19:0] TOO_SHORT = 20'h40000;
     localparam  [19:0] STORED_UPSET = 20'h80000;
 
     reg   [19:0] told;
@@ -111,15 +91,12 @@ module s6_two_channel_verdict (
     wire         proven;
     wire         upset;
     wire         measured;
-    reg   [12:0] recovery_min;
-    wire         early;
     wire   [4:0] chooser_cause;
     reg   [19:0] seen; initial seen = 20'd0;
     reg          taken_now; initial taken_now = 1'b0;
     reg          gave_up_now; initial gave_up_now = 1'b0;
     reg          gave_up_late; initial gave_up_late = 1'b0;
     reg          refused; initial refused = 1'b0;
-    reg          announced; initial announced = 1'b0;
     reg          ended; initial ended = 1'b0;
     reg          overrun; initial overrun = 1'b0;
     reg          overrun_next;
@@ -128,8 +105,6 @@ module s6_two_channel_verdict (
     reg          publish_now; initial publish_now = 1'b0;
     reg          good_now; initial good_now = 1'b0;
     reg          once_more_now; initial once_more_now = 1'b0;
-    reg          is_silent; initial is_silent = 1'b0;
-    reg          is_silent_next;
     reg          pending; initial pending = 1'b0;
     reg          pending_next;
     reg          withdraw_now; initial withdraw_now = 1'b0;
@@ -156,7 +131,6 @@ module s6_two_channel_verdict (
         end
     end
     assign bad_now = crc_bad | f1 | !f2;
-    assign is_bad = bad_now;
     assign is_pending = pending | taken_now;
     assign proven = prove & is_pending;
 
@@ -170,34 +144,13 @@ module s6_two_channel_verdict (
         end
     end
     assign upset = proven & !bad_now & settings_upset;
-    assign measured = proven & is_measuring & !bad_now & !upset & !is_own;
-
-    always @* begin
-        is_silent_next = is_silent;
-        if (measured) begin
-            is_silent_next = 1'b1;
-        end
-        if (answer_taken) begin
-            is_silent_next = 1'b0;
-        end
-    end
-
-    always @* begin
-        recovery_min = recovery_min_cycles;
-        if (is_own) begin
-            recovery_min = OWN_RECOVERY_MIN_CYCLES;
-        end
-    end
-    assign early = HAS_DIAGNOSIS & ended & !is_going & !(|cause_now) & (recovery_cycles < recovery_min);
+    assign measured = proven & is_measuring & !bad_now & !upset;
 
     always @* begin
         told = seen;
         if (proven | (is_pending & gave_up_now)) begin
             if (crc_bad) begin
                 told = told | CRC_WRONG;
-                if (HAS_DIAGNOSIS & is_echo) begin
-                    told = told | CRC_WRONG | OWN_ECHO;
-                end
             end
             if (f1) begin
                 told = told | F1_SET;
@@ -215,19 +168,16 @@ module s6_two_channel_verdict (
         if (overrun & !measured) begin
             told = told | TRIGGER_OVERRUN;
         end
-        if (early) begin
-            told = told | TOO_SHORT;
-        end
     end
 
     always @* begin
         flags_now_next = flags_now;
         cause_now_next = cause_now;
         overrun_next = overrun;
-        if (proven | gave_up_now | refused | announced | early) begin
+        if (proven | gave_up_now | refused) begin
             flags_now_next = told;
             cause_now_next = chooser_cause;
-            if (!is_own & !measured) begin
+            if (!measured) begin
                 overrun_next = 1'b0;
             end
         end
@@ -246,7 +196,6 @@ module s6_two_channel_verdict (
     assign late_fault = late_now;
     assign withdraw = withdraw_now;
     assign confirm = confirm_now;
-    assign over = over_now;
     assign displaced = lost_now;
     assign cause = cause_now;
     assign flags = flags_now;
@@ -258,14 +207,12 @@ module s6_two_channel_verdict (
             gave_up_now <= 1'b0;
             gave_up_late <= 1'b0;
             refused <= 1'b0;
-            announced <= 1'b0;
             ended <= 1'b0;
             overrun <= 1'b0;
             was_bad <= 1'b0;
             publish_now <= 1'b0;
             good_now <= 1'b0;
             once_more_now <= 1'b0;
-            is_silent <= 1'b0;
             pending <= 1'b0;
             withdraw_now <= 1'b0;
             confirm_now <= 1'b0;
@@ -280,18 +227,16 @@ module s6_two_channel_verdict (
             gave_up_now <= give_up & !gave_up_now;
             gave_up_late <= give_up & !gave_up_now & is_late;
             refused <= refuse;
-            announced <= announce & HAS_DIAGNOSIS;
             ended <= normal_end;
             overrun <= overrun_next;
             was_bad <= was_bad_next;
-            publish_now <= ((proven & !measured) | refused | announced | (gave_up_now & !gave_up_late)) & !is_own;
+            publish_now <= (proven & !measured) | refused | (gave_up_now & !gave_up_late);
             good_now <= proven & !bad_now & !upset;
             once_more_now <= measured;
-            is_silent <= is_silent_next;
             pending <= pending_next;
-            withdraw_now <= gave_up_late & !is_own;
-            confirm_now <= ended & !is_own;
-            late_now <= (gave_up_late | (early & !is_silent)) & !is_own;
+            withdraw_now <= gave_up_late;
+            confirm_now <= ended;
+            late_now <= gave_up_late;
             over_now <= ended | gave_up_now | refused;
             lost_now <= lost;
             cause_now <= cause_now_next;
@@ -301,6 +246,7 @@ module s6_two_channel_verdict (
 
 `ifdef FORMAL
 `ifndef FORMAL_ANY_STATE
+    wire [0:0] announced = 1'd0;
     // good_means: A position is good only if both CRC checks, F1 and F2 said so, its settings were whole, and an answer was taken.
     // one_result_each: An answer gives one result at most: none without a frame that was answered, refused, late or given up.
     reg f_reason; initial f_reason = 1'b0;
