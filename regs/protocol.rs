@@ -269,7 +269,7 @@ pub const START_BITS: u32 = 1;
 /// Bits of the CRC.
 pub const CRC_BITS: u32 = 5;
 /// Position widths that the core takes, in bits.
-pub const POSITION_BITS: std::ops::RangeInclusive<u32> = 1..=48;
+pub const POSITION_BITS: core::ops::RangeInclusive<u32> = 1..=48;
 /// Widest position, in bits.
 pub const MAX_POSITION_BITS: u32 = *POSITION_BITS.end();
 /// CRC5 generator x^5+x^3+x+1 without its leading term.

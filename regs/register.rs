@@ -67,28 +67,23 @@ impl Field {
         (word & self.mask()) >> self.lsb
     }
 
-    /// What it takes in a channel that speaks one protocol or the other, if `value` is nothing of it.
-    pub fn refusal(&self, value: u32, is_t_format: bool) -> Option<String> {
-        let ranges = match is_t_format {
+    /// Whether it takes this number in a channel that speaks one protocol or the other.
+    pub fn allows(&self, value: u32, is_t_format: bool) -> bool {
+        let ranges = self.ranges(is_t_format);
+        match self.values {
+            _ if !ranges.is_empty() => ranges
+                .iter()
+                .any(|(low, high)| (*low..=*high).contains(&value)),
+            // Codes are those of EnDat.
+            Values::Codes(codes) if !is_t_format => codes.iter().any(|c| c.number == value),
+            _ => true,
+        }
+    }
+
+    pub(crate) const fn ranges(&self, is_t_format: bool) -> &'static [(u32, u32)] {
+        match is_t_format {
             true => self.limits.t_format,
             false => self.limits.endat,
-        };
-        if !ranges.is_empty() {
-            let takes = ranges
-                .iter()
-                .any(|(low, high)| (*low..=*high).contains(&value));
-            let shown = |(low, high): &(u32, u32)| match low == high {
-                true => low.to_string(),
-                false => format!("{low}..{high}"),
-            };
-            return (!takes).then(|| ranges.iter().map(shown).collect::<Vec<_>>().join(", "));
-        }
-        match self.values {
-            // Codes are those of EnDat.
-            Values::Codes(codes) if !is_t_format && codes.iter().all(|c| c.number != value) => {
-                Some(list(codes.iter().map(|c| c.name)))
-            }
-            _ => None,
         }
     }
 
@@ -96,31 +91,6 @@ impl Field {
     pub fn put(&self, word: u32, value: u32) -> Option<u32> {
         let is_fitting = u64::from(value) < 1u64 << self.width;
         is_fitting.then(|| word & !self.mask() | value << self.lsb)
-    }
-
-    /// What the field's number in a word says, if it stands for something.
-    pub fn told(&self, word: u32) -> Option<String> {
-        let value = self.of(word);
-        match self.values {
-            Values::Plain => None,
-            Values::Codes(codes) => codes
-                .iter()
-                .find(|c| c.number == value)
-                .map(|c| c.meaning.to_owned()),
-            Values::Bits(bits) => {
-                let set = bits.iter().filter(|b| value >> b.number & 1 == 1);
-                let names: Vec<_> = set.map(|b| b.meaning).collect();
-                (!names.is_empty()).then(|| names.join(", "))
-            }
-        }
-    }
-
-    /// Its bits as `15:0`, or `3`.
-    pub fn bit_range(&self) -> String {
-        match self.width {
-            1 => self.lsb.to_string(),
-            width => format!("{}:{}", self.lsb + width - 1, self.lsb),
-        }
     }
 
     /// The field's bits within its word.
@@ -247,11 +217,7 @@ impl Block {
 
     /// A field that is known to be there, by the names of its register and its own; else it does not compile.
     pub const fn field(&self, register: &str, field: &str) -> &'static Field {
-        let mut r = 0;
-        while !is_same(self.registers[r].name, register) {
-            r += 1;
-        }
-        let fields = self.registers[r].fields;
+        let fields = self.word(register).fields;
         let mut f = 0;
         while !is_same(fields[f].name, field) {
             f += 1;
@@ -259,14 +225,20 @@ impl Block {
         &fields[f]
     }
 
+    /// A register that is known to be there, by its name; else it does not compile.
+    pub const fn word(&self, register: &str) -> &'static Register {
+        let registers = self.registers;
+        let mut r = 0;
+        while !is_same(registers[r].name, register) {
+            r += 1;
+        }
+        &registers[r]
+    }
+
     /// The register called `name`.
     pub fn register(&self, name: &str) -> Option<&'static Register> {
         self.registers.iter().find(|r| r.name == name)
     }
-}
-
-fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
-    names.collect::<Vec<_>>().join(", ")
 }
 
 const fn is_same(one: &str, other: &str) -> bool {

@@ -1,5 +1,6 @@
 //! The C driver: its generated files, strict compilers, and its calls against the fronts of real cards.
 
+mod in_rust;
 mod rig;
 
 use crate::program::{bad, good, Dir};

@@ -105,7 +105,8 @@ impl Front {
 /// A card, and the program with the driver.
 pub struct Rig {
     front: Front,
-    hash: String,
+    /// First digits of the hash of its configuration.
+    pub hash: String,
     kind: &'static str,
     /// One of so many frames on SPI has a wrong bit; 0 = none.
     noise: u64,
@@ -220,7 +221,8 @@ impl Rig {
         assert!(status.success(), "{} {scenario}: {said}", self.kind);
     }
 
-    fn answer(&mut self, line: &str) -> String {
+    /// Does what a line asks for, on the pins of the bus or with the encoders; what came of it.
+    pub fn answer(&mut self, line: &str) -> String {
         let words: Vec<&str> = line.split_whitespace().collect();
         let number = |n: usize| u32::from_str_radix(words[n], 16).unwrap();
         let cycles_per_us = self.system_hz / 1_000_000;

@@ -1,0 +1,295 @@
+//! The card itself: who it is, its words, its results, its triggers.
+
+use crate::error::Error;
+use crate::link::Link;
+use crate::map::{field, word};
+use crate::result::{Moment, MOMENT_WORDS};
+use embedded_hal::delay::DelayNs;
+use endat_regs::{Part, BLOCK_STRIDE, CHANNELS_MAX, FEATURES_BITS, ID, RESULT_BASE, VERSION};
+
+/// How often a moment is tried word by word before the results are held.
+const MOMENT_TRIES: usize = 3;
+/// How often a word is written that reads back as another one.
+const WRITE_TRIES: usize = 2;
+/// Pause between two looks at results.
+const RESULT_PAUSE_US: u32 = 5;
+/// Patterns for the scratch bits: exchanged bytes, writes that do not arrive, addresses that are off.
+const PATTERNS: [u32; 4] = [0x00AA_5501, 0x0055_AAFE, 0x0001_0280, 0];
+
+/// What a card says of itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Facts {
+    /// Major, minor and patch version of its register map.
+    pub version: [u8; 3],
+    /// First 8 digits of the hash in the generated files.
+    pub configuration_hash: u32,
+    /// The unit of every number of cycles.
+    pub system_hz: u32,
+    /// Encoder ports.
+    pub channels: usize,
+    /// Widest position.
+    pub max_position_bits: u32,
+    /// Bit n: channel n speaks T-format.
+    pub t_format_channels: u32,
+    /// Parts 0 to 15, then 16 to 31.
+    features: u32,
+}
+
+impl Facts {
+    /// Whether the card has this part.
+    pub const fn has(&self, part: Part) -> bool {
+        self.features >> part as u32 & 1 == 1
+    }
+
+    /// Whether a channel speaks T-format.
+    pub const fn is_t_format(&self, channel: usize) -> bool {
+        self.t_format_channels >> channel & 1 == 1
+    }
+}
+
+/// A card behind a link.
+#[derive(Debug)]
+pub struct Card<L, D> {
+    pub(crate) link: L,
+    delay: D,
+    facts: Facts,
+}
+
+/// A wait with a limit, which adds up its pauses.
+pub(crate) struct Wait {
+    left_us: u32,
+}
+
+impl Wait {
+    pub(crate) const fn of_us(limit_us: u32) -> Self {
+        Self { left_us: limit_us }
+    }
+
+    pub(crate) const fn of_ms(limit_ms: u32) -> Self {
+        Self::of_us(limit_ms.saturating_mul(1_000))
+    }
+
+    /// Pauses; `false` if the limit has passed.
+    pub(crate) fn more(&mut self, delay: &mut impl DelayNs, pause_us: u32) -> bool {
+        delay.delay_us(pause_us);
+        self.left_us = self.left_us.saturating_sub(pause_us);
+        self.left_us > 0
+    }
+}
+
+impl<L: Link, D: DelayNs> Card<L, D> {
+    /// Finds out who answers. Refuses what is no card, another major version of the register map and, if a hash is given (the first 8
+    /// digits of the configuration's, as the generated files have it), a card of another configuration.
+    pub fn open(mut link: L, delay: D, hash: Option<u32>) -> Result<Self, Error<L::Error>> {
+        let id = link.read(word!(CARD.id))?;
+        let version = link.read(word!(CARD.version))?;
+        let capabilities = link.read(word!(CARD.capabilities))?;
+        let protocols = link.read(word!(CARD.protocols))?;
+        let facts = Facts {
+            version: [
+                field!(CARD.version.major).of(version) as u8,
+                field!(CARD.version.minor).of(version) as u8,
+                field!(CARD.version.patch).of(version) as u8,
+            ],
+            configuration_hash: link.read(word!(CARD.configuration_hash))?,
+            system_hz: link.read(word!(CARD.system_hz))?,
+            channels: field!(CARD.capabilities.channels).of(capabilities) as usize,
+            max_position_bits: field!(CARD.capabilities.max_position_bits).of(capabilities),
+            t_format_channels: field!(CARD.protocols.t_format).of(protocols),
+            features: field!(CARD.capabilities.features).of(capabilities)
+                | field!(CARD.protocols.features).of(protocols) << FEATURES_BITS,
+        };
+        if id != ID {
+            return Err(Error::NoCard);
+        }
+        if facts.version[0] != VERSION[0] {
+            let found = facts.version[0];
+            return Err(Error::Version { found });
+        }
+        if !(1..=CHANNELS_MAX).contains(&facts.channels) || facts.system_hz == 0 {
+            return Err(Error::NoCard);
+        }
+        match hash.filter(|hash| *hash != facts.configuration_hash) {
+            Some(_) => Err(Error::Configuration {
+                found: facts.configuration_hash,
+            }),
+            None => Ok(Self { link, delay, facts }),
+        }
+    }
+
+    /// Gives link and delay back.
+    pub fn release(self) -> (L, D) {
+        (self.link, self.delay)
+    }
+
+    /// What the card says of itself.
+    pub const fn facts(&self) -> &Facts {
+        &self.facts
+    }
+
+    /// Reads a word, for all that has no call of its own: see `endat_regs`.
+    pub fn read_word(&mut self, word_address: u32) -> Result<u32, Error<L::Error>> {
+        self.link.read(word_address)
+    }
+
+    /// Writes a word.
+    pub fn write_word(&mut self, word_address: u32, value: u32) -> Result<(), Error<L::Error>> {
+        self.link.write(word_address, value)
+    }
+
+    /// Writes a word that keeps what is written, and reads it back; once more if it is another one.
+    pub fn write_checked(&mut self, word_address: u32, value: u32) -> Result<(), Error<L::Error>> {
+        for _ in 0..WRITE_TRIES {
+            self.link.write(word_address, value)?;
+            if self.link.read(word_address)? == value {
+                return Ok(());
+            }
+        }
+        Err(Error::ReadBack)
+    }
+
+    /// Tries the link: writes patterns into bits that are free for that, and reads them back.
+    pub fn try_link(&mut self) -> Result<(), Error<L::Error>> {
+        let address = word!(CARD_CONFIG.hold);
+        let hold = self.link.read(address)? & field!(CARD_CONFIG.hold.hold).mask();
+        for pattern in PATTERNS {
+            let word = field!(CARD_CONFIG.hold.scratch).put(hold, pattern);
+            self.write_checked(address, word.unwrap_or(hold))?;
+        }
+        Ok(())
+    }
+
+    /// Reads the results of all channels, of one moment: with one burst where the link has it, else word by word and once more if a
+    /// result came between, and at last with the card's hold. Each position is checked against its CRC; what does not fit is read again.
+    pub fn read_moment(&mut self) -> Result<Moment, Error<L::Error>> {
+        let moment = self.look_at_one_moment()?;
+        match moment.results().iter().all(|result| result.fits) {
+            true => Ok(moment),
+            false => self.look_at_one_moment(),
+        }
+    }
+
+    fn look_at_one_moment(&mut self) -> Result<Moment, Error<L::Error>> {
+        let mut words = [0; MOMENT_WORDS];
+        let has_infos = self.facts.has(Part::Requests);
+        let channels = self.facts.channels;
+        let count = endat_regs::result_words(channels, has_infos) as usize;
+        if !self
+            .link
+            .read_burst(RESULT_BASE.into(), &mut words[..count])?
+        {
+            let mut is_one = false;
+            for _ in 0..MOMENT_TRIES {
+                self.look(&mut words[..count])?;
+                is_one = self.is_same(&words)?;
+                if is_one {
+                    break;
+                }
+            }
+            if !is_one {
+                self.look_held(&mut words[..count])?;
+            }
+        }
+        Ok(Moment::new(&words, channels, has_infos))
+    }
+
+    /// Reads the words of all results, rising; those between two results are left out.
+    fn look(&mut self, words: &mut [u32]) -> Result<(), Error<L::Error>> {
+        let each = endat_regs::result_words(1, self.facts.has(Part::Requests)) as usize;
+        for (at, word) in words.iter_mut().enumerate() {
+            if at % usize::from(BLOCK_STRIDE) < each {
+                *word = self.link.read(u32::from(RESULT_BASE) + at as u32)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether no result has come since these words were read: then all of them are of one moment.
+    fn is_same(&mut self, words: &[u32]) -> Result<bool, Error<L::Error>> {
+        for channel in 0..self.facts.channels {
+            let status = self.link.read(word!(RESULT.status, channel))?;
+            if status != words[usize::from(BLOCK_STRIDE) * channel] {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The same while the card holds its results.
+    fn look_held(&mut self, words: &mut [u32]) -> Result<(), Error<L::Error>> {
+        let address = word!(CARD_CONFIG.hold);
+        let before = self.link.read(address)?;
+        self.write_checked(address, before | field!(CARD_CONFIG.hold.hold).mask())?;
+        let looked = self.look(words);
+        // Also after an error: results that stand still for ever are worse.
+        let given_back = self.write_checked(address, before);
+        looked.and(given_back)
+    }
+
+    /// Triggers all channels that take it. Two triggers are a cycle apart at least: `explain` shows it.
+    pub fn trigger(&mut self) -> Result<(), Error<L::Error>> {
+        let trigger = field!(CARD.trigger_now.trigger).mask();
+        self.link.write(word!(CARD.trigger_now), trigger)
+    }
+
+    /// Triggers, and waits until every channel has its result. [`Error::Timeout`]: at least one has none, as while its encoder is
+    /// unplugged; [`Card::read_moment`] has the others, and that channel is stale.
+    pub fn measure(&mut self, limit_us: u32) -> Result<Moment, Error<L::Error>> {
+        let before = self.read_moment()?;
+        self.trigger()?;
+        let mut wait = Wait::of_us(limit_us);
+        loop {
+            // The last look comes behind the last pause.
+            let is_in_time = self.pause(&mut wait, RESULT_PAUSE_US);
+            let moment = self.read_moment()?;
+            let mut pairs = moment.results().iter().zip(before.results());
+            let any_new = pairs.any(|(now, then)| now.sequence != then.sequence);
+            if any_new && moment.results().iter().all(|result| !result.stale) {
+                return Ok(moment);
+            }
+            if !is_in_time {
+                break;
+            }
+        }
+        let sources = self.link.read(word!(CARD_CONFIG.trigger_sources))?;
+        match field!(CARD_CONFIG.trigger_sources.register).of(sources) {
+            0 => Err(Error::TriggerOff),
+            _ => Err(Error::Timeout),
+        }
+    }
+
+    /// Lets channels measure their line delay again with their next frame; bit n for channel n.
+    pub fn calibrate(&mut self, channels: u32) -> Result<(), Error<L::Error>> {
+        let word = field!(CARD.calibrate.channels).put(0, channels);
+        let word = word.ok_or(Error::Argument)?;
+        self.link.write(word!(CARD.calibrate), word)
+    }
+
+    pub(crate) fn pause(&mut self, wait: &mut Wait, pause_us: u32) -> bool {
+        wait.more(&mut self.delay, pause_us)
+    }
+
+    pub(crate) fn needs(&self, part: Part) -> Result<(), Error<L::Error>> {
+        match self.facts.has(part) {
+            true => Ok(()),
+            false => Err(Error::Part(part)),
+        }
+    }
+
+    /// An EnDat channel of this card.
+    pub(crate) fn needs_endat(&self, channel: usize) -> Result<(), Error<L::Error>> {
+        if channel >= self.facts.channels {
+            return Err(Error::Argument);
+        }
+        match self.facts.is_t_format(channel) {
+            true => Err(Error::Protocol),
+            false => Ok(()),
+        }
+    }
+
+    /// The same with a service.
+    pub(crate) fn needs_service(&self, channel: usize) -> Result<(), Error<L::Error>> {
+        self.needs_endat(channel)?;
+        self.needs(Part::Requests)
+    }
+}

@@ -1,0 +1,50 @@
+//! Driver for cards with EnDat receivers: `no_std`, no heap, any bus.
+//!
+//! A card is reached through a [`Link`] of yours, which reads and writes words; everything else follows from the register table
+//! (`endat-regs`) and from what the card says of itself, so that one driver serves every card. [`Mapped`] is the link of a card in the
+//! memory of a processor, [`Spi`], [`Parallel`] and [`Uart`] are those of other buses.
+//!
+//! ```
+//! use embedded_hal::delay::DelayNs;
+//! use endat_driver::{Card, Error, Link};
+//!
+//! /// The angle of encoder 0, once it is there.
+//! fn angle<L: Link, D: DelayNs>(link: L, delay: D) -> Result<i64, Error<L::Error>> {
+//!     let mut card = Card::open(link, delay, None)?;
+//!     card.wait_ready(0, 5_000)?;
+//!     let moment = card.measure(1_000)?;
+//!     let result = &moment.results()[0];
+//!     Ok(endat_driver::signed(result.position, result.width_bits))
+//! }
+//! ```
+//!
+//! One master talks to a card. Every call that waits has a limit; it is counted in the waits of the [`embedded_hal::delay::DelayNs`] that
+//! the card was opened with, so a slow bus makes it longer, never shorter. A call that goes on by itself is tried again where that is
+//! safe; what is told as done has been read back.
+
+#![no_std]
+
+mod card;
+mod error;
+mod frame;
+mod link;
+mod map;
+mod parallel;
+mod result;
+mod service;
+mod settings;
+mod spi;
+mod stream;
+mod uart;
+
+pub use card::{Card, Facts};
+pub use endat_regs as regs;
+pub use error::Error;
+pub use link::{Link, Mapped};
+pub use parallel::{Parallel, Registers};
+pub use result::{difference, signed, AdditionalData, Moment, Reading, MOMENT_WORDS, RESULT_WORDS};
+pub use service::{Answer, Request, State};
+pub use settings::Settings;
+pub use spi::Spi;
+pub use stream::{Sample, Set, Stream, SET_BYTES};
+pub use uart::{Serial, Uart};

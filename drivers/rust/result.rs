@@ -1,0 +1,193 @@
+//! Results: what became of each channel's last trigger.
+
+use crate::frame::crc5;
+use crate::map::field;
+use endat_regs::causes::{self, endat};
+use endat_regs::{Field, BLOCK_STRIDE, CHANNELS_MAX, RESULT};
+
+/// Words of a result, those of additional data included.
+pub const RESULT_WORDS: usize = RESULT.registers.len();
+/// Words of the longest burst that reads all results.
+pub const MOMENT_WORDS: usize = BLOCK_STRIDE as usize * CHANNELS_MAX;
+
+/// Additional data of the frame that brought a result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AdditionalData {
+    /// The frame brought it.
+    pub came: bool,
+    /// Its CRC is right; all that follows is 0 otherwise.
+    pub good: bool,
+    /// The encoder is busy with a request.
+    pub busy: bool,
+    /// RM: the reference mark has been passed.
+    pub reference_mark: bool,
+    /// WRN: one of the encoder's warnings is set.
+    pub warning: bool,
+    /// I4..I0: which it is; the low bits of the MRS code that selects it.
+    pub number: u8,
+    /// What it says.
+    pub content: u16,
+}
+
+impl AdditionalData {
+    /// Out of its word; 1 and 2 have the same fields.
+    fn new(word: u32) -> Self {
+        let is = |field: &Field| field.of(word) != 0;
+        Self {
+            came: is(field!(RESULT.info_1.came)),
+            good: is(field!(RESULT.info_1.good)),
+            busy: is(field!(RESULT.info_1.busy)),
+            reference_mark: is(field!(RESULT.info_1.reference_mark)),
+            warning: is(field!(RESULT.info_1.warning)),
+            number: field!(RESULT.info_1.sign).of(word) as u8,
+            content: field!(RESULT.info_1.content).of(word) as u16,
+        }
+    }
+}
+
+/// What became of a channel's last trigger.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Reading {
+    /// Last good position; bit 0 is the LSB.
+    pub position: u64,
+    /// Its width; 0: none yet, or T-format.
+    pub width_bits: u32,
+    /// First falling clock edge of the frame that brought it: system clock cycles, wrapping.
+    pub timestamp: u32,
+    /// Number of results, wrapping.
+    pub sequence: u16,
+    /// Age of the position; stops at 65535.
+    pub age_us: u16,
+    /// Tracked line delay.
+    pub delay_cycles: u16,
+    /// Recovery time of the last frame.
+    pub recovery_cycles: u16,
+    /// Primary cause, 0 = none.
+    pub cause: u8,
+    /// There is a good position.
+    pub valid: bool,
+    /// The last result brought it: test this, not the cause.
+    pub fresh: bool,
+    /// A trigger has come since this result.
+    pub stale: bool,
+    /// The position fits the CRC that the encoder sent with it; if not, it is neither valid nor fresh.
+    pub fits: bool,
+    /// Additional data 1 and 2 of this frame; none came on a card without requests.
+    pub additional_data: [AdditionalData; 2],
+}
+
+impl Reading {
+    /// Takes the words of a result apart; those that are not there count as 0.
+    pub fn new(words: &[u32]) -> Self {
+        let word = |offset: usize| words.get(offset).copied().unwrap_or(0);
+        let [status, low, high, timestamp, evidence, age, info_1, info_2] =
+            core::array::from_fn(word);
+        let is = |word: u32, field: &Field| field.of(word) != 0;
+        let upper = field!(RESULT.position_high.value).of(high);
+        let position = u64::from(upper) << 32 | u64::from(low);
+        let width_bits = field!(RESULT.position_high.width).of(high);
+        let delay_high = field!(RESULT.age_recovery.delay_high).of(age);
+        let delay_low = field!(RESULT.evidence.delay_cycles);
+        let mut reading = Self {
+            position,
+            width_bits,
+            timestamp,
+            sequence: field!(RESULT.status.sequence).of(status) as u16,
+            age_us: field!(RESULT.age_recovery.age_us).of(age) as u16,
+            delay_cycles: (delay_high << delay_low.width | delay_low.of(evidence)) as u16,
+            recovery_cycles: field!(RESULT.age_recovery.recovery_cycles).of(age) as u16,
+            cause: field!(RESULT.status.cause).of(status) as u8,
+            valid: is(status, field!(RESULT.status.valid)),
+            fresh: is(status, field!(RESULT.status.fresh)),
+            stale: is(age, field!(RESULT.age_recovery.stale)),
+            fits: fits(position, high),
+            additional_data: [info_1, info_2].map(AdditionalData::new),
+        };
+        if !reading.fits {
+            reading.valid = false;
+            reading.fresh = false;
+            reading.cause = endat::UPSET as u8;
+        }
+        reading
+    }
+
+    /// What the cause means.
+    pub fn cause_meaning(&self) -> &'static str {
+        let cause = causes::CARD.get(usize::from(self.cause));
+        cause.map_or("unknown", |cause| cause.meaning)
+    }
+
+    /// What to do about the cause.
+    pub fn cause_remedy(&self) -> Option<&'static str> {
+        let cause = causes::CARD.get(usize::from(self.cause))?;
+        causes::advice(cause.name).map(|[_, remedy]| remedy)
+    }
+}
+
+// The order of `Reading::new`.
+const _: () = {
+    let names = [
+        "status",
+        "position_low",
+        "position_high",
+        "timestamp",
+        "evidence",
+        "age_recovery",
+        "info_1",
+        "info_2",
+    ];
+    let mut n = 0;
+    while n < names.len() {
+        assert!(RESULT.word(names[n]).offset as usize == n);
+        n += 1;
+    }
+};
+
+/// Whether a position fits the CRC that came with it, over F1 = 0, F2 = 1 if there was one, and the position, LSB first.
+fn fits(position: u64, high: u32) -> bool {
+    let width = field!(RESULT.position_high.width).of(high);
+    let error_bits = 1 + field!(RESULT.position_high.f2).of(high) as usize;
+    let covered = [false, true].into_iter().take(error_bits);
+    let covered = covered.chain((0..width).map(|bit| position >> bit & 1 == 1));
+    width == 0
+        || position >> width == 0 && crc5(covered) == field!(RESULT.position_high.crc).of(high)
+}
+
+/// Results of all channels, of one moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Moment {
+    results: [Reading; CHANNELS_MAX],
+    channels: usize,
+}
+
+impl Moment {
+    /// Out of the words from the first result on.
+    pub(crate) fn new(words: &[u32; MOMENT_WORDS], channels: usize, has_infos: bool) -> Self {
+        let each = endat_regs::result_words(1, has_infos) as usize;
+        let mut results = [Reading::default(); CHANNELS_MAX];
+        let own = words.chunks_exact(usize::from(BLOCK_STRIDE));
+        for (result, words) in results.iter_mut().zip(own).take(channels) {
+            *result = Reading::new(&words[..each]);
+        }
+        Self { results, channels }
+    }
+
+    /// One for each channel.
+    pub fn results(&self) -> &[Reading] {
+        &self.results[..self.channels]
+    }
+}
+
+/// A position as a number around zero, in two's complement of its width; 0 if the width is 0, as of T-format: take the position itself.
+pub const fn signed(position: u64, width_bits: u32) -> i64 {
+    match width_bits {
+        0 => 0,
+        64.. => position as i64,
+        width => (position << (64 - width)) as i64 >> (64 - width),
+    }
+}
+
+/// How far it is from one position to another, the shorter way round.
+pub const fn difference(from: u64, to: u64, width_bits: u32) -> i64 {
+    signed(to.wrapping_sub(from), width_bits)
+}

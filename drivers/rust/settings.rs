@@ -1,0 +1,194 @@
+//! Settings of channels, triggers and interrupts.
+
+use crate::card::Card;
+use crate::error::Error;
+use crate::link::Link;
+use crate::map::{field, word};
+use embedded_hal::delay::DelayNs;
+use endat_regs::{Field, Part};
+
+/// Fewest system clocks in an EnDat clock, where DATA is not sampled on both edges.
+const SINGLE_EDGE_PERIOD_MIN: u32 = 4;
+
+/// Settings of an EnDat channel, as the register map explains them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Settings {
+    /// EnDat clock period: [`Card::period_cycles`].
+    pub period_cycles: u32,
+    /// Width of the position.
+    pub position_bits: u32,
+    /// Mode command of a trigger: [`endat_regs::protocol::ModeCommand::code`].
+    pub command: u32,
+    /// First low phase minus half a period.
+    pub first_low_extra_cycles: u32,
+    /// Tolerance of the start edge.
+    pub start_window_cycles: u32,
+    /// Pulses up to this length are ignored.
+    pub filter_cycles: u32,
+    /// Longest wait for the start bit.
+    pub start_timeout_us: u32,
+    /// DATA must fall within this after the frame.
+    pub recovery_limit_cycles: u32,
+}
+
+/// The word of a channel that each setting stands in, and its field.
+fn places() -> [(usize, &'static Field); 8] {
+    [
+        (0, field!(CHANNEL_CONFIG.frame.period_cycles)),
+        (0, field!(CHANNEL_CONFIG.frame.position_bits)),
+        (0, field!(CHANNEL_CONFIG.frame.command)),
+        (1, field!(CHANNEL_CONFIG.timing.first_low_extra_cycles)),
+        (1, field!(CHANNEL_CONFIG.timing.start_window_cycles)),
+        (1, field!(CHANNEL_CONFIG.timing.filter_cycles)),
+        (2, field!(CHANNEL_CONFIG.limits.start_timeout_us)),
+        (2, field!(CHANNEL_CONFIG.limits.recovery_limit_cycles)),
+    ]
+}
+
+impl Settings {
+    fn of(words: [u32; 3]) -> Self {
+        let values = places().map(|(word, field)| field.of(words[word]));
+        let [period_cycles, position_bits, command, first_low_extra_cycles, start_window_cycles, filter_cycles, start_timeout_us, recovery_limit_cycles] =
+            values;
+        Self {
+            period_cycles,
+            position_bits,
+            command,
+            first_low_extra_cycles,
+            start_window_cycles,
+            filter_cycles,
+            start_timeout_us,
+            recovery_limit_cycles,
+        }
+    }
+
+    /// The words with these settings; none if one of them is nothing that its field takes.
+    fn put(&self, mut words: [u32; 3]) -> Option<[u32; 3]> {
+        let values = [
+            self.period_cycles,
+            self.position_bits,
+            self.command,
+            self.first_low_extra_cycles,
+            self.start_window_cycles,
+            self.filter_cycles,
+            self.start_timeout_us,
+            self.recovery_limit_cycles,
+        ];
+        for ((word, field), value) in places().into_iter().zip(values) {
+            if !field.allows(value, false) {
+                return None;
+            }
+            words[word] = field.put(words[word], value)?;
+        }
+        Some(words)
+    }
+}
+
+impl<L: Link, D: DelayNs> Card<L, D> {
+    /// Clock period that is not faster than so many hertz.
+    pub const fn period_cycles(&self, clock_hz: u32) -> u32 {
+        match clock_hz {
+            0 => 0,
+            _ => self.facts().system_hz.div_ceil(clock_hz),
+        }
+    }
+
+    /// Reads the settings of a channel.
+    pub fn read_settings(&mut self, channel: usize) -> Result<Settings, Error<L::Error>> {
+        self.needs_endat(channel)?;
+        Ok(Settings::of(self.settings_words(channel)?))
+    }
+
+    fn settings_words(&mut self, channel: usize) -> Result<[u32; 3], Error<L::Error>> {
+        Ok([
+            self.link.read(word!(CHANNEL_CONFIG.frame, channel))?,
+            self.link.read(word!(CHANNEL_CONFIG.timing, channel))?,
+            self.link.read(word!(CHANNEL_CONFIG.limits, channel))?,
+        ])
+    }
+
+    /// Writes them, while no source triggers, and reads them back. What the map does not allow is refused, and nothing written.
+    pub fn write_settings(
+        &mut self,
+        channel: usize,
+        settings: &Settings,
+    ) -> Result<(), Error<L::Error>> {
+        self.needs_endat(channel)?;
+        let least = match self.facts().has(Part::DoubleEdge) {
+            true => 0,
+            false => SINGLE_EDGE_PERIOD_MIN,
+        };
+        let widest = self.facts().max_position_bits;
+        if settings.period_cycles < least || settings.position_bits > widest {
+            return Err(Error::Argument);
+        }
+        let words = self.settings_words(channel)?;
+        let words = settings.put(words).ok_or(Error::Argument)?;
+        let address = word!(CARD_CONFIG.trigger_sources);
+        let sources = self.link.read(address)?;
+        // A frame between two writes would run with half of the settings.
+        let disabled = field!(CARD_CONFIG.trigger_sources.disabled).mask();
+        self.write_checked(address, sources & disabled)?;
+        let written = self.write_settings_words(channel, words);
+        let given_back = self.write_checked(address, sources);
+        written.and(given_back)
+    }
+
+    fn write_settings_words(
+        &mut self,
+        channel: usize,
+        [frame, timing, limits]: [u32; 3],
+    ) -> Result<(), Error<L::Error>> {
+        self.write_checked(word!(CHANNEL_CONFIG.frame, channel), frame)?;
+        self.write_checked(word!(CHANNEL_CONFIG.timing, channel), timing)?;
+        self.write_checked(word!(CHANNEL_CONFIG.limits, channel), limits)
+    }
+
+    /// Enables sources of triggers, and sets the period of the timer if one is given, while it stands.
+    pub fn set_triggers(
+        &mut self,
+        pin: bool,
+        timer: bool,
+        register: bool,
+        period_cycles: Option<u32>,
+    ) -> Result<(), Error<L::Error>> {
+        let fields = [
+            (field!(CARD_CONFIG.trigger_sources.pin), pin),
+            (field!(CARD_CONFIG.trigger_sources.timer), timer),
+            (field!(CARD_CONFIG.trigger_sources.register), register),
+        ];
+        let period = field!(CARD_CONFIG.trigger_period.value);
+        if period_cycles.is_some_and(|cycles| !period.allows(cycles, false)) {
+            return Err(Error::Argument);
+        }
+        let address = word!(CARD_CONFIG.trigger_sources);
+        let before = self.link.read(address)?;
+        if let Some(cycles) = period_cycles {
+            self.write_checked(address, before & !fields[1].0.mask())?;
+            let word = period.put(0, cycles).ok_or(Error::Argument)?;
+            self.write_checked(word!(CARD_CONFIG.trigger_period), word)?;
+        }
+        let with = |word: u32, (field, is_on): (&Field, bool)| match is_on {
+            true => word | field.mask(),
+            false => word & !field.mask(),
+        };
+        self.write_checked(address, fields.into_iter().fold(before, with))
+    }
+
+    /// Which events make `irq_o` high: the word `interrupt.mask`.
+    pub fn enable_interrupts(&mut self, events: u32) -> Result<(), Error<L::Error>> {
+        self.needs(Part::Interrupt)?;
+        self.write_checked(word!(INTERRUPT.mask), events)
+    }
+
+    /// What has happened (the word `interrupt.status`), and clears just that: for an interrupt routine.
+    pub fn take_interrupts(&mut self) -> Result<u32, Error<L::Error>> {
+        self.needs(Part::Interrupt)?;
+        let events = self.link.read(word!(INTERRUPT.status))?;
+        // Only what has been seen: an event of this moment stays.
+        if events != 0 {
+            self.link.write(word!(INTERRUPT.clear), events)?;
+        }
+        Ok(events)
+    }
+}

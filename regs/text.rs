@@ -1,0 +1,54 @@
+//! What a field says, in words: for hosts, which have a heap.
+
+use crate::{Field, Values};
+use alloc::borrow::ToOwned;
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+impl Field {
+    /// What it takes in a channel that speaks one protocol or the other, if `value` is nothing of it.
+    pub fn refusal(&self, value: u32, is_t_format: bool) -> Option<String> {
+        if self.allows(value, is_t_format) {
+            return None;
+        }
+        let shown = |(low, high): &(u32, u32)| match low == high {
+            true => low.to_string(),
+            false => format!("{low}..{high}"),
+        };
+        let ranges = self.ranges(is_t_format);
+        Some(match self.values {
+            Values::Codes(codes) if ranges.is_empty() => list(codes.iter().map(|c| c.name)),
+            _ => ranges.iter().map(shown).collect::<Vec<_>>().join(", "),
+        })
+    }
+
+    /// What the field's number in a word says, if it stands for something.
+    pub fn told(&self, word: u32) -> Option<String> {
+        let value = self.of(word);
+        match self.values {
+            Values::Plain => None,
+            Values::Codes(codes) => {
+                let code = codes.iter().find(|c| c.number == value);
+                code.map(|c| c.meaning.to_owned())
+            }
+            Values::Bits(bits) => {
+                let set = bits.iter().filter(|b| value >> b.number & 1 == 1);
+                let names = list(set.map(|b| b.meaning));
+                (!names.is_empty()).then_some(names)
+            }
+        }
+    }
+
+    /// Its bits as `15:0`, or `3`.
+    pub fn bit_range(&self) -> String {
+        match self.width {
+            1 => self.lsb.to_string(),
+            width => format!("{}:{}", self.lsb + width - 1, self.lsb),
+        }
+    }
+}
+
+fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    names.collect::<Vec<_>>().join(", ")
+}

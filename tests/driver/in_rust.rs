@@ -1,0 +1,655 @@
+//! The driver in Rust, at the same fronts.
+
+use super::everything;
+use super::rig::{self, Rig, ALL_PARTS, WIDTHS};
+use embedded_hal::delay::DelayNs;
+use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
+use endat_driver::regs::{causes::endat, protocol::ModeCommand, service::request_state, Part};
+use endat_driver::{
+    difference, signed, Card, Error, Link, Moment, Parallel, Reading, Registers, Serial, Spi, Uart,
+};
+use endat_gen::config::parse;
+use endat_hdl::bus::HostBus;
+use endat_sim::encoder::Defect;
+use std::cell::RefCell;
+use std::convert::Infallible;
+use std::fmt::Debug;
+use std::path::Path;
+use std::rc::Rc;
+
+/// Both ends of the driver's bus, and what a test does with the encoders.
+#[derive(Clone)]
+struct World(Rc<RefCell<Rig>>);
+
+impl World {
+    fn new(rig: Rig) -> Self {
+        Self(Rc::new(RefCell::new(rig)))
+    }
+
+    fn told(&self, line: &str) -> String {
+        self.0.borrow_mut().answer(line)
+    }
+
+    fn ask(&self, line: &str) -> u64 {
+        u64::from_str_radix(&self.told(line), 16).unwrap()
+    }
+
+    /// Leaves a cycle.
+    fn pause_us(&self, us: u32) {
+        self.told(&format!("delay {us:x}"));
+    }
+
+    fn open<L: Link<Error: Debug>>(&self, link: L) -> Card<L, Self> {
+        let hash = u32::from_str_radix(&self.0.borrow().hash, 16).unwrap();
+        let mut link = link;
+        let wrong = Card::open(&mut link, self.clone(), Some(hash ^ 1));
+        let found = wrong.err().unwrap();
+        assert!(matches!(found, Error::Configuration { found } if found == hash));
+        let mut card = Card::open(link, self.clone(), Some(hash)).unwrap();
+        assert_eq!(card.facts().channels, WIDTHS.len());
+        card.try_link().unwrap();
+        card
+    }
+
+    fn is_content(&self) {
+        assert_eq!(
+            self.ask("violations"),
+            0,
+            "the encoders saw something wrong"
+        );
+    }
+}
+
+impl DelayNs for World {
+    fn delay_ns(&mut self, ns: u32) {
+        self.pause_us(ns.div_ceil(1_000));
+    }
+}
+
+impl Link for World {
+    type Error = Infallible;
+
+    fn read(&mut self, word_address: u32) -> Result<u32, Error<Infallible>> {
+        Ok(self.ask(&format!("r {word_address:x}")) as u32)
+    }
+
+    fn write(&mut self, word_address: u32, value: u32) -> Result<(), Error<Infallible>> {
+        self.told(&format!("w {word_address:x} {value:x}"));
+        Ok(())
+    }
+}
+
+impl ErrorType for World {
+    type Error = Infallible;
+}
+
+impl SpiDevice for World {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+        let [Operation::TransferInPlace(bytes)] = operations else {
+            panic!("chip select is low for one transfer");
+        };
+        let sent: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        take(&self.told(&format!("spi {sent}")), bytes);
+        Ok(())
+    }
+}
+
+impl Registers for World {
+    type Error = Infallible;
+
+    fn get(&mut self, register: u8) -> Result<u16, Infallible> {
+        Ok(self.ask(&format!("get {register:x}")) as u16)
+    }
+
+    fn put(&mut self, register: u8, value: u16) -> Result<(), Infallible> {
+        self.told(&format!("put {register:x} {value:x}"));
+        Ok(())
+    }
+}
+
+impl Serial for World {
+    type Error = Infallible;
+
+    fn send(&mut self, bytes: &[u8]) -> Result<(), Infallible> {
+        let sent: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
+        self.told(&format!("send {sent}"));
+        Ok(())
+    }
+
+    fn receive(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
+        take(&self.told(&format!("receive {:x}", bytes.len())), bytes);
+        Ok(())
+    }
+}
+
+fn take(told: &str, bytes: &mut [u8]) {
+    for (n, byte) in bytes.iter_mut().enumerate() {
+        *byte = u8::from_str_radix(&told[2 * n..2 * n + 2], 16).unwrap();
+    }
+}
+
+/// A card under test.
+struct Bench<L> {
+    card: Card<L, World>,
+    world: World,
+}
+
+impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
+    fn new(world: World, link: L) -> Self {
+        let card = world.open(link);
+        Self { card, world }
+    }
+
+    fn wait_for_both(&mut self) {
+        for channel in 0..WIDTHS.len() {
+            self.card.wait_ready(channel, 1_000).unwrap();
+        }
+    }
+
+    /// Triggers, and compares what came with what the encoders have sent.
+    fn measure_well(&mut self) -> Moment {
+        let moment = self.card.measure(5_000).unwrap();
+        for (n, result) in moment.results().iter().enumerate() {
+            let sent = self.world.ask(&format!("position {n:x}"));
+            assert!(
+                result.fresh && result.valid && !result.stale && result.fits,
+                "{result:?}"
+            );
+            assert_eq!((result.position, result.width_bits), (sent, WIDTHS[n]));
+        }
+        self.world.pause_us(200);
+        moment
+    }
+
+    fn parameters(&mut self) {
+        let card = &mut self.card;
+        let got = card.read_parameter(0, 0xA1, 0x0D, 200).unwrap();
+        assert_eq!((got.data, got.address), (0x801D, 0x0D));
+        let bits = card.read_plate(1, "position_bits").unwrap().unwrap();
+        assert_eq!(u32::from(bits & 0x3F), WIDTHS[1]);
+        assert_eq!(card.read_plate(1, "request"), Err(Error::Argument));
+        let got = card.write_parameter(1, 0xA9, 3, 0x1234, 200).unwrap();
+        assert!(got.time_us > 100, "{got:?}");
+        assert_eq!(card.read_parameter(1, 0xA9, 3, 200).unwrap().data, 0x1234);
+        // An address that the area does not have.
+        let refused = card.read_parameter(0, 0xA1, 0xF0, 200);
+        assert!(
+            matches!(refused, Err(Error::Refused(answer)) if u16::from(answer.refusal) == request_state::SILENT),
+            "{refused:?}"
+        );
+        // One that rides on a trigger which never comes is given up, and the next one goes through.
+        let rides = ModeCommand::PositionSelectMemory;
+        assert_eq!(card.send(0, rides, 0xA1, 0, 5), Err(Error::Timeout));
+        assert_eq!(
+            card.read_parameter(0, 0xA1, 0x0D, 200).unwrap().data,
+            0x801D
+        );
+        self.world.pause_us(40_000);
+    }
+
+    fn additional_data(&mut self) {
+        let wrong = self.card.select_additional_data(0, &[0xA1]);
+        assert_eq!(wrong, Err(Error::Argument));
+        assert_eq!(
+            self.card.select_additional_data(0, &[0x4C; 9]),
+            Err(Error::Argument)
+        );
+        self.card.select_additional_data(0, &[0x4C]).unwrap();
+        // The card finds out what comes: one or two frames end with the pause of an aborted one.
+        for _ in 0..4 {
+            let _ = self.card.measure(5_000);
+            self.world.pause_us(32_000);
+        }
+        let moment = self.card.measure(5_000).unwrap();
+        let [first, second] = [moment.results()[0], moment.results()[1]];
+        let came = first.additional_data[0];
+        assert!(first.fresh && came.good, "{first:?}");
+        assert_eq!((came.number, came.content), (0x0C, 2954));
+        assert!(!second.additional_data[0].came);
+        let (content, sequence) = self.card.read_additional_data(0, 0).unwrap();
+        assert_eq!(content, 2954);
+        assert!(first.sequence.wrapping_sub(sequence) < 2, "{sequence}");
+        self.card.select_additional_data(0, &[]).unwrap();
+        self.world.pause_us(200);
+    }
+
+    fn settings(&mut self) {
+        let card = &mut self.card;
+        let before = card.read_settings(0).unwrap();
+        assert_eq!(before.position_bits, WIDTHS[0]);
+        assert_eq!(before.period_cycles, card.period_cycles(2_000_000));
+        for wrong in [
+            endat_driver::Settings {
+                period_cycles: 3,
+                ..before
+            },
+            endat_driver::Settings {
+                command: ModeCommand::SendParameter.code().into(),
+                ..before
+            },
+            endat_driver::Settings {
+                start_window_cycles: 64,
+                ..before
+            },
+            endat_driver::Settings {
+                position_bits: 49,
+                ..before
+            },
+        ] {
+            assert_eq!(card.write_settings(0, &wrong), Err(Error::Argument));
+        }
+        let slow = endat_driver::Settings {
+            period_cycles: card.period_cycles(1_000_000),
+            start_window_cycles: before.start_window_cycles + 1,
+            ..before
+        };
+        card.write_settings(0, &slow).unwrap();
+        assert_eq!(card.read_settings(0).unwrap(), slow);
+        self.measure_well();
+        let card = &mut self.card;
+        card.write_settings(0, &before).unwrap();
+        assert_eq!(card.read_settings(0).unwrap(), before);
+        card.set_triggers(false, false, false, None).unwrap();
+        assert_eq!(card.measure(1_000), Err(Error::TriggerOff));
+        let short = card.set_triggers(false, true, true, Some(3));
+        assert_eq!(short, Err(Error::Argument));
+        card.set_triggers(false, false, true, None).unwrap();
+        card.calibrate(3).unwrap();
+        self.measure_well();
+    }
+
+    fn wrong_crc(&mut self) {
+        let held = self.measure_well().results()[0].position;
+        self.world.told("crc 0");
+        let moment = self.card.measure(5_000).unwrap();
+        let [first, second] = [moment.results()[0], moment.results()[1]];
+        assert!(!first.fresh && first.valid && second.fresh, "{first:?}");
+        assert_eq!((u64::from(first.cause), first.position), (endat::CRC, held));
+        assert!(first.cause_meaning().contains("CRC"));
+        assert!(first
+            .cause_remedy()
+            .is_some_and(|remedy| !remedy.is_empty()));
+        self.world.pause_us(200);
+        self.measure_well();
+    }
+
+    fn alarms(&mut self) {
+        assert_eq!(self.card.set_alarm(0, 1, 17), Err(Error::Argument));
+        self.card.set_alarm(0, 1, 4).unwrap();
+        self.wrong_crc();
+        let state = self.card.read_state(0).unwrap();
+        assert!(
+            state.alarm && state.endat22 && state.initialised,
+            "{state:?}"
+        );
+        let other = self.card.read_state(1).unwrap();
+        assert!(
+            !other.alarm && !other.unplugged && other.starts == 1,
+            "{other:?}"
+        );
+        self.card.set_alarm(0, 0, 4).unwrap();
+        self.card.clear(0).unwrap();
+        self.world.pause_us(1_000);
+        assert!(!self.card.read_state(0).unwrap().alarm);
+    }
+
+    fn interrupts(&mut self) {
+        // Four events of a channel; the first is its result.
+        let result_1 = 1 << 4;
+        self.card.take_interrupts().unwrap();
+        assert_eq!(self.card.take_interrupts().unwrap(), 0);
+        self.card.enable_interrupts(result_1).unwrap();
+        assert_eq!(self.world.ask("irq"), 0);
+        self.measure_well();
+        assert_eq!(self.world.ask("irq"), 1);
+        assert!(self.card.take_interrupts().unwrap() & result_1 != 0);
+        assert_eq!(self.world.ask("irq"), 0);
+        self.card.enable_interrupts(0).unwrap();
+    }
+
+    fn initialise_again(&mut self) {
+        self.card.initialise(0).unwrap();
+        self.world.pause_us(1_000);
+        assert_eq!(self.card.status(0), Err(Error::Busy));
+        self.wait_for_both();
+        self.measure_well();
+    }
+
+    fn stream(&mut self) {
+        let mut stream = self.card.start_stream(true).unwrap();
+        assert_eq!(self.card.next_set(&mut stream), Ok(None));
+        let mut last = None;
+        for sets in [1, 1, 0, 2, 1] {
+            let moment = self.measure_well();
+            self.world.pause_us(300);
+            for left in (0..sets).rev() {
+                let set = self.card.next_set(&mut stream).unwrap().unwrap();
+                assert_eq!((set.samples().len(), set.first, set.lost), (2, 0, 0));
+                assert!(last.is_none_or(|last: u16| set.sequence == last.wrapping_add(1)));
+                last = Some(set.sequence);
+                for (sample, result) in set.samples().iter().zip(moment.results()) {
+                    assert!(sample.taken && sample.fresh && sample.valid, "{sample:?}");
+                    assert!(!sample.missing && sample.cause == 0);
+                    assert!(left > 0 || sample.position == result.position);
+                }
+            }
+        }
+        assert_eq!(self.card.next_set(&mut stream), Ok(None));
+        self.card.start_stream(false).unwrap();
+    }
+
+    /// The plug of channel 0 is pulled, and put back.
+    fn plug(&mut self, has_service: bool) {
+        let good = self.measure_well().results()[0].sequence;
+        self.world.told("unplug 0 18 0");
+        self.world.pause_us(10_000);
+        let _ = self.card.measure(2_000);
+        let moment = self.card.read_moment().unwrap();
+        let [first, second] = [moment.results()[0], moment.results()[1]];
+        assert!(
+            !first.fresh || first.stale && first.sequence == good,
+            "{first:?}"
+        );
+        assert!(second.fresh, "{second:?}");
+        assert_eq!(self.card.status(0), Err(Error::Unplugged));
+        assert_eq!(self.card.status(1), Ok(()));
+        if has_service {
+            assert_eq!(self.card.measure(2_000), Err(Error::Timeout));
+            let refused = self.card.read_parameter(0, 0xA1, 0x0D, 200);
+            assert_eq!(refused, Err(Error::Unplugged));
+            assert_eq!(self.card.wait_ready(0, 5), Err(Error::Unplugged));
+            self.card.wait_ready(0, 2_000).unwrap();
+        } else {
+            self.world.pause_us(50_000);
+            let _ = self.card.measure(5_000);
+            self.world.pause_us(32_000);
+        }
+        self.measure_well();
+        assert_eq!(self.card.status(0), Ok(()));
+    }
+
+    /// Everything, on a card that has everything.
+    fn journey(mut self) {
+        assert_eq!(self.card.status(0), Err(Error::Busy));
+        assert_eq!(self.card.wait_ready(0, 1), Err(Error::Timeout));
+        self.wait_for_both();
+        self.measure_well();
+        self.settings();
+        self.parameters();
+        self.measure_well();
+        self.wrong_crc();
+        self.alarms();
+        self.interrupts();
+        self.initialise_again();
+        self.stream();
+        self.plug(true);
+        self.additional_data();
+        self.world.is_content();
+    }
+
+    /// A position, a parameter, a plug.
+    fn short(mut self) {
+        self.wait_for_both();
+        self.measure_well();
+        let got = self.card.read_parameter(1, 0xA1, 0x0D, 200).unwrap();
+        assert_eq!(got.data, 0x8019);
+        self.world.pause_us(40_000);
+        self.wrong_crc();
+        self.plug(true);
+        self.world.is_content();
+    }
+
+    /// Reads that are so far apart that results come between: the moment is one all the same.
+    fn torn(mut self) {
+        self.wait_for_both();
+        self.measure_well();
+        let period = self.card.facts().system_hz / 5_000;
+        self.card
+            .set_triggers(false, true, false, Some(period))
+            .unwrap();
+        self.world.told("slow 14");
+        let hold = u32::from(endat_driver::regs::CARD_CONFIG.base)
+            + u32::from(endat_driver::regs::CARD_CONFIG.word("hold").offset);
+        for _ in 0..12 {
+            let moment = self.card.read_moment().unwrap();
+            let [first, second] = [moment.results()[0], moment.results()[1]];
+            assert_eq!(first.timestamp, second.timestamp);
+            assert!(first.fits && first.fresh && second.fresh, "{first:?}");
+            assert_eq!(self.card.read_word(hold).unwrap() & 1, 0);
+        }
+    }
+}
+
+fn words(bus: HostBus, more: &str) -> Bench<World> {
+    let world = World::new(Rig::new(bus, more));
+    Bench::new(world.clone(), world)
+}
+
+#[test]
+fn everything_works_over_axi_lite() {
+    words(HostBus::AxiLite, &everything()).journey();
+}
+
+#[test]
+fn everything_works_over_spi() {
+    let world = World::new(Rig::new(HostBus::Spi, &everything()));
+    Bench::new(world.clone(), Spi::new(world)).journey();
+}
+
+#[test]
+fn position_parameter_and_plug_over_every_other_bus() {
+    for bus in [HostBus::Apb, HostBus::Wishbone] {
+        words(bus, ALL_PARTS).short();
+    }
+    let world = World::new(Rig::new(HostBus::Parallel, ALL_PARTS));
+    Bench::new(world.clone(), Parallel::new(world)).short();
+    let world = World::new(Rig::new(HostBus::Uart, ALL_PARTS));
+    Bench::new(world.clone(), Uart::new(world)).short();
+}
+
+#[test]
+fn a_card_without_parts_says_which_one_is_missing() {
+    let mut bench = words(HostBus::AxiLite, "");
+    let card = &mut bench.card;
+    card.wait_ready(0, 10).unwrap();
+    let refused = card.read_parameter(0, 0xA1, 0x0D, 10);
+    assert_eq!(refused, Err(Error::Part(Part::Requests)));
+    assert_eq!(card.initialise(0), Err(Error::Part(Part::Initialise)));
+    assert_eq!(
+        card.start_stream(true).err(),
+        Some(Error::Part(Part::Stream))
+    );
+    assert_eq!(card.take_interrupts(), Err(Error::Part(Part::Interrupt)));
+    assert_eq!(card.read_parameter(2, 0xA1, 0x0D, 10), Err(Error::Argument));
+    assert_eq!(card.calibrate(1 << 8), Err(Error::Argument));
+    bench.measure_well();
+    bench.wrong_crc();
+    bench.plug(false);
+    bench.world.is_content();
+}
+
+#[test]
+fn an_encoder_that_never_answers_is_told_with_its_step() {
+    let project = parse("card.toml", &rig::text(HostBus::Apb, ALL_PARTS)).unwrap();
+    let encoder = |n| match n {
+        1 => rig::encoder(n).defects(0..=u64::MAX, Defect::NoStartBit),
+        n => rig::encoder(n),
+    };
+    let world = World::new(Rig::with(project, encoder));
+    let mut bench = Bench::new(world.clone(), world);
+    bench.card.wait_ready(0, 1_000).unwrap();
+    let failed = bench.card.wait_ready(1, 2_000).unwrap_err();
+    assert!(
+        matches!(failed, Error::Initialisation { step } if step != 0),
+        "{failed:?}"
+    );
+    assert!(failed.to_string().contains("step "), "{failed}");
+}
+
+#[test]
+fn slow_reads_are_of_one_moment() {
+    words(HostBus::Apb, ALL_PARTS).torn();
+    let world = World::new(Rig::new(HostBus::Parallel, ALL_PARTS));
+    Bench::new(world.clone(), Parallel::new(world)).torn();
+}
+
+/// Good positions only, while one of some frames is disturbed.
+#[test]
+fn noise_on_spi_spoils_nothing() {
+    let world = World::new(Rig::new(HostBus::Spi, ALL_PARTS).noise(20));
+    let mut spi = Spi::new(world.clone());
+    spi.tries = 8;
+    let mut bench = Bench::new(world, spi);
+    bench.wait_for_both();
+    for _ in 0..30 {
+        bench.measure_well();
+    }
+    bench.parameters();
+    bench.settings();
+    let flipped = bench.world.0.borrow().flipped;
+    assert!(flipped > 50, "{flipped}");
+    let (spi, _) = bench.card.release();
+    assert!(spi.disturbed > 0);
+}
+
+/// Answers with what a test has put there.
+struct Memory([u32; 0x600]);
+
+impl Link for Memory {
+    type Error = Infallible;
+
+    fn read(&mut self, word_address: u32) -> Result<u32, Error<Infallible>> {
+        self.0
+            .get(word_address as usize)
+            .copied()
+            .ok_or(Error::Argument)
+    }
+
+    fn write(&mut self, _: u32, _: u32) -> Result<(), Error<Infallible>> {
+        Ok(())
+    }
+}
+
+/// Time that nobody measures.
+struct NoTime;
+
+impl DelayNs for NoTime {
+    fn delay_ns(&mut self, _: u32) {}
+}
+
+#[test]
+fn what_no_card_says_is_refused() {
+    use endat_driver::regs;
+    let word = |name| usize::from(regs::CARD.word(name).offset);
+    let mut card = [0; 0x600];
+    card[word("id")] = regs::ID;
+    card[word("version")] = u32::from(regs::VERSION[0]) << 24 | 0x99 << 16;
+    card[word("capabilities")] = regs::CARD
+        .field("capabilities", "channels")
+        .put(0, 2)
+        .unwrap();
+    card[word("system_hz")] = 1_000_000;
+    let open = |change: &dyn Fn(&mut [u32; 0x600])| {
+        let mut words = card;
+        change(&mut words);
+        Card::open(Memory(words), NoTime, None)
+    };
+    let mut card = open(&|_| ()).unwrap();
+    // Writes do not arrive.
+    assert_eq!(card.try_link(), Err(Error::ReadBack));
+    let refused = |change: &dyn Fn(&mut [u32; 0x600])| open(change).err().unwrap();
+    assert_eq!(refused(&|words| words[word("id")] = 0), Error::NoCard);
+    assert_eq!(
+        refused(&|words| words[word("system_hz")] = 0),
+        Error::NoCard
+    );
+    assert_eq!(
+        refused(&|words| words[word("capabilities")] = 0),
+        Error::NoCard
+    );
+    let major = |words: &mut [u32; 0x600]| words[word("version")] = 0x7F00_0000;
+    let later = refused(&major);
+    assert_eq!(later, Error::Version { found: 0x7F });
+    assert!(
+        later
+            .to_string()
+            .contains("version 127 of the register map"),
+        "{later}"
+    );
+}
+
+#[test]
+fn positions_are_numbers_around_zero() {
+    assert_eq!(signed(0x1FFF_FFFF, 29), -1);
+    assert_eq!(signed(0x0FFF_FFFF, 29), 0x0FFF_FFFF);
+    assert_eq!(
+        (signed(5, 0), signed(u64::MAX, 64), signed(1, 1)),
+        (0, -1, -1)
+    );
+    assert_eq!(difference(0x1FFF_FFFE, 3, 29), 5);
+    assert_eq!(difference(3, 0x1FFF_FFFE, 29), -5);
+}
+
+/// Both drivers and the host library say the same of the same words.
+#[test]
+fn words_of_a_result_are_taken_apart_as_by_the_host() {
+    let mut rng = endat_sim::rng::Rng::new(7);
+    for _ in 0..2_000 {
+        let words: [u32; endat_driver::RESULT_WORDS] =
+            std::array::from_fn(|_| rng.in_range(0, u64::from(u32::MAX)) as u32);
+        let (own, host) = (
+            Reading::new(&words),
+            endat_host::result::Reading::new(&words).checked(),
+        );
+        assert_eq!(own.fits, host.fits);
+        assert_eq!(
+            (
+                own.position,
+                own.timestamp,
+                own.sequence,
+                own.cause,
+                own.valid,
+                own.fresh
+            ),
+            (
+                host.position,
+                host.timestamp,
+                host.sequence,
+                host.cause,
+                host.valid,
+                host.fresh
+            )
+        );
+        assert_eq!(
+            (own.delay_cycles, own.age_us, own.stale, own.recovery_cycles),
+            (
+                host.delay_cycles,
+                host.age_us,
+                host.stale,
+                host.recovery_cycles
+            )
+        );
+        for (own, host) in own.additional_data.iter().zip(host.infos) {
+            assert_eq!(
+                (own.came, own.good, own.content),
+                (host.came, host.good, host.content)
+            );
+            assert_eq!(own.number, host.number());
+        }
+    }
+}
+
+/// Catches a use of the standard library, or of a heap: neither is there on the processors that this is for.
+#[test]
+fn it_needs_no_standard_library() {
+    let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("drivers/rust");
+    for entry in std::fs::read_dir(&home).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "rs") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            for word in ["std::", "alloc::", "extern crate"] {
+                assert!(!text.contains(word), "{}: {word}", path.display());
+            }
+        }
+    }
+}
