@@ -8,7 +8,7 @@ use syn::visit::{self, Visit};
 use syn::{ImplItemFn, ItemFn, ItemMod, ItemUse, UseTree};
 
 /// Folders of the crates.
-const CRATES: [&str; 8] = [
+const CRATES: [&str; 9] = [
     "design/macros",
     "design",
     "regs",
@@ -16,6 +16,7 @@ const CRATES: [&str; 8] = [
     "hdl",
     "sim",
     "host",
+    "drivers/rust",
     "gen",
 ];
 /// Longest file.

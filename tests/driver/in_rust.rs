@@ -512,6 +512,29 @@ fn noise_on_spi_spoils_nothing() {
     assert!(spi.disturbed > 0);
 }
 
+#[test]
+fn the_function_of_the_page_shows_angles_over_a_plug() {
+    let page = include_str!("../../docs/driver.md");
+    let block = page.split("```rust\n").nth(1).unwrap();
+    let block = block.split("```").next().unwrap();
+    assert_eq!(block, include_str!("page.rs"));
+    let world = World::new(Rig::new(HostBus::Spi, ALL_PARTS));
+    world.told("unplug 0 18 c8");
+    let (mut good, mut bad) = (0, 0);
+    let show = |shown: Result<i64, &str>| {
+        if let Ok(angle) = shown {
+            assert_eq!(angle, signed(world.ask("position 0"), WIDTHS[0]));
+            world.pause_us(200);
+        }
+        good += u32::from(shown.is_ok());
+        bad += u32::from(shown.is_err());
+        bad == 0 || shown.is_err()
+    };
+    super::page::angles(world.clone(), world.clone(), show).unwrap();
+    assert!(good > 10 && bad > 0, "{good} angles, {bad} without");
+    world.is_content();
+}
+
 /// Answers with what a test has put there.
 struct Memory([u32; 0x600]);
 

@@ -1,6 +1,7 @@
 //! The C driver: its generated files, strict compilers, and its calls against the fronts of real cards.
 
 mod in_rust;
+mod page;
 mod rig;
 
 use crate::program::{bad, good, Dir};
