@@ -36,8 +36,8 @@ pub struct Identity {
     pub configuration_hash: u32,
     /// Channels that speak T-format: bit n for channel n.
     pub t_format_channels: u32,
-    /// Sets of the stream have the additional informations.
-    pub stream_informations: bool,
+    /// Sets of the stream have the additional data.
+    pub stream_additional_data: bool,
 }
 
 impl Identity {
@@ -74,7 +74,7 @@ impl Identity {
             configuration_hash: words[4],
             // 0 on cards with an older map: absent words read 0.
             t_format_channels: words[5] & 0xFF,
-            stream_informations: words[5] >> 8 & 1 == 1,
+            stream_additional_data: words[5] >> 8 & 1 == 1,
         })
     }
 

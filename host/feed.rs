@@ -44,7 +44,7 @@ pub struct Cell {
     pub fresh: bool,
     /// Name of the cause, or [`NOT_TAKEN`], [`TOO_LATE`], [`LATE`].
     pub cause: &'static str,
-    /// Additional informations 1 and 2 of the same frame, those that came with a right CRC.
+    /// Additional data 1 and 2 of the same frame, those that came with a right CRC.
     pub infos: [Option<Info>; 2],
 }
 

@@ -1,6 +1,6 @@
-//! Additional informations, as they stand in a result or in a set of the stream.
+//! Additional data, as they stand in a result or in a set of the stream.
 
-/// An additional information of the frame that brought a result.
+/// A block of additional data of the frame that brought a result.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Info {
     /// The frame brought it.

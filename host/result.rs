@@ -34,7 +34,7 @@ pub struct Reading {
     pub recovery_cycles: u16,
     /// The position as it was read fits the CRC that the encoder sent with it, or there is nothing to check.
     pub fits: bool,
-    /// Additional informations 1 and 2 of the same frame; none came on a card without requests.
+    /// Additional data 1 and 2 of the same frame; none came on a card without requests.
     pub infos: [Info; 2],
 }
 
