@@ -5,14 +5,15 @@
 //! result_in   _______________/\___________________________________
 //! is_open     _______________/~~~~~~~~~~~~~~~~~~~~~~~~~~~~\_______
 //! over        ____________________________________________/\______    additional data are captured here, once
-//! outputs     the result before, its additional data         | this frame's, both
+//! outputs     the result before, its additional data      | this frame's, both
 //! ```
 //!
 //! The outputs follow the result, but not from its publication until its frame is over: then they and the additional data change in one cycle. So
 //! whoever looks never mixes two frames, and none is waited for that never comes: each frame has an end. Frames that measure the delay and frames
 //! of requests end without a result of their own, and change nothing.
 //!
-//! The stream does not wait so long for the position: it takes the result from the channel and the additional data, or that they are still due, from here.
+//! The stream does not wait so long for the position: it takes the result from the channel and the additional data, or that they are still due,
+//! from here.
 //!
 //! Without the additional data (T-format) all of it is wires.
 

@@ -266,7 +266,7 @@ endat_error endat_write_parameter(const endat_card *card, uint32_t channel, uint
 const char *endat_refusal_text(uint32_t refusal);
 
 /**
- * Additional data that are selected in turn, one block in each triggered frame.
+ * Additional data that are selected in turn, one code in each triggered frame.
  * @param mrs their codes, 0x40..0x4E and 0x50..0x5E.
  * @param count 0 to 8; with 0 nothing more is selected, and what is selected goes on until a request with 0x4F or 0x5F.
  */
