@@ -61,7 +61,7 @@ pub struct ChannelReport {
     pub pulses: u64,
     /// First falling to last rising edge, in microseconds.
     pub frame_us: f64,
-    /// Longest frame with additional information and supplement, in microseconds; none without requests.
+    /// Longest frame with additional data and supplement, in microseconds; none without requests.
     pub longest_frame_us: Option<f64>,
     /// Frame and shortest recovery time, in microseconds.
     pub cycle_min_us: f64,

@@ -263,12 +263,12 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
     let calibration_ns =
         longest_ns(card, |c| c.calibration_cycles(hz) + after_frame(c)) + MARGIN_NS;
     // What a list has selected comes with the frames that measure, too.
-    let informations = |c: &ChannelConfig| {
+    let additional_data = |c: &ChannelConfig| {
         u64::from(2 * INFO_BITS + SUPPLEMENT_PULSES) * c.calibration_period_cycles(hz)
     };
-    let informations_ns = match purpose::configured_list(card).is_empty() {
+    let additional_data_ns = match purpose::configured_list(card).is_empty() {
         true => 0,
-        false => longest_ns(card, informations),
+        false => longest_ns(card, additional_data),
     };
     let measuring = if card.line.alignment {
         CALIBRATION_FRAMES
@@ -276,7 +276,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         1
     };
     let calibration_ns =
-        (calibration_ns + informations_ns).max(cycle_ns) * measuring as u64 + cycle_ns;
+        (calibration_ns + additional_data_ns).max(cycle_ns) * measuring as u64 + cycle_ns;
     let timeout = |c: &ChannelConfig| {
         c.recovery_limit_cycles + cycles_at_least(1_000 * c.start_timeout_us, hz)
     };
@@ -301,7 +301,7 @@ pub fn artifact(project: &Project) -> Result<Option<Artifact>, GenError> {
         .into_iter()
         .chain(card.outputs.interrupt.then_some(&INTERRUPT))
         .chain(card.outputs.position.then_some(&DIRECT));
-    // Cards without requests have no informations in their results.
+    // Cards without requests have no additional data in their results.
     let has_infos = card.service.requests;
     let context = context! {
         result_words => if has_infos { 8 } else { 6 },

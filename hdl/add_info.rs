@@ -1,4 +1,4 @@
-//! Additional information: which of the two the encoder sends, and what they said.
+//! Additional data: which of the two the encoder sends, and what they said.
 //!
 //! ```text
 //! supplement 001001 with 0x40..0x4E -> info 1 follows every position, 0x4F -> no more
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The last line finds the truth again after a reset, another plug or a request that the encoder refused: each frame that contradicts
-//! the record corrects it, the second one at the latest; bit I4 of an information tells which of the two it is. A frame whose CRC is
+//! the record corrects it, the second one at the latest; bit I4 of a block tells which of the two it is. A frame whose CRC is
 //! wrong contradicts nothing, and no answer is longer than both: then only those that were right are there.
 //!
 //! ```text
@@ -39,7 +39,7 @@ pub struct AddInfo {
     pub sample: Signal<In, Bit>,
     /// Strobe: position, or answer, and its CRC have been taken.
     pub answer_done: Signal<In, Bit>,
-    /// The frame has F2, so additional information may follow.
+    /// The frame has F2, so additional data may follow.
     pub has_f2: Signal<In, Bit>,
     /// A supplement follows.
     pub has_supplement: Signal<In, Bit>,
@@ -47,7 +47,7 @@ pub struct AddInfo {
     pub command: Signal<In, Bits<6>>,
     /// MRS code that the frame sends.
     pub mrs: Signal<In, Bits<8>>,
-    /// Strobe: an additional information has been taken.
+    /// Strobe: a block of additional data has been taken.
     pub info_done: Signal<In, Bit>,
     /// Its CRC is right; the same one cycle after `answer_done`.
     pub crc_ok: Signal<In, Bit>,
@@ -94,7 +94,7 @@ pub struct AddInfo {
 }
 
 impl AddInfo {
-    /// A record that looks for an information so many system clock cycles (1..=255) after the edge behind an answer.
+    /// A record that looks for additional data so many system clock cycles (1..=255) after the edge behind an answer.
     pub fn new(separator_cycles: u64) -> Self {
         Self::from_parts(AddInfoParts {
             separator_cycles: Constant::new(separator_cycles.into()),

@@ -458,7 +458,7 @@ impl Logic for CardCore {
         }
         self.part_byte[2].next = 0.into();
 
-        // Channels with requests: the registers see a result when its informations are there, too.
+        // Channels with requests: the registers see a result when its additional data are there, too.
         for i in 0..self._infos {
             connect!(self.whole[i] <= self; clock = clk_i, reset = rst_i);
             self.whole[i].tick_us.next = self.timebase.tick_us.val();

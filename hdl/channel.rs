@@ -9,7 +9,7 @@
 //! ```
 //!
 //! With [`Features::requests`] the channel sends all mode commands: a request rides on the next triggered position frame (EnDat 2.2), or
-//! has a frame of its own. [`AddInfo`] keeps the record of the additional informations that follow each position.
+//! has a frame of its own. [`AddInfo`] keeps the record of the additional data that follow each position.
 //!
 //! The first frame after reset, after an aborted frame and after `calibrate` runs at the calibration clock and
 //! measures the propagation delay; all others run at the configured clock. A frame takes its settings over with its first falling
@@ -180,17 +180,17 @@ pub struct Channel {
     pub answer: Signal<Out, Bits<48>>,
     /// Its CRC is right.
     pub reply_good: Signal<Out, Bit>,
-    /// The encoder sends after each EnDat 2.2 position: bit 0 additional information 1, bit 1 additional information 2.
+    /// The encoder sends after each EnDat 2.2 position: bit 0 additional data 1, bit 1 additional data 2.
     pub info_active: Signal<Out, Bits<2>>,
-    /// Additional information 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
+    /// Additional data 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
     pub info_1: Signal<Out, Bits<24>>,
-    /// Additional information 2 as it came last.
+    /// Additional data 2 as it came last.
     pub info_2: Signal<Out, Bits<24>>,
-    /// Additional informations in the last frame: bit 0 information 1, bit 1 information 2.
+    /// Additional data in the last frame: bit 0 additional data 1, bit 1 additional data 2.
     pub info_came: Signal<Out, Bits<2>>,
     /// Their CRCs are right.
     pub info_good: Signal<Out, Bits<2>>,
-    /// The CRCs with which they came: information 1 in bits 4..0, information 2 in bits 9..5.
+    /// The CRCs with which they came: additional data 1 in bits 4..0, additional data 2 in bits 9..5.
     pub info_crcs: Signal<Out, Bits<10>>,
     /// The propagation delay is known: frames run at the full clock, requests may ride.
     pub calibrated: Signal<Out, Bit>,
@@ -247,7 +247,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// A channel with these fixed times, for triggered positions without additional information.
+    /// A channel with these fixed times, for triggered positions without additional data.
     pub fn new(times: FixedTimes) -> Self {
         Self::with(times, Features::default())
     }
@@ -386,7 +386,7 @@ impl Logic for Channel {
         connect!(self.transaction <= self.receiver;
             hunting, started, start_refused, answer_done = done, finished, separated, info_missing
         );
-        // In fewer than four cycles an additional information would begin before the position is taken.
+        // In fewer than four cycles additional data would begin before the position is taken.
         self.wanted_shape.command.next = self.command.val();
         if self.has_requests.val() {
             self.wanted_shape.command.next = self.frame_command.q.val();

@@ -3,11 +3,11 @@
 //! ```text
 //! left   right        frame
 //! 000    111          position with F1
-//! 111    000          position with F1, F2, additional information
+//! 111    000          position with F1, F2, additional data
 //! 010    101          F1 and 40 bits of test values
 //! 010    010          24 bits there, 24 bits back
 //! other  complement   24 bits there, 24 bits back
-//! other  the same     position with F1, F2, additional information; supplement
+//! other  the same     position with F1, F2, additional data; supplement
 //! ```
 //!
 //! Ref: [`crate::protocol::ModeCommand`].
@@ -26,7 +26,7 @@ pub struct CommandShape {
     pub is_position: Signal<Out, Bit>,
     /// The answer begins with F1.
     pub has_f1: Signal<Out, Bit>,
-    /// F2 follows F1; the selected additional information follows the position.
+    /// F2 follows F1; the selected additional data follow the position.
     pub has_f2: Signal<Out, Bit>,
     /// 24 bits follow the command, and the answer is 24 bits.
     pub has_parameter: Signal<Out, Bit>,

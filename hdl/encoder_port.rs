@@ -118,17 +118,17 @@ pub struct EncoderPort {
     pub reply: Signal<Out, Bits<48>>,
     /// Its CRC is right.
     pub reply_good: Signal<Out, Bit>,
-    /// The encoder sends after each EnDat 2.2 position: bit 0 additional information 1, bit 1 additional information 2.
+    /// The encoder sends after each EnDat 2.2 position: bit 0 additional data 1, bit 1 additional data 2.
     pub info_active: Signal<Out, Bits<2>>,
-    /// Additional information 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
+    /// Additional data 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
     pub info_1: Signal<Out, Bits<24>>,
-    /// Additional information 2 as it came last.
+    /// Additional data 2 as it came last.
     pub info_2: Signal<Out, Bits<24>>,
-    /// Additional informations in the last frame: bit 0 information 1, bit 1 information 2.
+    /// Additional data in the last frame: bit 0 additional data 1, bit 1 additional data 2.
     pub info_came: Signal<Out, Bits<2>>,
     /// Their CRCs are right.
     pub info_good: Signal<Out, Bits<2>>,
-    /// The CRCs with which they came: information 1 in bits 4..0, information 2 in bits 9..5.
+    /// The CRCs with which they came: additional data 1 in bits 4..0, additional data 2 in bits 9..5.
     pub info_crcs: Signal<Out, Bits<10>>,
     /// The propagation delay is known: frames run at the full clock, requests may ride.
     pub calibrated: Signal<Out, Bit>,

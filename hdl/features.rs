@@ -11,7 +11,7 @@ pub struct FixedTimes {
     pub ready_low_cycles: u64,
     /// Quiet time after an aborted frame, in microseconds (1..=65535).
     pub abort_us: u64,
-    /// From the edge behind an answer to the look for an additional information, in system clock cycles (1..=255).
+    /// From the edge behind an answer to the look for additional data, in system clock cycles (1..=255).
     pub separator_cycles: u64,
     /// Clock LOW between an answer and its supplement, in system clock cycles (1..=65535).
     pub park_cycles: u64,
@@ -51,7 +51,7 @@ impl FixedTimes {
 /// What a channel can do besides triggered positions; what it cannot takes no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Features {
-    /// All mode commands and additional information.
+    /// All mode commands and additional data.
     pub requests: bool,
     /// Stuck lines, absent and late encoders told apart, watchdog, shortest recovery time.
     pub diagnosis: bool,

@@ -6,7 +6,7 @@
 //! align     __________________________________________/~~~~\____________________
 //! ```
 //!
-//! An additional information goes the same way behind the CRC: `Separator`, `Payload` of 24 bits, `Crc`. So does the answer to a
+//! A block of additional data goes the same way behind the CRC: `Separator`, `Payload` of 24 bits, `Crc`. So does the answer to a
 //! command with a parameter, without F1 and F2; what comes MSB first there is turned round where it is read. During a supplement
 //! cells are only counted.
 //!
@@ -40,7 +40,7 @@ pub enum Field {
     Payload,
     /// CRC, MSB first.
     Crc,
-    /// LOW before an additional information.
+    /// LOW before a block of additional data.
     Separator,
     /// The clock goes on: HIGH after the last CRC bit.
     GapHigh,
@@ -86,7 +86,7 @@ pub struct Receiver {
     pub has_parameter: Signal<In, Bit>,
     /// The clock is parked LOW after the answer.
     pub has_supplement: Signal<In, Bit>,
-    /// Additional informations that follow the position, 0..=2.
+    /// Blocks of additional data that follow the position, 0..=2.
     pub infos: Signal<In, Bits<2>>,
     /// Strobe: what is HIGH now is a recovery time, which may be over in the middle of this cell.
     pub look: Signal<In, Bit>,
@@ -116,15 +116,15 @@ pub struct Receiver {
     pub all_used: Signal<Out, Bit>,
     /// They agree that there is none left.
     pub all_ended: Signal<Out, Bit>,
-    /// Strobe: payload, error bits, CRC and verdict of the answer without additional information are valid.
+    /// Strobe: payload, error bits, CRC and verdict of the answer without additional data are valid.
     pub done: Signal<Out, Bit>,
-    /// Strobe: payload and verdict of an additional information are valid.
+    /// Strobe: payload and verdict of a block of additional data are valid.
     pub info_done: Signal<Out, Bit>,
-    /// Strobe: the LOW in front of an additional information has come. Payload and verdict stay for two more cycles.
+    /// Strobe: the LOW in front of a block of additional data has come. Payload and verdict stay for two more cycles.
     pub separated: Signal<Out, Bit>,
-    /// Strobe: an additional information should begin, but the line is HIGH.
+    /// Strobe: a block of additional data should begin, but the line is HIGH.
     pub info_missing: Signal<Out, Bit>,
-    /// Strobe: the answer with all its additional informations, or the supplement, is complete.
+    /// Strobe: the answer with all its additional data, or the supplement, is complete.
     pub finished: Signal<Out, Bit>,
     /// Strobe: while the clock goes on, the cell after the last CRC bit is HIGH, as it should.
     pub gap_good: Signal<Out, Bit>,
@@ -260,7 +260,7 @@ impl Logic for Receiver {
         self.check.reset.next = self.reset.val();
         self.serial.reset.next = self.reset.val();
 
-        // Cells behind this CRC: the edge that ends the frame, 30 for each additional information.
+        // Cells behind this CRC: the edge that ends the frame, 30 for each block of additional data.
         self.cells_after.next = 1.into();
         self.width.next = self.payload_bits.val();
         if self.has_all.val() {
@@ -536,7 +536,7 @@ impl Logic for Receiver {
             self.align.d.next = false;
             self.in_info.d.next = true;
         }
-        // Cells of the frame besides payload and additional information.
+        // Cells of the frame besides payload and additional data.
         self.cells_around.next = self.fixed_cells.val();
         if self.has_f2.val() {
             self.cells_around.next = self.fixed_cells.val() + 1;

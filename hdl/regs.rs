@@ -122,8 +122,8 @@ const STARTS: &[(&str, Start)] = &[
     ("card.system_hz.value", |s, _| s.system_hz),
     ("card.configuration_hash.value", |s, _| s.hash >> 16),
     ("card.protocols.t_format", |s, _| s.t_format_channels()),
-    ("card.protocols.stream_informations", |s, _| {
-        s.stream.informations.into()
+    ("card.protocols.stream_additional_data", |s, _| {
+        s.stream.additional_data.into()
     }),
     ("card.protocols.features", |s, _| {
         features(s) >> FEATURES_BITS

@@ -1,4 +1,4 @@
-//! Service: requests, additional information, health and initialisation of one channel or two, as a program of the [`Sequencer`].
+//! Service: requests, additional data, health and initialisation of one channel or two, as a program of the [`Sequencer`].
 //!
 //! ```text
 //!               +--> requests, hold-off ------> Channel

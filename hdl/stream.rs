@@ -46,7 +46,7 @@ pub struct Stream {
     pub block: Signal<Out, Bits<4>>,
     /// Which of them.
     pub byte_at: Signal<Out, Bits<3>>,
-    /// Of channel n its other 8 bytes: the informations, where sets have them.
+    /// Of channel n its other 8 bytes: the additional data, where sets have them.
     pub second: Vec<Signal<Out, Bit>>,
     /// Sets are collected; where a running clock makes sets of its own, as the next eight.
     pub collects: Vec<Signal<Out, Bit>>,
@@ -140,7 +140,7 @@ pub struct Stream {
 
 /// Type of a set of positions, in the upper half of its first byte.
 pub const SET_TYPE: u64 = 1;
-/// Type of one with informations.
+/// Type of one with additional data.
 pub const INFO_SET_TYPE: u64 = 2;
 /// Type of one with a position of a running clock.
 pub const RUN_SET_TYPE: u64 = 3;
@@ -149,8 +149,8 @@ impl Stream {
     /// A stream with a buffer of `bytes` bytes (one of [`buffer::BUFFER_BYTES`]) for `channels` channels, with `collect` and `push` as
     /// they are after reset; `parts` is what sets have.
     pub fn new(bytes: u64, channels: usize, collect: bool, push: bool, parts: SetParts) -> Self {
-        let (seconds, runs) = (usize::from(parts.informations), usize::from(parts.runs));
-        let set_type = if parts.informations {
+        let (seconds, runs) = (usize::from(parts.additional_data), usize::from(parts.runs));
+        let set_type = if parts.additional_data {
             INFO_SET_TYPE
         } else {
             SET_TYPE

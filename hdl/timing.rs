@@ -27,7 +27,7 @@ pub const RECOVERY_MIN_NS: u64 = 10_000;
 pub const RECOVERY_MAX_NS: u64 = 30_000;
 /// Shortest programmed recovery time, in ns (PWM 20; EnDat 2.2 commands above 1 MHz only).
 pub const SHORT_RECOVERY_MIN_NS: u64 = 1_250;
-/// From the edge behind an answer until it is looked at whether an additional information follows, in ns, if the middle of the cell
+/// From the edge behind an answer until it is looked at whether additional data follow, in ns, if the middle of the cell
 /// comes later: half the shortest recovery time, which would be over by then.
 pub const SEPARATOR_NS: u64 = SHORT_RECOVERY_MIN_NS / 2;
 /// Data must have been low for longer than tR before the next frame, in ns (PWM 20).

@@ -83,13 +83,13 @@ pub struct Transaction {
     pub started: Signal<In, Bit>,
     /// Strobe: a start bit outside its window.
     pub start_refused: Signal<In, Bit>,
-    /// Strobe: the answer without additional information has been taken.
+    /// Strobe: the answer without additional data has been taken.
     pub answer_done: Signal<In, Bit>,
     /// Strobe: the answer with all that follows it has been taken, or the supplement is over.
     pub finished: Signal<In, Bit>,
-    /// Strobe: the LOW in front of an additional information has come.
+    /// Strobe: the LOW in front of a block of additional data has come.
     pub separated: Signal<In, Bit>,
-    /// Strobe: an additional information has not come.
+    /// Strobe: a block of additional data has not come.
     pub info_missing: Signal<In, Bit>,
     /// The mode command of the next frame is one that the core sends.
     pub is_known: Signal<In, Bit>,

@@ -1,20 +1,21 @@
-//! Whole result: result and informations of one frame, for the registers of a channel with requests.
+//! Whole result: result and additional data of one frame, for the registers of a channel with requests.
 //!
 //! ```text
 //! frame       command  position  info 2  info 1 ~~~tm~~~\_________ next one
 //! result_in   _______________/\___________________________________
 //! is_open     _______________/~~~~~~~~~~~~~~~~~~~~~~~~~~~~\_______
-//! over        ____________________________________________/\______    informations are captured here, once
-//! outputs     the result before, its informations         | this frame's, both
+//! over        ____________________________________________/\______    additional data are captured here, once
+//! outputs     the result before, its additional data      | this frame's, both
 //! ```
 //!
-//! The outputs follow the result, but not from its publication until its frame is over: then they and the informations change in one cycle. So
+//! The outputs follow the result, but not from its publication until its frame is over: then they and the additional data change in one cycle. So
 //! whoever looks never mixes two frames, and none is waited for that never comes: each frame has an end. Frames that measure the delay and frames
 //! of requests end without a result of their own, and change nothing.
 //!
-//! The stream does not wait so long for the position: it takes the result from the channel and the informations, or that they are still due, from here.
+//! The stream does not wait so long for the position: it takes the result from the channel and the additional data, or that they are still due,
+//! from here.
 //!
-//! Without the additional informations (T-format) all of it is wires.
+//! Without the additional data (T-format) all of it is wires.
 
 use crate::regs::{BLOCK_STRIDE, INFO_FIRST, RESULT_BASE};
 use crate::several::each;
@@ -22,7 +23,7 @@ use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-/// Result and informations of one channel.
+/// Result and additional data of one channel.
 #[derive(LogicBlock, Block)]
 pub struct WholeResult {
     /// System clock.
@@ -67,23 +68,23 @@ pub struct WholeResult {
     pub delay_cycles_in: Signal<In, Bits<11>>,
     /// Strobe: a frame has ended.
     pub over: Signal<In, Bit>,
-    /// The encoder sends after each EnDat 2.2 position: bit 0 information 1, bit 1 information 2.
+    /// The encoder sends after each EnDat 2.2 position: bit 0 additional data 1, bit 1 additional data 2.
     pub info_active: Signal<In, Bits<2>>,
-    /// Information 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
+    /// Additional data 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
     pub info_1: Signal<In, Bits<24>>,
-    /// Information 2 as it came last.
+    /// Additional data 2 as it came last.
     pub info_2: Signal<In, Bits<24>>,
-    /// The frame brought: bit 0 information 1, bit 1 information 2.
+    /// The frame brought: bit 0 additional data 1, bit 1 additional data 2.
     pub info_came: Signal<In, Bits<2>>,
     /// Their CRCs are right.
     pub info_good: Signal<In, Bits<2>>,
-    /// The CRCs with which they came: information 1 in bits 4..0, information 2 in bits 9..5.
+    /// The CRCs with which they came: additional data 1 in bits 4..0, additional data 2 in bits 9..5.
     pub info_crcs: Signal<In, Bits<10>>,
-    /// The frame of the newest result is not over: informations may still come.
+    /// The frame of the newest result is not over: additional data may still come.
     pub is_open: Signal<Out, Bit>,
-    /// Information 1 of the newest result's frame: 24 bits, came, good, due.
+    /// Additional data 1 of the newest result's frame: 24 bits, came, good, due.
     pub word_1: Signal<Out, Bits<27>>,
-    /// Information 2 of it.
+    /// Additional data 2 of it.
     pub word_2: Signal<Out, Bits<27>>,
     /// Strobe: a new whole result is there; all that follows is of it.
     pub result_strobe: Signal<Out, Bit>,
@@ -117,7 +118,7 @@ pub struct WholeResult {
     pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked line delay, in system clock cycles.
     pub delay_cycles: Signal<Out, Bits<11>>,
-    /// Words of the informations as they are now, for the second interface; none without one.
+    /// Words of the additional data as they are now, for the second interface; none without one.
     pub live: Vec<Signal<Out, Bits<32>>>,
     /// The held words follow.
     pub load: Signal<In, Bit>,
@@ -127,7 +128,7 @@ pub struct WholeResult {
     pub in_range: Signal<In, Bit>,
     /// Byte of the word, 0 = most significant.
     pub lane: Signal<In, Bits<2>>,
-    /// The byte of the held informations, 1 cycle later; 0 if another word is read.
+    /// The byte of the held additional data, 1 cycle later; 0 if another word is read.
     pub read_byte: Signal<Out, Bits<8>>,
     open: Reg<Bit>,
     past: Reg<Bit>,
@@ -166,7 +167,7 @@ pub struct WholeResult {
 }
 
 impl WholeResult {
-    /// That of channel `channel`, which has informations or not, on a card with a second interface or without.
+    /// That of channel `channel`, which has additional data or not, on a card with a second interface or without.
     pub fn new(channel: usize, has_infos: bool, is_shown: bool) -> Self {
         let first = RESULT_BASE + BLOCK_STRIDE * channel as u16 + u16::from(INFO_FIRST);
         Self::from_parts(WholeResultParts {

@@ -3,9 +3,10 @@
 use crate::bridge::Bridge;
 use crate::name_plate::NamePlate;
 use crate::registers::{Access, Block, Place};
-use crate::result::Reading;
+use crate::result;
 use crate::transport::Transport;
 use crate::HostError;
+use endat_driver::Reading;
 use endat_regs::{result_words, Part, FEATURES_BITS, ID, VERSION};
 use std::time::Duration;
 
@@ -36,8 +37,8 @@ pub struct Identity {
     pub configuration_hash: u32,
     /// Channels that speak T-format: bit n for channel n.
     pub t_format_channels: u32,
-    /// Sets of the stream have the additional informations.
-    pub stream_informations: bool,
+    /// Sets of the stream have the additional data.
+    pub stream_additional_data: bool,
 }
 
 impl Identity {
@@ -74,7 +75,7 @@ impl Identity {
             configuration_hash: words[4],
             // 0 on cards with an older map: absent words read 0.
             t_format_channels: words[5] & 0xFF,
-            stream_informations: words[5] >> 8 & 1 == 1,
+            stream_additional_data: words[5] >> 8 & 1 == 1,
         })
     }
 
@@ -287,7 +288,7 @@ impl<T: Transport> Card<T> {
         let count = result_words(self.identity.channels, has_infos) as usize;
         let words = self.bridge.read(first, count)?;
         Ok(Results {
-            channels: Reading::of_burst(&words, self.identity.channels, has_infos),
+            channels: result::of_burst(&words, self.identity.channels, has_infos),
         })
     }
 

@@ -2,13 +2,13 @@
 
 use crate::card::Card;
 use crate::causes;
-use crate::info::Info;
 use crate::registers::Place;
-use crate::result::Reading;
 use crate::stream::{Sample, SampleSet};
 use crate::transport::Transport;
 use crate::witness::Witness;
 use crate::HostError;
+use endat_driver::AdditionalData as Info;
+use endat_driver::Reading;
 use endat_regs::Part;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -44,7 +44,7 @@ pub struct Cell {
     pub fresh: bool,
     /// Name of the cause, or [`NOT_TAKEN`], [`TOO_LATE`], [`LATE`].
     pub cause: &'static str,
-    /// Additional informations 1 and 2 of the same frame, those that came with a right CRC.
+    /// Additional data 1 and 2 of the same frame, those that came with a right CRC.
     pub infos: [Option<Info>; 2],
 }
 

@@ -18,7 +18,6 @@ pub mod causes;
 pub mod did_you_mean;
 mod error;
 pub mod feed;
-pub mod info;
 pub mod mailbox;
 pub mod name_plate;
 pub mod panda;

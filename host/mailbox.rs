@@ -37,7 +37,7 @@ pub struct Request {
 /// What came back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// Echo of MRS code or address, or the status byte of additional information 1.
+    /// Echo of MRS code or address, or the status byte of additional data 1.
     pub address: u8,
     /// Data.
     pub data: u16,

@@ -39,9 +39,9 @@ pub struct NamePlate {
     pub safety: Option<bool>,
     /// Longest calculation time tcal, as the encoder's word 39 has it.
     pub tcal: Option<u16>,
-    /// Supported additional informations 1, bit n = code 0x40 + n.
+    /// Supported additional data 1, bit n = code 0x40 + n.
     pub infos_1: Option<u16>,
-    /// Supported additional informations 2, bit n = code 0x50 + n.
+    /// Supported additional data 2, bit n = code 0x50 + n.
     pub infos_2: Option<u16>,
     /// Fastest clock in kHz.
     pub clock_max_khz: Option<u32>,

@@ -1,15 +1,15 @@
 //! Sample sets out of the stream of bytes: COBS frames with a CRC-16, found again after any garbage.
 
 use crate::causes;
-use crate::info::Info;
 use crc::{Crc, CRC_16_IBM_3740};
+use endat_driver::AdditionalData as Info;
 use std::mem;
 
 /// Check sum of a frame.
 const CHECK: Crc<u16> = Crc::<u16>::new(&CRC_16_IBM_3740);
 /// Type of a frame with a sample set, in bits 7..4 of its first byte.
 const SAMPLE_SET: u8 = 1;
-/// The same with additional informations.
+/// The same with additional data.
 const INFO_SET: u8 = 2;
 /// A position of a running clock; bits 3..0 are its channel.
 const RUN_SET: u8 = 3;
@@ -17,7 +17,7 @@ const RUN_SET: u8 = 3;
 const HEAD_BYTES: usize = 8;
 /// Bytes of a channel.
 const CHANNEL_BYTES: usize = 8;
-/// Bytes of its informations.
+/// Bytes of its additional data.
 const INFO_BYTES: usize = 8;
 /// Most channels of a card.
 const CHANNELS_MAX: usize = 8;
@@ -44,7 +44,7 @@ pub struct Sample {
     pub missing: bool,
     /// Raw flags of the line: bit k stands for cause k + 11.
     pub line: u8,
-    /// Additional informations 1 and 2 of the same frame, if sets have them.
+    /// Additional data 1 and 2 of the same frame, if sets have them.
     pub infos: Option<[Info; 2]>,
 }
 
@@ -93,7 +93,7 @@ mod status {
     pub const MISSING: u16 = 1 << 15;
 }
 
-/// The informations of a channel out of their bytes.
+/// The additional data of a channel out of their bytes.
 fn infos(bytes: &[u8]) -> [Info; 2] {
     [0, 1].map(|n: usize| {
         let word = u32::from_le_bytes([bytes[3 * n], bytes[3 * n + 1], bytes[3 * n + 2], 0]);

@@ -74,11 +74,11 @@ pub const CARD: Block = Block {
             &[
                 field("t_format", 0, 8, "", "T-format: bit n for channel n"),
                 field(
-                    "stream_informations",
+                    "stream_additional_data",
                     8,
                     1,
                     "",
-                    "1: sets of the stream have the additional informations",
+                    "1: sets of the stream have the additional data",
                 ),
                 field("features", 16, 16, "", "Parts that have no place in capabilities.features").bits(MORE_FEATURES),
             ],

@@ -86,7 +86,7 @@ pub const MAP_BYTES: u32 =
     WORD_BYTES * (SERVICE_BASE as u32 + SERVICE.stride as u32 * CHANNELS_MAX as u32);
 
 /// Words of the burst that gives the results of all channels of one moment, from [`RESULT_BASE`] on; the words between
-/// two blocks are read too. With requests each result has its informations.
+/// two blocks are read too. With requests each result has its additional data.
 pub const fn result_words(channels: usize, requests: bool) -> u64 {
     let blocks_before = channels.saturating_sub(1) as u64;
     let words = if requests {

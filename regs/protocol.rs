@@ -27,9 +27,9 @@ pub enum ModeCommand {
     SendTestValues,
     /// `110001`: receive test command: port and data.
     ReceiveTestCommand,
-    /// `111000`: send position (EnDat 2.2 frame: start, F1, F2, position, CRC), then any selected additional information.
+    /// `111000`: send position (EnDat 2.2 frame: start, F1, F2, position, CRC), then any selected additional data.
     SendPositionAddInfo,
-    /// `001001`: the same, then a supplement that selects a memory area or an additional information.
+    /// `001001`: the same, then a supplement that selects a memory area or additional data.
     PositionSelectMemory,
     /// `011011`: the same, then a supplement that writes a word.
     PositionReceiveParameter,
@@ -146,7 +146,7 @@ impl ModeCommand {
         }
     }
 
-    /// Bits from the start bit to the last CRC bit (`L`) for a position of `position_bits`, without additional information.
+    /// Bits from the start bit to the last CRC bit (`L`) for a position of `position_bits`, without additional data.
     pub const fn answer_bits(self, position_bits: u32) -> u32 {
         START_BITS + self.error_bits() + self.payload_bits(position_bits) + CRC_BITS
     }
@@ -172,7 +172,7 @@ const SEND_POSITION: Named = command(
 const SEND_POSITION_ADD_INFO: Named = command(
     "send_position_add_info",
     ModeCommand::SendPositionAddInfo,
-    "111000 send position with additional information (EnDat 2.2)",
+    "111000 send position with additional data (EnDat 2.2)",
 );
 
 /// Mode commands that a trigger sends.
@@ -215,7 +215,7 @@ pub const MODE_COMMANDS: &[Named] = &[
     command(
         "position_select_memory",
         ModeCommand::PositionSelectMemory,
-        "001001 send position, then selection of memory area or additional information",
+        "001001 send position, then selection of memory area or additional data",
     ),
     command(
         "position_receive_parameter",
@@ -258,7 +258,7 @@ pub const LEAD_PULSES: u32 = 2 + MODE_COMMAND_BITS + 2;
 pub const PARAMETER_BITS: u32 = 8 + 16;
 /// Bits of the test values (TI, C2000).
 pub const TEST_VALUE_BITS: u32 = 40;
-/// Bits of an additional information: a LOW bit, 24 bits, CRC.
+/// Bits of a block of additional data: a LOW bit, 24 bits, CRC.
 pub const INFO_BITS: u32 = 1 + PARAMETER_BITS + CRC_BITS;
 /// LOW bits before the start bit of a supplement (TI; fewer may do).
 pub const SUPPLEMENT_ZEROS: u32 = 7;

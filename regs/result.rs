@@ -64,7 +64,7 @@ const INFO: [Field; 8] = [
         16,
         5,
         "",
-        "I4..I0: which one it is; I4 = 0 information 1, 1 information 2",
+        "I4..I0: which one it is; I4 = 0 additional data 1, 1 additional data 2",
     ),
     field("busy", 21, 1, "", "The encoder is busy with a request"),
     field(
@@ -133,7 +133,7 @@ pub const RESULT: Block = Block {
             field("delay_high", 29, 1, "", "Bit 10 of delay_cycles"),
             field("stale", 30, 1, "", "A trigger of this channel has come since this result"),
         ]),
-        word("info_1", INFO_FIRST, ReadOnly, "Additional information 1 of the frame of this result.", &INFO).of(Part::Requests),
-        word("info_2", INFO_FIRST + 1, ReadOnly, "Additional information 2 of the frame of this result.", &INFO).of(Part::Requests),
+        word("info_1", INFO_FIRST, ReadOnly, "Additional data 1 of the frame of this result.", &INFO).of(Part::Requests),
+        word("info_2", INFO_FIRST + 1, ReadOnly, "Additional data 2 of the frame of this result.", &INFO).of(Part::Requests),
     ],
 };

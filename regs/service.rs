@@ -45,7 +45,7 @@ const fn slot(name: &'static str, i: u8) -> Register {
         name,
         at::SLOTS + i,
         ReadOnly,
-        "What the additional information of that code said last.",
+        "What the additional data of that code said last.",
         SLOT,
     )
 }
@@ -101,7 +101,7 @@ pub const SERVICE: Block = Block {
             field("finished", 16, 16, "", "Requests finished, wrapping"),
         ]),
         word("answer", at::ANSWER, ReadOnly, "Answer to the last request; bits 31..0 of a longer one.", &[
-            field("data", 0, 16, "", "Data, or content of additional information 1"),
+            field("data", 0, 16, "", "Data, or content of additional data 1"),
             field("address", 16, 8, "", "Echo of MRS code, address or port; or WRN, RM, Busy, I4..I0"),
         ]),
         word("answer_more", at::ANSWER_MORE, ReadOnly, "Bits 47..32 of a longer answer.", HIGH),
@@ -164,10 +164,10 @@ pub const SERVICE: Block = Block {
             field("length", 0, 4, "", "0..8; more is 8").takes(&[(0, 8)], &[]),
         ]),
         word("info_status", at::INFO_STATUS, ReadOnly, "WRN, RM, Busy, I4..I0 as they came last with a right CRC.", &[
-            field("info_1", 0, 8, "", "Of additional information 1"),
-            field("crc_1", 8, 1, "", "CRC of the last additional information 1 wrong: nothing of it was taken"),
-            field("info_2", 16, 8, "", "Of additional information 2"),
-            field("crc_2", 24, 1, "", "CRC of the last additional information 2 wrong: nothing of it was taken"),
+            field("info_1", 0, 8, "", "Of additional data 1"),
+            field("crc_1", 8, 1, "", "CRC of the last additional data 1 wrong: nothing of it was taken"),
+            field("info_2", 16, 8, "", "Of additional data 2"),
+            field("crc_2", 24, 1, "", "CRC of the last additional data 2 wrong: nothing of it was taken"),
         ]),
         word("limits", at::LIMITS, ReadWrite, "What a frame must keep to.", &[
             field("watchdog_us", 0, 12, "us", "Longest time from the first falling edge to the end of the recovery time; 0 = not watched. Commands with a parameter and continuous clock are not watched"),
@@ -222,7 +222,7 @@ pub const SERVICE: Block = Block {
         frames(16),
         frames(17),
         word("frames_position_2", at::COUNTERS + COUNTER_POSITION_2, ReadOnly, "Comparisons of positions 1 and 2 that failed.", COUNT),
-        word("bad_infos", at::COUNTERS + COUNTER_BAD_INFOS, ReadOnly, "Additional informations with a wrong CRC.", &[
+        word("bad_infos", at::COUNTERS + COUNTER_BAD_INFOS, ReadOnly, "Blocks of additional data with a wrong CRC.", &[
             field("count", 0, 32, "", "Since clear, wrapping"),
         ]),
         plate_word(0),

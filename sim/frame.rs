@@ -159,7 +159,7 @@ impl Parameter {
     }
 }
 
-/// One additional information of an EnDat 2.2 answer.
+/// One block of additional data of an EnDat 2.2 answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Info {
     /// WRN: at least one warning.
@@ -188,7 +188,7 @@ impl Info {
         }
     }
 
-    /// The CRC of this information.
+    /// The CRC of this block.
     pub fn crc(&self) -> u8 {
         self.fields().crc()
     }
@@ -214,11 +214,11 @@ pub enum Field {
     Crc(u32),
     /// Bit of the MRS code, address or port, 7 = first sent.
     Address(u32),
-    /// Bit of the parameter, or of the content of an additional information, 15 = first sent.
+    /// Bit of the parameter, or of the content of a block of additional data, 15 = first sent.
     Data(u32),
     /// Bit of a block address, 7 = first sent.
     Block(u32),
-    /// LOW that begins an additional information.
+    /// LOW that begins a block of additional data.
     InfoLow,
     /// Collective warning WRN.
     Warning,
@@ -226,7 +226,7 @@ pub enum Field {
     Reference,
     /// Memory request in progress.
     Busy,
-    /// Bit of the code of an additional information, 4 = first sent.
+    /// Bit of the code of a block of additional data, 4 = first sent.
     Code(u32),
     /// Beyond the answer.
     None,
@@ -258,7 +258,7 @@ pub fn parameter_field(index: u32) -> Field {
     }
 }
 
-/// The field that bit `index` of an additional information belongs to.
+/// The field that bit `index` of a block of additional data belongs to.
 pub fn info_field(index: u32) -> Field {
     match index {
         0 => Field::InfoLow,

@@ -79,7 +79,7 @@ fn cycle_time_measures_the_shortest_frames_that_there_are() {
 /// 25 bits; pulses and microseconds as they follow from the interface description. How long the clock is parked before a supplement is
 /// the receiver's own choice: the answer has come in, and then 2 us.
 #[test]
-fn cycle_time_measures_frames_with_informations_and_a_supplement() {
+fn cycle_time_measures_frames_with_additional_data_and_a_supplement() {
     let text = good(&["bench", "cycle-time", "--json", "--tm-ns", "1250"]);
     let report: serde_json::Value = serde_json::from_str(&text).unwrap();
     let came_in_us = report["round_trip_us"].as_f64().unwrap() + 0.05;

@@ -391,7 +391,7 @@ fn sigrok_decodes_every_frame_to_the_encoders_position() {
     for (scenario, bits) in [
         ("paper", 29),
         ("real-1", 37),
-        ("additional-information", 29),
+        ("additional-data", 29),
         // DATA changes behind the falling edge there.
         ("sixteen-megahertz", 25),
     ] {
@@ -415,12 +415,9 @@ fn sigrok_decodes_every_frame_to_the_encoders_position() {
             .collect();
         assert!(!sent.is_empty());
         assert_eq!(read, sent, "{scenario}: {told}");
-        assert!(
-            told.contains("111000 send position with additional information")
-                || scenario != "paper"
-        );
+        assert!(told.contains("111000 send position with additional data") || scenario != "paper");
         assert!(!told.contains("wrong") && !told.contains("short"), "{told}");
-        if scenario == "additional-information" {
+        if scenario == "additional-data" {
             // The temperature, and the supplement that selected it.
             assert_eq!(told.matches("0C 0B8A").count(), 3, "{told}");
             assert!(told.contains("0x4C 0x0000"), "{told}");

@@ -194,7 +194,7 @@ const DRAWINGS: [(&str, &str, &[&str]); 6] = [
     (
         "supplement.svg",
         include_str!("../docs/supplement.svg"),
-        &["additional-information", "--frame", "5"],
+        &["additional-data", "--frame", "5"],
     ),
     (
         "parameter.svg",

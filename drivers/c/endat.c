@@ -300,7 +300,7 @@ static bool fits_crc(uint64_t position, uint32_t high)
     return ((position >> width) == 0u) && ((crc ^ CRC5_ONES) == ENDAT_MAP_GET(ENDAT_MAP_RESULT_POSITION_HIGH_CRC, high));
 }
 
-/* The two informations have the same fields. */
+/* Additional data 1 and 2 have the same fields. */
 static endat_info info_of(uint32_t word)
 {
     endat_info info;

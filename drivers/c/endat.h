@@ -105,14 +105,14 @@ endat_error endat_write_checked(const endat_card *card, uint32_t word_address, u
 
 /* ---- Positions ------------------------------------------------------------------------------------------------------------------ */
 
-/** An additional information that came with the frame of a result. */
+/** A block of additional data that came with the frame of a result. */
 typedef struct {
     bool came;           /**< The frame brought it. */
     bool good;           /**< Its CRC is right; all that follows is 0 otherwise. */
     bool busy;           /**< The encoder is busy with a request. */
     bool reference_mark; /**< RM. */
     bool warning;        /**< WRN. */
-    uint8_t number;      /**< I4..I0: which information it is; bits 3..0 of its MRS code. */
+    uint8_t number;      /**< I4..I0: which one it is; bits 3..0 of its MRS code. */
     uint16_t content;    /**< What it says. */
 } endat_info;
 
@@ -130,7 +130,7 @@ typedef struct {
     bool fresh;               /**< The last result brought it: test this, not the cause. */
     bool stale;               /**< A trigger has come since this result. */
     bool fits;                /**< The position fits the CRC that the encoder sent with it; if not, it is neither valid nor fresh. */
-    endat_info info[2];       /**< Additional informations 1 and 2 of this frame; none on cards without requests. */
+    endat_info info[2];       /**< Additional data 1 and 2 of this frame; none on cards without requests. */
 } endat_result;
 
 /** Results of all channels, of one moment. */
@@ -226,7 +226,7 @@ const char *endat_plate_text(uint32_t number);
 /** What came back. */
 typedef struct {
     uint8_t refusal;  /**< Why it was not fulfilled, 0 = it was: endat_refusal_text(). */
-    uint8_t address;  /**< Echo of MRS code or address, or WRN, RM, Busy, I4..I0 of information 1. */
+    uint8_t address;  /**< Echo of MRS code or address, or WRN, RM, Busy, I4..I0 of additional data 1. */
     uint16_t data;    /**< Data. */
     uint64_t bits;    /**< The whole answer. */
     uint32_t time_us; /**< How long it took; whole milliseconds from 60 ms on. */
@@ -266,7 +266,7 @@ endat_error endat_write_parameter(const endat_card *card, uint32_t channel, uint
 const char *endat_refusal_text(uint32_t refusal);
 
 /**
- * Additional informations that are selected in turn, one in each triggered frame.
+ * Additional data that are selected in turn, one code in each triggered frame.
  * @param mrs their codes, 0x40..0x4E and 0x50..0x5E.
  * @param count 0 to 8; with 0 nothing more is selected, and what is selected goes on until a request with 0x4F or 0x5F.
  */
@@ -332,7 +332,7 @@ typedef struct {
 
 /** What a trigger brought. */
 typedef struct {
-    uint8_t type;        /**< 1; 2 = with informations; 3 = a position of a running clock, of one channel. */
+    uint8_t type;        /**< 1; 2 = with additional data; 3 = a position of a running clock, of one channel. */
     uint8_t first;       /**< Channel of the first sample. */
     uint8_t count;       /**< Samples. */
     uint8_t lost;        /**< Sets lost before this one; 255 = 255 or more. */

@@ -19,7 +19,7 @@
 #define ENDAT_MAP_BYTES 0x2000u
 /* What card.id reads as */
 #define ENDAT_MAP_ID 0x456E4474u
-/* Words of a result; on cards with requests its informations follow */
+/* Words of a result; on cards with requests its additional data follow */
 #define ENDAT_MAP_RESULT_WORDS 6u
 #define ENDAT_MAP_RESULT_WORDS_WITH_INFOS 8u
 
@@ -102,9 +102,9 @@
 /* t_format: T-format: bit n for channel n */
 #define ENDAT_MAP_CARD_PROTOCOLS_T_FORMAT_SHIFT 0u
 #define ENDAT_MAP_CARD_PROTOCOLS_T_FORMAT_MASK 0x000000FFu
-/* stream_informations: 1: sets of the stream have the additional informations */
-#define ENDAT_MAP_CARD_PROTOCOLS_STREAM_INFORMATIONS_SHIFT 8u
-#define ENDAT_MAP_CARD_PROTOCOLS_STREAM_INFORMATIONS_MASK 0x00000100u
+/* stream_additional_data: 1: sets of the stream have the additional data */
+#define ENDAT_MAP_CARD_PROTOCOLS_STREAM_ADDITIONAL_DATA_SHIFT 8u
+#define ENDAT_MAP_CARD_PROTOCOLS_STREAM_ADDITIONAL_DATA_MASK 0x00000100u
 /* features: Parts that have no place in capabilities.features */
 #define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_SHIFT 16u
 #define ENDAT_MAP_CARD_PROTOCOLS_FEATURES_MASK 0xFFFF0000u
@@ -562,7 +562,7 @@
 #define ENDAT_MAP_CONFIG_FRAME_COMMAND_SHIFT 24u
 #define ENDAT_MAP_CONFIG_FRAME_COMMAND_MASK 0x3F000000u
 #define ENDAT_MAP_CONFIG_FRAME_COMMAND_SEND_POSITION 7u /* 000111 send position (EnDat 2.1) */
-#define ENDAT_MAP_CONFIG_FRAME_COMMAND_SEND_POSITION_ADD_INFO 56u /* 111000 send position with additional information (EnDat 2.2) */
+#define ENDAT_MAP_CONFIG_FRAME_COMMAND_SEND_POSITION_ADD_INFO 56u /* 111000 send position with additional data (EnDat 2.2) */
 /* ignore_register: 1: trigger_now is not */
 #define ENDAT_MAP_CONFIG_FRAME_IGNORE_REGISTER_SHIFT 30u
 #define ENDAT_MAP_CONFIG_FRAME_IGNORE_REGISTER_MASK 0x40000000u
@@ -634,7 +634,7 @@
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_DATA_NOT_FALLING 7u /* data not falling after the frame */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_TRIGGER_OVERRUN 8u /* trigger overrun */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_UNKNOWN_COMMAND 9u /* unknown mode command */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_INFO_MISSING 10u /* additional information missing */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_INFO_MISSING 10u /* additional data missing */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_NO_ENCODER 11u /* no encoder */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_STUCK_HIGH 12u /* data stuck high */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_STUCK_LOW 13u /* data stuck low */
@@ -730,7 +730,7 @@
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_PARALLEL_CRC 0x100u /* parallel CRC */
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_TAIL_LOW 0x200u /* data not high after the frame */
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_UNKNOWN_COMMAND 0x400u /* unknown mode command */
-#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_INFO_MISSING 0x800u /* additional information missing */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_INFO_MISSING 0x800u /* additional data missing */
 
 /* ro: Age and recovery time. */
 #define ENDAT_MAP_RESULT_AGE_RECOVERY_WORD(channel) (0x185u + 8u * (channel))
@@ -748,13 +748,13 @@
 #define ENDAT_MAP_RESULT_AGE_RECOVERY_STALE_SHIFT 30u
 #define ENDAT_MAP_RESULT_AGE_RECOVERY_STALE_MASK 0x40000000u
 
-/* ro: Additional information 1 of the frame of this result. */
+/* ro: Additional data 1 of the frame of this result. */
 #define ENDAT_MAP_RESULT_INFO_1_WORD(channel) (0x186u + 8u * (channel))
 #define ENDAT_MAP_RESULT_INFO_1_BYTE(channel) (0x0618u + 32u * (channel))
 /* content: What it says; 0 unless good */
 #define ENDAT_MAP_RESULT_INFO_1_CONTENT_SHIFT 0u
 #define ENDAT_MAP_RESULT_INFO_1_CONTENT_MASK 0x0000FFFFu
-/* sign: I4..I0: which one it is; I4 = 0 information 1, 1 information 2 */
+/* sign: I4..I0: which one it is; I4 = 0 additional data 1, 1 additional data 2 */
 #define ENDAT_MAP_RESULT_INFO_1_SIGN_SHIFT 16u
 #define ENDAT_MAP_RESULT_INFO_1_SIGN_MASK 0x001F0000u
 /* busy: The encoder is busy with a request */
@@ -776,13 +776,13 @@
 #define ENDAT_MAP_RESULT_INFO_1_CRC_SHIFT 26u
 #define ENDAT_MAP_RESULT_INFO_1_CRC_MASK 0x7C000000u
 
-/* ro: Additional information 2 of the frame of this result. */
+/* ro: Additional data 2 of the frame of this result. */
 #define ENDAT_MAP_RESULT_INFO_2_WORD(channel) (0x187u + 8u * (channel))
 #define ENDAT_MAP_RESULT_INFO_2_BYTE(channel) (0x061Cu + 32u * (channel))
 /* content: What it says; 0 unless good */
 #define ENDAT_MAP_RESULT_INFO_2_CONTENT_SHIFT 0u
 #define ENDAT_MAP_RESULT_INFO_2_CONTENT_MASK 0x0000FFFFu
-/* sign: I4..I0: which one it is; I4 = 0 information 1, 1 information 2 */
+/* sign: I4..I0: which one it is; I4 = 0 additional data 1, 1 additional data 2 */
 #define ENDAT_MAP_RESULT_INFO_2_SIGN_SHIFT 16u
 #define ENDAT_MAP_RESULT_INFO_2_SIGN_MASK 0x001F0000u
 /* busy: The encoder is busy with a request */
@@ -1165,8 +1165,8 @@
 #define ENDAT_MAP_SERVICE_REQUEST_COMMAND_RECEIVE_RESET 42u /* 101010 receive reset */
 #define ENDAT_MAP_SERVICE_REQUEST_COMMAND_SEND_TEST_VALUES 21u /* 010101 send test values */
 #define ENDAT_MAP_SERVICE_REQUEST_COMMAND_RECEIVE_TEST_COMMAND 49u /* 110001 receive test command */
-#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_SEND_POSITION_ADD_INFO 56u /* 111000 send position with additional information (EnDat 2.2) */
-#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_POSITION_SELECT_MEMORY 9u /* 001001 send position, then selection of memory area or additional information */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_SEND_POSITION_ADD_INFO 56u /* 111000 send position with additional data (EnDat 2.2) */
+#define ENDAT_MAP_SERVICE_REQUEST_COMMAND_POSITION_SELECT_MEMORY 9u /* 001001 send position, then selection of memory area or additional data */
 #define ENDAT_MAP_SERVICE_REQUEST_COMMAND_POSITION_RECEIVE_PARAMETER 27u /* 011011 send position, then receive parameter */
 #define ENDAT_MAP_SERVICE_REQUEST_COMMAND_POSITION_SEND_PARAMETER 36u /* 100100 send position, then send parameter */
 #define ENDAT_MAP_SERVICE_REQUEST_COMMAND_POSITION_ERROR_RESET 45u /* 101101 send position, then receive error reset */
@@ -1199,7 +1199,7 @@
 /* ro: Answer to the last request; bits 31..0 of a longer one. */
 #define ENDAT_MAP_SERVICE_ANSWER_WORD(channel) (0x402u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_ANSWER_BYTE(channel) (0x1008u + 512u * (channel))
-/* data: Data, or content of additional information 1 */
+/* data: Data, or content of additional data 1 */
 #define ENDAT_MAP_SERVICE_ANSWER_DATA_SHIFT 0u
 #define ENDAT_MAP_SERVICE_ANSWER_DATA_MASK 0x0000FFFFu
 /* address: Echo of MRS code, address or port; or WRN, RM, Busy, I4..I0 */
@@ -1468,16 +1468,16 @@
 /* ro: WRN, RM, Busy, I4..I0 as they came last with a right CRC. */
 #define ENDAT_MAP_SERVICE_INFO_STATUS_WORD(channel) (0x415u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_INFO_STATUS_BYTE(channel) (0x1054u + 512u * (channel))
-/* info_1: Of additional information 1 */
+/* info_1: Of additional data 1 */
 #define ENDAT_MAP_SERVICE_INFO_STATUS_INFO_1_SHIFT 0u
 #define ENDAT_MAP_SERVICE_INFO_STATUS_INFO_1_MASK 0x000000FFu
-/* crc_1: CRC of the last additional information 1 wrong: nothing of it was taken */
+/* crc_1: CRC of the last additional data 1 wrong: nothing of it was taken */
 #define ENDAT_MAP_SERVICE_INFO_STATUS_CRC_1_SHIFT 8u
 #define ENDAT_MAP_SERVICE_INFO_STATUS_CRC_1_MASK 0x00000100u
-/* info_2: Of additional information 2 */
+/* info_2: Of additional data 2 */
 #define ENDAT_MAP_SERVICE_INFO_STATUS_INFO_2_SHIFT 16u
 #define ENDAT_MAP_SERVICE_INFO_STATUS_INFO_2_MASK 0x00FF0000u
-/* crc_2: CRC of the last additional information 2 wrong: nothing of it was taken */
+/* crc_2: CRC of the last additional data 2 wrong: nothing of it was taken */
 #define ENDAT_MAP_SERVICE_INFO_STATUS_CRC_2_SHIFT 24u
 #define ENDAT_MAP_SERVICE_INFO_STATUS_CRC_2_MASK 0x01000000u
 
@@ -1557,7 +1557,7 @@
 #define ENDAT_MAP_SERVICE_LIST_7_MRS_SHIFT 0u
 #define ENDAT_MAP_SERVICE_LIST_7_MRS_MASK 0x000000FFu
 
-/* ro: What the additional information of that code said last. */
+/* ro: What the additional data of that code said last. */
 #define ENDAT_MAP_SERVICE_SLOT_0_WORD(channel) (0x420u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_SLOT_0_BYTE(channel) (0x1080u + 512u * (channel))
 /* value: Content */
@@ -1567,7 +1567,7 @@
 #define ENDAT_MAP_SERVICE_SLOT_0_SEQUENCE_SHIFT 16u
 #define ENDAT_MAP_SERVICE_SLOT_0_SEQUENCE_MASK 0xFFFF0000u
 
-/* ro: What the additional information of that code said last. */
+/* ro: What the additional data of that code said last. */
 #define ENDAT_MAP_SERVICE_SLOT_1_WORD(channel) (0x421u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_SLOT_1_BYTE(channel) (0x1084u + 512u * (channel))
 /* value: Content */
@@ -1577,7 +1577,7 @@
 #define ENDAT_MAP_SERVICE_SLOT_1_SEQUENCE_SHIFT 16u
 #define ENDAT_MAP_SERVICE_SLOT_1_SEQUENCE_MASK 0xFFFF0000u
 
-/* ro: What the additional information of that code said last. */
+/* ro: What the additional data of that code said last. */
 #define ENDAT_MAP_SERVICE_SLOT_2_WORD(channel) (0x422u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_SLOT_2_BYTE(channel) (0x1088u + 512u * (channel))
 /* value: Content */
@@ -1587,7 +1587,7 @@
 #define ENDAT_MAP_SERVICE_SLOT_2_SEQUENCE_SHIFT 16u
 #define ENDAT_MAP_SERVICE_SLOT_2_SEQUENCE_MASK 0xFFFF0000u
 
-/* ro: What the additional information of that code said last. */
+/* ro: What the additional data of that code said last. */
 #define ENDAT_MAP_SERVICE_SLOT_3_WORD(channel) (0x423u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_SLOT_3_BYTE(channel) (0x108Cu + 512u * (channel))
 /* value: Content */
@@ -1597,7 +1597,7 @@
 #define ENDAT_MAP_SERVICE_SLOT_3_SEQUENCE_SHIFT 16u
 #define ENDAT_MAP_SERVICE_SLOT_3_SEQUENCE_MASK 0xFFFF0000u
 
-/* ro: What the additional information of that code said last. */
+/* ro: What the additional data of that code said last. */
 #define ENDAT_MAP_SERVICE_SLOT_4_WORD(channel) (0x424u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_SLOT_4_BYTE(channel) (0x1090u + 512u * (channel))
 /* value: Content */
@@ -1607,7 +1607,7 @@
 #define ENDAT_MAP_SERVICE_SLOT_4_SEQUENCE_SHIFT 16u
 #define ENDAT_MAP_SERVICE_SLOT_4_SEQUENCE_MASK 0xFFFF0000u
 
-/* ro: What the additional information of that code said last. */
+/* ro: What the additional data of that code said last. */
 #define ENDAT_MAP_SERVICE_SLOT_5_WORD(channel) (0x425u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_SLOT_5_BYTE(channel) (0x1094u + 512u * (channel))
 /* value: Content */
@@ -1617,7 +1617,7 @@
 #define ENDAT_MAP_SERVICE_SLOT_5_SEQUENCE_SHIFT 16u
 #define ENDAT_MAP_SERVICE_SLOT_5_SEQUENCE_MASK 0xFFFF0000u
 
-/* ro: What the additional information of that code said last. */
+/* ro: What the additional data of that code said last. */
 #define ENDAT_MAP_SERVICE_SLOT_6_WORD(channel) (0x426u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_SLOT_6_BYTE(channel) (0x1098u + 512u * (channel))
 /* value: Content */
@@ -1627,7 +1627,7 @@
 #define ENDAT_MAP_SERVICE_SLOT_6_SEQUENCE_SHIFT 16u
 #define ENDAT_MAP_SERVICE_SLOT_6_SEQUENCE_MASK 0xFFFF0000u
 
-/* ro: What the additional information of that code said last. */
+/* ro: What the additional data of that code said last. */
 #define ENDAT_MAP_SERVICE_SLOT_7_WORD(channel) (0x427u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_SLOT_7_BYTE(channel) (0x109Cu + 512u * (channel))
 /* value: Content */
@@ -1794,7 +1794,7 @@
 #define ENDAT_MAP_SERVICE_FRAMES_POSITION_2_FRAMES_SHIFT 0u
 #define ENDAT_MAP_SERVICE_FRAMES_POSITION_2_FRAMES_MASK 0xFFFFFFFFu
 
-/* ro: Additional informations with a wrong CRC. */
+/* ro: Blocks of additional data with a wrong CRC. */
 #define ENDAT_MAP_SERVICE_BAD_INFOS_WORD(channel) (0x443u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_BAD_INFOS_BYTE(channel) (0x110Cu + 512u * (channel))
 /* count: Since clear, wrapping */
@@ -1971,7 +1971,7 @@
 #define ENDAT_MAP_SERVICE_TCAL_IS_READ_SHIFT 16u
 #define ENDAT_MAP_SERVICE_TCAL_IS_READ_MASK 0x00010000u
 
-/* ro: EnDat 2.2 word 0: supported additional information 1 */
+/* ro: EnDat 2.2 word 0: supported additional data 1 */
 #define ENDAT_MAP_SERVICE_INFOS_1_WORD(channel) (0x455u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_INFOS_1_BYTE(channel) (0x1154u + 512u * (channel))
 /* value: Word of the encoder */
@@ -1981,7 +1981,7 @@
 #define ENDAT_MAP_SERVICE_INFOS_1_IS_READ_SHIFT 16u
 #define ENDAT_MAP_SERVICE_INFOS_1_IS_READ_MASK 0x00010000u
 
-/* ro: EnDat 2.2 word 1: supported additional information 2 */
+/* ro: EnDat 2.2 word 1: supported additional data 2 */
 #define ENDAT_MAP_SERVICE_INFOS_2_WORD(channel) (0x456u + 128u * (channel))
 #define ENDAT_MAP_SERVICE_INFOS_2_BYTE(channel) (0x1158u + 512u * (channel))
 /* value: Word of the encoder */

@@ -1,6 +1,6 @@
 /**
  * @file endat_service.c
- * The service of a channel: state of the encoder, requests, additional informations.
+ * The service of a channel: state of the encoder, requests, additional data.
  */
 #include "endat.h"
 #include "endat_internal.h"
@@ -310,7 +310,7 @@ endat_error endat_select_infos(const endat_card *card, uint32_t channel, const u
     uint32_t n;
 
     for (n = 0u; (n < count) && (count <= ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MAX); n++) {
-        /* Bits 7..5 are those of an information's selection. */
+        /* Bits 7..5 are those that select additional data. */
         if ((error == ENDAT_OK) && ((mrs[n] & 0xE0u) != 0x40u)) {
             error = ENDAT_ERROR_ARGUMENT;
         }

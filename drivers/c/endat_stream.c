@@ -7,7 +7,7 @@
 #include <stddef.h>
 
 #define CRC16_POLYNOMIAL 0x1021u
-/** Bytes before the samples, of a sample, of its informations, and of the check sum. */
+/** Bytes before the samples, of a sample, of its additional data, and of the check sum. */
 #define HEAD_BYTES 8u
 #define SAMPLE_BYTES 8u
 #define INFO_BYTES 8u

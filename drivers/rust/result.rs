@@ -10,38 +10,62 @@ pub const RESULT_WORDS: usize = RESULT.registers.len();
 /// Words of the longest burst that reads all results.
 pub const MOMENT_WORDS: usize = BLOCK_STRIDE as usize * CHANNELS_MAX;
 
-/// Additional data of the frame that brought a result.
+/// A block of additional data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AdditionalData {
     /// The frame brought it.
     pub came: bool,
-    /// Its CRC is right; all that follows is 0 otherwise.
+    /// Its CRC is right; content and status are 0 otherwise.
     pub good: bool,
-    /// The encoder is busy with a request.
-    pub busy: bool,
-    /// RM: the reference mark has been passed.
-    pub reference_mark: bool,
-    /// WRN: one of the encoder's warnings is set.
-    pub warning: bool,
-    /// I4..I0: which it is; the low bits of the MRS code that selects it.
-    pub number: u8,
+    /// The frame was not over when its set was closed: it may have come since. Never in a result.
+    pub due: bool,
+    /// WRN, RM, Busy, I4..I0.
+    pub status: u8,
     /// What it says.
     pub content: u16,
 }
 
 impl AdditionalData {
-    /// Out of its word; 1 and 2 have the same fields.
-    fn new(word: u32) -> Self {
-        let is = |field: &Field| field.of(word) != 0;
+    /// Out of 24 bits: status, content.
+    pub const fn new(word: u32, came: bool, good: bool, due: bool) -> Self {
         Self {
-            came: is(field!(RESULT.info_1.came)),
-            good: is(field!(RESULT.info_1.good)),
-            busy: is(field!(RESULT.info_1.busy)),
-            reference_mark: is(field!(RESULT.info_1.reference_mark)),
-            warning: is(field!(RESULT.info_1.warning)),
-            number: field!(RESULT.info_1.sign).of(word) as u8,
-            content: field!(RESULT.info_1.content).of(word) as u16,
+            came,
+            good,
+            due,
+            status: (word >> u16::BITS) as u8,
+            content: word as u16,
         }
+    }
+
+    /// Out of its word of a result; 1 and 2 have the same fields.
+    fn of_word(word: u32) -> Self {
+        let came = field!(RESULT.info_1.came).of(word) != 0;
+        Self::new(word, came, field!(RESULT.info_1.good).of(word) != 0, false)
+    }
+
+    /// What it says, if it can be believed.
+    pub fn good(self) -> Option<Self> {
+        self.good.then_some(self)
+    }
+
+    /// Which it is: I4..I0, the low bits of the MRS code that selects it.
+    pub const fn number(self) -> u8 {
+        field!(RESULT.info_1.sign).of((self.status as u32) << u16::BITS) as u8
+    }
+
+    /// The encoder is busy with a request.
+    pub const fn is_busy(self) -> bool {
+        field!(RESULT.info_1.busy).of((self.status as u32) << u16::BITS) != 0
+    }
+
+    /// RM: the reference mark has been passed.
+    pub const fn has_reference_mark(self) -> bool {
+        field!(RESULT.info_1.reference_mark).of((self.status as u32) << u16::BITS) != 0
+    }
+
+    /// WRN: one of the encoder's warnings is set.
+    pub const fn has_warning(self) -> bool {
+        field!(RESULT.info_1.warning).of((self.status as u32) << u16::BITS) != 0
     }
 }
 
@@ -70,10 +94,12 @@ pub struct Reading {
     pub fresh: bool,
     /// A trigger has come since this result.
     pub stale: bool,
-    /// The position fits the CRC that the encoder sent with it; if not, it is neither valid nor fresh.
+    /// The position as it was read fits the CRC that the encoder sent with it, or there is nothing to check.
     pub fits: bool,
-    /// Additional data 1 and 2 of this frame; none came on a card without requests.
-    pub additional_data: [AdditionalData; 2],
+    /// CRC of the last frame, as received and as computed.
+    pub crc: [u8; 2],
+    /// Additional data 1 and 2 of the same frame; none came on a card without requests.
+    pub infos: [AdditionalData; 2],
 }
 
 impl Reading {
@@ -88,7 +114,7 @@ impl Reading {
         let width_bits = field!(RESULT.position_high.width).of(high);
         let delay_high = field!(RESULT.age_recovery.delay_high).of(age);
         let delay_low = field!(RESULT.evidence.delay_cycles);
-        let mut reading = Self {
+        Self {
             position,
             width_bits,
             timestamp,
@@ -101,14 +127,36 @@ impl Reading {
             fresh: is(status, field!(RESULT.status.fresh)),
             stale: is(age, field!(RESULT.age_recovery.stale)),
             fits: fits(position, high),
-            additional_data: [info_1, info_2].map(AdditionalData::new),
-        };
-        if !reading.fits {
-            reading.valid = false;
-            reading.fresh = false;
-            reading.cause = endat::UPSET as u8;
+            crc: [
+                field!(RESULT.evidence.crc_received).of(evidence) as u8,
+                field!(RESULT.evidence.crc_computed).of(evidence) as u8,
+            ],
+            infos: [info_1, info_2].map(AdditionalData::of_word),
         }
-        reading
+    }
+
+    /// The same if the position fits its CRC; otherwise without one: it was spoilt behind the check in the card.
+    pub fn checked(self) -> Self {
+        match self.fits {
+            true => self,
+            false => Self {
+                valid: false,
+                fresh: false,
+                cause: endat::UPSET as u8,
+                ..self
+            },
+        }
+    }
+
+    /// There has been a result since reset.
+    pub const fn has_come(&self) -> bool {
+        self.sequence != 0 || self.valid || self.cause != 0
+    }
+
+    /// Name of the primary cause.
+    pub fn cause_name(&self) -> &'static str {
+        let cause = causes::CARD.get(usize::from(self.cause));
+        cause.map_or("unknown", |cause| cause.name)
     }
 
     /// What the cause means.
@@ -167,7 +215,7 @@ impl Moment {
         let mut results = [Reading::default(); CHANNELS_MAX];
         let own = words.chunks_exact(usize::from(BLOCK_STRIDE));
         for (result, words) in results.iter_mut().zip(own).take(channels) {
-            *result = Reading::new(&words[..each]);
+            *result = Reading::new(&words[..each]).checked();
         }
         Self { results, channels }
     }

@@ -185,7 +185,7 @@ fn ports(times: FixedTimes, system_hz: u64) -> Result<Vec<Subject>, GenError> {
         )?,
         Subject::new(
             "channel_requests",
-            "position channel with all mode commands and additional information, without service",
+            "position channel with all mode commands and additional data, without service",
             Channel::with(times, part(|f| f.requests = true)),
         )?,
         Subject::new(

@@ -155,7 +155,7 @@ struct Figures {
 pub struct CycleTime {
     /// Mode command, six binary digits.
     pub command: String,
-    /// Additional informations behind the position.
+    /// Additional data behind the position.
     pub infos: u32,
     /// Width of the position.
     pub position_bits: u32,
@@ -375,7 +375,7 @@ pub fn cycle_times(options: CycleTimeOptions) -> Result<CycleTimes, GenError> {
 }
 
 impl CycleTime {
-    /// Command and additional informations.
+    /// Command and additional data.
     pub fn kind(&self) -> String {
         match self.infos {
             0 => self.command.clone(),

@@ -30,7 +30,7 @@ const ELEMENTS: &[Element] = &[
     Element(CARD, &["bridge"], "UART link", "no answer, bytes that nobody asked for; of the address: nothing"),
     Element(CARD, &["core.bank.ring", "core.registers_0.ring", "core.registers_1.ring"], "configuration", "ring with parity, told in every result"),
     Element(CARD, &["core.bank", "core.registers"], "register bank, results for the host", "CRC5 of the position, stale"),
-    Element(CARD, &["core.whole"], "results with informations", "CRC5 of the position"),
+    Element(CARD, &["core.whole"], "results with additional data", "CRC5 of the position"),
     Element(CARD, &["core.set", "core.stream"], "stream", "parity of each set, CRC-16 of each frame, count of triggers"),
     Element(CARD, &["core.service", "core.port"], "services", "answer of the encoder, its state"),
     Element(CARD, &["core.trigger"], "trigger", "count of triggers"),

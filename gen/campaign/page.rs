@@ -20,7 +20,7 @@ Tables are per mille of all cases. Each case is in one class, the worst that was
 | masked | every result is as without the mishap |
 | detected | a cause is told, or a position that is not fresh |
 | lost | a trigger has no result, and no cause says so |
-| silent_other | the position is right, but time stamp, additional information or answer are wrong, without a cause |
+| silent_other | the position is right, but time stamp, additional data or answer are wrong, without a cause |
 | silent | a wrong position is told as good |
 | hang | busy for ever, or not good in 8 triggers |
 

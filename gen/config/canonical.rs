@@ -176,7 +176,7 @@ fn of_stream(stream: &StreamParts) -> Vec<String> {
     let StreamParts {
         fifo_bytes,
         start,
-        informations,
+        additional_data,
     } = stream;
     if *fifo_bytes == 0 {
         return vec![];
@@ -185,8 +185,8 @@ fn of_stream(stream: &StreamParts) -> Vec<String> {
         "stream fifo_bytes {fifo_bytes} start {}",
         start_name(*start)
     )];
-    if *informations {
-        lines.push("stream informations true".into());
+    if *additional_data {
+        lines.push("stream additional_data true".into());
     }
     lines
 }

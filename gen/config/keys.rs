@@ -42,7 +42,7 @@ const CABLE_M: u64 = 100;
 pub const T_FORMAT_FILTER_NS: u64 = 50;
 /// How many samples of a bit there may be.
 pub const SAMPLE_COUNTS: [u64; 2] = [1, 3];
-/// MRS codes that select an additional information.
+/// MRS codes that select additional data.
 pub static INFOS_RANGES: [RangeInclusive<u64>; 2] = [0x40..=0x4E, 0x50..=0x5E];
 
 fn plain(numbers: impl IntoIterator<Item = u64>) -> Vec<Choice> {
@@ -140,7 +140,7 @@ keys! {
 
     SERVICE_PARTS = Key::texts(&["service"], "parts", "what each channel does besides triggered positions; what is left out takes no logic")
         .one_of(|| parts(&SERVICE)).first_leads().of(CARD_FORM);
-    INFOS = Key::numbers(&["service"], "infos", "additional informations that are selected in turn after reset, by MRS code")
+    INFOS = Key::numbers(&["service"], "infos", "additional data that are selected in turn after reset, by MRS code")
         .note("as `[0x4C, 0x59]`; the host can change them ([programming.md](programming.md))")
         .items(&INFOS_RANGES).at_most(LIST).takes("requests").of(CARD_FORM);
 
@@ -174,8 +174,8 @@ keys! {
         .one_of(|| plain([0].into_iter().chain(BUFFER_BYTES))).of(CARD_FORM).usual(Usual::Number(0));
     STREAM_START = Key::text(&["stream"], "start", "what the stream does after reset")
         .note("the host can change it").one_of(starts).of(CARD_FORM).usual(Usual::Word("off"));
-    INFORMATIONS = Key::boolean(&["stream"], "informations", "whether sets have the additional informations of their frames")
-        .note("8 bytes more for each channel; takes `\"requests\"` in `service.parts` ([stream.md](stream.md#sets-with-informations))")
+    ADDITIONAL_DATA = Key::boolean(&["stream"], "additional_data", "whether sets have the additional data of their frames")
+        .note("8 bytes more for each channel; takes `\"requests\"` in `service.parts` ([stream.md](stream.md#sets-with-additional-data))")
         .of(CARD_FORM).usual(Usual::Boolean(false));
 
     INITIAL_VALUES = Key::boolean(&["device"], "initial_values", "whether the device gives registers and RAM start values ([bus.md](bus.md))")

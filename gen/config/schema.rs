@@ -285,8 +285,8 @@ impl<'s, 't> Written<'s, 't> {
             (Section::Stream, &keys::FIFO_BYTES, line(&stream.fifo_bytes)),
             (
                 Section::Stream,
-                &keys::INFORMATIONS,
-                line(&stream.informations),
+                &keys::ADDITIONAL_DATA,
+                line(&stream.additional_data),
             ),
             (Section::Stream, &keys::STREAM_START, line(&stream.start)),
         ]

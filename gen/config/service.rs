@@ -22,7 +22,7 @@ pub fn read(table: &Table<'_, '_>) -> Option<ServiceParts> {
     check_leader(table, &SERVICE_PARTS, parts.requests, &named)?;
     let infos = infos?;
     if let (Some(first), false) = (infos.first(), parts.requests) {
-        let text = "a card without requests has no list of additional informations; add \"requests\" to service.parts";
+        let text = "a card without requests has no list of additional data; add \"requests\" to service.parts";
         table.complain(
             first.line,
             INFOS.name,
@@ -37,9 +37,9 @@ pub fn read(table: &Table<'_, '_>) -> Option<ServiceParts> {
     Some(parts)
 }
 
-/// Additional informations that are selected from the start on; `None` for what cannot be.
+/// Additional data that are selected from the start on; `None` for what cannot be.
 fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
-    const CODES: &str = "no additional information; use MRS codes 0x40..0x4E and 0x50..0x5E";
+    const CODES: &str = "no additional data; use MRS codes 0x40..0x4E and 0x50..0x5E";
     let Some(infos) = table.integers(&INFOS, CODES) else {
         return if table.has(INFOS.name) {
             None
@@ -51,7 +51,7 @@ fn read_infos(table: &Table<'_, '_>) -> Option<Vec<At<u64>>> {
         let shown = format!("0x{:02X}", info.value);
         let text = match info.value {
             _ if index >= LIST => {
-                format!("more than {LIST} additional informations; leave some out")
+                format!("more than {LIST} codes of additional data; leave some out")
             }
             code if infos[..index].iter().any(|i| i.value == code) => {
                 "stands twice; remove one".into()

@@ -1,6 +1,6 @@
 //! The table `[stream]`.
 
-use super::keys::{FIFO_BYTES, INFORMATIONS, STREAM_START};
+use super::keys::{ADDITIONAL_DATA, FIFO_BYTES, STREAM_START};
 use super::reader::{At, Table};
 use super::words;
 use endat_hdl::config::{StreamParts, StreamStart};
@@ -9,7 +9,7 @@ use endat_hdl::config::{StreamParts, StreamStart};
 pub struct Written {
     pub fifo_bytes: Option<At<u64>>,
     pub start: Option<At<String>>,
-    pub informations: Option<At<bool>>,
+    pub additional_data: Option<At<bool>>,
     /// As far as it could be read.
     pub parts: StreamParts,
 }
@@ -17,14 +17,14 @@ pub struct Written {
 /// Reads the table; everything in it may be left out.
 pub fn read(table: &Table<'_, '_>) -> Written {
     let fifo_bytes = table.integer(&FIFO_BYTES, &FIFO_BYTES.limits(None));
-    let informations = table.boolean(&INFORMATIONS);
+    let additional_data = table.boolean(&ADDITIONAL_DATA);
     let start = table.string(&STREAM_START);
     let mut parts = StreamParts {
         fifo_bytes: fifo_bytes
             .as_ref()
             .map_or(FIFO_BYTES.usual_number(), |b| b.value),
         start: StreamStart::Off,
-        informations: informations.as_ref().is_some_and(|i| i.value),
+        additional_data: additional_data.as_ref().is_some_and(|i| i.value),
     };
     if let Some(word) = &start {
         match words::start(&word.value) {
@@ -43,7 +43,7 @@ pub fn read(table: &Table<'_, '_>) -> Written {
     Written {
         fifo_bytes,
         start,
-        informations,
+        additional_data,
         parts,
     }
 }

@@ -41,9 +41,9 @@ impl StreamReport {
         let bytes = card.stream.fifo_bytes;
         let channels = card.channels.len();
         let sets_per_second = card.actual_sample_hz();
-        let informations = card.stream.informations;
-        let set_bits = stream_baud(1, channels, informations) as f64;
-        let frame_bytes = frame_bytes(channels, informations);
+        let additional_data = card.stream.additional_data;
+        let set_bits = stream_baud(1, channels, additional_data) as f64;
+        let frame_bytes = frame_bytes(channels, additional_data);
         (bytes != 0).then(|| Self {
             fifo_bytes: bytes,
             frame_bytes,

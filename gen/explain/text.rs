@@ -180,7 +180,7 @@ impl fmt::Display for Report {
         if !self.service.is_empty() {
             writeln!(
                 f,
-                "service: {}; `with infos` is the longest frame, with both additional informations and a supplement.",
+                "service: {}; `with infos` is the longest frame, with additional data 1 and 2 and a supplement.",
                 list(&self.service)
             )?;
             if self.service.contains(&"initialise") {

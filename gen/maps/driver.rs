@@ -73,7 +73,7 @@ fn map() -> String {
 #define {PREFIX}_BYTES 0x{MAP_BYTES:04X}u
 /* What card.id reads as */
 #define {PREFIX}_ID 0x{ID:08X}u
-/* Words of a result; on cards with requests its informations follow */
+/* Words of a result; on cards with requests its additional data follow */
 #define {PREFIX}_RESULT_WORDS {INFO_FIRST}u
 #define {PREFIX}_RESULT_WORDS_WITH_INFOS {with_infos}u
 

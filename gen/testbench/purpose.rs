@@ -1,5 +1,5 @@
 //! What the published systems are for, as far as a card has it: usual clock rates, cropped positions, selected causes, the
-//! watchdog, requests, additional informations, continuous clock; and the monitors of a safe control.
+//! watchdog, requests, additional data, continuous clock; and the monitors of a safe control.
 
 use super::host::SCK_HALF_CYCLES;
 use super::{
@@ -272,10 +272,10 @@ pub(super) fn configured_list(card: &CardConfig) -> &[u8] {
 
 /// What the bench selects on a card that has no list of its own: a temperature, and the sources of errors.
 const USUAL_LIST: [u8; 2] = [0x4C, 0x59];
-/// What ends additional information 1 and 2.
+/// What ends additional data 1 and 2.
 const NO_INFOS: [u8; 2] = [0x4F, 0x5F];
 
-/// Channels whose encoders send additional informations: where the list stands, the slots, and what the host writes there, if it has to.
+/// Channels whose encoders send additional data: where the list stands, the slots, and what the host writes there, if it has to.
 fn infos(card: &CardConfig) -> Vec<Value> {
     if !card.service.requests {
         return vec![];

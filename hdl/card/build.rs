@@ -154,7 +154,7 @@ impl Counts {
         let seconds = usize::from(config.safety.second_interface);
         let served = served_channels(config);
         let parts = SetParts {
-            informations: config.stream.informations,
+            additional_data: config.stream.additional_data,
             runs: config.service.continuous && streams != 0,
         };
         let with = |part: bool, n: usize| if part { n } else { 0 };
@@ -172,8 +172,8 @@ impl Counts {
             served,
             services: services(config),
             runs: with(parts.runs, served),
-            set_infos: with(parts.informations, served),
-            plain_sets: with(parts.informations, sets),
+            set_infos: with(parts.additional_data, served),
+            plain_sets: with(parts.additional_data, sets),
             parts,
         }
     }

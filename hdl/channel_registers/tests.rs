@@ -57,7 +57,7 @@ fn set(uut: &mut ChannelRegisters, register: &str, field: &str, value: u64) {
 
 #[test]
 fn every_result_field_is_where_the_table_says() {
-    // The informations stand elsewhere.
+    // The additional data stand elsewhere.
     for register in &RESULT.registers[..6] {
         for field in register.fields {
             let mut uut = new();

@@ -11,7 +11,7 @@ pub const BAUD_NOTE: &str = "the most that the board passes on to the host";
 
 /// Fewest system clock cycles in an EnDat period with which the phase can follow while the clock goes on.
 const CONTINUOUS_PERIOD_MIN: u64 = 8;
-/// Fewest with which a position stands in its place before the first bit of an additional information comes: 16 shifts in the five bits
+/// Fewest with which a position stands in its place before the first bit of additional data comes: 16 shifts in the five bits
 /// of the CRC.
 const REQUESTS_PERIOD_MIN: u64 = 4;
 
@@ -83,11 +83,7 @@ impl CardDraft {
                     let parts = [
                         (
                             self.service.requests,
-                            (
-                                "requests",
-                                "additional informations take",
-                                REQUESTS_PERIOD_MIN,
-                            ),
+                            ("requests", "additional data take", REQUESTS_PERIOD_MIN),
                         ),
                         (
                             self.service.continuous,
@@ -256,13 +252,13 @@ impl CardDraft {
             section: Section::Stream,
             problems,
         };
-        if self.stream.informations && !self.service.requests {
-            let text = "a card without requests has no additional informations; add \"requests\" to service.parts, or set stream.informations = false";
-            check.fail("informations", true, text.into());
+        if self.stream.additional_data && !self.service.requests {
+            let text = "a card without requests has no additional data; add \"requests\" to service.parts, or set stream.additional_data = false";
+            check.fail("additional_data", true, text.into());
         }
-        if self.stream.informations && bytes == 0 {
-            let text = "a stream without a buffer; set stream.fifo_bytes = 2048, or stream.informations = false";
-            check.fail("informations", true, text.into());
+        if self.stream.additional_data && bytes == 0 {
+            let text = "a stream without a buffer; set stream.fifo_bytes = 2048, or stream.additional_data = false";
+            check.fail("additional_data", true, text.into());
         }
         if bytes == 0 {
             if self.stream.start.collects() {
@@ -290,11 +286,11 @@ impl CardDraft {
             check.fail("start", "\"push\"", text.into());
         }
         let (sample_hz, baud, channels) = (self.sample_hz?, self.baud?, channels?);
-        let informations = self.stream.informations;
-        let frame = frame_bytes(channels, informations);
-        let needed = stream_baud(sample_hz, channels, informations);
+        let additional_data = self.stream.additional_data;
+        let frame = frame_bytes(channels, additional_data);
+        let needed = stream_baud(sample_hz, channels, additional_data);
         if needed > baud && !self.without_uart {
-            let most = baud / stream_baud(1, channels, informations);
+            let most = baud / stream_baud(1, channels, additional_data);
             check.section = Section::Trigger;
             check.fail(
                 "sample_hz",
@@ -302,7 +298,7 @@ impl CardDraft {
                 format!("the stream does not fit: {sample_hz} sets a second of {frame} bytes take {needed} bit/s, link.baud is {baud}; lower it to {most} or less, raise link.baud to {needed}, or set stream.fifo_bytes = 0"),
             );
         }
-        let cycles = frame_cycles(channels, informations);
+        let cycles = frame_cycles(channels, additional_data);
         if sample_hz.saturating_mul(cycles) > system_hz {
             let most = system_hz / cycles;
             check.section = Section::Trigger;
@@ -423,6 +419,6 @@ pub const fn needed_baud(read_hz: u64, channels: usize, requests: bool) -> u64 {
 }
 
 /// Bits per second of `sample_hz` frames of the stream.
-pub const fn stream_baud(sample_hz: u64, channels: usize, informations: bool) -> u64 {
-    sample_hz.saturating_mul(frame_bytes(channels, informations) * UART_BITS_PER_BYTE)
+pub const fn stream_baud(sample_hz: u64, channels: usize, additional_data: bool) -> u64 {
+    sample_hz.saturating_mul(frame_bytes(channels, additional_data) * UART_BITS_PER_BYTE)
 }

@@ -139,18 +139,18 @@ impl ChannelConfig {
         }
     }
 
-    /// The longest frame of a channel with requests: both additional informations and a supplement (command 111000 only).
+    /// The longest frame of a channel with requests: additional data 1 and 2 and a supplement (command 111000 only).
     pub fn longest_frame_cycles(&self, system_hz: u64) -> u64 {
         let frame = self.frame_time(system_hz).frame_cycles;
         if !self.command.has_f2() {
             return frame;
         }
-        let informations = 2 * u64::from(INFO_BITS) * self.period_cycles;
+        let additional_data = 2 * u64::from(INFO_BITS) * self.period_cycles;
         // Parked half a period after the last bit, and one delay later than the receiver sees that bit.
         let supplement = u64::from(SUPPLEMENT_PULSES - 1) * self.period_cycles
             + cycles_at_least(PARK_NS + self.request.delay_max_ns(), system_hz)
             + INPUT_LATENCY_CYCLES;
-        frame + informations + supplement
+        frame + additional_data + supplement
     }
 
     /// Clock period of the frame that measures the propagation delay: never shorter than the ordinary one.

@@ -29,7 +29,7 @@ use std::ops::RangeInclusive;
 
 /// Channels a card may have.
 pub const CHANNELS: RangeInclusive<usize> = 1..=CHANNELS_MAX;
-/// Additional informations that a service selects in turn.
+/// Codes of additional data that a service selects in turn.
 pub const LIST: usize = crate::service::map::word::LIST_MAX as usize;
 /// Bits of the EnDat period and of the first low phase, in the blocks.
 pub const PERIOD_BITS: u32 = CHANNEL_CONFIG.field("frame", "period_cycles").width;

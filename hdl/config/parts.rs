@@ -93,8 +93,8 @@ pub struct StreamParts {
     pub fifo_bytes: u64,
     /// What it does after reset.
     pub start: StreamStart,
-    /// Sets have the additional informations, too.
-    pub informations: bool,
+    /// Sets have the additional data, too.
+    pub additional_data: bool,
 }
 
 /// What a stream does after reset; the host can change it.
@@ -124,7 +124,7 @@ impl StreamStart {
 /// What a channel does besides triggered positions; what is not asked for takes no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ServiceParts {
-    /// All mode commands, additional information, counters, alarm.
+    /// All mode commands, additional data, counters, alarm.
     pub requests: bool,
     /// Stuck lines, absent and late encoders told apart, watchdog, shortest recovery time; takes requests.
     pub diagnosis: bool,
@@ -132,6 +132,6 @@ pub struct ServiceParts {
     pub continuous: bool,
     /// Initialisation of the encoder after reset and after it has been plugged in; takes requests.
     pub initialise: bool,
-    /// MRS codes of the additional informations that are selected in turn from the start on, 0 = none; takes requests.
+    /// MRS codes of the additional data that are selected in turn from the start on, 0 = none; takes requests.
     pub infos: [u8; LIST],
 }

@@ -1,7 +1,7 @@
 //! A channel's side of the service: what the program reads of it, and what it writes.
 //!
 //! ```text
-//! ends of frames, informations, answers --> io_in --> Service
+//! ends of frames, additional data, answers --> io_in --> Service
 //! requests, levels, width, clock <-- io_out, io_write <---'
 //! ```
 
@@ -28,15 +28,15 @@ pub struct ServiceChannel {
     pub reply: Signal<In, Bits<48>>,
     /// Its CRC is right.
     pub reply_good: Signal<In, Bit>,
-    /// Additional informations that the encoder sends.
+    /// Additional data that the encoder sends.
     pub info_active: Signal<In, Bits<2>>,
-    /// Additional information 1.
+    /// Additional data 1.
     pub info_1: Signal<In, Bits<24>>,
-    /// Additional information 2.
+    /// Additional data 2.
     pub info_2: Signal<In, Bits<24>>,
-    /// Additional informations that the last frame brought.
+    /// Additional data that the last frame brought.
     pub info_came: Signal<In, Bits<2>>,
-    /// Additional informations whose CRC is right, in the last frame.
+    /// Additional data whose CRC is right, in the last frame.
     pub info_good: Signal<In, Bits<2>>,
     /// The frame under way has the request.
     pub request_runs: Signal<In, Bit>,

@@ -16,11 +16,11 @@ pub mod input {
         pub const LINE_HIGH: u16 = 1 << 4;
         /// The CRC of the answer to the last request with a frame of its own is right.
         pub const REPLY_GOOD: u16 = 1 << 5;
-        /// The last frame brought additional information 1 with a right CRC.
+        /// The last frame brought additional data 1 with a right CRC.
         pub const INFO_1: u16 = 1 << 6;
-        /// The last frame brought additional information 2 with a right CRC.
+        /// The last frame brought additional data 2 with a right CRC.
         pub const INFO_2: u16 = 1 << 7;
-        /// The encoder sends additional information 1.
+        /// The encoder sends additional data 1.
         pub const INFO_1_ACTIVE: u16 = 1 << 8;
         /// A frame ended before the last one had been looked at.
         pub const MISSED: u16 = 1 << 9;
@@ -28,22 +28,22 @@ pub mod input {
         pub const FRESH: u16 = 1 << 10;
         /// The frame under way has the request.
         pub const REQUEST_RUNS: u16 = 1 << 11;
-        /// The last frame brought additional information 1, with a right CRC or a wrong one.
+        /// The last frame brought additional data 1, with a right CRC or a wrong one.
         pub const INFO_1_CAME: u16 = 1 << 12;
-        /// The last frame brought additional information 2, with a right CRC or a wrong one.
+        /// The last frame brought additional data 2, with a right CRC or a wrong one.
         pub const INFO_2_CAME: u16 = 1 << 13;
     }
     /// What there is to do.
     pub const STATUS: u8 = 0;
     /// Primary cause of the frame that ended.
     pub const CAUSE: u8 = 1;
-    /// Additional information 1: its 16 bits.
+    /// Additional data 1: its 16 bits.
     pub const INFO_1: u8 = 2;
-    /// WRN, RM, Busy, I4..I0 of additional information 1.
+    /// WRN, RM, Busy, I4..I0 of additional data 1.
     pub const INFO_1_STATUS: u8 = 3;
-    /// Additional information 2: its 16 bits.
+    /// Additional data 2: its 16 bits.
     pub const INFO_2: u8 = 4;
-    /// WRN, RM, Busy, I4..I0 of additional information 2.
+    /// WRN, RM, Busy, I4..I0 of additional data 2.
     pub const INFO_2_STATUS: u8 = 5;
     /// Position or test values that answer a request, bits 15..0; then 31..16 and 47..32.
     pub const REPLY: [u8; 3] = [6, 7, 8];

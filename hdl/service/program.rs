@@ -1,7 +1,7 @@
 //! The service's program: what it does, step by step.
 //!
 //! ```text
-//! start -> [power-up, initialisation] -> loop: end of a frame?   count it, keep its informations, prepare the next selection
+//! start -> [power-up, initialisation] -> loop: end of a frame?   count it, keep its additional data, prepare the next selection
 //!                                              request written?  send it, check its echo, wait as the command demands
 //!                                              control written?  initialise, clear
 //!                                              line HIGH for long, then LOW?  power-up, initialise
@@ -37,7 +37,7 @@ pub struct ServiceTimes {
     pub diagnosis: bool,
     /// The channel has the continuous clock.
     pub continuous: bool,
-    /// MRS codes that the list of additional informations has after reset; 0 = none.
+    /// MRS codes that the list of additional data has after reset; 0 = none.
     pub infos: [u8; LIST],
     /// One forced error each so many milliseconds, until the host says otherwise; 0 = no program for it.
     pub error_test_ms: u16,

@@ -29,26 +29,26 @@ pub const CRC16_POLYNOMIAL: u64 = 0x1021;
 /// Start value of the CRC (CRC-16/IBM-3740).
 const CRC16_PRESET: u64 = 0xFFFF;
 
-/// Bytes of a set of `channels` channels, with `informations` or without, CRC included.
-pub const fn set_bytes(channels: usize, informations: bool) -> u64 {
-    8 + 8 * channels as u64 * (1 + informations as u64) + 2
+/// Bytes of a set of `channels` channels, with `additional_data` or without, CRC included.
+pub const fn set_bytes(channels: usize, additional_data: bool) -> u64 {
+    8 + 8 * channels as u64 * (1 + additional_data as u64) + 2
 }
 
 /// Bytes of its frame: COBS takes one, the end another.
-pub const fn frame_bytes(channels: usize, informations: bool) -> u64 {
-    set_bytes(channels, informations) + 2
+pub const fn frame_bytes(channels: usize, additional_data: bool) -> u64 {
+    set_bytes(channels, additional_data) + 2
 }
 
 /// System clock cycles from the moment when a set is closed until the next one can be.
-pub const fn frame_cycles(channels: usize, informations: bool) -> u64 {
-    BYTE_CYCLES * (set_bytes(channels, informations) + 3) + 2
+pub const fn frame_cycles(channels: usize, additional_data: bool) -> u64 {
+    BYTE_CYCLES * (set_bytes(channels, additional_data) + 3) + 2
 }
 
 /// What sets have besides the positions of triggers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SetParts {
-    /// Additional informations.
-    pub informations: bool,
+    /// Additional data.
+    pub additional_data: bool,
     /// Positions of a running clock, each in a set of its own.
     pub runs: bool,
 }
@@ -73,9 +73,9 @@ pub struct FrameBuffer {
     pub block: Signal<Out, Bits<4>>,
     /// Which of them.
     pub byte_at: Signal<Out, Bits<3>>,
-    /// Of channel n its other 8 bytes: the informations.
+    /// Of channel n its other 8 bytes: the additional data.
     pub second: Vec<Signal<Out, Bit>>,
-    /// The set has but one channel and no informations; stays put while it is written, as the next one.
+    /// The set has but one channel and no additional data; stays put while it is written, as the next one.
     pub single: Vec<Signal<In, Bit>>,
     /// Place of that channel: 8 times its block.
     pub single_place: Vec<Signal<In, Bits<7>>>,
@@ -139,13 +139,13 @@ pub struct FrameBuffer {
 }
 
 impl FrameBuffer {
-    /// A buffer of `bytes` bytes, one of [`BUFFER_BYTES`], for sets of `channels` channels; with informations, and single positions of a running
+    /// A buffer of `bytes` bytes, one of [`BUFFER_BYTES`], for sets of `channels` channels; with additional data, and single positions of a running
     /// clock among them, if the parts say so.
     ///
     /// # Panics
     /// If there is no such buffer.
     pub fn new(bytes: u64, channels: usize, parts: SetParts) -> Self {
-        let (seconds, singles) = (usize::from(parts.informations), usize::from(parts.runs));
+        let (seconds, singles) = (usize::from(parts.additional_data), usize::from(parts.runs));
         assert!(BUFFER_BYTES.contains(&bytes), "buffer of {bytes} bytes");
         let of = |size: usize| usize::from(BUFFER_BYTES[size] == bytes);
         Self::from_parts(FrameBufferParts {
@@ -165,7 +165,7 @@ impl FrameBuffer {
             mask: Constant::new((bytes - 1).into()),
             // One place stays free: full is not empty.
             most_used: Constant::new(
-                (bytes - 1 - frame_bytes(channels, parts.informations)).into(),
+                (bytes - 1 - frame_bytes(channels, parts.additional_data)).into(),
             ),
             polynomial: Constant::new(CRC16_POLYNOMIAL.into()),
             _ram1k: of(0),

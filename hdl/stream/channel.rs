@@ -50,9 +50,9 @@ pub struct SetChannel {
     pub take: Signal<In, Bit>,
     /// Strobe, never with `take`: a position of a running clock is taken, for a set of its own.
     pub take_run: Vec<Signal<In, Bit>>,
-    /// Information 1 of the result: 24 bits, came, good, due; where sets have informations, as the next two.
+    /// Additional data 1 of the result: 24 bits, came, good, due; where sets have additional data, as the next two.
     pub word_1: Vec<Signal<In, Bits<27>>>,
-    /// Information 2 of it.
+    /// Additional data 2 of it.
     pub word_2: Vec<Signal<In, Bits<27>>>,
     /// Its other 8 bytes are asked for.
     pub second: Vec<Signal<In, Bit>>,
@@ -100,7 +100,7 @@ pub struct SetChannel {
 impl SetChannel {
     /// The place of channel `channel`, for late results too if `takes_late`, and for what else sets have. `has_crc`: it speaks EnDat.
     pub fn new(channel: usize, has_crc: bool, takes_late: bool, parts: SetParts) -> Self {
-        let (runs, infos) = (usize::from(parts.runs), usize::from(parts.informations));
+        let (runs, infos) = (usize::from(parts.runs), usize::from(parts.additional_data));
         Self::from_parts(SetChannelParts {
             take_run: each(runs),
             word_1: each(infos),

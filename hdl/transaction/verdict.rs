@@ -8,7 +8,7 @@
 //! ```
 //!
 //! An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA does
-//! not fall, informations of another length) withdraws it.
+//! not fall, additional data of another length) withdraws it.
 
 use super::cause::{self, flag};
 use super::primary::PrimaryCause;

@@ -54,8 +54,8 @@ fn code(cause: &str) -> i64 {
 }
 
 impl Column {
-    /// The columns of a card; `informations`: its rows have them.
-    pub fn all(system_hz: u32, scales: &[Scale], informations: bool) -> Vec<Self> {
+    /// The columns of a card; `additional_data`: its rows have them.
+    pub fn all(system_hz: u32, scales: &[Scale], additional_data: bool) -> Vec<Self> {
         let mut columns = vec![
             Self {
                 name: "PCAP.TS_TRIG".into(),
@@ -100,12 +100,12 @@ impl Column {
                 meaning: "Why it did not, as in the register map, 0 = none; 32: trigger not taken, 33: result too late, 34: the late result of an earlier trigger",
                 what: What::Cause(channel),
             });
-            let infos = if informations { 2 } else { 0 };
+            let infos = if additional_data { 2 } else { 0 };
             columns.extend((0..infos).map(|info| Self {
                 name: format!("INENC{}.INFO{}", channel + 1, info + 1),
                 scale: 1.0,
                 unit: "",
-                meaning: "Additional information of the same frame: bits 23..16 WRN, RM, Busy, I4..I0, bits 15..0 what it says; -1: none came with a right CRC",
+                meaning: "Additional data of the same frame: bits 23..16 WRN, RM, Busy, I4..I0, bits 15..0 what they say; -1: none came with a right CRC",
                 what: What::Info(channel, info),
             }));
         }

@@ -29,10 +29,10 @@ super::causes! {
         "A trigger came while a frame or a T-format exchange was under way; its position is good.",
         "Trigger more slowly: `explain` shows the highest rate.";
     UNKNOWN_COMMAND = 9, "unknown_command", "unknown mode command";
-        "The configured command is none of the mode commands, the T-format request is none that a trigger sends, or the period is too short for additional informations; nothing was sent.",
+        "The configured command is none of the mode commands, the T-format request is none that a trigger sends, or the period is too short for additional data; nothing was sent.",
         "Write 7 (000111) or 56 (111000) to config<n>.frame.command, 4 or more to .period_cycles; on a T-format channel 3 to config<n>.timing.request_id.";
-    INFO_MISSING = 10, "info_missing", "additional information missing";
-        "An additional information that was expected did not come: the frame has another length than it should have, so its position is not taken.",
+    INFO_MISSING = 10, "info_missing", "additional data missing";
+        "Additional data that were expected did not come: the frame has another length than it should have, so its position is not taken.",
         "The card finds out in the next frames what the encoder sends.";
     NO_ENCODER = 11, "no_encoder", "no encoder";
         "Nothing is plugged in: DATA is HIGH, and LOW when the card drives it.",

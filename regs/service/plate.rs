@@ -97,13 +97,13 @@ pub const NAME_PLATE: [PlateEntry; 21] = [
         "infos_1",
         0xBD,
         0x00,
-        "EnDat 2.2 word 0: supported additional information 1",
+        "EnDat 2.2 word 0: supported additional data 1",
     ),
     entry(
         "infos_2",
         0xBD,
         0x01,
-        "EnDat 2.2 word 1: supported additional information 2",
+        "EnDat 2.2 word 1: supported additional data 2",
     ),
     entry(
         "clock_max_khz",

@@ -8,7 +8,7 @@ pub mod word {
     pub const REQUEST: u8 = 0;
     /// State of the request (15..0) and number of requests finished (31..16).
     pub const REQUEST_STATE: u8 = 1;
-    /// Answer: data (15..0), then echo of MRS code or address, or the status byte of additional information 1 (23..16); of
+    /// Answer: data (15..0), then echo of MRS code or address, or the status byte of additional data 1 (23..16); of
     /// longer answers bits 31..0.
     pub const ANSWER: u8 = 2;
     /// Bits 47..32 of longer answers.
@@ -41,7 +41,7 @@ pub mod word {
     pub const POSITION_2: [u8; 2] = [18, 19];
     /// Number of codes in the list, 0..=8.
     pub const LIST_LENGTH: u8 = 20;
-    /// Last good status byte of additional information 1 (15..0) and 2 (31..16): WRN, RM, Busy, I4..I0; then
+    /// Last good status byte of additional data 1 (15..0) and 2 (31..16): WRN, RM, Busy, I4..I0; then
     /// [`super::info_status`].
     pub const INFO_STATUS: u8 = 21;
     /// Watchdog in microseconds (15..0, 0 = off), shortest recovery time in system clock cycles (31..16, 0 = not checked).
@@ -61,7 +61,7 @@ pub mod word {
     /// For each code of the list: 16 bits of content (15..0), number of the result that brought it (31..16).
     pub const SLOTS: u8 = 32;
     /// Frames of each cause, 32 bits; the first one counts good frames, the last two comparisons of positions that failed and
-    /// additional informations with a wrong CRC.
+    /// blocks of additional data with a wrong CRC.
     pub const COUNTERS: u8 = 48;
     /// Name plate: value (15..0), 1 = it has been read (31..16).
     pub const NAME_PLATE: u8 = 68;
@@ -72,12 +72,12 @@ pub mod word {
 /// Counter of comparisons that failed, among those of the causes.
 pub const COUNTER_POSITION_2: u8 = endat::COUNT as u8;
 
-/// Counter of additional informations with a wrong CRC, the last one.
+/// Counter of blocks of additional data with a wrong CRC, the last one.
 pub const COUNTER_BAD_INFOS: u8 = COUNTER_POSITION_2 + 1;
 
 /// Bits above the status byte, in both halves of [`word::INFO_STATUS`].
 pub mod info_status {
-    /// The information that came last had a wrong CRC; nothing of it was taken.
+    /// The additional data that came last had a wrong CRC; nothing of them was taken.
     pub const BAD_CRC: u16 = 1 << 8;
 }
 

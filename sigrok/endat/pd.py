@@ -17,7 +17,7 @@ MODES = {
     0b101010: ("receive reset", True),
     0b010101: ("send test values", False),
     0b110001: ("receive test command", True),
-    0b111000: ("send position with additional information", False),
+    0b111000: ("send position with additional data", False),
     0b001001: ("send position, select memory area", False),
     0b011011: ("send position, receive parameter", False),
     0b100100: ("send position, send parameter", False),
@@ -73,7 +73,7 @@ class Decoder(srd.Decoder):
         ("start", "Start bit"),
         ("error", "Error bits"),
         ("position", "Position"),
-        ("info", "Additional information"),
+        ("info", "Additional data"),
         ("crc", "CRC"),
         ("warning", "Warning"),
     )
@@ -199,7 +199,7 @@ class Decoder(srd.Decoder):
         value = sum(b[0] << i for i, b in enumerate(position))
         self.put_text(position[0][1], position[-1][2], 4, ["Position {} (0x{:X})".format(value, value), "{}".format(value)])
         self.check([b[0] for b in flags + position], check)
-        # Additional information, if a LOW cell follows: behind the last block DATA is HIGH. Before a supplement CLOCK is parked LOW.
+        # Additional data, if a LOW cell follows: behind the last block DATA is HIGH. Before a supplement CLOCK is parked LOW.
         while True:
             if command in SUPPLEMENTS and self.low > PARKED * self.usual:
                 return self.supplement()

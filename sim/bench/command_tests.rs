@@ -127,7 +127,7 @@ fn a_word_is_read_while_positions_go_on() {
 }
 
 #[test]
-fn both_informations_arrive_in_their_places() {
+fn additional_data_1_and_2_arrive_in_their_places() {
     let defect = Defect::InfoCrcXor { info: 2, xor: 1 };
     let mut rig = Rig::new(quick().defect(4, defect), 8_000_000, 50.0);
     rig.good(0b000_111, 0, 0);

@@ -12,7 +12,7 @@ use crate::{
 pub(super) enum Part {
     /// First part of an answer.
     Answer,
-    /// Additional information, 0 = first sent.
+    /// A block of additional data, 0 = first sent.
     Info(usize),
     /// After the mode command.
     Parameter,
@@ -192,9 +192,8 @@ impl Group {
                 let number = f.infos.get(n).map_or(0, |(info, _)| number(info));
                 let code = value & 0x1F;
                 vec![
-                    format!("additional information {number}, code 0x{code:02X}"),
-                    format!("additional information {number}"),
-                    format!("information {number}"),
+                    format!("additional data {number}, code 0x{code:02X}"),
+                    format!("additional data {number}"),
                     format!("info {number}"),
                 ]
             }
@@ -242,7 +241,7 @@ impl Group {
     }
 }
 
-/// Additional information 1 or 2: the two have codes of their own.
+/// Additional data 1 or 2: the two have codes of their own.
 fn number(info: &Info) -> u32 {
     match info.code {
         0..0x50 => 1,

@@ -255,7 +255,7 @@ fn the_drawing_is_the_same_every_time_and_renders() {
     assert!(child.wait().unwrap().success());
 }
 
-/// The last of these exchanges (command, 8 bits, 16 bits, expected additional informations), after one that measures the delay.
+/// The last of these exchanges (command, 8 bits, 16 bits, expected additional data), after one that measures the delay.
 fn exchange(cable_m: f64, exchanges: &[(u8, u8, u16, u8)]) -> String {
     let bench = exchanged(cable_m, exchanges);
     frame_svg(bench.link(0), exchanges.len(), "an exchange").unwrap()
@@ -340,7 +340,7 @@ fn test_values_are_called_so() {
 }
 
 #[test]
-fn additional_informations_and_the_supplement_have_names_and_values() {
+fn additional_data_and_the_supplement_have_names_and_values() {
     let select = [(0b001_001, 0x4C, 0, 0), (0b001_001, 0x5B, 0, 1)];
     let last = (0b001_001, area::OPERATING_PARAMETERS, 0x5AC3, 3);
     for cable_m in [1.0, 100.0] {
@@ -365,10 +365,10 @@ fn additional_informations_and_the_supplement_have_names_and_values() {
         let wanted = [
             "position 0xBAD, 13 bits, LSB first",
             "CRC",
-            "additional information 2, code 0x1B",
+            "additional data 2, code 0x1B",
             "content 0x",
             "CRC",
-            "information 1", // less room in a row that ends there
+            "additional data 1", // less room in a row that ends there
             "content 0x0B8A",
             "CRC",
             "pause",

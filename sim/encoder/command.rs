@@ -17,9 +17,9 @@ pub enum Command {
     SendTestValues,
     /// Echo of port and data.
     ReceiveTestCommand,
-    /// Position with the selected additional informations.
+    /// Position with the selected additional data.
     Position,
-    /// The same; the supplement selects a memory area or an additional information.
+    /// The same; the supplement selects a memory area or additional data.
     PositionSelectMemory,
     /// The same; the supplement writes a word.
     PositionReceiveParameter,

@@ -105,7 +105,7 @@ pub struct EncoderConfig {
     pub supplement_zeros: u32,
     /// Whether the clock may go on after an EnDat 2.1 position, and which edge then takes the next one.
     pub continuous: Option<LatchEdge>,
-    /// Whether the error reset 101101 also ends the additional informations: HEIDENHAIN's FAQ says so, TI's driver does not
+    /// Whether the error reset 101101 also ends the additional data: HEIDENHAIN's FAQ says so, TI's driver does not
     /// count on it.
     pub error_reset_stops_infos: bool,
     /// Function initialisation, word 3 of the operating status, after power-up: bits 1..0 are the recovery time, what the others
@@ -113,7 +113,7 @@ pub struct EncoderConfig {
     pub function: u16,
     /// What the manufacturer wrote into it.
     pub plate: TypePlate,
-    /// What the additional informations say.
+    /// What the additional data say.
     pub values: InfoValues,
     /// What will be wrong with it, and when.
     pub causes: Vec<Cause>,

@@ -26,9 +26,9 @@ pub struct TypePlate {
     pub alarms: u16,
     /// Warnings it can tell (word 36).
     pub warnings: u16,
-    /// Additional informations 1 it has, bit n = code 0x40 + n (0xBD word 0: the bits are an assumption).
+    /// Additional data 1 it has, bit n = code 0x40 + n (0xBD word 0: the bits are an assumption).
     pub infos_1: u16,
-    /// Additional informations 2 it has, bit n = code 0x50 + n (0xBD word 1).
+    /// Additional data 2 it has, bit n = code 0x50 + n (0xBD word 1).
     pub infos_2: u16,
     /// For functional safety (word 37).
     pub safety: bool,
@@ -60,7 +60,7 @@ impl TypePlate {
     }
 }
 
-/// What the additional informations say, as far as it does not come from the protocol.
+/// What the additional data say, as far as it does not come from the protocol.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InfoValues {
     /// RM: the reference run is done.

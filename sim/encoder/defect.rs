@@ -20,9 +20,9 @@ pub enum Defect {
     },
     /// Sends the CRC with these bits inverted.
     CrcXor(u8),
-    /// Sends the CRC of an additional information (1 or 2) with these bits inverted.
+    /// Sends the CRC of additional data 1 or 2 with these bits inverted.
     InfoCrcXor {
-        /// Which information.
+        /// Which of the two.
         info: u8,
         /// The bits.
         xor: u8,

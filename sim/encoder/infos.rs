@@ -1,4 +1,4 @@
-//! The additional informations: which are selected, and what they say.
+//! The additional data: which are selected, and what they say.
 
 use super::{memory::area, Encoder, EncoderConfig, Registers};
 use crate::{frame::Info, Time, US};
@@ -12,13 +12,13 @@ pub(super) struct Selection {
     pub second: Option<u8>,
 }
 
-/// MRS codes that select additional informations.
+/// MRS codes that select additional data.
 pub(super) fn is_info_code(mrs: u8) -> bool {
     matches!(mrs, 0x40..=0x5F)
 }
 
 impl Selection {
-    /// Takes a selection, unless the encoder does not have that information.
+    /// Takes a selection, unless the encoder does not have those additional data.
     pub fn select(&mut self, mrs: u8, config: &EncoderConfig) -> Result<(), ()> {
         let (group, supported) = match mrs & 0xF0 {
             0x40 => (&mut self.first, config.plate.infos_1),
@@ -45,7 +45,7 @@ pub(super) struct Parts {
 }
 
 impl Encoder {
-    /// The selected informations in the order in which they are sent: 2 before 1.
+    /// The selected additional data in the order in which they are sent: 2 before 1.
     pub(super) fn infos(&mut self, time: Time, position: u64) -> Vec<Info> {
         let selected = [self.selection.second, self.selection.first];
         let status = Info {

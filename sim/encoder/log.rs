@@ -31,7 +31,7 @@ pub enum AnswerKind {
     /// There is none (yet).
     #[default]
     None,
-    /// F1, perhaps F2, position, perhaps additional informations.
+    /// F1, perhaps F2, position, perhaps additional data.
     Position,
     /// 8 and 16 bits.
     Parameter,
@@ -91,7 +91,7 @@ pub struct FrameLog {
     pub reply: Option<Parameter>,
     /// CRC of position, test values or parameter, as sent.
     pub crc: u8,
-    /// Additional informations in the order sent (2 before 1), each with its CRC as sent.
+    /// Additional data in the order sent (2 before 1), each with its CRC as sent.
     pub infos: Vec<(Info, u8)>,
     /// What the receiver sent after the answer.
     pub supplement: Option<Supplement>,
@@ -138,7 +138,7 @@ impl FrameLog {
         self.index < position.index && is_slower
     }
 
-    /// Length of the first part of the answer, without additional informations.
+    /// Length of the first part of the answer, without additional data.
     pub fn head_len(&self) -> u32 {
         self.answer.len - Info::BITS * self.infos.len() as u32
     }
@@ -157,7 +157,7 @@ impl FrameLog {
         }
     }
 
-    /// Whether the answer is, bit by bit, what a sound encoder would send for this position and these additional informations.
+    /// Whether the answer is, bit by bit, what a sound encoder would send for this position and these additional data.
     pub fn is_true_answer(&self, position_bits: u32, f2: bool) -> bool {
         self.answer == self.true_position((false, f2.then_some(true)), position_bits)
     }
@@ -176,7 +176,7 @@ impl FrameLog {
         bits
     }
 
-    /// Whether bit `index` of the answer is another one than that of its position, error bits, parameter or additional information. What
+    /// Whether bit `index` of the answer is another one than that of its position, error bits, parameter or additional data. What
     /// test values should be is not recorded.
     pub fn is_wrong_bit(&self, index: u32) -> bool {
         let good = match (self.kind, self.reply) {

@@ -194,7 +194,7 @@ fn take_due<T>(queue: &mut VecDeque<(Time, T)>, time: Time) -> Option<(Time, T)>
     queue.pop_front()
 }
 
-/// What additional informations acknowledge.
+/// What additional data acknowledge.
 #[derive(Clone, Copy, Debug, Default)]
 struct Registers {
     /// Selected area and block (0x47).

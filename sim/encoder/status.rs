@@ -22,7 +22,7 @@ pub enum ErrorSource {
     ClearProtection = 10,
     /// Block that the section 2 memory does not have.
     Block = 11,
-    /// Additional information that does not exist here.
+    /// Additional data that do not exist here.
     InfoNotSupported = 13,
 }
 
@@ -40,7 +40,7 @@ impl ErrorSource {
         Self::InfoNotSupported,
     ];
 
-    /// Its bit in the additional information 0x59. Where the bits are is not published; number n stands in bit n - 1 here.
+    /// Its bit in additional data 0x59. Where the bits are is not published; number n stands in bit n - 1 here.
     pub fn bit(self) -> u16 {
         1 << (self as u16 - 1)
     }

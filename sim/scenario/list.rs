@@ -37,7 +37,7 @@ pub fn all() -> Vec<Scenario> {
         alarm(),
         glitches(),
         overrun(),
-        additional_information(),
+        additional_data(),
         parameter(),
         no_answer(),
         initialise(),
@@ -310,7 +310,7 @@ fn overrun() -> Scenario {
     }
 }
 
-fn additional_information() -> Scenario {
+fn additional_data() -> Scenario {
     const SELECT: Request = Request {
         trigger: 1,
         command: ModeCommand::PositionSelectMemory,
@@ -318,7 +318,7 @@ fn additional_information() -> Scenario {
         data: 0,
     };
     Scenario {
-        name: "additional-information",
+        name: "additional-data",
         summary: "temperature and time stamp are selected in supplements, and follow each position from then on",
         trigger_period: 100 * US,
         triggers: 4,

@@ -22,7 +22,7 @@ pub fn has_f2(code: u64) -> bool {
     code == 0b111_000 || has_supplement(code)
 }
 
-/// Bits of the answer before additional informations, without start bit and CRC.
+/// Bits of the answer before additional data, without start bit and CRC.
 pub fn payload_bits(code: u64, position_bits: usize) -> usize {
     match code as u8 {
         TEST_VALUES => 41,

@@ -24,7 +24,7 @@ impl TestReceiver {
             false => self.position,
         };
         let blocks: Vec<_> = infos.chunks(30).map(|b| command::block(&b[1..])).collect();
-        // Information 2 comes first.
+        // Additional data 2 comes first.
         let names = [("info_2", 2), ("info_1", 1)];
         let selected = self.at("infos");
         let expected = names.iter().filter(|n| selected & n.1 != 0);

@@ -1,7 +1,7 @@
 //! A plain behavioural EnDat receiver with the ports of the block `Channel`, to try the bench out without the core.
 //!
 //! It is not the core and shares nothing with it; it works on lists where hardware would use counters. Beyond the block's ports it
-//! takes `address` and `parameter` for the commands that send them, `infos` (bit 0: additional information 1 is expected, bit 1: 2),
+//! takes `address` and `parameter` for the commands that send them, `infos` (bit 0: additional data 1 is expected, bit 1: 2),
 //! and gives `reply`, `info_1`, `info_2` (24 covered bits each) and `info_errors` (CRC errors, bits as in `infos`).
 
 mod command;
@@ -187,7 +187,7 @@ impl TestReceiver {
         command::has_supplement(self.at("command"))
     }
 
-    /// Bits of the answer before additional informations.
+    /// Bits of the answer before additional data.
     fn head_bits(&self) -> usize {
         let position_bits = self.at("position_bits") as usize;
         6 + command::payload_bits(self.at("command"), position_bits)

@@ -92,7 +92,7 @@ fn second_told(answer: &[u8], channel: usize) -> Vec<u32> {
     all
 }
 
-/// Catches a word in another's place, an information of another frame, a count that stands still, a check sum over something else.
+/// Catches a word in another's place, additional data of another frame, a count that stands still, a check sum over something else.
 #[test]
 fn both_controllers_read_the_same() {
     for bus in WORD_BUSES {

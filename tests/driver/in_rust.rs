@@ -6,7 +6,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use endat_driver::regs::{causes::endat, protocol::ModeCommand, service::request_state, Part};
 use endat_driver::{
-    difference, signed, Card, Error, Link, Moment, Parallel, Reading, Registers, Serial, Spi, Uart,
+    difference, signed, Card, Error, Link, Moment, Parallel, Registers, Serial, Spi, Uart,
 };
 use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
@@ -202,10 +202,10 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
         }
         let moment = self.card.measure(5_000).unwrap();
         let [first, second] = [moment.results()[0], moment.results()[1]];
-        let came = first.additional_data[0];
+        let came = first.infos[0];
         assert!(first.fresh && came.good, "{first:?}");
-        assert_eq!((came.number, came.content), (0x0C, 2954));
-        assert!(!second.additional_data[0].came);
+        assert_eq!((came.number(), came.content), (0x0C, 2954));
+        assert!(!second.infos[0].came);
         let (content, sequence) = self.card.read_additional_data(0, 0).unwrap();
         assert_eq!(content, 2954);
         assert!(first.sequence.wrapping_sub(sequence) < 2, "{sequence}");
@@ -611,55 +611,6 @@ fn positions_are_numbers_around_zero() {
     );
     assert_eq!(difference(0x1FFF_FFFE, 3, 29), 5);
     assert_eq!(difference(3, 0x1FFF_FFFE, 29), -5);
-}
-
-/// Both drivers and the host library say the same of the same words.
-#[test]
-fn words_of_a_result_are_taken_apart_as_by_the_host() {
-    let mut rng = endat_sim::rng::Rng::new(7);
-    for _ in 0..2_000 {
-        let words: [u32; endat_driver::RESULT_WORDS] =
-            std::array::from_fn(|_| rng.in_range(0, u64::from(u32::MAX)) as u32);
-        let (own, host) = (
-            Reading::new(&words),
-            endat_host::result::Reading::new(&words).checked(),
-        );
-        assert_eq!(own.fits, host.fits);
-        assert_eq!(
-            (
-                own.position,
-                own.timestamp,
-                own.sequence,
-                own.cause,
-                own.valid,
-                own.fresh
-            ),
-            (
-                host.position,
-                host.timestamp,
-                host.sequence,
-                host.cause,
-                host.valid,
-                host.fresh
-            )
-        );
-        assert_eq!(
-            (own.delay_cycles, own.age_us, own.stale, own.recovery_cycles),
-            (
-                host.delay_cycles,
-                host.age_us,
-                host.stale,
-                host.recovery_cycles
-            )
-        );
-        for (own, host) in own.additional_data.iter().zip(host.infos) {
-            assert_eq!(
-                (own.came, own.good, own.content),
-                (host.came, host.good, host.content)
-            );
-            assert_eq!(own.number, host.number());
-        }
-    }
 }
 
 /// Catches a use of the standard library, or of a heap: neither is there on the processors that this is for.

@@ -229,7 +229,7 @@ static void parameters(void)
     pause_us(40 * MS);
 }
 
-static void informations(void)
+static void additional_data(void)
 {
     const uint8_t list[1] = {0x4C};
     const uint8_t wrong[1] = {0xA1};
@@ -453,7 +453,7 @@ static void journey(void)
     initialise_again();
     stream();
     plug(1);
-    informations();
+    additional_data();
 }
 
 /* A position, a parameter, a plug. */

@@ -158,7 +158,7 @@ fn registers_are_read_and_written_by_name() {
     assert_eq!(words[1]["fields"]["position_bits"]["value"], 29);
     assert_eq!(
         words[1]["fields"]["command"]["meaning"],
-        "111000 send position with additional information (EnDat 2.2)"
+        "111000 send position with additional data (EnDat 2.2)"
     );
     let block = with(&["reg", "read", "result0"], PORT);
     assert!(

@@ -1,4 +1,4 @@
-//! A card with few system clocks to a bit: positions from two on, informations, requests and initialisation from four on.
+//! A card with few system clocks to a bit: positions from two on, additional data, requests and initialisation from four on.
 
 use super::desk::Desk;
 use endat_gen::config::{parse, Project};
@@ -42,7 +42,7 @@ fn check_all_good(desk: &mut Desk, channel: usize, at_least: u32, request_frames
     assert_eq!(counts[1..].iter().sum::<u32>(), 0, "{channel}: {counts:?}");
 }
 
-/// Catches an information that begins before the position stands in its place, and a supplement that is one pulse off.
+/// Catches additional data that begin before the position stands in its place, and a supplement that is one pulse off.
 #[test]
 fn everything_works_from_four_system_clocks_to_a_bit_on() {
     for (system_hz, clock_hz, cable_m) in [
@@ -60,7 +60,7 @@ fn everything_works_from_four_system_clocks_to_a_bit_on() {
             desk.set(&format!("service{channel}.control.clear"), 1);
         }
 
-        // One information, then both, each in turn with another.
+        // One block of additional data, then both, each in turn with another.
         for codes in [&[0x4C][..], &[0x4C, 0x5B], &[0x4D, 0x5B, 0x4C]] {
             for channel in [0, 1] {
                 for (place, code) in codes.iter().enumerate() {
@@ -133,7 +133,7 @@ fn fewer_clocks_are_refused_with_what_would_do() {
     for (system_hz, line_parts, service_parts, told) in [
         (32, "", "", format!("needs a system clock of at least 64000000 Hz, {least}, {alone}")),
         (16, DOUBLE_EDGE, "", "needs a system clock of at least 32000000 Hz, clock.system_hz is 16000000; use at most 8000000 Hz or a faster system clock".into()),
-        (32, DOUBLE_EDGE, SERVICE, "its period is 2 cycles of clock.system_hz = 32000000, additional informations take 4; use at most 8000000 Hz, or leave \"requests\" out of service.parts".into()),
+        (32, DOUBLE_EDGE, SERVICE, "its period is 2 cycles of clock.system_hz = 32000000, additional data take 4; use at most 8000000 Hz, or leave \"requests\" out of service.parts".into()),
         (48, DOUBLE_EDGE, "", "its period of 3 cycles of clock.system_hz = 48000000 has pulses of 1 and 2 cycles, encoders allow 10 % of the period more or less than half of it; use a system clock of 32000000 or 64000000 Hz".into()),
     ] {
         let told = format!("endat.clock_hz = 16000000: {told}");
@@ -146,7 +146,7 @@ fn fewer_clocks_are_refused_with_what_would_do() {
 
 /// A host may write a period that no configuration has: nothing is sent, so that no wrong position comes.
 #[test]
-fn a_period_that_is_too_short_for_informations_gives_no_wrong_position() {
+fn a_period_that_is_too_short_for_additional_data_gives_no_wrong_position() {
     let text = text(64_000_000, 16_000_000, DOUBLE_EDGE, SERVICE);
     let project = parse("few.toml", &text).unwrap();
     let mut desk = desk(&project, 5.0);

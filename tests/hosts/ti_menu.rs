@@ -45,7 +45,7 @@ fn every_function_works_on_the_three_channel_preset() {
     assert_eq!(menu.commands(0, 0).last(), Some(&0b111000));
     assert_eq!(menu.commands(2, 0).last(), Some(&0b000111));
 
-    // Additional information: two codes in turn.
+    // Additional data: two codes in turn.
     for channel in [0, 1] {
         menu.0.set(&format!("service{channel}.list_0.mrs"), 0x4C);
         menu.0.set(&format!("service{channel}.list_1.mrs"), 0x4D);
@@ -68,7 +68,7 @@ fn every_function_works_on_the_three_channel_preset() {
     assert_eq!(menu.0.send(2, 0b001110, 0xA1, 0), (0xA1, 0));
     assert_eq!(menu.0.send(2, 0b100011, 0x0D, 0), (0x0D, 0x8018));
 
-    // The same with a position: the supplement takes the parameter along, additional information brings the answer.
+    // The same with a position: the supplement takes the parameter along, additional data bring the answer.
     let first = menu.frames(0);
     menu.0.send(0, 0b001001, 0xA9, 0);
     menu.0.send(0, 0b011011, 0x06, 0x0BAD);
@@ -95,7 +95,7 @@ fn every_function_works_on_the_three_channel_preset() {
         assert!(commands.contains(&command), "{command:06b}");
     }
 
-    // Position 2, put together from three informations and compared.
+    // Position 2, put together from three blocks of additional data and compared.
     for (place, code) in [(0, 0x42), (1, 0x43), (2, 0x44)] {
         menu.0.set(&format!("service1.list_{place}.mrs"), code);
     }

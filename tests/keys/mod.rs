@@ -22,7 +22,7 @@ const BASES: [&str; 6] = [
      [link]\nbaud = 2_000_000\nread_hz = 50\n[host]\nbus = \"uart\"\n[service]\nparts = [\"requests\", \"diagnosis\", \"continuous\"]\n\
      infos = [0x4C]\n[line]\nparts = [\"alignment\", \"margin\"]\nphase = \"frame\"\nfixed_delay_ns = 400\ndrift_limit_ns = 40\nsamples = 3\n\
      [outputs]\nparts = []\n[safety]\nparts = [\"second_interface\", \"error_test\"]\nerror_test_ms = 50\n\
-     [stream]\nfifo_bytes = 1024\nstart = \"push\"\ninformations = true\n[device]\ninitial_values = true\n[board]\nname = \"papilio_pro\"\n\
+     [stream]\nfifo_bytes = 1024\nstart = \"push\"\nadditional_data = true\n[device]\ninitial_values = true\n[board]\nname = \"papilio_pro\"\n\
      [pins]\ntrigger_i = \"A0\"\n",
     "name = \"inside\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
      command = \"111000\"\n[trigger]\nsample_hz = 100\n[host]\nbus = \"apb\"\nbase_address = 0x2000\n[outputs]\n\

@@ -1,4 +1,4 @@
-//! Every command with every combination of additional information, at every width, rate and cable.
+//! Every command with every combination of additional data, at every width, rate and cable.
 
 use super::rig::Rig;
 use endat_hdl::{

@@ -1,4 +1,4 @@
-//! Every kind of fault at every place of a frame with both additional informations and a supplement.
+//! Every kind of fault at every place of a frame with additional data 1 and 2 and a supplement.
 
 use super::lanes::*;
 use crate::position::rig::believes;
@@ -13,14 +13,14 @@ use endat_sim::{
     Time, NS, US,
 };
 
-/// Bits of the answer: start bit, F1, F2, position, CRC; both informations.
+/// Bits of the answer: start bit, F1, F2, position, CRC; additional data 1 and 2.
 const POSITION_ANSWER: u32 = 3 + POSITION_BITS + 5;
 const ANSWER: u32 = POSITION_ANSWER + 60;
 /// Clock pulses of the frame.
 const PULSES: u32 = 10 + ANSWER + 35;
 /// The longest frame, twice the limit of the start bit, the longest recovery time, the pause of an aborted frame, a look at an open line.
 const LIMIT_US: u64 = 80 + 2 * 50 + 35 + ABORT_US + PROBE_US + SETTLE_US;
-/// Triggers after a fault until two in a row are good: one measures the delay, two find out about informations.
+/// Triggers after a fault until two in a row are good: one measures the delay, two find out about additional data.
 const TRIGGERS: usize = 3;
 
 struct Fault {

@@ -1,4 +1,4 @@
-//! Additional information: errors in it, and a record that finds the truth again.
+//! Additional data: errors in it, and a record that finds the truth again.
 
 use super::rig::Rig;
 use endat_hdl::{protocol::ModeCommand::*, transaction::cause};
@@ -22,7 +22,7 @@ fn select(rig: &mut Rig, codes: &[u8]) {
 }
 
 #[test]
-fn an_error_in_an_information_spoils_neither_the_position_nor_the_other_one() {
+fn an_error_in_one_block_of_additional_data_spoils_neither_the_position_nor_the_other_one() {
     for (info, good) in [(1, 0b10), (2, 0b01)] {
         let defect = Defect::InfoCrcXor { info, xor: 0b10 };
         let mut rig = rig(EncoderConfig::endat22(29).defect(4, defect));
@@ -36,9 +36,9 @@ fn an_error_in_an_information_spoils_neither_the_position_nor_the_other_one() {
     }
 }
 
-/// The encoder is exchanged between two frames: its informations are off, and the card does not know.
+/// The encoder is exchanged between two frames: its additional data are off, and the card does not know.
 #[test]
-fn informations_that_are_gone_are_forgotten_with_the_first_frame() {
+fn additional_data_that_are_gone_are_forgotten_with_the_first_frame() {
     for codes in [&[0x4C][..], &[0x5B], &[0x4C, 0x5B]] {
         let mut encoder = EncoderConfig::endat22(29);
         encoder.unplugged.push(10 * MS..11 * MS);
@@ -47,7 +47,7 @@ fn informations_that_are_gone_are_forgotten_with_the_first_frame() {
         rig.good_position();
         rig.bench.run_until(12 * MS);
         let over = rig.position();
-        assert_eq!(cause::name(over.cause), "additional information missing");
+        assert_eq!(cause::name(over.cause), "additional data missing");
         let result = rig.bench.results().last().unwrap().clone();
         assert!(
             !result.fresh,
@@ -60,7 +60,7 @@ fn informations_that_are_gone_are_forgotten_with_the_first_frame() {
 
 /// The core is reset, the encoder is not: it sends what the core does not expect.
 #[test]
-fn informations_that_nobody_expects_are_found_out() {
+fn additional_data_that_nobody_expects_are_found_out() {
     for (codes, frames) in [(&[0x4C][..], 2), (&[0x5B], 2), (&[0x4C, 0x5B], 1)] {
         let mut rig = rig(EncoderConfig::endat22(29));
         select(&mut rig, codes);

@@ -1,5 +1,5 @@
 //! Channels with requests side by side, each with an encoder, a line and a mishap of its own, in the longest frame that there is:
-//! both additional informations and a supplement.
+//! additional data 1 and 2 and a supplement.
 
 use endat_hdl::{
     channel::{Channel, Features, FixedTimes},
@@ -24,7 +24,7 @@ pub const HALF_PERIOD: Time = 250 * NS;
 pub const POSITION_BITS: u32 = 13;
 /// The frame that the mishap is for, as the encoder counts.
 pub const FRAME: u64 = 4;
-/// First falling to last rising clock edge of that frame: tST, then 10 pulses to the start bit, 21 bits, 60 of the informations, the
+/// First falling to last rising clock edge of that frame: tST, then 10 pulses to the start bit, 21 bits, 60 of the additional data, the
 /// park time, 35 pulses.
 pub const FRAME_TIME: Time = 67_500 * NS;
 /// Its recovery time.
@@ -105,7 +105,7 @@ impl Rig {
         self.bench.set_all("reset", 0);
     }
 
-    /// Up to the trigger of the frame that the mishap is for: line delay measured, both informations selected, the supplement waiting.
+    /// Up to the trigger of the frame that the mishap is for: line delay measured, additional data 1 and 2 selected, the supplement waiting.
     pub fn new(cases: &[(EncoderConfig, LineConfig)]) -> Self {
         let mut rig = Self::on(engine(), cases);
         rig.bench.keep_samples(|_| 2 * SAMPLE_LATENCY_CYCLES);

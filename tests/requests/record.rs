@@ -1,4 +1,4 @@
-//! The record of additional informations finds the truth again after any frame, whatever recovery time, calculation time and clock.
+//! The record of additional data finds the truth again after any frame, whatever recovery time, calculation time and clock.
 
 use super::lanes::*;
 use endat_hdl::{
@@ -64,7 +64,7 @@ fn stories(defects: &[Defect]) -> Vec<Story> {
     stories
 }
 
-/// Runs them with these informations selected; all are well again after the second trigger at the latest.
+/// Runs them with these additional data selected; all are well again after the second trigger at the latest.
 fn run(codes: [u8; 2], defects: &[Defect]) {
     let stories = stories(defects);
     for stories in stories.chunks(LANES) {
@@ -108,16 +108,16 @@ fn stuck_low(bits: &[u32]) -> Vec<Defect> {
     bits.iter().map(stuck).collect()
 }
 
-/// DATA LOW in an answer looks as if informations followed it.
+/// DATA LOW in an answer looks as if additional data followed it.
 #[test]
-fn a_frame_of_zeros_teaches_no_informations_at_any_recovery_time() {
+fn a_frame_of_zeros_teaches_no_additional_data_at_any_recovery_time() {
     // 0x4F and 0x5F: none is selected.
     run([0x4F, 0x5F], &stuck_low(&[1, 3, 10, 17, 20, 21]));
 }
 
 /// The encoder has forgotten its selection, and a short recovery time ends before half a period of the calibration clock does.
 #[test]
-fn informations_that_are_gone_are_forgotten_at_any_recovery_time() {
+fn additional_data_that_are_gone_are_forgotten_at_any_recovery_time() {
     let lost = Defect::BrownOut {
         after: 9 * US,
         length: 3 * US,
@@ -136,7 +136,7 @@ fn informations_that_are_gone_are_forgotten_at_any_recovery_time() {
 
 /// They are there all the time, and what a disturbed frame seems to say about them does not last.
 #[test]
-fn informations_that_are_there_are_found_at_any_recovery_time() {
+fn additional_data_that_are_there_are_found_at_any_recovery_time() {
     for codes in [[0x4C, 0x5F], [0x5B, 0x4F], [0x4C, 0x5B]] {
         run(codes, &stuck_low(&[2, 18, 21, 22, 40, 51]));
     }

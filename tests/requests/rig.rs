@@ -194,7 +194,7 @@ impl Rig {
         frame
     }
 
-    /// The frame is complete, with its exact pulses, and position and informations are those of the encoder.
+    /// The frame is complete, with its exact pulses, and position and additional data are those of the encoder.
     fn assert_whole(&mut self, frame: &FrameLog) {
         assert_eq!(frame.end, FrameEnd::Complete, "{frame:?}");
         assert_eq!(

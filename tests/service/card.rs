@@ -142,7 +142,7 @@ fn a_third_channel_has_a_service_of_its_own() {
     }
 }
 
-/// Two channels that share a service, each with two informations in turn, a threshold and requests: no end of a frame is missed.
+/// Two channels that share a service, each with additional data of two codes in turn, a threshold and requests: no end of a frame is missed.
 #[test]
 fn no_frame_is_missed_while_both_channels_are_busy() {
     let mut host = Host::new();

@@ -58,7 +58,7 @@ fn every_code_of_the_list_has_its_slot_and_age() {
 }
 
 #[test]
-fn the_configured_informations_are_selected_from_the_start_on_and_after_a_plug() {
+fn the_configured_additional_data_are_selected_from_the_start_on_and_after_a_plug() {
     let mut encoder = encoder();
     encoder.unplugged.push(1_000 * MS..1_010 * MS);
     let make = Make {
@@ -111,7 +111,7 @@ fn position_2_is_compared_over_the_wrap() {
 }
 
 #[test]
-fn a_wrong_crc_of_an_information_is_told_and_counted_and_nothing_of_it_is_taken() {
+fn a_wrong_crc_of_additional_data_is_told_and_counted_and_nothing_of_them_is_taken() {
     for (info, half) in [(1u8, 0), (2, 16)] {
         let bad = [11, 12].into_iter();
         let defect = Defect::InfoCrcXor { info, xor: 0b10 };

@@ -13,7 +13,7 @@ use endat_sim::{
 };
 use std::{collections::BTreeSet, thread};
 
-/// The slowest clock at which a frame with an information and a supplement fits into a period: half a clock period is 4 cycles.
+/// The slowest clock at which a frame with one block of additional data and a supplement fits into a period: half a clock period is 4 cycles.
 const SYSTEM_HZ: u64 = 10_000_000;
 const ENDAT_HZ: u64 = SYSTEM_HZ / 8;
 const SAMPLE_HZ: u64 = 10_000;

@@ -1,4 +1,4 @@
-//! The plug pulled at every half clock period of a frame with both informations and a supplement, and put back at any moment.
+//! The plug pulled at every half clock period of a frame with additional data 1 and 2 and a supplement, and put back at any moment.
 
 use super::rig::{quick, times};
 use crate::requests::lanes::{
@@ -205,7 +205,7 @@ fn places() -> impl Iterator<Item = Time> {
         .take_while(|t| *t < PULLED_FROM + US + FRAME_TIME + RECOVERY)
 }
 
-/// Pulls the plug of each lane for its time, in a frame with both informations and a request. Everything is well again afterwards.
+/// Pulls the plug of each lane for its time, in a frame with additional data 1 and 2 and a request. Everything is well again afterwards.
 fn pull(ready: &Lanes, absences: &[(Time, Time)], initialises: bool) {
     pull_and_bounce(ready, absences, initialises, &|_| vec![]);
 }

@@ -33,7 +33,7 @@ fn block() -> EncoderPort {
     block
 }
 
-/// Positions, a selection that rides, an additional information, a request with a frame of its own; cycle by cycle.
+/// Positions, a selection that rides, additional data, a request with a frame of its own; cycle by cycle.
 fn recorded() -> Stimulus {
     let design = elaborate(&block(), "encoder_port").unwrap();
     let encoder = quick(EncoderConfig::endat22(13));

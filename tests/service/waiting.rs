@@ -65,7 +65,7 @@ fn a_request_without_a_trigger_ends_by_itself_and_sends_nothing() {
     assert_free(&mut rig);
 }
 
-/// The supplement is out, and no frame brings the information that would tell what became of it.
+/// The supplement is out, and no frame brings the additional data that would tell what became of it.
 #[test]
 fn a_request_whose_answer_no_trigger_brings_ends_by_itself() {
     let mut rig = rig();

@@ -155,7 +155,7 @@ fn passes_with(test: &str, changes: &[(&str, &str)]) {
 }
 
 #[test]
-fn the_bench_passes_with_a_list_of_additional_informations() {
+fn the_bench_passes_with_a_list_of_additional_data() {
     let list = ("# infos =", "infos =");
     let none = "parts = []                      # (default: none)\n\n[line]";
     let requests = (none, "parts = [\"requests\"]\n\n[line]");

@@ -1,9 +1,9 @@
-//! Informations of one frame with its position: in the results, and in the sets of the stream.
+//! Additional data of one frame with its position: in the results, and in the sets of the stream.
 
 use crate::hosts::desk::Desk;
+use endat_driver::AdditionalData as Info;
 use endat_gen::config::{parse, preset, Project};
 use endat_gen::virtual_card::VirtualConfig;
-use endat_host::info::Info;
 use endat_host::stream::SampleSet;
 use endat_sim::{encoder::Defect, US};
 use std::time::Duration;
@@ -24,7 +24,7 @@ pub fn project(changes: &[(&str, &str)]) -> Project {
     parse("card.toml", &text).unwrap()
 }
 
-/// A card at rest whose encoders are known, and send both informations with each frame.
+/// A card at rest whose encoders are known, and send additional data 1 and 2 with each frame.
 pub fn desk(project: &Project) -> Desk {
     let config = VirtualConfig {
         speed: 40.0,
@@ -38,10 +38,10 @@ pub fn desk(project: &Project) -> Desk {
             return desk;
         }
     }
-    panic!("the informations never come");
+    panic!("the additional data never come");
 }
 
-/// Informations 1 and 2 of the encoder's frame with this position, one of its last 60; and how many of its frames were later.
+/// Additional data 1 and 2 of the encoder's frame with this position, one of its last 60; and how many of its frames were later.
 fn sent(desk: &mut Desk, channel: usize, position: u64) -> ([u16; 2], usize) {
     let bench = desk.card.bridge().transport().bench();
     let frames = bench.frames(channel);
@@ -61,9 +61,9 @@ fn good(info: Info) -> u16 {
     info.content
 }
 
-/// Catches a snapshot that takes the position of one frame and an information of another one.
+/// Catches a snapshot that takes the position of one frame and the additional data of another one.
 #[test]
-fn position_and_both_informations_of_a_result_are_of_one_frame() {
+fn position_and_additional_data_of_a_result_are_of_one_frame() {
     // At rest between frames, and one frame after the other with triggers that are lost.
     for period in [10_000, 2_900] {
         let mut desk = desk(&project(&[("start = \"off\"", "start = \"off\"")]));
@@ -111,7 +111,7 @@ fn position_and_both_informations_of_a_result_are_of_one_frame() {
 
 /// Catches a result that shows what an earlier frame brought, or the frame of a request after it.
 #[test]
-fn a_result_has_no_information_of_another_frame() {
+fn a_result_has_no_additional_data_of_another_frame() {
     let mut desk = desk(&project(&[]));
     // One trigger at a time.
     desk.set("card_config.trigger_sources", 4);
@@ -149,13 +149,13 @@ fn a_result_has_no_information_of_another_frame() {
             }
         }
     }
-    // No answer at all: position and informations are not of that frame. (A lost delay is measured again, with a pause before that.)
+    // No answer at all: position and additional data are not of that frame. (A lost delay is measured again, with a pause before that.)
     spoil(&mut desk, Defect::NoStartBit);
     let result = trigger(&mut desk);
     assert!(!result.fresh, "{result:?}");
     assert_eq!(result.infos, [Info::default(); 2]);
     desk.run_ms(40);
-    // The frame that measures brings informations, too: those of the position are of the frame behind it.
+    // The frame that measures brings additional data, too: those of the position are of the frame behind it.
     let result = trigger(&mut desk);
     assert!(result.fresh, "{result:?}");
     let (infos, _) = sent(&mut desk, 0, result.position);
@@ -195,15 +195,15 @@ pub fn push(desk: &mut Desk) {
 fn streaming() -> Project {
     project(&[
         ("sample_hz = 10_000", "sample_hz = 5_000"),
-        ("start = \"off\"", "informations = true\nstart = \"off\""),
+        ("start = \"off\"", "additional_data = true\nstart = \"off\""),
     ])
 }
 
-/// Catches a set that is closed before its informations are there, and one that mixes two frames.
+/// Catches a set that is closed before its additional data are there, and one that mixes two frames.
 #[test]
-fn sets_have_both_informations_of_their_frame() {
+fn sets_have_additional_data_1_and_2_of_their_frame() {
     let mut desk = desk(&streaming());
-    assert!(desk.card.identity().stream_informations);
+    assert!(desk.card.identity().stream_additional_data);
     push(&mut desk);
     let mut count = 0;
     let mut last = None;
@@ -225,7 +225,7 @@ fn sets_have_both_informations_of_their_frame() {
 }
 
 #[test]
-fn sets_tell_an_information_that_is_missing_or_wrong() {
+fn sets_tell_additional_data_that_are_missing_or_wrong() {
     let mut desk = desk(&streaming());
     push(&mut desk);
     pushed(&mut desk, 2);
@@ -259,7 +259,7 @@ fn sets_tell_an_information_that_is_missing_or_wrong() {
     for set in &all {
         let (sample, infos) = (&set.channels[1], set.channels[1].infos.unwrap());
         assert_eq!(infos, [Info::default(); 2], "{sample:?}");
-        // Late, not there, or without informations in good order once that is known.
+        // Late, not there, or without additional data in good order once that is known.
         let frames = desk.card.bridge().transport().bench().frames(1);
         let brought = frames
             .iter()

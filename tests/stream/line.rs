@@ -76,7 +76,7 @@ pub fn card(system_hz: u64, sample_hz: u64, baud: u64, start: StreamStart) -> Ca
         stream: StreamParts {
             fifo_bytes: 2048,
             start,
-            informations: false,
+            additional_data: false,
         },
         outputs: Default::default(),
         safety: Default::default(),

@@ -32,16 +32,16 @@ fn a_stream_that_cannot_fit_is_refused() {
             "stream.start = \"push\": a stream without a buffer; set stream.fifo_bytes = 2048",
         ),
         (
-            &[("start = \"off\"", "informations = true\nstart = \"off\"")],
+            &[("start = \"off\"", "additional_data = true\nstart = \"off\"")],
             "trigger.sample_hz = 10000: the stream does not fit: 10000 sets a second of 44 bytes take 4400000 bit/s, link.baud is 3000000; lower it to 6818 or less",
         ),
         (
-            &[("fifo_bytes = 2_048", "fifo_bytes = 0"), ("start = \"off\"", "informations = true\nstart = \"off\"")],
-            "stream.informations = true: a stream without a buffer; set stream.fifo_bytes = 2048, or stream.informations = false",
+            &[("fifo_bytes = 2_048", "fifo_bytes = 0"), ("start = \"off\"", "additional_data = true\nstart = \"off\"")],
+            "stream.additional_data = true: a stream without a buffer; set stream.fifo_bytes = 2048, or stream.additional_data = false",
         ),
         (
-            &[(r#"parts = ["requests", "diagnosis", "continuous", "initialise"]"#, "parts = []"), ("sample_hz = 10_000", "sample_hz = 5_000"), ("start = \"off\"", "informations = true\nstart = \"off\"")],
-            "stream.informations = true: a card without requests has no additional informations; add \"requests\" to service.parts, or set stream.informations = false",
+            &[(r#"parts = ["requests", "diagnosis", "continuous", "initialise"]"#, "parts = []"), ("sample_hz = 10_000", "sample_hz = 5_000"), ("start = \"off\"", "additional_data = true\nstart = \"off\"")],
+            "stream.additional_data = true: a card without requests has no additional data; add \"requests\" to service.parts, or set stream.additional_data = false",
         ),
         (
             &[("start = \"off\"", "start = \"on\"")],

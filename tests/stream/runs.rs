@@ -9,11 +9,15 @@ use endat_host::stream::SampleSet;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// A card at rest whose channels send 000111 at these periods; sets have informations or not.
-fn desk(periods: [u32; 2], informations: bool) -> Desk {
+/// A card at rest whose channels send 000111 at these periods; sets have additional data or not.
+fn desk(periods: [u32; 2], additional_data: bool) -> Desk {
     let mut text = preset("s6_two_channel_service").unwrap().to_owned();
-    if informations {
-        text = text.replacen("start = \"off\"", "informations = true\nstart = \"off\"", 1);
+    if additional_data {
+        text = text.replacen(
+            "start = \"off\"",
+            "additional_data = true\nstart = \"off\"",
+            1,
+        );
         text = text.replacen("sample_hz = 10_000", "sample_hz = 1_000", 1);
     }
     let project = parse("card.toml", &text).unwrap();
@@ -68,8 +72,8 @@ fn check(desk: &mut Desk, channel: usize, run: &[&SampleSet]) -> u64 {
 /// Catches a position that is left out, comes twice or with another's moment, and one in the set of a trigger.
 #[test]
 fn each_position_of_a_running_clock_has_a_set_of_its_own() {
-    for informations in [false, true] {
-        let mut desk = desk([200, 200], informations);
+    for additional_data in [false, true] {
+        let mut desk = desk([200, 200], additional_data);
         desk.set("service0.continuous", 1);
         desk.run_ms(1);
         push(&mut desk);
@@ -85,7 +89,7 @@ fn each_position_of_a_running_clock_has_a_set_of_its_own() {
             panic!("{triggered:?}");
         };
         assert!(own.channels.iter().all(|c| c.fresh && c.taken), "{own:?}");
-        assert_eq!(own.channels[0].infos.is_some(), informations);
+        assert_eq!(own.channels[0].infos.is_some(), additional_data);
         let bench = desk.card.bridge().transport().bench();
         let all: Vec<u64> = bench.frames(0).iter().map(|f| f.position).collect();
         let at = |position| all.iter().rposition(|p| *p == position).unwrap();

@@ -122,7 +122,7 @@ fn bench_of_a_card_with_services_passes_only_as_it_stands() {
     }
 }
 
-/// Shown by additional informations.
+/// Shown by additional data.
 const BROKEN_INFOS: &[Mutation] = &[
     mutation(
         "a LOW bit too few before the supplement",
@@ -131,13 +131,13 @@ const BROKEN_INFOS: &[Mutation] = &[
         "cells_left_next = 4'd8;",
     ),
     mutation(
-        "an information that has ended is waited for",
+        "additional data that have ended are waited for",
         "add_info",
         "is_off = &mrs[3:0];",
         "is_off = 1'b0;",
     ),
     mutation(
-        "information 2 taken for information 1",
+        "additional data 2 taken for additional data 1",
         "add_info",
         "second_next = word;",
         "first_next = word;",
@@ -211,7 +211,7 @@ fn benches_of_the_published_systems_do_what_those_are_for() {
                 "selected causes",
                 "watchdog",
                 "requests",
-                "additional informations",
+                "additional data",
                 "continuous clock",
                 "interrupt",
             ],

@@ -1,4 +1,4 @@
-//! Frames with additional informations and a supplement.
+//! Frames with additional data and a supplement.
 
 use super::{Rate, Subject, CYCLES, MHZ};
 use endat_hdl::channel::{Channel, Features, FixedTimes};
@@ -28,7 +28,7 @@ const RATES: [Rate; 3] = [
     (8 * MHZ, 128 * MHZ),
     (16 * MHZ, 128 * MHZ),
 ];
-/// Selections of information 1 and 2.
+/// Selections of additional data 1 and 2.
 const SELECTIONS: [u8; 2] = [0x4C, 0x5B];
 /// Longer than any frame.
 const FRAME_LIMIT: Time = MS;
@@ -39,7 +39,7 @@ impl Behind {
         has_supplement: false,
     };
 
-    /// Additional information 1, 1 and 2, a supplement, and all of them.
+    /// Additional data 1, 1 and 2, a supplement, and all of them.
     pub fn subjects(position_bits: u32) -> impl Iterator<Item = Subject> {
         let kinds = [(1, false), (2, false), (0, true), (2, true)];
         kinds.into_iter().flat_map(move |(infos, has_supplement)| {

@@ -5,6 +5,7 @@ use super::line::Line;
 use super::told::{Kind, Known, Round, Seen, Verdict, What};
 use super::CYCLES_PER_US;
 use super::{CHANNELS, CONFIG_WORDS, SERVICE_WORDS};
+use endat_driver::Reading;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{
     result_words, BLOCK_STRIDE, CARD, CONFIG_BASE, RESULT_BASE, SERVICE, SERVICE_BASE,
@@ -12,7 +13,7 @@ use endat_hdl::regs::{
 use endat_hdl::service::map::{control, request_state, word};
 use endat_hdl::stream::buffer::frame_bytes;
 use endat_hdl::timing::PARAMETER_TIMEOUT_US;
-use endat_host::result::Reading;
+use endat_host::result::of_burst;
 use endat_host::stream::SampleSet;
 use std::collections::VecDeque;
 
@@ -216,7 +217,7 @@ impl Host {
     async fn read_results(&mut self) -> Option<Vec<Reading>> {
         let count = result_words(CHANNELS, true) as usize;
         let words = self.read(2, RESULT_BASE, count).await?;
-        Some(Reading::of_burst(&words, CHANNELS, true))
+        Some(of_burst(&words, CHANNELS, true))
     }
 
     async fn read_stream(&mut self) {

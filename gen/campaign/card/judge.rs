@@ -2,7 +2,7 @@
 
 use super::told::{Round, Seen, Verdict, What};
 use super::CHANNELS;
-use endat_host::result::Reading;
+use endat_driver::Reading;
 use endat_host::stream::{Sample, SampleSet};
 use endat_sim::campaign::port::{Class, Mark, TRIGGERS_MAX};
 

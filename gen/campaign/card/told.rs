@@ -1,7 +1,7 @@
 //! What the host tells the judge, and what it is told to do.
 
 use super::{CHANNELS, CONFIG_WORDS, SERVICE_WORDS};
-use endat_host::result::Reading;
+use endat_driver::Reading;
 use endat_host::stream::{Decoder, SampleSet};
 
 /// What is going on when the flip comes.

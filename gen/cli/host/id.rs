@@ -206,11 +206,11 @@ fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
             .join(" ")
     };
     line(
-        "informations 1",
+        "additional data 1",
         plate.infos_1.map(|bits| codes(bits, 0x40)),
     );
     line(
-        "informations 2",
+        "additional data 2",
         plate.infos_2.map(|bits| codes(bits, 0x50)),
     );
     line(

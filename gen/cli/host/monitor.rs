@@ -6,8 +6,8 @@ use super::read::{shown, verdict};
 use super::{interrupted, scales, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::Args;
+use endat_driver::Reading;
 use endat_host::registers::Place;
-use endat_host::result::Reading;
 use endat_host::units::Scale;
 use endat_regs::Part;
 use std::fmt::Write as _;
@@ -31,7 +31,7 @@ pub struct MonitorArgs {
 /// What is looked up once.
 #[derive(Default)]
 struct Places {
-    /// Counters of frames, good ones first, and how many words until that of bad informations.
+    /// Counters of frames, good ones first, and how many words until that of additional data with a wrong CRC.
     frames: Option<(Place, usize)>,
     state: Option<Place>,
     worst: Option<Place>,
@@ -125,14 +125,14 @@ fn screen(
             .map(|(n, info)| format!("{n}: 0x{:04X} (status 0x{:02X})", info.content, info.status))
             .collect();
         if !infos.is_empty() {
-            let _ = writeln!(text, "           informations {}", infos.join(", "));
+            let _ = writeln!(text, "           additional data {}", infos.join(", "));
         }
         if let Some((first, words)) = places.frames {
             let words = card
                 .bridge()
                 .read(of(&first, channel).address(), words + 1)
                 .map_err(told)?;
-            // The last two count no frames: comparisons of positions, informations.
+            // The last two count no frames: comparisons of positions, additional data.
             let (counts, others) = words.split_at(words.len() - 2);
             let all: u64 = counts.iter().map(|c| u64::from(*c)).sum();
             let _ = write!(text, "           frames {all}, good {}", counts[0]);
@@ -140,7 +140,7 @@ fn screen(
                 let _ = write!(text, ", {} {count}", endat_host::causes::name(cause as u8));
             }
             if others[1] > 0 {
-                let _ = write!(text, "; informations with a wrong CRC {}", others[1]);
+                let _ = write!(text, "; additional data with a wrong CRC {}", others[1]);
             }
             text.push('\n');
         }

@@ -193,8 +193,7 @@ fn send(
             Reply::Position => format!("position 0x{bits:X} = {bits}"),
             Reply::TestValues => format!("40 bits 0x{bits:010X}"),
             Reply::None => {
-                "sent with a position; what the encoder answers comes as additional information"
-                    .into()
+                "sent with a position; what the encoder answers comes as additional data".into()
             }
         };
         format!("channel {channel}, {command}: {said} ({us} us)\n")

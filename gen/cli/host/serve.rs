@@ -51,8 +51,8 @@ pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
     let scales = scales(&mut card)?;
-    let informations = card.identity().stream_informations;
-    let columns = Column::all(card.identity().system_hz, &scales, informations);
+    let additional_data = card.identity().stream_additional_data;
+    let columns = Column::all(card.identity().system_hz, &scales, additional_data);
     let ports = open()?;
     let mut stdout = std::io::stdout();
     if let Ok([control, data]) = ports.addresses() {

@@ -1,4 +1,4 @@
-//! The end of a frame: counters, threshold, additional informations, what they say about the request, the next selection.
+//! The end of a frame: counters, threshold, additional data, what they say about the request, the next selection.
 
 use super::requests::{self, mailbox, ANSWERED};
 use super::{high, keep_bits, low, minus, own, set, set_bits, ServiceTimes};
@@ -31,7 +31,7 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     threshold(a);
     a.place(uncounted);
 
-    // What the additional informations say goes into the slots of their codes.
+    // What the additional data say goes into the slots of their codes.
     a.ldi(0).st(own::MATCHED);
     take(
         a,
@@ -73,7 +73,7 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     a.ld(own::STATUS).andi(status::INFO_1_ACTIVE).jz(fulfilled);
     a.jmp("event_done");
 
-    // Additional information 1 tells when the encoder is done, and what with.
+    // Additional data 1 tells when the encoder is done, and what with.
     a.place(sent);
     let in_time = a.label();
     a.inp(input::TIME_MS).sub(own::BEGAN_MS);
@@ -95,7 +95,7 @@ pub(super) fn event(a: &mut Assembler, times: &ServiceTimes) {
     count(a);
 }
 
-/// Takes what an additional information says, or counts its wrong CRC.
+/// Takes what a block of additional data says, or counts its wrong CRC.
 fn take(a: &mut Assembler, [came, good]: [u16; 2], [content, byte]: [u8; 2], kept: u8) {
     let (right, done) = (a.label(), a.label());
     a.ld(own::STATUS).andi(good).jnz(right);
@@ -117,7 +117,7 @@ fn answer_echo(a: &mut Assembler, fulfilled: crate::sequencer::assembler::Handle
     a.ld(own::MODE);
     a.xori(ModeCommand::PositionSelectMemory.code().into())
         .jnz(fulfilled);
-    // The selection of an additional information is not repeated.
+    // The selection of additional data is not repeated.
     a.ld(own::ADDRESS).andi(0xE0).xori(0x40).jz(fulfilled);
     a.jmp(compare);
     a.place(parameter);
@@ -198,7 +198,7 @@ fn turn(a: &mut Assembler) {
     a.out(output::CONTROL).ret();
 }
 
-/// Puts CONTENT of the information whose status byte is in A into the slots of its code.
+/// Puts CONTENT of the block whose status byte is in A into the slots of its code.
 pub(super) fn store(a: &mut Assembler) {
     let (next, other, done) = (a.label(), a.label(), a.label());
     a.place("store").andi(0x1F).st(own::CODE);

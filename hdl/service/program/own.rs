@@ -35,7 +35,7 @@ pub const CODE: u8 = FIRST + 21;
 pub const CONTENT: u8 = FIRST + 22;
 pub const INDEX: u8 = FIRST + 23;
 pub const NUMBER: u8 = FIRST + 24;
-/// An additional information of the list has come.
+/// Additional data of the list have come.
 pub const MATCHED: u8 = FIRST + 25;
 /// Which of the last m frames were bad, and how many; 2^(m-1); m.
 pub const BAD: u8 = 2 * word::BAD_FRAMES;

@@ -7,7 +7,7 @@ use crate::service::map::{input, input::status, state, word, COUNTER_POSITION_2}
 /// I4..I0 of the first part; the others follow.
 const FIRST_PART: u16 = 2;
 
-/// Takes CONTENT of the information CODE.
+/// Takes CONTENT of additional data CODE.
 pub(super) fn position_2(a: &mut Assembler) {
     let (second, third, none) = (a.label(), a.label(), a.label());
     a.place("position_2");

@@ -15,7 +15,7 @@ pub(super) mod mailbox {
     pub const IDLE: u16 = 0;
     /// The host's request rides on the next triggered frame.
     pub const RIDING: u16 = 1;
-    /// Its frame is over; additional information 1 will tell what became of it.
+    /// Its frame is over; additional data 1 will tell what became of it.
     pub const SENT: u16 = 2;
     /// It has a frame of its own.
     pub const OWN: u16 = 3;

@@ -15,7 +15,7 @@ pub enum Class {
     Detected,
     /// A trigger has no result, and no cause says so, with the next one neither.
     Lost,
-    /// Good position, but time stamp, additional information or answer are wrong, without a cause.
+    /// Good position, but time stamp, additional data or answer are wrong, without a cause.
     SilentOther,
     /// A wrong position is told as good.
     Silent,
@@ -129,7 +129,7 @@ pub(in crate::campaign) struct Reading {
     pub sent: Option<u64>,
     /// The position is one that the encoder has sent before.
     pub was_sent: bool,
-    /// Time stamp, informations and answer are right.
+    /// Time stamp, additional data and answer are right.
     pub others_right: bool,
     /// What the encoder complains of, since the trigger.
     pub pulses: bool,

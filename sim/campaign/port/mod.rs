@@ -124,9 +124,9 @@ pub enum FrameKind {
     Position,
     /// 000111.
     Position21,
-    /// 111000 with both additional informations.
-    Informations,
-    /// 001001: both informations and a supplement.
+    /// 111000 with additional data 1 and 2.
+    AdditionalData,
+    /// 001001: additional data 1 and 2 and a supplement.
     Supplement,
     /// 001110, in a frame of its own.
     Request,
@@ -141,7 +141,7 @@ impl FrameKind {
             Self::Calibration => "calibration",
             Self::Position => "position",
             Self::Position21 => "position_21",
-            Self::Informations => "informations",
+            Self::AdditionalData => "additional_data",
             Self::Supplement => "supplement",
             Self::Request => "request",
             Self::Continuous => "continuous",
@@ -179,7 +179,7 @@ impl Port {
                 Calibration,
                 Position,
                 Position21,
-                Informations,
+                AdditionalData,
                 Supplement,
                 Request,
                 Continuous,
@@ -239,7 +239,7 @@ struct Outputs {
     fresh: PortId,
     cause: PortId,
     stamp: PortId,
-    /// With requests: both informations, which are good; answer, whether it is, and what became of its frame.
+    /// With requests: additional data 1 and 2, which are good; answer, whether it is, and what became of its frame.
     infos: [PortId; 3],
     reply: [PortId; 3],
 }
@@ -309,7 +309,7 @@ impl Ready {
         ready
     }
 
-    /// Everything up to the frame: delay measured, informations selected, the run begun.
+    /// Everything up to the frame: delay measured, additional data selected, the run begun.
     fn prepare(&mut self) {
         let bench = &mut self.bench;
         // With alignment several frames measure.
@@ -317,7 +317,7 @@ impl Ready {
             trigger_all(bench);
             settle(bench);
         });
-        let selects = matches!(self.kind, FrameKind::Informations | FrameKind::Supplement);
+        let selects = matches!(self.kind, FrameKind::AdditionalData | FrameKind::Supplement);
         if selects {
             for code in [0x4C, 0x5B] {
                 put(

@@ -1,4 +1,4 @@
-//! Which additional informations come, in which order, and what they say.
+//! Which additional data come, in which order, and what they say.
 
 use super::*;
 
@@ -6,7 +6,7 @@ fn master() -> Master {
     Master::new(quick(), 2_000_000)
 }
 
-/// Codes and contents of the additional informations of one position.
+/// Codes and contents of the additional data of one position.
 fn sent(m: &mut Master) -> Vec<(u8, u16)> {
     let infos = m.position22(POSITION_22, 0, 0);
     infos.iter().map(|i| (i.address & 0x1F, i.data)).collect()
@@ -27,7 +27,7 @@ fn none_is_sent_until_one_is_selected() {
 }
 
 #[test]
-fn information_2_comes_before_information_1() {
+fn additional_data_2_comes_before_additional_data_1() {
     let mut m = master();
     m.select(0x4D, 1);
     m.select(0x50, 2);
@@ -148,7 +148,7 @@ fn other_positions_have_the_width_of_the_first() {
 }
 
 #[test]
-fn a_21_position_has_no_information() {
+fn a_21_position_has_no_additional_data() {
     let mut m = master();
     m.select(0x4C, 1);
     assert_eq!(
@@ -162,7 +162,7 @@ fn a_21_position_has_no_information() {
 }
 
 #[test]
-fn a_warning_is_told_by_every_information_and_by_no_error_bit() {
+fn a_warning_is_told_by_all_additional_data_and_by_no_error_bit() {
     let warning = Cause {
         during: MS..2 * MS,
         alarms: 0,
@@ -220,7 +220,7 @@ fn an_alarm_during_the_calculation_is_told_in_the_same_frame() {
 }
 
 #[test]
-fn a_wrong_crc_stays_in_its_information() {
+fn a_wrong_crc_stays_in_its_block() {
     let xor = 0b00100;
     let mut m = Master::new(
         quick().defect(2, Defect::InfoCrcXor { info: 1, xor }),

@@ -191,7 +191,7 @@ fn nothing_else_is_accessed_while_busy() {
         let frames = m.encoder.frames();
         assert_eq!(frames.last().unwrap().refused, Some(ErrorSource::Address));
     }
-    m.select(0x4C, 1); // an information is no memory
+    m.select(0x4C, 1); // additional data are no memory
     assert_eq!(m.last().refused, None);
     m.wait(13 * MS);
     assert_eq!(m.encoder.word(0xA7, 0x0E), Some(0), "not yet seen");

@@ -25,7 +25,7 @@ struct Master {
     pause: Time,
     /// LOW bits of a supplement.
     zeros: u32,
-    /// Additional informations that it expects.
+    /// Additional data that it expects.
     infos: u32,
     /// Outputs of the encoder, with the moments of their changes.
     outputs: Vec<(Time, Output)>,
@@ -178,7 +178,7 @@ impl Master {
         Some(Parameter::from_word(number(&bits[1..25])))
     }
 
-    /// An EnDat 2.2 command, and the checked additional informations of its answer.
+    /// An EnDat 2.2 command, and the checked additional data of its answer.
     fn position22(&mut self, code: u8, address: u8, data: u16) -> Vec<Parameter> {
         let bits = self.exchange(code, Parameter { address, data }).unwrap();
         let width = self.encoder.config().position_bits as usize;
@@ -189,7 +189,7 @@ impl Master {
         infos
             .chunks(30)
             .map(|info| {
-                assert!(!info[0], "an information begins LOW");
+                assert!(!info[0], "a block begins LOW");
                 assert_eq!(crc5(info[1..25].iter().copied()), number(&info[25..]) as u8);
                 Parameter::from_word(number(&info[1..25]))
             })
@@ -202,7 +202,7 @@ impl Master {
         [bits[1], bits[2]]
     }
 
-    /// Selects an additional information, and tells how many there are from now on.
+    /// Selects additional data, and tells how many blocks come from now on.
     fn select(&mut self, code: u8, infos: u32) {
         self.position22(SELECT_22, code, 0);
         self.infos = infos;

@@ -140,7 +140,7 @@ fn a_reset_that_is_not_clocked_out_does_nothing() {
 }
 
 #[test]
-fn an_error_reset_drops_the_area_and_perhaps_the_informations() {
+fn an_error_reset_drops_the_area_and_perhaps_the_additional_data() {
     for stops in [false, true] {
         let mut config = quick();
         config.error_reset_stops_infos = stops;

@@ -58,7 +58,7 @@ fn every_parameter_frame_is_sent_as_published() {
 }
 
 #[test]
-fn additional_informations_are_sent_as_published() {
+fn additional_data_are_sent_as_published() {
     let vector = |id: &str| {
         let all = vectors();
         let v = all.iter().find(|v| v["id"] == id).unwrap();

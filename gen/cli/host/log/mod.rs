@@ -102,9 +102,9 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     let failed =
         |e: io::Error| GenError::input(format!("{name}: cannot write: {e}; is the disk full?"));
     let system_hz = f64::from(card.identity().system_hz.max(1));
-    let informations = card.identity().stream_informations;
+    let additional_data = card.identity().stream_additional_data;
     let mut sheet =
-        Sheet::new(arguments.format, out, scales, system_hz, informations).map_err(failed)?;
+        Sheet::new(arguments.format, out, scales, system_hz, additional_data).map_err(failed)?;
     let judge = Judge {
         own_triggers: card.identity().has(Part::OwnTrigger),
     };

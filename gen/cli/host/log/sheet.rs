@@ -24,8 +24,8 @@ pub struct Sheet<W: Write> {
     pub out: W,
     scales: Vec<Scale>,
     system_hz: f64,
-    /// Rows have additional informations.
-    informations: bool,
+    /// Rows have additional data.
+    additional_data: bool,
     /// Time of the last row.
     pub span_s: f64,
     judge: Judge,
@@ -39,14 +39,14 @@ impl<W: Write> Sheet<W> {
         out: W,
         scales: Vec<Scale>,
         system_hz: f64,
-        informations: bool,
+        additional_data: bool,
     ) -> io::Result<Self> {
         let mut sheet = Self {
             format,
             out,
             scales,
             system_hz,
-            informations,
+            additional_data,
             span_s: 0.0,
             judge: Judge::default(),
             plot: None,
@@ -58,7 +58,7 @@ impl<W: Write> Sheet<W> {
                 names.extend(
                     ["raw", unit, "turns", "fresh", "cause"].map(|name| format!("ch{n}_{name}")),
                 );
-                if informations {
+                if additional_data {
                     let of = ["info_1", "info_1_status", "info_2", "info_2_status"];
                     names.extend(of.map(|name| format!("ch{n}_{name}")));
                 }
@@ -129,7 +129,7 @@ impl<W: Write> Sheet<W> {
                     fields.push(text(units.and_then(|u| u.turns).map(|t| t.to_string())));
                     fields.push(u8::from(cell.fresh).to_string());
                     fields.push(cell.cause.to_owned());
-                    for info in cell.infos.iter().filter(|_| self.informations) {
+                    for info in cell.infos.iter().filter(|_| self.additional_data) {
                         fields.push(text(info.map(|i| i.content.to_string())));
                         fields.push(text(info.map(|i| i.status.to_string())));
                     }
@@ -147,7 +147,12 @@ impl<W: Write> Sheet<W> {
                         "fresh": cell.fresh,
                         "cause": cell.cause,
                     });
-                    for (n, info) in cell.infos.iter().enumerate().filter(|_| self.informations) {
+                    for (n, info) in cell
+                        .infos
+                        .iter()
+                        .enumerate()
+                        .filter(|_| self.additional_data)
+                    {
                         let good =
                             info.map(|i| json!({ "status": i.status, "content": i.content }));
                         object[format!("info_{}", n + 1)] = json!(good);
@@ -247,8 +252,8 @@ impl<W: Write> Write for Lines<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use endat_driver::AdditionalData as Info;
     use endat_host::feed::Cell;
-    use endat_host::info::Info;
 
     fn cells(position: u64) -> Vec<Cell> {
         let info = Info {
@@ -273,9 +278,9 @@ mod tests {
         vec![good, none]
     }
 
-    fn written(format: Format, informations: bool) -> String {
+    fn written(format: Format, additional_data: bool) -> String {
         let scales = vec![Scale::singleturn(8), Scale::Linear { step_nm: 10.0 }];
-        let mut sheet = Sheet::new(format, Vec::new(), scales, 32.0, informations).unwrap();
+        let mut sheet = Sheet::new(format, Vec::new(), scales, 32.0, additional_data).unwrap();
         for (trigger, cycles, missing) in [(65_534, 0, 0), (65_535, 32, 0), (65_538, 64, 2)] {
             let row = Row {
                 run: None,
@@ -301,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn informations_have_columns_and_a_running_clock_no_trigger() {
+    fn additional_data_have_columns_and_a_running_clock_no_trigger() {
         let text = written(Format::Csv, true);
         let mut lines = text.lines();
         let head = lines.next().unwrap();
