@@ -15,12 +15,10 @@
 //! Offsets count 32-bit words. Blocks and kernels of the card, the maps that come with it and the host library read this table; within a
 //! major version an offset never moves. Plain data: it knows neither hardware nor configuration.
 
-#![no_std]
+#![cfg_attr(not(test), no_std)]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
-#[cfg(test)]
-extern crate std;
 
 mod card;
 pub mod causes;

@@ -1,8 +1,9 @@
 //! What can become of a call.
 
-use crate::service::Answer;
+use crate::answer::Answer;
 use core::fmt;
-use endat_regs::{service::request_state, Part};
+use endat_regs::service::{request_state, STEPS};
+use endat_regs::Part;
 
 /// Why a call did not do what it should.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,7 +95,7 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
             Self::Initialisation { step } => write!(
                 f,
                 "the encoder could not be initialised, it failed in step {step} ({}): look at the cause of the last result",
-                crate::service::step_name(*step)
+                STEPS.get(usize::from(*step)).map_or("unknown", |s| s.meaning)
             ),
             Self::Refused(answer) => write!(
                 f,

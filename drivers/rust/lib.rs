@@ -24,6 +24,7 @@
 
 #![no_std]
 
+mod answer;
 mod card;
 mod error;
 mod frame;
@@ -37,13 +38,14 @@ mod spi;
 mod stream;
 mod uart;
 
+pub use answer::Answer;
 pub use card::{Card, Facts};
 pub use endat_regs as regs;
 pub use error::Error;
 pub use link::{Link, Mapped};
 pub use parallel::{Parallel, Registers};
 pub use result::{difference, signed, AdditionalData, Moment, Reading, MOMENT_WORDS, RESULT_WORDS};
-pub use service::{Answer, Request, State};
+pub use service::{Request, State};
 pub use settings::Settings;
 pub use spi::Spi;
 pub use stream::{Sample, Set, Stream, SET_BYTES};

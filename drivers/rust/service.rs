@@ -1,5 +1,6 @@
 //! The service of a channel: plug, initialisation, name plate, requests, additional data.
 
+use crate::answer::Answer;
 use crate::card::{Card, Wait};
 use crate::error::Error;
 use crate::link::Link;
@@ -7,7 +8,7 @@ use crate::map::{field, word};
 use embedded_hal::delay::DelayNs;
 use endat_regs::causes::endat;
 use endat_regs::protocol::ModeCommand;
-use endat_regs::service::{word as at, STEPS};
+use endat_regs::service::word as at;
 use endat_regs::{Part, SERVICE};
 
 /// Pause between two looks at an initialisation, and at a request.
@@ -45,34 +46,12 @@ pub struct State {
     pub starts: u16,
 }
 
-/// What came back of a request.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Answer {
-    /// Why it was not fulfilled, 0 = it was: see `endat_regs::service::request_state`.
-    pub refusal: u8,
-    /// Echo of MRS code or address, or WRN, RM, Busy, I4..I0 of additional data 1.
-    pub address: u8,
-    /// Data.
-    pub data: u16,
-    /// The whole answer.
-    pub bits: u64,
-    /// How long it took; whole milliseconds from 60 ms on.
-    pub time_us: u32,
-}
-
 /// A request that is under way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Request {
     channel: usize,
     /// Requests that had ended when it was sent.
     finished: u32,
-}
-
-/// Name of a step of the initialisation.
-pub(crate) fn step_name(step: u8) -> &'static str {
-    STEPS
-        .get(usize::from(step))
-        .map_or("unknown", |s| s.meaning)
 }
 
 impl<L: Link, D: DelayNs> Card<L, D> {

@@ -13,7 +13,7 @@
 //                +------ LineDelay -> Receiver -> Snapshot -> position, cause, ...
 //
 // With requests the channel sends all mode commands: a request rides on the next triggered position frame (EnDat 2.2), or
-// has a frame of its own. AddInfo keeps the record of the additional informations that follow each position.
+// has a frame of its own. AddInfo keeps the record of the additional data that follow each position.
 //
 // The first frame after reset, after an aborted frame and after calibrate runs at the calibration clock and
 // measures the propagation delay; all others run at the configured clock. A frame takes its settings over with its first falling

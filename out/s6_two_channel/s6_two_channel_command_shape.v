@@ -8,11 +8,11 @@
 //
 // left   right        frame
 // 000    111          position with F1
-// 111    000          position with F1, F2, additional information
+// 111    000          position with F1, F2, additional data
 // 010    101          F1 and 40 bits of test values
 // 010    010          24 bits there, 24 bits back
 // other  complement   24 bits there, 24 bits back
-// other  the same     position with F1, F2, additional information; supplement
+// other  the same     position with F1, F2, additional data; supplement
 //
 // Ref: ModeCommand.
 module s6_two_channel_command_shape (
@@ -20,7 +20,7 @@ module s6_two_channel_command_shape (
     input  wire   [5:0] command,
     // It is 000111 or 111000.
     output wire         is_position,
-    // F2 follows F1; the selected additional information follows the position.
+    // F2 follows F1; the selected additional data follow the position.
     output wire         has_f2
 );
     wire   [2:0] left;

@@ -10,7 +10,7 @@
 // sample    /\ x10    /\        /\   /\   /\ /\ /\ ... /\        /\ /\ /\ /\ /\
 // align     __________________________________________/~~~~\____________________
 //
-// An additional information goes the same way behind the CRC: Separator, Payload of 24 bits, Crc. So does the answer to a
+// A block of additional data goes the same way behind the CRC: Separator, Payload of 24 bits, Crc. So does the answer to a
 // command with a parameter, without F1 and F2; what comes MSB first there is turned round where it is read. During a supplement
 // cells are only counted.
 //
@@ -66,9 +66,9 @@ module s6_two_channel_receiver (
     output wire         all_used,
     // They agree that there is none left.
     output wire         all_ended,
-    // Strobe: payload, error bits, CRC and verdict of the answer without additional information are valid.
+    // Strobe: payload, error bits, CRC and verdict of the answer without additional data are valid.
     output reg          done,
-    // Strobe: the answer with all its additional informations, or the supplement, is complete.
+    // Strobe: the answer with all its additional data, or the supplement, is complete.
     output reg          finished,
     // Payload, bit 0 = the bit received first, zeros above its width.
     output wire  [47:0] payload,
@@ -93,7 +93,7 @@ module s6_two_channel_receiver (
     // sample    /\ x10    /\        /\   /\   /\ /\ /\ ... /\        /\ /\ /\ /\ /\
     // align     __________________________________________/~~~~\____________________
     //
-    // An additional information goes the same way behind the CRC: Separator, Payload of 24 bits, Crc. So does the answer to a
+    // A block of additional data goes the same way behind the CRC: Separator, Payload of 24 bits, Crc. So does the answer to a
     // command with a parameter, without F1 and F2; what comes MSB first there is turned round where it is read. During a supplement
     // cells are only counted.
     //
@@ -110,7 +110,7 @@ module s6_two_channel_receiver (
     localparam   [3:0] FIELD_F2 = 4'd3; // Error bit 2 (EnDat 2.2 frames).
     localparam   [3:0] FIELD_PAYLOAD = 4'd4; // Position, LSB first, or what an answer has in its place.
     localparam   [3:0] FIELD_CRC = 4'd5; // CRC, MSB first.
-    localparam   [3:0] FIELD_SEPARATOR = 4'd6; // LOW before an additional information.
+    localparam   [3:0] FIELD_SEPARATOR = 4'd6; // LOW before a block of additional data.
     localparam   [3:0] FIELD_GAP_HIGH = 4'd7; // The clock goes on: HIGH after the last CRC bit.
     localparam   [3:0] FIELD_GAP_LOW = 4'd8; // LOW before the next start bit may come.
     localparam   [3:0] FIELD_DONE = 4'd9; // The answer is complete.

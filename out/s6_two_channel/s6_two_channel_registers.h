@@ -103,9 +103,9 @@
 /* t_format: T-format: bit n for channel n */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_T_FORMAT_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_T_FORMAT_MASK 0x000000FFu
-/* stream_informations: 1: sets of the stream have the additional informations */
-#define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_INFORMATIONS_SHIFT 8u
-#define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_INFORMATIONS_MASK 0x00000100u
+/* stream_additional_data: 1: sets of the stream have the additional data */
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_ADDITIONAL_DATA_SHIFT 8u
+#define S6_TWO_CHANNEL_CARD_PROTOCOLS_STREAM_ADDITIONAL_DATA_MASK 0x00000100u
 /* features: Parts that have no place in capabilities.features */
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_SHIFT 16u
 #define S6_TWO_CHANNEL_CARD_PROTOCOLS_FEATURES_MASK 0xFFFF0000u
@@ -249,7 +249,7 @@
 #define S6_TWO_CHANNEL_CONFIG_FRAME_COMMAND_SHIFT 24u
 #define S6_TWO_CHANNEL_CONFIG_FRAME_COMMAND_MASK 0x3F000000u
 #define S6_TWO_CHANNEL_CONFIG_FRAME_COMMAND_SEND_POSITION 7u /* 000111 send position (EnDat 2.1) */
-#define S6_TWO_CHANNEL_CONFIG_FRAME_COMMAND_SEND_POSITION_ADD_INFO 56u /* 111000 send position with additional information (EnDat 2.2) */
+#define S6_TWO_CHANNEL_CONFIG_FRAME_COMMAND_SEND_POSITION_ADD_INFO 56u /* 111000 send position with additional data (EnDat 2.2) */
 /* ignore_register: 1: trigger_now is not */
 #define S6_TWO_CHANNEL_CONFIG_FRAME_IGNORE_REGISTER_SHIFT 30u
 #define S6_TWO_CHANNEL_CONFIG_FRAME_IGNORE_REGISTER_MASK 0x40000000u
@@ -316,7 +316,7 @@
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_DATA_NOT_FALLING 7u /* data not falling after the frame */
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_TRIGGER_OVERRUN 8u /* trigger overrun */
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_UNKNOWN_COMMAND 9u /* unknown mode command */
-#define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_INFO_MISSING 10u /* additional information missing */
+#define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_INFO_MISSING 10u /* additional data missing */
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_NO_ENCODER 11u /* no encoder */
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_STUCK_HIGH 12u /* data stuck high */
 #define S6_TWO_CHANNEL_RESULT_STATUS_CAUSE_STUCK_LOW 13u /* data stuck low */
@@ -416,7 +416,7 @@
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_FLAGS_PARALLEL_CRC 0x100u /* parallel CRC */
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_FLAGS_TAIL_LOW 0x200u /* data not high after the frame */
 #define S6_TWO_CHANNEL_RESULT_EVIDENCE_FLAGS_UNKNOWN_COMMAND 0x400u /* unknown mode command */
-#define S6_TWO_CHANNEL_RESULT_EVIDENCE_FLAGS_INFO_MISSING 0x800u /* additional information missing */
+#define S6_TWO_CHANNEL_RESULT_EVIDENCE_FLAGS_INFO_MISSING 0x800u /* additional data missing */
 
 /* ro: Age and recovery time. */
 #define S6_TWO_CHANNEL_RESULT_AGE_RECOVERY_WORD(channel) (0x185u + 8u * (channel))

@@ -16,7 +16,7 @@
 // An encoder: counts clock edges, reads the mode command, answers with its position, waits its recovery time. Asked for a parameter
 // (100011, address, 16 more bits) it answers with the address and with it twice, once inverted. Where the clock may go on, the falling edge
 // behind the answer takes the next position, and DATA is LOW for one period at least before its start bit. Behind the position of 001001
-// it takes an MRS code, which selects the additional information that comes with each answer from then on, 2 before 1.
+// it takes an MRS code, which selects the additional data that come with each answer from then on, 2 before 1.
 module s6_two_channel_tb_encoder #(
     parameter integer CHANNEL = 0, // for its messages
     parameter [5:0] COMMAND = 6'b111000, // the mode command it knows: 111000 or 000111
@@ -41,8 +41,8 @@ module s6_two_channel_tb_encoder #(
     output reg oe, // it drives DATA; between two frames, too
     output reg data, // its level
     output reg [4:0] crc, // of the last answer's position, as sent
-    output reg [23:0] info_1, // additional information 1 of the last answer: WRN, RM, Busy, I4..I0, and 16 bits; 0 without one
-    output reg [23:0] info_2, // the same of information 2
+    output reg [23:0] info_1, // additional data 1 of the last answer: WRN, RM, Busy, I4..I0, and 16 bits; 0 without one
+    output reg [23:0] info_2, // the same of additional data 2
     output reg [31:0] frames, // whole frames, as the encoder sees them
     output reg [31:0] errors // what the receiver has done wrong; the first ten are told
 );
@@ -63,7 +63,7 @@ module s6_two_channel_tb_encoder #(
     integer bits; // of the answer
     reg [5:0] command;
     reg [PARAMETER_BITS-1:0] asked; // with a parameter's command, or in a supplement
-    reg [7:0] selected_1, selected_2; // MRS codes; 0: no such information
+    reg [7:0] selected_1, selected_2; // MRS codes; 0: no such additional data
     reg is_selecting; // a supplement comes behind this answer
     integer zeros; // LOW bits of a supplement so far
     integer taken; // its start bit and bits so far, and the two edges behind them
@@ -161,7 +161,7 @@ module s6_two_channel_tb_encoder #(
         end
     endtask
 
-    // 0x4F and 0x5F: no such information from now on.
+    // 0x4F and 0x5F: no such additional data from now on.
     task select(input [7:0] mrs);
         case (mrs[7:4])
             4'h4: selected_1 = mrs == 8'h4F ? 8'd0 : mrs;

@@ -45,7 +45,7 @@ module s6_two_channel_transaction (
     input  wire         started,
     // Strobe: a start bit outside its window.
     input  wire         start_refused,
-    // Strobe: the answer without additional information has been taken.
+    // Strobe: the answer without additional data has been taken.
     input  wire         answer_done,
     // Strobe: the answer with all that follows it has been taken, or the supplement is over.
     input  wire         finished,

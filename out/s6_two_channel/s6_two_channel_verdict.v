@@ -12,7 +12,7 @@
 // publish, late_fault, over  ______________/~~\__    cause and flags stay until the next one
 //
 // An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA does
-// not fall, informations of another length) withdraws it.
+// not fall, additional data of another length) withdraws it.
 module s6_two_channel_verdict (
     // System clock.
     input  wire         clock,
