@@ -8,7 +8,7 @@
     always @* begin
         // Between accesses the ring is where it was.
         if (!turning && !turn) begin ring_is_home: assert (f_steps == 0); end
-        if (begins) begin begins_at_home: assert (f_next == 0 || f_next == WHOLE); end
+        if (starts) begin begins_at_home: assert (f_next == 0 || f_next == WHOLE); end
     end
     // What holds between front, word and bank in every state that can be reached; the counters run one step ahead of the ring.
     always @* begin
