@@ -8,6 +8,8 @@ use std::{fs, io};
 
 /// Name of the list of all other files.
 pub const MANIFEST: &str = "MANIFEST";
+/// Name of the page that says what the files are.
+pub const README: &str = "README.md";
 /// Largest file of an earlier emission that is looked at.
 const FILE_BYTES_MAX: u64 = 1 << 24;
 

@@ -205,7 +205,7 @@ fn without_board(project: &Project) -> Result<Vec<Artifact>, GenError> {
     };
     let text = include_str!("../constraints/templates/readme_bus.md.jinja");
     let text = template::render("readme_bus", text, &context)?;
-    Ok(vec![Artifact::new("README.md", text)])
+    Ok(vec![Artifact::new(crate::artifact::README, text)])
 }
 
 /// What the templates know, a family's own among them; docs/boards.md lists it.
@@ -270,7 +270,10 @@ fn of_board(project: &Project, board: &Board, pll: &Pll) -> Result<Vec<Artifact>
             format!("{name}.{}", family.constraints),
             of_family(CONSTRAINTS)?,
         ),
-        Artifact::new("README.md", template::render("readme", PAGE, &facts)?),
+        Artifact::new(
+            crate::artifact::README,
+            template::render("readme", PAGE, &facts)?,
+        ),
     ])
 }
 

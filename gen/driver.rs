@@ -24,6 +24,9 @@ files![
     "endat_uart.c",
 ];
 
+/// What the README of an emission says of it.
+pub const ROW: &str = "| `endat.h` and the other `endat*` | driver in C99 for this and every other card, on any bus: `endat.h` documents its calls; `endat_transports.h` is for SPI, parallel bus and UART |";
+
 /// Every file of the driver.
 pub fn artifacts() -> Vec<Artifact> {
     let artifact = |(name, text): &(&str, &str)| Artifact::new(*name, *text);

@@ -101,6 +101,14 @@ fn add_driver(
         ));
     }
     artifacts.retain(|file| file.path != artifact::MANIFEST);
+    for readme in artifacts
+        .iter_mut()
+        .filter(|file| file.path == artifact::README)
+    {
+        // The last row of its table of files.
+        let own_row = format!("{}\n| `MANIFEST` |", crate::driver::ROW);
+        readme.text = readme.text.replacen("| `MANIFEST` |", &own_row, 1);
+    }
     artifacts.extend(crate::driver::artifacts());
     artifacts.push(artifact::manifest(artifacts));
     Ok(())

@@ -70,7 +70,7 @@ pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
     };
     let readme = include_str!("../templates/receiver_readme.md.jinja");
     artifacts.push(Artifact::new(
-        "README.md",
+        crate::artifact::README,
         render("receiver_readme", readme, &context)?,
     ));
     artifacts.push(artifact::manifest(&artifacts));

@@ -313,6 +313,8 @@ fn emit_hands_the_driver_out_with_a_card() {
     }
     let manifest = std::fs::read_to_string(folder.join("MANIFEST")).unwrap();
     assert_eq!(manifest.matches("  endat.h\n").count(), 1);
+    let readme = std::fs::read_to_string(folder.join("README.md")).unwrap();
+    assert_eq!(readme.matches(endat_gen::driver::ROW).count(), 1);
     good(&[&with[..], &["--check"]].concat());
     let told = bad(
         &with[..5]
