@@ -110,7 +110,7 @@ impl Campaign for Faults {
         let what = hash(&format!(
             "{} {} {place}",
             group.port.name(),
-            group.kind.name()
+            group.kind.drawn_by()
         ));
         let fault = |number: u64| {
             let (moment, number) = (number % self.moments(), number / self.moments());

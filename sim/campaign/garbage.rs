@@ -187,7 +187,8 @@ impl Campaign for Garbage {
             format!("{} {}", group.port.name(), group.kind.name()),
             group.way.name(),
         );
-        let what = hash(&format!("{subject} {kind}")) ^ self.seed;
+        let drawn_by = format!("{} {}", group.port.name(), group.kind.drawn_by());
+        let what = hash(&format!("{drawn_by} {kind}")) ^ self.seed;
         let mishap = |number| {
             group
                 .way

@@ -144,7 +144,7 @@ impl Campaign for Upsets {
     fn run(&self, group: usize, cases: Range<u64>) -> Tally {
         let group = &self.groups[group];
         let ready = &group.ready;
-        let label = format!("{} {}", ready.port.name(), ready.kind.name());
+        let label = format!("{} {}", ready.port.name(), ready.kind.drawn_by());
         let draw = |number| {
             let (draw, seed) = (self.draw, self.seed);
             group

@@ -148,6 +148,14 @@ impl FrameKind {
         }
     }
 
+    /// What its cases are drawn by. It stays when the name becomes another one, so that counted results stay those of the same cases.
+    pub(super) fn drawn_by(self) -> &'static str {
+        match self {
+            Self::AdditionalData => "informations",
+            _ => self.name(),
+        }
+    }
+
     fn command(self) -> ModeCommand {
         match self {
             Self::Position21 | Self::Continuous => ModeCommand::SendPosition,
