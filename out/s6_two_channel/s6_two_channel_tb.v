@@ -3,7 +3,8 @@
 //
 // Self-checking test bench of s6_two_channel, plain Verilog-2005, for every simulator:
 //   iverilog -g2005 -s s6_two_channel_tb -o tb.vvp s6_two_channel_tb.v -f s6_two_channel.f && vvp -n tb.vvp
-//   or: verilator --binary --timing --top-module s6_two_channel_tb s6_two_channel_tb.v -f s6_two_channel.f && obj_dir/Vs6_two_channel_tb
+//   or: verilator --binary --timing -MAKEFLAGS OPT_FAST=-O0 --top-module s6_two_channel_tb s6_two_channel_tb.v -f s6_two_channel.f && obj_dir/Vs6_two_channel_tb
+//   (without OPT_FAST=-O0 it runs some times faster, and takes minutes to compile)
 // It says what it checks, and ends by itself: with the line PASS, or with FAIL, the number of complaints and an exit code that is not 0. Plusargs (vvp -n tb.vvp +vcd ...):
 // +vcd writes s6_two_channel_tb.vcd, +first ends with the first complaint, +abort also waits out the 30 ms after an aborted frame, +slow also tries
 // clock rates below 1 MHz.
