@@ -51,6 +51,11 @@ impl Log {
 
     /// What it has told, and the columns `trigger`, `time_s` and `missing` of its rows.
     fn end(self) -> (cli::Outcome, Vec<(u64, f64, u64)>) {
+        let begin = Instant::now();
+        while !self.thread.is_finished() {
+            assert!(begin.elapsed() < PATIENCE, "the log goes on");
+            thread::sleep(Duration::from_millis(50));
+        }
         let outcome = self.thread.join().unwrap();
         let text = fs::read_to_string(&self.out).unwrap();
         assert!(text.ends_with('\n'));
