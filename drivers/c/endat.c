@@ -183,14 +183,12 @@ endat_error endat_open(endat_card *card, const endat_link *link, uint32_t hash)
 endat_error endat_try_link(const endat_card *card)
 {
     const uint32_t patterns[4] = {0x00AA5501u, 0x0055AAFEu, 0x00010280u, 0x00000000u};
-    uint32_t before = 0u;
     uint32_t n;
-    endat_error error = endat_read_word(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, &before);
+    endat_error error = ENDAT_OK;
 
     for (n = 0u; (n < 4u) && (error == ENDAT_OK); n++) {
         const uint32_t scratch = ENDAT_MAP_PUT(ENDAT_MAP_CARD_CONFIG_HOLD_SCRATCH, patterns[n]);
-        error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD,
-                                    (before & ENDAT_MAP_CARD_CONFIG_HOLD_HOLD_MASK) | scratch);
+        error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, scratch);
     }
     return error;
 }
@@ -241,17 +239,21 @@ static endat_error is_same(const endat_card *card, const uint32_t words[ENDAT_BU
 /** The same while the card holds its results. */
 static endat_error look_held(const endat_card *card, uint32_t words[ENDAT_BURST_WORDS])
 {
-    uint32_t before = 0u;
-    endat_error error = endat_read_word(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, &before);
+    uint32_t word = 0u;
+    endat_error error = endat_read_word(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, &word);
 
+    word &= ~(uint32_t)ENDAT_MAP_CARD_CONFIG_HOLD_HOLD_MASK;
     if (error == ENDAT_OK) {
-        error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, before | ENDAT_MAP_CARD_CONFIG_HOLD_HOLD_MASK);
-    }
-    if (error == ENDAT_OK) {
-        error = look(card, words);
-        /* Also after an error: results that stand still for ever are worse. */
-        const endat_error given_back = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, before);
-        error = (error == ENDAT_OK) ? given_back : error;
+        error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, word | ENDAT_MAP_CARD_CONFIG_HOLD_HOLD_MASK);
+        if (error == ENDAT_OK) {
+            error = look(card, words);
+        }
+        /* After every error, too: results that stand still for ever are worse. */
+        endat_error let_go = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, word);
+        if (let_go != ENDAT_OK) {
+            let_go = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_HOLD_WORD, word);
+        }
+        error = (error == ENDAT_OK) ? let_go : error;
     }
     return error;
 }

@@ -92,7 +92,7 @@ bool endat_has(const endat_card *card, uint32_t features);
 
 /**
  * Tries the link: writes patterns into the scratch bits, and reads them back. Catches exchanged bytes, writes that do not arrive, and
- * addresses that are off.
+ * addresses that are off. Results that are held are let go.
  */
 endat_error endat_try_link(const endat_card *card);
 

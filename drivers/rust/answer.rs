@@ -14,3 +14,10 @@ pub struct Answer {
     /// How long it took; whole milliseconds from 60 ms on.
     pub time_us: u32,
 }
+
+impl Answer {
+    /// What the refusal means.
+    pub fn refusal_meaning(&self) -> &'static str {
+        endat_regs::service::request_state::name(self.refusal.into())
+    }
+}

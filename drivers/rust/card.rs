@@ -43,7 +43,7 @@ impl Facts {
 
     /// Whether a channel speaks T-format.
     pub const fn is_t_format(&self, channel: usize) -> bool {
-        self.t_format_channels >> channel & 1 == 1
+        channel < CHANNELS_MAX && self.t_format_channels >> channel & 1 == 1
     }
 }
 
@@ -57,29 +57,32 @@ pub struct Card<L, D> {
 
 /// A wait with a limit, which adds up its pauses.
 pub(crate) struct Wait {
-    left_us: u32,
+    left_us: u64,
 }
 
 impl Wait {
     pub(crate) const fn of_us(limit_us: u32) -> Self {
-        Self { left_us: limit_us }
+        let left_us = limit_us as u64;
+        Self { left_us }
     }
 
     pub(crate) const fn of_ms(limit_ms: u32) -> Self {
-        Self::of_us(limit_ms.saturating_mul(1_000))
+        let left_us = limit_ms as u64 * 1_000;
+        Self { left_us }
     }
 
-    /// Pauses; `false` if the limit has passed.
+    /// Pauses; `false` if the limit has passed: one more look, and it is over.
     pub(crate) fn more(&mut self, delay: &mut impl DelayNs, pause_us: u32) -> bool {
         delay.delay_us(pause_us);
-        self.left_us = self.left_us.saturating_sub(pause_us);
+        self.left_us = self.left_us.saturating_sub(pause_us.into());
         self.left_us > 0
     }
 }
 
 impl<L: Link, D: DelayNs> Card<L, D> {
     /// Finds out who answers. Refuses what is no card, another major version of the register map and, if a hash is given (the first 8
-    /// digits of the configuration's, as the generated files have it), a card of another configuration.
+    /// digits of the configuration's, as the generated files have it), a card of another configuration. Give `&mut link` to keep the link
+    /// where that fails.
     pub fn open(mut link: L, delay: D, hash: Option<u32>) -> Result<Self, Error<L::Error>> {
         let id = link.read(word!(CARD.id))?;
         let version = link.read(word!(CARD.version))?;
@@ -122,6 +125,16 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         (self.link, self.delay)
     }
 
+    /// The link, as for what it has counted.
+    pub const fn link(&self) -> &L {
+        &self.link
+    }
+
+    /// The link, to change how it goes about.
+    pub const fn link_mut(&mut self) -> &mut L {
+        &mut self.link
+    }
+
     /// What the card says of itself.
     pub const fn facts(&self) -> &Facts {
         &self.facts
@@ -148,13 +161,12 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Err(Error::ReadBack)
     }
 
-    /// Tries the link: writes patterns into bits that are free for that, and reads them back.
+    /// Tries the link: writes patterns into bits that are free for that, and reads them back. Results that are held are let go.
     pub fn try_link(&mut self) -> Result<(), Error<L::Error>> {
         let address = word!(CARD_CONFIG.hold);
-        let hold = self.link.read(address)? & field!(CARD_CONFIG.hold.hold).mask();
         for pattern in PATTERNS {
-            let word = field!(CARD_CONFIG.hold.scratch).put(hold, pattern);
-            self.write_checked(address, word.unwrap_or(hold))?;
+            let word = field!(CARD_CONFIG.hold.scratch).put(0, pattern);
+            self.write_checked(address, word.unwrap_or(0))?;
         }
         Ok(())
     }
@@ -218,12 +230,13 @@ impl<L: Link, D: DelayNs> Card<L, D> {
     /// The same while the card holds its results.
     fn look_held(&mut self, words: &mut [u32]) -> Result<(), Error<L::Error>> {
         let address = word!(CARD_CONFIG.hold);
-        let before = self.link.read(address)?;
-        self.write_checked(address, before | field!(CARD_CONFIG.hold.hold).mask())?;
-        let looked = self.look(words);
-        // Also after an error: results that stand still for ever are worse.
-        let given_back = self.write_checked(address, before);
-        looked.and(given_back)
+        let hold = field!(CARD_CONFIG.hold.hold).mask();
+        let free = self.link.read(address)? & !hold;
+        let held = self.write_checked(address, free | hold);
+        let looked = held.and_then(|()| self.look(words));
+        // After every error, too: results that stand still for ever are worse.
+        let let_go = self.put_back(address, free);
+        looked.and(let_go)
     }
 
     /// Triggers all channels that take it. Two triggers are a cycle apart at least: `explain` shows it.
@@ -235,6 +248,15 @@ impl<L: Link, D: DelayNs> Card<L, D> {
     /// Triggers, and waits until every channel has its result. [`Error::Timeout`]: at least one has none, as while its encoder is
     /// unplugged; [`Card::read_moment`] has the others, and that channel is stale.
     pub fn measure(&mut self, limit_us: u32) -> Result<Moment, Error<L::Error>> {
+        self.measure_channels(u32::MAX, limit_us)
+    }
+
+    /// The same for some of the channels, bit n for channel n: nobody waits for the others, as for one without an encoder.
+    pub fn measure_channels(
+        &mut self,
+        channels: u32,
+        limit_us: u32,
+    ) -> Result<Moment, Error<L::Error>> {
         let before = self.read_moment()?;
         self.trigger()?;
         let mut wait = Wait::of_us(limit_us);
@@ -242,9 +264,12 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             // The last look comes behind the last pause.
             let is_in_time = self.pause(&mut wait, RESULT_PAUSE_US);
             let moment = self.read_moment()?;
-            let mut pairs = moment.results().iter().zip(before.results());
-            let any_new = pairs.any(|(now, then)| now.sequence != then.sequence);
-            if any_new && moment.results().iter().all(|result| !result.stale) {
+            let pairs = moment.results().iter().zip(before.results()).enumerate();
+            let mut asked = pairs.filter(|(channel, _)| channels >> channel & 1 == 1);
+            let any_new = asked
+                .clone()
+                .any(|(_, (now, then))| now.sequence != then.sequence);
+            if any_new && asked.all(|(_, (now, _))| !now.stale) {
                 return Ok(moment);
             }
             if !is_in_time {
@@ -261,8 +286,15 @@ impl<L: Link, D: DelayNs> Card<L, D> {
     /// Lets channels measure their line delay again with their next frame; bit n for channel n.
     pub fn calibrate(&mut self, channels: u32) -> Result<(), Error<L::Error>> {
         let word = field!(CARD.calibrate.channels).put(0, channels);
+        let word = word.filter(|_| channels >> self.facts.channels == 0);
         let word = word.ok_or(Error::Argument)?;
         self.link.write(word!(CARD.calibrate), word)
+    }
+
+    /// Writes a word that others wait for, also where one access fails.
+    pub(crate) fn put_back(&mut self, address: u32, value: u32) -> Result<(), Error<L::Error>> {
+        let once = self.write_checked(address, value);
+        once.or_else(|_| self.write_checked(address, value))
     }
 
     pub(crate) fn pause(&mut self, wait: &mut Wait, pause_us: u32) -> bool {

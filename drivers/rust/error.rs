@@ -2,11 +2,12 @@
 
 use crate::answer::Answer;
 use core::fmt;
-use endat_regs::service::{request_state, STEPS};
+use endat_regs::service::STEPS;
 use endat_regs::Part;
 
 /// Why a call did not do what it should.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Error<E> {
     /// An argument is outside of what the card takes.
     Argument,
@@ -34,6 +35,8 @@ pub enum Error<E> {
     Timeout,
     /// It is still under way: ask again.
     Busy,
+    /// The card or its service has begun anew, or another master has asked: what became of the request is not known.
+    Restarted,
     /// A setting reads back as another one than was written.
     ReadBack,
     /// DATA is HIGH: no encoder, no supply, or an open line.
@@ -86,6 +89,9 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                 f.write_str("not ended in time: is a trigger enabled, is the encoder plugged in?")
             }
             Self::Busy => f.write_str("still under way: ask again"),
+            Self::Restarted => f.write_str(
+                "the card or its service has begun anew, or another master has asked: ask again, write alarms and additional data again",
+            ),
             Self::ReadBack => f.write_str(
                 "the setting reads back as another one: is another master writing, is the link disturbed?",
             ),
@@ -100,7 +106,7 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
             Self::Refused(answer) => write!(
                 f,
                 "the encoder did not fulfil the request: {}",
-                request_state::name(answer.refusal.into())
+                answer.refusal_meaning()
             ),
             Self::TriggerOff => f.write_str(
                 "the trigger source \"register\" is not enabled: Card::set_triggers()",

@@ -41,6 +41,7 @@ mod uart;
 pub use answer::Answer;
 pub use card::{Card, Facts};
 pub use endat_regs as regs;
+pub use endat_regs::{protocol::ModeCommand, Part};
 pub use error::Error;
 pub use link::{Link, Mapped};
 pub use parallel::{Parallel, Registers};

@@ -52,11 +52,16 @@ pub struct Mapped {
     base: *mut u32,
 }
 
+// SAFETY: whoever made it has said that the memory is the card's and nobody else writes it, on no processor.
+#[allow(unsafe_code)]
+unsafe impl Send for Mapped {}
+
 impl Mapped {
     /// The card whose first word is at `base`.
     ///
     /// # Safety
-    /// [`endat_regs::MAP_BYTES`] from `base` on are the card's, for as long as this lives, and nobody else writes them.
+    /// `base` is a multiple of 4; [`endat_regs::MAP_BYTES`] from there on are the card's, for as long as this lives, and nobody else
+    /// writes them.
     #[allow(unsafe_code)] // Only the program that knows its memory map can vouch for the address.
     pub const unsafe fn new(base: *mut u32) -> Self {
         Self { base }

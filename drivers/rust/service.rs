@@ -20,6 +20,8 @@ const ABORT_PAUSE_US: u32 = 30_000;
 const WRAPS_MS: u32 = 60;
 /// MRS codes that select additional data have these bits 7..5.
 const SELECTS: u8 = 0x40;
+/// With these bits they select none.
+const SELECTS_NONE: u8 = 0x0F;
 
 /// What a channel's service knows; all 0 on a card without requests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,7 +53,7 @@ pub struct State {
 pub struct Request {
     channel: usize,
     /// Requests that had ended when it was sent.
-    finished: u32,
+    finished: u16,
 }
 
 impl<L: Link, D: DelayNs> Card<L, D> {
@@ -111,12 +113,15 @@ impl<L: Link, D: DelayNs> Card<L, D> {
     /// [`Error::Timeout`].
     pub fn wait_ready(&mut self, channel: usize, limit_ms: u32) -> Result<(), Error<L::Error>> {
         let mut wait = Wait::of_ms(limit_ms);
-        let mut was_away = false;
+        let (mut was_away, mut is_in_time) = (false, true);
         loop {
             let status = self.status(channel);
             was_away |= matches!(status, Err(Error::Unplugged));
             match status {
-                Err(Error::Busy | Error::Unplugged) if self.pause(&mut wait, STATE_PAUSE_US) => {}
+                // The last look comes behind the last pause.
+                Err(Error::Busy | Error::Unplugged) if is_in_time => {
+                    is_in_time = self.pause(&mut wait, STATE_PAUSE_US);
+                }
                 Err(Error::Busy) => return Err(Error::Timeout),
                 Err(error) => return Err(error),
                 Ok(()) => break,
@@ -198,13 +203,14 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         if state.unplugged {
             return Err(Error::Unplugged);
         }
-        if state.initialising || field!(SERVICE.request_state.busy).of(request) != 0 {
+        let is_busy = field!(SERVICE.request_state.busy).of(request) != 0;
+        if state.initialising || state.starts == 0 || is_busy {
             return Err(Error::Busy);
         }
         self.link.write(word!(SERVICE.request, channel), word)?;
         Ok(Request {
             channel,
-            finished: field!(SERVICE.request_state.finished).of(request),
+            finished: field!(SERVICE.request_state.finished).of(request) as u16,
         })
     }
 
@@ -213,10 +219,12 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         let channel = request.channel;
         let state = self.link.read(word!(SERVICE.request_state, channel))?;
         // "busy" may be 0 still in the first reads: only the number tells.
-        if field!(SERVICE.request_state.busy).of(state) != 0
-            || field!(SERVICE.request_state.finished).of(state) == request.finished
-        {
-            return Err(Error::Busy);
+        let finished = field!(SERVICE.request_state.finished).of(state) as u16;
+        match finished.wrapping_sub(request.finished) {
+            0 => return Err(Error::Busy),
+            1 if field!(SERVICE.request_state.busy).of(state) != 0 => return Err(Error::Busy),
+            1 => {}
+            _ => return Err(Error::Restarted),
         }
         let low = self.link.read(word!(SERVICE.answer, channel))?;
         let more = self.link.read(word!(SERVICE.answer_more, channel))?;
@@ -253,7 +261,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         limit_ms: u32,
     ) -> Result<Answer, Error<L::Error>> {
         let mut wait = Wait::of_ms(limit_ms);
-        let mut sent = None;
+        let (mut sent, mut is_in_time) = (None, true);
         loop {
             let became = match &sent {
                 Some(request) => self.poll(request),
@@ -265,7 +273,9 @@ impl<L: Link, D: DelayNs> Card<L, D> {
                     }),
             };
             match became {
-                Err(Error::Busy) if self.pause(&mut wait, REQUEST_PAUSE_US) => {}
+                Err(Error::Busy) if is_in_time => {
+                    is_in_time = self.pause(&mut wait, REQUEST_PAUSE_US);
+                }
                 Err(Error::Busy) => break,
                 became => return became,
             }
@@ -288,7 +298,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.send(channel, ModeCommand::SelectMemory, mrs, block, limit_ms)
     }
 
-    /// Reads a word of the encoder's memory. Triggers that meet the frames of it are lost, and told.
+    /// Reads a word of the encoder's memory; the limit is that of each of the two requests. Triggers that meet the frames of it are lost,
+    /// and told.
     pub fn read_parameter(
         &mut self,
         channel: usize,
@@ -300,7 +311,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.send(channel, ModeCommand::SendParameter, address, 0, limit_ms)
     }
 
-    /// Writes a word of the encoder's memory.
+    /// Writes a word of the encoder's memory; the limit is that of each of the two requests.
     pub fn write_parameter(
         &mut self,
         channel: usize,
@@ -327,7 +338,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         mrs: &[u8],
     ) -> Result<(), Error<L::Error>> {
         self.needs_service(channel)?;
-        let is_one = |code: &u8| code & 0xE0 == SELECTS;
+        let is_one = |code: &u8| code & 0xE0 == SELECTS && code & SELECTS_NONE != SELECTS_NONE;
         if mrs.len() > usize::from(at::LIST_MAX) || !mrs.iter().all(is_one) {
             return Err(Error::Argument);
         }

@@ -128,9 +128,10 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         let sources = self.link.read(address)?;
         // A frame between two writes would run with half of the settings.
         let disabled = field!(CARD_CONFIG.trigger_sources.disabled).mask();
-        self.write_checked(address, sources & disabled)?;
-        let written = self.write_settings_words(channel, words);
-        let given_back = self.write_checked(address, sources);
+        let stopped = self.write_checked(address, sources & disabled);
+        let written = stopped.and_then(|()| self.write_settings_words(channel, words));
+        // After every error, too.
+        let given_back = self.put_back(address, sources);
         written.and(given_back)
     }
 
@@ -144,7 +145,8 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.write_checked(word!(CHANNEL_CONFIG.limits, channel), limits)
     }
 
-    /// Enables sources of triggers, and sets the period of the timer if one is given, while it stands.
+    /// Enables sources of triggers, and sets the period of the timer if one is given, while it stands. Behind an error the sources are
+    /// those of before, unless the link has failed for that, too.
     pub fn set_triggers(
         &mut self,
         pin: bool,
@@ -164,15 +166,20 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         let address = word!(CARD_CONFIG.trigger_sources);
         let before = self.link.read(address)?;
         if let Some(cycles) = period_cycles {
-            self.write_checked(address, before & !fields[1].0.mask())?;
             let word = period.put(0, cycles).ok_or(Error::Argument)?;
-            self.write_checked(word!(CARD_CONFIG.trigger_period), word)?;
+            let stopped = self.write_checked(address, before & !fields[1].0.mask());
+            let period = word!(CARD_CONFIG.trigger_period);
+            let written = stopped.and_then(|()| self.write_checked(period, word));
+            if let Err(error) = written {
+                self.put_back(address, before)?;
+                return Err(error);
+            }
         }
         let with = |word: u32, (field, is_on): (&Field, bool)| match is_on {
             true => word | field.mask(),
             false => word & !field.mask(),
         };
-        self.write_checked(address, fields.into_iter().fold(before, with))
+        self.put_back(address, fields.into_iter().fold(before, with))
     }
 
     /// Which events make `irq_o` high: the word `interrupt.mask`.

@@ -69,7 +69,11 @@ impl<S: SpiDevice> Spi<S> {
         let (answer, crc) = frame.split_at(crc_at);
         let sum = crc16(crc16(CRC16_START, &head), &answer[ANSWER_AT..]);
         if crc != sum.to_be_bytes() {
-            return Err(Error::CheckSum);
+            // Where there is no card, and in a wrong mode, the head is none either.
+            return Err(match answer[0] {
+                GOOD | BAD_WRITE => Error::CheckSum,
+                _ => Error::NoCard,
+            });
         }
         let own = answer[ANSWER_AT..].chunks_exact(WORD_BYTES as usize);
         for (word, bytes) in words.iter_mut().zip(own) {
@@ -92,7 +96,7 @@ impl<S: SpiDevice> Spi<S> {
         let mut tries = self.tries.max(1);
         loop {
             let became = once(self);
-            if !matches!(became, Err(Error::CheckSum)) {
+            if !matches!(became, Err(Error::CheckSum | Error::NoCard)) {
                 return became;
             }
             self.disturbed = self.disturbed.wrapping_add(1);

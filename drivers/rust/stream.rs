@@ -29,7 +29,7 @@ const MISSING: u16 = 0x8000;
 pub struct Stream {
     /// Encoded; one more than the longest set, as COBS adds one byte.
     bytes: [u8; SET_BYTES + 1],
-    /// How many; beyond the longest set it only counts.
+    /// How many.
     count: usize,
     /// Read, and not looked at.
     word: u32,
@@ -93,19 +93,18 @@ impl Stream {
     /// One more byte; a set if it was the last one of it.
     fn take(&mut self, byte: u8) -> Option<Result<Set, Damaged>> {
         if byte != 0 {
-            if let Some(place) = self.bytes.get_mut(self.count) {
-                *place = byte;
-            }
+            let Some(place) = self.bytes.get_mut(self.count) else {
+                self.count = 0;
+                return Some(Err(Damaged));
+            };
+            *place = byte;
             self.count += 1;
             return None;
         }
         match core::mem::take(&mut self.count) {
             // Nothing between two zeros.
             0 => None,
-            count => match self.bytes.get_mut(..count) {
-                Some(bytes) => set_of(bytes).transpose(),
-                None => Some(Err(Damaged)),
-            },
+            count => set_of(&mut self.bytes[..count]).transpose(),
         }
     }
 }
@@ -157,7 +156,8 @@ fn set_of(bytes: &mut [u8]) -> Result<Option<Set>, Damaged> {
         TYPE_RUN => (low, 1, SAMPLE_BYTES),
         _ => return Ok(None),
     };
-    if !(1..=CHANNELS_MAX).contains(&count.into()) || samples.len() != each * usize::from(count) {
+    let is_there = (1..=CHANNELS_MAX).contains(&count.into()) && usize::from(first) < CHANNELS_MAX;
+    if !is_there || samples.len() != each * usize::from(count) {
         return Err(Damaged);
     }
     let mut set = Set {

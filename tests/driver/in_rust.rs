@@ -4,9 +4,10 @@ use super::everything;
 use super::rig::{self, Rig, ALL_PARTS, WIDTHS};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
-use endat_driver::regs::{causes::endat, protocol::ModeCommand, service::request_state, Part};
+use endat_driver::regs::{self, causes::endat, service::request_state};
 use endat_driver::{
-    difference, signed, Card, Error, Link, Moment, Parallel, Registers, Serial, Spi, Uart,
+    difference, signed, Card, Error, Link, ModeCommand, Moment, Parallel, Part, Registers, Serial,
+    Spi, Uart,
 };
 use endat_gen::config::parse;
 use endat_hdl::bus::HostBus;
@@ -356,6 +357,9 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
         assert_eq!(self.card.status(1), Ok(()));
         if has_service {
             assert_eq!(self.card.measure(500), Err(Error::Timeout));
+            let moment = self.card.measure_channels(0b10, 500).unwrap();
+            assert!(moment.results()[1].fresh && !moment.results()[0].fresh);
+            self.world.pause_us(200);
             let refused = self.card.read_parameter(0, 0xA1, 0x0D, 200);
             assert_eq!(refused, Err(Error::Unplugged));
             assert_eq!(self.card.wait_ready(0, 5), Err(Error::Unplugged));
@@ -536,20 +540,53 @@ fn the_function_of_the_page_shows_angles_over_a_plug() {
     world.is_content();
 }
 
-/// Answers with what a test has put there.
-struct Memory([u32; 0x600]);
+/// Answers with what a test has put there, and keeps what is written.
+struct Memory {
+    words: [u32; 0x600],
+    /// This word changes whenever it is read.
+    moves: Option<u32>,
+    /// This access fails, and no other one.
+    fails_at: Option<u32>,
+    accesses: u32,
+}
 
-impl Link for Memory {
-    type Error = Infallible;
+/// An access that failed.
+#[derive(Debug, PartialEq)]
+struct Failed;
 
-    fn read(&mut self, word_address: u32) -> Result<u32, Error<Infallible>> {
-        self.0
-            .get(word_address as usize)
-            .copied()
-            .ok_or(Error::Argument)
+impl Memory {
+    fn new(words: [u32; 0x600]) -> Self {
+        Self {
+            words,
+            moves: None,
+            fails_at: None,
+            accesses: 0,
+        }
     }
 
-    fn write(&mut self, _: u32, _: u32) -> Result<(), Error<Infallible>> {
+    fn access(&mut self, word_address: u32) -> Result<&mut u32, Error<Failed>> {
+        self.accesses += 1;
+        if self.fails_at == Some(self.accesses) {
+            return Err(Error::Link(Failed));
+        }
+        self.words
+            .get_mut(word_address as usize)
+            .ok_or(Error::Argument)
+    }
+}
+
+impl Link for Memory {
+    type Error = Failed;
+
+    fn read(&mut self, word_address: u32) -> Result<u32, Error<Failed>> {
+        let moves = u32::from(self.moves == Some(word_address));
+        let word = self.access(word_address)?;
+        *word += moves;
+        Ok(*word)
+    }
+
+    fn write(&mut self, word_address: u32, value: u32) -> Result<(), Error<Failed>> {
+        *self.access(word_address)? = value;
         Ok(())
     }
 }
@@ -561,45 +598,170 @@ impl DelayNs for NoTime {
     fn delay_ns(&mut self, _: u32) {}
 }
 
+/// Word address of a register of the card, of its configuration, of channel 0.
+fn at(block: &regs::Block, name: &str) -> u32 {
+    block.address(block.word(name), 0).into()
+}
+
+/// A card of two channels with these parts, as its words tell.
+fn words_of(parts: &[Part]) -> [u32; 0x600] {
+    let mut words = [0; 0x600];
+    let mut put = |name, value| words[at(&regs::CARD, name) as usize] = value;
+    put("id", regs::ID);
+    put("version", u32::from(regs::VERSION[0]) << 24 | 0x99 << 16);
+    put("system_hz", 1_000_000);
+    let field = |name| regs::CARD.field("capabilities", name);
+    let features = parts.iter().fold(0, |word, part| word | 1 << *part as u32);
+    let word = field("channels").put(0, 2).unwrap();
+    let word = field("max_position_bits").put(word, 48).unwrap();
+    put(
+        "capabilities",
+        field("features").put(word, features).unwrap(),
+    );
+    words
+}
+
+fn opened(memory: Memory) -> Card<Memory, NoTime> {
+    let mut card = Card::open(memory, NoTime, None).unwrap();
+    card.link_mut().accesses = 0;
+    card
+}
+
 #[test]
 fn what_no_card_says_is_refused() {
-    use endat_driver::regs;
-    let word = |name| usize::from(regs::CARD.word(name).offset);
-    let mut card = [0; 0x600];
-    card[word("id")] = regs::ID;
-    card[word("version")] = u32::from(regs::VERSION[0]) << 24 | 0x99 << 16;
-    card[word("capabilities")] = regs::CARD
-        .field("capabilities", "channels")
-        .put(0, 2)
-        .unwrap();
-    card[word("system_hz")] = 1_000_000;
     let open = |change: &dyn Fn(&mut [u32; 0x600])| {
-        let mut words = card;
+        let mut words = words_of(&[]);
         change(&mut words);
-        Card::open(Memory(words), NoTime, None)
+        Card::open(Memory::new(words), NoTime, None)
     };
     let mut card = open(&|_| ()).unwrap();
-    // Writes do not arrive.
-    assert_eq!(card.try_link(), Err(Error::ReadBack));
-    let refused = |change: &dyn Fn(&mut [u32; 0x600])| open(change).err().unwrap();
-    assert_eq!(refused(&|words| words[word("id")] = 0), Error::NoCard);
-    assert_eq!(
-        refused(&|words| words[word("system_hz")] = 0),
-        Error::NoCard
-    );
-    assert_eq!(
-        refused(&|words| words[word("capabilities")] = 0),
-        Error::NoCard
-    );
-    let major = |words: &mut [u32; 0x600]| words[word("version")] = 0x7F00_0000;
-    let later = refused(&major);
+    card.try_link().unwrap();
+    assert!(!card.facts().is_t_format(40));
+    assert_eq!(card.calibrate(1 << 2), Err(Error::Argument));
+    assert_eq!(card.read_word(0x4000), Err(Error::Argument));
+    let refused = |name, word| {
+        let change = |words: &mut [u32; 0x600]| words[at(&regs::CARD, name) as usize] = word;
+        open(&change).err().unwrap()
+    };
+    assert_eq!(refused("id", 0), Error::NoCard);
+    assert_eq!(refused("system_hz", 0), Error::NoCard);
+    assert_eq!(refused("capabilities", 0), Error::NoCard);
+    let later = refused("version", 0x7F00_0000);
     assert_eq!(later, Error::Version { found: 0x7F });
-    assert!(
-        later
-            .to_string()
-            .contains("version 127 of the register map"),
-        "{later}"
+    let told = later.to_string();
+    assert!(told.contains("version 127 of the register map"), "{told}");
+}
+
+/// Catches results that stand still for ever, and sources that are off, because one access in between has failed.
+#[test]
+fn one_failed_access_leaves_the_card_as_it_was() {
+    let hold = at(&regs::CARD_CONFIG, "hold") as usize;
+    let mut held = 0;
+    for fails_at in 1..80 {
+        let mut card = opened(Memory::new(words_of(&[])));
+        // A result comes between any two looks: the driver holds them.
+        card.link_mut().moves = Some(at(&regs::RESULT, "status"));
+        card.link_mut().fails_at = Some(fails_at);
+        let became = card.read_moment();
+        let memory = card.link();
+        held += u32::from(memory.accesses > 40);
+        assert_eq!(memory.words[hold], 0, "access {fails_at}: {became:?}");
+        let reached = memory.accesses >= fails_at;
+        // One that fails when the results are let go is tried again.
+        assert!(
+            became.is_err() == reached || fails_at > 40,
+            "access {fails_at}: {became:?}"
+        );
+    }
+    assert!(held > 20, "{held}");
+    let sources = at(&regs::CARD_CONFIG, "trigger_sources") as usize;
+    let mut failed = 0;
+    for fails_at in 1..30 {
+        let mut words = words_of(&[]);
+        words[sources] = 6;
+        let frame = at(&regs::CHANNEL_CONFIG, "frame") as usize;
+        words[frame] = 20 | 29 << 16 | u32::from(ModeCommand::SendPosition.code()) << 24;
+        let mut card = opened(Memory::new(words));
+        let settings = card.read_settings(0).unwrap();
+        for what in 0..2 {
+            card.link_mut().accesses = 0;
+            card.link_mut().fails_at = Some(fails_at);
+            let became = match what {
+                0 => card.set_triggers(false, true, true, Some(1_000)),
+                _ => card.write_settings(0, &settings),
+            };
+            // The last access of all is the read that says how the sources are.
+            failed += u32::from(became.is_err());
+            assert_eq!(
+                card.link().words[sources],
+                6,
+                "{what}, access {fails_at}: {became:?}"
+            );
+        }
+    }
+    assert!(failed > 15, "{failed}");
+}
+
+/// Catches a card that has begun anew, whose count of requests is another one, taken for an answer.
+#[test]
+fn what_was_asked_before_a_restart_has_no_answer() {
+    let mut words = words_of(&[Part::Requests]);
+    let (state, request_state) = (
+        at(&regs::SERVICE, "state"),
+        at(&regs::SERVICE, "request_state"),
     );
+    words[request_state as usize] = 5 << 16;
+    let mut card = opened(Memory::new(words));
+    let ask = |card: &mut Card<Memory, NoTime>| card.request(0, ModeCommand::SendParameter, 1, 0);
+    assert_eq!(
+        ask(&mut card),
+        Err(Error::Busy),
+        "its service has not begun"
+    );
+    card.write_word(state, 1 << 16).unwrap();
+    let request = ask(&mut card).unwrap();
+    assert_eq!(card.poll(&request), Err(Error::Busy));
+    card.write_word(request_state, 6 << 16).unwrap();
+    assert!(card.poll(&request).is_ok());
+    card.write_word(request_state, 0).unwrap();
+    assert_eq!(card.poll(&request), Err(Error::Restarted));
+    assert_eq!(
+        card.select_additional_data(0, &[0x4F]),
+        Err(Error::Argument)
+    );
+}
+
+/// Catches a bus that is stuck taken for a card that has nothing to say.
+#[test]
+fn ones_for_ever_are_no_empty_stream_and_no_card() {
+    let mut words = words_of(&[Part::Stream]);
+    for name in ["stream_state", "stream_data"] {
+        words[at(&regs::CARD, name) as usize] = u32::MAX;
+    }
+    let mut card = opened(Memory::new(words));
+    let mut stream = card.start_stream(true).unwrap();
+    let sets: Vec<_> = (0..4).map(|_| card.next_set(&mut stream)).collect();
+    assert!(sets.iter().all(|set| *set == Err(Error::Set)), "{sets:?}");
+    for byte in [0, 0xFF] {
+        let opened = Card::open(Spi::new(Stuck(byte)), NoTime, None);
+        assert_eq!(opened.err(), Some(Error::NoCard));
+    }
+}
+
+/// A bus on which nobody answers.
+struct Stuck(u8);
+
+impl ErrorType for Stuck {
+    type Error = Infallible;
+}
+
+impl SpiDevice for Stuck {
+    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
+        if let [Operation::TransferInPlace(bytes)] = operations {
+            bytes.fill(self.0);
+        }
+        Ok(())
+    }
 }
 
 #[test]

@@ -12,7 +12,7 @@ pub fn angles<S: SpiDevice, D: DelayNs>(
     card.try_link()?;
     card.wait_ready(0, 5_000)?; // the card initialises the encoder: two seconds
     loop {
-        let shown = match card.measure(1_000) {
+        let shown = match card.measure_channels(1, 1_000) {
             Ok(moment) => match moment.results()[0] {
                 result if result.fresh => Ok(signed(result.position, result.width_bits)),
                 result => Err(result.cause_meaning()),
@@ -21,7 +21,7 @@ pub fn angles<S: SpiDevice, D: DelayNs>(
             Err(error) => return Err(error),
         };
         if shown.is_err() {
-            card.wait_ready(0, 20_000)?; // pull the plug, and put it back: this ends by itself
+            card.wait_ready(0, 20_000)?; // pull the plug, and put it back within 20 s
         }
         if !show(shown) {
             return Ok(());
