@@ -1,13 +1,10 @@
 //! The results of all channels, out of the burst that reads them.
 
-use endat_driver::Reading;
+use endat_driver::{readings, Reading};
 
 /// The results of all channels, out of the burst that reads them ([`endat_regs::result_words`]).
 pub fn of_burst(words: &[u32], channels: usize, has_infos: bool) -> Vec<Reading> {
-    let of_each = endat_regs::result_words(1, has_infos) as usize;
-    let blocks = words.chunks(endat_regs::RESULT.stride.into());
-    let own = blocks.take(channels);
-    own.map(|block| Reading::new(&block[..of_each])).collect()
+    readings(words, has_infos).take(channels).collect()
 }
 
 #[cfg(test)]

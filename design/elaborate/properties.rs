@@ -5,6 +5,8 @@
 //! `name_lemma`. What follows `` `ifdef FORMAL_ANY_STATE `` holds whatever the registers begin with, and is proved apart. Registers
 //! that only a proof has begin with `f_`.
 
+use std::collections::BTreeSet;
+
 /// From which states a property holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Begins {
@@ -61,6 +63,12 @@ pub fn properties(text: &str) -> Vec<Property> {
         }
     }
     found
+}
+
+/// Everything that a text names.
+pub(crate) fn words(text: &str) -> BTreeSet<&str> {
+    text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+        .collect()
 }
 
 /// The property that an assertion with this label belongs to: the longest name that the label begins with.

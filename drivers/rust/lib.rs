@@ -45,7 +45,9 @@ pub use endat_regs::{protocol::ModeCommand, Part};
 pub use error::Error;
 pub use link::{Link, Mapped};
 pub use parallel::{Parallel, Registers};
-pub use result::{difference, signed, AdditionalData, Moment, Reading, MOMENT_WORDS, RESULT_WORDS};
+pub use result::{
+    difference, readings, signed, AdditionalData, Moment, Reading, MOMENT_WORDS, RESULT_WORDS,
+};
 pub use service::{Request, State};
 pub use settings::Settings;
 pub use spi::Spi;

@@ -201,6 +201,13 @@ fn fits(position: u64, high: u32) -> bool {
         || position >> width == 0 && crc5(covered) == field!(RESULT.position_high.crc).of(high)
 }
 
+/// The results in the words from the first one on; those between two results count for nothing.
+pub fn readings(words: &[u32], has_infos: bool) -> impl Iterator<Item = Reading> + '_ {
+    let each = endat_regs::result_words(1, has_infos) as usize;
+    let blocks = words.chunks(BLOCK_STRIDE.into());
+    blocks.map(move |block| Reading::new(&block[..each.min(block.len())]))
+}
+
 /// Results of all channels, of one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Moment {
@@ -211,11 +218,10 @@ pub struct Moment {
 impl Moment {
     /// Out of the words from the first result on.
     pub(crate) fn new(words: &[u32; MOMENT_WORDS], channels: usize, has_infos: bool) -> Self {
-        let each = endat_regs::result_words(1, has_infos) as usize;
         let mut results = [Reading::default(); CHANNELS_MAX];
-        let own = words.chunks_exact(usize::from(BLOCK_STRIDE));
-        for (result, words) in results.iter_mut().zip(own).take(channels) {
-            *result = Reading::new(&words[..each]).checked();
+        let read = readings(words, has_infos).take(channels);
+        for (result, reading) in results.iter_mut().zip(read) {
+            *result = reading.checked();
         }
         Self { results, channels }
     }

@@ -15,6 +15,7 @@ mod known;
 mod live;
 
 use super::design::*;
+use super::properties::words;
 use known::{either, known, run, Known, Values};
 use std::collections::BTreeSet;
 
@@ -41,8 +42,7 @@ impl Module {
 
     /// Nets whose names stand in what is proved about the module.
     fn named_in_properties(&self) -> BTreeSet<NetId> {
-        let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        let words: BTreeSet<&str> = self.properties.split(|c| !is_letter(c)).collect();
+        let words = words(&self.properties);
         let nets = self.nets.iter().enumerate();
         nets.filter(|(_, net)| words.contains(net.name.as_str()))
             .map(|(id, _)| id)

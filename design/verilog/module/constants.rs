@@ -2,6 +2,7 @@
 
 use super::expression::{literal, named_literal};
 use super::ModulePrinter;
+use crate::elaborate::properties::words;
 use crate::elaborate::{EnumId, Expr, ExprKind};
 use crate::verilog::text::{comment, upper, vector, INDENT};
 use std::collections::BTreeSet;
@@ -58,8 +59,7 @@ impl ModulePrinter<'_> {
 
     /// Properties, below the constants that nothing but they name.
     pub(super) fn with_constants(&self, properties: &str) -> String {
-        let is_letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
-        let words: BTreeSet<&str> = properties.split(|c| !is_letter(c)).collect();
+        let words = words(properties);
         let mut lines = vec![];
         for (index, parameter) in self.module.parameters.iter().enumerate() {
             if words.contains(&*parameter.name) && !self.used_parameters.contains(&index) {
