@@ -29,7 +29,7 @@ use crate::second_receiver::SecondReceiver;
 use crate::several::{each, numbered};
 use crate::snapshot::Snapshot;
 use crate::sure_bit::SureBit;
-use crate::transaction::Transaction;
+use crate::transaction::{cause, Transaction};
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -204,7 +204,6 @@ pub struct Channel {
     delay: LineDelay,
     receiver: Receiver,
     transaction: Transaction,
-    #[start]
     snapshot: Snapshot,
     shape: CommandShape,
     wanted_shape: CommandShape,
@@ -262,6 +261,7 @@ impl Channel {
             sender: CommandSender::new(features.requests),
             delay: LineDelay::new(features),
             receiver: Receiver::new(features),
+            snapshot: Snapshot::new(cause::UPSET, cause::flag(cause::UPSET)),
             transaction: Transaction::new(times, features),
             shape: CommandShape::new(features.requests),
             wanted_shape: CommandShape::new(features.requests),
@@ -384,7 +384,7 @@ impl Logic for Channel {
         self.transaction.is_fixed.next = self.phase_mode.val() == self.fixed_mode.val();
         connect!(self.transaction <= self.delay; sample, center, delay_upset = is_upset);
         connect!(self.transaction <= self.receiver;
-            hunting, started, start_refused, answer_done = done, finished, separated, info_missing
+            hunting, started, start_refused, answer_done = done, finished, last_bit, separated, info_missing
         );
         // In fewer than four cycles additional data would begin before the position is taken.
         self.wanted_shape.command.next = self.command.val();

@@ -138,7 +138,6 @@ pub struct ChannelRegisters {
     age_base: Signal<Local, Bits<16>>,
     age_tick: Signal<Local, Bit>,
     age_now: Signal<Local, Bits<16>>,
-    age_full: Reg<Bit>,
     age_shown: Reg<Bits<16>>,
     held: Vec<Reg<Bits<32>>>,
     word: Vec<Signal<Local, Bits<32>>>,
@@ -203,7 +202,7 @@ impl Logic for ChannelRegisters {
         self.behind.d.next = self.behind_now.val();
         self.stale_now.next = self.stale.q.val() | self.trigger.val();
         self.age_base.next = self.age.q.val();
-        self.age_tick.next = self.tick_us.val() & !self.age_full.q.val();
+        self.age_tick.next = self.tick_us.val() & !self.age.q.val().all();
         if self.load.val() {
             self.stale_now.next = self.behind_now.val();
             self.age_base.next = self.age_us.val();
@@ -212,7 +211,6 @@ impl Logic for ChannelRegisters {
         self.age_now.next = self.age_base.val() + bit_cast::<16, 1>(self.age_tick.val().into());
         self.stale.d.next = self.stale_now.val();
         self.age.d.next = self.age_now.val();
-        self.age_full.d.next = self.age_now.val().all();
         if self.show.val() {
             self.stale_shown.d.next = self.stale_now.val();
             self.age_shown.d.next = self.age_now.val();

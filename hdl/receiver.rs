@@ -18,39 +18,15 @@
 //! shortest answer while its start bit may still be on the cable. `under_way` counts the difference once more: at the end of the
 //! frame all three agree, unless one was upset.
 
+pub mod field;
+
 use crate::crc5::{Crc5Check, Crc5Serial, ORDER_OF_X};
 use crate::features::Features;
 use crate::protocol;
+use field::Field;
 use rtl_design::reg::Reg;
-use rtl_design::{kernel, Block, States};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
-
-/// What the next sample is.
-#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
-pub enum Field {
-    /// Cells before the earliest start bit: the line is undefined.
-    Skip,
-    /// Low, until the start bit.
-    Start,
-    /// Error bit 1.
-    F1,
-    /// Error bit 2 (EnDat 2.2 frames).
-    F2,
-    /// Position, LSB first, or what an answer has in its place.
-    Payload,
-    /// CRC, MSB first.
-    Crc,
-    /// LOW before a block of additional data.
-    Separator,
-    /// The clock goes on: HIGH after the last CRC bit.
-    GapHigh,
-    /// LOW before the next start bit may come.
-    GapLow,
-    /// The answer is complete.
-    Done,
-    /// Cells of the supplement: the line is ours or undefined.
-    Supplement,
-}
 
 /// Receiver of one channel.
 #[derive(LogicBlock, Block)]
@@ -124,6 +100,8 @@ pub struct Receiver {
     pub separated: Signal<Out, Bit>,
     /// Strobe: a block of additional data should begin, but the line is HIGH.
     pub info_missing: Signal<Out, Bit>,
+    /// Strobe: the last bit of an answer or of additional data has been sampled.
+    pub last_bit: Signal<Out, Bit>,
     /// Strobe: the answer with all its additional data, or the supplement, is complete.
     pub finished: Signal<Out, Bit>,
     /// Strobe: while the clock goes on, the cell after the last CRC bit is HIGH, as it should.
@@ -172,6 +150,8 @@ pub struct Receiver {
     last_taken: Reg<Bit>,
     waiting: Reg<Bit>,
     done_now: Reg<Bit>,
+    used: Reg<Bit>,
+    ended: Reg<Bit>,
     parallel_equal: Reg<Bit>,
     serial_good: Reg<Bit>,
     refused: Reg<Bit>,
@@ -203,6 +183,8 @@ pub struct Receiver {
     supplement_cells: Constant<Bits<7>>,
     info_bits: Constant<Bits<6>>,
     cells_from_start: Constant<Bits<7>>,
+    not_aligned: Signal<Local, Bit>,
+    is_taken: Signal<Local, Bit>,
     again: Signal<Local, Bit>,
     skip_step: Signal<Local, Bit>,
     covered_bit: Signal<Local, Bit>,
@@ -504,10 +486,9 @@ impl Logic for Receiver {
             | (self.new_block.q.val() & self.has_all.val())
             | (self.again.val() & self.has_continuous.val());
         self.check.word_bit.next = self.sample.val() & (self.field.q.val() == Field::Payload);
-        connect!(self.check <= self; crc_bit, bit = level);
+        connect!(self.check <= self; crc_bit, bit = level, has_f2);
         self.check.word.next = self.word.q.val().get_bits::<48>(0);
         self.check.has_f1.next = !self.has_all.val() | (self.has_f1.val() & !self.in_info.q.val());
-        self.check.has_f2.next = self.has_f2.val();
         self.check.f1.next = self.f1_bit.q.val();
         self.check.f2.next = self.f2_bit.q.val();
         self.serial.clear.next = self.start.val()
@@ -515,14 +496,11 @@ impl Logic for Receiver {
             | (self.again.val() & self.has_continuous.val());
         self.serial.enable.next = self.covered_bit.val() | self.crc_bit.val();
         self.serial.bit.next = self.level.val();
-        self.done_now.d.next = self.last_taken.q.val();
         // With two or three system clock cycles in a bit the word is not aligned yet.
-        if self.has_double.val() {
-            self.done_now.d.next =
-                (self.last_taken.q.val() | self.waiting.q.val()) & !self.align.q.val();
-            self.waiting.d.next =
-                (self.last_taken.q.val() | self.waiting.q.val()) & self.align.q.val();
-        }
+        self.not_aligned.next = self.align.q.val() & self.has_double.val();
+        self.is_taken.next = self.last_taken.q.val() | self.waiting.q.val();
+        self.waiting.d.next = self.is_taken.val() & self.not_aligned.val();
+        self.done_now.d.next = self.is_taken.val() & !self.not_aligned.val();
         self.parallel_equal.d.next = self.check.is_ok.val();
         self.serial_good.d.next = self.serial.residue_ok.val();
 
@@ -627,14 +605,18 @@ impl Logic for Receiver {
         self.all_sent.next = !self.to_send.q.val().any();
         self.one_to_send.next = self.to_send.q.val() == 1;
         self.none_under_way.next = self.to_send.q.val() == self.left.q.val();
-        self.all_used.next =
+        // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the cause's path.
+        self.used.d.next =
             self.all_sent.val() & (self.left.q.val() == 1) & (self.under_way.q.val() == 1);
-        self.all_ended.next =
+        self.all_used.next = self.used.q.val();
+        self.ended.d.next =
             self.all_sent.val() & self.none_under_way.val() & !self.under_way.q.val().any();
+        self.all_ended.next = self.ended.q.val();
         self.done.next = self.done_now.q.val();
         self.info_done.next = false;
         self.separated.next = false;
         self.info_missing.next = false;
+        self.last_bit.next = self.last_taken.q.val();
         self.finished.next = self.done_now.q.val();
         if self.has_all.val() {
             self.done.next = self.done_now.q.val() & !self.in_info.q.val();

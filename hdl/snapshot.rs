@@ -11,7 +11,6 @@
 //!
 //! Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 
-use crate::transaction::cause;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -103,6 +102,7 @@ pub struct Snapshot {
     parity: Reg<Bit>,
     timed: Reg<Bit>,
     moment_parity: Reg<Bit>,
+    moment_sum: Reg<Bit>,
     is_upset: Reg<Bit>,
     age_shown: Reg<Bits<16>>,
     valid: Reg<Bit>,
@@ -118,6 +118,7 @@ pub struct Snapshot {
     computed: Reg<Bits<5>>,
     take_good: Signal<Local, Bit>,
     take_back: Signal<Local, Bit>,
+    stamp_sum: Signal<Local, Bit>,
     parity_now: Signal<Local, Bit>,
     upset_now: Signal<Local, Bit>,
     moment_wrong: Signal<Local, Bit>,
@@ -126,11 +127,12 @@ pub struct Snapshot {
     upset_flag: Constant<Bits<20>>,
 }
 
-impl Default for Snapshot {
-    fn default() -> Self {
+impl Snapshot {
+    /// For a protocol with this cause and this flag for what is stored and was upset.
+    pub fn new(upset_cause: u64, upset_flag: u64) -> Self {
         Self::from_parts(SnapshotParts {
-            upset_cause: Constant::new(cause::UPSET.into()),
-            upset_flag: Constant::new(cause::flag(cause::UPSET).into()),
+            upset_cause: Constant::new(upset_cause.into()),
+            upset_flag: Constant::new(upset_flag.into()),
         })
     }
 }
@@ -143,9 +145,11 @@ impl Logic for Snapshot {
         if self.timed.q.val() {
             self.moment_parity.d.next = self.moment.q.val().xor();
         }
+        // Of the cycle before: the sum of all its bits is too long a way to what loads.
+        self.moment_sum.d.next = self.moment.q.val().xor();
         self.moment_wrong.next = self.good.val()
             & !self.timed.q.val()
-            & (self.moment.q.val().xor() ^ self.moment_parity.q.val());
+            & (self.moment_sum.q.val() ^ self.moment_parity.q.val());
         self.take_good.next = self.publish.val() & self.good.val() & !self.moment_wrong.val();
         self.take_back.next = self.withdraw.val() & self.unconfirmed.q.val();
         self.ago.next = 0.into();
@@ -196,9 +200,11 @@ impl Logic for Snapshot {
             self.unconfirmed.d.next = true;
         }
 
-        // The guard. Its first look is at what has just been loaded from where the CRC was checked.
+        // The guard. Its first look is at what has just been loaded: the position from where the CRC was checked, the time stamp from where its
+        // parity was, but for the last cycle.
+        self.stamp_sum.next = self.stamp.q.val().xor();
         self.parity_now.next = self.held.q.val().xor()
-            ^ self.stamp.q.val().xor()
+            ^ self.stamp_sum.val()
             ^ self.held_crc.q.val().xor()
             ^ self.held_width.q.val().xor()
             ^ self.held_f2.q.val();
@@ -208,6 +214,7 @@ impl Logic for Snapshot {
             & !self.take_back.val();
         if self.loaded.q.val() {
             self.parity.d.next = self.parity_now.val();
+            self.is_upset.d.next = self.stamp_sum.val() ^ self.moment_parity.q.val();
         }
         if self.take_back.val() {
             self.held.d.next = self.earlier.q.val();

@@ -20,6 +20,8 @@
 //! Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
 
 pub use endat_regs::causes::endat as cause;
+pub mod last_edge;
+pub mod phase;
 pub mod primary;
 pub mod verdict;
 
@@ -29,31 +31,12 @@ use crate::several::each;
 use crate::sure_bit::SureBit;
 use crate::timing;
 use cause::flag;
+use last_edge::LastEdge;
+use phase::Phase;
 use rtl_design::reg::Reg;
-use rtl_design::{kernel, Block, States};
+use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 use verdict::Verdict;
-
-/// What the wire is doing.
-#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
-pub enum Phase {
-    /// Idle, but data has not yet been low for tR.
-    NotReady,
-    /// Idle and ready for a trigger.
-    Ready,
-    /// First low phase, held for tST.
-    FirstLow,
-    /// Mode command, turnaround, waiting for the start bit, answer; then the supplement.
-    Frame,
-    /// The last CRC bit has been taken; the cell after it must be high.
-    Tail,
-    /// Clock and data high: recovery time tm.
-    Recovery,
-    /// Quiet after an aborted frame.
-    Abort,
-    /// Clock LOW between answer and supplement.
-    Park,
-}
 
 /// Sequence, time-outs and verdict of one channel.
 #[derive(LogicBlock, Block)]
@@ -87,6 +70,8 @@ pub struct Transaction {
     pub answer_done: Signal<In, Bit>,
     /// Strobe: the answer with all that follows it has been taken, or the supplement is over.
     pub finished: Signal<In, Bit>,
+    /// Strobe: the last bit before the tail has been sampled; with double edge, where `finished` may be some cells late.
+    pub last_bit: Signal<In, Bit>,
     /// Strobe: the LOW in front of a block of additional data has come.
     pub separated: Signal<In, Bit>,
     /// Strobe: a block of additional data has not come.
@@ -209,12 +194,12 @@ pub struct Transaction {
     pub recovery_cycles: Signal<Out, Bits<13>>,
     #[start]
     health: LineHealth,
+    last_edge: LastEdge,
     verdict: Verdict,
     has_all: Constant<Bit>,
     has_diagnosis: Constant<Bit>,
     has_continuous: Constant<Bit>,
     has_alignment: Constant<Bit>,
-    has_double: Constant<Bit>,
     ready_low_cycles: Constant<Bits<16>>,
     abort_us: Constant<Bits<16>>,
     park_cycles: Constant<Bits<16>>,
@@ -252,9 +237,6 @@ pub struct Transaction {
     acquiring: Reg<Bit>,
     slow_now: Reg<Bit>,
     passes: Reg<Bits<2>>,
-    stalled: Reg<Bit>,
-    all_sent: Reg<Bit>,
-    one_left: Reg<Bit>,
     tail_sampled: Reg<Bit>,
     recovery: Reg<Bits<13>>,
     in_supplement: Reg<Bit>,
@@ -280,6 +262,9 @@ pub struct Transaction {
     running: Signal<Local, Bit>,
     in_us: Signal<Local, Bit>,
     timer_clear: Signal<Local, Bit>,
+    rise_back: Signal<Local, Bit>,
+    in_tail: Signal<Local, Bit>,
+    in_recovery: Signal<Local, Bit>,
     accept: Signal<Local, Bit>,
     give_up: Signal<Local, Bit>,
     idle: Signal<Local, Bit>,
@@ -313,12 +298,12 @@ impl Transaction {
     /// A transaction with these fixed times and features.
     pub fn new(times: FixedTimes, features: Features) -> Self {
         Self::from_parts(TransactionParts {
+            last_edge: LastEdge::new(features),
             verdict: Verdict::new(times, features),
             has_all: Constant::new(features.requests),
             has_diagnosis: Constant::new(features.diagnosis),
             has_continuous: Constant::new(features.continuous),
             has_alignment: Constant::new(features.alignment),
-            has_double: Constant::new(features.double_edge),
             ready_low_cycles: Constant::new(times.ready_low_cycles.into()),
             abort_us: Constant::new(times.abort_us.into()),
             park_cycles: Constant::new(times.park_cycles.into()),
@@ -583,8 +568,6 @@ impl Logic for Transaction {
                     self.tail_sampled.d.next = true;
                     self.proof.next = !self.tail_sampled.q.val() & self.level.val();
                 }
-                // Where CLOCK was held LOW for the answer, its last rising edge comes back a cell later: in the middle of that.
-                self.timer_clear.next = self.was_center.q.val() & !self.tail_sampled.q.val();
                 if self.tail_sampled.q.val() & !self.level.val() {
                     self.recovery.d.next = self.timer.q.val().get_bits::<13>(0);
                     self.timer_clear.next = true;
@@ -696,35 +679,29 @@ impl Logic for Transaction {
         // Not less: a timer that was upset past its limit ends, too. The limit of a new span is seen a cycle later than its timer.
         self.timer_hit.d.next =
             (self.timer.q.val() >= self.timer_limit.q.val()) & !self.cleared.q.val();
-        self.cleared.d.next = self.timer_clear.val() | self.accept.val();
+        self.cleared.d.next = self.timer_clear.val() | self.accept.val() | self.rise_back.val();
+        // With the cycles that pass before the timer sees the beginning of its span; a frame that is given up has another one.
+        if self.rise_back.val() {
+            self.timer.d.next = bit_cast::<16, 3>(self.last_edge.ago_cycles.val()) + 2;
+        }
         if self.timer_clear.val() {
             self.timer.d.next = 0.into();
             self.timer_hit.d.next = false;
         }
-        // Cycles that pass before the timer sees the beginning of its span.
         if self.accept.val() {
             self.timer.d.next = 2.into();
         }
-        self.last_cell.next = (self.phase.q.val() == Phase::Tail) & self.was_center.q.val();
-        if self.last_cell.val() {
-            self.timer.d.next = 2.into();
-            self.cleared.d.next = true;
-        }
-
-        // Pulses: never more on the cable than the answer needs.
-        self.all_sent.d.next = self.no_pulse_left.val();
-        // With two system clock cycles in a bit there is no time to count this pulse.
-        if self.has_double.val() {
-            self.one_left.d.next = self.one_pulse_left.val();
-            self.all_sent.d.next =
-                self.no_pulse_left.val() | (self.one_left.q.val() & self.will_rise.val());
-        }
-        if self.all_sent.q.val() & !self.started.val() & !self.going.val() {
-            self.stalled.d.next = true;
-        }
-        if self.none_under_way.val() | !self.running.val() {
-            self.stalled.d.next = false;
-        }
+        self.in_tail.next = self.phase.q.val() == Phase::Tail;
+        self.in_recovery.next = self.phase.q.val() == Phase::Recovery;
+        self.last_cell.next = self.in_tail.val() & self.was_center.q.val();
+        connect!(self.last_edge <= self;
+            clock, reset, start = accept, last_bit, in_tail, in_recovery, no_pulse_left,
+            one_pulse_left, will_rise, none_under_way, started, going, running
+        );
+        self.rise_back.next = self.last_edge.comes.val();
+        self.last_edge.was_center.next = self.was_center.q.val();
+        self.last_edge.tail_sampled.next = self.tail_sampled.q.val();
+        self.last_edge.in_supplement.next = self.in_supplement.q.val();
 
         connect!(self.verdict <= self; found, answer_taken, prove = proof);
         self.verdict.is_measuring.next = self.measuring.q.val();
@@ -826,22 +803,20 @@ impl Logic for Transaction {
         self.start.next = self.start_now.q.val();
         self.aborts.next = self.verdict.gave_up.val();
         // Taking the start bit ends its cell; `started` comes when the comparison knows that.
-        self.sent.next = self.all_sent.q.val() & self.started.val() & !self.going.val();
+        self.sent.next = self.last_edge.all_sent.val() & self.started.val() & !self.going.val();
         self.parking.next = false;
         if self.has_all.val() & self.has_supplement.val() & !self.in_supplement.q.val() {
             self.parking.next = (self.sent.val() & (self.phase.q.val() == Phase::Frame))
                 | (self.phase.q.val() == Phase::Park);
             self.sent.next = false;
         }
-        self.hold.d.next =
-            (self.phase.q.val() == Phase::FirstLow) | self.stalled.q.val() | self.parking.val();
-        if self.has_double.val() & self.all_sent.q.val() & !self.started.val() & !self.going.val() {
-            self.hold.d.next = true;
-        }
+        self.hold.d.next = (self.phase.q.val() == Phase::FirstLow)
+            | self.last_edge.holds.val()
+            | self.parking.val();
         self.hold_low.next = self.hold.q.val();
-        self.drain.next = self.stalled.q.val();
+        self.drain.next = self.last_edge.stalled.val();
         if self.has_all.val() {
-            self.drain.next = self.stalled.q.val() | (self.phase.q.val() == Phase::Park);
+            self.drain.next = self.last_edge.stalled.val() | (self.phase.q.val() == Phase::Park);
         }
         self.stop_now.d.next = !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
         // The high phase of the last pulse may last two cycles only.

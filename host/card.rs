@@ -288,7 +288,12 @@ impl<T: Transport> Card<T> {
         let count = result_words(self.identity.channels, has_infos) as usize;
         let words = self.bridge.read(first, count)?;
         Ok(Results {
-            channels: result::of_burst(&words, self.identity.channels, has_infos),
+            channels: result::of_burst(
+                &words,
+                self.identity.channels,
+                has_infos,
+                self.identity.t_format_channels,
+            ),
         })
     }
 

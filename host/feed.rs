@@ -49,15 +49,16 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// What a set of the stream says of a channel.
-    fn of(sample: &Sample) -> Self {
+    /// What a set of the stream says of a channel that speaks one protocol or the other.
+    fn of(sample: &Sample, is_t_format: bool) -> Self {
+        let named = causes::name(causes::of_code(sample.cause, is_t_format));
         let cause = match (sample.taken, sample.missing) {
             // What went wrong is told, however late.
-            _ if sample.is_late() && !sample.fresh && sample.cause != 0 => sample.cause_name(),
+            _ if sample.is_late() && !sample.fresh && sample.cause != 0 => named,
             _ if sample.is_late() => LATE,
             (false, _) => NOT_TAKEN,
             (_, true) => TOO_LATE,
-            _ => sample.cause_name(),
+            _ => named,
         };
         Self {
             position: sample.valid.then_some(sample.position),
@@ -268,7 +269,7 @@ impl Feed {
             true => Cell {
                 position: sample.valid.then_some(sample.position),
                 fresh: sample.fresh,
-                cause: sample.cause_name(),
+                cause: causes::name(causes::of_code(sample.cause, false)),
                 infos: [None; 2],
             },
             false => Cell {
@@ -351,7 +352,10 @@ impl Feed {
                     rows.extend(self.of_run(&set, channel, card.identity().channels));
                     continue;
                 }
-                let cells = set.channels.iter().map(Cell::of).collect();
+                let identity = card.identity();
+                let samples = set.channels.iter().enumerate();
+                let cells = samples.map(|(n, s)| Cell::of(s, identity.is_t_format(n)));
+                let cells = cells.collect();
                 rows.push_back(self.row(set.sequence, set.timestamp, cells));
             }
             return Ok(());
@@ -388,10 +392,9 @@ mod tests {
             cause,
             ..Sample::default()
         };
-        let crc = causes::all().iter().find(|c| c.name == "crc");
-        let crc = crc.expect("a cause").number as u8;
+        let crc = causes::number("crc").expect("a cause");
         for (sample, cause) in [(sample(true, 0), LATE), (sample(false, crc), "crc")] {
-            let cell = Cell::of(&sample);
+            let cell = Cell::of(&sample, false);
             assert_eq!((cell.cause, cell.fresh), (cause, false), "{sample:?}");
         }
     }

@@ -6,7 +6,7 @@ use crate::units::Scale;
 /// What a step of the initialisation does.
 pub fn step_name(step: u16) -> String {
     let field = Place::field_at("service", "progress", "step", 0).field;
-    let told = field.and_then(|f| f.told(step.into()));
+    let told = field.and_then(|f| f.told(step.into(), false));
     told.unwrap_or_else(|| "unknown".to_owned())
 }
 

@@ -328,7 +328,7 @@ mod tests {
         assert_eq!(field.put(0, 64), None);
         assert_eq!(field.of(0x0700_0000), 7);
         assert_eq!(
-            field.told(0x0700_0000).unwrap(),
+            field.told(0x0700_0000, false).unwrap(),
             "000111 send position (EnDat 2.1)"
         );
     }

@@ -3,8 +3,14 @@
 use endat_driver::{readings, Reading};
 
 /// The results of all channels, out of the burst that reads them ([`endat_regs::result_words`]).
-pub fn of_burst(words: &[u32], channels: usize, has_infos: bool) -> Vec<Reading> {
-    readings(words, has_infos).take(channels).collect()
+pub fn of_burst(
+    words: &[u32],
+    channels: usize,
+    has_infos: bool,
+    t_format_channels: u32,
+) -> Vec<Reading> {
+    let all = readings(words, has_infos, t_format_channels);
+    all.take(channels).collect()
 }
 
 #[cfg(test)]
@@ -33,7 +39,7 @@ mod tests {
             {
                 *to = word(line.unwrap());
             }
-            let reading = Reading::new(&words);
+            let reading = Reading::new(&words, false);
             assert!(words[2] >> 24 == 29 && reading.fits, "{words:x?}");
             assert_eq!(reading.position, 0x0123_5678);
             count += 1;
@@ -55,7 +61,7 @@ mod tests {
             0x0324_1234,
             0x0100_0000,
         ];
-        let reading = Reading::new(&words);
+        let reading = Reading::new(&words, false);
         assert_eq!(
             reading,
             Reading {
@@ -90,10 +96,14 @@ mod tests {
         assert_eq!(reading.infos[0].number(), 4);
         assert_eq!(reading.cause_name(), "none");
         assert_eq!(reading.checked(), reading);
+        // The same words of a channel with another protocol.
+        let status = 0x00C2_0002;
+        let named = |is_t_format| Reading::new(&[status], is_t_format).cause_name();
+        assert_eq!([false, true].map(named), ["no_start_bit", "line_not_idle"]);
         for bit in 0..36 {
             let mut spoilt = words;
             spoilt[1 + bit / 32] ^= 1 << (bit % 32);
-            let checked = Reading::new(&spoilt).checked();
+            let checked = Reading::new(&spoilt, false).checked();
             assert_eq!(
                 (checked.valid, checked.fresh, checked.cause_name()),
                 (false, false, "upset"),

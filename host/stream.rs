@@ -1,6 +1,5 @@
 //! Sample sets out of the stream of bytes: COBS frames with a CRC-16, found again after any garbage.
 
-use crate::causes;
 use crc::{Crc, CRC_16_IBM_3740};
 use endat_driver::AdditionalData as Info;
 use std::mem;
@@ -32,7 +31,7 @@ const ENCODED_MAX: usize =
 pub struct Sample {
     /// Last good position.
     pub position: u64,
-    /// Primary cause, 0 = none.
+    /// Code of the primary cause, of the channel's protocol; 0 = none.
     pub cause: u8,
     /// There is a good position.
     pub valid: bool,
@@ -42,7 +41,7 @@ pub struct Sample {
     pub taken: bool,
     /// It did, but the next trigger came before its result.
     pub missing: bool,
-    /// Raw flags of the line: bit k stands for cause k + 11.
+    /// Raw flags, as `result.status.line`.
     pub line: u8,
     /// Additional data 1 and 2 of the same frame, if sets have them.
     pub infos: Option<[Info; 2]>,
@@ -52,11 +51,6 @@ impl Sample {
     /// Position and status are those of an earlier trigger: the last one that the channel took, whose set said `missing`.
     pub fn is_late(&self) -> bool {
         (!self.taken || self.missing) && (self.valid || self.fresh || self.cause != 0)
-    }
-
-    /// Name of the primary cause.
-    pub fn cause_name(&self) -> &'static str {
-        causes::name(self.cause)
     }
 }
 

@@ -50,7 +50,7 @@ impl<T: Transport> Card<T> {
         };
         if of(&answer, "done", word) == 0 || of(&answer, "cause", word) != 0 {
             let cause = answer.register.field("cause");
-            let why = cause.and_then(|field| field.told(word));
+            let why = cause.and_then(|field| field.told(word, true));
             return Ok(Err(why.unwrap_or_else(|| "no end of the request".into())));
         }
         let word = self.read(&fields)?;

@@ -1,7 +1,7 @@
 //! Causes: why a frame or an exchange gave no position, or what there is to say about it. One row has all that is known of a cause.
 //!
-//! The host reads which protocol the channel speaks. In the result of a card both have one list: what T-format shares with EnDat has
-//! EnDat's number there, its own causes stand behind EnDat's ([`t_format::of_card`]).
+//! Each protocol has codes of its own, in 5 bits of a result: a new cause is a row, and renumbers none of the other protocol. Who reads them knows
+//! which protocol the channel speaks (`card.protocols`). Programs take them as numbers of one list ([`number`]): EnDat's codes, then T-format's own.
 
 pub mod endat;
 pub mod t_format;
@@ -25,9 +25,9 @@ pub struct Cause {
 }
 
 impl Cause {
-    /// The cause under its number in the result of a card.
-    const fn at(&self, code: u64) -> Named {
-        named(self.name, code as u32, self.meaning)
+    /// The cause under a number.
+    const fn at(&self, number: u8) -> Named {
+        named(self.name, number as u32, self.meaning)
     }
 }
 
@@ -71,37 +71,66 @@ macro_rules! causes {
 }
 use causes;
 
-/// Codes that the result of a card has room for.
-const CARD_CODES: usize = 32;
+/// Codes of a protocol that a result has room for.
+pub const CODES: u8 = 32;
 
-/// Primary causes of both protocols, as the result of a card has them.
-pub const CARD: &[Named] = &{
-    let mut all = [named("", 0, ""); CARD_CODES];
+/// The causes of a protocol under its codes, those below `N`.
+const fn coded<const N: usize>(all: &[Cause]) -> [Named; N] {
+    let mut coded = [named("", 0, ""); N];
     let mut row = 0;
-    while row < t_format::ALL.len() {
-        let code = t_format::of_card(t_format::ALL[row].code);
-        all[code as usize] = t_format::ALL[row].at(code);
+    while row < N {
+        coded[row] = all[row].at(all[row].code as u8);
+        row += 1;
+    }
+    coded
+}
+
+/// Causes of EnDat, under the codes of a result.
+pub const ENDAT: &[Named] = &coded::<{ endat::ALL.len() }>(endat::ALL);
+/// Causes of T-format, under the codes of a result.
+pub const T_FORMAT: &[Named] = &coded::<{ t_format::ALL.len() }>(t_format::ALL);
+/// T-format's causes, as an exchange of the host has them: those before the trigger overrun.
+pub const EXCHANGE: &[Named] = &coded::<{ t_format::TRIGGER_OVERRUN as usize }>(t_format::ALL);
+
+/// Number of a cause in the list of both protocols: what T-format shares with EnDat has EnDat's code, its own stand behind EnDat's.
+pub const fn number(code: u8, is_t_format: bool) -> u8 {
+    match (is_t_format, code as u64) {
+        (false, _) => code,
+        (true, t_format::NONE) => endat::NONE as u8,
+        (true, t_format::UNKNOWN_REQUEST) => endat::UNKNOWN_COMMAND as u8,
+        (true, t_format::UPSET) => endat::UPSET as u8,
+        (true, t_format::TRIGGER_OVERRUN) => endat::TRIGGER_OVERRUN as u8,
+        _ => CODES + code,
+    }
+}
+
+/// What both protocols have; the rest is each one's own.
+const SHARED: usize = 4;
+
+/// Causes of both protocols, each once, under the numbers of [`number`].
+pub const ALL: &[Named] = &{
+    let mut all = [named("", 0, ""); endat::ALL.len() + t_format::ALL.len() - SHARED];
+    let (mut row, mut next) = (0, endat::ALL.len());
+    while row < next {
+        all[row] = ENDAT[row];
         row += 1;
     }
     row = 0;
-    while row < endat::ALL.len() {
-        let code = endat::ALL[row].code;
-        all[code as usize] = endat::ALL[row].at(code);
+    while row < t_format::ALL.len() {
+        let cause = &t_format::ALL[row];
+        if cause.advice.is_some() {
+            all[next] = cause.at(number(cause.code as u8, true));
+            next += 1;
+        }
         row += 1;
     }
     all
 };
 
-/// T-format's causes, as an exchange of the host has them: those before the trigger overrun.
-pub const EXCHANGE: &[Named] = &{
-    let mut all = [named("", 0, ""); t_format::TRIGGER_OVERRUN as usize];
-    let mut row = 0;
-    while row < all.len() {
-        all[row] = t_format::ALL[row].at(t_format::ALL[row].code);
-        row += 1;
-    }
-    all
-};
+/// The cause under a number of [`ALL`].
+pub fn of(number: u8) -> Option<&'static Named> {
+    ALL.iter().find(|cause| cause.number == number.into())
+}
 
 /// What the cause of that name means for a user, and what to do about it.
 pub fn advice(name: &str) -> Option<[&'static str; 2]> {
@@ -113,20 +142,26 @@ pub fn advice(name: &str) -> Option<[&'static str; 2]> {
 mod tests {
     use super::*;
 
-    /// Catches a hole in the card's numbers, a row out of its order, a shared cause without EnDat's row.
+    /// Catches a row out of its order, a code that does not fit a result, a shared cause without EnDat's row.
     #[test]
     fn every_code_of_a_result_has_a_name_and_advice() {
-        for (code, cause) in (0..).zip(CARD) {
-            assert_eq!(cause.number, code);
-            assert!(advice(cause.name).is_some(), "{code}: {}", cause.name);
+        for (all, coded, is_t_format) in
+            [(endat::ALL, ENDAT, false), (t_format::ALL, T_FORMAT, true)]
+        {
+            for (cause, named) in all.iter().zip(coded) {
+                assert!(cause.code < CODES.into(), "{}", cause.name);
+                assert_eq!(u64::from(named.number), cause.code);
+                let found = of(number(cause.code as u8, is_t_format)).unwrap();
+                assert_eq!(found.name, cause.name);
+                assert!(advice(found.name).is_some(), "{}", cause.name);
+            }
         }
         for (code, cause) in (0..).zip(t_format::ALL) {
             assert_eq!(cause.code, code);
             let shared = endat::ALL.iter().find(|c| c.name == cause.name);
             assert_eq!(shared.is_some(), cause.advice.is_none(), "{}", cause.name);
-            let on_card = &CARD[t_format::of_card(code) as usize];
-            assert_eq!(on_card.name, cause.name);
         }
+        assert_eq!(of(CODES - 2), None);
         assert_eq!(endat::name(endat::COUNT), "unknown");
         assert_eq!(t_format::name(t_format::COUNT), "unknown");
         assert_eq!(advice("frames_crc"), None);

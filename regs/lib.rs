@@ -51,7 +51,7 @@ pub use service::SERVICE;
 pub use t_format::T_FORMAT;
 
 /// Major, minor and patch version of the register map.
-pub const VERSION: [u8; 3] = [0, 9, 0];
+pub const VERSION: [u8; 3] = [1, 0, 0];
 /// Identification word: "EnDt" in ASCII, most significant byte first.
 pub const ID: u32 = u32::from_be_bytes(*b"EnDt");
 /// First word of the interrupt.

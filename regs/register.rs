@@ -57,6 +57,8 @@ pub struct Field {
     pub meaning: &'static str,
     /// What single numbers or bits stand for.
     pub values: Values,
+    /// The same in a channel that speaks T-format; none = no other than `values`.
+    pub t_format_values: Option<Values>,
     /// Which numbers the card takes.
     pub limits: Limits,
 }
@@ -70,13 +72,23 @@ impl Field {
     /// Whether it takes this number in a channel that speaks one protocol or the other.
     pub fn allows(&self, value: u32, is_t_format: bool) -> bool {
         let ranges = self.ranges(is_t_format);
-        match self.values {
+        match self.values_in(is_t_format) {
             _ if !ranges.is_empty() => ranges
                 .iter()
                 .any(|(low, high)| (*low..=*high).contains(&value)),
-            // Codes are those of EnDat.
-            Values::Codes(codes) if !is_t_format => codes.iter().any(|c| c.number == value),
+            // Without a list of its own T-format takes what it has no name for.
+            Values::Codes(codes) if !is_t_format || self.t_format_values.is_some() => {
+                codes.iter().any(|c| c.number == value)
+            }
             _ => true,
+        }
+    }
+
+    /// What single numbers or bits stand for in a channel that speaks one protocol or the other.
+    pub const fn values_in(&self, is_t_format: bool) -> Values {
+        match self.t_format_values {
+            Some(values) if is_t_format => values,
+            _ => self.values,
         }
     }
 
@@ -111,6 +123,12 @@ impl Field {
         t_format: &'static [(u32, u32)],
     ) -> Self {
         self.limits = Limits { endat, t_format };
+        self
+    }
+
+    /// The same field, whose numbers or bits stand for something else in a channel that speaks T-format.
+    pub(crate) const fn in_t_format(mut self, values: Values) -> Self {
+        self.t_format_values = Some(values);
         self
     }
 
@@ -166,6 +184,7 @@ pub(crate) const fn field(
         unit,
         meaning,
         values: Values::Plain,
+        t_format_values: None,
         limits: Limits::ANY,
     }
 }

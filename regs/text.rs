@@ -17,16 +17,16 @@ impl Field {
             false => format!("{low}..{high}"),
         };
         let ranges = self.ranges(is_t_format);
-        Some(match self.values {
+        Some(match self.values_in(is_t_format) {
             Values::Codes(codes) if ranges.is_empty() => list(codes.iter().map(|c| c.name)),
             _ => ranges.iter().map(shown).collect::<Vec<_>>().join(", "),
         })
     }
 
-    /// What the field's number in a word says, if it stands for something.
-    pub fn told(&self, word: u32) -> Option<String> {
+    /// What the field's number in a word of a channel that speaks one protocol or the other says, if it stands for something.
+    pub fn told(&self, word: u32, is_t_format: bool) -> Option<String> {
         let value = self.of(word);
-        match self.values {
+        match self.values_in(is_t_format) {
             Values::Plain => None,
             Values::Codes(codes) => {
                 let code = codes.iter().find(|c| c.number == value);

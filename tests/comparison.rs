@@ -73,7 +73,7 @@ fn every_status_bit_of_the_peripheral_has_a_place_in_our_map() {
     let card = load_preset("artinchip_endat_if").unwrap().card;
     let blocks: Vec<_> = blocks(&card).collect();
     let words = [
-        causes::CARD,
+        causes::ENDAT,
         EVIDENCE_FLAGS,
         LINE_FLAGS,
         request_state::ERRORS,

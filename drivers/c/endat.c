@@ -51,13 +51,18 @@ uint32_t endat_ms(uint32_t ms)
     return (ms < (UINT32_MAX / 1000u)) ? (ms * 1000u) : UINT32_MAX;
 }
 
+bool endat_is_t_format(const endat_card *card, uint32_t channel)
+{
+    return (channel < ENDAT_CHANNELS_MAX) && (((card->t_format_channels >> channel) & 1u) != 0u);
+}
+
 endat_error endat_needs_endat(const endat_card *card, uint32_t channel)
 {
     endat_error error = ENDAT_OK;
 
     if (channel >= card->channels) {
         error = ENDAT_ERROR_ARGUMENT;
-    } else if (((card->t_format_channels >> channel) & 1u) != 0u) {
+    } else if (endat_is_t_format(card, channel)) {
         error = ENDAT_ERROR_PROTOCOL;
     } else {
         error = ENDAT_OK;
@@ -320,7 +325,7 @@ static endat_info info_of(uint32_t word)
 /** Place of a word in a result. */
 #define AT(name) (ENDAT_MAP_RESULT_##name##_WORD(0u) - ENDAT_MAP_RESULT_BASE_WORD)
 
-static void take_apart(const uint32_t *words, bool has_infos, endat_result *result)
+static void take_apart(const uint32_t *words, bool has_infos, bool is_t_format, endat_result *result)
 {
     const uint32_t status = words[AT(STATUS)];
     const uint32_t high = words[AT(POSITION_HIGH)];
@@ -338,7 +343,7 @@ static void take_apart(const uint32_t *words, bool has_infos, endat_result *resu
     result->delay_cycles = (uint16_t)((delay_high << 10u) | delay_low);
     result->recovery_cycles = (uint16_t)ENDAT_MAP_GET(ENDAT_MAP_RESULT_AGE_RECOVERY_RECOVERY_CYCLES, age);
     result->width_bits = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_RESULT_POSITION_HIGH_WIDTH, high);
-    result->cause = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_RESULT_STATUS_CAUSE, status);
+    result->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_RESULT_STATUS_CAUSE, status), is_t_format);
     result->valid = (status & ENDAT_MAP_RESULT_STATUS_VALID_MASK) != 0u;
     result->fresh = (status & ENDAT_MAP_RESULT_STATUS_FRESH_MASK) != 0u;
     result->stale = (age & ENDAT_MAP_RESULT_AGE_RECOVERY_STALE_MASK) != 0u;
@@ -348,7 +353,7 @@ static void take_apart(const uint32_t *words, bool has_infos, endat_result *resu
     if (!result->fits) {
         result->valid = false;
         result->fresh = false;
-        result->cause = (uint8_t)ENDAT_MAP_RESULT_STATUS_CAUSE_UPSET;
+        result->cause = (uint8_t)ENDAT_CAUSE_UPSET;
     }
 }
 
@@ -366,7 +371,7 @@ endat_error endat_read_moment(const endat_card *card, endat_moment *moment)
         error = look_at_one_moment(card, words);
         fits = true;
         for (n = 0u; (n < card->channels) && (error == ENDAT_OK); n++) {
-            take_apart(&words[ENDAT_MAP_RESULT_STRIDE_WORDS * n], has_infos, &moment->channel[n]);
+            take_apart(&words[ENDAT_MAP_RESULT_STRIDE_WORDS * n], has_infos, endat_is_t_format(card, n), &moment->channel[n]);
             fits = fits && moment->channel[n].fits;
         }
     }

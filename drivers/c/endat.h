@@ -125,7 +125,7 @@ typedef struct {
     uint16_t delay_cycles;    /**< Tracked line delay. */
     uint16_t recovery_cycles; /**< Recovery time of the last frame. */
     uint8_t width_bits;       /**< Of the position; 0: none yet, or T-format. */
-    uint8_t cause;            /**< Primary cause, 0 = none: endat_cause_text(). */
+    uint8_t cause;            /**< Primary cause, ENDAT_CAUSE_...: endat_cause_text(). */
     bool valid;               /**< There is a good position. */
     bool fresh;               /**< The last result brought it: test this, not the cause. */
     bool stale;               /**< A trigger has come since this result. */

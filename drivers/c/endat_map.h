@@ -1,6 +1,6 @@
 /**
  * @file endat_map.h
- * Register map 0.9.0 of every card, whatever its configuration.
+ * Register map 1.0.0 of every card, whatever its configuration.
  *
  * Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test system driver writes it again.
  *
@@ -10,8 +10,8 @@
 #define ENDAT_MAP_H
 
 /* Version of the register map; within a major version no address and no field moves. */
-#define ENDAT_MAP_MAJOR 0u
-#define ENDAT_MAP_MINOR 9u
+#define ENDAT_MAP_MAJOR 1u
+#define ENDAT_MAP_MINOR 0u
 #define ENDAT_MAP_PATCH 0u
 /* Encoder ports of the largest card */
 #define ENDAT_MAP_CHANNELS_MAX 8u
@@ -621,7 +621,7 @@
 /* sequence: Number of results, wrapping */
 #define ENDAT_MAP_RESULT_STATUS_SEQUENCE_SHIFT 0u
 #define ENDAT_MAP_RESULT_STATUS_SEQUENCE_MASK 0x0000FFFFu
-/* cause: Primary cause; 8, 17, 29 and 30 come with a good position: fresh tells */
+/* cause: Primary cause; some come with a good position: fresh tells */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_SHIFT 16u
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_MASK 0x001F0000u
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_NONE 0u /* none */
@@ -642,27 +642,32 @@
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_WATCHDOG 15u /* watchdog */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_OWN_ECHO 16u /* echo of the own command */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_RECOVERY_TOO_SHORT 17u /* recovery time too short */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_LINE_NOT_IDLE 18u /* line not idle */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_NO_ANSWER 19u /* no answer */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_NO_HEADER 20u /* no header */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_CONTROL_PARITY 21u /* parity of the control field */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_REPLY_ECHO 22u /* another ID or address in the reply */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_DELIMITER 23u /* delimiter */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_FIELD_MISSING 24u /* field missing */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_REPLY_CRC 25u /* CRC */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_REQUEST_PARITY 26u /* encoder saw a parity error */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_REQUEST_DELIMITER 27u /* encoder saw a delimiter error */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_EEPROM_BUSY 28u /* EEPROM busy */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_COUNTING_ERROR 29u /* counting error */
-#define ENDAT_MAP_RESULT_STATUS_CAUSE_MULTI_TURN_ALARM 30u /* multi-turn or battery alarm */
 #define ENDAT_MAP_RESULT_STATUS_CAUSE_UPSET 31u /* stored data upset */
+/* cause: on a T-format channel */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_NONE 0u /* none */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_UNKNOWN_COMMAND 1u /* unknown request */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_LINE_NOT_IDLE 2u /* line not idle */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_NO_ANSWER 3u /* no answer */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_NO_HEADER 4u /* no header */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_CONTROL_PARITY 5u /* parity of the control field */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_REPLY_ECHO 6u /* another ID or address in the reply */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_DELIMITER 7u /* delimiter */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_FIELD_MISSING 8u /* field missing */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_REPLY_CRC 9u /* CRC */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_REQUEST_PARITY 10u /* encoder saw a parity error */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_REQUEST_DELIMITER 11u /* encoder saw a delimiter error */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_EEPROM_BUSY 12u /* EEPROM busy */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_COUNTING_ERROR 13u /* counting error */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_MULTI_TURN_ALARM 14u /* multi-turn or battery alarm */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_UPSET 15u /* stored data upset */
+#define ENDAT_MAP_RESULT_STATUS_CAUSE_T_FORMAT_TRIGGER_OVERRUN 16u /* trigger overrun */
 /* valid: There is a good position */
 #define ENDAT_MAP_RESULT_STATUS_VALID_SHIFT 22u
 #define ENDAT_MAP_RESULT_STATUS_VALID_MASK 0x00400000u
 /* fresh: The last result brought the position; 0 = held from an earlier one */
 #define ENDAT_MAP_RESULT_STATUS_FRESH_SHIFT 23u
 #define ENDAT_MAP_RESULT_STATUS_FRESH_MASK 0x00800000u
-/* line: Raw flags: bit k stands for cause k + 11, bit 7 for cause 31; T-format: bits 0, 1 and 2 for causes 29, 30 and 8 */
+/* line: Raw flags that evidence has no room for */
 #define ENDAT_MAP_RESULT_STATUS_LINE_SHIFT 24u
 #define ENDAT_MAP_RESULT_STATUS_LINE_MASK 0xFF000000u
 #define ENDAT_MAP_RESULT_STATUS_LINE_NO_ENCODER 0x1u /* no encoder */
@@ -673,6 +678,11 @@
 #define ENDAT_MAP_RESULT_STATUS_LINE_OWN_ECHO 0x20u /* echo of the own command */
 #define ENDAT_MAP_RESULT_STATUS_LINE_RECOVERY_TOO_SHORT 0x40u /* recovery time too short */
 #define ENDAT_MAP_RESULT_STATUS_LINE_UPSET 0x80u /* stored data upset */
+/* line: on a T-format channel */
+#define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_COUNTING_ERROR 0x1u /* counting error */
+#define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_MULTI_TURN_ALARM 0x2u /* multi-turn or battery alarm */
+#define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_UPSET 0x4u /* stored data upset */
+#define ENDAT_MAP_RESULT_STATUS_LINE_T_FORMAT_TRIGGER_OVERRUN 0x8u /* trigger overrun */
 
 /* ro: Last good position, bits 31..0. */
 #define ENDAT_MAP_RESULT_POSITION_LOW_WORD(channel) (0x181u + 8u * (channel))
@@ -716,7 +726,7 @@
 /* delay_cycles: Tracked line delay tD, synchroniser and filter included (cycles) */
 #define ENDAT_MAP_RESULT_EVIDENCE_DELAY_CYCLES_SHIFT 10u
 #define ENDAT_MAP_RESULT_EVIDENCE_DELAY_CYCLES_MASK 0x000FFC00u
-/* flags: Raw flags; T-format: bit 0 for cause 9, bit k for cause k + 17 */
+/* flags: Raw flags; the rest of them is status.line */
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_SHIFT 20u
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_MASK 0xFFF00000u
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_DATA_NOT_LOW 0x1u /* data not low before start */
@@ -731,6 +741,19 @@
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_TAIL_LOW 0x200u /* data not high after the frame */
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_UNKNOWN_COMMAND 0x400u /* unknown mode command */
 #define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_INFO_MISSING 0x800u /* additional data missing */
+/* flags: on a T-format channel */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_UNKNOWN_COMMAND 0x1u /* unknown request */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_LINE_NOT_IDLE 0x2u /* line not idle */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_NO_ANSWER 0x4u /* no answer */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_NO_HEADER 0x8u /* no header */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_CONTROL_PARITY 0x10u /* parity of the control field */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_REPLY_ECHO 0x20u /* another ID or address in the reply */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_DELIMITER 0x40u /* delimiter */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_FIELD_MISSING 0x80u /* field missing */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_REPLY_CRC 0x100u /* CRC */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_REQUEST_PARITY 0x200u /* encoder saw a parity error */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_REQUEST_DELIMITER 0x400u /* encoder saw a delimiter error */
+#define ENDAT_MAP_RESULT_EVIDENCE_FLAGS_T_FORMAT_EEPROM_BUSY 0x800u /* EEPROM busy */
 
 /* ro: Age and recovery time. */
 #define ENDAT_MAP_RESULT_AGE_RECOVERY_WORD(channel) (0x185u + 8u * (channel))
@@ -2028,5 +2051,39 @@
 /* What length takes */
 #define ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MIN 0u
 #define ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MAX 8u
+
+/* Causes as the driver tells them, of both protocols */
+#define ENDAT_CAUSE_NONE 0u /* none */
+#define ENDAT_CAUSE_DATA_NOT_LOW 1u /* data not low before start */
+#define ENDAT_CAUSE_NO_START_BIT 2u /* no start bit */
+#define ENDAT_CAUSE_START_WINDOW 3u /* start bit outside its window */
+#define ENDAT_CAUSE_CRC 4u /* CRC */
+#define ENDAT_CAUSE_F1 5u /* F1 */
+#define ENDAT_CAUSE_F2 6u /* F2 */
+#define ENDAT_CAUSE_DATA_NOT_FALLING 7u /* data not falling after the frame */
+#define ENDAT_CAUSE_TRIGGER_OVERRUN 8u /* trigger overrun */
+#define ENDAT_CAUSE_UNKNOWN_COMMAND 9u /* unknown mode command */
+#define ENDAT_CAUSE_INFO_MISSING 10u /* additional data missing */
+#define ENDAT_CAUSE_NO_ENCODER 11u /* no encoder */
+#define ENDAT_CAUSE_STUCK_HIGH 12u /* data stuck high */
+#define ENDAT_CAUSE_STUCK_LOW 13u /* data stuck low */
+#define ENDAT_CAUSE_LATE_START 14u /* late start bit */
+#define ENDAT_CAUSE_WATCHDOG 15u /* watchdog */
+#define ENDAT_CAUSE_OWN_ECHO 16u /* echo of the own command */
+#define ENDAT_CAUSE_RECOVERY_TOO_SHORT 17u /* recovery time too short */
+#define ENDAT_CAUSE_UPSET 31u /* stored data upset */
+#define ENDAT_CAUSE_LINE_NOT_IDLE 34u /* line not idle */
+#define ENDAT_CAUSE_NO_ANSWER 35u /* no answer */
+#define ENDAT_CAUSE_NO_HEADER 36u /* no header */
+#define ENDAT_CAUSE_CONTROL_PARITY 37u /* parity of the control field */
+#define ENDAT_CAUSE_REPLY_ECHO 38u /* another ID or address in the reply */
+#define ENDAT_CAUSE_DELIMITER 39u /* delimiter */
+#define ENDAT_CAUSE_FIELD_MISSING 40u /* field missing */
+#define ENDAT_CAUSE_REPLY_CRC 41u /* CRC */
+#define ENDAT_CAUSE_REQUEST_PARITY 42u /* encoder saw a parity error */
+#define ENDAT_CAUSE_REQUEST_DELIMITER 43u /* encoder saw a delimiter error */
+#define ENDAT_CAUSE_EEPROM_BUSY 44u /* EEPROM busy */
+#define ENDAT_CAUSE_COUNTING_ERROR 45u /* counting error */
+#define ENDAT_CAUSE_MULTI_TURN_ALARM 46u /* multi-turn or battery alarm */
 
 #endif

@@ -94,7 +94,7 @@ static uint32_t decode(uint8_t *bytes, uint32_t count)
     return to;
 }
 
-static endat_error take_apart(endat_stream *stream, endat_set *set)
+static endat_error take_apart(const endat_card *card, endat_stream *stream, endat_set *set)
 {
     const uint8_t *const bytes = stream->bytes;
     const uint32_t length = decode(stream->bytes, stream->count);
@@ -127,7 +127,7 @@ static endat_error take_apart(endat_stream *stream, endat_set *set)
         endat_sample *const sample = &set->sample[n];
 
         sample->position = number(own, 6u);
-        sample->cause = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_RESULT_STATUS_CAUSE, word);
+        sample->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_RESULT_STATUS_CAUSE, word), endat_is_t_format(card, set->first + n));
         sample->valid = (word & ENDAT_MAP_RESULT_STATUS_VALID_MASK) != 0u;
         sample->fresh = (word & ENDAT_MAP_RESULT_STATUS_FRESH_MASK) != 0u;
         sample->taken = (status & TAKEN) != 0u;
@@ -137,7 +137,7 @@ static endat_error take_apart(endat_stream *stream, endat_set *set)
 }
 
 /** One more byte; ENDAT_NOTHING until a set is whole. */
-static endat_error take_byte(endat_stream *stream, uint8_t byte, endat_set *set)
+static endat_error take_byte(const endat_card *card, endat_stream *stream, uint8_t byte, endat_set *set)
 {
     endat_error error = ENDAT_NOTHING;
 
@@ -150,7 +150,7 @@ static endat_error take_byte(endat_stream *stream, uint8_t byte, endat_set *set)
         error = ENDAT_ERROR_SET;
         stream->count = 0u;
     } else if (stream->count > 0u) {
-        error = take_apart(stream, set);
+        error = take_apart(card, stream, set);
         stream->count = 0u;
     } else {
         /* Nothing between two zeros. */
@@ -171,7 +171,7 @@ endat_error endat_stream_next(const endat_card *card, endat_stream *stream, enda
             const uint8_t byte = (uint8_t)(stream->word >> 24u);
             stream->word <<= 8u;
             stream->left--;
-            error = take_byte(stream, byte, set);
+            error = take_byte(card, stream, byte, set);
         } else {
             uint32_t state = 0u;
             endat_error read = endat_read_word(card, ENDAT_MAP_CARD_STREAM_STATE_WORD, &state);

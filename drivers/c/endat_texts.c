@@ -5,7 +5,39 @@
  * Written by endat-gen from its register table. Do not edit: UPDATE_EXPECT=1 cargo test --test system driver writes it again.
  */
 #include "endat.h"
+#include "endat_internal.h"
 #include <stddef.h>
+
+/* Causes of T-format, each at its code */
+static const uint8_t t_format_causes[] = {
+    ENDAT_CAUSE_NONE,
+    ENDAT_CAUSE_UNKNOWN_COMMAND,
+    ENDAT_CAUSE_LINE_NOT_IDLE,
+    ENDAT_CAUSE_NO_ANSWER,
+    ENDAT_CAUSE_NO_HEADER,
+    ENDAT_CAUSE_CONTROL_PARITY,
+    ENDAT_CAUSE_REPLY_ECHO,
+    ENDAT_CAUSE_DELIMITER,
+    ENDAT_CAUSE_FIELD_MISSING,
+    ENDAT_CAUSE_REPLY_CRC,
+    ENDAT_CAUSE_REQUEST_PARITY,
+    ENDAT_CAUSE_REQUEST_DELIMITER,
+    ENDAT_CAUSE_EEPROM_BUSY,
+    ENDAT_CAUSE_COUNTING_ERROR,
+    ENDAT_CAUSE_MULTI_TURN_ALARM,
+    ENDAT_CAUSE_UPSET,
+    ENDAT_CAUSE_TRIGGER_OVERRUN,
+};
+
+uint8_t endat_cause_of(uint32_t code, bool is_t_format)
+{
+    uint32_t cause = code;
+
+    if (is_t_format) {
+        cause = (code < (uint32_t)sizeof t_format_causes) ? t_format_causes[code] : (32u + code);
+    }
+    return (uint8_t)cause;
+}
 
 /* Causes of a result */
 static const char *const causes[] = {
@@ -27,6 +59,22 @@ static const char *const causes[] = {
     "watchdog",
     "echo of the own command",
     "recovery time too short",
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    "stored data upset",
+    NULL,
+    NULL,
     "line not idle",
     "no answer",
     "no header",
@@ -40,7 +88,6 @@ static const char *const causes[] = {
     "EEPROM busy",
     "counting error",
     "multi-turn or battery alarm",
-    "stored data upset",
 };
 
 const char *endat_cause_text(uint32_t number)
@@ -73,6 +120,22 @@ static const char *const meanings[] = {
     "The frame took longer than limits.watchdog_us.",
     "What came back is the card's own mode command.",
     "DATA fell before limits.recovery_min_cycles: the encoder has another recovery time than the card; the position is good.",
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    "A register of the card, or a word on its way to the host, was disturbed: what is stored does not fit its CRC or parity.",
+    NULL,
+    NULL,
     "The T-format line was LOW, or had not been idle for long enough after a bad reply, when a request was to go out; nothing was sent.",
     "The T-format encoder did not answer within the reply gap.",
     "Something came from the T-format encoder, but no control field with start bit and sync code.",
@@ -86,7 +149,6 @@ static const char *const meanings[] = {
     "The encoder's EEPROM is busy with the last byte; the data mean nothing.",
     "The encoder reports a counting error; the position is taken.",
     "The encoder reports a multi-turn, overflow or battery alarm; the position is taken, and its turns may be wrong.",
-    "A register of the card, or a word on its way to the host, was disturbed: what is stored does not fit its CRC or parity.",
 };
 
 const char *endat_cause_meaning(uint32_t number)
@@ -119,6 +181,22 @@ static const char *const remedies[] = {
     "Look at limits.watchdog_us and at the encoder's times.",
     "Look for a converter that sends back what it gets, or a pair that is swapped.",
     "Set recovery_min_ns to what the encoder is set to.",
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    NULL,
+    "Nothing, if it is rare: the next trigger brings a new position. If it is not: supply, clock and timing of the device. With a second receiver it also tells that the two disagreed, or were made to by `force`.",
+    NULL,
+    NULL,
     "Trigger more slowly after faults; look for a short circuit, and for an encoder that still sends.",
     "Look at plug, supply and the pair; compare bit_hz with the data sheet; raise reply_gap_us.",
     "Compare bit_hz with the data sheet; look at termination and shield; raise filter_ns against short pulses.",
@@ -132,7 +210,6 @@ static const char *const remedies[] = {
     "Send the request again some milliseconds later.",
     "Turn the power off and on, or send request 7 ten times in a row.",
     "Look at t_format<n>.fields.alarm and at the battery; then send request 7 or 12 ten times in a row.",
-    "Nothing, if it is rare: the next trigger brings a new position. If it is not: supply, clock and timing of the device. With a second receiver it also tells that the two disagreed, or were made to by `force`.",
 };
 
 const char *endat_cause_remedy(uint32_t number)

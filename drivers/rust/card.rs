@@ -1,6 +1,7 @@
 //! The card itself: who it is, its words, its results, its triggers.
 
 use crate::error::Error;
+use crate::facts::Facts;
 use crate::link::Link;
 use crate::map::{field, word};
 use crate::result::{Moment, MOMENT_WORDS};
@@ -15,37 +16,6 @@ const WRITE_TRIES: usize = 2;
 const RESULT_PAUSE_US: u32 = 5;
 /// Patterns for the scratch bits: exchanged bytes, writes that do not arrive, addresses that are off.
 const PATTERNS: [u32; 4] = [0x00AA_5501, 0x0055_AAFE, 0x0001_0280, 0];
-
-/// What a card says of itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Facts {
-    /// Major, minor and patch version of its register map.
-    pub version: [u8; 3],
-    /// First 8 digits of the hash in the generated files.
-    pub configuration_hash: u32,
-    /// The unit of every number of cycles.
-    pub system_hz: u32,
-    /// Encoder ports.
-    pub channels: usize,
-    /// Widest position.
-    pub max_position_bits: u32,
-    /// Bit n: channel n speaks T-format.
-    pub t_format_channels: u32,
-    /// Parts 0 to 15, then 16 to 31.
-    features: u32,
-}
-
-impl Facts {
-    /// Whether the card has this part.
-    pub const fn has(&self, part: Part) -> bool {
-        self.features >> part as u32 & 1 == 1
-    }
-
-    /// Whether a channel speaks T-format.
-    pub const fn is_t_format(&self, channel: usize) -> bool {
-        channel < CHANNELS_MAX && self.t_format_channels >> channel & 1 == 1
-    }
-}
 
 /// A card behind a link.
 #[derive(Debug)]
@@ -202,7 +172,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
                 self.look_held(&mut words[..count])?;
             }
         }
-        Ok(Moment::new(&words, channels, has_infos))
+        Ok(Moment::new(&words, &self.facts))
     }
 
     /// Reads the words of all results, rising; those between two results are left out.

@@ -27,6 +27,7 @@
 mod answer;
 mod card;
 mod error;
+mod facts;
 mod frame;
 mod link;
 mod map;
@@ -39,10 +40,11 @@ mod stream;
 mod uart;
 
 pub use answer::Answer;
-pub use card::{Card, Facts};
+pub use card::Card;
 pub use endat_regs as regs;
 pub use endat_regs::{protocol::ModeCommand, Part};
 pub use error::Error;
+pub use facts::Facts;
 pub use link::{Link, Mapped};
 pub use parallel::{Parallel, Registers};
 pub use result::{

@@ -1,9 +1,10 @@
 //! Results: what became of each channel's last trigger.
 
+use crate::facts::Facts;
 use crate::frame::crc5;
 use crate::map::field;
 use endat_regs::causes::{self, endat};
-use endat_regs::{Field, BLOCK_STRIDE, CHANNELS_MAX, RESULT};
+use endat_regs::{Field, Part, BLOCK_STRIDE, CHANNELS_MAX, RESULT};
 
 /// Words of a result, those of additional data included.
 pub const RESULT_WORDS: usize = RESULT.registers.len();
@@ -86,7 +87,7 @@ pub struct Reading {
     pub delay_cycles: u16,
     /// Recovery time of the last frame.
     pub recovery_cycles: u16,
-    /// Primary cause, 0 = none.
+    /// Primary cause, a number of [`causes::ALL`]; 0 = none.
     pub cause: u8,
     /// There is a good position.
     pub valid: bool,
@@ -103,8 +104,8 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// Takes the words of a result apart; those that are not there count as 0.
-    pub fn new(words: &[u32]) -> Self {
+    /// Takes the words of a result apart, of a channel that speaks one protocol or the other; those that are not there count as 0.
+    pub fn new(words: &[u32], is_t_format: bool) -> Self {
         let word = |offset: usize| words.get(offset).copied().unwrap_or(0);
         let [status, low, high, timestamp, evidence, age, info_1, info_2] =
             core::array::from_fn(word);
@@ -122,7 +123,7 @@ impl Reading {
             age_us: field!(RESULT.age_recovery.age_us).of(age) as u16,
             delay_cycles: (delay_high << delay_low.width | delay_low.of(evidence)) as u16,
             recovery_cycles: field!(RESULT.age_recovery.recovery_cycles).of(age) as u16,
-            cause: field!(RESULT.status.cause).of(status) as u8,
+            cause: causes::number(field!(RESULT.status.cause).of(status) as u8, is_t_format),
             valid: is(status, field!(RESULT.status.valid)),
             fresh: is(status, field!(RESULT.status.fresh)),
             stale: is(age, field!(RESULT.age_recovery.stale)),
@@ -155,20 +156,17 @@ impl Reading {
 
     /// Name of the primary cause.
     pub fn cause_name(&self) -> &'static str {
-        let cause = causes::CARD.get(usize::from(self.cause));
-        cause.map_or("unknown", |cause| cause.name)
+        causes::of(self.cause).map_or("unknown", |cause| cause.name)
     }
 
     /// What the cause means.
     pub fn cause_meaning(&self) -> &'static str {
-        let cause = causes::CARD.get(usize::from(self.cause));
-        cause.map_or("unknown", |cause| cause.meaning)
+        causes::of(self.cause).map_or("unknown", |cause| cause.meaning)
     }
 
     /// What to do about the cause.
     pub fn cause_remedy(&self) -> Option<&'static str> {
-        let cause = causes::CARD.get(usize::from(self.cause))?;
-        causes::advice(cause.name).map(|[_, remedy]| remedy)
+        causes::advice(causes::of(self.cause)?.name).map(|[_, remedy]| remedy)
     }
 }
 
@@ -201,11 +199,19 @@ fn fits(position: u64, high: u32) -> bool {
         || position >> width == 0 && crc5(covered) == field!(RESULT.position_high.crc).of(high)
 }
 
-/// The results in the words from the first one on; those between two results count for nothing.
-pub fn readings(words: &[u32], has_infos: bool) -> impl Iterator<Item = Reading> + '_ {
+/// The results in the words from the first one on; those between two results count for nothing. Bit n of `t_format_channels`: channel n
+/// speaks T-format.
+pub fn readings(
+    words: &[u32],
+    has_infos: bool,
+    t_format_channels: u32,
+) -> impl Iterator<Item = Reading> + '_ {
     let each = endat_regs::result_words(1, has_infos) as usize;
-    let blocks = words.chunks(BLOCK_STRIDE.into());
-    blocks.map(move |block| Reading::new(&block[..each.min(block.len())]))
+    let blocks = words.chunks(BLOCK_STRIDE.into()).enumerate();
+    blocks.map(move |(channel, block)| {
+        let is_t_format = t_format_channels >> channel & 1 == 1;
+        Reading::new(&block[..each.min(block.len())], is_t_format)
+    })
 }
 
 /// Results of all channels, of one moment.
@@ -216,10 +222,11 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// Out of the words from the first result on.
-    pub(crate) fn new(words: &[u32; MOMENT_WORDS], channels: usize, has_infos: bool) -> Self {
+    /// Out of the words from the first result on of a card.
+    pub(crate) fn new(words: &[u32; MOMENT_WORDS], facts: &Facts) -> Self {
+        let (channels, has_infos) = (facts.channels, facts.has(Part::Requests));
         let mut results = [Reading::default(); CHANNELS_MAX];
-        let read = readings(words, has_infos).take(channels);
+        let read = readings(words, has_infos, facts.t_format_channels).take(channels);
         for (result, reading) in results.iter_mut().zip(read) {
             *result = reading.checked();
         }

@@ -6,7 +6,7 @@ use crate::frame::{crc16, CRC16_START};
 use crate::link::Link;
 use crate::map::{field, word};
 use embedded_hal::delay::DelayNs;
-use endat_regs::{Part, CHANNELS_MAX, WORD_BYTES};
+use endat_regs::{causes, Part, CHANNELS_MAX, WORD_BYTES};
 
 /// Bytes before the samples, of a sample, of its additional data, and of the check sum.
 const HEAD_BYTES: usize = 8;
@@ -31,6 +31,8 @@ pub struct Stream {
     bytes: [u8; SET_BYTES + 1],
     /// How many.
     count: usize,
+    /// Bit n: channel n speaks T-format.
+    t_format_channels: u32,
     /// Read, and not looked at.
     word: u32,
     /// Bytes of it.
@@ -42,7 +44,7 @@ pub struct Stream {
 pub struct Sample {
     /// Of this trigger if fresh.
     pub position: u64,
-    /// Primary cause.
+    /// Primary cause, a number of [`causes::ALL`].
     pub cause: u8,
     /// The channel took this trigger.
     pub taken: bool,
@@ -78,18 +80,17 @@ impl Set {
     }
 }
 
-impl Default for Stream {
-    fn default() -> Self {
+impl Stream {
+    fn new(t_format_channels: u32) -> Self {
         Self {
             bytes: [0; SET_BYTES + 1],
             count: 0,
+            t_format_channels,
             word: 0,
             left: 0,
         }
     }
-}
 
-impl Stream {
     /// One more byte; a set if it was the last one of it.
     fn take(&mut self, byte: u8) -> Option<Result<Set, Damaged>> {
         if byte != 0 {
@@ -104,7 +105,7 @@ impl Stream {
         match core::mem::take(&mut self.count) {
             // Nothing between two zeros.
             0 => None,
-            count => set_of(&mut self.bytes[..count]).transpose(),
+            count => set_of(&mut self.bytes[..count], self.t_format_channels).transpose(),
         }
     }
 }
@@ -139,7 +140,7 @@ fn number(bytes: &[u8]) -> u64 {
 }
 
 /// The set in these bytes; none if it is of a type of later cards.
-fn set_of(bytes: &mut [u8]) -> Result<Option<Set>, Damaged> {
+fn set_of(bytes: &mut [u8], t_format_channels: u32) -> Result<Option<Set>, Damaged> {
     let length = decode(bytes).ok_or(Damaged)?;
     let bytes = &bytes[..length];
     let (body, crc) = bytes
@@ -169,12 +170,14 @@ fn set_of(bytes: &mut [u8]) -> Result<Option<Set>, Damaged> {
         samples: Default::default(),
         count,
     };
-    for (sample, own) in set.samples.iter_mut().zip(samples.chunks_exact(each)) {
+    let own = samples.chunks_exact(each);
+    for (channel, (sample, own)) in (first..).zip(set.samples.iter_mut().zip(own)) {
+        let is_t_format = t_format_channels >> channel & 1 == 1;
         let status = number(&own[6..8]) as u16;
         let word = u32::from(status) << STATUS_SHIFT;
         *sample = Sample {
             position: number(&own[..6]),
-            cause: field!(RESULT.status.cause).of(word) as u8,
+            cause: causes::number(field!(RESULT.status.cause).of(word) as u8, is_t_format),
             taken: status & TAKEN != 0,
             valid: field!(RESULT.status.valid).of(word) != 0,
             fresh: field!(RESULT.status.fresh).of(word) != 0,
@@ -194,7 +197,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         self.link.write(word!(CARD.stream_clear), clear)?;
         let collect = field!(CARD.stream_control.collect).mask();
         self.write_checked(control, if collects { collect } else { 0 })?;
-        Ok(Stream::default())
+        Ok(Stream::new(self.facts().t_format_channels))
     }
 
     /// The next set; none if there is none yet, [`Error::Set`] for one that was damaged.

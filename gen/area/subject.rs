@@ -30,7 +30,7 @@ use endat_hdl::t_format::{
     dsp::{AsyncDsp, TFormatStart},
     port::TFormatPort,
 };
-use endat_hdl::transaction::Transaction;
+use endat_hdl::transaction::{cause, Transaction};
 use rtl_design::elaborate::{block_name, elaborate, Design};
 use rtl_design::verilog::file_name;
 use rust_hdl::prelude::Block;
@@ -276,7 +276,11 @@ fn parts(times: FixedTimes, fifo_bytes: u64) -> Result<Vec<Subject>, GenError> {
             "recovery time of a channel, measured a second time",
             RecoveryCounter::new(0),
         )?,
-        Subject::new("snapshot", "snapshot with time stamp", Snapshot::default())?,
+        Subject::new(
+            "snapshot",
+            "snapshot with time stamp",
+            Snapshot::new(cause::UPSET, cause::flag(cause::UPSET)),
+        )?,
         Subject::new(
             "crc5_parallel",
             "CRC5, parallel, any length to 50 bits",

@@ -1,6 +1,7 @@
 //! Every key of a board's file and of a family's, said once.
 
-use crate::form::key::{self, keys, Choice, Key};
+use super::SHIPPED_CHANNELS;
+use crate::form::key::{self, keys, Choice, Key, Usual};
 use endat_hdl::config::Limits;
 
 /// Longest word that goes into emitted files.
@@ -57,6 +58,8 @@ keys! {
     DEVICE_WORD = free(&["device"], "WORD", "what the family's tools ask for besides: its `family.toml` has an example of each");
     SYSTEM_HZ = Key::number(START, "system_hz", "system clock of the shipped configuration, where 100 MHz do not suit").required("100_000_000");
     CLOCK_HZ = Key::number(START, "clock_hz", "its EnDat clock, where 3.125 MHz do not suit").required("3_125_000");
+    CHANNELS = Key::number(START, "channels", "its encoder ports, where the device is too small for all")
+        .within(|_, _| Limits::new(1..=SHIPPED_CHANNELS)).usual(Usual::Number(SHIPPED_CHANNELS));
 }
 
 // Keys of a family's file.

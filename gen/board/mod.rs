@@ -27,14 +27,19 @@ use std::path::Path;
 /// Stands in a connector's list for a position without a pin.
 const NO_PIN: &str = "-";
 
-/// Clocks that suit a board: the shipped configuration is started from with them.
+/// What suits a board: the shipped configuration is started from with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Start {
     /// System clock, in hertz.
     pub system_hz: u64,
     /// EnDat clock, in hertz.
     pub clock_hz: u64,
+    /// Encoder ports.
+    pub channels: usize,
 }
+
+/// Encoder ports of the shipped configuration.
+pub const SHIPPED_CHANNELS: u64 = 2;
 
 /// A board.
 #[derive(Clone, Debug, PartialEq, Eq)]

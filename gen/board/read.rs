@@ -226,10 +226,11 @@ fn read_device(table: &Table<'_, '_>, family: Option<&Family>) -> Option<BTreeMa
     Some(device)
 }
 
-/// Clocks to start from.
+/// What to start from.
 struct StartAt {
     system: At<u64>,
     clock_hz: u64,
+    channels: u64,
 }
 
 fn read_start(table: &Table<'_, '_>) -> Option<StartAt> {
@@ -242,21 +243,32 @@ fn read_start(table: &Table<'_, '_>) -> Option<StartAt> {
         table.check(key, &found, &limits);
         Some(found)
     });
+    let limits = keys::CHANNELS.limits(None);
+    let channels = table.integer(&keys::CHANNELS, &limits);
+    if let Some(channels) = &channels {
+        table.check(&keys::CHANNELS, channels, &limits);
+    }
     table.finish();
     Some(StartAt {
         system: system?,
         clock_hz: clock?.value,
+        channels: channels.map_or(keys::CHANNELS.usual_number(), |c| c.value),
     })
 }
 
 fn take_start(table: &Table<'_, '_>, board: &Board, start: Option<StartAt>) -> Option<Start> {
-    let StartAt { system, clock_hz } = start?;
+    let StartAt {
+        system,
+        clock_hz,
+        channels,
+    } = start?;
     if let Err(text) = board.pll(system.value) {
         table.complain(system.line, "system_hz", &system.value.to_string(), &text);
     }
     Some(Start {
         system_hz: system.value,
         clock_hz,
+        channels: channels as usize,
     })
 }
 

@@ -26,7 +26,12 @@ pub fn preset_for(option: &str, name: &str, board: &Board) -> Result<String, Gen
         return Ok(text.to_owned());
     }
     let mut edits = Vec::new();
-    let own_name = format!("{}_{}", board.name, name.trim_start_matches("s6_"));
+    let start = board.start.filter(|_| name == DEFAULT_PRESET);
+    let is_small = start.is_some_and(|start| start.channels == 1);
+    let own_name = match is_small {
+        true => format!("{}_{ONE_CHANNEL}", board.name),
+        false => format!("{}_{}", board.name, name.trim_start_matches("s6_")),
+    };
     if let (Some(span), Ok(())) = (document.get("name"), check_name(&own_name)) {
         edits.push((span.span(), format!("{own_name:?}")));
     }
@@ -36,7 +41,7 @@ pub fn preset_for(option: &str, name: &str, board: &Board) -> Result<String, Gen
             None => edits.push((value, format!("{:?}", board.name))),
         }
     }
-    if let Some(start) = board.start.filter(|_| name == DEFAULT_PRESET) {
+    if let Some(start) = start {
         let clocks = [
             ("clock", "system_hz", start.system_hz),
             ("endat", "clock_hz", start.clock_hz),
@@ -50,7 +55,29 @@ pub fn preset_for(option: &str, name: &str, board: &Board) -> Result<String, Gen
     for (span, new) in edits {
         text.replace_range(span, &new);
     }
-    Ok(text)
+    Ok(match is_small {
+        true => with_one_channel(&text),
+        false => text,
+    })
+}
+
+/// Name of the shipped card without its second channel, behind that of the board.
+const ONE_CHANNEL: &str = "one_channel";
+
+/// The text with the first of its channels only, and a line that says so.
+fn with_one_channel(text: &str) -> String {
+    let (mut channels, mut is_out) = (0, false);
+    let kept = text.lines().filter(|line| {
+        if line.starts_with('[') {
+            let is_channel = line.starts_with("[[channel]]");
+            channels += usize::from(is_channel);
+            is_out = is_channel && channels > 1;
+        }
+        !is_out
+    });
+    let about = "# Of the two channels the first one: both do not fit the device of this board.";
+    let lines = std::iter::once(about).chain(kept);
+    lines.map(|line| format!("{line}\n")).collect()
 }
 
 /// A number as people write it: 3_125_000.
@@ -74,6 +101,8 @@ mod tests {
             let text = preset_for("--preset", DEFAULT_PRESET, &board).unwrap();
             let project = parse_on("card.toml", &text, Some(&board));
             let project = project.unwrap_or_else(|e| panic!("{name}: {e:?}"));
+            let channels = board.start.map_or(2, |start| start.channels);
+            assert_eq!(project.card.channels.len(), channels, "{name}");
             assert_eq!(project.board, Some(board));
             assert!(text.contains(&format!("name = {name:?}")), "{text}");
         }

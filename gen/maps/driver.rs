@@ -25,6 +25,7 @@ fn all_blocks() -> Vec<MapBlock> {
     let register = |register| MapRegister {
         register,
         resets: vec![],
+        speaks_t_format: true,
     };
     BLOCKS
         .iter()
@@ -88,9 +89,23 @@ fn map() -> String {
         header::write_block(&mut text, block, PREFIX);
         write_limits(&mut text, block);
     }
+    write_causes(&mut text);
     // Writing to a String cannot fail.
     let _ = writeln!(text, "\n#endif");
     text
+}
+
+/// Causes as the driver tells them.
+fn write_causes(text: &mut String) {
+    text.push_str("\n/* Causes as the driver tells them, of both protocols */\n");
+    for cause in causes::ALL {
+        let name = named(cause.number as u8);
+        let _ = writeln!(
+            text,
+            "#define ENDAT_CAUSE_{name} {}u /* {} */",
+            cause.number, cause.meaning
+        );
+    }
 }
 
 /// Least and greatest number that an EnDat channel takes, where one range says it.
@@ -137,6 +152,28 @@ fn meanings(named: &[Named]) -> Vec<(u32, String)> {
         .collect()
 }
 
+/// The function that makes one list of the causes of both protocols.
+fn write_cause_of(text: &mut String) {
+    let number = |code: &Named| causes::number(code.number as u8, true);
+    let numbers: Vec<String> = (causes::T_FORMAT.iter())
+        .map(|code| format!("    ENDAT_CAUSE_{},", named(number(code))))
+        .collect();
+    let _ = write!(
+        text,
+        "\n/* Causes of T-format, each at its code */\nstatic const uint8_t t_format_causes[] = {{\n{}\n}};\n\n\
+         uint8_t endat_cause_of(uint32_t code, bool is_t_format)\n{{\n    uint32_t cause = code;\n\n    \
+         if (is_t_format) {{\n        cause = (code < (uint32_t)sizeof t_format_causes) ? t_format_causes[code] : ({}u + code);\n    }}\n    \
+         return (uint8_t)cause;\n}}\n",
+        numbers.join("\n"),
+        causes::CODES
+    );
+}
+
+/// How the constant of a cause is called behind its prefix.
+fn named(number: u8) -> String {
+    causes::of(number).map_or_else(String::new, |cause| cause.name.to_ascii_uppercase())
+}
+
 /// One function that hands out the texts of a list.
 fn function(text: &mut String, name: &str, list: &str) {
     let _ = write!(
@@ -150,14 +187,15 @@ fn function(text: &mut String, name: &str, list: &str) {
 fn texts() -> String {
     let mut text = format!(
         "/**\n * @file endat_texts.c\n * What the numbers of a card say, and what to do about them.\n *\n * {ORIGIN}\n */\n\
-         #include \"endat.h\"\n#include <stddef.h>\n"
+         #include \"endat.h\"\n#include \"endat_internal.h\"\n#include <stddef.h>\n"
     );
+    write_cause_of(&mut text);
     let advice = |which: usize| -> Vec<(u32, String)> {
         let of = |cause: &Named| {
             let advice = causes::advice(cause.name).map_or("", |both| both[which]);
             (cause.number, quoted(advice))
         };
-        causes::CARD.iter().map(of).collect()
+        causes::ALL.iter().map(of).collect()
     };
     let words = |word: &endat_regs::service::PlateEntry| quoted(word.meaning);
     let plate: Vec<(u32, String)> = (0..).zip(NAME_PLATE.iter().map(words)).collect();
@@ -166,7 +204,7 @@ fn texts() -> String {
             "endat_cause_text",
             "causes",
             "Causes of a result",
-            meanings(causes::CARD),
+            meanings(causes::ALL),
         ),
         (
             "endat_cause_meaning",

@@ -122,23 +122,31 @@ fn write_fields(text: &mut String, entry: &MapRegister, register: &str) {
         let _ = writeln!(text, "/* {}: {} */", field.name, with_unit(field));
         let _ = writeln!(text, "#define {name}_SHIFT {}u", field.lsb);
         let _ = writeln!(text, "#define {name}_MASK 0x{:08X}u", field.mask());
-        let (listed, is_bits) = match field.values {
-            Values::Plain => continue,
-            Values::Codes(listed) => (listed, false),
-            Values::Bits(listed) => (listed, true),
-        };
-        for value in listed {
-            let constant = match is_bits {
-                // As the content of the field: after ..._GET.
-                true => format!("0x{:X}u", 1u32 << value.number),
-                false => format!("{}u", value.number),
-            };
-            let _ = writeln!(
-                text,
-                "#define {name}_{} {constant} /* {} */",
-                value.name.to_ascii_uppercase(),
-                value.meaning
-            );
+        write_values(text, &name, field.values);
+        if let Some(values) = entry.t_format_values(field) {
+            let _ = writeln!(text, "/* {}: on a T-format channel */", field.name);
+            write_values(text, &format!("{name}_T_FORMAT"), values);
         }
+    }
+}
+
+fn write_values(text: &mut String, name: &str, values: Values) {
+    let (listed, is_bits) = match values {
+        Values::Plain => return,
+        Values::Codes(listed) => (listed, false),
+        Values::Bits(listed) => (listed, true),
+    };
+    for value in listed {
+        let constant = match is_bits {
+            // As the content of the field: after ..._GET.
+            true => format!("0x{:X}u", 1u32 << value.number),
+            false => format!("{}u", value.number),
+        };
+        let _ = writeln!(
+            text,
+            "#define {name}_{} {constant} /* {} */",
+            value.name.to_ascii_uppercase(),
+            value.meaning
+        );
     }
 }

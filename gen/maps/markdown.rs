@@ -1,6 +1,6 @@
 //! The register map as a Markdown page.
 
-use super::{listed, number, Map, MapBlock, UNLISTED};
+use super::{listed, number, Map, MapBlock, MapRegister, UNLISTED};
 use endat_regs::Field;
 use endat_regs::{Named, Values};
 use std::fmt::Write;
@@ -18,11 +18,11 @@ pub fn write(map: &Map) -> String {
 }
 
 /// Codes that a field lists itself; more of them get a table of their own.
-const INLINE: usize = 20;
+const INLINE: usize = 16;
 
 /// The codes of a field that get a table of their own.
-fn long_list(field: &Field) -> Option<&'static [Named]> {
-    match field.values {
+fn long_list(values: Values) -> Option<&'static [Named]> {
+    match values {
         Values::Codes(codes) if codes.len() > INLINE => Some(codes),
         _ => None,
     }
@@ -30,23 +30,27 @@ fn long_list(field: &Field) -> Option<&'static [Named]> {
 
 /// A table for each long list of codes in the block; fields that have the same share it.
 fn write_long_lists(text: &mut String, block: &MapBlock) {
-    let fields = block.registers.iter().flat_map(|r| r.register.fields);
-    let mut lists: Vec<(&[Named], Vec<&str>)> = Vec::new();
-    for field in fields {
-        let Some(codes) = long_list(field) else {
-            continue;
-        };
-        match lists.iter_mut().find(|(known, _)| *known == codes) {
-            Some((_, names)) => names.push(field.name),
-            None => lists.push((codes, vec![field.name])),
+    let mut lists: Vec<(&[Named], Vec<String>)> = Vec::new();
+    for entry in &block.registers {
+        for field in entry.register.fields {
+            let own = (field.values, format!("`{}`", field.name));
+            let others = entry.t_format_values(field).map(|values| {
+                let name = format!("`{}` on a T-format channel", field.name);
+                (values, name)
+            });
+            for (values, name) in [Some(own), others].into_iter().flatten() {
+                let Some(codes) = long_list(values) else {
+                    continue;
+                };
+                match lists.iter_mut().find(|(known, _)| *known == codes) {
+                    Some((_, names)) => names.push(name),
+                    None => lists.push((codes, vec![name])),
+                }
+            }
         }
     }
     for (codes, names) in lists {
-        let _ = writeln!(
-            text,
-            "\n| `{}` | name | |\n|---|---|---|",
-            names.join("`, `")
-        );
+        let _ = writeln!(text, "\n| {} | name | |\n|---|---|---|", names.join(", "));
         for code in codes {
             let _ = writeln!(
                 text,
@@ -103,19 +107,20 @@ fn write_block(text: &mut String, block: &MapBlock) {
                 field.name,
                 field.unit,
                 resets.join(", "),
-                meaning(field)
+                meaning(entry, field)
             );
         }
     }
     write_long_lists(text, block);
 }
 
-fn meaning(field: &Field) -> String {
-    if long_list(field).is_some() {
+fn meaning(entry: &MapRegister, field: &Field) -> String {
+    if long_list(field.values).is_some() {
         return format!("{}: see the table below", field.meaning);
     }
+    let others = entry.in_t_format(field);
     match listed(field.values).as_str() {
-        "" => field.meaning.to_owned(),
-        list => format!("{}: {list}", field.meaning),
+        "" => format!("{}{others}", field.meaning),
+        list => format!("{}: {list}{others}", field.meaning),
     }
 }

@@ -63,6 +63,8 @@ pub struct MapRegister {
     pub register: &'static Register,
     /// Value after reset in each copy of the block; empty for RAM, which a reset leaves alone.
     pub resets: Vec<u32>,
+    /// Some of the card's channels speak T-format.
+    pub speaks_t_format: bool,
 }
 
 impl Map {
@@ -81,6 +83,7 @@ impl Map {
                     .filter(|_| !block.is_ram)
                     .map(|channel| regs::start(block, register, config, channel))
                     .collect(),
+                speaks_t_format: config.t_format_channels() != 0,
             });
             MapBlock {
                 block,
@@ -163,6 +166,19 @@ impl MapRegister {
     /// Value after reset of the bits that [`Self::reset_mask`] has.
     pub fn reset(&self) -> u32 {
         self.resets.first().map_or(0, |r| r & self.reset_mask())
+    }
+
+    /// What a field's numbers or bits stand for on a T-format channel, if that is something else and there is one.
+    pub fn t_format_values(&self, field: &Field) -> Option<Values> {
+        field.t_format_values.filter(|_| self.speaks_t_format)
+    }
+
+    /// The same in words, behind a description.
+    pub fn in_t_format(&self, field: &Field) -> String {
+        let values = self.t_format_values(field);
+        values.map_or_else(String::new, |values| {
+            format!("; on a T-format channel {}", listed(values))
+        })
     }
 
     /// Values of a field after reset, one for each copy, or one if they are equal; empty for RAM.

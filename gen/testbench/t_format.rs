@@ -199,7 +199,6 @@ impl Parts {
         let silent = ports.iter().filter(|p| p.has_single + p.has_multi == 0);
         let silent = silent.map(|p| p.index).collect();
         let masks = ports.iter().map(|p| (p.index, p.mask.clone())).collect();
-        let codes = (1..cause::COUNT).map(|code| context! { code, cause => cause::of_card(code) });
         let context = context! {
             name,
             sleeps,
@@ -210,7 +209,7 @@ impl Parts {
             fields => Serde(fields_of(&T_FORMAT)),
             causes => causes(),
             unknown_request => cause::UNKNOWN_REQUEST,
-            codes => codes.collect::<Vec<_>>(),
+            trigger_overrun => cause::TRIGGER_OVERRUN,
             host_ns => whole(host_ns(card)),
             clock_pin_cycles => TIMESTAMP_TO_FIRST_FALL_CYCLES,
             ids => Request::ALL.iter().map(|r| r.id()).collect::<Vec<_>>(),

@@ -65,7 +65,7 @@ function [2:0] f_rank (input [2:0] of);
 endfunction
 // a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
 wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
-wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | (was_center & ((phase == PHASE_TAIL) | ((phase == PHASE_RECOVERY) & !tail_sampled)));
+wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | rise_back;
 wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts;
 always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
     forward_only: assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));

@@ -14,6 +14,7 @@
 
 use super::buffer::SetParts;
 use crate::several::each;
+use crate::t_format;
 use crate::transaction::cause;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
@@ -98,8 +99,8 @@ pub struct SetChannel {
 }
 
 impl SetChannel {
-    /// The place of channel `channel`, for late results too if `takes_late`, and for what else sets have. `has_crc`: it speaks EnDat.
-    pub fn new(channel: usize, has_crc: bool, takes_late: bool, parts: SetParts) -> Self {
+    /// The place of channel `channel`, which speaks EnDat or T-format, for late results too if `takes_late`, and for what else sets have.
+    pub fn new(channel: usize, is_endat: bool, takes_late: bool, parts: SetParts) -> Self {
         let (runs, infos) = (usize::from(parts.runs), usize::from(parts.additional_data));
         Self::from_parts(SetChannelParts {
             take_run: each(runs),
@@ -113,9 +114,15 @@ impl SetChannel {
             info_byte: each(infos),
             number: Constant::new((channel as u64 + 1).into()),
             takes_late: Constant::new(takes_late),
-            has_crc: Constant::new(has_crc),
+            has_crc: Constant::new(is_endat),
             taken_bit: Constant::new((1u64 << 5).into()),
-            upset_cause: Constant::new(cause::UPSET.into()),
+            upset_cause: Constant::new(
+                match is_endat {
+                    true => cause::UPSET,
+                    false => t_format::cause::UPSET,
+                }
+                .into(),
+            ),
             _runs: runs,
             _infos: infos,
         })

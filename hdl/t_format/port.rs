@@ -10,6 +10,7 @@
 //! An exchange is one of a trigger, or one that the host has asked for; only the first gives a result. The position of a result is
 //! multi-turn (bits 47..24) and single-turn (23..0); a part that the reply does not bring stays as it was.
 
+use super::cause;
 use super::exchange::Exchange;
 use super::primary::LowestCause;
 use super::reply::Reply;
@@ -72,7 +73,7 @@ pub struct TFormatPort {
     pub first_fall_timestamp: Signal<Out, Bits<32>>,
     /// Age of the position in microseconds; stops at 65535.
     pub age_us: Signal<Out, Bits<16>>,
-    /// Primary cause of the last result, see [`super::cause::of_card`].
+    /// Primary cause of the last result, see [`super::cause`].
     pub cause: Signal<Out, Bits<5>>,
     /// Raw flags of the last result, see [`super::cause`].
     pub flags: Signal<Out, Bits<20>>,
@@ -95,7 +96,6 @@ pub struct TFormatPort {
     reply: Reply,
     #[start]
     primary: LowestCause,
-    #[start]
     snapshot: Snapshot,
     rest: Reg<Bits<2>>,
     started: Reg<Bit>,
@@ -138,7 +138,6 @@ pub struct TFormatPort {
     sum_flags: Signal<Local, Bits<16>>,
     flags_in: Signal<Local, Bits<16>>,
     code: Signal<Local, Bits<5>>,
-    card_cause: Signal<Local, Bits<5>>,
     single: Signal<Local, Bits<24>>,
     multi: Signal<Local, Bits<24>>,
     chosen: Signal<Local, Bits<32>>,
@@ -148,6 +147,7 @@ impl Default for TFormatPort {
     fn default() -> Self {
         Self::from_parts(TFormatPortParts {
             filter: InputFilter::new(Features::NONE),
+            snapshot: Snapshot::new(cause::UPSET, cause::flag(cause::UPSET)),
         })
     }
 }
@@ -289,16 +289,6 @@ impl Logic for TFormatPort {
             self.sum_flags.val() | (bit_cast::<16, 1>(self.overrun.val().into()) << 15);
         self.primary.flags.next = self.flags_in.val();
         self.code.next = self.primary.cause.val();
-        self.card_cause.next = self.code.val() | 16;
-        if self.code.val() == 0 {
-            self.card_cause.next = 0.into();
-        }
-        if self.code.val() == 1 {
-            self.card_cause.next = 9.into();
-        }
-        if self.code.val() == 16 {
-            self.card_cause.next = 8.into();
-        }
 
         // A part that does not come stays as it was, if that was good.
         self.single.next = 0.into();
@@ -336,7 +326,7 @@ impl Logic for TFormatPort {
             bit_cast::<48, 24>(self.single.val()) | (bit_cast::<48, 24>(self.multi.val()) << 24);
         self.snapshot.crc_received_in.next = 0.into();
         self.snapshot.crc_computed_in.next = 0.into();
-        self.snapshot.cause_in.next = self.card_cause.val();
+        self.snapshot.cause_in.next = self.code.val();
         self.snapshot.flags_in.next = bit_cast::<20, 16>(self.flags_in.val());
         self.over.next = self.exchange.publish.val();
         self.over_request.next = self.is_own.val();

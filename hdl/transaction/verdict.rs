@@ -131,7 +131,6 @@ pub struct Verdict {
     late_now: Reg<Bit>,
     over_now: Reg<Bit>,
     lost_now: Reg<Bit>,
-    cause_now: Reg<Bits<5>>,
     flags_now: Reg<Bits<20>>,
     told: Signal<Local, Bits<20>>,
     crc_bad: Signal<Local, Bit>,
@@ -196,6 +195,8 @@ impl Logic for Verdict {
         self.announced.d.next = self.announce.val() & self.has_diagnosis.val();
         self.ended.d.next = self.normal_end.val();
 
+        // Of what has been told: the choice is kept out of the path of what is found.
+        self.chooser.flags.next = self.flags_now.q.val();
         self.crc_bad.next = !(self.serial_ok.val() & self.parallel_ok.val());
         self.bad_now.next = self.crc_bad.val() | self.f1.val() | !self.f2.val();
         self.is_bad.next = self.bad_now.val();
@@ -243,12 +244,11 @@ impl Logic for Verdict {
         self.early.next = self.has_diagnosis.val()
             & self.ended.q.val()
             & !self.is_going.val()
-            & !self.cause_now.q.val().any()
+            & !self.chooser.cause.val().any()
             & (self.recovery_cycles.val() < self.recovery_min.val());
         if self.early.val() {
             self.told.next = self.told.val() | self.too_short.val();
         }
-        self.chooser.flags.next = self.told.val();
         if self.proven.val()
             | self.gave_up_now.q.val()
             | self.refused.q.val()
@@ -256,7 +256,6 @@ impl Logic for Verdict {
             | self.early.val()
         {
             self.flags_now.d.next = self.told.val();
-            self.cause_now.d.next = self.chooser.cause.val();
             if !self.is_own.val() & !self.measured.val() {
                 self.overrun.d.next = false;
             }
@@ -308,7 +307,7 @@ impl Logic for Verdict {
         self.confirm.next = self.confirm_now.q.val();
         self.over.next = self.over_now.q.val();
         self.displaced.next = self.lost_now.q.val();
-        self.cause.next = self.cause_now.q.val();
+        self.cause.next = self.chooser.cause.val();
         self.flags.next = self.flags_now.q.val();
     }
 }

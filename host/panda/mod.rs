@@ -41,9 +41,9 @@ enum What {
     Info(usize, usize),
 }
 
-/// What a feed says instead of a cause, from the first number behind those of causes on.
+/// What a feed says instead of a cause, behind the causes of two protocols.
 const OF_ROWS: [&str; 3] = [NOT_TAKEN, TOO_LATE, LATE];
-const OF_ROWS_FIRST: usize = 32;
+const OF_ROWS_FIRST: usize = 2 * causes::CODES as usize;
 
 fn code(cause: &str) -> i64 {
     let of_row = OF_ROWS.iter().position(|name| *name == cause);

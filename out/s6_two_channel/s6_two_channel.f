@@ -17,6 +17,7 @@ s6_two_channel_receiver.v
 s6_two_channel_crc5_check.v
 s6_two_channel_crc5_serial.v
 s6_two_channel_transaction.v
+s6_two_channel_last_edge.v
 s6_two_channel_verdict.v
 s6_two_channel_primary_cause.v
 s6_two_channel_snapshot.v

@@ -131,7 +131,6 @@ module s6_two_channel_channel_registers (
     reg          stale_shown; initial stale_shown = 1'b0;
     reg          stale_shown_next;
     reg   [15:0] age; initial age = 16'd0;
-    reg          age_full; initial age_full = 1'b0;
     reg   [15:0] age_shown; initial age_shown = 16'd0;
     reg   [15:0] age_shown_next;
     reg   [31:0] held_0; initial held_0 = 32'd0;
@@ -216,7 +215,7 @@ module s6_two_channel_channel_registers (
     always @* begin
         stale_now = stale | trigger;
         age_base = age;
-        age_tick = tick_us & !age_full;
+        age_tick = tick_us & !(&age);
         if (load) begin
             stale_now = behind_now;
             age_base = age_us;
@@ -419,7 +418,6 @@ module s6_two_channel_channel_registers (
             stale <= 1'b0;
             stale_shown <= 1'b0;
             age <= 16'd0;
-            age_full <= 1'b0;
             age_shown <= 16'd0;
             held_0 <= 32'd0;
             held_1 <= 32'd0;
@@ -436,7 +434,6 @@ module s6_two_channel_channel_registers (
             stale <= stale_now;
             stale_shown <= stale_shown_next;
             age <= age_now;
-            age_full <= &age_now;
             age_shown <= age_shown_next;
             held_0 <= held_0_next;
             held_1 <= held_1_next;

@@ -87,23 +87,7 @@ module s6_two_channel_receiver (
 );
     localparam   [3:0] SKIP_FROM = 4'd5;
     localparam   [6:0] FIXED_CELLS = 7'd17;
-    // Receiver: takes the bits of an answer from the start bit to the last CRC bit.
-    //
-    // field     Skip      Start     F1   F2   Payload  ............  Crc ........  Done
-    // sample    /\ x10    /\        /\   /\   /\ /\ /\ ... /\        /\ /\ /\ /\ /\
-    // align     __________________________________________/~~~~\____________________
-    //
-    // A block of additional data goes the same way behind the CRC: Separator, Payload of 24 bits, Crc. So does the answer to a
-    // command with a parameter, without F1 and F2; what comes MSB first there is turned round where it is read. During a supplement
-    // cells are only counted.
-    //
-    // The position arrives LSB first. It is shifted in at one of four places, and while the CRC bits arrive it is shifted down to bit 0
-    // with at most 16 system clock cycles: no barrel shifter, and F1 and F2 drop off the end. The parallel CRC looks at the word where it
-    // then stands, and for as long as it stands there: what is published is what was checked.
-    // left counts cells down to the end of the frame, to_send the clock pulses that they need: the difference is under way. The
-    // clock generator stops when none is to be sent: so the encoder sees exactly the rising edges it needs, and never more than the
-    // shortest answer while its start bit may still be on the cable. under_way counts the difference once more: at the end of the
-    // frame all three agree, unless one was upset.
+    // What the next sample is.
     localparam   [3:0] FIELD_SKIP = 4'd0; // Cells before the earliest start bit: the line is undefined.
     localparam   [3:0] FIELD_START = 4'd1; // Low, until the start bit.
     localparam   [3:0] FIELD_F1 = 4'd2; // Error bit 1.
@@ -116,6 +100,7 @@ module s6_two_channel_receiver (
     localparam   [3:0] FIELD_DONE = 4'd9; // The answer is complete.
     localparam   [3:0] FIELD_SUPPLEMENT = 4'd10; // Cells of the supplement: the line is ours or undefined.
 
+    wire         is_taken;
     reg          skip_step;
     reg          covered_bit;
     wire         shift;
@@ -168,6 +153,8 @@ module s6_two_channel_receiver (
     reg          last_taken; initial last_taken = 1'b0;
     reg          last_taken_next;
     reg          done_now; initial done_now = 1'b0;
+    reg          used; initial used = 1'b0;
+    reg          ended; initial ended = 1'b0;
     reg          parallel_equal; initial parallel_equal = 1'b0;
     reg          serial_good; initial serial_good = 1'b0;
     reg          refused; initial refused = 1'b0;
@@ -261,6 +248,7 @@ module s6_two_channel_receiver (
         end
     end
     assign check_word_bit = sample & (field == FIELD_PAYLOAD);
+    assign is_taken = last_taken;
 
     always @* begin
         cells_around = FIXED_CELLS;
@@ -425,8 +413,8 @@ module s6_two_channel_receiver (
     assign started = started_now;
     assign all_sent = !(|to_send);
     assign none_under_way = to_send == left;
-    assign all_used = all_sent & (left == 7'd1) & (under_way == 3'd1);
-    assign all_ended = all_sent & none_under_way & !(|under_way);
+    assign all_used = used;
+    assign all_ended = ended;
 
     always @* begin
         done = done_now;
@@ -457,6 +445,8 @@ module s6_two_channel_receiver (
             align_first <= 1'b0;
             last_taken <= 1'b0;
             done_now <= 1'b0;
+            used <= 1'b0;
+            ended <= 1'b0;
             parallel_equal <= 1'b0;
             serial_good <= 1'b0;
             refused <= 1'b0;
@@ -482,7 +472,9 @@ module s6_two_channel_receiver (
             align <= align_next;
             align_first <= take_crc;
             last_taken <= last_taken_next;
-            done_now <= last_taken;
+            done_now <= is_taken;
+            used <= all_sent & (left == 7'd1) & (under_way == 3'd1);
+            ended <= all_sent & none_under_way & !(|under_way);
             parallel_equal <= check_is_ok;
             serial_good <= serial_residue_ok;
             refused <= start_sample & !edge_in_window;

@@ -94,7 +94,7 @@ module s6_two_channel_register_bank (
 );
     localparam  [31:0] PROTOCOLS = 32'd0;
     localparam  [31:0] ID = 32'h456e4474;
-    localparam  [31:0] VERSION = 32'h90000;
+    localparam  [31:0] VERSION = 32'h1000000;
     localparam  [31:0] CAPABILITIES = 32'h80f3002;
     localparam  [31:0] SYSTEM_HZ = 32'd100000000;
     localparam  [31:0] CONFIGURATION_HASH = 32'h6612dd16;

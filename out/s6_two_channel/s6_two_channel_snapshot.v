@@ -83,6 +83,7 @@ module s6_two_channel_snapshot (
 
     wire         take_good;
     wire         take_back;
+    wire         stamp_sum;
     wire         parity_now;
     wire         upset_now;
     wire         moment_wrong;
@@ -117,7 +118,9 @@ module s6_two_channel_snapshot (
     reg          timed; initial timed = 1'b0;
     reg          moment_parity; initial moment_parity = 1'b0;
     reg          moment_parity_next;
+    reg          moment_sum; initial moment_sum = 1'b0;
     reg          is_upset; initial is_upset = 1'b0;
+    reg          is_upset_next;
     reg   [15:0] age_shown; initial age_shown = 16'd0;
     wire         age_shown_reset;
     reg          valid; initial valid = 1'b0;
@@ -158,7 +161,7 @@ module s6_two_channel_snapshot (
             age_next = 16'd0;
         end
     end
-    assign moment_wrong = good & !timed & ((^moment) ^ moment_parity);
+    assign moment_wrong = good & !timed & (moment_sum ^ moment_parity);
     assign take_good = publish & good & !moment_wrong;
     assign take_back = withdraw & unconfirmed;
 
@@ -179,7 +182,8 @@ module s6_two_channel_snapshot (
         end
     end
     assign age_shown_reset = reset | unconfirmed | take_good;
-    assign parity_now = (^held) ^ (^stamp) ^ (^held_crc) ^ (^held_width) ^ held_f2;
+    assign stamp_sum = ^stamp;
+    assign parity_now = (^held) ^ stamp_sum ^ (^held_crc) ^ (^held_width) ^ held_f2;
     assign upset_now = is_upset & !take_good & valid;
 
     always @* begin
@@ -224,8 +228,10 @@ module s6_two_channel_snapshot (
             earlier_valid_next = valid;
             earlier_parity_next = parity;
         end
+        is_upset_next = (parity_now ^ parity) & !loaded & !take_good & !take_back;
         if (loaded) begin
             parity_next = parity_now;
+            is_upset_next = stamp_sum ^ moment_parity;
         end
         if (take_back) begin
             held_next = earlier;
@@ -286,6 +292,7 @@ module s6_two_channel_snapshot (
             parity <= 1'b0;
             timed <= 1'b0;
             moment_parity <= 1'b0;
+            moment_sum <= 1'b0;
             is_upset <= 1'b0;
             valid <= 1'b0;
             is_fresh <= 1'b0;
@@ -316,7 +323,8 @@ module s6_two_channel_snapshot (
             parity <= parity_next;
             timed <= first_fall;
             moment_parity <= moment_parity_next;
-            is_upset <= (parity_now ^ parity) & !loaded & !take_good & !take_back;
+            moment_sum <= ^moment;
+            is_upset <= is_upset_next;
             valid <= valid_next;
             is_fresh <= is_fresh_next;
             count <= count_next;

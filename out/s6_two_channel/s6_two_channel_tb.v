@@ -938,7 +938,7 @@ module s6_two_channel_tb;
         #(CALIBRATION_NS);
         read_words(CARD_ID, 6);
         check("identification word 0", word(0), 32'h456E4474);
-        check("identification word 1", word(1), 32'h00090000);
+        check("identification word 1", word(1), 32'h01000000);
         check("identification word 2", word(2), 32'h080F3002);
         check("identification word 3", word(3), 32'h05F5E100);
         check("identification word 4", word(4), 32'h6612DD16);

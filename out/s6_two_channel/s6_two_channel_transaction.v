@@ -131,24 +131,7 @@ module s6_two_channel_transaction (
     localparam  [19:0] NOT_FALLING = 20'd64;
     localparam  [19:0] TAIL_LOW = 20'h200;
     localparam  [19:0] UPSET = 20'h80000;
-    // Transaction: the order of one frame, all its time-outs, and what went wrong.
-    //
-    // wire      NotReady Ready FirstLow Frame ................ Tail Recovery NotReady Ready
-    // endat_clk ~~~~~~~~~~~~~~\________/~\_/~\_ ... _/~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~
-    // data      \_____________? command    0 S F1 .. CRC ~~~~~~~~~~~~~~~\_________________
-    // done      _______________________________________________/\_________________________
-    //
-    // With a supplement the clock stays LOW after the last CRC bit (Park), and Frame goes on until its cells are over.
-    //
-    // A frame that measures the delay brings no position: at the slow clock an encoder of another width can look like a good one. The frame at the full
-    // clock follows by itself, and its result is the trigger's. A frame is begun by a trigger, or by own, for a request that needs the line for
-    // itself. What becomes of the first is published; what becomes of either is told with over.
-    //
-    // Nothing waits without a limit. Whatever ends a frame before its CRC follows the abort rule: clock HIGH, driver
-    // off, 30 ms, then data low for longer than tR. So does a reset, which may have come in the middle of a frame. DATA that was HIGH
-    // between two frames means that something was plugged: the delay is measured again.
-    //
-    // Ref: HEIDENHAIN PWM 20 user's manual (times); ArtInChip ENDAT-IF, watchdog (abort rule).
+    // What the wire is doing.
     localparam   [2:0] PHASE_NOT_READY = 3'd0; // Idle, but data has not yet been low for tR.
     localparam   [2:0] PHASE_READY = 3'd1; // Idle and ready for a trigger.
     localparam   [2:0] PHASE_FIRST_LOW = 3'd2; // First low phase, held for tST.
@@ -162,6 +145,9 @@ module s6_two_channel_transaction (
     reg          running;
     reg          in_us;
     reg          timer_clear;
+    wire         rise_back;
+    wire         in_tail;
+    wire         in_recovery;
     reg          accept;
     reg          give_up;
     reg          idle;
@@ -180,6 +166,9 @@ module s6_two_channel_transaction (
     reg          plugged;
     wire         vanished;
     wire         afresh;
+    wire         last_edge_all_sent;
+    wire         last_edge_holds;
+    wire         last_edge_stalled;
     wire         verdict_settings_upset;
     wire         verdict_is_late;
     wire         verdict_taken;
@@ -207,9 +196,6 @@ module s6_two_channel_transaction (
     reg          acquiring_next;
     reg          slow_now; initial slow_now = 1'b0;
     reg          slow_now_next;
-    reg          stalled; initial stalled = 1'b0;
-    reg          stalled_next;
-    reg          all_sent; initial all_sent = 1'b0;
     reg          tail_sampled; initial tail_sampled = 1'b0;
     reg          tail_sampled_next;
     reg   [12:0] recovery; initial recovery = 13'd0;
@@ -233,6 +219,23 @@ module s6_two_channel_transaction (
     reg          under_way; initial under_way = 1'b0;
     reg          under_way_next;
 
+    s6_two_channel_last_edge u_last_edge (
+        .clock(clock),
+        .reset(reset),
+        .start(accept),
+        .no_pulse_left(no_pulse_left),
+        .none_under_way(none_under_way),
+        .started(started),
+        .running(running),
+        .was_center(was_center),
+        .in_tail(in_tail),
+        .in_recovery(in_recovery),
+        .tail_sampled(tail_sampled),
+        .comes(rise_back),
+        .all_sent(last_edge_all_sent),
+        .holds(last_edge_holds),
+        .stalled(last_edge_stalled)
+    );
     s6_two_channel_verdict u_verdict (
         .clock(clock),
         .reset(reset),
@@ -272,7 +275,9 @@ module s6_two_channel_transaction (
     assign wanted = triggered | owed;
     assign endless = |(timer & FRAME_US);
     assign vanished = (owing & !once_more) | under_way;
-    assign last_cell = (phase == PHASE_TAIL) & was_center;
+    assign in_tail = phase == PHASE_TAIL;
+    assign in_recovery = phase == PHASE_RECOVERY;
+    assign last_cell = in_tail & was_center;
     assign verdict_settings_upset = settings_upset | delay_upset;
     assign known = is_calibrated;
 
@@ -415,7 +420,6 @@ module s6_two_channel_transaction (
                     tail_sampled_next = 1'b1;
                     proof = !tail_sampled & level;
                 end
-                timer_clear = was_center & !tail_sampled;
                 if (tail_sampled & !level) begin
                     recovery_next = timer[12:0];
                     timer_clear = 1'b1;
@@ -470,17 +474,16 @@ module s6_two_channel_transaction (
             timer_next = timer + 16'd1;
         end
         timer_hit_next = (timer >= timer_limit) & !cleared;
-        cleared_next = timer_clear | accept;
+        cleared_next = timer_clear | accept | rise_back;
+        if (rise_back) begin
+            timer_next = 16'd2;
+        end
         if (timer_clear) begin
             timer_next = 16'd0;
             timer_hit_next = 1'b0;
         end
         if (accept) begin
             timer_next = 16'd2;
-        end
-        if (last_cell) begin
-            timer_next = 16'd2;
-            cleared_next = 1'b1;
         end
         if (verdict_once_more) begin
             once_more_next = 1'b1;
@@ -512,16 +515,6 @@ module s6_two_channel_transaction (
         end
     end
     assign verdict_is_late = answered;
-
-    always @* begin
-        stalled_next = stalled;
-        if (all_sent & !started) begin
-            stalled_next = 1'b1;
-        end
-        if (none_under_way | !running) begin
-            stalled_next = 1'b0;
-        end
-    end
     assign lost = trigger & ((!accept & !idle) | owing);
 
     always @* begin
@@ -549,9 +542,9 @@ module s6_two_channel_transaction (
     end
     assign run = run_now;
     assign start = start_now;
-    assign sent = all_sent & started;
+    assign sent = last_edge_all_sent & started;
     assign hold_low = hold;
-    assign drain = stalled;
+    assign drain = last_edge_stalled;
     assign stop = stop_now | sent;
     assign acquire = acquiring;
     assign slow = slow_now;
@@ -578,8 +571,6 @@ module s6_two_channel_transaction (
             is_calibrated <= 1'b0;
             acquiring <= 1'b0;
             slow_now <= 1'b0;
-            stalled <= 1'b0;
-            all_sent <= 1'b0;
             tail_sampled <= 1'b0;
             recovery <= 13'd0;
             supplement_now <= 1'b0;
@@ -597,7 +588,7 @@ module s6_two_channel_transaction (
             timer_limit <= limit;
             timer_hit <= timer_hit_next;
             timer_step <= !in_us | tick_us;
-            hold <= (phase == PHASE_FIRST_LOW) | stalled;
+            hold <= (phase == PHASE_FIRST_LOW) | last_edge_holds;
             start_now <= accept;
             run_now <= running;
             extra <= |first_low_extra_cycles;
@@ -605,8 +596,6 @@ module s6_two_channel_transaction (
             is_calibrated <= is_calibrated_next;
             acquiring <= acquiring_next;
             slow_now <= slow_now_next;
-            stalled <= stalled_next;
-            all_sent <= no_pulse_left;
             tail_sampled <= tail_sampled_next;
             recovery <= recovery_next;
             supplement_now <= supplement_now_next;
@@ -702,7 +691,7 @@ module s6_two_channel_transaction (
     endfunction
     // a supplement, a clock that goes on and the diagnosis of the line lead back on purpose; no trigger, or a new frame begins
     wire f_plain = !HAS_ALL & !HAS_DIAGNOSIS & !HAS_CONTINUOUS;
-    wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | (was_center & ((phase == PHASE_TAIL) | ((phase == PHASE_RECOVERY) & !tail_sampled)));
+    wire f_restarts = ((phase == PHASE_FRAME) & ((hunting ^ was_hunting) | finished)) | rise_back;
     wire f_timed = (f_rank(phase) != 3'd0) & !aborts & !((phase == PHASE_ABORT) & timer_hit) & !f_restarts;
     always @(posedge clock) if (f_past_valid & f_plain & !$past(reset) & !$past(trigger | owed)) begin
         forward_only: assert ((f_rank(phase) <= f_rank($past(phase))) | $past(aborts));

@@ -91,7 +91,6 @@ module s6_two_channel_verdict (
     wire         proven;
     wire         upset;
     wire         measured;
-    wire   [4:0] chooser_cause;
     reg   [19:0] seen; initial seen = 20'd0;
     reg          taken_now; initial taken_now = 1'b0;
     reg          gave_up_now; initial gave_up_now = 1'b0;
@@ -112,14 +111,12 @@ module s6_two_channel_verdict (
     reg          late_now; initial late_now = 1'b0;
     reg          over_now; initial over_now = 1'b0;
     reg          lost_now; initial lost_now = 1'b0;
-    reg    [4:0] cause_now; initial cause_now = 5'd0;
-    reg    [4:0] cause_now_next;
     reg   [19:0] flags_now; initial flags_now = 20'd0;
     reg   [19:0] flags_now_next;
 
     s6_two_channel_primary_cause u_chooser (
-        .flags(told),
-        .cause(chooser_cause)
+        .flags(flags_now),
+        .cause(cause)
     );
 
     assign crc_bad = !(serial_ok & parallel_ok);
@@ -172,11 +169,9 @@ module s6_two_channel_verdict (
 
     always @* begin
         flags_now_next = flags_now;
-        cause_now_next = cause_now;
         overrun_next = overrun;
         if (proven | gave_up_now | refused) begin
             flags_now_next = told;
-            cause_now_next = chooser_cause;
             if (!measured) begin
                 overrun_next = 1'b0;
             end
@@ -197,7 +192,6 @@ module s6_two_channel_verdict (
     assign withdraw = withdraw_now;
     assign confirm = confirm_now;
     assign displaced = lost_now;
-    assign cause = cause_now;
     assign flags = flags_now;
 
     always @(posedge clock) begin
@@ -219,7 +213,6 @@ module s6_two_channel_verdict (
             late_now <= 1'b0;
             over_now <= 1'b0;
             lost_now <= 1'b0;
-            cause_now <= 5'd0;
             flags_now <= 20'd0;
         end else begin
             seen <= found & POSSIBLE;
@@ -239,7 +232,6 @@ module s6_two_channel_verdict (
             late_now <= gave_up_late;
             over_now <= ended | gave_up_now | refused;
             lost_now <= lost;
-            cause_now <= cause_now_next;
             flags_now <= flags_now_next;
         end
     end

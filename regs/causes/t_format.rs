@@ -2,8 +2,6 @@
 //!
 //! The code of a flag is its number plus one, and the lowest flag is the primary cause: it explains those above it.
 
-use super::endat;
-
 super::causes! {
     NONE = 0, "none", "none";
         same;
@@ -67,15 +65,3 @@ pub const fn flag(cause: u64) -> u64 {
 
 /// Flags with which the position is taken.
 pub const HARMLESS: u64 = flag(COUNTING_ERROR) | flag(MULTI_TURN_ALARM) | flag(TRIGGER_OVERRUN);
-
-/// The same cause in the result of a card: what EnDat has too keeps its number there.
-pub const fn of_card(code: u64) -> u64 {
-    match code {
-        NONE => endat::NONE,
-        UNKNOWN_REQUEST => endat::UNKNOWN_COMMAND,
-        TRIGGER_OVERRUN => endat::TRIGGER_OVERRUN,
-        _ => endat::COUNT - LINE_NOT_IDLE + code,
-    }
-}
-
-const _: () = assert!(of_card(UPSET) == endat::UPSET);

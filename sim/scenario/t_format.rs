@@ -5,9 +5,9 @@ use crate::{
     t_format::{Defect, EncoderConfig},
     Time, MS, US,
 };
-use endat_hdl::regs::causes::CARD as CAUSES;
+use endat_hdl::regs::causes::T_FORMAT as CAUSES;
 use endat_hdl::t_format::{
-    cause::{self, of_card},
+    cause,
     port::word,
     protocol::{Request, BIT_HZ, REPLY_GAP_US_MAX},
 };
@@ -78,9 +78,9 @@ pub struct ExchangeReport {
 }
 
 impl ExchangeReport {
-    /// Code of the cause, as the card counts them; none if nothing came.
+    /// Code of the cause; none if nothing came.
     pub fn cause(&self) -> Option<u64> {
-        let answer = self.answer.map(|word| of_card(word >> 12 & 15));
+        let answer = self.answer.map(|word| word >> 12 & 15);
         self.result.as_ref().map(|r| r.last_cause()).or(answer)
     }
 
@@ -134,7 +134,7 @@ pub fn run<E: Engine>(engine: E) -> (Bench<E>, TFormatReport) {
     for (n, exchange) in EXCHANGES.iter().enumerate() {
         bench.run_until(PERIOD * (n as Time + 1));
         let told = one(&mut bench, exchange);
-        if told.cause() != Some(of_card(exchange.cause)) {
+        if told.cause() != Some(exchange.cause) {
             let (id, name) = (exchange.request.id(), told.cause_name());
             report
                 .complaints

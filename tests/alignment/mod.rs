@@ -3,6 +3,7 @@
 mod glitches;
 mod independence;
 mod monitor;
+mod recovery;
 mod three_ways;
 mod tolerance;
 mod wander;

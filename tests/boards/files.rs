@@ -36,6 +36,7 @@ fn wrong_board_files_are_refused_with_line_and_remedy() {
         // clock
         (PAPILIO, "oscillator_hz = 32_000_000", "oscillator_hz = 1_000_000", "oscillator_hz = 1000000: the clock manager of Spartan-6 makes no system clock of it; its phase detector takes 19000000..500000000 Hz"),
         (PAPILIO, "oscillator_hz = 32_000_000", "oscillator_hz = -1", "oscillator_hz = -1: outside 1000..1000000000"),
+        (PAPILIO, "[wing]", "[start]\nsystem_hz = 96_000_000\nclock_hz = 3_000_000\nchannels = 3\n[wing]", "start.channels = 3: outside 1..2"),
         (PAPILIO, "[wing]", "[start]\nsystem_hz = 99_999_999\nclock_hz = 3_000_000\n[wing]", "start.system_hz = 99999999: the clock manager cannot make it from the board's 32000000 Hz; use 99200000 or 100000000 Hz"),
         // keys and families
         (PAPILIO, "uart_baud_max = 3_000_000", "uart_baud = 3_000_000", "uart_baud: unknown key; did you mean uart_baud_max?"),
@@ -203,7 +204,7 @@ fn a_family_of_ones_own_is_a_folder_and_what_is_wrong_with_it_is_told() {
     let dir = Dir::new("family");
     let board = own_family(&dir);
     let explain = ["explain", "--board", &board];
-    assert!(good(&explain).contains("25000000 Hz * 3"));
+    assert!(good(&explain).contains("25000000 Hz * 4"));
     let rows = [
         ("divide = [1, 128]", "divide = [128, 1]", "clock_manager.divide = [128, 1]: is no range; write the least, from 1 on, and the greatest, up to 1024"),
         ("divide = [1, 128]", "divide = [1, 99999]", "clock_manager.divide = [1, 99999]: is no range"),

@@ -112,9 +112,7 @@ module bench;
     reg osc = 0;
     always #(HALF) osc = ~osc;
     wire light;
-    NAME_top top (.osc_i(osc), .trigger_i(1'b0), .uart_rx_i(1'b1), .endat_data0_i(1'b0), .endat_data1_i(1'b0),
-        .uart_tx_o(), .endat_clk0_o(), .endat_data0_o(), .endat_data0_oe(), .endat_clk1_o(), .endat_data1_o(),
-        .endat_data1_oe(), .led_status_o(light), .led_channel0_o(), .led_channel1_o());
+    NAME_top top (.osc_i(osc), .led_status_o(light)PORTS);
     integer cycles = 0;
     always @(posedge top.card.clk_i) cycles = cycles + 1;
     initial begin
@@ -130,7 +128,17 @@ fn every_clock_manager_makes_the_system_clock_and_lights_shine_the_right_way() {
     for board in boards() {
         let project = card_on(&board);
         let half = format!("{:?}", 5e8 / board.oscillator_hz as f64);
+        let mut ports = String::new();
+        for pin in &project.pins {
+            ports += &match pin.signal.as_str() {
+                "osc_i" | "led_status_o" => continue,
+                "uart_rx_i" => ", .uart_rx_i(1'b1)".to_owned(),
+                signal if pin.kind.is_input() => format!(", .{signal}(1'b0)"),
+                signal => format!(", .{signal}()"),
+            };
+        }
         let bench = BENCH.replace("NAME", &project.name).replace("HALF", &half);
+        let bench = bench.replace("PORTS", &ports);
         let folder = format!("board-clock-{}", board.name);
         let Some(said) = play(&project, &folder, &bench) else {
             return;

@@ -31,7 +31,7 @@ async def check(dut, read, write):
     """`read(word_address)` and `write(word_address, value)` are the master's."""
     assert await read(ID) == int.from_bytes(b"EnDt", "big")
     version, capabilities, system_hz, found = [await read(n) for n in range(1, 5)]
-    assert version >> 24 == 0 and capabilities & 0xFF == 2 and system_hz == 100_000_000
+    assert version >> 24 == 1 and capabilities & 0xFF == 2 and system_hz == 100_000_000
     # The word has the first 32 of 48 bits.
     assert f"{found:08x}" == os.environ["CONFIGURATION_HASH"][:8]
 

@@ -88,7 +88,19 @@ static void positions(void)
         memory[ENDAT_MAP_RESULT_POSITION_LOW_WORD(2)] = words[1] ^ 1u << bit;
         CHECK(endat_read_moment(&card, &moment) == ENDAT_OK, "%s", "read");
         CHECK(!moment.channel[2].fresh && !moment.channel[2].valid && !moment.channel[2].fits, "bit %u", bit);
-        CHECK(moment.channel[2].cause == ENDAT_MAP_RESULT_STATUS_CAUSE_UPSET, "bit %u", bit);
+        CHECK(moment.channel[2].cause == ENDAT_CAUSE_UPSET, "bit %u", bit);
+    }
+    /* A code is one of its channel's protocol; what both have is one cause. */
+    static const uint8_t same_code[][3] = {
+        {3, ENDAT_CAUSE_START_WINDOW, ENDAT_CAUSE_NO_ANSWER},
+        {8, ENDAT_CAUSE_TRIGGER_OVERRUN, ENDAT_CAUSE_FIELD_MISSING},
+        {16, ENDAT_CAUSE_OWN_ECHO, ENDAT_CAUSE_TRIGGER_OVERRUN},
+    };
+    for (unsigned n = 0; n < sizeof same_code / sizeof same_code[0]; n++) {
+        memory[ENDAT_MAP_RESULT_STATUS_WORD(0)] = memory[ENDAT_MAP_RESULT_STATUS_WORD(1)] = (uint32_t)same_code[n][0] << 16;
+        CHECK(endat_read_moment(&card, &moment) == ENDAT_OK, "%s", "read");
+        CHECK(moment.channel[0].cause == same_code[n][1] && moment.channel[1].cause == same_code[n][2], "code %u: %u, %u",
+              same_code[n][0], moment.channel[0].cause, moment.channel[1].cause);
     }
     /* Nobody tells the time: looks are counted, and a limit ends. */
     memory[ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD] = ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_REGISTER_MASK;
@@ -110,9 +122,10 @@ static void numbers(void)
 
 static void texts(void)
 {
-    CHECK(strcmp(endat_cause_text(ENDAT_MAP_RESULT_STATUS_CAUSE_NO_START_BIT), "no start bit") == 0, "%s", endat_cause_text(2));
-    CHECK(strcmp(endat_cause_text(32), "unknown") == 0 && strcmp(endat_cause_text(UINT32_MAX), "unknown") == 0, "%s", "beyond");
-    for (uint32_t n = 0; n < 32; n++)
+    CHECK(strcmp(endat_cause_text(ENDAT_CAUSE_NO_START_BIT), "no start bit") == 0, "%s", endat_cause_text(2));
+    CHECK(strcmp(endat_cause_text(ENDAT_CAUSE_NO_HEADER), "no header") == 0, "%s", endat_cause_text(ENDAT_CAUSE_NO_HEADER));
+    CHECK(strcmp(endat_cause_text(18), "unknown") == 0 && strcmp(endat_cause_text(UINT32_MAX), "unknown") == 0, "%s", "beyond");
+    for (uint32_t n = 0; n < 64; n++)
         CHECK(endat_cause_text(n)[0] && endat_cause_meaning(n)[0] && endat_cause_remedy(n)[0], "cause %u", (unsigned)n);
     for (int n = 0; n < (int)ENDAT_ERRORS; n++)
         CHECK(endat_error_text((endat_error)n) && endat_error_text((endat_error)n)[0], "error %d", n);

@@ -308,7 +308,7 @@ static void wrong_crc(void)
     ask("crc 0");
     error = endat_measure(&card, &moment, 5 * MS);
     CHECK(error == ENDAT_OK && !moment.channel[0].fresh && moment.channel[0].valid, "%s", endat_error_text(error));
-    CHECK(moment.channel[0].cause == ENDAT_MAP_RESULT_STATUS_CAUSE_CRC, "%s", endat_cause_text(moment.channel[0].cause));
+    CHECK(moment.channel[0].cause == ENDAT_CAUSE_CRC, "%s", endat_cause_text(moment.channel[0].cause));
     CHECK(moment.channel[0].position == held && moment.channel[1].fresh, "%" PRIx64, moment.channel[0].position);
     pause_us(200);
     measure_well();

@@ -146,6 +146,40 @@ fn a_held_position_or_time_stamp_that_is_upset_is_told_and_the_next_frame_is_goo
     }
 }
 
+/// From its edge to the result the time stamp waits as long as a frame lasts; in the cycles before the position is there, too.
+#[test]
+fn a_time_stamp_that_is_upset_before_its_position_comes_is_told() {
+    let mut rig = open_rig();
+    let ready = rig.engine().clone();
+    let (net, width) = register(&ready, "snapshot.moment");
+    let mut rig = Setup::card().on(ready.clone());
+    let begin = rig.cycle();
+    let whole = good_frame(&mut rig);
+    let frame = whole.cycle - begin;
+    let true_stamp = whole.first_fall_timestamp;
+    let mut told = 0;
+    for bit in [0, 7, width - 1] {
+        for back in (0..12).chain([100, 500, frame - 20]) {
+            let mut rig = Setup::card().on(ready.clone());
+            rig.trigger();
+            rig.run_cycles(frame - back - 1);
+            rig.engine().flip(net, bit);
+            assert!(rig.run_until_done(MS, |b| !b.results().is_empty()));
+            // Its first look at what has just been stored.
+            rig.run_cycles(3);
+            let ports = ["first_fall_timestamp", "fresh", "cause"];
+            let [stamp, fresh, cause] = ports.map(|port| rig.get(port) as u64);
+            let is_told = [fresh, cause] == [0, cause::UPSET];
+            assert!(
+                is_told || stamp == true_stamp,
+                "bit {bit}, {back} cycles before: {stamp}, not {true_stamp}"
+            );
+            told += usize::from(is_told);
+        }
+    }
+    assert!(told >= 3 * 12, "{told}");
+}
+
 /// From the last bit of the position to its publication the word waits for the CRC and the bit behind it.
 #[test]
 fn a_word_that_is_upset_before_it_is_published_is_refused() {

@@ -4,6 +4,7 @@
 use super::mutations::{mutation, Mutation};
 use super::testbench::{assert_passes, check_mutations, run_bench};
 use crate::tools;
+use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, parse};
 use endat_hdl::bus::HostBus;
 
@@ -54,7 +55,7 @@ const BROKEN: &[Mutation] = &[
         "a written clock rate is not taken",
         "frame_settings",
         "period_held_next = period_cycles;",
-        "period_held_next = 11'd32;",
+        "period_held_next = 11'd20;",
     ),
 ];
 
@@ -98,10 +99,19 @@ const BROKEN_SERVICES: &[Mutation] = &[
     ),
 ];
 
-fn card() -> Vec<endat_gen::artifact::Artifact> {
+fn card() -> Vec<Artifact> {
     let more =
         "[service]\nparts = [\"requests\", \"diagnosis\"]\n[outputs]\nparts = [\"position\"]\n[safety]\nparts = [\"recovery_counter\"]\n";
-    let text = crate::bus::text(HostBus::Apb, more).replace("= [\"register\"]", "= [\"pin\"]");
+    // Half a clock period more or less is to be seen in a recovery time.
+    slow("50_000_000", more)
+}
+
+/// A card whose clock is slow: the bench waits for milliseconds, each of which costs simulated cycles.
+fn slow(system_hz: &str, more: &str) -> Vec<Artifact> {
+    let text = crate::bus::text(HostBus::Apb, more)
+        .replace("100_000_000", system_hz)
+        .replace("3_125_000", "2_500_000")
+        .replace("= [\"register\"]", "= [\"pin\"]");
     endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap()
 }
 
@@ -116,9 +126,7 @@ fn bench_of_a_card_for_a_control_loop_passes_only_as_it_stands() {
 fn bench_of_a_card_with_services_passes_only_as_it_stands() {
     if tools::require("iverilog", "emitted test bench") {
         let more = "[service]\nparts = [\"requests\", \"continuous\"]\n[safety]\nparts = [\"second_receiver\", \"error_test\"]\n";
-        let text = crate::bus::text(HostBus::Apb, more).replace("= [\"register\"]", "= [\"pin\"]");
-        let card = endat_gen::emit(&parse("card.toml", &text).unwrap()).unwrap();
-        check_mutations("services", &card, BROKEN_SERVICES);
+        check_mutations("services", &slow("25_000_000", more), BROKEN_SERVICES);
     }
 }
 

@@ -220,10 +220,10 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
         "if (own_now | done) begin",
     ),
     mutation(
-        "causes not moved behind those of EnDat",
+        "causes of the flag below",
         PORT,
-        "card_cause = code | 5'd16;",
-        "card_cause = code;",
+        ".cause_in(code)",
+        ".cause_in({code[4:1], 1'b0})",
     ),
     mutation(
         "T-format channel not triggered",

@@ -217,7 +217,7 @@ impl Host {
     async fn read_results(&mut self) -> Option<Vec<Reading>> {
         let count = result_words(CHANNELS, true) as usize;
         let words = self.read(2, RESULT_BASE, count).await?;
-        Some(of_burst(&words, CHANNELS, true))
+        Some(of_burst(&words, CHANNELS, true, 0))
     }
 
     async fn read_stream(&mut self) {

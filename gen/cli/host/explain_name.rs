@@ -6,10 +6,11 @@ use endat_host::causes;
 use endat_host::did_you_mean::closest;
 use endat_host::feed::NO_CAUSES;
 use endat_host::registers::{Access, Block, Field, Register, Values};
-use endat_regs::BLOCKS;
+use endat_regs::causes::{ENDAT, T_FORMAT};
+use endat_regs::{Named, BLOCKS};
 use std::fmt::Write;
 
-/// Causes of EnDat frames, which the services count; those behind them are T-format's.
+/// Causes of EnDat frames, which the services count.
 const SERVICE_CAUSES: std::ops::Range<u32> = 0..endat_hdl::transaction::cause::COUNT as u32;
 
 /// Everything called `name`: keys of a configuration, causes, registers, fields, values, with or without block and channel in front.
@@ -19,17 +20,19 @@ pub fn text(typed: &str) -> Result<String, GenError> {
     let mut text = String::new();
     // Behind everything that has the name itself.
     let mut values = String::new();
-    if let Some(cause) = causes::all()
-        .iter()
-        .find(|c| c.name == name || c.number.to_string() == name)
-    {
+    let is_meant = |c: &&Named| c.name == name || c.number.to_string() == name;
+    let endat = ENDAT.iter().map(|c| (c, ""));
+    // What both have is told once.
+    let own = |c: &&Named| causes::of_code(c.number as u8, true) >= causes::CODES;
+    let t_format = T_FORMAT.iter().filter(own).map(|c| (c, " of T-format"));
+    for (cause, of) in endat.chain(t_format).filter(|(c, _)| is_meant(c)) {
         let [means, then] = causes::advice(cause.name).unwrap_or([cause.meaning, ""]);
         let _ = writeln!(
             text,
-            "cause {} ({}): {}\n  {means}\n  {then}",
+            "cause {}{of} ({}): {}\n  {means}\n  {then}",
             cause.number, cause.name, cause.meaning
         );
-        let is_counted = SERVICE_CAUSES.contains(&cause.number);
+        let is_counted = of.is_empty() && SERVICE_CAUSES.contains(&cause.number);
         let counter = match cause.name {
             "none" => "frames_good".to_owned(),
             name => format!("frames_{name}"),
@@ -80,7 +83,10 @@ pub fn text(typed: &str) -> Result<String, GenError> {
                     field_text(&mut text, field);
                 }
                 if parts.len() == 1 && field.name != "cause" {
-                    value_text(&mut values, name, &full(block, register), field);
+                    let both = [Some(field.values), field.t_format_values];
+                    for one in both.into_iter().flatten() {
+                        value_text(&mut values, name, &full(block, register), field, one);
+                    }
                 }
             }
         }
@@ -88,7 +94,7 @@ pub fn text(typed: &str) -> Result<String, GenError> {
     text += &values;
     text += &explain_key::text(name);
     if text.is_empty() {
-        let causes: Vec<&str> = causes::all().iter().map(|c| c.name).collect();
+        let causes: Vec<&str> = causes::ALL.iter().map(|c| c.name).collect();
         let guess: Vec<String> = closest(name, names(), |known| known);
         let guess = match guess.is_empty() {
             true => String::new(),
@@ -105,7 +111,7 @@ pub fn text(typed: &str) -> Result<String, GenError> {
 
 /// All that may be asked for, each once.
 fn names() -> std::collections::BTreeSet<String> {
-    let causes = causes::all().iter().map(|c| c.name.to_owned());
+    let causes = causes::ALL.iter().map(|c| c.name.to_owned());
     let registers = BLOCKS.iter().flat_map(|block| {
         let of_register = |r: &Register| {
             let fields = r.fields.iter().map(|f| f.name.to_owned());
@@ -120,8 +126,8 @@ fn names() -> std::collections::BTreeSet<String> {
 }
 
 /// What `name` stands for in a field: a number, or a bit.
-fn value_text(text: &mut String, name: &str, register: &str, field: &Field) {
-    let (kind, values) = match field.values {
+fn value_text(text: &mut String, name: &str, register: &str, field: &Field, values: Values) {
+    let (kind, values) = match values {
         Values::Plain => return,
         Values::Codes(values) => ("value", values),
         Values::Bits(values) => ("bit", values),
@@ -180,7 +186,15 @@ fn field_text(text: &mut String, field: &Field) {
         field.name,
         field.meaning
     );
-    let (kind, values) = match field.values {
+    values_text(text, field.values);
+    if let Some(values) = field.t_format_values {
+        text.push_str("         on a T-format channel:\n");
+        values_text(text, values);
+    }
+}
+
+fn values_text(text: &mut String, values: Values) {
+    let (kind, values) = match values {
         Values::Plain => return,
         Values::Codes(values) => ("", values),
         Values::Bits(values) => ("bit ", values),

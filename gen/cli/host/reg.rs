@@ -91,13 +91,14 @@ fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, 
     let mut objects = Vec::new();
     for place in all {
         let value = card.read(&place).map_err(told)?;
+        let is_t_format = place.block.per_channel && card.identity().is_t_format(place.channel);
         let fields: Vec<_> = match place.field {
-            Some(field) => vec![(field, value, field.told(value << field.lsb))],
+            Some(field) => vec![(field, value, field.told(value << field.lsb, is_t_format))],
             None => place
                 .register
                 .fields
                 .iter()
-                .map(|f| (f, f.of(value), f.told(value)))
+                .map(|f| (f, f.of(value), f.told(value, is_t_format)))
                 .collect(),
         };
         if as_data {

@@ -106,7 +106,7 @@ fn a_trigger_sends_its_request_and_silence_is_told_as_such() {
     // 0x1A: falls at the start bit, behind bit 1 and behind bit 4.
     assert_eq!(rig.falls.len(), 3);
     assert_eq!(rig.falls[1] - rig.falls[0], 3 * 8);
-    assert_eq!(rig.result(), (1, cause::of_card(cause::NO_ANSWER)));
+    assert_eq!(rig.result(), (1, cause::NO_ANSWER));
     assert!(!rig.uut.fresh.val() && !rig.uut.position_valid.val());
     assert_eq!(
         rig.uut.flags.val().to_u64(),
@@ -130,7 +130,7 @@ fn what_a_trigger_must_not_send_is_refused() {
             true => cause::NO_ANSWER,
             false => cause::UNKNOWN_REQUEST,
         };
-        assert_eq!(rig.result(), (1, cause::of_card(cause)), "{id}");
+        assert_eq!(rig.result(), (1, cause), "{id}");
     }
 }
 
@@ -155,7 +155,7 @@ fn the_hosts_request_gives_no_result_and_waits_for_its_turn() {
     rig.send(2, 0, 0);
     rig.us(20);
     assert_eq!(rig.answer(), (cause::NO_ANSWER, true, false));
-    assert_eq!(rig.result(), (1, cause::of_card(cause::NO_ANSWER)));
+    assert_eq!(rig.result(), (1, cause::NO_ANSWER));
 }
 
 #[test]

@@ -34,10 +34,11 @@ fn every_cause_of_an_encoder_is_told_by_its_code() {
         let bad = rig.result(1);
         let is_harmless = cause::flag(code) & cause::HARMLESS != 0;
         assert_eq!(bad.sequence, before.sequence + 1, "{defect:?}");
-        assert_eq!(bad.cause, cause::of_card(code), "{defect:?}");
+        assert_eq!(bad.cause, code, "{defect:?}");
         assert_eq!(bad.fresh, is_harmless, "{defect:?}");
         assert_eq!(bad.position == before.position, !is_harmless, "{defect:?}");
-        let name = endat_host::causes::name(bad.cause as u8);
+        let name = endat_host::causes::name(endat_host::causes::of_code(bad.cause as u8, true));
+        assert_eq!(name, cause::ALL[code as usize].name);
         assert!(endat_host::causes::advice(name).is_some());
         let encoder = rig.master.bench.t_format_mut(0).encoder_mut();
         encoder.config.defect = Defect::None;
@@ -54,8 +55,7 @@ fn every_cause_of_an_encoder_is_told_by_its_code() {
 }
 
 #[test]
-fn refused_requests_and_lost_triggers_have_the_codes_of_endat() {
-    use endat_hdl::transaction::cause as card;
+fn refused_requests_and_lost_triggers_have_codes_of_t_format() {
     let mut rig = Rig::new(false, "\"register\"");
     rig.trigger();
     rig.us(400);
@@ -64,7 +64,7 @@ fn refused_requests_and_lost_triggers_have_the_codes_of_endat() {
         let sent = rig.master.bench.t_format(0).encoder().requests().len();
         rig.trigger();
         rig.us(100);
-        assert_eq!(rig.result(1).cause, card::UNKNOWN_COMMAND, "{id}");
+        assert_eq!(rig.result(1).cause, cause::UNKNOWN_REQUEST, "{id}");
         assert_eq!(
             rig.master.bench.t_format(0).encoder().requests().len(),
             sent
@@ -77,7 +77,7 @@ fn refused_requests_and_lost_triggers_have_the_codes_of_endat() {
     rig.trigger();
     rig.us(200);
     let seen = rig.result(1);
-    assert_eq!((seen.cause, seen.fresh), (card::TRIGGER_OVERRUN, true));
+    assert_eq!((seen.cause, seen.fresh), (cause::TRIGGER_OVERRUN, true));
     assert_eq!(rig.result(0).sequence, seen.sequence + 1, "EnDat took both");
     assert_eq!(rig.result(0).cause, 0);
 }

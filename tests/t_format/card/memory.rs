@@ -3,7 +3,6 @@
 use super::*;
 use endat_hdl::t_format::cause;
 use endat_hdl::t_format::protocol::EEPROM_PAGE_ADDRESS;
-use endat_hdl::transaction::cause as card;
 use endat_sim::rng::Rng;
 
 #[test]
@@ -22,8 +21,11 @@ fn bytes_are_written_and_read_back_while_triggers_run() {
         if seen.sequence != last {
             last = seen.sequence;
             results += 1;
-            overruns += usize::from(seen.cause == card::TRIGGER_OVERRUN);
-            assert!([0, card::TRIGGER_OVERRUN].contains(&seen.cause), "{seen:?}");
+            overruns += usize::from(seen.cause == cause::TRIGGER_OVERRUN);
+            assert!(
+                [0, cause::TRIGGER_OVERRUN].contains(&seen.cause),
+                "{seen:?}"
+            );
             assert!(seen.fresh);
         }
     };

@@ -61,7 +61,10 @@ fn the_host_commands_know_what_a_t_format_channel_is() {
     let words = run(&["reg", "read", "t_format1"]);
     assert_eq!(words.exit_code, 0, "{words:?}");
     let told = cli::run(["endat-gen", "explain", "no_header"]);
-    assert!(told.stdout.starts_with("cause 20 (no_header)"), "{told:?}");
+    assert!(
+        told.stdout.starts_with("cause 4 of T-format (no_header)"),
+        "{told:?}"
+    );
     assert!(!told.stdout.contains("counted in"));
 }
 

@@ -3,6 +3,7 @@
 use super::shaft;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::encoder_port::EncoderPort;
+use endat_hdl::t_format::cause;
 use endat_hdl::t_format::port::word;
 use endat_sim::bench::{Bench, PinNames, TFormatLink};
 use endat_sim::rng::Rng;
@@ -108,10 +109,10 @@ fn kernels_engines_and_verilog_agree_on_a_t_format_port() {
     // Something has happened, good and bad, by triggers and by the host.
     assert!(*seen.output("sequence").last().unwrap() > 10);
     let causes = seen.output("cause");
-    for cause in [0, 9] {
+    for cause in [cause::NONE, cause::UNKNOWN_REQUEST].map(u128::from) {
         assert!(causes.contains(&cause), "{cause}");
     }
-    assert!(causes.iter().any(|c| *c > 17));
+    assert!(causes.iter().any(|c| *c > cause::UNKNOWN_REQUEST.into()));
     assert!(seen.output("fresh").contains(&1));
     assert!(seen.output("over_request").contains(&1));
     assert!(seen.output("endat_clk").iter().all(|c| *c == 1));
