@@ -27,9 +27,14 @@ pub fn text(typed: &str) -> Result<String, GenError> {
     let t_format = T_FORMAT.iter().filter(own).map(|c| (c, " of T-format"));
     for (cause, of) in endat.chain(t_format).filter(|(c, _)| is_meant(c)) {
         let [means, then] = causes::advice(cause.name).unwrap_or([cause.meaning, ""]);
+        let other = T_FORMAT.iter().find(|c| c.name == cause.name);
+        let other = match other.filter(|c| c.number != cause.number) {
+            Some(other) => format!(", of T-format {}", other.number),
+            None => String::new(),
+        };
         let _ = writeln!(
             text,
-            "cause {}{of} ({}): {}\n  {means}\n  {then}",
+            "cause {}{of}{other} ({}): {}\n  {means}\n  {then}",
             cause.number, cause.name, cause.meaning
         );
         let is_counted = of.is_empty() && SERVICE_CAUSES.contains(&cause.number);
@@ -83,9 +88,11 @@ pub fn text(typed: &str) -> Result<String, GenError> {
                     field_text(&mut text, field);
                 }
                 if parts.len() == 1 && field.name != "cause" {
-                    let both = [Some(field.values), field.t_format_values];
-                    for one in both.into_iter().flatten() {
-                        value_text(&mut values, name, &full(block, register), field, one);
+                    let own = &full(block, register);
+                    value_text(&mut values, name, own, field, field.values);
+                    if let Some(others) = field.t_format_values {
+                        let own = format!("a T-format channel's {own}");
+                        value_text(&mut values, name, &own, field, others);
                     }
                 }
             }
