@@ -95,6 +95,11 @@ impl Identity {
     pub fn is_t_format(&self, channel: usize) -> bool {
         self.t_format_channels >> channel & 1 == 1
     }
+
+    /// Whether a place is one of a channel that speaks T-format.
+    pub fn is_of_t_format(&self, place: &Place) -> bool {
+        place.block.per_channel && self.is_t_format(place.channel)
+    }
 }
 
 /// Results of all channels at one moment.
@@ -201,7 +206,7 @@ impl<T: Transport> Card<T> {
 
     /// Refuses a value that the map forbids for this word or field; [`Card::write`] writes any that fits.
     pub fn permits(&self, place: &Place, value: u32) -> Result<(), HostError> {
-        let is_t_format = place.block.per_channel && self.identity.is_t_format(place.channel);
+        let is_t_format = self.identity.is_of_t_format(place);
         let fields = place.register.fields.iter();
         let meant = fields
             .clone()

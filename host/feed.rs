@@ -51,7 +51,7 @@ pub struct Cell {
 impl Cell {
     /// What a set of the stream says of a channel that speaks one protocol or the other.
     fn of(sample: &Sample, is_t_format: bool) -> Self {
-        let named = causes::name(causes::of_code(sample.cause, is_t_format));
+        let named = sample.cause_name(is_t_format);
         let cause = match (sample.taken, sample.missing) {
             // What went wrong is told, however late.
             _ if sample.is_late() && !sample.fresh && sample.cause != 0 => named,
@@ -269,7 +269,7 @@ impl Feed {
             true => Cell {
                 position: sample.valid.then_some(sample.position),
                 fresh: sample.fresh,
-                cause: causes::name(causes::of_code(sample.cause, false)),
+                cause: sample.cause_name(false),
                 infos: [None; 2],
             },
             false => Cell {

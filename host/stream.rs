@@ -1,5 +1,6 @@
 //! Sample sets out of the stream of bytes: COBS frames with a CRC-16, found again after any garbage.
 
+use crate::causes;
 use crc::{Crc, CRC_16_IBM_3740};
 use endat_driver::AdditionalData as Info;
 use std::mem;
@@ -51,6 +52,11 @@ impl Sample {
     /// Position and status are those of an earlier trigger: the last one that the channel took, whose set said `missing`.
     pub fn is_late(&self) -> bool {
         (!self.taken || self.missing) && (self.valid || self.fresh || self.cause != 0)
+    }
+
+    /// Name of the primary cause, on a channel that speaks one protocol or the other.
+    pub fn cause_name(&self, is_t_format: bool) -> &'static str {
+        causes::name(causes::of_code(self.cause, is_t_format))
     }
 }
 

@@ -7,6 +7,7 @@ pub mod endat;
 pub mod t_format;
 
 use crate::named::named;
+use crate::register::is_same;
 use crate::Named;
 
 /// One cause.
@@ -92,24 +93,52 @@ pub const T_FORMAT: &[Named] = &coded::<{ t_format::ALL.len() }>(t_format::ALL);
 /// T-format's causes, as an exchange of the host has them: those before the trigger overrun.
 pub const EXCHANGE: &[Named] = &coded::<{ t_format::TRIGGER_OVERRUN as usize }>(t_format::ALL);
 
-/// Number of a cause in the list of both protocols: what T-format shares with EnDat has EnDat's code, its own stand behind EnDat's.
+/// Number of each cause of T-format, at its code: what it shares with EnDat has EnDat's code, its own stand behind EnDat's.
+const NUMBERS: [u8; t_format::ALL.len()] = {
+    let mut numbers = [0; t_format::ALL.len()];
+    let mut row = 0;
+    while row < numbers.len() {
+        let cause = &t_format::ALL[row];
+        numbers[row] = match cause.advice {
+            Some(_) => CODES + cause.code as u8,
+            None => code_in_endat(cause.name),
+        };
+        row += 1;
+    }
+    numbers
+};
+
+/// EnDat's code of a cause that both have; without one it does not compile.
+const fn code_in_endat(name: &str) -> u8 {
+    let mut row = 0;
+    while !is_same(endat::ALL[row].name, name) {
+        row += 1;
+    }
+    endat::ALL[row].code as u8
+}
+
+/// Number of a cause in the list of both protocols.
 pub const fn number(code: u8, is_t_format: bool) -> u8 {
-    match (is_t_format, code as u64) {
-        (false, _) => code,
-        (true, t_format::NONE) => endat::NONE as u8,
-        (true, t_format::UNKNOWN_REQUEST) => endat::UNKNOWN_COMMAND as u8,
-        (true, t_format::UPSET) => endat::UPSET as u8,
-        (true, t_format::TRIGGER_OVERRUN) => endat::TRIGGER_OVERRUN as u8,
-        _ => CODES + code,
+    match is_t_format {
+        false => code,
+        true if (code as usize) < NUMBERS.len() => NUMBERS[code as usize],
+        true => CODES + code,
     }
 }
 
-/// What both protocols have; the rest is each one's own.
-const SHARED: usize = 4;
+/// Causes that T-format does not share with EnDat.
+const OWN: usize = {
+    let (mut own, mut row) = (0, 0);
+    while row < NUMBERS.len() {
+        own += (NUMBERS[row] >= CODES) as usize;
+        row += 1;
+    }
+    own
+};
 
 /// Causes of both protocols, each once, under the numbers of [`number`].
 pub const ALL: &[Named] = &{
-    let mut all = [named("", 0, ""); endat::ALL.len() + t_format::ALL.len() - SHARED];
+    let mut all = [named("", 0, ""); endat::ALL.len() + OWN];
     let (mut row, mut next) = (0, endat::ALL.len());
     while row < next {
         all[row] = ENDAT[row];
@@ -117,9 +146,8 @@ pub const ALL: &[Named] = &{
     }
     row = 0;
     while row < t_format::ALL.len() {
-        let cause = &t_format::ALL[row];
-        if cause.advice.is_some() {
-            all[next] = cause.at(number(cause.code as u8, true));
+        if NUMBERS[row] >= CODES {
+            all[next] = t_format::ALL[row].at(NUMBERS[row]);
             next += 1;
         }
         row += 1;

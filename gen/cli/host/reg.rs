@@ -91,7 +91,7 @@ fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, 
     let mut objects = Vec::new();
     for place in all {
         let value = card.read(&place).map_err(told)?;
-        let is_t_format = place.block.per_channel && card.identity().is_t_format(place.channel);
+        let is_t_format = card.identity().is_of_t_format(&place);
         let fields: Vec<_> = match place.field {
             Some(field) => vec![(field, value, field.told(value << field.lsb, is_t_format))],
             None => place
