@@ -21,6 +21,7 @@ pub mod feed;
 pub mod mailbox;
 pub mod name_plate;
 pub mod panda;
+pub mod ready;
 pub mod registers;
 pub mod result;
 pub mod stream;

@@ -27,6 +27,7 @@ mod position;
 mod presets;
 mod program;
 mod prove;
+mod python;
 mod requests;
 mod service;
 mod shmoo;

@@ -12,7 +12,7 @@ mod serve;
 
 pub use serve::{serve, Door, Pace};
 
-use crate::config::Project;
+use crate::config::{load_file, load_preset, preset_of, Project, DEFAULT_PRESET};
 use crate::error::{shown, GenError};
 use endat_hdl::card::{service_times, Card};
 use endat_hdl::protocol::ModeCommand;
@@ -27,6 +27,7 @@ use rtl_design::elaborate::elaborate;
 use rtl_design::engine::Compiled;
 use rust_hdl::prelude::Block;
 use std::io;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -195,6 +196,22 @@ fn t_format_link(
         link.unplug();
     }
     Ok(link)
+}
+
+/// The card of a port called `virtual`, `virtual:PRESET` or `virtual:FILE.toml`; none for other ports.
+pub fn virtual_card_at(port: &str) -> Result<Option<VirtualCard>, GenError> {
+    let project = match port.strip_prefix("virtual") {
+        Some("") => load_preset(DEFAULT_PRESET)?,
+        Some(rest) if rest.starts_with(':') && rest.ends_with(".toml") => {
+            load_file(Path::new(&rest[1..]))?
+        }
+        Some(rest) if rest.starts_with(':') => {
+            preset_of("virtual:PRESET in --port", &rest[1..])?;
+            load_preset(&rest[1..])?
+        }
+        _ => return Ok(None),
+    };
+    VirtualCard::new(&project, &VirtualConfig::default()).map(Some)
 }
 
 impl VirtualCard {

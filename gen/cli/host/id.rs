@@ -1,7 +1,7 @@
 //! `id`: who the card is, and the name plates of its encoders.
 
 use super::super::{to_json, Outcome};
-use super::{initialised, told, PortArgs};
+use super::{long, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::card::Identity;
@@ -26,9 +26,7 @@ pub fn run(arguments: &IdArgs) -> Result<Outcome, GenError> {
     let mut card = arguments.port.open()?;
     let identity = *card.identity();
     let reads_plates = identity.has(Part::Initialise);
-    if reads_plates {
-        initialised(&mut card)?;
-    }
+    card.wait_until_initialised(long).map_err(told)?;
     let mut encoders = Vec::new();
     for channel in 0..identity.channels {
         encoders.push(match identity.is_t_format(channel) {

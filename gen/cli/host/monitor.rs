@@ -3,7 +3,7 @@
 use super::super::number::{decimal_if, number_if};
 use super::super::Outcome;
 use super::read::{shown, verdict};
-use super::{interrupted, scales, settled, told, AnyCard, PortArgs};
+use super::{interrupted, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_driver::Reading;
@@ -178,7 +178,7 @@ pub fn run(arguments: &MonitorArgs) -> Result<Outcome, GenError> {
     let every = Duration::from_secs_f64(every.unwrap_or(0.2));
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let scales = scales(&mut card)?;
+    let scales = card.scales().map_err(told)?;
     let places = Places::new(&card)?;
     let stop = interrupted();
     let mut stdout = std::io::stdout();

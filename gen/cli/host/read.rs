@@ -1,7 +1,7 @@
 //! `read`: the latest positions, once.
 
 use super::super::{to_json, Outcome};
-use super::{scales, settled, told, PortArgs};
+use super::{settled, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_driver::Reading;
@@ -73,7 +73,7 @@ pub fn verdict(reading: &Reading) -> String {
 pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let scales = scales(&mut card)?;
+    let scales = card.scales().map_err(told)?;
     let results = card.results().map_err(told)?;
     let system_hz = f64::from(card.identity().system_hz);
     let mut messages = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::super::number::number_if;
 use super::super::Outcome;
-use super::{interrupted, scales, settled, told, PortArgs};
+use super::{interrupted, settled, told, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::panda::{Column, Ports, Server, CONTROL_PORT, DATA_PORT};
@@ -50,7 +50,7 @@ pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
     drop(open()?);
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    let scales = scales(&mut card)?;
+    let scales = card.scales().map_err(told)?;
     let additional_data = card.identity().stream_additional_data;
     let columns = Column::all(card.identity().system_hz, &scales, additional_data);
     let ports = open()?;

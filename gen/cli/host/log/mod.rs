@@ -6,7 +6,7 @@ mod sheet;
 use super::super::number::{decimal_if, number_if};
 use super::super::pictures::{check_all, folder, write_all, File};
 use super::super::Outcome;
-use super::{interrupted, place, scales, settled, told, AnyCard, PortArgs};
+use super::{interrupted, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use count::{Count, Judge};
@@ -96,8 +96,12 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     check_all(&rows.iter().chain(&drawing).collect::<Vec<_>>())?;
     let mut card = arguments.port.open()?;
     settled(&mut card)?;
-    triggered(&mut card, arguments.port.name())?;
-    let scales = scales(&mut card)?;
+    let remedy = format!(
+        "as with `endat-gen reg write card_config.trigger_sources.timer 1 --port {}`",
+        arguments.port.name()
+    );
+    card.needs_trigger(&remedy).map_err(told)?;
+    let scales = card.scales().map_err(told)?;
     let (out, name) = open(arguments)?;
     let failed =
         |e: io::Error| GenError::input(format!("{name}: cannot write: {e}; is the disk full?"));
@@ -178,41 +182,6 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
         exit_code,
         ..Outcome::default()
     })
-}
-
-/// Refuses a card that nothing triggers: a log sends nothing by itself, and nobody else has the link.
-fn triggered(card: &mut AnyCard, port: &str) -> Result<(), GenError> {
-    let sources = place(card, "card_config.trigger_sources")?;
-    let enabled = card.read(&sources).map_err(told)?;
-    let is_set = |name| (sources.register.field(name)).is_some_and(|f| f.of(enabled) != 0);
-    if is_set("pin") || is_set("timer") {
-        return Ok(());
-    }
-    let what = match is_set("register") {
-        true if may_run(card)? => return Ok(()),
-        true => "only trigger_now triggers this card, and `log` has the link, so there is nothing to log; enable another source",
-        false => "no trigger is enabled, so there is nothing to log; enable one",
-    };
-    Err(GenError::CheckFailed(vec![format!(
-        "{what}, as with `endat-gen reg write card_config.trigger_sources.timer 1 --port {port}`"
-    )]))
-}
-
-/// Whether a clock may be running, which gives positions without triggers.
-fn may_run(card: &mut AnyCard) -> Result<bool, GenError> {
-    let identity = *card.identity();
-    let channels = 0..if identity.has(Part::Continuous) {
-        identity.channels
-    } else {
-        0
-    };
-    for channel in channels.filter(|n| !identity.is_t_format(*n)) {
-        let go_on = place(card, &format!("service{channel}.continuous.go_on"))?;
-        if card.read(&go_on).map_err(told)? == 1 {
-            return Ok(true);
-        }
-    }
-    Ok(false)
 }
 
 /// Where the rows go, and what that is called.

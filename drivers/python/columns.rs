@@ -1,0 +1,99 @@
+//! Rows of a recording as columns of numbers, as numpy takes them.
+
+use endat_driver::AdditionalData;
+use endat_host::causes;
+use endat_host::feed::{Cell, Row, NO_CAUSES};
+use endat_host::units::Scale;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict, PyList};
+
+/// Codes of what stands in the place of a cause, behind those of the causes.
+const NO_CAUSE_CODES: u8 = 128;
+/// Code of a cause that this package does not know.
+const UNKNOWN: u8 = 255;
+/// In the place of the channel whose running clock brought a position: a trigger did.
+const NO_RUN: i8 = -1;
+
+/// All names in the place of a cause, and the codes that columns have.
+pub fn codes() -> impl Iterator<Item = (u8, &'static str)> {
+    let known = causes::ALL.iter().map(|c| (c.number as u8, c.name));
+    let others = NO_CAUSES.iter().enumerate();
+    let others = others.map(|(n, (name, _))| (NO_CAUSE_CODES + n as u8, *name));
+    known.chain(others).chain([(UNKNOWN, "unknown")])
+}
+
+fn code(name: &str) -> u8 {
+    let found = codes().find(|(_, known)| *known == name);
+    found.map_or(UNKNOWN, |(code, _)| code)
+}
+
+/// The bytes of numbers, one after the other.
+macro_rules! bytes {
+    ($py:expr, $numbers:expr) => {{
+        let all: Vec<u8> = $numbers.flat_map(|n| n.to_ne_bytes()).collect();
+        PyBytes::new($py, &all)
+    }};
+}
+
+/// One channel's columns.
+fn channel<'py>(
+    py: Python<'py>,
+    cells: &[&Cell],
+    scale: &Scale,
+    has_infos: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    let each = || cells.iter();
+    let units = |cell: &Cell| cell.position.map(|p| scale.convert(p));
+    columns.set_item("raw", bytes!(py, each().map(|c| c.position.unwrap_or(0))))?;
+    columns.set_item(
+        "valid",
+        bytes!(py, each().map(|c| u8::from(c.position.is_some()))),
+    )?;
+    columns.set_item(
+        "position",
+        bytes!(py, each().map(|c| units(c).map_or(f64::NAN, |u| u.value))),
+    )?;
+    let turns = |c: &Cell| units(c).and_then(|u| u.turns).unwrap_or(0);
+    columns.set_item("turns", bytes!(py, each().map(|c| turns(c))))?;
+    columns.set_item("fresh", bytes!(py, each().map(|c| u8::from(c.fresh))))?;
+    columns.set_item("cause", bytes!(py, each().map(|c| code(c.cause))))?;
+    if has_infos {
+        for n in 0..2 {
+            let each = || each().map(|c: &&Cell| c.infos[n]);
+            let of =
+                |what: fn(AdditionalData) -> u16| bytes!(py, each().map(|i| i.map_or(0, what)));
+            let name = |what: &str| format!("additional_{}_{what}", n + 1);
+            columns.set_item(
+                name("good"),
+                bytes!(py, each().map(|i| u8::from(i.is_some()))),
+            )?;
+            columns.set_item(name("status"), of(|i| i.status.into()))?;
+            columns.set_item(name("content"), of(|i| i.content))?;
+        }
+    }
+    Ok(columns)
+}
+
+/// All columns of these rows.
+pub fn of<'py>(
+    py: Python<'py>,
+    rows: &[Row],
+    scales: &[Scale],
+    has_infos: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    let each = || rows.iter();
+    columns.set_item("trigger", bytes!(py, each().map(|r| r.trigger)))?;
+    columns.set_item("cycles", bytes!(py, each().map(|r| r.cycles)))?;
+    columns.set_item("missing", bytes!(py, each().map(|r| r.missing)))?;
+    let run = |r: &Row| r.run.map_or(NO_RUN, |n| n as i8);
+    columns.set_item("run", bytes!(py, each().map(|r| run(r))))?;
+    let channels = PyList::empty(py);
+    for (n, scale) in scales.iter().enumerate() {
+        let cells: Vec<&Cell> = rows.iter().filter_map(|r| r.cells.get(n)).collect();
+        channels.append(channel(py, &cells, scale, has_infos)?)?;
+    }
+    columns.set_item("channels", channels)?;
+    Ok(columns)
+}

@@ -1,0 +1,72 @@
+//! What goes wrong, on its way to the exceptions of `endat.errors`.
+
+use endat_gen::error::GenError;
+use endat_host::HostError;
+use pyo3::prelude::*;
+use pyo3::types::PyType;
+
+/// Which exception it becomes.
+#[derive(Clone, Copy, Debug)]
+pub enum Kind {
+    /// `EndatError`: the link is gone, or what answers is no card.
+    Link,
+    /// `BadInput`: a name or number that the user gave.
+    BadInput,
+    /// `Refused`: the encoder, the line or the card refused.
+    Refused,
+    /// `Silent`: nothing answers.
+    Silent,
+}
+
+/// An error and its text.
+#[derive(Debug)]
+pub struct Fault {
+    kind: Kind,
+    text: String,
+}
+
+impl Fault {
+    /// With this text.
+    pub fn new(kind: Kind, text: impl Into<String>) -> Self {
+        Self {
+            kind,
+            text: text.into(),
+        }
+    }
+}
+
+impl From<HostError> for Fault {
+    fn from(error: HostError) -> Self {
+        let kind = match error {
+            HostError::Link { .. } | HostError::NoCard(_) => Kind::Link,
+            HostError::Name(_) => Kind::BadInput,
+            HostError::Part { .. } | HostError::Refused(_) => Kind::Refused,
+            HostError::Silent { .. } => Kind::Silent,
+        };
+        Self::new(kind, error.to_string())
+    }
+}
+
+impl From<GenError> for Fault {
+    fn from(error: GenError) -> Self {
+        Self::new(Kind::BadInput, error.messages().join("\n"))
+    }
+}
+
+impl From<Fault> for PyErr {
+    fn from(fault: Fault) -> Self {
+        let name = match fault.kind {
+            Kind::Link => "EndatError",
+            Kind::BadInput => "BadInput",
+            Kind::Refused => "Refused",
+            Kind::Silent => "Silent",
+        };
+        Python::attach(|py| {
+            let class = py.import("endat.errors").and_then(|m| m.getattr(name));
+            match class.and_then(|c| Ok(c.cast_into::<PyType>()?)) {
+                Ok(class) => PyErr::from_type(class, fault.text),
+                Err(error) => error,
+            }
+        })
+    }
+}

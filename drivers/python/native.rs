@@ -1,0 +1,307 @@
+//! The functions of the module.
+
+use crate::columns;
+use crate::fault::{Fault, Kind};
+use crate::worker::{Handle, Worker};
+use endat_host::causes;
+use endat_host::feed::NO_CAUSES;
+use endat_host::mailbox::Request;
+use endat_host::name_plate::NamePlate;
+use endat_host::registers::Access;
+use endat_regs::Part;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Opens a port.
+#[pyfunction]
+pub fn connect(py: Python<'_>, port: String, baud: u32) -> PyResult<NativeCard> {
+    if port.is_empty() {
+        let text = "port = \"\": is empty; give the card's serial port, tcp:HOST:PORT or virtual";
+        return Err(Fault::new(Kind::BadInput, text).into());
+    }
+    let handle = py.detach(|| Handle::open(port, baud, look))??;
+    Ok(NativeCard(Mutex::new(Some(handle))))
+}
+
+/// Names that stand in the place of a cause, with their codes.
+#[pyfunction]
+pub fn cause_names() -> Vec<(u8, &'static str)> {
+    columns::codes().collect()
+}
+
+/// What a cause means and what helps.
+#[pyfunction]
+pub fn explain_cause(name: &str) -> Option<String> {
+    let other = NO_CAUSES.iter().find(|(known, _)| *known == name);
+    let known = || causes::advice(name).map(|[means, then]| format!("{means}; {then}"));
+    other.map(|(_, means)| (*means).to_owned()).or_else(known)
+}
+
+/// Lets Ctrl-C through.
+fn look() -> PyResult<()> {
+    Python::attach(|py| py.check_signals())
+}
+
+/// A card; none when it has been closed.
+#[pyclass(frozen)]
+pub struct NativeCard(Mutex<Option<Handle>>);
+
+impl NativeCard {
+    fn handle(&self) -> MutexGuard<'_, Option<Handle>> {
+        // Nothing is done under the lock that could leave it half done.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn call<R: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        job: impl FnOnce(&mut Worker) -> Result<R, Fault> + Send + 'static,
+    ) -> PyResult<R> {
+        py.detach(|| {
+            let closed = || Fault::new(Kind::Refused, "the card has been closed");
+            let jobs = self
+                .handle()
+                .as_ref()
+                .map(Handle::jobs)
+                .ok_or_else(closed)?;
+            Ok(jobs.call(job, look)??)
+        })
+    }
+}
+
+fn plate<'py>(py: Python<'py>, plate: &NamePlate) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    all.set_item("initialised", plate.initialised)?;
+    all.set_item("endat22", plate.endat22)?;
+    all.set_item("position_bits", plate.position_bits)?;
+    all.set_item("rotary", plate.rotary)?;
+    all.set_item("revolutions", plate.revolutions)?;
+    all.set_item("steps", plate.steps)?;
+    all.set_item("id", plate.id.as_deref())?;
+    all.set_item("serial", plate.serial.as_deref())?;
+    all.set_item("clock_max_khz", plate.clock_max_khz)?;
+    all.set_item("short_recovery", plate.short_recovery)?;
+    all.set_item("alarms", plate.alarms)?;
+    all.set_item("warnings", plate.warnings)?;
+    Ok(all)
+}
+
+#[pymethods]
+impl NativeCard {
+    /// Who it is.
+    fn identity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let identity = self.call(py, |w| Ok(*w.card.identity()))?;
+        let all = PyDict::new(py);
+        let [major, minor, patch] = identity.version;
+        all.set_item("register_map", format!("{major}.{minor}.{patch}"))?;
+        all.set_item("channels", identity.channels)?;
+        let protocol = |n| match identity.is_t_format(n) {
+            true => "T-format",
+            false => "EnDat",
+        };
+        let protocols: Vec<&str> = (0..identity.channels).map(protocol).collect();
+        all.set_item("protocols", protocols)?;
+        all.set_item("max_position_bits", identity.max_position_bits)?;
+        all.set_item("system_hz", identity.system_hz)?;
+        all.set_item("configuration_hash", identity.configuration_hash)?;
+        let parts: Vec<&str> = identity.parts().map(|part| part.named().name).collect();
+        all.set_item("parts", parts)?;
+        Ok(all)
+    }
+
+    /// Waits until no encoder is being initialised and every channel has had a result, or has none after a second.
+    fn settle(&self, py: Python<'_>) -> PyResult<()> {
+        self.call(py, |w| Ok(w.card.settle(|| ())?))
+    }
+
+    /// Name plates; none of a channel whose encoder the card does not read.
+    fn name_plates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let plates = self.call(py, |w| {
+            let identity = *w.card.identity();
+            let has = |n: &usize| identity.has(Part::Initialise) && !identity.is_t_format(*n);
+            let mut plates = Vec::new();
+            for n in 0..identity.channels {
+                plates.push(has(&n).then(|| w.card.name_plate(n)).transpose()?);
+            }
+            Ok(plates)
+        })?;
+        let all = PyList::empty(py);
+        for one in &plates {
+            all.append(one.as_ref().map(|p| plate(py, p)).transpose()?)?;
+        }
+        Ok(all)
+    }
+
+    /// Unit and digits behind the point of each channel.
+    fn units(&self, py: Python<'_>) -> PyResult<Vec<(&'static str, usize, Option<f64>)>> {
+        self.call(py, |w| {
+            w.scales = w.card.scales()?;
+            let units = w
+                .scales
+                .iter()
+                .map(|s| (s.convert(0).unit, s.digits(), s.wraps_at()));
+            Ok(units.collect())
+        })
+    }
+
+    /// Latest results of all channels, of one moment.
+    fn read<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let (readings, scales) = self.call(py, |w| {
+            if w.scales.is_empty() {
+                w.scales = w.card.scales()?;
+            }
+            Ok((w.card.results()?.channels, w.scales.clone()))
+        })?;
+        let all = PyList::empty(py);
+        for (r, scale) in readings.iter().zip(&scales) {
+            let units = r.valid.then(|| scale.convert(r.position));
+            let one = PyDict::new(py);
+            one.set_item("position", units.map(|u| u.value))?;
+            one.set_item("unit", scale.convert(0).unit)?;
+            one.set_item("turns", units.and_then(|u| u.turns))?;
+            one.set_item("raw", r.valid.then_some(r.position))?;
+            one.set_item("fresh", r.fresh)?;
+            one.set_item("cause", r.cause_name())?;
+            one.set_item("sequence", r.sequence)?;
+            one.set_item("cycles", r.timestamp)?;
+            one.set_item("age_us", r.age_us)?;
+            one.set_item("delay_cycles", r.delay_cycles)?;
+            one.set_item("recovery_cycles", r.recovery_cycles)?;
+            all.append(one)?;
+        }
+        Ok(all)
+    }
+
+    /// Begins a recording.
+    fn begin(&self, py: Python<'_>, polls: bool) -> PyResult<()> {
+        self.call(py, move |w| w.begin(polls))
+    }
+
+    /// Up to `count` rows as columns; fewer, or none, if no more have come.
+    fn take<'py>(&self, py: Python<'py>, count: usize) -> PyResult<Bound<'py, PyDict>> {
+        let (rows, scales, has_infos) = self.call(py, move |w| {
+            let rows = w.take(count)?;
+            let identity = w.card.identity();
+            let streams = w.recording.as_ref().is_some_and(|r| r.feed.streams());
+            let has_infos = match streams {
+                true => identity.stream_additional_data,
+                false => identity.has(Part::Requests),
+            };
+            Ok((rows, w.scales.clone(), has_infos))
+        })?;
+        columns::of(py, &rows, &scales, has_infos)
+    }
+
+    /// Frames damaged on the link, and sets that the card itself has dropped, since the recording began.
+    fn losses(&self, py: Python<'_>) -> PyResult<(u64, u64)> {
+        self.call(py, |w| {
+            let dropped = w.recording.as_ref().map_or(0, |r| r.feed.lost_in_card());
+            Ok((w.card.bridge().decoder().damaged(), dropped))
+        })
+    }
+
+    /// Ends the recording, if there is one.
+    fn end(&self, py: Python<'_>) -> PyResult<()> {
+        self.call(py, Worker::end)
+    }
+
+    /// Reads a word or field.
+    fn read_register(&self, py: Python<'_>, name: String) -> PyResult<u32> {
+        self.call(py, move |w| Ok(w.card.read_named(&name)?))
+    }
+
+    /// Writes a word or field; what the register map forbids is refused, unless `force`.
+    fn write_register(
+        &self,
+        py: Python<'_>,
+        name: String,
+        value: u32,
+        force: bool,
+    ) -> PyResult<()> {
+        self.call(py, move |w| {
+            let place = w.card.place(&name)?;
+            if !force && place.register.access != Access::ReadOnly {
+                w.card.permits(&place, value)?;
+            }
+            // What a step is may have changed with it.
+            w.scales.clear();
+            Ok(w.card.write(&place, value)?)
+        })
+    }
+
+    /// Reads a word of the encoder's memory.
+    fn read_parameter(
+        &self,
+        py: Python<'_>,
+        channel: usize,
+        area: u8,
+        address: u8,
+    ) -> PyResult<u16> {
+        self.call(py, move |w| {
+            is_there(w, channel)?;
+            Ok(w.card.read_parameter(channel, area, address)?.data)
+        })
+    }
+
+    /// Writes a word of the encoder's memory.
+    fn write_parameter(
+        &self,
+        py: Python<'_>,
+        channel: usize,
+        area: u8,
+        address: u8,
+        value: u16,
+    ) -> PyResult<()> {
+        self.call(py, move |w| {
+            is_there(w, channel)?;
+            let answer = w.card.write_parameter(channel, area, address, value);
+            Ok(answer.map(|_| ())?)
+        })
+    }
+
+    /// Sends a mode command; 8 bits, 16 bits and all bits of what came back.
+    fn request(
+        &self,
+        py: Python<'_>,
+        channel: usize,
+        command: u8,
+        address: u8,
+        data: u16,
+    ) -> PyResult<(u8, u16, u64)> {
+        self.call(py, move |w| {
+            is_there(w, channel)?;
+            let request = Request {
+                command,
+                address,
+                data,
+            };
+            let answer = w.card.request(channel, request)?;
+            Ok((answer.address, answer.data, answer.bits))
+        })
+    }
+
+    /// Ends it all.
+    fn close(&self, py: Python<'_>) {
+        py.detach(|| {
+            let handle = self.handle().take();
+            if let Some(handle) = handle {
+                handle.close();
+            }
+        });
+    }
+}
+
+fn is_there(worker: &Worker, channel: usize) -> Result<(), Fault> {
+    let channels = worker.card.identity().channels;
+    match channel < channels {
+        true => Ok(()),
+        false => Err(Fault::new(
+            Kind::BadInput,
+            format!(
+                "channel = {channel}: the card has {channels}; give 0 to {}",
+                channels - 1
+            ),
+        )),
+    }
+}

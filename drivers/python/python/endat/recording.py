@@ -1,0 +1,130 @@
+"""Recordings as HDF5 files, with units and who was measured."""
+
+from __future__ import annotations
+
+import os
+from contextlib import closing
+from datetime import datetime, timezone
+from typing import Any
+
+import numpy as np
+
+from .card import Card
+from .errors import BadInput
+from .samples import CAUSES, Samples
+
+#: Rows that are compressed together.
+CHUNK = 4096
+#: What arrays of a channel are called in a file, and their unit; None: that of the position.
+_OF_CHANNEL: dict[str, str | None] = {"position": None, "turns": "turns", "raw": "", "fresh": "", "cause": ""}
+
+
+class _File:
+    def __init__(self, file: Any, card: Card, compression: str | None) -> None:
+        self.file, self.card, self.compression = file, card, compression
+        self.rows = 0
+
+    def begin(self, first: Samples) -> None:
+        """Names, units and what is known of card and encoders."""
+        identity = self.card.identity
+        about = self.file.attrs
+        about["format"] = "endat recording 1"
+        about["start_time"] = datetime.now(timezone.utc).isoformat()
+        about["port"] = self.card.port
+        about["system_hz"] = identity.system_hz
+        about["configuration_hash"] = f"{identity.configuration_hash:08x}"
+        about["register_map"] = identity.register_map
+        self.new(self.file, "time", first.time_s.dtype, "s", "since the first row, by the card's clock")
+        self.new(self.file, "trigger", first.trigger.dtype, "", "number of the trigger, not wrapping")
+        self.new(self.file, "missing", first.missing.dtype, "", "triggers without a row just before this one")
+        plates = self.card.encoders()
+        for n, one in enumerate(first.channels):
+            group = self.file.create_group(f"channel{n}")
+            group.attrs["protocol"] = identity.protocols[n]
+            plate = plates[n]
+            for name in ("id", "serial", "rotary", "position_bits", "revolutions", "steps"):
+                if plate is not None and getattr(plate, name) is not None:
+                    group.attrs[name] = getattr(plate, name)
+            for name, unit in _OF_CHANNEL.items():
+                kind = getattr(one, name).dtype
+                if name == "cause":
+                    kind = _enum(kind)
+                self.new(group, name, kind, one.unit if unit is None else unit, "")
+
+    def new(self, group: Any, name: str, kind: Any, unit: str, text: str) -> None:
+        made = group.create_dataset(
+            name, (0,), kind, maxshape=(None,), chunks=(CHUNK,), compression=self.compression, shuffle=True
+        )
+        if unit:
+            made.attrs["units"] = unit
+        if text:
+            made.attrs["description"] = text
+
+    def add(self, block: Samples) -> None:
+        end = self.rows + len(block)
+
+        def put(data: Any, values: Any) -> None:
+            data.resize((end,))
+            data[self.rows : end] = values
+
+        put(self.file["time"], block.time_s)
+        put(self.file["trigger"], block.trigger)
+        put(self.file["missing"], block.missing)
+        for n, one in enumerate(block.channels):
+            for name in _OF_CHANNEL:
+                put(self.file[f"channel{n}/{name}"], getattr(one, name))
+        self.rows = end
+        # What is there is there, whatever happens then.
+        self.file.flush()
+
+
+def _enum(kind: Any) -> Any:
+    import h5py  # type: ignore[import-untyped]
+
+    return h5py.enum_dtype({name: code for code, name in CAUSES.items()}, basetype=np.dtype(kind))
+
+
+def record(
+    card: Card,
+    path: str | os.PathLike[str],
+    count: int | None = None,
+    *,
+    seconds: float | None = None,
+    poll: bool = False,
+    replace: bool = False,
+    compression: str | None = "lzf",
+) -> int:
+    """Records into an HDF5 file (needs ``h5py``) until ``count`` rows, or ``seconds`` of the card's time, are in it; returns the rows.
+
+    Without either it goes on until Ctrl-C, which ends it with a whole file. Rows are written as they come, so memory stays constant.
+    ``compression``: ``lzf`` is fast, ``gzip`` is smaller and read by everything, ``None``.
+    """
+    import h5py
+
+    if count is not None and count < 1:
+        raise BadInput(f"count = {count}: give 1 at least")
+    if seconds is not None and not seconds > 0:
+        raise BadInput(f"seconds = {seconds}: give more than 0")
+    if not replace and os.path.exists(path):
+        raise BadInput(f"path = {os.fspath(path)}: is there already; give another one, or replace=True")
+    with closing(card.stream(poll=poll)) as blocks:
+        # Only a card that gives something makes a file.
+        first = next(blocks)
+        with h5py.File(path, "w") as file:
+            to = _File(file, card, compression)
+            to.begin(first)
+            block = first
+            try:
+                while True:
+                    if seconds is not None and block.time_s[-1] > seconds:
+                        to.add(block.head(int((block.time_s <= seconds).sum())))
+                        break
+                    if count is not None and to.rows + len(block) >= count:
+                        to.add(block.head(count - to.rows))
+                        break
+                    to.add(block)
+                    block = next(blocks)
+            except KeyboardInterrupt:
+                if count is not None or seconds is not None:
+                    raise
+            return to.rows

@@ -1,0 +1,169 @@
+"""Positions of many triggers, as arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .endat_native import cause_names
+
+if TYPE_CHECKING:
+    from .endat_native import _Columns
+
+#: Name of each code in a column of causes; `endat.explain` says what it means.
+CAUSES: Mapping[int, str] = dict(cause_names())
+_CODES = {name: code for code, name in CAUSES.items()}
+
+
+@dataclass(frozen=True)
+class AdditionalData:
+    """Additional data 1 or 2 of the same frames."""
+
+    #: They came with a right CRC; the others are 0.
+    good: NDArray[np.bool_]
+    #: WRN, RM, Busy, I4..I0.
+    status: NDArray[np.uint16]
+    content: NDArray[np.uint16]
+
+
+@dataclass(frozen=True)
+class ChannelSamples:
+    """One channel's positions; index n is of the same trigger in all arrays."""
+
+    #: ``deg``, ``mm`` or ``counts``.
+    unit: str
+    #: Position in the unit, within the turn of a rotary encoder; NaN where there is none.
+    position: NDArray[np.float64]
+    #: Whole turns, 0 of a linear encoder.
+    turns: NDArray[np.uint64]
+    #: Position as the encoder sent it, bit 0 = LSB.
+    raw: NDArray[np.uint64]
+    #: There is a position, of this trigger or an earlier one.
+    valid: NDArray[np.bool_]
+    #: This trigger brought the position. Use these only: the others are held from an earlier one.
+    fresh: NDArray[np.bool_]
+    #: Codes of :data:`CAUSES`; 0 = none.
+    cause: NDArray[np.uint8]
+    #: Where the position is 0 again, in the unit; none of a linear encoder.
+    wraps_at: float | None
+    #: Additional data 1 and 2, empty on a card that does not record them.
+    additional: tuple[AdditionalData, ...]
+
+    def cause_names(self) -> NDArray[np.str_]:
+        """The causes as names."""
+        names = np.full(256, "unknown", dtype=object)
+        for code, name in CAUSES.items():
+            names[code] = name
+        return names[self.cause].astype(np.str_)
+
+    def unwrapped(self) -> NDArray[np.float64]:
+        """The position without jumps: whole turns counted in; NaN where this trigger brought none.
+
+        A singleturn encoder must move less than half a turn from one fresh position to the next.
+        """
+        out = np.full(len(self.position), np.nan)
+        seen = self.position[self.fresh]
+        if self.wraps_at is not None:
+            turns = self.turns[self.fresh].astype(np.float64)
+            # A multiturn encoder counts itself, a singleturn one always says 0.
+            seen = seen + turns * self.wraps_at if turns.any() else np.unwrap(seen, period=self.wraps_at)
+        out[self.fresh] = seen
+        return out
+
+
+@dataclass(frozen=True)
+class Samples:
+    """A row for each trigger."""
+
+    #: Seconds of the card's clock since the first row of the recording.
+    time_s: NDArray[np.float64]
+    #: Number of the trigger, not wrapping.
+    trigger: NDArray[np.uint64]
+    #: Triggers without a row just before this one.
+    missing: NDArray[np.uint64]
+    #: Channel whose running clock brought the row; -1: a trigger did.
+    run: NDArray[np.int8]
+    channels: tuple[ChannelSamples, ...]
+
+    def __len__(self) -> int:
+        return len(self.trigger)
+
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """All arrays by name, as ``pandas.DataFrame`` takes them."""
+        all_: dict[str, NDArray[Any]] = {
+            "time_s": self.time_s,
+            "trigger": self.trigger,
+            "missing": self.missing,
+        }
+        for n, one in enumerate(self.channels):
+            all_[f"channel{n}_{one.unit}"] = one.position
+            for name in ("turns", "raw", "fresh"):
+                all_[f"channel{n}_{name}"] = getattr(one, name)
+            all_[f"channel{n}_cause"] = one.cause_names()
+            for i, more in enumerate(one.additional, start=1):
+                for field in fields(more):
+                    all_[f"channel{n}_additional_{i}_{field.name}"] = getattr(more, field.name)
+        return all_
+
+    def head(self, count: int) -> Samples:
+        """The first rows."""
+        made: Samples = _each([self], lambda arrays: arrays[0][:count])
+        return made
+
+    @staticmethod
+    def concatenate(blocks: Iterable[Samples]) -> Samples:
+        """Blocks of one recording, one behind the other."""
+        all_ = list(blocks)
+        if not all_:
+            raise ValueError("blocks = []: there is nothing to concatenate; give one block at least")
+        made: Samples = _each(all_, np.concatenate)
+        return made
+
+
+def _each(parts: Any, change: Callable[[list[NDArray[Any]]], NDArray[Any]]) -> Any:
+    """Puts every array of these parts, which are alike, through a change; what is no array is as in the first one."""
+    first = parts[0]
+    if isinstance(first, np.ndarray):
+        return change(parts)
+    if isinstance(first, tuple):
+        return tuple(_each(each, change) for each in zip(*parts, strict=True))
+    if is_dataclass(first) and not isinstance(first, type):
+        of = {f.name: _each([getattr(p, f.name) for p in parts], change) for f in fields(first)}
+        return replace(first, **of)
+    return first
+
+
+_KINDS: dict[str, Any] = {
+    "raw": np.uint64,
+    "valid": np.bool_,
+    "position": np.float64,
+    "turns": np.uint64,
+    "fresh": np.bool_,
+    "cause": np.uint8,
+    "good": np.bool_,
+    "status": np.uint16,
+    "content": np.uint16,
+}
+
+
+def _samples(columns: _Columns, system_hz: int, units: list[tuple[str, int, float | None]]) -> Samples:
+    channels = []
+    for of, (unit, _, wraps_at) in zip(columns["channels"], units, strict=True):
+        arrays = {name: np.frombuffer(data, dtype=_KINDS[name.rsplit("_", 1)[-1]]) for name, data in of.items()}
+        additional = tuple(
+            AdditionalData(**{f.name: arrays.pop(f"additional_{n}_{f.name}") for f in fields(AdditionalData)})
+            for n in (1, 2)
+            if f"additional_{n}_good" in arrays
+        )
+        channels.append(ChannelSamples(unit=unit, wraps_at=wraps_at, additional=additional, **arrays))
+    return Samples(
+        time_s=np.frombuffer(columns["cycles"], dtype=np.uint64) / system_hz,
+        trigger=np.frombuffer(columns["trigger"], dtype=np.uint64),
+        missing=np.frombuffer(columns["missing"], dtype=np.uint64),
+        run=np.frombuffer(columns["run"], dtype=np.int8),
+        channels=tuple(channels),
+    )

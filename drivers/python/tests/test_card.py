@@ -1,0 +1,347 @@
+"""The package against simulated cards: in this process, and as a program of its own behind TCP."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import endat
+
+SERVICE = "virtual:s6_two_channel_service"
+BITS = 29
+
+
+@pytest.fixture(scope="module")
+def card() -> Iterator[endat.Card]:
+    with endat.connect(SERVICE) as card:
+        yield card
+
+
+def test_a_card_says_who_it_is(card: endat.Card) -> None:
+    assert card.identity.channels == 2
+    assert card.identity.protocols == ("EnDat", "EnDat")
+    assert "requests" in card.identity.parts and "outputs" not in card.identity.parts
+    plate = card.encoders()[1]
+    assert plate is not None and plate.initialised and plate.rotary
+    assert plate.steps == 1 << BITS and plate.position_bits == BITS
+    assert "EnDat, EnDat" in repr(card)
+
+
+def test_positions_are_in_units(card: endat.Card) -> None:
+    for reading in card.read():
+        assert reading.fresh and reading.cause == "none" and reading.unit == "deg"
+        assert reading.raw is not None and reading.turns == 0
+        assert reading.position == pytest.approx(reading.raw * 360 / 2**BITS)
+
+
+def test_every_trigger_has_a_row(card: endat.Card) -> None:
+    samples = card.samples(345)
+    assert len(samples) == 345
+    assert (np.diff(samples.trigger.astype(np.int64)) == 1).all() and not samples.missing.any()
+    assert samples.time_s[0] == 0 and np.allclose(np.diff(samples.time_s), 1e-4)
+    assert (samples.run == -1).all()
+    for one in samples.channels:
+        assert one.fresh.all() and (one.cause_names() == "none").all()
+        assert np.allclose(one.position, one.raw * (360 / 2**BITS))
+        # It turns, evenly but for a slow swing.
+        steps = np.diff(one.unwrapped())
+        assert (steps > 0).all() and steps.max() < 2 * steps.min()
+    assert not np.array_equal(samples.channels[0].raw, samples.channels[1].raw)
+
+
+def test_seconds_are_those_of_the_card(card: endat.Card) -> None:
+    samples = card.samples(seconds=0.005)
+    assert len(samples) == 51 and samples.time_s[-1] == pytest.approx(0.005)
+    assert len(card.samples(7, seconds=1)) == 7
+
+
+def test_a_stream_comes_in_blocks_and_leaves_the_card_usable(card: endat.Card) -> None:
+    with closing(card.stream(block=40)) as blocks:
+        # Fewer on a machine that is slow: a block comes twice a second at least.
+        one = next(blocks)
+        assert 0 < len(one) <= 40
+        # Registers are read meanwhile, and nothing is lost for it.
+        assert card.read_register("config0.frame.position_bits") == BITS
+        with pytest.raises(endat.Refused, match="under way"):
+            next(card.stream())
+        two = next(blocks)
+        assert two.trigger[0] == one.trigger[-1] + 1
+        assert two.time_s[0] > one.time_s[-1]
+        assert card.losses() == (0, 0)
+    both = endat.Samples.concatenate([one, two])
+    assert len(both) == len(one) + len(two) and both.channels[1].raw[len(one)] == two.channels[1].raw[0]
+    assert len(both.head(3)) == 3
+    assert len(card.samples(3)) == 3
+
+
+def test_results_are_read_one_by_one_on_request(card: endat.Card) -> None:
+    samples = card.samples(20, poll=True)
+    assert len(samples) == 20 and samples.channels[0].fresh.any()
+    assert (np.diff(samples.trigger.astype(np.int64)) >= 1).all()
+
+
+def test_columns_make_a_table(card: endat.Card) -> None:
+    pandas = pytest.importorskip("pandas") if "CI" not in os.environ else __import__("pandas")
+    table = pandas.DataFrame(card.samples(5).columns())
+    assert list(table["channel1_cause"]) == ["none"] * 5
+    assert table["channel0_deg"].between(0, 360).all() and table["channel0_fresh"].all()
+
+
+def test_parameters_and_mode_commands_reach_the_encoder(card: endat.Card) -> None:
+    # Area 0xA7 is the user's.
+    before = card.read_parameter(0, 0xA7, 3)
+    card.write_parameter(0, 0xA7, 3, before ^ 0x1234)
+    assert card.read_parameter(0, 0xA7, 3) == before ^ 0x1234
+    assert card.read_parameter(1, 0xA7, 3) != before ^ 0x1234
+    assert card.request(0, 0b101010).data == 0
+    assert card.samples(3).channels[0].fresh.all()
+
+
+def test_registers_are_written_by_name_and_within_their_limits(card: endat.Card) -> None:
+    name = "card_config.trigger_period.value"
+    period = card.read_register(name)
+    card.write_register(name, period * 2)
+    assert np.allclose(np.diff(card.samples(5).time_s), 2e-4)
+    card.write_register(name, period)
+    with pytest.raises(endat.BadInput, match=r"takes 4\.\.16777215"):
+        card.write_register(name, 3)
+    assert card.read_register(name) == period
+
+
+BAD: list[tuple[str, str]] = [
+    ("card.read_register('result0.statu')", "no register of that name"),
+    ("card.write_register('card.id', 1)", "read only"),
+    ("card.write_register('card.trigger_now', -1)", "value = -1: outside"),
+    ("card.read_parameter(2, 0xA1, 0)", "channel = 2: the card has 2"),
+    ("card.read_parameter(0, 256, 0)", "area = 256: outside"),
+    ("card.request(0, 64)", "command = 64: outside"),
+    ("card.samples()", "neither count nor seconds"),
+    ("card.samples(0)", "count = 0"),
+    ("card.samples(seconds=float('nan'))", "seconds = nan"),
+    ("next(card.stream(0))", "block = 0"),
+    ("endat.explain('nothing')", "cause = 'nothing'"),
+    ("endat.connect('')", "is empty"),
+    ("endat.connect('virtual:nope')", "unknown preset"),
+    ("endat.connect('virtual:' + __file__ + '.toml')", "cannot"),
+    ("endat.connect('virtual', baud=-1)", "baud = -1"),
+]
+
+
+@pytest.mark.parametrize(("call", "text"), BAD)
+def test_bad_input_is_told_as_such(card: endat.Card, call: str, text: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(text)) as error:
+        eval(call)
+    assert isinstance(error.value, endat.EndatError)
+    assert card.read()[0].fresh
+
+
+def test_what_is_no_card_is_no_card() -> None:
+    for port in ("/dev/null/card", "tcp:127.0.0.1:1"):
+        with pytest.raises(endat.EndatError, match="cannot be opened"):
+            endat.connect(port)
+
+
+def test_a_closed_card_says_so() -> None:
+    with endat.connect("virtual") as card:
+        with pytest.raises(endat.Refused, match="no part `requests`"):
+            card.request(0, 0b101010)
+        blocks = card.stream()
+        next(blocks)
+    with pytest.raises(endat.Refused, match="closed"):
+        card.read()
+    with pytest.raises(endat.Refused, match="closed"):
+        next(blocks)
+    card.close()
+
+
+def test_a_card_that_nothing_triggers_is_refused(tmp_path: Path) -> None:
+    pytest.importorskip("h5py") if "CI" not in os.environ else __import__("h5py")
+    with endat.connect("virtual") as card:
+        card.write_register("card_config.trigger_sources", 0)
+        with pytest.raises(endat.Refused, match="no trigger is enabled"):
+            endat.record(card, tmp_path / "none.h5", 10)
+        card.write_register("card_config.trigger_sources.timer", 1)
+        assert endat.record(card, tmp_path / "none.h5", 10) == 10
+
+
+def test_t_format_has_counts() -> None:
+    with endat.connect("virtual:mixed_protocols") as card:
+        at = card.identity.protocols.index("T-format")
+        one = card.samples(5).channels[at]
+        assert one.unit == "counts" and one.wraps_at is None
+        assert np.array_equal(one.turns, one.raw >> np.uint64(24)) and one.fresh.all()
+        assert card.encoders()[at] is None
+
+
+def test_additional_data_come_with_their_positions(tmp_path: Path) -> None:
+    text = subprocess.run(
+        [os.environ["ENDAT_GEN"], "presets", "--show", "s6_two_channel_service"], capture_output=True, text=True, check=True
+    ).stdout
+    text = text.replace("[stream]", "[stream]\nadditional_data = true")
+    text = re.sub(r"(?m)^sample_hz *= *[0-9_]+", "sample_hz = 5_000", text)
+    assert "additional_data = true" in text
+    config = tmp_path / "card.toml"
+    config.write_text(text)
+    with endat.connect(f"virtual:{config}") as card:
+        card.write_register("service0.list_0.mrs", 0x4C)
+        card.write_register("service0.list_length.length", 1)
+        one = card.samples(200).channels[0].additional[0]
+        assert one.good.any() and (one.status[~one.good] == 0).all()
+        assert set(one.status[one.good] & 0x1F) == {0x0C}
+
+
+def channel(position: list[float], fresh: list[bool], turns: list[int], wraps_at: float | None) -> endat.ChannelSamples:
+    count = len(position)
+    return endat.ChannelSamples(
+        unit="deg",
+        position=np.array(position),
+        turns=np.array(turns, dtype=np.uint64),
+        raw=np.zeros(count, dtype=np.uint64),
+        valid=np.ones(count, dtype=np.bool_),
+        fresh=np.array(fresh),
+        cause=np.zeros(count, dtype=np.uint8),
+        wraps_at=wraps_at,
+        additional=(),
+    )
+
+
+def test_unwrapping_counts_turns_and_skips_what_is_held() -> None:
+    single = channel([350, 355, 355, 2, 358], [True, True, False, True, True], [0] * 5, 360)
+    np.testing.assert_array_equal(single.unwrapped(), [350, 355, np.nan, 362, 358])
+    multi = channel([350, 10, 10], [True] * 3, [4, 5, 9], 360)
+    np.testing.assert_array_equal(multi.unwrapped(), [1790, 1810, 3250])
+    linear = channel([1.5, 900, 3], [True] * 3, [0] * 3, None)
+    np.testing.assert_array_equal(linear.unwrapped(), [1.5, 900, 3])
+    nothing = replace(single, fresh=np.zeros(5, dtype=np.bool_))
+    assert np.isnan(nothing.unwrapped()).all()
+
+
+def test_causes_have_names_and_advice() -> None:
+    assert endat.CAUSES[0] == "none" and "crc" in endat.CAUSES.values()
+    assert "CRC" in endat.explain("crc") and "quiet for 30 ms" in endat.explain("not_taken")
+    for name in set(endat.CAUSES.values()) - {"none", "unknown"}:
+        assert endat.explain(name)
+    one = replace(channel([1], [True], [0], None), cause=np.array([77], dtype=np.uint8))
+    assert one.cause_names()[0] == "unknown"
+
+
+def test_a_recording_says_what_was_measured(card: endat.Card, tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py") if "CI" not in os.environ else __import__("h5py")
+    path = tmp_path / "run.h5"
+    assert endat.record(card, path, 1100) == 1100
+    with pytest.raises(endat.BadInput, match="is there already"):
+        endat.record(card, path, 10)
+    with h5py.File(path) as file:
+        assert file["time"].attrs["units"] == "s" and len(file["time"]) == 1100
+        assert np.allclose(np.diff(file["time"]), 1e-4)
+        assert file.attrs["system_hz"] == card.identity.system_hz
+        assert file.attrs["configuration_hash"] == f"{card.identity.configuration_hash:08x}"
+        one = file["channel0"]
+        plate = card.encoders()[0]
+        assert plate is not None
+        assert one["position"].attrs["units"] == "deg" and one.attrs["serial"] == plate.serial
+        assert np.allclose(one["position"], one["raw"][:] * (360 / 2**BITS))
+        names = h5py.check_enum_dtype(one["cause"].dtype)
+        assert names["none"] == 0 and names["crc"] == next(c for c, n in endat.CAUSES.items() if n == "crc")
+    assert endat.record(card, path, seconds=0.01, replace=True, compression="gzip") == 101
+    with h5py.File(path) as file:
+        assert file["time"][-1] == pytest.approx(0.01)
+
+
+def test_calls_of_several_threads_take_turns(card: endat.Card) -> None:
+    wrong: list[BaseException] = []
+
+    def read() -> None:
+        try:
+            for _ in range(20):
+                assert card.read_register("config1.frame.position_bits") == BITS
+                assert all(r.fresh for r in card.read())
+        except BaseException as error:
+            wrong.append(error)
+
+    threads = [threading.Thread(target=read) for _ in range(4)]
+    for one in threads:
+        one.start()
+    for one in threads:
+        one.join()
+    assert not wrong
+
+
+@pytest.fixture
+def served() -> Iterator[tuple[str, subprocess.Popen[str]]]:
+    """A card in a process of its own: it has a time of its own, too. Slow, so that this machine keeps up."""
+    program = subprocess.Popen(
+        [os.environ["ENDAT_GEN"], "card", "--preset", "s6_two_channel_service", "--tcp", "127.0.0.1:0"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    assert program.stdout is not None
+    for line in program.stdout:
+        found = re.search(r"tcp:[0-9.]+:\d+", line)
+        if found:
+            break
+    else:
+        raise AssertionError("the card has not said its port")
+    threading.Thread(target=program.stdout.read, daemon=True).start()
+    yield found[0], program
+    program.kill()
+    program.wait()
+
+
+def test_a_program_that_is_busy_loses_nothing(served: tuple[str, subprocess.Popen[str]]) -> None:
+    with endat.connect(served[0]) as card, closing(card.stream(block=50)) as blocks:
+        first = next(blocks)
+        # Longer than the buffers of the card hold.
+        time.sleep(3)
+        rest = [next(blocks) for _ in range(10)]
+        samples = endat.Samples.concatenate([first, *rest])
+        assert not samples.missing.any()
+        assert (np.diff(samples.trigger.astype(np.int64)) == 1).all()
+
+
+def test_a_card_that_dies_ends_the_stream(served: tuple[str, subprocess.Popen[str]]) -> None:
+    begin = time.monotonic()
+    with endat.connect(served[0]) as card:
+        with pytest.raises(TimeoutError, match="no sample for 20 s"), closing(card.stream(block=20)) as blocks:
+            next(blocks)
+            served[1].kill()
+            for _ in blocks:
+                pass
+    assert time.monotonic() - begin < 60
+
+
+INTERRUPTED = """
+import sys, endat
+with endat.connect("virtual:s6_two_channel_service") as card:
+    print("ready", flush=True)
+    print(endat.record(card, sys.argv[1]), flush=True)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="SIGINT is sent as POSIX does")
+def test_ctrl_c_ends_a_recording_with_a_whole_file(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py") if "CI" not in os.environ else __import__("h5py")
+    path = tmp_path / "night.h5"
+    program = subprocess.Popen([sys.executable, "-c", INTERRUPTED, str(path)], stdout=subprocess.PIPE, text=True)
+    assert program.stdout is not None and program.stdout.readline() == "ready\n"
+    while not path.exists():
+        time.sleep(0.1)
+    time.sleep(2)
+    program.send_signal(signal.SIGINT)
+    told, _ = program.communicate(timeout=20)
+    assert program.returncode == 0
+    with h5py.File(path) as file:
+        assert len(file["time"]) == len(file["channel1/raw"]) == int(told) > 0

@@ -1,0 +1,247 @@
+//! The thread that owns a card: it does one job after the other, and takes what a real card pushes even while Python does something else.
+
+use crate::fault::{Fault, Kind};
+use endat_gen::virtual_card::virtual_card_at;
+use endat_host::feed::{Feed, Row};
+use endat_host::transport::Port;
+use endat_host::units::Scale;
+use endat_host::{Bridge, HostError, Transport};
+use std::collections::VecDeque;
+use std::sync::mpsc::{channel, Receiver, RecvTimeoutError, Sender, TryRecvError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// A card, whatever it is behind.
+pub type AnyCard = endat_host::Card<Box<dyn Transport>>;
+/// A job, done in the worker's thread.
+type Job = Box<dyn FnOnce(&mut Worker) + Send>;
+
+/// Rows that wait for Python at most, a minute and a half at 10 kHz; what comes then is lost in the card, and counted there.
+const ROWS_MAX: usize = 1_000_000;
+/// How long the link is listened to between two looks for jobs.
+const SLICE: Duration = Duration::from_millis(20);
+/// No row for so long: something is wrong.
+const SILENCE: Duration = Duration::from_secs(20);
+/// How often Python looks for Ctrl-C.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// What the thread has.
+pub struct Worker {
+    /// The card.
+    pub card: AnyCard,
+    /// What a measuring step is, of every channel.
+    pub scales: Vec<Scale>,
+    /// The recording that is under way.
+    pub recording: Option<Recording>,
+    /// The card has its own time: its rows come whether anybody asks for them or not.
+    is_real: bool,
+}
+
+/// A recording.
+pub struct Recording {
+    /// Where the rows come from.
+    pub feed: Feed,
+    /// Rows that have come and are not fetched.
+    pub rows: VecDeque<Row>,
+    heard: Instant,
+    /// What ended it; told when all rows before it have been fetched.
+    broken: Option<HostError>,
+}
+
+impl Worker {
+    fn open(port: &str, baud: u32) -> Result<Self, Fault> {
+        let virtual_card = virtual_card_at(port)?;
+        let is_real = virtual_card.is_none();
+        let transport: Box<dyn Transport> = match virtual_card {
+            Some(card) => Box::new(card),
+            None => Box::new(Port::open(port, baud)?),
+        };
+        Ok(Self {
+            card: AnyCard::find(Bridge::new(transport))?,
+            scales: Vec::new(),
+            recording: None,
+            is_real,
+        })
+    }
+
+    /// Begins a recording.
+    pub fn begin(&mut self, polls: bool) -> Result<(), Fault> {
+        if self.recording.is_some() {
+            return Err(Fault::new(
+                Kind::Refused,
+                "a recording of this card is under way; close its iterator first",
+            ));
+        }
+        self.card.needs_trigger(
+            "as with card.write_register(\"card_config.trigger_sources.timer\", 1)",
+        )?;
+        self.scales = self.card.scales()?;
+        self.recording = Some(Recording {
+            feed: Feed::begin(&mut self.card, polls)?,
+            rows: VecDeque::new(),
+            heard: Instant::now(),
+            broken: None,
+        });
+        Ok(())
+    }
+
+    /// Ends it: the link is as it was before.
+    pub fn end(&mut self) -> Result<(), Fault> {
+        match self.recording.take() {
+            Some(recording) => Ok(recording.feed.end(&mut self.card)?),
+            None => Ok(()),
+        }
+    }
+
+    /// Listens a while. A card that does not answer may do so again.
+    fn listen(&mut self) {
+        let Some(now) = &mut self.recording else {
+            return;
+        };
+        let before = now.rows.len();
+        let filled = now.feed.fill(&mut self.card, &mut now.rows, SLICE);
+        if now.rows.len() > before {
+            now.heard = Instant::now();
+        }
+        now.broken = match filled {
+            Err(HostError::Silent { .. }) | Ok(()) => None,
+            Err(error) => Some(error),
+        };
+    }
+
+    fn is_listening(&self) -> bool {
+        let is_wanted = |r: &Recording| r.rows.len() < ROWS_MAX && r.broken.is_none();
+        self.is_real && self.recording.as_ref().is_some_and(is_wanted)
+    }
+
+    /// Takes up to `count` rows, after listening once if there are fewer; an error when there will be no more.
+    pub fn take(&mut self, count: usize) -> Result<Vec<Row>, Fault> {
+        let waiting = self.recording.as_ref().map_or(0, |r| r.rows.len());
+        if waiting < count && !self.recording.as_ref().is_some_and(|r| r.broken.is_some()) {
+            self.listen();
+        }
+        let Some(now) = &mut self.recording else {
+            return Err(Fault::new(Kind::Refused, "no recording is under way"));
+        };
+        let rows: Vec<Row> = now.rows.drain(..count.min(now.rows.len())).collect();
+        if rows.is_empty() {
+            if let Some(error) = now.broken.take() {
+                return Err(error.into());
+            }
+            if now.heard.elapsed() > SILENCE {
+                return Err(Fault::new(
+                    Kind::Silent,
+                    format!(
+                        "no sample for {} s; is a trigger enabled (card_config.trigger_sources), is the card plugged in?",
+                        SILENCE.as_secs()
+                    ),
+                ));
+            }
+        }
+        Ok(rows)
+    }
+
+    fn work(mut self, jobs: &Receiver<Job>) {
+        loop {
+            let next = match self.is_listening() {
+                true => jobs.try_recv(),
+                false => jobs.recv().map_err(|_| TryRecvError::Disconnected),
+            };
+            match next {
+                Ok(job) => job(&mut self),
+                Err(TryRecvError::Empty) => self.listen(),
+                Err(TryRecvError::Disconnected) => break,
+            }
+        }
+        // Nobody is left to be told.
+        let _ = self.end();
+    }
+}
+
+/// What does jobs in the thread.
+#[derive(Clone)]
+pub struct Jobs(Sender<Job>);
+
+/// Python's end of the thread.
+pub struct Handle {
+    jobs: Jobs,
+    thread: thread::JoinHandle<()>,
+}
+
+/// Waits for something of the thread, and meanwhile for Ctrl-C by calling `look`.
+fn wait<R, E>(
+    answer: &Receiver<R>,
+    mut look: impl FnMut() -> Result<(), E>,
+) -> Result<Option<R>, E> {
+    loop {
+        match answer.recv_timeout(LOOK) {
+            Ok(answer) => return Ok(Some(answer)),
+            Err(RecvTimeoutError::Disconnected) => return Ok(None),
+            Err(RecvTimeoutError::Timeout) => look()?,
+        }
+    }
+}
+
+impl Handle {
+    /// Opens a port in a thread of its own and finds out who answers.
+    pub fn open<E>(
+        port: String,
+        baud: u32,
+        look: impl FnMut() -> Result<(), E>,
+    ) -> Result<Result<Self, Fault>, E> {
+        let (jobs, todo) = channel::<Job>();
+        let (tell, told) = channel();
+        let thread = thread::spawn(move || match Worker::open(&port, baud) {
+            Ok(worker) => {
+                let _ = tell.send(Ok(()));
+                drop(tell);
+                worker.work(&todo);
+            }
+            Err(fault) => {
+                let _ = tell.send(Err(fault));
+            }
+        });
+        let opened = wait(&told, look)?.unwrap_or_else(|| Err(gone()));
+        Ok(opened.map(|()| Self {
+            jobs: Jobs(jobs),
+            thread,
+        }))
+    }
+
+    /// What does jobs in it.
+    pub fn jobs(&self) -> Jobs {
+        self.jobs.clone()
+    }
+
+    /// Ends the thread, with the recording that may be under way.
+    pub fn close(self) {
+        drop(self.jobs);
+        let _ = self.thread.join();
+    }
+}
+
+impl Jobs {
+    /// Does a job in the thread and waits for what comes of it.
+    pub fn call<R: Send + 'static, E>(
+        &self,
+        job: impl FnOnce(&mut Worker) -> Result<R, Fault> + Send + 'static,
+        look: impl FnMut() -> Result<(), E>,
+    ) -> Result<Result<R, Fault>, E> {
+        let (tell, told) = channel();
+        let job: Job = Box::new(move |worker| {
+            let _ = tell.send(job(worker));
+        });
+        let sent = self.0.send(job);
+        if sent.is_err() {
+            return Ok(Err(gone()));
+        }
+        Ok(wait(&told, look)?.unwrap_or_else(|| Err(gone())))
+    }
+}
+
+fn gone() -> Fault {
+    Fault::new(
+        Kind::Link,
+        "the thread of the card has ended; this is a fault of the package, please report it",
+    )
+}

@@ -1,0 +1,95 @@
+//! The Python package: as a wheel, installed in an environment of its own, its tests, its types.
+
+use crate::tools;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/drivers/python");
+
+/// What the tests import; plain `pip install endat` takes numpy alone.
+const MODULES: [&str; 5] = ["pytest", "mypy", "matplotlib", "h5py", "pandas"];
+
+fn done(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let told = text(&output.stdout) + &text(&output.stderr);
+    assert!(output.status.success(), "{command:?}\n{told}");
+    told
+}
+
+/// The one wheel in a folder that was empty.
+fn wheel_in(folder: &Path) -> PathBuf {
+    let mut files = fs::read_dir(folder).unwrap().map(|f| f.unwrap().path());
+    let wheel = files.next().expect("a wheel");
+    assert!(files.next().is_none(), "more than a wheel");
+    wheel
+}
+
+/// Catches whatever breaks the package: a wheel without a file, a changed library, a promise in the types that is not kept.
+#[test]
+fn the_python_package_is_built_installed_tested_and_typed() {
+    let check = "the Python package is built, installed and tested";
+    let is_there =
+        tools::require("maturin", check) && MODULES.iter().all(|m| tools::require_python(m, check));
+    if !is_there {
+        return;
+    }
+    let dir = tools::folder("python");
+    let (wheels, environment) = (dir.join("wheels"), dir.join("environment"));
+    // In the folder of this build: what the wheel has in common with the program is there.
+    let target = Path::new(env!("CARGO_BIN_EXE_endat-gen"))
+        .ancestors()
+        .nth(2);
+    done(
+        Command::new("maturin")
+            .args(["build", "--locked", "--profile", "dev", "--out"])
+            .arg(&wheels)
+            .env("CARGO_TARGET_DIR", target.unwrap())
+            .current_dir(FOLDER),
+    );
+    let wheel = wheel_in(&wheels);
+    let name = wheel.file_name().unwrap().to_str().unwrap();
+    let begin = format!("endat-{}-cp310-abi3-", env!("CARGO_PKG_VERSION"));
+    assert!(name.starts_with(&begin), "{name}: not {begin}...");
+    done(
+        Command::new("python3")
+            .args(["-m", "venv", "--system-site-packages"])
+            .arg(&environment),
+    );
+    let python = environment.join("bin/python");
+    done(
+        Command::new(&python)
+            .args(["-m", "pip", "install", "--quiet", "--no-deps", "--no-index"])
+            .arg(&wheel),
+    );
+    // From another folder, so that the sources are not what is imported.
+    let tests = format!("{FOLDER}/tests");
+    done(
+        Command::new(&python)
+            .args(["-m", "pytest", "-q", "-p", "no:cacheprovider", &tests])
+            .env("ENDAT_GEN", env!("CARGO_BIN_EXE_endat-gen"))
+            .current_dir(&dir),
+    );
+    // The installed types, in the strict reading of somebody who uses them.
+    done(
+        Command::new(&python)
+            .args(["-m", "mypy", "--strict", "--cache-dir"])
+            .args([Path::new("cache"), Path::new(&tests)])
+            .current_dir(&dir),
+    );
+    done(
+        Command::new(&python)
+            .args([
+                "-m",
+                "mypy",
+                "--strict",
+                "--cache-dir",
+                "cache",
+                "-p",
+                "endat",
+            ])
+            .current_dir(&dir),
+    );
+    fs::remove_dir_all(&dir).unwrap();
+}
