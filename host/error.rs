@@ -25,6 +25,12 @@ pub enum HostError {
         /// How long each answer was waited for.
         wait_ms: u64,
     },
+    /// Nothing is recorded, though it should be.
+    #[error("no sample for {seconds} s; is a trigger enabled (card_config.trigger_sources), is the card plugged in?")]
+    NoSample {
+        /// How long it was waited for.
+        seconds: u64,
+    },
     /// What answers is no card, or one of another time.
     #[error("{0}")]
     NoCard(String),

@@ -1,5 +1,7 @@
 //! Rows of positions, one for each trigger: from the stream if the card has one, else from its result registers.
 
+mod clock;
+
 use crate::card::Card;
 use crate::causes;
 use crate::registers::Place;
@@ -7,6 +9,7 @@ use crate::stream::{Sample, SampleSet};
 use crate::transport::Transport;
 use crate::witness::Witness;
 use crate::HostError;
+use clock::Clock;
 use endat_driver::AdditionalData as Info;
 use endat_driver::Reading;
 use endat_regs::Part;
@@ -35,6 +38,19 @@ pub const NO_CAUSES: [(&str, &str); 3] = [
     (LATE, "the position that came for the last too_late, a trigger or more after its own"),
 ];
 
+/// Code of a name that is unknown.
+pub const UNKNOWN_CODE: u8 = u8::MAX;
+/// Code of the first of [`NO_CAUSES`], behind the numbers of all causes.
+const NO_CAUSE_CODES: u8 = 128;
+
+/// A code for everything that stands where a cause would: the cause's number, or one of its own.
+pub fn cause_codes() -> impl Iterator<Item = (u8, &'static str)> {
+    let known = causes::ALL.iter().map(|c| (c.number as u8, c.name));
+    let others = NO_CAUSES.iter().enumerate();
+    let others = others.map(|(n, (name, _))| (NO_CAUSE_CODES + n as u8, *name));
+    known.chain(others).chain([(UNKNOWN_CODE, "unknown")])
+}
+
 /// A channel of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cell {
@@ -49,6 +65,12 @@ pub struct Cell {
 }
 
 impl Cell {
+    /// The code of its cause, see [`cause_codes`].
+    pub fn cause_code(&self) -> u8 {
+        let found = cause_codes().find(|(_, name)| *name == self.cause);
+        found.map_or(UNKNOWN_CODE, |(code, _)| code)
+    }
+
     /// What a set of the stream says of a channel that speaks one protocol or the other.
     fn of(sample: &Sample, is_t_format: bool) -> Self {
         let named = sample.cause_name(is_t_format);
@@ -82,80 +104,6 @@ pub struct Row {
     pub missing: u64,
     /// One for each channel.
     pub cells: Vec<Cell>,
-}
-
-/// Makes numbers that wrap into numbers that do not: two rows must be less than 2^16 triggers and 2^32 cycles apart.
-#[derive(Clone, Debug, Default)]
-struct Clock {
-    last: Option<(u16, u32)>,
-    /// A running clock's position since the last trigger, and its place in time.
-    passed: Option<(u32, u64)>,
-    trigger: u64,
-    cycles: u64,
-    /// What the card's own count of triggers is more than `trigger`.
-    above: u32,
-    /// How many triggers there have been since the last row, as the card has counted them behind a pause.
-    ahead: Option<u32>,
-}
-
-impl Clock {
-    /// Takes the card's own count of triggers: over a pause the number of a trigger may wrap more than once.
-    fn counted(&mut self, triggers: u32) {
-        match self.last {
-            None => self.above = triggers,
-            Some(_) => {
-                let ahead = triggers.wrapping_sub(self.above.wrapping_add(self.trigger as u32));
-                self.ahead = Some(ahead).filter(|ahead| *ahead as i32 > 0);
-            }
-        }
-    }
-
-    /// Takes a trigger's number and moment; gives how many were missing before it.
-    fn step(&mut self, sequence: u16, timestamp: u32) -> u64 {
-        let missing = match self.last {
-            None => {
-                self.trigger = sequence.into();
-                let since = sequence.wrapping_sub(self.above as u16) as i16;
-                let counted = self.above.wrapping_add_signed(since.into());
-                self.above = counted.wrapping_sub(sequence.into());
-                0
-            }
-            Some((last_sequence, last_timestamp)) => {
-                let low = u64::from(sequence.wrapping_sub(last_sequence));
-                let ahead = u64::from(self.ahead.take().unwrap_or(0));
-                let wraps = (ahead + 0x8000).saturating_sub(low) >> 16;
-                let steps = low + (wraps << 16);
-                self.trigger += steps;
-                self.cycles = match self.passed {
-                    None => self.cycles + u64::from(timestamp.wrapping_sub(last_timestamp)),
-                    Some(passed) => near(passed, timestamp),
-                };
-                steps.saturating_sub(1)
-            }
-        };
-        self.last = Some((sequence, timestamp));
-        self.passed = None;
-        missing
-    }
-
-    /// Takes the moment of a running clock's position; gives its place in time.
-    fn pass(&mut self, timestamp: u32) -> u64 {
-        let known = self
-            .passed
-            .or(self.last.map(|(_, last)| (last, self.cycles)));
-        let known = known.unwrap_or((timestamp, self.cycles));
-        let cycles = near(known, timestamp);
-        if cycles >= known.1 {
-            self.passed = Some((timestamp, cycles));
-        }
-        cycles
-    }
-}
-
-/// The place in time of a moment shortly before or after one whose place is known.
-fn near((known, cycles): (u32, u64), timestamp: u32) -> u64 {
-    let since = timestamp.wrapping_sub(known) as i32;
-    cycles.saturating_add_signed(since.into())
 }
 
 /// Bits of `card.stream_control`: collect and push.
@@ -429,58 +377,5 @@ mod tests {
         assert_eq!(row([0, 4], [0, 25]), Some((4, 0, 20, [false, true])));
         assert_eq!(row([1, 7], [45, 85]), Some((7, 2, 80, [true, true])));
         assert_eq!(row([1, 8], [45, 105]), Some((8, 0, 100, [false, true])));
-    }
-
-    #[test]
-    fn positions_of_a_running_clock_stand_between_the_triggers() {
-        let mut clock = Clock::default();
-        clock.step(7, 0xFFFF_FF00);
-        assert_eq!([0xFFFF_FFF0, 0x10].map(|t| clock.pass(t)), [0xF0, 0x110]);
-        // Each channel has its own delay until its position is sent.
-        assert_eq!(clock.pass(8), 0x108);
-        // The trigger was before the position that came last.
-        assert_eq!((clock.step(8, 0xC), clock.cycles), (0, 0x10C));
-        // A run of many seconds.
-        for n in 1..20u32 {
-            clock.pass(n.wrapping_mul(1 << 30));
-        }
-        assert_eq!((clock.step(9, 0xC), clock.trigger), (0, 9));
-        assert_eq!(clock.cycles, 0x100 + (5 << 32) + 0xC);
-    }
-
-    /// Catches a pause of 100 000 triggers that is counted as one of 34 464.
-    #[test]
-    fn over_a_pause_the_cards_own_count_tells_how_many_were_missed() {
-        for begin in [0x0003_0005u32, 0x0002_FFF0, 0xFFFF_FFF0] {
-            let mut clock = Clock::default();
-            // Asked some triggers before the first row, and some before or after the first one behind the pause.
-            clock.counted(begin.wrapping_sub(20));
-            clock.step(begin as u16, 0);
-            for late in [0, 3, u32::MAX - 2] {
-                let before = clock.trigger;
-                let now = begin.wrapping_add(before as u32 - u32::from(begin as u16) + 100_000);
-                clock.counted(now.wrapping_add(late));
-                assert_eq!(clock.step(now as u16, 0), 99_999, "{begin:#x} {late}");
-                assert_eq!(clock.trigger, before + 100_000);
-            }
-            // Nothing was missed: the count is that of now.
-            clock.counted(begin.wrapping_add(300_000));
-            let next = begin.wrapping_add(300_001) as u16;
-            assert_eq!(clock.step(next, 0), 0);
-        }
-    }
-
-    #[test]
-    fn numbers_that_wrap_go_on() {
-        let mut clock = Clock::default();
-        let steps = [(0xFFFE, 0xFFFF_FFF0), (0xFFFF, 0x10), (2, 0x30)];
-        let missing = steps.map(|(sequence, timestamp)| {
-            let missing = clock.step(sequence, timestamp);
-            (clock.trigger, clock.cycles, missing)
-        });
-        assert_eq!(
-            missing,
-            [(0xFFFE, 0, 0), (0xFFFF, 0x20, 0), (0x1_0002, 0x40, 2)]
-        );
     }
 }

@@ -20,6 +20,7 @@ mod error;
 pub mod feed;
 pub mod mailbox;
 pub mod name_plate;
+pub mod owner;
 pub mod panda;
 pub mod ready;
 pub mod registers;

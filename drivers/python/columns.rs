@@ -1,31 +1,13 @@
 //! Rows of a recording as columns of numbers, as numpy takes them.
 
 use endat_driver::AdditionalData;
-use endat_host::causes;
-use endat_host::feed::{Cell, Row, NO_CAUSES};
+use endat_host::feed::{Cell, Row};
 use endat_host::units::Scale;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList};
 
-/// Codes of what stands in the place of a cause, behind those of the causes.
-const NO_CAUSE_CODES: u8 = 128;
-/// Code of a cause that this package does not know.
-const UNKNOWN: u8 = 255;
 /// In the place of the channel whose running clock brought a position: a trigger did.
 const NO_RUN: i8 = -1;
-
-/// All names in the place of a cause, and the codes that columns have.
-pub fn codes() -> impl Iterator<Item = (u8, &'static str)> {
-    let known = causes::ALL.iter().map(|c| (c.number as u8, c.name));
-    let others = NO_CAUSES.iter().enumerate();
-    let others = others.map(|(n, (name, _))| (NO_CAUSE_CODES + n as u8, *name));
-    known.chain(others).chain([(UNKNOWN, "unknown")])
-}
-
-fn code(name: &str) -> u8 {
-    let found = codes().find(|(_, known)| *known == name);
-    found.map_or(UNKNOWN, |(code, _)| code)
-}
 
 /// The bytes of numbers, one after the other.
 macro_rules! bytes {
@@ -57,7 +39,7 @@ fn channel<'py>(
     let turns = |c: &Cell| units(c).and_then(|u| u.turns).unwrap_or(0);
     columns.set_item("turns", bytes!(py, each().map(|c| turns(c))))?;
     columns.set_item("fresh", bytes!(py, each().map(|c| u8::from(c.fresh))))?;
-    columns.set_item("cause", bytes!(py, each().map(|c| code(c.cause))))?;
+    columns.set_item("cause", bytes!(py, each().map(|c| c.cause_code())))?;
     if has_infos {
         for n in 0..2 {
             let each = || each().map(|c: &&Cell| c.infos[n]);

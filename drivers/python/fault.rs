@@ -1,6 +1,5 @@
 //! What goes wrong, on its way to the exceptions of `endat.errors`.
 
-use endat_gen::error::GenError;
 use endat_host::HostError;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
@@ -41,15 +40,9 @@ impl From<HostError> for Fault {
             HostError::Link { .. } | HostError::NoCard(_) => Kind::Link,
             HostError::Name(_) => Kind::BadInput,
             HostError::Part { .. } | HostError::Refused(_) => Kind::Refused,
-            HostError::Silent { .. } => Kind::Silent,
+            HostError::Silent { .. } | HostError::NoSample { .. } => Kind::Silent,
         };
         Self::new(kind, error.to_string())
-    }
-}
-
-impl From<GenError> for Fault {
-    fn from(error: GenError) -> Self {
-        Self::new(Kind::BadInput, error.messages().join("\n"))
     }
 }
 

@@ -1,13 +1,12 @@
 //! What the Python package `endat` has of the Rust program: a card at the other end of a link, or simulated in this process.
 //!
 //! ```text
-//! endat.Card (Python) -> NativeCard -> worker's thread, which owns the card -> endat_host
+//! endat.Card (Python) -> NativeCard -> endat_host::owner, a thread that owns the card -> endat_host::Card
 //! ```
 
 mod columns;
 mod fault;
 mod native;
-mod worker;
 
 use pyo3::prelude::*;
 

@@ -2,12 +2,14 @@
 
 use crate::columns;
 use crate::fault::{Fault, Kind};
-use crate::worker::{Handle, Worker};
+use endat_gen::virtual_card::{card_at, is_virtual};
 use endat_host::causes;
-use endat_host::feed::NO_CAUSES;
+use endat_host::feed::{cause_codes, NO_CAUSES};
 use endat_host::mailbox::Request;
 use endat_host::name_plate::NamePlate;
+use endat_host::owner::{Handle, Owner};
 use endat_host::registers::Access;
+use endat_host::HostError;
 use endat_regs::Part;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -20,14 +22,17 @@ pub fn connect(py: Python<'_>, port: String, baud: u32) -> PyResult<NativeCard> 
         let text = "port = \"\": is empty; give the card's serial port, tcp:HOST:PORT or virtual";
         return Err(Fault::new(Kind::BadInput, text).into());
     }
-    let handle = py.detach(|| Handle::open(port, baud, look))??;
+    let is_real = !is_virtual(&port);
+    let find = move || card_at(&port, baud);
+    let handle =
+        py.detach(|| Handle::open(find, is_real, look).map(|r| r.map_err(Fault::from)))??;
     Ok(NativeCard(Mutex::new(Some(handle))))
 }
 
 /// Names that stand in the place of a cause, with their codes.
 #[pyfunction]
 pub fn cause_names() -> Vec<(u8, &'static str)> {
-    columns::codes().collect()
+    cause_codes().collect()
 }
 
 /// What a cause means and what helps.
@@ -56,7 +61,7 @@ impl NativeCard {
     fn call<R: Send + 'static>(
         &self,
         py: Python<'_>,
-        job: impl FnOnce(&mut Worker) -> Result<R, Fault> + Send + 'static,
+        job: impl FnOnce(&mut Owner) -> Result<R, HostError> + Send + 'static,
     ) -> PyResult<R> {
         py.detach(|| {
             let closed = || Fault::new(Kind::Refused, "the card has been closed");
@@ -65,7 +70,7 @@ impl NativeCard {
                 .as_ref()
                 .map(Handle::jobs)
                 .ok_or_else(closed)?;
-            Ok(jobs.call(job, look)??)
+            Ok(jobs.call(job, look)?.map_err(Fault::from)?)
         })
     }
 }
@@ -203,7 +208,7 @@ impl NativeCard {
 
     /// Ends the recording, if there is one.
     fn end(&self, py: Python<'_>) -> PyResult<()> {
-        self.call(py, Worker::end)
+        self.call(py, Owner::end)
     }
 
     /// Reads a word or field.
@@ -292,16 +297,13 @@ impl NativeCard {
     }
 }
 
-fn is_there(worker: &Worker, channel: usize) -> Result<(), Fault> {
+fn is_there(worker: &Owner, channel: usize) -> Result<(), HostError> {
     let channels = worker.card.identity().channels;
     match channel < channels {
         true => Ok(()),
-        false => Err(Fault::new(
-            Kind::BadInput,
-            format!(
-                "channel = {channel}: the card has {channels}; give 0 to {}",
-                channels - 1
-            ),
-        )),
+        false => Err(HostError::Name(format!(
+            "channel = {channel}: the card has {channels}; give 0 to {}",
+            channels - 1
+        ))),
     }
 }

@@ -132,6 +132,8 @@ enum Command {
     Log(host::log::LogArgs),
     /// Watch positions, rate, health and margin live
     Monitor(host::monitor::MonitorArgs),
+    /// Watch a card in a browser: positions over time, causes, health, registers; record
+    View(host::view::ViewArgs),
     /// Serve a card to PandABlocks clients, which record HDF5
     Serve(host::serve::ServeArgs),
     /// Read and write registers of a card by name
@@ -337,6 +339,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Read(arguments)) => host::read::run(&arguments),
         Some(Command::Log(arguments)) => host::log::run(&arguments),
         Some(Command::Monitor(arguments)) => host::monitor::run(&arguments),
+        Some(Command::View(arguments)) => host::view::run(&arguments),
         Some(Command::Serve(arguments)) => host::serve::run(&arguments),
         Some(Command::Reg(arguments)) => host::reg::run(&arguments),
         Some(Command::Param(arguments)) => host::param::run(&arguments),

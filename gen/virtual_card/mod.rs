@@ -17,7 +17,9 @@ use crate::error::{shown, GenError};
 use endat_hdl::card::{service_times, Card};
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::service::program::ServiceTimes;
-use endat_host::Transport;
+use endat_host::owner::AnyCard;
+use endat_host::transport::Port;
+use endat_host::{Bridge, HostError, Transport};
 use endat_sim::bench::{Bench, Link, PinNames, TFormatLink, Uart};
 use endat_sim::encoder::{EncoderConfig, LatchEdge, PositionSource, DEVICES};
 use endat_sim::line::{Jitter, LineConfig};
@@ -198,20 +200,41 @@ fn t_format_link(
     Ok(link)
 }
 
+/// What is behind `virtual` in the name of a port: a preset or a file; none for other ports.
+fn behind_virtual(port: &str) -> Option<&str> {
+    match port.strip_prefix("virtual")? {
+        "" => Some(DEFAULT_PRESET),
+        rest => rest.strip_prefix(':'),
+    }
+}
+
+/// Whether the port is a card simulated in this process, whose time goes on only while somebody waits for it.
+pub fn is_virtual(port: &str) -> bool {
+    behind_virtual(port).is_some()
+}
+
 /// The card of a port called `virtual`, `virtual:PRESET` or `virtual:FILE.toml`; none for other ports.
 pub fn virtual_card_at(port: &str) -> Result<Option<VirtualCard>, GenError> {
-    let project = match port.strip_prefix("virtual") {
-        Some("") => load_preset(DEFAULT_PRESET)?,
-        Some(rest) if rest.starts_with(':') && rest.ends_with(".toml") => {
-            load_file(Path::new(&rest[1..]))?
+    let project = match behind_virtual(port) {
+        None => return Ok(None),
+        Some(file) if file.ends_with(".toml") => load_file(Path::new(file))?,
+        Some(name) => {
+            preset_of("virtual:PRESET in --port", name)?;
+            load_preset(name)?
         }
-        Some(rest) if rest.starts_with(':') => {
-            preset_of("virtual:PRESET in --port", &rest[1..])?;
-            load_preset(&rest[1..])?
-        }
-        _ => return Ok(None),
     };
     VirtualCard::new(&project, &VirtualConfig::default()).map(Some)
+}
+
+/// Finds the card of a port, real or simulated. What is wrong with the configuration of a simulated one is told as a wrong name.
+pub fn card_at(port: &str, baud: u32) -> Result<AnyCard, HostError> {
+    let virtual_card = virtual_card_at(port);
+    let virtual_card = virtual_card.map_err(|e| HostError::Name(e.messages().join("\n")))?;
+    let transport: Box<dyn Transport> = match virtual_card {
+        Some(card) => Box::new(card),
+        None => Box::new(Port::open(port, baud)?),
+    };
+    AnyCard::find(Bridge::new(transport))
 }
 
 impl VirtualCard {

@@ -117,7 +117,8 @@ fn step(number: u16) -> String {
     format!("step {number} ({})", step_name(number))
 }
 
-fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
+/// A name plate, a line for each thing that is known.
+pub fn plate_text(plate: &NamePlate, system_hz: u32) -> String {
     let mut text = String::new();
     let mut line = |name: &str, value: Option<String>| {
         if let Some(value) = value {

@@ -3,7 +3,7 @@
 use super::super::number::number_if;
 use super::super::pictures::{write_all, File};
 use super::super::{to_json, Outcome};
-use super::{channel, told, PortArgs};
+use super::{channel, told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::Args;
 use endat_host::registers::Place;
@@ -38,25 +38,68 @@ const BINS: usize = 32;
 /// Longest wait for the frames that are asked for.
 const WAIT: Duration = Duration::from_secs(600);
 
+/// Refuses a channel whose margin the card does not measure.
+pub fn needs(card: &AnyCard, channel: usize) -> Result<(), HostError> {
+    let why = match channel < card.identity().channels {
+        true if !card.identity().is_t_format(channel) => None,
+        true => Some("speaks T-format"),
+        false => Some("the card has none"),
+    };
+    if let Some(why) = why {
+        return Err(HostError::Name(format!(
+            "--channel = {channel}: {why}; the margin is measured on EnDat channels, give one of those"
+        )));
+    }
+    if !card.identity().has(Part::Margin) {
+        return Err(HostError::Part {
+            what: "margin",
+            part: "margin",
+            remedy: "[line] parts = [\"alignment\", \"margin\"]",
+        });
+    }
+    card.place(&format!("line{channel}.frames")).map(|_| ())
+}
+
+/// What the card has measured.
+pub fn edges(card: &mut AnyCard, channel: usize) -> Result<Edges, HostError> {
+    let first = card.place(&format!("line{channel}.edges_0"))?;
+    let bins = card.bridge().read(first.address(), BINS)?;
+    let mut field = |name: &str| card.read_named(&format!("line{channel}.{name}"));
+    let shift = field("alignment.bin_shift")?;
+    let (earliest, latest) = (
+        field("worst.earliest")? as u8 as i8,
+        field("worst.latest")? as u8 as i8,
+    );
+    let has_edges = field("worst.valid")? == 1;
+    let (tracked, reference) = (field("phase.tracked")?, field("phase.reference")?);
+    let (glitches, bad_frames) = (field("counts.glitches")?, field("counts.bad_frames")?);
+    let frames = field("frames")?;
+    let period = card.read_named(&format!("config{channel}.frame.period_cycles"))?;
+    let identity = card.identity();
+    let places_per_cycle = if identity.has(Part::DoubleEdge) { 2 } else { 1 };
+    let place_ns = 1e9 / f64::from(identity.system_hz.max(1)) / f64::from(places_per_cycle);
+    let cycle_ns = place_ns * f64::from(places_per_cycle);
+    Ok(Edges {
+        bins,
+        places_per_bin: 1 << shift,
+        half_bit_places: f64::from(period * places_per_cycle) / 2.0,
+        place_ns,
+        extremes: has_edges.then_some((earliest, latest)),
+        frames,
+        bad_frames,
+        glitches,
+        drift_ns: (f64::from(tracked) - f64::from(reference)) / 16.0 * cycle_ns,
+        delay_ns: f64::from(tracked) / 16.0 * cycle_ns,
+    })
+}
+
 /// Runs the command.
 pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
     let frames = number_if("--frames", &arguments.frames, 1..=u64::from(u32::MAX))?;
     let frames = frames.map(|n| n as u32);
     let mut card = arguments.port.open()?;
     let channel = channel(&card, arguments.channel.as_deref())?;
-    if card.identity().is_t_format(channel) {
-        return Err(GenError::input(format!(
-            "--channel = {channel}: speaks T-format; the margin is measured on EnDat channels, give one of those"
-        )));
-    }
-    if !card.identity().has(Part::Margin) {
-        return Err(told(HostError::Part {
-            what: "margin",
-            part: "margin",
-            remedy: "[line] parts = [\"alignment\", \"margin\"]",
-        }));
-    }
-    card.place(&format!("line{channel}.frames")).map_err(told)?;
+    needs(&card, channel).map_err(told)?;
     let at = |register: &str| {
         Place::named(&format!("line{channel}.{register}"), channel + 1).map_err(told)
     };
@@ -74,60 +117,28 @@ pub fn run(arguments: &MarginArgs) -> Result<Outcome, GenError> {
             }
         }
     }
-    let bins = card
-        .bridge()
-        .read(at("edges_0")?.address(), BINS)
-        .map_err(told)?;
-    let mut field = |name: &str| card.read(&at(name)?).map_err(told);
-    let shift = field("alignment.bin_shift")?;
-    let (earliest, latest) = (
-        field("worst.earliest")? as u8 as i8,
-        field("worst.latest")? as u8 as i8,
-    );
-    let has_edges = field("worst.valid")? == 1;
-    let (tracked, reference) = (field("phase.tracked")?, field("phase.reference")?);
-    let (glitches, bad) = (field("counts.glitches")?, field("counts.bad_frames")?);
-    let counted = field("frames")?;
-    let place =
-        Place::named(&format!("config{channel}.frame.period_cycles"), channel + 1).map_err(told)?;
-    let period = card.read(&place).map_err(told)?;
-    let identity = card.identity();
-    let places_per_cycle = if identity.has(Part::DoubleEdge) { 2 } else { 1 };
-    let place_ns = 1e9 / f64::from(identity.system_hz.max(1)) / f64::from(places_per_cycle);
-    let edges = Edges {
-        bins: bins.clone(),
-        places_per_bin: 1 << shift,
-        half_bit_places: f64::from(period * places_per_cycle) / 2.0,
-        place_ns,
-        extremes: has_edges.then_some((earliest, latest)),
-        frames: counted,
-        bad_frames: bad,
-        glitches,
-        drift_ns: (f64::from(tracked) - f64::from(reference)) / 16.0
-            * place_ns
-            * f64::from(places_per_cycle),
-        delay_ns: f64::from(tracked) / 16.0 * place_ns * f64::from(places_per_cycle),
-    };
+    let edges = edges(&mut card, channel).map_err(told)?;
     let mut outcome = Outcome::good(if arguments.json {
         to_json(&json!({
             "channel": channel,
-            "frames": counted,
-            "bad_frames": bad,
-            "glitches": glitches,
-            "place_ns": place_ns,
+            "frames": edges.frames,
+            "bad_frames": edges.bad_frames,
+            "glitches": edges.glitches,
+            "place_ns": edges.place_ns,
             "half_bit_places": edges.half_bit_places,
             "places_per_bin": edges.places_per_bin,
-            "earliest_places": has_edges.then_some(earliest),
-            "latest_places": has_edges.then_some(latest),
+            "earliest_places": edges.extremes.map(|(earliest, _)| earliest),
+            "latest_places": edges.extremes.map(|(_, latest)| latest),
             "margin_ns": edges.margin_ns(),
             "delay_ns": edges.delay_ns,
             "drift_ns": edges.drift_ns,
-            "edges": bins,
+            "edges": edges.bins,
         }))?
     } else {
         edges.to_string()
     });
-    if bad > 0 {
+    if edges.bad_frames > 0 {
+        let (bad, counted) = (edges.bad_frames, edges.frames);
         outcome.messages.push(format!(
             "{bad} of {counted} frames were bad: where their edges are says nothing about the margin; `endat-gen monitor` shows the causes"
         ));

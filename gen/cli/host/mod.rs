@@ -9,6 +9,7 @@ pub mod param;
 pub mod read;
 pub mod reg;
 pub mod serve;
+pub mod view;
 pub mod virtual_card;
 
 use super::number::{number, number_if};
@@ -16,6 +17,7 @@ use crate::error::GenError;
 use crate::virtual_card::virtual_card_at;
 use clap::Args;
 use endat_host::mailbox::INITIALISATION;
+pub use endat_host::owner::AnyCard;
 use endat_host::registers::Place;
 use endat_host::transport::Port;
 use endat_host::{Bridge, HostError, Transport};
@@ -25,9 +27,6 @@ use std::sync::Arc;
 
 /// Baud rate of the cards that come with the program.
 const BAUD: u32 = 3_000_000;
-
-/// A card, whatever it is behind.
-pub type AnyCard = endat_host::Card<Box<dyn Transport>>;
 
 /// Where the card is.
 #[derive(Args, Clone)]
@@ -44,7 +43,9 @@ pub struct PortArgs {
 pub fn told(error: HostError) -> GenError {
     match error {
         HostError::Refused(text) => GenError::CheckFailed(vec![text]),
-        error @ HostError::Silent { .. } => GenError::CheckFailed(vec![error.to_string()]),
+        error @ (HostError::Silent { .. } | HostError::NoSample { .. }) => {
+            GenError::CheckFailed(vec![error.to_string()])
+        }
         error => GenError::input(error.to_string()),
     }
 }
@@ -55,18 +56,28 @@ impl PortArgs {
         &self.port
     }
 
+    /// The port, if it has a name.
+    pub fn checked_name(&self) -> Result<&str, GenError> {
+        match self.port.is_empty() {
+            false => Ok(&self.port),
+            true => Err(GenError::input(
+                "--port = \"\": is empty; give the card's serial port, tcp:HOST:PORT or virtual",
+            )),
+        }
+    }
+
+    /// Baud rate of a serial port.
+    pub fn baud(&self) -> Result<u32, GenError> {
+        let baud = number_if("--baud", &self.baud, 300..=12_000_000)?;
+        Ok(baud.map_or(BAUD, |n| n as u32))
+    }
+
     /// Opens the link and finds out who answers.
     pub fn open(&self) -> Result<AnyCard, GenError> {
-        let baud = number_if("--baud", &self.baud, 300..=12_000_000)?;
-        let baud = baud.map_or(BAUD, |n| n as u32);
-        if self.port.is_empty() {
-            return Err(GenError::input(
-                "--port = \"\": is empty; give the card's serial port, tcp:HOST:PORT or virtual",
-            ));
-        }
-        let transport = match virtual_card_at(&self.port)? {
+        let (name, baud) = (self.checked_name()?, self.baud()?);
+        let transport = match virtual_card_at(name)? {
             Some(card) => Box::new(card),
-            None => Box::new(Port::open(&self.port, baud).map_err(told)?) as Box<dyn Transport>,
+            None => Box::new(Port::open(name, baud).map_err(told)?) as Box<dyn Transport>,
         };
         endat_host::Card::find(Bridge::new(transport)).map_err(told)
     }

@@ -6,8 +6,9 @@ use super::{told, AnyCard, PortArgs};
 use crate::error::GenError;
 use clap::{Args, Subcommand};
 use endat_host::registers::{Access, Field, Limits, Named, Place, Values};
+use endat_host::HostError;
 use endat_regs::BLOCKS;
-use serde_json::json;
+use serde_json::{json, Value};
 use std::fmt::Write;
 
 /// Arguments of `reg`.
@@ -82,6 +83,46 @@ fn places(card: &AnyCard, name: &str) -> Result<Vec<Place>, GenError> {
     }
 }
 
+/// A field with what it says, in words if there are any.
+type Seen = (&'static Field, u32, Option<String>);
+
+/// What a place says.
+fn looked_at(card: &mut AnyCard, place: &Place) -> Result<(u32, Vec<Seen>), HostError> {
+    let value = card.read(place)?;
+    let is_t_format = card.identity().is_of_t_format(place);
+    let seen = |f: &'static Field, word| (f, f.of(word), f.told(word, is_t_format));
+    let fields = match place.field {
+        Some(field) => vec![seen(field, value << field.lsb)],
+        None => place
+            .register
+            .fields
+            .iter()
+            .map(|f| seen(f, value))
+            .collect(),
+    };
+    Ok((value, fields))
+}
+
+/// The same as JSON.
+fn object(place: &Place, value: u32, fields: &[Seen]) -> Value {
+    let fields = fields.iter().map(|(field, value, told)| {
+        let about = json!({"value": value, "unit": field.unit, "meaning": told});
+        (field.name.to_owned(), about)
+    });
+    json!({
+        "name": place.to_string(),
+        "address": place.address(),
+        "value": value,
+        "fields": fields.collect::<serde_json::Map<_, _>>(),
+    })
+}
+
+/// What a place of a card says, as JSON.
+pub fn as_json(card: &mut AnyCard, place: &Place) -> Result<Value, HostError> {
+    let (value, fields) = looked_at(card, place)?;
+    Ok(object(place, value, &fields))
+}
+
 fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, GenError> {
     let mut all = Vec::new();
     for name in names {
@@ -90,30 +131,9 @@ fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, 
     let mut text = String::new();
     let mut objects = Vec::new();
     for place in all {
-        let value = card.read(&place).map_err(told)?;
-        let is_t_format = card.identity().is_of_t_format(&place);
-        let fields: Vec<_> = match place.field {
-            Some(field) => vec![(field, value, field.told(value << field.lsb, is_t_format))],
-            None => place
-                .register
-                .fields
-                .iter()
-                .map(|f| (f, f.of(value), f.told(value, is_t_format)))
-                .collect(),
-        };
+        let (value, fields) = looked_at(card, &place).map_err(told)?;
         if as_data {
-            let fields = fields.iter().map(|(field, value, told)| {
-                (
-                    field.name.to_owned(),
-                    json!({"value": value, "unit": field.unit, "meaning": told}),
-                )
-            });
-            objects.push(json!({
-                "name": place.to_string(),
-                "address": place.address(),
-                "value": value,
-                "fields": fields.collect::<serde_json::Map<_, _>>(),
-            }));
+            objects.push(object(&place, value, &fields));
             continue;
         }
         let _ = writeln!(text, "{place} = 0x{value:08X} = {value}");

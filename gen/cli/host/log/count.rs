@@ -61,6 +61,12 @@ impl Count {
         self.bad as f64 * 100.0 / self.rows.max(1) as f64
     }
 
+    /// Channel, cause and number of its bad cells.
+    pub fn causes(&self) -> impl Iterator<Item = (usize, &'static str, u64)> + '_ {
+        let all = self.causes.iter();
+        all.map(|((channel, cause), count)| (*channel, *cause, *count))
+    }
+
     /// `787 of 800 rows bad (98.4 %): channel 0 crc 780, no_start_bit 7`.
     pub fn told(&self) -> String {
         if self.bad == 0 {

@@ -1,7 +1,7 @@
 //! `log`: sample sets into a file, as CSV or JSON lines.
 
-mod count;
-mod sheet;
+pub mod count;
+pub mod sheet;
 
 use super::super::number::{decimal_if, number_if};
 use super::super::pictures::{check_all, folder, write_all, File};

@@ -1,32 +1,30 @@
-//! The thread that owns a card: it does one job after the other, and takes what a real card pushes even while Python does something else.
+//! A thread that owns a card: it does one job after the other, and takes what a real card pushes even while its user does something else.
 
-use crate::fault::{Fault, Kind};
-use endat_gen::virtual_card::virtual_card_at;
-use endat_host::feed::{Feed, Row};
-use endat_host::transport::Port;
-use endat_host::units::Scale;
-use endat_host::{Bridge, HostError, Transport};
+use crate::card::Card;
+use crate::feed::{Feed, Row};
+use crate::units::Scale;
+use crate::{HostError, Transport};
 use std::collections::VecDeque;
 use std::sync::mpsc::{channel, Receiver, RecvTimeoutError, Sender, TryRecvError};
 use std::thread;
 use std::time::{Duration, Instant};
 
 /// A card, whatever it is behind.
-pub type AnyCard = endat_host::Card<Box<dyn Transport>>;
+pub type AnyCard = Card<Box<dyn Transport>>;
 /// A job, done in the worker's thread.
-type Job = Box<dyn FnOnce(&mut Worker) + Send>;
+type Job = Box<dyn FnOnce(&mut Owner) + Send>;
 
-/// Rows that wait for Python at most, a minute and a half at 10 kHz; what comes then is lost in the card, and counted there.
+/// Rows that wait to be fetched at most, a minute and a half at 10 kHz; what comes then is lost in the card, and counted there.
 const ROWS_MAX: usize = 1_000_000;
 /// How long the link is listened to between two looks for jobs.
 const SLICE: Duration = Duration::from_millis(20);
 /// No row for so long: something is wrong.
 const SILENCE: Duration = Duration::from_secs(20);
-/// How often Python looks for Ctrl-C.
+/// How often a caller who waits may look around.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// What the thread has.
-pub struct Worker {
+pub struct Owner {
     /// The card.
     pub card: AnyCard,
     /// What a measuring step is, of every channel.
@@ -35,6 +33,8 @@ pub struct Worker {
     pub recording: Option<Recording>,
     /// The card has its own time: its rows come whether anybody asks for them or not.
     is_real: bool,
+    /// The user has gone.
+    is_over: bool,
 }
 
 /// A recording.
@@ -48,33 +48,16 @@ pub struct Recording {
     broken: Option<HostError>,
 }
 
-impl Worker {
-    fn open(port: &str, baud: u32) -> Result<Self, Fault> {
-        let virtual_card = virtual_card_at(port)?;
-        let is_real = virtual_card.is_none();
-        let transport: Box<dyn Transport> = match virtual_card {
-            Some(card) => Box::new(card),
-            None => Box::new(Port::open(port, baud)?),
-        };
-        Ok(Self {
-            card: AnyCard::find(Bridge::new(transport))?,
-            scales: Vec::new(),
-            recording: None,
-            is_real,
-        })
-    }
-
-    /// Begins a recording.
-    pub fn begin(&mut self, polls: bool) -> Result<(), Fault> {
+impl Owner {
+    /// Begins a recording, of a card that something triggers.
+    pub fn begin(&mut self, polls: bool) -> Result<(), HostError> {
         if self.recording.is_some() {
-            return Err(Fault::new(
-                Kind::Refused,
-                "a recording of this card is under way; close its iterator first",
+            return Err(HostError::Refused(
+                "a recording of this card is under way; end it first".into(),
             ));
         }
-        self.card.needs_trigger(
-            "as with card.write_register(\"card_config.trigger_sources.timer\", 1)",
-        )?;
+        self.card
+            .needs_trigger("for example the timer: write 1 to card_config.trigger_sources.timer")?;
         self.scales = self.card.scales()?;
         self.recording = Some(Recording {
             feed: Feed::begin(&mut self.card, polls)?,
@@ -86,7 +69,7 @@ impl Worker {
     }
 
     /// Ends it: the link is as it was before.
-    pub fn end(&mut self) -> Result<(), Fault> {
+    pub fn end(&mut self) -> Result<(), HostError> {
         match self.recording.take() {
             Some(recording) => Ok(recording.feed.end(&mut self.card)?),
             None => Ok(()),
@@ -115,34 +98,30 @@ impl Worker {
     }
 
     /// Takes up to `count` rows, after listening once if there are fewer; an error when there will be no more.
-    pub fn take(&mut self, count: usize) -> Result<Vec<Row>, Fault> {
+    pub fn take(&mut self, count: usize) -> Result<Vec<Row>, HostError> {
         let waiting = self.recording.as_ref().map_or(0, |r| r.rows.len());
         if waiting < count && !self.recording.as_ref().is_some_and(|r| r.broken.is_some()) {
             self.listen();
         }
         let Some(now) = &mut self.recording else {
-            return Err(Fault::new(Kind::Refused, "no recording is under way"));
+            return Err(HostError::Refused("no recording is under way".into()));
         };
         let rows: Vec<Row> = now.rows.drain(..count.min(now.rows.len())).collect();
         if rows.is_empty() {
             if let Some(error) = now.broken.take() {
-                return Err(error.into());
+                return Err(error);
             }
             if now.heard.elapsed() > SILENCE {
-                return Err(Fault::new(
-                    Kind::Silent,
-                    format!(
-                        "no sample for {} s; is a trigger enabled (card_config.trigger_sources), is the card plugged in?",
-                        SILENCE.as_secs()
-                    ),
-                ));
+                return Err(HostError::NoSample {
+                    seconds: SILENCE.as_secs(),
+                });
             }
         }
         Ok(rows)
     }
 
     fn work(mut self, jobs: &Receiver<Job>) {
-        loop {
+        while !self.is_over {
             let next = match self.is_listening() {
                 true => jobs.try_recv(),
                 false => jobs.recv().map_err(|_| TryRecvError::Disconnected),
@@ -162,13 +141,13 @@ impl Worker {
 #[derive(Clone)]
 pub struct Jobs(Sender<Job>);
 
-/// Python's end of the thread.
+/// The user's end of the thread.
 pub struct Handle {
     jobs: Jobs,
     thread: thread::JoinHandle<()>,
 }
 
-/// Waits for something of the thread, and meanwhile for Ctrl-C by calling `look`.
+/// Waits for something of the thread, and meanwhile calls `look`, whose error ends the wait.
 fn wait<R, E>(
     answer: &Receiver<R>,
     mut look: impl FnMut() -> Result<(), E>,
@@ -183,22 +162,29 @@ fn wait<R, E>(
 }
 
 impl Handle {
-    /// Opens a port in a thread of its own and finds out who answers.
+    /// Finds a card in a thread of its own. `is_real`: its time goes on whether anybody listens or not.
     pub fn open<E>(
-        port: String,
-        baud: u32,
+        find: impl FnOnce() -> Result<AnyCard, HostError> + Send + 'static,
+        is_real: bool,
         look: impl FnMut() -> Result<(), E>,
-    ) -> Result<Result<Self, Fault>, E> {
+    ) -> Result<Result<Self, HostError>, E> {
         let (jobs, todo) = channel::<Job>();
         let (tell, told) = channel();
-        let thread = thread::spawn(move || match Worker::open(&port, baud) {
-            Ok(worker) => {
+        let thread = thread::spawn(move || match find() {
+            Ok(card) => {
                 let _ = tell.send(Ok(()));
                 drop(tell);
-                worker.work(&todo);
+                let owner = Owner {
+                    card,
+                    scales: Vec::new(),
+                    recording: None,
+                    is_real,
+                    is_over: false,
+                };
+                owner.work(&todo);
             }
-            Err(fault) => {
-                let _ = tell.send(Err(fault));
+            Err(error) => {
+                let _ = tell.send(Err(error));
             }
         });
         let opened = wait(&told, look)?.unwrap_or_else(|| Err(gone()));
@@ -215,7 +201,8 @@ impl Handle {
 
     /// Ends the thread, with the recording that may be under way.
     pub fn close(self) {
-        drop(self.jobs);
+        // Others may still have it.
+        let _ = self.jobs.0.send(Box::new(|owner| owner.is_over = true));
         let _ = self.thread.join();
     }
 }
@@ -224,12 +211,12 @@ impl Jobs {
     /// Does a job in the thread and waits for what comes of it.
     pub fn call<R: Send + 'static, E>(
         &self,
-        job: impl FnOnce(&mut Worker) -> Result<R, Fault> + Send + 'static,
+        job: impl FnOnce(&mut Owner) -> Result<R, HostError> + Send + 'static,
         look: impl FnMut() -> Result<(), E>,
-    ) -> Result<Result<R, Fault>, E> {
+    ) -> Result<Result<R, HostError>, E> {
         let (tell, told) = channel();
-        let job: Job = Box::new(move |worker| {
-            let _ = tell.send(job(worker));
+        let job: Job = Box::new(move |owner| {
+            let _ = tell.send(job(owner));
         });
         let sent = self.0.send(job);
         if sent.is_err() {
@@ -239,9 +226,7 @@ impl Jobs {
     }
 }
 
-fn gone() -> Fault {
-    Fault::new(
-        Kind::Link,
-        "the thread of the card has ended; this is a fault of the package, please report it",
-    )
+fn gone() -> HostError {
+    let text = "the thread of the card has ended; this is a fault of the library, please report it";
+    HostError::NoCard(text.into())
 }

@@ -1,0 +1,334 @@
+//! Takes what the card sends, and keeps what pages ask for.
+
+use super::super::log::count::{Count, Judge};
+use super::super::log::sheet::{Format, Sheet};
+use super::history::History;
+use endat_driver::Reading;
+use endat_host::card::Identity;
+use endat_host::feed::Row;
+use endat_host::name_plate::NamePlate;
+use endat_host::owner::{Handle, Jobs};
+use endat_host::transport::LinkState;
+use endat_host::units::Scale;
+use endat_host::{HostError, Transport};
+use endat_regs::Part;
+use std::collections::VecDeque;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant, SystemTime};
+
+/// Rows that are taken at once.
+const ROWS: usize = 8_192;
+/// Between two looks at delay, recovery time and losses.
+const HEALTH: Duration = Duration::from_millis(500);
+/// Before a card that is gone is looked for again.
+const AGAIN: Duration = Duration::from_secs(1);
+/// The rate is that of so long.
+const RATE_OVER_S: f64 = 0.5;
+
+/// A recording that a page has begun.
+pub struct Recording {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Rows in it.
+    pub rows: u64,
+    sheet: Sheet<BufWriter<File>>,
+}
+
+/// What is known of the card.
+pub struct State {
+    /// Counts the cards that were found, one after the other: what was drawn before is not of this one.
+    pub session: u64,
+    /// Who it is.
+    pub identity: Identity,
+    /// Name plates of its encoders.
+    pub plates: Vec<Option<NamePlate>>,
+    /// What a measuring step is.
+    pub scales: Vec<Scale>,
+    /// Rows until now.
+    pub history: History,
+    /// Bad rows, by channel and cause.
+    pub count: Count,
+    /// The last row.
+    pub last: Option<Row>,
+    /// Results of all channels, twice a second.
+    pub results: Vec<Reading>,
+    /// Sets that the card has dropped, frames that were damaged on the link.
+    pub losses: (u64, u64),
+    /// The link.
+    pub link: LinkState,
+    /// What is wrong now.
+    pub error: Option<String>,
+    /// A recording.
+    pub recording: Option<Recording>,
+    /// Moments and rows of a while, for the rate.
+    recent: VecDeque<(f64, u64)>,
+}
+
+impl State {
+    fn new(
+        session: u64,
+        identity: Identity,
+        plates: Vec<Option<NamePlate>>,
+        scales: Vec<Scale>,
+    ) -> Self {
+        let judge = Judge {
+            own_triggers: identity.has(Part::OwnTrigger),
+        };
+        Self {
+            session,
+            history: History::new(&scales),
+            count: Count::new(judge),
+            last: None,
+            results: Vec::new(),
+            losses: (0, 0),
+            link: LinkState::default(),
+            error: None,
+            recording: None,
+            recent: VecDeque::new(),
+            identity,
+            plates,
+            scales,
+        }
+    }
+
+    /// Rows per second of the card's time.
+    pub fn rate_hz(&self) -> Option<f64> {
+        let (first, last) = (self.recent.front()?, self.recent.back()?);
+        let span_s = last.0 - first.0;
+        (span_s > 0.0).then(|| (last.1 - first.1) as f64 / span_s)
+    }
+
+    fn take(&mut self, rows: Vec<Row>) {
+        let hz = f64::from(self.identity.system_hz.max(1));
+        for row in rows {
+            let time_s = row.cycles as f64 / hz;
+            self.history.push(time_s, &row);
+            self.count.note(&row);
+            if let Some(recording) = &mut self.recording {
+                recording.rows += 1;
+                if let Err(error) = recording.sheet.row(&row) {
+                    self.error = Some(failed(&recording.path, &error));
+                    self.recording = None;
+                }
+            }
+            self.recent.push_back((time_s, self.count.rows));
+            while self.recent.len() > 2 && time_s - self.recent[1].0 >= RATE_OVER_S {
+                self.recent.pop_front();
+            }
+            self.last = Some(row);
+        }
+    }
+
+    /// Begins a recording in this folder; nobody else says what it is called.
+    pub fn record(&mut self, folder: &Path) -> Result<(), String> {
+        if self.recording.is_some() {
+            return Err("a recording is under way".into());
+        }
+        let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+        // Colons are no part of a name everywhere.
+        let path = folder.join(format!("endat-{}.csv", now.replace(':', "-")));
+        let file = fs::create_dir_all(folder).and_then(|()| File::create_new(&path));
+        let sheet = file.and_then(|file| {
+            let hz = f64::from(self.identity.system_hz.max(1));
+            let infos = self.identity.stream_additional_data;
+            Sheet::new(
+                Format::Csv,
+                BufWriter::new(file),
+                self.scales.clone(),
+                hz,
+                infos,
+            )
+        });
+        let sheet = sheet.map_err(|e| failed(&path, &e))?;
+        self.recording = Some(Recording {
+            path,
+            rows: 0,
+            sheet,
+        });
+        Ok(())
+    }
+
+    /// Ends it; the file is whole.
+    pub fn end_recording(&mut self) -> Result<(), String> {
+        match self.recording.take() {
+            None => Ok(()),
+            Some(mut recording) => {
+                let flushed = recording.sheet.out.flush();
+                flushed.map_err(|e| failed(&recording.path, &e))
+            }
+        }
+    }
+}
+
+fn failed(path: &Path, error: &io::Error) -> String {
+    format!(
+        "{}: cannot write: {error}; is the disk full, may this program write there?",
+        path.display()
+    )
+}
+
+/// A card and what pages share.
+pub struct Shared {
+    state: Mutex<State>,
+    jobs: Mutex<Jobs>,
+}
+
+/// Finds the card.
+pub type Find = Arc<dyn Fn() -> Result<Handle, HostError> + Send + Sync>;
+
+/// Does a job with a card, and waits for it as long as it takes.
+pub fn call<R: Send + 'static>(
+    jobs: &Jobs,
+    job: impl FnOnce(&mut endat_host::owner::Owner) -> Result<R, HostError> + Send + 'static,
+) -> Result<R, HostError> {
+    let patient = || Ok::<(), HostError>(());
+    jobs.call(job, patient)?
+}
+
+/// Asks a card who it is, and begins to record.
+fn begin(jobs: &Jobs, session: u64) -> Result<State, HostError> {
+    call(jobs, move |owner| {
+        owner.card.settle(|| ())?;
+        let identity = *owner.card.identity();
+        let mut plates = Vec::new();
+        for n in 0..identity.channels {
+            let has = identity.has(Part::Initialise) && !identity.is_t_format(n);
+            plates.push(has.then(|| owner.card.name_plate(n)).transpose()?);
+        }
+        owner.begin(false)?;
+        Ok(State::new(session, identity, plates, owner.scales.clone()))
+    })
+}
+
+impl Shared {
+    /// What is known now.
+    pub fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What does jobs with the card.
+    pub fn jobs(&self) -> Jobs {
+        self.jobs
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+
+    /// Finds the card and collects in a thread until `stop`; its end is that of the thread.
+    pub fn collect(
+        find: Find,
+        stop: Arc<AtomicBool>,
+    ) -> Result<(Arc<Self>, thread::JoinHandle<()>), HostError> {
+        let mut handle = find()?;
+        let shared = Arc::new(Self {
+            state: Mutex::new(begin(&handle.jobs(), 0)?),
+            jobs: Mutex::new(handle.jobs()),
+        });
+        let mine = shared.clone();
+        let thread = thread::spawn(move || {
+            while !stop.load(Ordering::Relaxed) {
+                let why = mine.session(&handle.jobs(), &stop);
+                if stop.load(Ordering::Relaxed) {
+                    break;
+                }
+                mine.state().error = why
+                    .err()
+                    .map(|e| format!("{e}; looking for the card again"));
+                handle = match mine.again(handle, &find, &stop) {
+                    Some(handle) => handle,
+                    None => return,
+                };
+            }
+            handle.close();
+        });
+        Ok((shared, thread))
+    }
+
+    /// Another session, with whatever card answers then; a recording goes on only with the one that it was.
+    fn again(&self, old: Handle, find: &Find, stop: &AtomicBool) -> Option<Handle> {
+        old.close();
+        let _ = self.state().end_recording();
+        loop {
+            thread::sleep(AGAIN);
+            if stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            let found = find().and_then(|handle| {
+                let session = self.state().session + 1;
+                Ok((begin(&handle.jobs(), session)?, handle))
+            });
+            match found {
+                Ok((state, handle)) => {
+                    *self.state() = state;
+                    *self.jobs.lock().unwrap_or_else(PoisonError::into_inner) = handle.jobs();
+                    return Some(handle);
+                }
+                Err(error) => self.state().error = Some(error.to_string()),
+            }
+        }
+    }
+
+    /// Collects until the card is another one, or `stop`.
+    fn session(&self, jobs: &Jobs, stop: &AtomicBool) -> Result<(), HostError> {
+        let mut looked = None;
+        while !stop.load(Ordering::Relaxed) {
+            match call(jobs, |owner| owner.take(ROWS)) {
+                Ok(rows) if rows.is_empty() => {}
+                Ok(rows) => {
+                    let mut state = self.state();
+                    state.error = None;
+                    state.take(rows);
+                }
+                // It may send again.
+                Err(error @ HostError::NoSample { .. }) => {
+                    self.state().error = Some(error.to_string());
+                    thread::sleep(AGAIN);
+                }
+                Err(error) => return Err(error),
+            }
+            if looked.is_none_or(|at: Instant| at.elapsed() > HEALTH) {
+                looked = Some(Instant::now());
+                self.look(jobs);
+            }
+        }
+        Ok(())
+    }
+
+    /// Asks for what rows do not have. A card that does not answer has said so by sending nothing.
+    fn look(&self, jobs: &Jobs) {
+        let seen = call(jobs, |owner| {
+            let dropped = owner
+                .recording
+                .as_ref()
+                .map_or(0, |r| r.feed.lost_in_card());
+            let bridge = owner.card.bridge();
+            let (damaged, link) = (bridge.decoder().damaged(), bridge.transport().state());
+            let results = match link.is_open {
+                true => owner.card.results().map(|r| r.channels).unwrap_or_default(),
+                false => Vec::new(),
+            };
+            Ok(((dropped, damaged), link, results))
+        });
+        let Ok((losses, link, results)) = seen else {
+            return;
+        };
+        let mut state = self.state();
+        (state.losses, state.link) = (losses, link);
+        if !results.is_empty() {
+            state.results = results;
+        }
+        let flushed = state
+            .recording
+            .as_mut()
+            .map(|r| (r.sheet.out.flush(), r.path.clone()));
+        if let Some((Err(error), path)) = flushed {
+            state.error = Some(failed(&path, &error));
+            state.recording = None;
+        }
+    }
+}

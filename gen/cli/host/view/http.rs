@@ -1,0 +1,270 @@
+//! HTTP as far as a page of this program needs it. Nobody who is slow, silent or rude keeps another one waiting.
+
+use std::collections::BTreeMap;
+use std::io::{self, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Bytes of a request's head, and of its body.
+const HEAD_MAX: usize = 8_192;
+const BODY_MAX: usize = 4_096;
+const HEADERS_MAX: usize = 64;
+/// A request, and its answer, have this long.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Connections at once.
+const CONNECTIONS: usize = 64;
+/// Between two looks for a new connection.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// A request.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Request {
+    /// `GET`, `POST`.
+    pub method: String,
+    /// Without the query.
+    pub path: String,
+    /// Names and values behind `?`.
+    pub query: BTreeMap<String, String>,
+    /// By name in small letters.
+    pub headers: BTreeMap<String, String>,
+}
+
+/// An answer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Response {
+    /// 200, 404 ...
+    pub status: u16,
+    /// Its `Content-Type`.
+    pub kind: &'static str,
+    /// Further headers.
+    pub headers: Vec<(&'static str, String)>,
+    /// What it says.
+    pub body: Vec<u8>,
+}
+
+impl Response {
+    /// With this body.
+    pub fn new(status: u16, kind: &'static str, body: impl Into<Vec<u8>>) -> Self {
+        Self {
+            status,
+            kind,
+            headers: Vec::new(),
+            body: body.into(),
+        }
+    }
+
+    /// A text for people.
+    pub fn text(status: u16, text: impl Into<String>) -> Self {
+        Self::new(status, "text/plain; charset=utf-8", text.into())
+    }
+}
+
+/// `%41` and `+` as they are meant.
+fn decoded(text: &str) -> String {
+    let mut bytes = Vec::new();
+    let mut rest = text.as_bytes();
+    while let [first, more @ ..] = rest {
+        let hex = more.get(..2).and_then(|h| std::str::from_utf8(h).ok());
+        match (*first, hex.and_then(|h| u8::from_str_radix(h, 16).ok())) {
+            (b'%', Some(byte)) => {
+                bytes.push(byte);
+                rest = &more[2..];
+            }
+            (b'+', _) => {
+                bytes.push(b' ');
+                rest = more;
+            }
+            (byte, _) => {
+                bytes.push(byte);
+                rest = more;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// A request out of its head, and how many bytes follow; none while the head is not whole.
+fn parse(head: &[u8]) -> Result<Option<(Request, usize, usize)>, String> {
+    let mut headers = [httparse::EMPTY_HEADER; HEADERS_MAX];
+    let mut parsed = httparse::Request::new(&mut headers);
+    let length = match parsed.parse(head).map_err(|e| e.to_string())? {
+        httparse::Status::Partial => return Ok(None),
+        httparse::Status::Complete(length) => length,
+    };
+    let target = parsed.path.unwrap_or_default();
+    let (path, query) = target.split_once('?').unwrap_or((target, ""));
+    let pairs = query.split('&').filter(|pair| !pair.is_empty());
+    let request = Request {
+        method: parsed.method.unwrap_or_default().to_owned(),
+        path: decoded(path),
+        query: pairs
+            .map(|pair| pair.split_once('=').unwrap_or((pair, "")))
+            .map(|(name, value)| (decoded(name), decoded(value)))
+            .collect(),
+        headers: (parsed.headers.iter())
+            .map(|h| {
+                (
+                    h.name.to_ascii_lowercase(),
+                    String::from_utf8_lossy(h.value).into_owned(),
+                )
+            })
+            .collect(),
+    };
+    let body = match request.headers.get("content-length") {
+        None => 0,
+        Some(text) => text
+            .parse()
+            .map_err(|_| "Content-Length is no number".to_owned())?,
+    };
+    Ok(Some((request, length, body)))
+}
+
+/// Reads a request; an answer if it is none.
+fn read(stream: &mut TcpStream) -> Result<Request, Option<Response>> {
+    let end = Instant::now() + PATIENCE;
+    let mut bytes = Vec::new();
+    let mut buffer = [0; 1_024];
+    loop {
+        match parse(&bytes) {
+            Err(why) => return Err(Some(Response::text(400, format!("no HTTP request: {why}")))),
+            Ok(Some((_, _, body))) if body > BODY_MAX => {
+                return Err(Some(Response::text(
+                    413,
+                    format!("body of {body} bytes: at most {BODY_MAX}"),
+                )));
+            }
+            Ok(Some((request, head, body))) if bytes.len() >= head + body => return Ok(request),
+            Ok(None) if bytes.len() > HEAD_MAX => {
+                return Err(Some(Response::text(
+                    431,
+                    format!("head of more than {HEAD_MAX} bytes"),
+                )));
+            }
+            Ok(_) => {}
+        }
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
+            return Err(Some(Response::text(408, "the request has not come whole")));
+        }
+        match stream.read(&mut buffer) {
+            Ok(0) => return Err(None),
+            Ok(count) => bytes.extend_from_slice(&buffer[..count]),
+            Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
+            Err(_) => return Err(Some(Response::text(408, "the request has not come whole"))),
+        }
+    }
+}
+
+/// Headers of every answer: no other page may use it, nothing foreign runs in it, nothing is kept.
+const ALWAYS: &str = "Connection: close\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nX-Frame-Options: DENY\r\n\
+    Referrer-Policy: no-referrer\r\nCross-Origin-Resource-Policy: same-origin\r\n\
+    Content-Security-Policy: default-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'\r\n";
+
+fn write(stream: &mut TcpStream, response: &Response) -> io::Result<()> {
+    let Response {
+        status,
+        kind,
+        headers,
+        body,
+    } = response;
+    let more: String = headers
+        .iter()
+        .map(|(n, v)| format!("{n}: {v}\r\n"))
+        .collect();
+    let head = format!(
+        "HTTP/1.1 {status} \r\nContent-Type: {kind}\r\nContent-Length: {}\r\n{more}{ALWAYS}\r\n",
+        body.len()
+    );
+    let all = [head.as_bytes(), body].concat();
+    let end = Instant::now() + PATIENCE;
+    let mut rest = all.as_slice();
+    while !rest.is_empty() {
+        let left = end.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(io::ErrorKind::TimedOut.into());
+        }
+        stream.set_write_timeout(Some(left))?;
+        let count = stream.write(rest)?;
+        rest = &rest[count..];
+    }
+    stream.flush()
+}
+
+/// A connection that is counted.
+struct Place(Arc<AtomicUsize>);
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// Answers requests until `stop`.
+pub fn serve(
+    listener: &TcpListener,
+    stop: &AtomicBool,
+    answer: impl Fn(&Request) -> Response + Send + Sync + 'static,
+) -> io::Result<()> {
+    listener.set_nonblocking(true)?;
+    let answer = Arc::new(answer);
+    let open = Arc::new(AtomicUsize::new(0));
+    while !stop.load(Ordering::Relaxed) {
+        let Ok((mut stream, _)) = listener.accept() else {
+            thread::sleep(LOOK);
+            continue;
+        };
+        // It inherits that on some systems.
+        let _ = stream.set_nonblocking(false);
+        if open.load(Ordering::Relaxed) >= CONNECTIONS {
+            let _ = stream.set_write_timeout(Some(LOOK));
+            let _ = write(
+                &mut stream,
+                &Response::text(503, "too many at once; try again"),
+            );
+            continue;
+        }
+        open.fetch_add(1, Ordering::Relaxed);
+        let (answer, place) = (answer.clone(), Place(open.clone()));
+        thread::spawn(move || {
+            let _place = place;
+            let response = match read(&mut stream) {
+                Ok(request) => Some(answer(&request)),
+                Err(response) => response,
+            };
+            // One that has gone needs no answer.
+            let _ = response.map(|response| write(&mut stream, &response));
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_request_is_taken_apart() {
+        let text =
+            b"POST /a%20b?x=1%2B1&y&z=+ HTTP/1.1\r\nHost: h:1\r\nContent-Length: 3\r\n\r\nabc";
+        let (request, head, body) = parse(text).unwrap().unwrap();
+        assert_eq!((head, body), (text.len() - 3, 3));
+        assert_eq!(
+            (request.method.as_str(), request.path.as_str()),
+            ("POST", "/a b")
+        );
+        let query: Vec<(&str, &str)> = request
+            .query
+            .iter()
+            .map(|(n, v)| (n.as_str(), v.as_str()))
+            .collect();
+        assert_eq!(query, [("x", "1+1"), ("y", ""), ("z", " ")]);
+        assert_eq!(request.headers["host"], "h:1");
+        assert_eq!(parse(b"GET / HTTP/1.1\r\nHost"), Ok(None));
+        assert!(parse(b"\x01\x02\r\n\r\n").is_err());
+        assert!(parse(b"GET / HTTP/1.1\r\nContent-Length: -1\r\n\r\n").is_err());
+        assert_eq!(decoded("%zz%4"), "%zz%4");
+    }
+}

@@ -1,0 +1,134 @@
+//! `view`: one page for a browser, live.
+//!
+//! ```text
+//! card -> endat_host::owner -> collect -> History --plot--> api -> http -> page (page/)
+//! ```
+//!
+//! Pages poll; what they are shown is worked out here, so ten of them are no more work for the card than one.
+
+mod api;
+mod collect;
+mod guard;
+mod history;
+mod http;
+
+use super::super::Outcome;
+use super::{interrupted, told, PortArgs};
+use crate::error::GenError;
+use crate::virtual_card::{card_at, is_virtual};
+use api::Api;
+use clap::Args;
+use collect::{Find, Shared};
+use endat_host::owner::Handle;
+use guard::Guard;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::net::TcpListener;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Where pages come in, unless told otherwise.
+const LISTEN: &str = "127.0.0.1:8480";
+/// A token that is shorter can be guessed.
+const TOKEN_CHARACTERS_MIN: usize = 12;
+
+/// Arguments of `view`.
+#[derive(Args)]
+pub struct ViewArgs {
+    #[command(flatten)]
+    port: PortArgs,
+    /// Address of the page; port 0 takes a free one. Others than 127.0.0.1 and ::1 need the token that is printed [default: 127.0.0.1:8480]
+    #[arg(long, value_name = "HOST:PORT")]
+    listen: Option<String>,
+    /// Token for the page instead of a random one
+    #[arg(long, value_name = "TEXT")]
+    token: Option<String>,
+    /// Folder for recordings that are begun on the page [default: recordings]
+    #[arg(long, value_name = "DIR")]
+    folder: Option<PathBuf>,
+}
+
+/// A token that nobody guesses.
+fn random_token() -> Result<String, GenError> {
+    let mut bytes = [0; 16];
+    getrandom::fill(&mut bytes).map_err(|e| GenError::fault("random numbers", &e))?;
+    Ok(bytes.iter().fold(String::new(), |mut text, byte| {
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}
+
+/// Runs the command.
+pub fn run(arguments: &ViewArgs) -> Result<Outcome, GenError> {
+    let address = arguments.listen.as_deref().unwrap_or(LISTEN);
+    let fail = |e: std::io::Error| {
+        GenError::input(format!(
+            "--listen = {address:?}: {e}; give HOST:PORT, for example 127.0.0.1:8480 (port 0 takes a free one)"
+        ))
+    };
+    if let Some(short) = arguments
+        .token
+        .as_ref()
+        .filter(|t| t.len() < TOKEN_CHARACTERS_MIN)
+    {
+        return Err(GenError::input(format!(
+            "--token = {} characters: can be guessed, at least {TOKEN_CHARACTERS_MIN}; leave it out for a random one",
+            short.len()
+        )));
+    }
+    if arguments
+        .token
+        .as_ref()
+        .is_some_and(|t| !t.bytes().all(|b| b.is_ascii_alphanumeric()))
+    {
+        return Err(GenError::input(
+            "--token: has other characters than letters and digits; leave it out for a random one",
+        ));
+    }
+    let (name, baud) = (
+        arguments.port.checked_name()?.to_owned(),
+        arguments.port.baud()?,
+    );
+    let listener = TcpListener::bind(address).map_err(fail)?;
+    let local = listener.local_addr().map_err(fail)?;
+    let token = match (&arguments.token, local.ip().is_loopback()) {
+        (Some(token), _) => Some(token.clone()),
+        (None, true) => None,
+        (None, false) => Some(random_token()?),
+    };
+    let port = name.clone();
+    let find: Find = Arc::new(move || {
+        let is_real = !is_virtual(&name);
+        let name = name.clone();
+        Handle::open(move || card_at(&name, baud), is_real, || Ok(()))?
+    });
+    let stop = interrupted();
+    let (shared, collecting) = Shared::collect(find, stop.clone()).map_err(told)?;
+    let query = token
+        .as_ref()
+        .map_or(String::new(), |token| format!("?token={token}"));
+    let shown = match local.ip().is_unspecified() {
+        true => format!(
+            "port {} of this machine: http://NAME:{}/{query}",
+            local.port(),
+            local.port()
+        ),
+        false => format!("http://{local}/{query}"),
+    };
+    let mut stdout = std::io::stdout();
+    // Nobody reads it: the page is there all the same.
+    let _ = writeln!(stdout, "{port}: {shown} (Ctrl-C ends it)").and_then(|()| stdout.flush());
+    let folder = arguments.folder.clone();
+    let api = Api {
+        shared: shared.clone(),
+        guard: Guard::new(local, token),
+        folder: folder.unwrap_or_else(|| "recordings".into()),
+        port,
+    };
+    http::serve(&listener, &stop, move |request| api.answer(request)).map_err(fail)?;
+    // The thread has seen the same flag; it leaves the card quiet.
+    let _ = collecting.join();
+    let ended = shared.state().end_recording();
+    ended.map_err(|text| GenError::CheckFailed(vec![text]))?;
+    Ok(Outcome::default())
+}

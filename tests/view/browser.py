@@ -1,0 +1,146 @@
+"""Opens the live page as a user does; pictures go into the folder that is given."""
+
+import sys
+import time
+
+from selenium import webdriver
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.support.wait import WebDriverWait
+
+url, folder = sys.argv[1:]
+options = webdriver.ChromeOptions()
+for option in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1280,1200"):
+    options.add_argument(option)
+options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+browser = webdriver.Chrome(options=options, service=webdriver.ChromeService("/usr/bin/chromedriver"))
+browser.set_script_timeout(60)
+patient = WebDriverWait(browser, 60)
+
+
+def one(css):
+    return browser.find_element(By.CSS_SELECTOR, css)
+
+
+def text(css):
+    return one(css).text
+
+
+def until(what, holds):
+    try:
+        patient.until(lambda _: holds())
+    except Exception:
+        browser.save_screenshot(f"{folder}/failed.png")
+        raise AssertionError(f"{what}: not within a minute; {folder}/failed.png") from None
+
+
+def key(name):
+    ActionChains(browser).send_keys(name).perform()
+
+
+def pressed(css):
+    return one(css).get_attribute("aria-pressed") == "true"
+
+
+def ink():
+    """Points of the plot that have the colour of a channel: nothing is drawn without any."""
+    return browser.execute_script(
+        """
+        const canvas = document.getElementById("plot");
+        const data = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+        let count = 0;
+        for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 200 && Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 60) count++;
+        return count;
+        """
+    )
+
+
+def label():
+    return one("#plot").get_attribute("aria-label")
+
+
+try:
+    browser.get(url)
+    until("live", lambda: text("#link") == "live")
+    until("both channels are good", lambda: [p.text for p in browser.find_elements(By.CSS_SELECTOR, ".channel .pill")] == ["good"] * 2)
+    assert "deg" in text(".channel .value") and "line delay" in text(".channel .about")
+    until("a plot", lambda: ink() > 200)
+    first = text(".channel .value")
+    until("the position moves", lambda: text(".channel .value") != first)
+    time.sleep(2)
+    browser.save_screenshot(f"{folder}/wide.png")
+
+    # Keys.
+    key("v")
+    until("velocity", lambda: label().startswith("velocity") and pressed('[data-show="velocity"]'))
+    until("velocities are drawn", lambda: ink() > 200)
+    key("d")
+    until("difference", lambda: label().startswith("difference"))
+    key("p")
+    until("position", lambda: label().startswith("position"))
+    assert pressed("#live")
+    key("+")
+    until("not live any more", lambda: not pressed("#live"))
+    seconds = lambda: [float(t) for t in label().replace(" s", "").replace("from ", "").split("time, ")[1].split(" to ")]
+    time.sleep(0.5)
+    before = seconds()
+    key("-")
+    until("zoomed out", lambda: seconds()[1] - seconds()[0] > before[1] - before[0])
+    key("l")
+    until("live again", lambda: pressed("#live"))
+    key("z")
+    until("the zero is now", lambda: "from the zero that was set" in text(".channel .about"))
+    assert abs(float(text(".channel .value").split()[0])) < 60
+    key("x")
+    until("absolute again", lambda: "from the zero" not in text(".channel .about"))
+    # The mouse says what is there.
+    ActionChains(browser).move_to_element(one("#plot")).perform()
+    until("what the pointer is on", lambda: "channel 1:" in text("#cursor") and "deg" in text("#cursor"))
+
+    # What else there is.
+    one('[data-tab="encoders"]').click()
+    assert "measuring steps per revolution" in text("#encoders") and not one("#causes").is_displayed()
+    one('[data-tab="registers"]').click()
+    one("#register-search").send_keys("result0 status")
+    one("#register-list button").click()
+    until("a register", lambda: "fresh" in text("#register-value"))
+    one('[data-tab="memory"]').click()
+    one('#parameter input[name="address"]').clear()
+    one('#parameter input[name="address"]').send_keys("13")
+    one("#parameter button").click()
+    until("a parameter", lambda: text("#parameter-value").startswith("0x801D"))
+    one('[data-tab="margin"]').click()
+    until("a histogram", lambda: browser.execute_script("return [...document.querySelectorAll('#margin img')].filter(i => i.complete && i.naturalWidth > 100).length") == 2)
+    browser.execute_script("document.getElementById('more').scrollIntoView()")
+    browser.save_screenshot(f"{folder}/margin.png")
+    browser.execute_script("scrollTo(0, 0)")
+
+    # A request of the parameter took two triggers; they are told with what they mean.
+    one('[data-tab="causes"]').click()
+    until("causes", lambda: "not_taken" in text("#causes") and "was busy" in text("#causes"))
+
+    # A recording, and a second page that sees it.
+    key("r")
+    until("a recording", lambda: "rows in recordings" in text("#record"))
+    here = browser.current_window_handle
+    browser.switch_to.new_window("tab")
+    browser.get(url)
+    until("the second page sees it", lambda: "rows in recordings" in text("#record"))
+    one("#record").click()
+    until("its end", lambda: text("#record") == "Record")
+    browser.close()
+    browser.switch_to.window(here)
+    until("its end on the first page", lambda: text("#record") == "Record")
+
+    # Dark and narrow: nothing sticks out.
+    one("#theme").click()
+    assert browser.execute_script("return document.documentElement.dataset.theme") == "dark"
+    browser.set_window_size(500, 1600)
+    time.sleep(1)
+    browser.save_screenshot(f"{folder}/narrow.png")
+    wide = browser.execute_script("return document.documentElement.scrollWidth - document.documentElement.clientWidth")
+    assert wide <= 0, f"{wide} pixels stick out"
+    wrong = [e for e in browser.get_log("browser") if e["level"] == "SEVERE" and "favicon" not in e["message"]]
+    assert not wrong, wrong
+finally:
+    browser.quit()

@@ -1,0 +1,460 @@
+//! The live page: what it is answered, whom it refuses, what becomes of it when a card goes, and how it is in a browser.
+
+use crate::hosts::{slow_card, Served};
+use crate::program::Dir;
+use crate::tools;
+use endat_gen::virtual_card::Door;
+use endat_sim::rng::Rng;
+use serde_json::Value;
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+const VIRTUAL: &str = "virtual:s6_two_channel_service";
+
+/// `view` in a folder of its own.
+struct View {
+    program: Child,
+    /// `HOST:PORT` of the page.
+    address: String,
+    /// What it has printed.
+    line: String,
+    dir: Dir,
+}
+
+impl View {
+    fn new(name: &str, port: &str, more: &[&str]) -> Self {
+        let dir = Dir::new(name);
+        let mut program = Command::new(env!("CARGO_BIN_EXE_endat-gen"))
+            .args(["view", "--port", port])
+            .args(more)
+            .current_dir(&dir.0)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut line = String::new();
+        let mut told = BufReader::new(program.stdout.take().unwrap());
+        told.read_line(&mut line).unwrap();
+        let (_, url) = line.split_once("http://").expect(&line);
+        // Where it listens for all, the name of the machine is for the user to know.
+        let address = url.split('/').next().unwrap().replace("NAME", "127.0.0.1");
+        Self {
+            program,
+            address,
+            line,
+            dir,
+        }
+    }
+
+    fn local(name: &str, port: &str) -> Self {
+        Self::new(name, port, &["--listen", "127.0.0.1:0"])
+    }
+
+    /// Status and body of a request with these headers.
+    fn with(&self, method: &str, path: &str, headers: &str) -> (u16, String) {
+        let text = format!("{method} {path} HTTP/1.1\r\n{headers}\r\n");
+        let all = sent(&self.address, text.as_bytes());
+        let all = String::from_utf8(all).unwrap();
+        let status = all.split(' ').nth(1).and_then(|s| s.parse().ok());
+        let body = all.split_once("\r\n\r\n").map_or("", |(_, body)| body);
+        (status.unwrap_or(0), body.to_owned())
+    }
+
+    fn ask(&self, method: &str, path: &str) -> (u16, Value) {
+        let (status, body) = self.with(method, path, &format!("Host: {}\r\n", self.address));
+        let value = serde_json::from_str(&body);
+        (
+            status,
+            value.unwrap_or_else(|e| panic!("{path}: {e}: {body}")),
+        )
+    }
+
+    fn get(&self, path: &str) -> Value {
+        let (status, value) = self.ask("GET", path);
+        assert_eq!(status, 200, "{path}: {value}");
+        value
+    }
+
+    fn now(&self) -> Value {
+        self.get("/api/now")
+    }
+
+    /// Waits until this holds of `/api/now`.
+    fn until(&self, what: &str, holds: impl Fn(&Value) -> bool) -> Value {
+        let end = Instant::now() + Duration::from_secs(120);
+        loop {
+            let now = self.now();
+            if holds(&now) {
+                return now;
+            }
+            assert!(Instant::now() < end, "{what}: {now}");
+            thread::sleep(Duration::from_millis(50));
+        }
+    }
+}
+
+impl Drop for View {
+    fn drop(&mut self) {
+        let _ = self.program.kill();
+        let _ = self.program.wait();
+    }
+}
+
+/// What is answered to these bytes.
+fn sent(address: &str, bytes: &[u8]) -> Vec<u8> {
+    let mut stream = TcpStream::connect(address).unwrap();
+    stream
+        .set_read_timeout(Some(Duration::from_secs(30)))
+        .unwrap();
+    // It may have answered and gone before it has read all.
+    let _ = stream
+        .write_all(bytes)
+        .and_then(|()| stream.shutdown(std::net::Shutdown::Write));
+    let mut all = Vec::new();
+    let _ = stream.read_to_end(&mut all);
+    all
+}
+
+fn is_text(value: &Value, part: &str) -> bool {
+    value["error"]
+        .as_str()
+        .is_some_and(|text| text.contains(part))
+}
+
+#[test]
+fn a_page_has_positions_plots_registers_parameters_and_recordings() {
+    let view = View::local("view-api", VIRTUAL);
+    let card = view.get("/api/card");
+    assert_eq!(card["channels"][1]["unit"], "deg");
+    assert!(card["channels"][0]["plate"]
+        .as_str()
+        .unwrap()
+        .contains("29 bits"));
+    assert!(card["causes"]["crc"][1]
+        .as_str()
+        .is_some_and(|helps| !helps.is_empty()));
+    let now = view.until("a hundred rows", |now| now["rows"].as_u64() > Some(100));
+    let one = &now["channels"][0];
+    let raw = u64::from_str_radix(one["raw"].as_str().unwrap(), 16).unwrap();
+    let degrees = raw as f64 * 360.0 / f64::from(1 << 29);
+    assert!(
+        (one["value"].as_f64().unwrap() - degrees).abs() < 1e-9,
+        "{one}"
+    );
+    assert_eq!(
+        (&now["bad"], &now["missing"], &one["fresh"]),
+        (&0.into(), &0.into(), &true.into())
+    );
+    assert!(
+        (now["rate_hz"].as_f64().unwrap() - 10_000.0).abs() < 1.0,
+        "{now}"
+    );
+    // Both turn evenly, the second one half as fast again.
+    let plot = view
+        .get("/api/plot?from=0&to=0.01&buckets=10&traces=position0,velocity0,velocity1,difference");
+    let of = |trace: &str, side: &str, n: usize| plot["traces"][trace][side][n].as_f64().unwrap();
+    for n in 1..10 {
+        assert!(of("position0", "min", n) > of("position0", "max", n - 1));
+        assert!(of("position0", "min", n) < of("position0", "max", n));
+        let ratio = of("velocity1", "max", n) / of("velocity0", "max", n);
+        assert!((1.4..1.6).contains(&ratio), "{ratio}");
+    }
+    let read = view.get("/api/register?name=config0.frame.position_bits");
+    assert_eq!(read["value"], 29);
+    let all = view.get("/api/registers");
+    let names = all
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|r| r["name"].as_str().unwrap());
+    assert!(names.clone().any(|n| n == "service1.request"));
+    assert!(
+        !names
+            .clone()
+            .any(|n| n.starts_with("direct") || n.starts_with("line0")),
+        "parts that the card lacks"
+    );
+    let (status, word) = view.ask("POST", "/api/parameter?channel=0&area=0xA1&address=13");
+    assert_eq!(
+        (status, &word["value"]),
+        (200, &Value::from(0x801D)),
+        "{word}"
+    );
+    for (method, path, status, text) in [
+        ("GET", "/api/plot?from=x", 400, "from = \"x\""),
+        ("GET", "/api/plot?from=2&to=1", 400, "is before"),
+        ("GET", "/api/plot?buckets=1e9", 400, "outside"),
+        ("GET", "/api/plot?traces=nothing", 400, "none of that name"),
+        (
+            "GET",
+            "/api/register?name=result9.status",
+            400,
+            "result0 to result1",
+        ),
+        (
+            "GET",
+            "/api/register?name=card.stream_data",
+            400,
+            "takes something away",
+        ),
+        ("GET", "/api/margin.svg?channel=0", 400, "no part `margin`"),
+        ("POST", "/api/parameter?channel=2", 400, "channel = 2"),
+        ("POST", "/api/parameter?area=256", 400, "area = 256"),
+        // What does something is not done for a picture of another page.
+        ("GET", "/api/parameter?channel=0", 405, "GET /api/parameter"),
+        ("GET", "/api/record", 405, "GET /api/record"),
+    ] {
+        let told = view.ask(method, path);
+        assert!(
+            told.0 == status && is_text(&told.1, text),
+            "{path}: {told:?}"
+        );
+    }
+    let (_, begun) = view.ask("POST", "/api/record?path=/tmp/elsewhere.csv");
+    let path = view.dir.0.join(begun["path"].as_str().unwrap());
+    assert!(path.starts_with(view.dir.0.join("recordings")), "{begun}");
+    assert_eq!(view.ask("POST", "/api/record").0, 409);
+    view.until("rows in the file", |now| {
+        now["recording"]["rows"].as_u64() > Some(50)
+    });
+    assert_eq!(view.ask("POST", "/api/stop").1["path"], Value::Null);
+    let text = fs::read_to_string(path).unwrap();
+    assert!(text.starts_with("trigger,time_s,missing,ch0_raw,ch0_deg"));
+    assert!(text.ends_with('\n') && text.lines().count() > 50);
+    assert_eq!(text.lines().map(|l| l.split(',').count()).min(), Some(13));
+}
+
+#[test]
+fn others_are_refused_and_nonsense_ends_in_an_error() {
+    let view = View::local("view-refused", "virtual");
+    let host = format!("Host: {}\r\n", view.address);
+    let ask = |path: &str, headers: &str| view.with("GET", path, headers).0;
+    assert_eq!(ask("/api/now", &host), 200);
+    assert_eq!(ask("/api/now", "Host: evil.example\r\n"), 403);
+    assert_eq!(
+        ask(
+            "/api/now",
+            &format!("{host}Origin: http://evil.example\r\n")
+        ),
+        403
+    );
+    let posted = format!("{host}Origin: http://evil.example\r\n");
+    assert_eq!(view.with("POST", "/api/record", &posted).0, 403);
+    assert_eq!(view.now()["recording"], Value::Null);
+    for path in [
+        "/../Cargo.toml",
+        "/%2e%2e/%2e%2e/etc/passwd",
+        "//etc/passwd",
+        "/recordings/",
+        "/view.js/..",
+        "/api/../view.css/x",
+    ] {
+        let status = ask(path, &host);
+        assert!([404, 405].contains(&status), "{path}: {status}");
+    }
+    let mut rng = Rng::new(7);
+    let mut below = |end: usize| rng.in_range(0, end as u64 - 1) as usize;
+    let good = format!("GET /api/now HTTP/1.1\r\n{host}\r\n");
+    for n in 0..1_500 {
+        let mut bytes = good.clone().into_bytes();
+        match n % 3 {
+            // A byte that is another one, a text that ends, nothing but noise.
+            0 => {
+                let at = below(bytes.len());
+                bytes[at] = below(256) as u8;
+            }
+            1 => bytes.truncate(below(bytes.len())),
+            _ => bytes = (0..below(3_000)).map(|_| below(256) as u8).collect(),
+        }
+        let told = sent(&view.address, &bytes);
+        let is_answer = told.starts_with(b"HTTP/1.1 ") || told.is_empty();
+        assert!(is_answer, "{bytes:?}: {told:?}");
+    }
+    let long = format!("GET / HTTP/1.1\r\nX: {}", "y".repeat(20_000));
+    assert!(sent(&view.address, long.as_bytes()).starts_with(b"HTTP/1.1 431 "));
+    let big = format!("POST /api/record HTTP/1.1\r\n{host}Content-Length: 99999999\r\n\r\n");
+    assert!(sent(&view.address, big.as_bytes()).starts_with(b"HTTP/1.1 413 "));
+    assert_eq!(view.now()["recording"], Value::Null);
+}
+
+/// What listens for others needs the token that is printed; without it nothing is told.
+#[test]
+fn a_page_that_others_may_open_has_a_token() {
+    let view = View::new("view-token", "virtual", &["--listen", "0.0.0.0:0"]);
+    let (_, token) = view.line.split_once("?token=").expect(&view.line);
+    let token = token.split_whitespace().next().unwrap();
+    assert_eq!(token.len(), 32, "{token}");
+    let ask =
+        |path: &str, headers: &str| view.with("GET", path, &format!("Host: card.lab\r\n{headers}"));
+    for path in [
+        "/",
+        "/view.js",
+        "/api/now",
+        "/?token=0123456789abcdef0123456789abcdef",
+    ] {
+        assert_eq!(ask(path, "").0, 403, "{path}");
+    }
+    assert_eq!(ask(&format!("/?token={token}"), "").0, 303);
+    assert_eq!(
+        ask("/api/now", &format!("Cookie: endat-token={token}\r\n")).0,
+        200
+    );
+    assert_eq!(
+        ask("/api/now", &format!("Authorization: Bearer {token}\r\n")).0,
+        200
+    );
+}
+
+/// Ten pages, and many who do not go on: nobody else waits for them, and the card loses nothing.
+#[test]
+fn slow_clients_harm_nobody() {
+    let view = View::local("view-slow", VIRTUAL);
+    let mut stalled: Vec<TcpStream> = Vec::new();
+    for n in 0..40 {
+        let mut stream = TcpStream::connect(&view.address).unwrap();
+        let text: &[u8] = match n % 2 {
+            0 => b"GET /api/now HTTP/1.1\r\nHost:",
+            _ => b"",
+        };
+        stream.write_all(text).unwrap();
+        stalled.push(stream);
+    }
+    thread::scope(|scope| {
+        for _ in 0..10 {
+            scope.spawn(|| {
+                for _ in 0..10 {
+                    view.now();
+                    view.get("/api/plot?traces=position0,velocity1");
+                }
+            });
+        }
+    });
+    // Those that did not go on have been told so.
+    for mut stream in stalled {
+        stream
+            .set_read_timeout(Some(Duration::from_secs(30)))
+            .unwrap();
+        let mut told = Vec::new();
+        stream.read_to_end(&mut told).unwrap();
+        assert!(told.starts_with(b"HTTP/1.1 408 "), "{told:?}");
+    }
+    let now = view.now();
+    assert_eq!(
+        (&now["missing"], &now["bad"]),
+        (&0.into(), &0.into()),
+        "{now}"
+    );
+}
+
+/// The page outlives its card: it says what is wrong, and goes on with the one that answers next.
+#[test]
+fn a_card_that_dies_and_comes_back_is_shown_again() {
+    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    let address = card.name.trim_start_matches("tcp:").to_owned();
+    let view = View::local("view-dies", &card.name);
+    view.until("rows", |now| now["rows"].as_u64() > Some(10));
+    view.ask("POST", "/api/record");
+    drop(card);
+    view.until("a lost link", |now| {
+        now["link"] == false || now["error"].is_string()
+    });
+    let _again = Served::new(slow_card(), move || loop {
+        // The system keeps the port for a moment.
+        match Door::tcp(&address) {
+            Ok(door) => break door,
+            Err(_) => thread::sleep(Duration::from_millis(50)),
+        }
+    });
+    let now = view.until("another session", |now| {
+        now["session"] == 1 && now["rows"].as_u64() > Some(10)
+    });
+    assert_eq!(
+        (&now["error"], &now["link"]),
+        (&Value::Null, &true.into()),
+        "{now}"
+    );
+    // A recording is of one card.
+    assert_eq!(now["recording"], Value::Null);
+    let files: Vec<_> = fs::read_dir(view.dir.0.join("recordings"))
+        .unwrap()
+        .collect();
+    let text = fs::read_to_string(files[0].as_ref().unwrap().path()).unwrap();
+    assert!(files.len() == 1 && text.ends_with('\n'), "{text}");
+}
+
+#[test]
+fn what_cannot_be_served_is_told_at_once() {
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let taken = taken.local_addr().unwrap().to_string();
+    for (arguments, text) in [
+        (vec!["--port", "virtual", "--listen", &taken], "--listen = "),
+        (
+            vec!["--port", "virtual", "--listen", "nowhere"],
+            "give HOST:PORT",
+        ),
+        (
+            vec!["--port", "virtual", "--token", "short"],
+            "can be guessed",
+        ),
+        (
+            vec!["--port", "virtual", "--token", "a;b=c\r\nd-e-f-g-h"],
+            "letters and digits",
+        ),
+        (vec!["--port", ""], "is empty"),
+        (
+            vec!["--port", "virtual:nope", "--listen", "127.0.0.1:0"],
+            "unknown preset",
+        ),
+        (
+            vec!["--port", "virtual:async_dsp", "--listen", "127.0.0.1:0"],
+            "async_dsp",
+        ),
+    ] {
+        let output = Command::new(env!("CARGO_BIN_EXE_endat-gen"))
+            .arg("view")
+            .args(&arguments)
+            .output()
+            .unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            output.status.code() == Some(2) && told.contains(text),
+            "{arguments:?}: {told}"
+        );
+    }
+}
+
+/// In a browser, by keyboard and mouse, wide and narrow, light and dark; leaves its pictures for people to look at.
+#[test]
+fn a_browser_shows_the_page_and_obeys_its_keys() {
+    let check = "the live page is opened in a browser";
+    if !tools::require_all(&["chromium", "chromedriver"], check)
+        || !tools::require_python("selenium", check)
+    {
+        return;
+    }
+    let dir = tools::folder("view");
+    let config = dir.join("card.toml");
+    let text = endat_gen::config::preset("s6_two_channel_service").unwrap();
+    let (before, line) = text.split_once("\n[line]").unwrap();
+    let line = line.replacen("parts = []", "parts = [\"alignment\", \"margin\"]", 1);
+    fs::write(&config, format!("{before}\n[line]{line}")).unwrap();
+    let port = format!("virtual:{}", config.display());
+    let view = View::local("view-browser", &port);
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/view/browser.py");
+    let output = Command::new("python3")
+        .args([script, &format!("http://{}/", view.address)])
+        .arg(&dir)
+        .output()
+        .unwrap();
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    assert!(
+        output.status.success(),
+        "{}{}",
+        text(&output.stdout),
+        text(&output.stderr)
+    );
+}
