@@ -99,8 +99,8 @@ impl Owner {
 
     /// Takes up to `count` rows, after listening once if there are fewer; an error when there will be no more.
     pub fn take(&mut self, count: usize) -> Result<Vec<Row>, HostError> {
-        let waiting = self.recording.as_ref().map_or(0, |r| r.rows.len());
-        if waiting < count && !self.recording.as_ref().is_some_and(|r| r.broken.is_some()) {
+        let wants = |r: &Recording| r.rows.len() < count && r.broken.is_none();
+        if self.recording.as_ref().is_some_and(wants) {
             self.listen();
         }
         let Some(now) = &mut self.recording else {

@@ -70,7 +70,7 @@ pub fn of<'py>(
     columns.set_item("cycles", bytes!(py, each().map(|r| r.cycles)))?;
     columns.set_item("missing", bytes!(py, each().map(|r| r.missing)))?;
     let run = |r: &Row| r.run.map_or(NO_RUN, |n| n as i8);
-    columns.set_item("run", bytes!(py, each().map(|r| run(r))))?;
+    columns.set_item("run", bytes!(py, each().map(run)))?;
     let channels = PyList::empty(py);
     for (n, scale) in scales.iter().enumerate() {
         let cells: Vec<&Cell> = rows.iter().filter_map(|r| r.cells.get(n)).collect();

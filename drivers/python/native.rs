@@ -117,7 +117,7 @@ impl NativeCard {
 
     /// Waits until no encoder is being initialised and every channel has had a result, or has none after a second.
     fn settle(&self, py: Python<'_>) -> PyResult<()> {
-        self.call(py, |w| Ok(w.card.settle(|| ())?))
+        self.call(py, |w| w.card.settle(|| ()))
     }
 
     /// Name plates; none of a channel whose encoder the card does not read.
@@ -213,7 +213,7 @@ impl NativeCard {
 
     /// Reads a word or field.
     fn read_register(&self, py: Python<'_>, name: String) -> PyResult<u32> {
-        self.call(py, move |w| Ok(w.card.read_named(&name)?))
+        self.call(py, move |w| w.card.read_named(&name))
     }
 
     /// Writes a word or field; what the register map forbids is refused, unless `force`.
@@ -231,7 +231,7 @@ impl NativeCard {
             }
             // What a step is may have changed with it.
             w.scales.clear();
-            Ok(w.card.write(&place, value)?)
+            w.card.write(&place, value)
         })
     }
 
@@ -261,7 +261,7 @@ impl NativeCard {
         self.call(py, move |w| {
             is_there(w, channel)?;
             let answer = w.card.write_parameter(channel, area, address, value);
-            Ok(answer.map(|_| ())?)
+            answer.map(|_| ())
         })
     }
 

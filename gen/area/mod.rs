@@ -14,7 +14,7 @@ pub use report::{report, Line, Peer, Report, PEERS};
 pub use speed::{speed, Device, Speed, DEVICES};
 pub use subject::{subjects, Subject};
 
-use crate::artifact::Artifact;
+use crate::artifact::{sha256, Artifact};
 use crate::error::GenError;
 use serde::Serialize;
 use serde_json::Value;
@@ -144,6 +144,46 @@ fn logic_of(verilog: &str) -> String {
     lines.flat_map(|line| [line, "\n"]).collect()
 }
 
+/// The files as yosys gets them, in the order in which it reads them: what comes out depends a little on that, too.
+fn read_by_yosys(files: &[Artifact]) -> Vec<Artifact> {
+    let without_comments = files
+        .iter()
+        .map(|f| Artifact::new(&*f.path, logic_of(&f.text)));
+    let mut files: Vec<Artifact> = without_comments.collect();
+    files.sort_by(|a, b| a.path.cmp(&b.path));
+    files
+}
+
+/// What yosys does with the files of these names.
+fn script_for(names: &[&str], top: &str, family: &Family) -> String {
+    let local = |end: &str| format!("{}-{top}{end}", family.name);
+    // nextpnr of some versions does not know $scopeinfo cells.
+    format!(
+        "read_verilog {}; {} -top {top}; delete t:$scopeinfo; tee -q -o {} stat -json; write_json {}; write_verilog -noattr {}",
+        names.join(" "),
+        family.synth,
+        local(".stat"),
+        local(".json"),
+        local(".netlist.v")
+    )
+}
+
+fn names(files: &[Artifact]) -> Vec<&str> {
+    files.iter().map(|f| f.path.as_str()).collect()
+}
+
+/// A digest of everything that the area depends on: the text, the tool and its version, what it does and what is counted.
+pub fn digest(files: &[Artifact], top: &str, family: &Family) -> String {
+    let files = read_by_yosys(files);
+    let script = script_for(&names(&files), top, family);
+    let counted = [family.lut, family.ff].concat().join(" ");
+    let mut all = format!("{YOSYS} {YOSYS_VERSION}\n{script}\n{counted}\n");
+    for file in &files {
+        all += &file.text;
+    }
+    sha256(all.as_bytes())[..16].to_owned()
+}
+
 /// Writes the Verilog files into a folder and synthesises the module `top` of them for a family.
 pub fn synthesise(
     folder: &Path,
@@ -151,25 +191,10 @@ pub fn synthesise(
     top: &str,
     family: &Family,
 ) -> Result<Synthesis, GenError> {
-    let without_comments = files
-        .iter()
-        .map(|f| Artifact::new(&*f.path, logic_of(&f.text)));
-    let files: Vec<Artifact> = without_comments.collect();
+    let files = read_by_yosys(files);
     crate::artifact::write(folder, &files, "make room there")?;
-    // What comes out depends a little on the order of what goes in.
-    let mut names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
-    names.sort_unstable();
     let file = |end: &str| folder.join(format!("{}-{top}{end}", family.name));
-    let local = |end: &str| format!("{}-{top}{end}", family.name);
-    // nextpnr of some versions does not know $scopeinfo cells.
-    let script = format!(
-        "read_verilog {}; {} -top {top}; delete t:$scopeinfo; tee -q -o {} stat -json; write_json {}; write_verilog -noattr {}",
-        names.join(" "),
-        family.synth,
-        local(".stat"),
-        local(".json"),
-        local(".netlist.v")
-    );
+    let script = script_for(&names(&files), top, family);
     run(YOSYS, folder, &["-q", "-p", &script])?;
     let stat = read(&file(".stat"))?;
     let stat: Value = serde_json::from_str(&stat).unwrap_or_default();
