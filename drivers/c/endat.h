@@ -83,6 +83,8 @@ typedef struct {
 
 /**
  * Finds out who answers. Refuses what is no card, and another major version of the register map.
+ * @param card what becomes known of it; the other calls take it.
+ * @param link how its words are reached; it is copied.
  * @param hash first 8 digits of the configuration's hash, as the generated files have it; 0 takes any.
  */
 endat_error endat_open(endat_card *card, const endat_link *link, uint32_t hash);
@@ -214,7 +216,9 @@ endat_error endat_clear(const endat_card *card, uint32_t channel);
 
 /**
  * A word of the name plate, as the initialisation read it.
+ * @param card the card.
  * @param word_address ENDAT_MAP_SERVICE_..._WORD(channel), from ..._ALARMS_WORD to ..._DELAY_WORD.
+ * @param value the word.
  * @return ENDAT_NOTHING if it was not read.
  */
 endat_error endat_read_plate(const endat_card *card, uint32_t word_address, uint16_t *value);
@@ -240,7 +244,12 @@ typedef struct {
 
 /**
  * Sends a mode command with its parameter, and does not wait. EnDat 2.2 commands ride on the next trigger.
+ * @param card the card.
+ * @param request what endat_request_end() asks for.
+ * @param channel encoder port.
  * @param command ENDAT_MAP_SERVICE_REQUEST_COMMAND_...
+ * @param address MRS code, address or port.
+ * @param data 16 bits.
  * @return ENDAT_ERROR_BUSY while an initialisation or another request is under way: nothing was sent.
  */
 endat_error endat_request_begin(const endat_card *card, endat_request *request, uint32_t channel, uint32_t command, uint32_t address,
@@ -267,12 +276,18 @@ const char *endat_refusal_text(uint32_t refusal);
 
 /**
  * Additional data that are selected in turn, one code in each triggered frame.
+ * @param card the card.
+ * @param channel encoder port.
  * @param mrs their codes, 0x40..0x4E and 0x50..0x5E.
  * @param count 0 to 8; with 0 nothing more is selected, and what is selected goes on until a request with 0x4F or 0x5F.
  */
 endat_error endat_select_infos(const endat_card *card, uint32_t channel, const uint8_t *mrs, uint32_t count);
 /**
  * What the n-th code of the list said last.
+ * @param card the card.
+ * @param channel encoder port.
+ * @param index place in the list, from 0.
+ * @param content what it said.
  * @param sequence number of the result that brought it: the difference to the result's sequence is its age in frames.
  */
 endat_error endat_read_info(const endat_card *card, uint32_t channel, uint32_t index, uint16_t *content, uint16_t *sequence);

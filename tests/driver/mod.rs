@@ -31,6 +31,24 @@ fn the_driver_has_the_map_and_the_texts_of_the_tables() {
     }
 }
 
+/// Catches a call or parameter without a word in its documentation.
+#[test]
+fn doxygen_finds_every_call_documented() {
+    if !tools::require("doxygen", "documentation of the C driver") {
+        return;
+    }
+    let dir = tools::folder("driver-doxygen");
+    for file in ["Doxyfile", "endat.h", "endat_transports.h"] {
+        std::fs::copy(home().join(file), dir.join(file)).unwrap();
+    }
+    let (is_content, told) = tools::run("doxygen", &dir, &[]);
+    assert!(is_content && !told.contains("warning"), "{told}");
+    let page = std::fs::read_to_string(dir.join("html/endat_8h.html")).unwrap();
+    for call in ["endat_open", "endat_request_begin", "ENDAT_ERROR_UNPLUGGED"] {
+        assert!(page.contains(call), "{call}");
+    }
+}
+
 /// What the driver has to be clean under.
 const STRICT: [&str; 8] = [
     "-std=c99",
