@@ -30,6 +30,7 @@ mod scratch;
 pub mod t_format;
 pub mod template;
 pub mod testbench;
+pub mod tools;
 pub mod verilog;
 pub mod virtual_card;
 

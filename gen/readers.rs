@@ -2,9 +2,9 @@
 
 use crate::artifact::Artifact;
 use crate::error::GenError;
+use crate::tools;
 use std::fmt;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 /// A program, and the language that it takes the Verilog for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,21 +33,8 @@ impl fmt::Display for Reader {
 
 /// Runs a program; whether it ended well, and what it said.
 fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<(bool, String), GenError> {
-    let mut command = Command::new(program);
-    command
-        .current_dir(folder)
-        .args(arguments)
-        .stdin(Stdio::null());
-    let output = command.output().map_err(|e| cannot_start(program, &e))?;
-    let text = [output.stdout, output.stderr].concat();
-    Ok((
-        output.status.success(),
-        String::from_utf8_lossy(&text).into_owned(),
-    ))
-}
-
-fn cannot_start(program: &str, error: &std::io::Error) -> GenError {
-    GenError::input(format!("{program}: cannot be started: {error}; install it"))
+    let ran = tools::run(program, folder, arguments)?;
+    Ok((ran.is_good, ran.text()))
 }
 
 /// Whether a file belongs to the card itself: no board top, no test bench.

