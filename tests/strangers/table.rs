@@ -125,7 +125,7 @@ fn page() -> String {
         "\nVersions are those that ran last; others may do as well. Every emission is one of {} configurations: the presets, and cards that \
          have each bus, part and extreme that no preset has: {}.\n\nThis page is written from `tests/strangers/table.toml`: \
          `cargo test write_works_with -- --ignored`. The benches of all emissions in every language, and at every usual clock behind every \
-         bus, take some hours: `cargo test strangers -- --ignored`.\n",
+         bus, take an hour and a half: `cargo test strangers -- --ignored`.\n",
         names.len(),
         names.join(", ")
     );

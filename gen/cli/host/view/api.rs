@@ -205,6 +205,7 @@ impl Api {
             "rate_hz": state.rate_hz(),
             "link": state.link.is_open,
             "error": state.error,
+            "notice": state.notice,
             "recording": recording.map(|r| json!({"path": r.path.display().to_string(), "rows": r.rows})),
             "channels": channels.collect::<Vec<_>>(),
         })

@@ -63,6 +63,8 @@ pub struct State {
     pub link: LinkState,
     /// What is wrong now.
     pub error: Option<String>,
+    /// What became of the last recording, if it has not ended as it should.
+    pub notice: Option<String>,
     /// A recording.
     pub recording: Option<Recording>,
     /// Moments and rows of a while, for the rate.
@@ -88,6 +90,7 @@ impl State {
             losses: (0, 0),
             link: LinkState::default(),
             error: None,
+            notice: None,
             recording: None,
             recent: VecDeque::new(),
             identity,
@@ -109,18 +112,28 @@ impl State {
             let time_s = row.cycles as f64 / hz;
             self.history.push(time_s, &row);
             self.count.note(&row);
-            if let Some(recording) = &mut self.recording {
+            self.keep(|recording| {
                 recording.rows += 1;
-                if let Err(error) = recording.sheet.row(&row) {
-                    self.error = Some(failed(&recording.path, &error));
-                    self.recording = None;
-                }
-            }
+                recording.sheet.row(&row)
+            });
             self.recent.push_back((time_s, self.count.rows));
             while self.recent.len() > 2 && time_s - self.recent[1].0 >= RATE_OVER_S {
                 self.recent.pop_front();
             }
             self.last = Some(row);
+        }
+    }
+
+    /// Does something with the recording, if there is one; where that fails it has ended.
+    fn keep(&mut self, act: impl FnOnce(&mut Recording) -> io::Result<()>) {
+        let Some(recording) = &mut self.recording else {
+            return;
+        };
+        if let Err(error) = act(recording) {
+            let rows = recording.rows;
+            let why = failed(&recording.path, &error);
+            self.notice = Some(format!("the recording has ended after {rows} rows: {why}"));
+            self.recording = None;
         }
     }
 
@@ -145,6 +158,7 @@ impl State {
             )
         });
         let sheet = sheet.map_err(|e| failed(&path, &e))?;
+        self.notice = None;
         self.recording = Some(Recording {
             path,
             rows: 0,
@@ -322,13 +336,69 @@ impl Shared {
         if !results.is_empty() {
             state.results = results;
         }
-        let flushed = state
-            .recording
-            .as_mut()
-            .map(|r| (r.sheet.out.flush(), r.path.clone()));
-        if let Some((Err(error), path)) = flushed {
-            state.error = Some(failed(&path, &error));
-            state.recording = None;
-        }
+        state.keep(|recording| recording.sheet.out.flush());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use endat_host::feed::Cell;
+
+    /// Catches a recording that has stopped and looks as if it went on, or whose end is told for a moment only.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_ends_a_recording_and_is_told_until_the_next_one() {
+        let identity = Identity {
+            version: [1, 0, 0],
+            channels: 1,
+            max_position_bits: 48,
+            features: 0,
+            system_hz: 1_000_000,
+            configuration_hash: 0,
+            t_format_channels: 0,
+            stream_additional_data: false,
+        };
+        let scales = vec![Scale::singleturn(10)];
+        let mut state = State::new(0, identity, vec![None], scales.clone());
+        let full = File::options().write(true).open("/dev/full").unwrap();
+        let sheet = Sheet::new(Format::Csv, BufWriter::new(full), scales, 1e6, false).unwrap();
+        state.recording = Some(Recording {
+            path: "night.csv".into(),
+            rows: 0,
+            sheet,
+        });
+        let row = |trigger| Row {
+            run: None,
+            trigger,
+            cycles: trigger * 100,
+            missing: 0,
+            cells: vec![Cell {
+                position: Some(trigger % 1_024),
+                fresh: true,
+                cause: "none",
+                infos: [None; 2],
+            }],
+        };
+        // What is buffered fails when it is written.
+        state.take((0..1_000).map(row).collect());
+        assert!(state.recording.is_none() && state.count.rows == 1_000);
+        state.take((1_000..1_010).map(row).collect());
+        let told = state.notice.clone().unwrap();
+        assert!(
+            told.contains("night.csv") && told.contains("disk full"),
+            "{told}"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        state.record(folder.path()).unwrap();
+        assert_eq!(state.notice, None);
+        state.take((1_010..1_020).map(row).collect());
+        state.end_recording().unwrap();
+        let file = fs::read_dir(folder.path())
+            .unwrap()
+            .next()
+            .unwrap()
+            .unwrap();
+        assert_eq!(fs::read_to_string(file.path()).unwrap().lines().count(), 11);
     }
 }

@@ -267,4 +267,30 @@ mod tests {
         assert!(parse(b"GET / HTTP/1.1\r\nContent-Length: -1\r\n\r\n").is_err());
         assert_eq!(decoded("%zz%4"), "%zz%4");
     }
+
+    /// Whatever comes is a request, a request that is not whole, or an error; and only what is right in every byte that counts is a request for something.
+    #[test]
+    fn a_hundred_thousand_requests_that_were_spoilt_end_in_an_error() {
+        let good = b"POST /api/parameter?channel=0&area=0xA1 HTTP/1.1\r\nHost: localhost:8480\r\nContent-Length: 0\r\n\r\n";
+        let mut rng = endat_sim::rng::Rng::new(11);
+        let mut below = |end: usize| rng.in_range(0, end as u64 - 1) as usize;
+        let mut still = 0;
+        for n in 0..100_000 {
+            let mut bytes = good.to_vec();
+            for _ in 0..1 + n % 4 {
+                let at = below(bytes.len());
+                match below(3) {
+                    0 => bytes[at] = below(256) as u8,
+                    1 => drop(bytes.remove(at)),
+                    _ => bytes.insert(at, below(256) as u8),
+                }
+            }
+            if let Ok(Some((request, head, _))) = parse(&bytes) {
+                assert!(head <= bytes.len() && !request.method.is_empty());
+                still += u32::from(request.path == "/api/parameter" && request.method == "POST");
+            }
+        }
+        // A header or a value of the query that is another one is a request all the same.
+        assert!((10_000..90_000).contains(&still), "{still}");
+    }
 }

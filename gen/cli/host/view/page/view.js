@@ -93,7 +93,7 @@ function shown() {
   const good = now.link && !now.error;
   $("link").textContent = good ? "live" : now.link ? "no samples" : "connection lost";
   $("link").className = "pill " + (good ? "good" : "bad");
-  problem(now.error);
+  problem(now.error || now.notice);
   const count = (n) => n.toLocaleString("en");
   $("facts").replaceChildren(
     fact("rate", now.rate_hz === null ? "-" : `${count(Math.round(now.rate_hz))} /s`),
