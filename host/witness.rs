@@ -53,7 +53,7 @@ impl Witness {
         let (before, now) = (self.triggers, triggers(words));
         if (now.wrapping_sub(before) as i32) < 0 {
             return Err(HostError::Refused(format!(
-                "the card was restarted: it has counted {now} triggers since its reset, and had counted {before} before"
+                "the card was restarted: it has counted {now} triggers since its reset, and had counted at least {before} before"
             )));
         }
         if is_stopped {

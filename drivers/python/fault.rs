@@ -29,7 +29,8 @@ impl Fault {
     pub fn new(kind: Kind, text: impl Into<String>) -> Self {
         Self {
             kind,
-            text: text.into(),
+            // Names of options of the program are those of arguments here.
+            text: text.into().replace("--", ""),
         }
     }
 }

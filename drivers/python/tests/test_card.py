@@ -83,6 +83,9 @@ def test_a_stream_comes_in_blocks_and_leaves_the_card_usable(card: endat.Card) -
     both = endat.Samples.concatenate([one, two])
     assert len(both) == len(one) + len(two) and both.channels[1].raw[len(one)] == two.channels[1].raw[0]
     assert len(both.head(3)) == 3
+    assert both == both and both != both.head(3) and hash(both)
+    assert repr(both.head(3)).startswith("<endat.Samples: 3 rows, 0 s to 0.0002 s, 0 triggers missing, 2 channels")
+    assert repr(both.channels[0]) == f"<endat.ChannelSamples: {len(both)} rows, {len(both)} fresh, in deg>"
     assert len(card.samples(3)) == 3
 
 
@@ -132,10 +135,12 @@ BAD: list[tuple[str, str]] = [
     ("card.samples(seconds=float('nan'))", "seconds = nan"),
     ("next(card.stream(0))", "block = 0"),
     ("endat.explain('nothing')", "cause = 'nothing'"),
+    ("endat.explain(77)", "cause = 77"),
+    ("card.samples(1).head(-1)", "count = -1"),
     ("endat.connect('')", "is empty"),
     ("endat.connect('virtual:nope')", "unknown preset"),
     ("endat.connect('virtual:' + __file__ + '.toml')", "cannot"),
-    ("endat.connect('virtual', baud=-1)", "baud = -1"),
+    ("endat.connect('virtual', baud=0)", "baud = 0: outside 300"),
 ]
 
 
@@ -230,6 +235,8 @@ def test_unwrapping_counts_turns_and_skips_what_is_held() -> None:
 
 def test_causes_have_names_and_advice() -> None:
     assert endat.CAUSES[0] == "none" and "crc" in endat.CAUSES.values()
+    code = next(code for code, name in endat.CAUSES.items() if name == "crc")
+    assert endat.explain(code) == endat.explain("crc")
     assert "CRC" in endat.explain("crc") and "quiet for 30 ms" in endat.explain("not_taken")
     for name in set(endat.CAUSES.values()) - {"none", "unknown"}:
         assert endat.explain(name)
@@ -258,6 +265,21 @@ def test_a_recording_says_what_was_measured(card: endat.Card, tmp_path: Path) ->
     assert endat.record(card, path, seconds=0.01, replace=True, compression="gzip") == 101
     with h5py.File(path) as file:
         assert file["time"][-1] == pytest.approx(0.01)
+
+
+def test_a_disk_that_becomes_full_ends_a_recording_with_a_whole_file(
+    card: endat.Card, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    h5py = pytest.importorskip("h5py") if "CI" not in os.environ else __import__("h5py")
+    path = tmp_path / "full.h5"
+    left = iter([10**9, 10**9, 10**6])
+    monkeypatch.setattr("shutil.disk_usage", lambda _: type("Usage", (), {"free": next(left)}))
+    with pytest.raises(endat.EndatError, match="1000000 bytes are left on the disk") as error:
+        endat.record(card, path)
+    told = re.search(r"after (\d+) rows", str(error.value))
+    assert told is not None
+    with h5py.File(path) as file:
+        assert len(file["time"][:]) == len(file["channel1/cause"][:]) == int(told[1]) > 0
 
 
 def test_calls_of_several_threads_take_turns(card: endat.Card) -> None:

@@ -44,9 +44,10 @@ def connect(port: str, *, baud: int = 3_000_000, wait: bool = True) -> Card:
     return Card(port, baud, wait)
 
 
-def explain(cause: str) -> str:
-    """What a cause means, and what helps."""
-    text = explain_cause(cause)
+def explain(cause: str | int) -> str:
+    """What a cause means, and what helps: by its name, or its code in a column."""
+    name = cause if isinstance(cause, str) else CAUSES.get(int(cause), "")
+    text = explain_cause(name)
     if text is None:
         raise BadInput(f"cause = {cause!r}: there is none of that name; endat.CAUSES has them all")
     return text

@@ -94,9 +94,9 @@ class Answer:
     bits: int
 
 
-def _in_range(name: str, value: int, most: int) -> int:
-    if not 0 <= value <= most:
-        raise BadInput(f"{name} = {value}: outside 0..{most:#x}")
+def _in_range(name: str, value: int, most: int, least: int = 0) -> int:
+    if not least <= value <= most:
+        raise BadInput(f"{name} = {value}: outside {least}..{most:#x}")
     return value
 
 
@@ -114,7 +114,7 @@ class Card:
 
     def __init__(self, port: str, baud: int, wait: bool) -> None:
         self.port = port
-        self._native = endat_native.connect(port, _in_range("baud", baud, 12_000_000))
+        self._native = endat_native.connect(port, _in_range("baud", baud, 12_000_000, 300))
         try:
             told = self._native.identity()
             self.identity = Identity(

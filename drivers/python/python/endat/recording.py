@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from contextlib import closing
 from datetime import datetime, timezone
 from typing import Any
@@ -10,9 +11,11 @@ from typing import Any
 import numpy as np
 
 from .card import Card
-from .errors import BadInput
+from .errors import BadInput, EndatError
 from .samples import CAUSES, Samples
 
+#: A recording ends while so much is left on the disk: HDF5 does not stand a full one, and the file would be lost.
+RESERVE_BYTES = 16_000_000
 #: Rows that are compressed together.
 CHUNK = 4096
 #: What arrays of a channel are called in a file, and their unit; None: that of the position.
@@ -61,6 +64,12 @@ class _File:
             made.attrs["description"] = text
 
     def add(self, block: Samples) -> None:
+        left = shutil.disk_usage(os.path.dirname(os.path.abspath(self.file.filename))).free
+        if left < RESERVE_BYTES:
+            raise EndatError(
+                f"{self.file.filename}: {left} bytes are left on the disk, fewer than {RESERVE_BYTES}: the recording has ended after "
+                f"{self.rows} rows, the file is whole; make room, or record elsewhere"
+            )
         end = self.rows + len(block)
 
         def put(data: Any, values: Any) -> None:
@@ -96,7 +105,7 @@ def record(
 ) -> int:
     """Records into an HDF5 file (needs ``h5py``) until ``count`` rows, or ``seconds`` of the card's time, are in it; returns the rows.
 
-    Without either it goes on until Ctrl-C, which ends it with a whole file. Rows are written as they come, so memory stays constant.
+    A disk that becomes full ends it with an :class:`EndatError` while there is still room for a whole file. Without either it goes on until Ctrl-C, which ends it with a whole file. Rows are written as they come, so memory stays constant.
     ``compression``: ``lzf`` is fast, ``gzip`` is smaller and read by everything, ``None``.
     """
     import h5py

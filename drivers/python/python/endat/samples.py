@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .endat_native import cause_names
+from .errors import BadInput
 
 if TYPE_CHECKING:
     from .endat_native import _Columns
@@ -19,7 +20,8 @@ CAUSES: Mapping[int, str] = dict(cause_names())
 _CODES = {name: code for code, name in CAUSES.items()}
 
 
-@dataclass(frozen=True)
+# Arrays are compared element by element, so records of them are not: one is itself only.
+@dataclass(frozen=True, eq=False)
 class AdditionalData:
     """Additional data 1 or 2 of the same frames."""
 
@@ -30,7 +32,7 @@ class AdditionalData:
     content: NDArray[np.uint16]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class ChannelSamples:
     """One channel's positions; index n is of the same trigger in all arrays."""
 
@@ -52,6 +54,9 @@ class ChannelSamples:
     wraps_at: float | None
     #: Additional data 1 and 2, empty on a card that does not record them.
     additional: tuple[AdditionalData, ...]
+
+    def __repr__(self) -> str:
+        return f"<endat.ChannelSamples: {len(self.raw)} rows, {int(self.fresh.sum())} fresh, in {self.unit}>"
 
     def cause_names(self) -> NDArray[np.str_]:
         """The causes as names."""
@@ -75,7 +80,7 @@ class ChannelSamples:
         return out
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Samples:
     """A row for each trigger."""
 
@@ -91,6 +96,10 @@ class Samples:
 
     def __len__(self) -> int:
         return len(self.trigger)
+
+    def __repr__(self) -> str:
+        span = f"{self.time_s[0]:.6g} s to {self.time_s[-1]:.6g} s" if len(self) else "no time"
+        return f"<endat.Samples: {len(self)} rows, {span}, {int(self.missing.sum())} triggers missing, {len(self.channels)} channels>"
 
     def columns(self) -> dict[str, NDArray[Any]]:
         """All arrays by name, as ``pandas.DataFrame`` takes them."""
@@ -111,6 +120,8 @@ class Samples:
 
     def head(self, count: int) -> Samples:
         """The first rows."""
+        if count < 0:
+            raise BadInput(f"count = {count}: give 0 or more")
         made: Samples = _each([self], lambda arrays: arrays[0][:count])
         return made
 

@@ -14,6 +14,7 @@ use endat_sim::diagram::edges_svg;
 use serde_json::{json, Value};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// The page.
 const FILES: [(&str, &str, &str); 3] = [
@@ -51,6 +52,8 @@ pub struct Api {
     pub folder: PathBuf,
     /// The card as the user named it.
     pub port: String,
+    /// How long nothing may come before what is shown is old.
+    pub may_be_silent: Duration,
 }
 
 /// An error that a page shows.
@@ -194,6 +197,8 @@ impl Api {
             })
         });
         let recording = state.recording.as_ref();
+        let silent = state.silent(self.may_be_silent);
+        let rates_hz = state.rates_hz().filter(|_| silent.is_none());
         json!({
             "session": state.session,
             "span_s": state.history.span_s().map(|(from, to)| [from, to]),
@@ -202,7 +207,9 @@ impl Api {
             "missing": state.count.missing,
             "dropped": state.losses.0,
             "damaged": state.losses.1,
-            "rate_hz": state.rate_hz(),
+            "rate_hz": rates_hz.map(|[triggers, _]| triggers),
+            "rows_hz": rates_hz.map(|[_, rows]| rows),
+            "silent_s": silent.map(|s| s.as_secs_f64()),
             "link": state.link.is_open,
             "error": state.error,
             "notice": state.notice,

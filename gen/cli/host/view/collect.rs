@@ -1,7 +1,7 @@
 //! Takes what the card sends, and keeps what pages ask for.
 
 use super::super::log::count::{Count, Judge};
-use super::super::log::sheet::{Format, Sheet};
+use super::super::log::sheet::{Format, Lines, Sheet};
 use super::history::History;
 use endat_driver::Reading;
 use endat_host::card::Identity;
@@ -14,7 +14,7 @@ use endat_host::{HostError, Transport};
 use endat_regs::Part;
 use std::collections::VecDeque;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -36,7 +36,7 @@ pub struct Recording {
     pub path: PathBuf,
     /// Rows in it.
     pub rows: u64,
-    sheet: Sheet<BufWriter<File>>,
+    sheet: Sheet<Lines<File>>,
 }
 
 /// What is known of the card.
@@ -67,8 +67,10 @@ pub struct State {
     pub notice: Option<String>,
     /// A recording.
     pub recording: Option<Recording>,
-    /// Moments and rows of a while, for the rate.
-    recent: VecDeque<(f64, u64)>,
+    /// When the last rows came.
+    heard: Instant,
+    /// Moments, triggers and rows of a while, for the rates.
+    recent: VecDeque<(f64, u64, u64)>,
 }
 
 impl State {
@@ -92,6 +94,7 @@ impl State {
             error: None,
             notice: None,
             recording: None,
+            heard: Instant::now(),
             recent: VecDeque::new(),
             identity,
             plates,
@@ -99,15 +102,24 @@ impl State {
         }
     }
 
-    /// Rows per second of the card's time.
-    pub fn rate_hz(&self) -> Option<f64> {
+    /// Triggers, and rows, per second of the card's time; those of a card that is read one by one differ.
+    pub fn rates_hz(&self) -> Option<[f64; 2]> {
         let (first, last) = (self.recent.front()?, self.recent.back()?);
         let span_s = last.0 - first.0;
-        (span_s > 0.0).then(|| (last.1 - first.1) as f64 / span_s)
+        let counts = [last.1 - first.1, last.2 - first.2];
+        (span_s > 0.0).then(|| counts.map(|count| count as f64 / span_s))
+    }
+
+    /// How long nothing has come; none while that is no longer than it may be.
+    pub fn silent(&self, may_be: Duration) -> Option<Duration> {
+        let slow = self.rates_hz().map_or(0.0, |[hz, _]| 3.0 / hz.max(1e-3));
+        let limit = may_be.max(Duration::from_secs_f64(slow));
+        Some(self.heard.elapsed()).filter(|silent| *silent > limit)
     }
 
     fn take(&mut self, rows: Vec<Row>) {
         let hz = f64::from(self.identity.system_hz.max(1));
+        self.heard = Instant::now();
         for row in rows {
             let time_s = row.cycles as f64 / hz;
             self.history.push(time_s, &row);
@@ -116,7 +128,8 @@ impl State {
                 recording.rows += 1;
                 recording.sheet.row(&row)
             });
-            self.recent.push_back((time_s, self.count.rows));
+            self.recent
+                .push_back((time_s, row.trigger, self.count.rows));
             while self.recent.len() > 2 && time_s - self.recent[1].0 >= RATE_OVER_S {
                 self.recent.pop_front();
             }
@@ -151,7 +164,7 @@ impl State {
             let infos = self.identity.stream_additional_data;
             Sheet::new(
                 Format::Csv,
-                BufWriter::new(file),
+                Lines::file(file),
                 self.scales.clone(),
                 hz,
                 infos,
@@ -362,7 +375,7 @@ mod tests {
         let scales = vec![Scale::singleturn(10)];
         let mut state = State::new(0, identity, vec![None], scales.clone());
         let full = File::options().write(true).open("/dev/full").unwrap();
-        let sheet = Sheet::new(Format::Csv, BufWriter::new(full), scales, 1e6, false).unwrap();
+        let sheet = Sheet::new(Format::Csv, Lines::file(full), scales, 1e6, false).unwrap();
         state.recording = Some(Recording {
             path: "night.csv".into(),
             rows: 0,

@@ -122,7 +122,8 @@ fn parse(head: &[u8]) -> Result<Option<(Request, usize, usize)>, String> {
     Ok(Some((request, length, body)))
 }
 
-/// Reads a request; an answer if it is none.
+/// Reads a request; an answer if it is none. A connection on which nothing has come needs none: browsers open some in advance, and would take
+/// one for the answer to what they ask later.
 fn read(stream: &mut TcpStream) -> Result<Request, Option<Response>> {
     let end = Instant::now() + PATIENCE;
     let mut bytes = Vec::new();
@@ -145,15 +146,17 @@ fn read(stream: &mut TcpStream) -> Result<Request, Option<Response>> {
             }
             Ok(_) => {}
         }
+        let late =
+            || (!bytes.is_empty()).then(|| Response::text(408, "the request has not come whole"));
         let left = end.saturating_duration_since(Instant::now());
         if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
-            return Err(Some(Response::text(408, "the request has not come whole")));
+            return Err(late());
         }
         match stream.read(&mut buffer) {
             Ok(0) => return Err(None),
             Ok(count) => bytes.extend_from_slice(&buffer[..count]),
             Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
-            Err(_) => return Err(Some(Response::text(408, "the request has not come whole"))),
+            Err(_) => return Err(late()),
         }
     }
 }

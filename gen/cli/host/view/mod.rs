@@ -26,11 +26,17 @@ use std::io::Write as _;
 use std::net::TcpListener;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Where pages come in, unless told otherwise.
 const LISTEN: &str = "127.0.0.1:8480";
 /// A token that is shorter can be guessed.
 const TOKEN_CHARACTERS_MIN: usize = 12;
+
+/// Nothing for so long, or three times as long as triggers are apart: what is shown is old.
+const SILENT: Duration = Duration::from_millis(1_500);
+/// The same of a card that is simulated here, and slow.
+const SILENT_SIMULATED: Duration = Duration::from_secs(10);
 
 /// Arguments of `view`.
 #[derive(Args)]
@@ -97,6 +103,23 @@ pub fn run(arguments: &ViewArgs) -> Result<Outcome, GenError> {
         (None, false) => Some(random_token()?),
     };
     let port = name.clone();
+    let may_be_silent = match is_virtual(&port) {
+        true => SILENT_SIMULATED,
+        false => SILENT,
+    };
+    let folder = (arguments.folder.clone()).unwrap_or_else(|| "recordings".into());
+    // A folder is made for the first recording; whether it can be is told now.
+    if let Some(file) = folder
+        .ancestors()
+        .find(|f| f.exists())
+        .filter(|f| !f.is_dir())
+    {
+        return Err(GenError::input(format!(
+            "--folder = {}: {} is no folder; give another one",
+            folder.display(),
+            file.display()
+        )));
+    }
     let find: Find = Arc::new(move || {
         let is_real = !is_virtual(&name);
         let name = name.clone();
@@ -118,12 +141,12 @@ pub fn run(arguments: &ViewArgs) -> Result<Outcome, GenError> {
     let mut stdout = std::io::stdout();
     // Nobody reads it: the page is there all the same.
     let _ = writeln!(stdout, "{port}: {shown} (Ctrl-C ends it)").and_then(|()| stdout.flush());
-    let folder = arguments.folder.clone();
     let api = Api {
         shared: shared.clone(),
         guard: Guard::new(local, token),
-        folder: folder.unwrap_or_else(|| "recordings".into()),
+        folder,
         port,
+        may_be_silent,
     };
     http::serve(&listener, &stop, move |request| api.answer(request)).map_err(fail)?;
     // The thread has seen the same flag; it leaves the card quiet.

@@ -16,6 +16,8 @@ const remember = (key, value) => { try { localStorage.setItem("endat-" + key, va
 const remembered = (key) => { try { return localStorage.getItem("endat-" + key); } catch { return null; } };
 
 let card = null, now = null, plot = null;
+// What became of something that was asked for; shown for a while.
+let complaint = { text: "", until: 0 };
 const view = { live: true, span: 10, from: 0, to: 1, show: "position", wrap: false, zero: {}, tab: "causes" };
 
 async function ask(path, method) {
@@ -90,14 +92,15 @@ function relative(channel, n, value) {
 }
 
 function shown() {
-  const good = now.link && !now.error;
-  $("link").textContent = good ? "live" : now.link ? "no samples" : "connection lost";
+  const old = !now.link || now.silent_s !== null || Boolean(now.error);
+  const good = !old;
+  $("link").textContent = good ? "live" : !now.link ? "connection lost" : now.silent_s === null ? "no samples" : `no samples for ${now.silent_s.toFixed(0)} s`;
   $("link").className = "pill " + (good ? "good" : "bad");
-  problem(now.error || now.notice);
+  problem(now.error || now.notice || (performance.now() < complaint.until && complaint.text));
   const count = (n) => n.toLocaleString("en");
   $("facts").replaceChildren(
     fact("rate", now.rate_hz === null ? "-" : `${count(Math.round(now.rate_hz))} /s`),
-    fact("triggers", count(now.rows)),
+    fact("rows", count(now.rows)),
     fact("bad", count(now.bad), now.bad > 0),
     fact("missing", count(now.missing), now.missing > 0),
     fact("dropped in the card", count(now.dropped), now.dropped > 0),
@@ -107,18 +110,23 @@ function shown() {
   $("record").textContent = now.recording ? `Stop: ${count(now.recording.rows)} rows in ${now.recording.path}` : "Record";
   now.channels.forEach((one, n) => {
     const channel = card.channels[n], box = channel.box;
-    const value = one.value === null ? null : relative(channel, n, one.value);
+    const isNone = one.value === null;
+    const value = isNone ? null : relative(channel, n, one.value);
     box.value.replaceChildren(value === null ? "-" : value.toFixed(channel.digits), make("small", " " + channel.unit));
-    box.value.classList.toggle("held", !one.fresh);
-    if (one.value !== null && channel.wraps_at) box.hand.setAttribute("transform", `rotate(${one.value / channel.wraps_at * 360})`);
+    box.value.classList.toggle("held", old || !one.fresh);
+    box.hand.style.display = isNone || value === null || !channel.wraps_at ? "none" : "";
+    if (channel.wraps_at) box.hand.setAttribute("transform", `rotate(${(value || 0) / channel.wraps_at * 360})`);
     const wrong = one.cause && one.cause !== "none";
-    box.state.textContent = one.fresh ? (wrong ? one.cause : "good") : one.cause === null ? "none yet" : `held: ${one.cause}`;
-    box.state.className = "pill " + (one.fresh ? (wrong ? "warn" : "good") : "bad");
+    // One that takes no trigger has a cause for that: the one that came most often.
+    const most = Object.entries(one.counts).filter(([name]) => name !== "not_taken").sort((a, b) => b[1] - a[1])[0];
+    const why = one.cause === "not_taken" && most ? most[0] : one.cause;
+    box.state.textContent = old ? "old" : one.fresh ? (wrong ? one.cause : "good") : one.cause === null ? "none yet" : `${isNone ? "none" : "held"}: ${why}`;
+    box.state.className = "pill " + (old ? "bad" : one.fresh ? (wrong ? "warn" : "good") : "bad");
     const about = [];
     if (view.zero[n] !== undefined) about.push("from the zero that was set");
     else if (one.turns) about.push(`${one.turns} turns`);
     if (one.raw !== null) about.push("0x" + one.raw);
-    if (one.delay_ns !== null && channel.protocol === "EnDat") about.push(`line delay ${one.delay_ns.toFixed(0)} ns`, `recovery time ${one.recovery_us.toFixed(2)} us`);
+    if (!isNone && one.delay_ns !== null && channel.protocol === "EnDat") about.push(`line delay ${one.delay_ns.toFixed(0)} ns`, `recovery time ${one.recovery_us.toFixed(2)} us`);
     if (channel.serial) about.push("serial number " + channel.serial);
     box.about.textContent = about.join(", ");
   });
@@ -144,8 +152,10 @@ function causes() {
 
 const PAD = { left: 74, right: 14, top: 10, bottom: 26 };
 const LANE = 11;
-const MARKS = ["#d32f2f", "#f57c00", "#7b1fa2", "#0288d1", "#388e3c", "#c2185b", "#5d4037", "#00796b", "#fbc02d", "#455a64"];
-const markOf = (name) => MARKS[[...name].reduce((sum, c) => (sum * 31 + c.charCodeAt(0)) >>> 0, 7) % MARKS.length];
+// No green: nothing here is good.
+const MARKS = ["#d32f2f", "#f57c00", "#8e24aa", "#c2185b", "#8d6e63", "#fbc02d", "#ff7043", "#ad1457"];
+const NO_RESULT = "#78909c";
+const markOf = (name) => ["not_taken", "too_late", "late"].includes(name) ? NO_RESULT : MARKS[[...name].reduce((sum, c) => (sum * 31 + c.charCodeAt(0)) >>> 0, 7) % MARKS.length];
 let pointer = null;
 
 function wanted() {
@@ -161,7 +171,7 @@ function window_() {
   return [Math.max(first, last - span), Math.max(last, first + 1e-3)];
 }
 
-let busy = false, again = false;
+let busy = false, again = false, rowsPerSecond = 1;
 async function redraw() {
   if (!card || !now) return;
   if (busy) { again = true; return; }
@@ -170,7 +180,8 @@ async function redraw() {
     const [from, to] = window_();
     const width = Math.max(50, Math.floor($("plot").clientWidth - PAD.left - PAD.right));
     // A bucket for each row where rows are few.
-    const rows = Math.ceil((to - from) * (now.rate_hz || 1));
+    if (now.rows_hz) rowsPerSecond = now.rows_hz;
+    const rows = Math.ceil((to - from) * rowsPerSecond);
     const buckets = Math.max(2, Math.min(width, rows, 4000));
     const told = await ask(`/api/plot?from=${from}&to=${to}&buckets=${buckets}&traces=${wanted().join(",")}`);
     if (told.session === card.session) { plot = told; draw(); }
@@ -202,40 +213,23 @@ function ends(trace, name, i) {
   return [low, high];
 }
 
-function draw() {
-  const canvas = $("plot"), ratio = devicePixelRatio || 1;
-  const width = canvas.clientWidth, height = canvas.clientHeight;
-  canvas.width = width * ratio; canvas.height = height * ratio;
-  const pen = canvas.getContext("2d");
-  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  pen.font = "12px system-ui, 'DejaVu Sans', sans-serif";
-  const lanes = card.channels.length * LANE + 6;
-  const box = { x: PAD.left, y: PAD.top, w: width - PAD.left - PAD.right, h: height - PAD.top - PAD.bottom - lanes };
-  const span = plot.to - plot.from, x = (t) => box.x + (t - plot.from) / span * box.w;
-  const middle = (i) => plot.from + (i + .5) / plot.buckets * span;
-  const lines = Object.entries(plot.traces).map(([name, trace]) => ({ name, points: trace.min.map((_, i) => ends(trace, name, i)) }));
+// Draws the lines of one unit with their axis; how many digits its numbers have.
+function drawn(pen, box, lines, x, middle) {
   const all = lines.flatMap((l) => l.points).filter(Boolean);
   let low = Math.min(...all.map((p) => p[0])), high = Math.max(...all.map((p) => p[1]));
   if (!all.length) [low, high] = [0, 1];
   const room = Math.max((high - low) * .05, Math.abs(high) * 1e-9, 1e-9);
   [low, high] = [low - room, high + room];
   const y = (v) => box.y + (high - v) / (high - low) * box.h;
-  // Axes.
   pen.strokeStyle = ink("line"); pen.fillStyle = ink("quiet"); pen.lineWidth = 1;
   pen.textAlign = "right"; pen.textBaseline = "middle";
-  const step = nice(high - low, 6), digits = Math.max(0, Math.min(10, -Math.floor(Math.log10(step))));
+  const step = nice(high - low, Math.max(2, box.h / 55)), digits = Math.max(0, Math.min(10, -Math.floor(Math.log10(step))));
   for (let v = Math.ceil(low / step) * step; v <= high; v += step) {
     pen.beginPath(); pen.moveTo(box.x, y(v)); pen.lineTo(box.x + box.w, y(v)); pen.stroke();
     pen.fillText(v.toFixed(digits), box.x - 6, y(v));
   }
-  pen.textAlign = "center"; pen.textBaseline = "top";
-  const tick = nice(span, Math.max(2, box.w / 110)), small = Math.max(0, Math.min(9, -Math.floor(Math.log10(tick))));
-  for (let t = Math.ceil(plot.from / tick) * tick; t <= plot.to; t += tick) {
-    pen.beginPath(); pen.moveTo(x(t), box.y); pen.lineTo(x(t), box.y + box.h); pen.stroke();
-    if (x(t) < width - 24) pen.fillText(t.toFixed(small) + " s", x(t), height - PAD.bottom + 6);
-  }
   pen.save(); pen.beginPath(); pen.rect(box.x, box.y, box.w, box.h); pen.clip();
-  lines.forEach(({ name, points }) => {
+  for (const { name, points } of lines) {
     const n = Number(/\d/.exec(name) || 0), turn = card.channels[n].wraps_at;
     pen.strokeStyle = pen.fillStyle = colour(n); pen.lineWidth = 1.4; pen.lineJoin = "round";
     const areas = [[]];
@@ -257,33 +251,75 @@ function draw() {
       pen.globalAlpha = .35; pen.fill(); pen.globalAlpha = 1; pen.stroke();
       if (area.length === 1) pen.fillRect(area[0][0] - 1, y(area[0][2]) - 1, 2, y(area[0][1]) - y(area[0][2]) + 2);
     }
-  });
+  }
   pen.restore();
+  pen.textAlign = "left"; pen.textBaseline = "top";
+  let at = box.x + 6;
+  for (const { name, unit } of lines) {
+    const n = Number(/\d/.exec(name) || 0), text = name === "difference" ? `channel 0 less channel 1 (${unit})` : `channel ${n} (${unit})`;
+    pen.fillStyle = colour(n); pen.fillText(text, at, box.y + 4); at += pen.measureText(text).width + 16;
+  }
+  return digits;
+}
+
+function draw() {
+  const canvas = $("plot"), ratio = devicePixelRatio || 1;
+  const width = canvas.clientWidth, height = canvas.clientHeight;
+  canvas.width = width * ratio; canvas.height = height * ratio;
+  const pen = canvas.getContext("2d");
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.font = "12px system-ui, 'DejaVu Sans', sans-serif";
+  const lanes = card.channels.length * LANE + 6;
+  const box = { x: PAD.left, y: PAD.top, w: width - PAD.left - PAD.right, h: height - PAD.top - PAD.bottom - lanes };
+  const span = plot.to - plot.from, x = (t) => box.x + (t - plot.from) / span * box.w;
+  const middle = (i) => plot.from + (i + .5) / plot.buckets * span;
+  const unitOf = (name) => card.traces.find((t) => t.name === name).unit;
+  const lines = Object.entries(plot.traces).map(([name, trace]) => ({ name, unit: unitOf(name), points: trace.min.map((_, i) => ends(trace, name, i)) }));
+  // What has another unit has another axis.
+  const units = [...new Set(lines.map((l) => l.unit))];
+  const each = box.h / units.length;
+  pen.textBaseline = "top";
+  const tick = nice(span, Math.max(2, box.w / 110)), small = Math.max(0, Math.min(9, -Math.floor(Math.log10(tick))));
+  pen.strokeStyle = ink("line"); pen.fillStyle = ink("quiet"); pen.lineWidth = 1; pen.textAlign = "center";
+  for (let t = Math.ceil(plot.from / tick) * tick; t <= plot.to; t += tick) {
+    pen.beginPath(); pen.moveTo(x(t), box.y); pen.lineTo(x(t), box.y + box.h); pen.stroke();
+    if (x(t) < width - 24) pen.fillText(t.toFixed(small) + " s", x(t), height - PAD.bottom + 6);
+  }
+  let digits = 0;
+  units.forEach((unit, k) => {
+    const panel = { x: box.x, w: box.w, y: box.y + k * each, h: each - (k + 1 < units.length ? 8 : 0) };
+    digits = Math.max(digits, drawn(pen, panel, lines.filter((l) => l.unit === unit), x, middle));
+  });
   // Causes, a lane for each channel.
   const under = box.y + box.h + 4;
   plot.causes.forEach((marks, n) => {
     pen.fillStyle = ink("paper"); pen.fillRect(box.x, under + n * LANE, box.w, LANE - 2);
+    const marked = new Set(marks.map(([i]) => i));
     for (const [i, names] of marks) {
+      const isLong = i + 1 < plot.buckets && !marked.has(i + 1) && lines.every((l) => !l.points[i + 1]);
       names.forEach((name, k) => {
         pen.fillStyle = markOf(name);
         const part = (LANE - 2) / names.length;
-        pen.fillRect(x(plot.from + i / plot.buckets * span), under + n * LANE + k * part, Math.max(2, box.w / plot.buckets), part);
+        pen.fillRect(x(plot.from + i / plot.buckets * span), under + n * LANE + k * part, Math.max(2, box.w / plot.buckets * (isLong ? 2 : 1)), part);
       });
     }
     pen.fillStyle = ink("quiet"); pen.textAlign = "right"; pen.textBaseline = "middle";
     pen.fillText("causes " + n, box.x - 6, under + n * LANE + LANE / 2);
   });
-  const unit = card.traces.find((t) => t.name === wanted()[0]).unit;
-  pen.textAlign = "left"; pen.textBaseline = "top";
-  let at = box.x + 6;
-  for (const { name } of lines) {
-    const n = Number(/\d/.exec(name) || 0), text = name === "difference" ? `channel 0 less channel 1 (${unit})` : `channel ${n} (${unit})`;
-    pen.fillStyle = colour(n); pen.fillText(text, at, box.y + 4); at += pen.measureText(text).width + 16;
+  // What the colours of the lanes are.
+  const seen = [...new Set(plot.causes.flat().flatMap(([, names]) => names))];
+  pen.textAlign = "right"; pen.textBaseline = "top";
+  let end = box.x + box.w - 4;
+  for (const name of seen) {
+    pen.fillStyle = ink("quiet"); pen.fillText(name, end, box.y + 4);
+    end -= pen.measureText(name).width + 14;
+    pen.fillStyle = markOf(name); pen.fillRect(end, box.y + 5, 10, 10);
+    end -= 8;
   }
   if (pointer !== null && pointer >= box.x && pointer <= box.x + box.w) {
     pen.strokeStyle = ink("ink"); pen.beginPath(); pen.moveTo(pointer, box.y); pen.lineTo(pointer, under + lanes - 6); pen.stroke();
     const i = Math.min(plot.buckets - 1, Math.floor((pointer - box.x) / box.w * plot.buckets));
-    const texts = lines.map(({ name, points }) => {
+    const texts = lines.map(({ name, unit, points }) => {
       const point = points[i], n = /\d/.exec(name), label = n ? `channel ${n[0]}` : name;
       const precise = Math.min(10, digits + 2);
       return point ? `${label}: ${point[0] === point[1] ? point[0].toFixed(precise) : point[0].toFixed(precise) + " to " + point[1].toFixed(precise)} ${unit}` : `${label}: nothing`;
@@ -404,7 +440,11 @@ async function parameter(event) {
 }
 
 async function record() {
-  try { await ask(now && now.recording ? "/api/stop" : "/api/record", "POST"); } catch (error) { problem(error.message); return; }
+  try { await ask(now && now.recording ? "/api/stop" : "/api/record", "POST"); } catch (error) {
+    complaint = { text: error.message, until: performance.now() + 10000 };
+    problem(error.message);
+    return;
+  }
   poll();
 }
 
@@ -483,6 +523,11 @@ async function poll() {
   } catch (error) {
     $("link").textContent = "no answer";
     $("link").className = "pill bad";
+    if (card) for (const { box } of card.channels) {
+      box.state.textContent = "old";
+      box.state.className = "pill bad";
+      box.value.classList.add("held");
+    }
     problem(error instanceof TypeError || error.name === "TimeoutError" ? "The program that serves this page does not answer; trying again." : error.message);
   }
 }
