@@ -54,7 +54,8 @@ function begin() {
     const hand = svg("line", { x1: 0, y1: 6, x2: 0, y2: -36, class: "hand" });
     hand.style.stroke = `var(--c${n % 8})`;
     dial.append(hand);
-    if (!channel.wraps_at) hand.style.display = "none";
+    // What goes to and fro, or tells no turn, has no dial.
+    box.classList.toggle("plain", !channel.wraps_at);
     const head = make("h2", `Channel ${n}`), state = make("span", "", "pill");
     head.append(state);
     const value = make("div", "-", "value"), about = make("p", "", "about");
