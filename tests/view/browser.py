@@ -1,5 +1,6 @@
 """Opens the live page as a user does; pictures go into the folder that is given."""
 
+import shutil
 import sys
 import time
 
@@ -8,12 +9,13 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.support.wait import WebDriverWait
 
-url, folder = sys.argv[1:]
+url, folder, program = sys.argv[1:]
 options = webdriver.ChromeOptions()
 for option in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1280,1200"):
     options.add_argument(option)
+options.binary_location = shutil.which(program)
 options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-browser = webdriver.Chrome(options=options, service=webdriver.ChromeService("/usr/bin/chromedriver"))
+browser = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
 browser.set_script_timeout(60)
 patient = WebDriverWait(browser, 60)
 

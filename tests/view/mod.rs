@@ -474,7 +474,11 @@ fn what_cannot_be_served_is_told_at_once() {
 #[test]
 fn a_browser_shows_the_page_and_obeys_its_keys() {
     let check = "the live page is opened in a browser";
-    if !tools::require_all(&["chromium", "chromedriver"], check)
+    let browser = match tools::has("google-chrome") && !tools::has("chromium") {
+        true => "google-chrome",
+        false => "chromium",
+    };
+    if !tools::require_all(&[browser, "chromedriver"], check)
         || !tools::require_python("selenium", check)
     {
         return;
@@ -491,6 +495,7 @@ fn a_browser_shows_the_page_and_obeys_its_keys() {
     let output = Command::new("python3")
         .args([script, &format!("http://{}/", view.address)])
         .arg(&dir)
+        .arg(browser)
         .output()
         .unwrap();
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
