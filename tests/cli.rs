@@ -516,3 +516,45 @@ fn doctor_says_what_is_missing_and_how_to_have_it() {
         assert!(code == Some(2) && told.contains(&remedy), "{told}");
     }
 }
+
+/// Catches a configuration that must be a file before it can be tried.
+#[test]
+fn a_configuration_comes_on_standard_input() {
+    let asked = |text: &[u8]| {
+        use std::io::Write;
+        let mut child = program()
+            .args(["explain", "--json", "--config", "-"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // It may have refused the text before it has read all.
+        let _ = child.stdin.take().unwrap().write_all(text);
+        let output = child.wait_with_output().unwrap();
+        let said = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        (
+            output.status.code(),
+            said(output.stdout),
+            said(output.stderr),
+        )
+    };
+    let text = good(&["presets", "--show", "clb_2mhz"]);
+    let (code, told, _) = asked(text.as_bytes());
+    assert_eq!(
+        (code, told),
+        (
+            Some(0),
+            good(&["explain", "--json", "--preset", "clb_2mhz"])
+        )
+    );
+    let wrong = text.replacen("clock_hz", "clock_herz", 1);
+    let (code, _, told) = asked(wrong.as_bytes());
+    assert!(
+        code == Some(2) && told.contains("stdin:") && told.contains("clock_herz"),
+        "{told}"
+    );
+    let (code, _, told) = asked(&vec![b'#'; 20_000_000]);
+    assert!(code == Some(2) && told.contains("bytes"), "{told}");
+    assert_eq!(asked(b"").0, Some(2));
+}

@@ -154,7 +154,7 @@ enum Command {
 /// Which configuration.
 #[derive(Args, Clone, Default)]
 struct SourceArgs {
-    /// Configuration file
+    /// Configuration file; - reads standard input
     #[arg(long, value_name = "FILE", conflicts_with = "preset")]
     config: Option<PathBuf>,
     /// Configuration that comes with the program [default: s6_two_channel]

@@ -8,10 +8,14 @@ pub(crate) mod reader;
 
 use crate::artifact::read_regular;
 use crate::error::{Diagnostic, GenError};
+use std::io::{self, Read as _};
 use std::path::Path;
 
 /// Largest file; a larger one is no form.
 const FILE_BYTES_MAX: u64 = 1 << 20;
+
+/// In the place of a file's name: what comes on standard input.
+const STDIN: &str = "-";
 
 /// What becomes of the text of a file; `remedy` is told when it cannot be read.
 pub fn with_text<T>(
@@ -19,10 +23,27 @@ pub fn with_text<T>(
     remedy: &str,
     parse: impl Fn(&str, &str) -> Result<T, GenError>,
 ) -> Result<T, GenError> {
-    let bytes =
-        read_regular(path, FILE_BYTES_MAX).map_err(|e| GenError::io("read", path, &e, remedy))?;
+    let fail = |e: io::Error| GenError::io("read", path, &e, remedy);
+    if path == Path::new(STDIN) {
+        let bytes = read_all(io::stdin().lock()).map_err(fail)?;
+        return parse("stdin", text_of("stdin", &bytes)?);
+    }
+    let bytes = read_regular(path, FILE_BYTES_MAX).map_err(fail)?;
     let file = path.display().to_string();
     parse(&file, text_of(&file, &bytes)?)
+}
+
+/// Everything that comes, as much as a file may have.
+fn read_all(from: impl io::Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    from.take(FILE_BYTES_MAX + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 > FILE_BYTES_MAX {
+        false => Ok(bytes),
+        true => Err(io::Error::new(
+            io::ErrorKind::FileTooLarge,
+            format!("has more than {FILE_BYTES_MAX} bytes"),
+        )),
+    }
 }
 
 /// The text in the bytes of a file.
