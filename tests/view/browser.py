@@ -17,7 +17,7 @@ options.binary_location = shutil.which(program)
 options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
 browser = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
 browser.set_script_timeout(60)
-patient = WebDriverWait(browser, 60)
+patient = WebDriverWait(browser, 120)
 
 
 def one(css):
@@ -33,7 +33,7 @@ def until(what, holds):
         patient.until(lambda _: holds())
     except Exception:
         browser.save_screenshot(f"{folder}/failed.png")
-        raise AssertionError(f"{what}: not within a minute; {folder}/failed.png") from None
+        raise AssertionError(f"{what}: not within two minutes; {folder}/failed.png") from None
 
 
 def key(name):

@@ -342,7 +342,7 @@ def test_a_card_that_dies_ends_the_stream(served: tuple[str, subprocess.Popen[st
             served[1].kill()
             for _ in blocks:
                 pass
-    assert time.monotonic() - begin < 60
+    assert time.monotonic() - begin < 150
 
 
 INTERRUPTED = """
@@ -363,7 +363,7 @@ def test_ctrl_c_ends_a_recording_with_a_whole_file(tmp_path: Path) -> None:
         time.sleep(0.1)
     time.sleep(2)
     program.send_signal(signal.SIGINT)
-    told, _ = program.communicate(timeout=20)
+    told, _ = program.communicate(timeout=90)
     assert program.returncode == 0
     with h5py.File(path) as file:
         assert len(file["time"]) == len(file["channel1/raw"]) == int(told) > 0
