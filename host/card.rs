@@ -204,8 +204,11 @@ impl<T: Transport> Card<T> {
         Ok(place.of(self.bridge.read(place.address(), 1)?[0]))
     }
 
-    /// Refuses a value that the map forbids for this word or field; [`Card::write`] writes any that fits.
+    /// Refuses a value that the map forbids for this word or field; [`Card::write`] writes any that fits, and refuses words that are read only.
     pub fn permits(&self, place: &Place, value: u32) -> Result<(), HostError> {
+        if place.register.access == Access::ReadOnly {
+            return Ok(());
+        }
         let is_t_format = self.identity.is_of_t_format(place);
         let fields = place.register.fields.iter();
         let meant = fields

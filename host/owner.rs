@@ -48,6 +48,15 @@ pub struct Recording {
     broken: Option<HostError>,
 }
 
+/// What was lost between the card and its user.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Losses {
+    /// Frames damaged on the link.
+    pub damaged: u64,
+    /// Sets that the card itself has dropped.
+    pub dropped: u64,
+}
+
 impl Owner {
     /// Begins a recording, of a card that something triggers.
     pub fn begin(&mut self, polls: bool) -> Result<(), HostError> {
@@ -66,6 +75,15 @@ impl Owner {
             broken: None,
         });
         Ok(())
+    }
+
+    /// What was lost on the way of the recording that is under way.
+    pub fn losses(&mut self) -> Losses {
+        let recording = self.recording.as_ref();
+        Losses {
+            damaged: self.card.bridge().decoder().damaged(),
+            dropped: recording.map_or(0, |r| r.feed.lost_in_card()),
+        }
     }
 
     /// Ends it: the link is as it was before.

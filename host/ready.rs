@@ -2,6 +2,7 @@
 
 use crate::card::Card;
 use crate::mailbox::INITIALISATION;
+use crate::name_plate::NamePlate;
 use crate::transport::Transport;
 use crate::units::Scale;
 use crate::HostError;
@@ -32,6 +33,16 @@ impl<T: Transport> Card<T> {
     pub fn scales(&mut self) -> Result<Vec<Scale>, HostError> {
         let channels = 0..self.identity().channels;
         channels.map(|channel| self.scale(channel)).collect()
+    }
+
+    /// Name plates; none of a channel whose encoder the card does not read.
+    pub fn name_plates(&mut self) -> Result<Vec<Option<NamePlate>>, HostError> {
+        let identity = *self.identity();
+        let has = |n: usize| identity.has(Part::Initialise) && !identity.is_t_format(n);
+        let channels = 0..identity.channels;
+        channels
+            .map(|n| has(n).then(|| self.name_plate(n)).transpose())
+            .collect()
     }
 
     /// Channels that speak EnDat.

@@ -180,6 +180,21 @@ impl Place {
         }
     }
 
+    /// All words of the map, for a card with so many channels; whether it has them is for [`crate::Card::place`] to say.
+    pub fn words(channels: usize) -> impl Iterator<Item = Self> {
+        let numbers = move |block: &Block| 0..if block.per_channel { channels } else { 1 };
+        BLOCKS.iter().flat_map(move |block| {
+            numbers(block).flat_map(move |channel| {
+                block.registers.iter().map(move |register| Self {
+                    block,
+                    channel,
+                    register,
+                    field: None,
+                })
+            })
+        })
+    }
+
     /// A word that is known to be in the map.
     pub(crate) fn at(block: &str, register: &str, channel: usize) -> Self {
         let block = BLOCKS.iter().find(|b| b.name == block);

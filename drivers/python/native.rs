@@ -8,7 +8,6 @@ use endat_host::feed::{cause_codes, NO_CAUSES};
 use endat_host::mailbox::Request;
 use endat_host::name_plate::NamePlate;
 use endat_host::owner::{Handle, Owner};
-use endat_host::registers::Access;
 use endat_host::HostError;
 use endat_regs::Part;
 use pyo3::prelude::*;
@@ -122,15 +121,7 @@ impl NativeCard {
 
     /// Name plates; none of a channel whose encoder the card does not read.
     fn name_plates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let plates = self.call(py, |w| {
-            let identity = *w.card.identity();
-            let has = |n: &usize| identity.has(Part::Initialise) && !identity.is_t_format(*n);
-            let mut plates = Vec::new();
-            for n in 0..identity.channels {
-                plates.push(has(&n).then(|| w.card.name_plate(n)).transpose()?);
-            }
-            Ok(plates)
-        })?;
+        let plates = self.call(py, |w| w.card.name_plates())?;
         let all = PyList::empty(py);
         for one in &plates {
             all.append(one.as_ref().map(|p| plate(py, p)).transpose()?)?;
@@ -200,10 +191,8 @@ impl NativeCard {
 
     /// Frames damaged on the link, and sets that the card itself has dropped, since the recording began.
     fn losses(&self, py: Python<'_>) -> PyResult<(u64, u64)> {
-        self.call(py, |w| {
-            let dropped = w.recording.as_ref().map_or(0, |r| r.feed.lost_in_card());
-            Ok((w.card.bridge().decoder().damaged(), dropped))
-        })
+        let losses = self.call(py, |w| Ok(w.losses()))?;
+        Ok((losses.damaged, losses.dropped))
     }
 
     /// Ends the recording, if there is one.
@@ -226,7 +215,7 @@ impl NativeCard {
     ) -> PyResult<()> {
         self.call(py, move |w| {
             let place = w.card.place(&name)?;
-            if !force && place.register.access != Access::ReadOnly {
+            if !force {
                 w.card.permits(&place, value)?;
             }
             // What a step is may have changed with it.

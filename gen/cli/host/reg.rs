@@ -187,7 +187,7 @@ fn value_of(place: &Place, text: &str, force: bool) -> Result<u32, GenError> {
 fn write(card: &mut AnyCard, name: &str, text: &str, force: bool) -> Result<Outcome, GenError> {
     let place = card.place(name).map_err(told)?;
     let value = value_of(&place, text, force)?;
-    if place.register.access != Access::ReadOnly && !force {
+    if !force {
         card.permits(&place, value)
             .map_err(|e| GenError::input(format!("{e}; --force writes it all the same")))?;
     }

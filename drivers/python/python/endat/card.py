@@ -177,11 +177,15 @@ class Card:
         """``count`` rows, or those of ``seconds`` of the card's time, whichever comes first."""
         if count is None and seconds is None:
             raise BadInput("samples(): neither count nor seconds is given; give one, or use stream()")
+        with closing(self._limited(count, seconds, poll)) as blocks:
+            return Samples.concatenate(blocks)
+
+    def _limited(self, count: int | None, seconds: float | None, poll: bool) -> Generator[Samples]:
+        """The blocks of a stream until ``count`` rows, or ``seconds`` of the card's time, are over; without either, for ever."""
         if count is not None and count < 1:
             raise BadInput(f"count = {count}: give 1 at least")
         if seconds is not None and not seconds > 0:
             raise BadInput(f"seconds = {seconds}: give more than 0")
-        got: list[Samples] = []
         left = count
         with closing(self.stream(BLOCK if left is None else min(BLOCK, left), poll=poll)) as blocks:
             for one in blocks:
@@ -189,11 +193,10 @@ class Card:
                 n = len(one) if left is None else min(len(one), left)
                 if seconds is not None:
                     n = min(n, int((one.time_s <= seconds).sum()))
-                got.append(one if n == len(one) else one.head(n))
                 left = None if left is None else left - n
+                yield one if n == len(one) else one.head(n)
                 if n < len(one) or left == 0:
                     break
-        return Samples.concatenate(got)
 
     def losses(self) -> tuple[int, int]:
         """While a recording is under way: frames damaged on the link, and sets that the card itself has dropped."""

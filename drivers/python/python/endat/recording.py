@@ -110,29 +110,19 @@ def record(
     """
     import h5py
 
-    if count is not None and count < 1:
-        raise BadInput(f"count = {count}: give 1 at least")
-    if seconds is not None and not seconds > 0:
-        raise BadInput(f"seconds = {seconds}: give more than 0")
     if not replace and os.path.exists(path):
         raise BadInput(f"path = {os.fspath(path)}: is there already; give another one, or replace=True")
-    with closing(card.stream(poll=poll)) as blocks:
+    with closing(card._limited(count, seconds, poll)) as blocks:
         # Only a card that gives something makes a file.
-        first = next(blocks)
+        block: Samples | None = next(blocks)
+        assert block is not None
         with h5py.File(path, "w") as file:
             to = _File(file, card, compression)
-            to.begin(first)
-            block = first
+            to.begin(block)
             try:
-                while True:
-                    if seconds is not None and block.time_s[-1] > seconds:
-                        to.add(block.head(int((block.time_s <= seconds).sum())))
-                        break
-                    if count is not None and to.rows + len(block) >= count:
-                        to.add(block.head(count - to.rows))
-                        break
+                while block is not None:
                     to.add(block)
-                    block = next(blocks)
+                    block = next(blocks, None)
             except KeyboardInterrupt:
                 if count is not None or seconds is not None:
                     raise

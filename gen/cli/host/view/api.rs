@@ -8,8 +8,8 @@ use super::history::names;
 use super::http::{Request, Response};
 use crate::error::GenError;
 use endat_host::feed::NO_CAUSES;
+use endat_host::registers::Place;
 use endat_host::{causes, HostError};
-use endat_regs::BLOCKS;
 use endat_sim::diagram::edges_svg;
 use serde_json::{json, Value};
 use std::path::PathBuf;
@@ -111,7 +111,7 @@ impl Api {
             ("GET", "/api/card") => Ok(self.card()),
             ("GET", "/api/now") => Ok(self.now()),
             ("GET", "/api/plot") => self.plot(request),
-            ("GET", "/api/registers") => Ok(self.registers()),
+            ("GET", "/api/registers") => self.registers(),
             ("GET", "/api/register") => self.register(request),
             ("GET", "/api/margin.svg") => match self.margin(request) {
                 Ok(svg) => return Response::new(200, "image/svg+xml", svg),
@@ -205,8 +205,8 @@ impl Api {
             "rows": state.count.rows,
             "bad": state.count.bad,
             "missing": state.count.missing,
-            "dropped": state.losses.0,
-            "damaged": state.losses.1,
+            "dropped": state.losses.dropped,
+            "damaged": state.losses.damaged,
             "rate_hz": rates_hz.map(|[triggers, _]| triggers),
             "rows_hz": rates_hz.map(|[_, rows]| rows),
             "silent_s": silent.map(|s| s.as_secs_f64()),
@@ -271,32 +271,21 @@ impl Api {
         }))
     }
 
-    fn registers(&self) -> Value {
-        let identity = self.shared.state().identity;
-        let has = |part: &Option<endat_regs::Part>| part.is_none_or(|part| identity.has(part));
-        let mut all = Vec::new();
-        for block in BLOCKS.iter().filter(|b| has(&b.part)) {
-            let channels = if block.per_channel {
-                identity.channels
-            } else {
-                1
-            };
-            for channel in 0..channels {
-                let number = if block.per_channel {
-                    channel.to_string()
-                } else {
-                    String::new()
-                };
-                for register in block.registers.iter().filter(|r| has(&r.part)) {
-                    all.push(json!({
-                        "name": format!("{}{number}.{}", block.name, register.name),
-                        "access": register.access.short(),
-                        "meaning": register.meaning,
-                    }));
-                }
-            }
-        }
-        json!(all)
+    fn registers(&self) -> Result<Value, Refusal> {
+        let places = call(&self.shared.jobs(), |owner| {
+            let card = &owner.card;
+            let all = Place::words(card.identity().channels);
+            let there = all.filter(|place| card.place(&place.to_string()).is_ok());
+            Ok(there.collect::<Vec<_>>())
+        })?;
+        let all = places.iter().map(|place| {
+            json!({
+                "name": place.to_string(),
+                "access": place.register.access.short(),
+                "meaning": place.register.meaning,
+            })
+        });
+        Ok(all.collect())
     }
 
     fn register(&self, request: &Request) -> Result<Value, Refusal> {

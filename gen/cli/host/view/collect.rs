@@ -7,7 +7,7 @@ use endat_driver::Reading;
 use endat_host::card::Identity;
 use endat_host::feed::Row;
 use endat_host::name_plate::NamePlate;
-use endat_host::owner::{Handle, Jobs};
+use endat_host::owner::{Handle, Jobs, Losses};
 use endat_host::transport::LinkState;
 use endat_host::units::Scale;
 use endat_host::{HostError, Transport};
@@ -57,8 +57,8 @@ pub struct State {
     pub last: Option<Row>,
     /// Results of all channels, twice a second.
     pub results: Vec<Reading>,
-    /// Sets that the card has dropped, frames that were damaged on the link.
-    pub losses: (u64, u64),
+    /// What was lost on the way.
+    pub losses: Losses,
     /// The link.
     pub link: LinkState,
     /// What is wrong now.
@@ -89,7 +89,7 @@ impl State {
             count: Count::new(judge),
             last: None,
             results: Vec::new(),
-            losses: (0, 0),
+            losses: Losses::default(),
             link: LinkState::default(),
             error: None,
             notice: None,
@@ -222,11 +222,7 @@ fn begin(jobs: &Jobs, session: u64) -> Result<State, HostError> {
     call(jobs, move |owner| {
         owner.card.settle(|| ())?;
         let identity = *owner.card.identity();
-        let mut plates = Vec::new();
-        for n in 0..identity.channels {
-            let has = identity.has(Part::Initialise) && !identity.is_t_format(n);
-            plates.push(has.then(|| owner.card.name_plate(n)).transpose()?);
-        }
+        let plates = owner.card.name_plates()?;
         owner.begin(false)?;
         Ok(State::new(session, identity, plates, owner.scales.clone()))
     })
@@ -329,17 +325,13 @@ impl Shared {
     /// Asks for what rows do not have. A card that does not answer has said so by sending nothing.
     fn look(&self, jobs: &Jobs) {
         let seen = call(jobs, |owner| {
-            let dropped = owner
-                .recording
-                .as_ref()
-                .map_or(0, |r| r.feed.lost_in_card());
-            let bridge = owner.card.bridge();
-            let (damaged, link) = (bridge.decoder().damaged(), bridge.transport().state());
+            let losses = owner.losses();
+            let link = owner.card.bridge().transport().state();
             let results = match link.is_open {
                 true => owner.card.results().map(|r| r.channels).unwrap_or_default(),
                 false => Vec::new(),
             };
-            Ok(((dropped, damaged), link, results))
+            Ok((losses, link, results))
         });
         let Ok((losses, link, results)) = seen else {
             return;

@@ -3,6 +3,7 @@
 //! A plot has fewer points than rows. Each of its buckets has the least and the greatest value in it, so that nothing that was measured
 //! is left out of the picture.
 
+use endat_host::causes;
 use endat_host::feed::{cause_codes, Cell, Row};
 use endat_host::units::Scale;
 use std::collections::VecDeque;
@@ -126,12 +127,14 @@ pub struct History {
     block: Option<(Block, usize)>,
 }
 
-/// The bit of a code of a cause; 0 for none.
+/// The bit of a code of a cause; 0 for none, which nearly all cells have.
 fn bit(cell: &Cell) -> u64 {
+    if cell.cause == causes::name(0) {
+        return 0;
+    }
     let code = cell.cause_code();
     let place = cause_codes().position(|(known, _)| known == code);
-    // `none` is the first.
-    place.filter(|n| *n > 0).map_or(0, |n| 1 << n)
+    place.map_or(0, |n| 1 << n)
 }
 
 /// Names of the causes whose bits are set.
