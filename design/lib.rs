@@ -9,4 +9,4 @@ pub mod memory;
 pub mod reg;
 pub mod verilog;
 
-pub use rtl_design_macros::{kernel, Block, States};
+pub use rtl_design_macros::{kernel, ports, Block, States};

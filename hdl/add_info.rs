@@ -20,6 +20,7 @@
 //!
 //! Ref: TI motor-control SDK, `endat_drv.c` (order, selection); HEIDENHAIN EnDat FAQ (end of selection).
 
+use crate::ports::AdditionalDataOut;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -59,22 +60,13 @@ pub struct AddInfo {
     pub over: Signal<In, Bit>,
     /// Raw flags of the frame, with `over`.
     pub flags: Signal<In, Bits<12>>,
-    /// The encoder sends: bit 0 info 1, bit 1 info 2.
-    pub active: Signal<Out, Bits<2>>,
+    /// Record of the additional data that follow each position.
+    #[bundle]
+    pub record: AdditionalDataOut,
     /// How many follow the position of this frame.
     pub infos: Signal<Out, Bits<2>>,
     /// Strobe: in the first part of a long cell, where a short recovery time is not over yet.
     pub look: Signal<Out, Bit>,
-    /// Info 1 as it came last.
-    pub info_1: Signal<Out, Bits<24>>,
-    /// Info 2 as it came last.
-    pub info_2: Signal<Out, Bits<24>>,
-    /// The last frame brought: bit 0 info 1, bit 1 info 2.
-    pub came: Signal<Out, Bits<2>>,
-    /// The CRC of those that came is right.
-    pub good: Signal<Out, Bits<2>>,
-    /// The CRCs with which they came, 0 otherwise: info 1 in bits 4..0, info 2 in bits 9..5.
-    pub crcs: Signal<Out, Bits<10>>,
     selected: Reg<Bits<2>>,
     first: Reg<Bits<24>>,
     second: Reg<Bits<24>>,
@@ -195,17 +187,17 @@ impl Logic for AddInfo {
                 self.selected.d.next = 0.into();
             }
         }
-        self.active.next = self.selected.q.val();
+        self.record.info_active.next = self.selected.q.val();
         self.infos.next = 0.into();
         if self.has_f2.val() {
             self.infos.next = bit_cast::<2, 1>(self.selected.q.val().get_bits::<1>(0))
                 + bit_cast::<2, 1>(self.selected.q.val().get_bits::<1>(1));
         }
-        self.info_1.next = self.first.q.val();
-        self.info_2.next = self.second.q.val();
-        self.came.next = self.seen.q.val();
-        self.good.next = self.right.q.val();
-        self.crcs.next = (bit_cast::<10, 5>(self.second_crc.q.val()) << 5)
+        self.record.info_1.next = self.first.q.val();
+        self.record.info_2.next = self.second.q.val();
+        self.record.info_came.next = self.seen.q.val();
+        self.record.info_good.next = self.right.q.val();
+        self.record.info_crcs.next = (bit_cast::<10, 5>(self.second_crc.q.val()) << 5)
             | bit_cast::<10, 5>(self.first_crc.q.val());
     }
 }

@@ -22,6 +22,7 @@ use crate::config::CardConfig;
 use crate::direct::DirectOutput;
 use crate::encoder_port::EncoderPort;
 use crate::interrupt::Interrupt;
+use crate::ports::*;
 use crate::recovery_counter::RecoveryCounter;
 use crate::register_bank::RegisterBank;
 use crate::second_interface::{record::SecondRecord, SecondInterface};
@@ -255,33 +256,27 @@ impl Logic for CardCore {
             self.port[i].trigger.next = self.trigger_of[i].val();
             self.port[i].calibrate.next = self.bank.calibrate.val().get_bit(i);
 
-            connect!(self.port[i] <= self.registers[i];
-                period_cycles, first_low_extra_cycles, command, position_bits, filter_cycles,
-                filter_half, start_window_cycles, start_timeout_us, recovery_limit_cycles,
-                request_id, field_gap_us
-            );
+            PortSettingsOut::join(&mut self.registers[i].settings, &mut self.port[i].settings);
+            connect!(self.port[i] <= self.registers[i]; request_id, field_gap_us);
 
-            connect!(self.port[i] <= self.bank;
-                host_address = service_address, host_line = service_line
+            connect!(self.port[i].window <= self.bank;
+                host_address = service_address, host_line = service_line,
+                host_half = service_half, host_data = service_data
             );
-            self.port[i].host_read.next = self.bank.service_read.val().get_bit(i);
-            self.port[i].host_write.next = self.bank.service_write.val().get_bit(i);
-            connect!(self.port[i] <= self.bank; host_half = service_half, host_data = service_data);
+            self.port[i].window.host_read.next = self.bank.service_read.val().get_bit(i);
+            self.port[i].window.host_write.next = self.bank.service_write.val().get_bit(i);
             // A word that is not asked for is 0.
             self.selected[i].next = 0.into();
             if self.bank.service_channels.val().get_bit(i) {
-                self.selected[i].next = self.port[i].host_word.val();
+                self.selected[i].next = self.port[i].window.host_word.val();
             }
             self.service_link[i + 1].next = self.service_link[i].val() | self.selected[i].val();
 
             self.registers[i].tick_us.next = self.timebase.tick_us.val();
             self.registers[i].trigger.next = self.trigger_of[i].val();
             self.registers[i].new_set.next = self.new_set.val();
-            connect!(self.registers[i] <= self.port[i];
-                busy, result_strobe, position, position_valid, fresh, sequence,
-                first_fall_timestamp, age_us, cause, flags, crc_received, crc_computed,
-                position_crc, position_width, position_has_f2, recovery_cycles, delay_cycles
-            );
+            FrameResultOut::join(&mut self.port[i].result, &mut self.registers[i].result);
+            connect!(self.registers[i] <= self.port[i]; busy, recovery_cycles, delay_cycles);
 
             connect!(self.registers[i] <= self.bank; load, show, word_skip);
             self.registers[i].lane.next = self.lane.val();
@@ -297,14 +292,14 @@ impl Logic for CardCore {
             self.owes[i + 1].next = self.owes[i].val() | self.registers[i].owes.val();
             self.brought[i + 1].next = self.brought[i].val() | self.registers[i].brought.val();
             self.faulty[i + 1].next = self.faulty[i].val()
-                | ((self.port[i].cause.val().any() | self.port[i].alarm.val())
+                | ((self.port[i].result.cause.val().any() | self.port[i].alarm.val())
                     & !self.is_off[i].val());
 
-            self.port[i].data_i.next = self.endat_data_i[i].val();
-            self.endat_clk_o[i].next = self.port[i].endat_clk.val();
-            self.endat_data_o[i].next = self.port[i].data_o.val();
-            self.endat_data_oe[i].next = self.port[i].data_oe.val();
-            self.led_channel_o[i].next = self.port[i].fresh.val() & !self.is_off[i].val();
+            self.port[i].line.data_i.next = self.endat_data_i[i].val();
+            self.endat_clk_o[i].next = self.port[i].line.endat_clk.val();
+            self.endat_data_o[i].next = self.port[i].line.data_o.val();
+            self.endat_data_oe[i].next = self.port[i].line.data_oe.val();
+            self.led_channel_o[i].next = self.port[i].result.fresh.val() & !self.is_off[i].val();
         }
         self.now.next = self.timebase.timestamp.val();
         self.led_status_o.next = self.now.val().get_bit(self.slow_bit.val().index());
@@ -391,7 +386,7 @@ impl Logic for CardCore {
             connect!(self.set[i] <= self; clock = clk_i, reset = rst_i);
             self.set[i].trigger.next = self.trigger.trigger.val();
             self.set[i].busy.next = self.port[i].busy.val() | !self.trigger_of[i].val();
-            connect!(self.set[i] <= self.port[i];
+            connect!(self.set[i] <= self.port[i].result;
                 result_strobe, position, position_crc, position_has_f2, position_valid, fresh,
                 cause, flags
             );
@@ -412,7 +407,8 @@ impl Logic for CardCore {
         self.part_write.next = self.bank.begins.val() & self.write.val();
         for i in 0..self._directs {
             connect!(self.direct[i] <= self; clock = clk_i, reset = rst_i);
-            connect!(self.direct[i] <= self.port[i]; result_strobe, position, fresh, cause, alarm);
+            connect!(self.direct[i] <= self.port[i].result; result_strobe, position, fresh, cause);
+            self.direct[i].alarm.next = self.port[i].alarm.val();
             connect!(self.direct[i] <= self.bank; word_address = address, in_range = is_inside);
             connect!(self.direct[i] <= self; lane, write = part_write, write_data);
             self.direct_byte[i].next =
@@ -437,16 +433,16 @@ impl Logic for CardCore {
             self.irq_o.next = self.interrupt[i].irq.val();
         }
         for i in 0..self._interrupt_channels {
-            self.interrupt[0].result[i].next = self.port[i].result_strobe.val();
+            self.interrupt[0].result[i].next = self.port[i].result.result_strobe.val();
             self.interrupt[0].error[i].next =
                 self.direct[i].direct_error.val() & !self.is_off[i].val();
             self.interrupt[0].alarm[i].next = self.port[i].alarm.val() & !self.is_off[i].val();
             self.interrupt[0].request[i].next =
-                self.port[i].over.val() & self.port[i].over_request.val();
+                self.port[i].end.over.val() & self.port[i].end.over_request.val();
         }
         for i in 0..self._recoveries {
             connect!(self.recovery[i] <= self; clock = clk_i, reset = rst_i);
-            connect!(self.recovery[i] <= self.port[i]; endat_clk, data_oe);
+            connect!(self.recovery[i] <= self.port[i].line; endat_clk, data_oe);
             self.recovery[i].data_i.next = self.endat_data_i[i].val();
             connect!(self.recovery[i] <= self.bank; word_address = address, in_range = is_inside);
             self.recovery[i].lane.next = self.lane.val();
@@ -463,21 +459,14 @@ impl Logic for CardCore {
             connect!(self.whole[i] <= self; clock = clk_i, reset = rst_i);
             self.whole[i].tick_us.next = self.timebase.tick_us.val();
             self.whole[i].taken.next = self.registers[i].taken.val();
+            FrameResultOut::join(&mut self.port[i].result, &mut self.whole[i].result_in);
+            AdditionalDataOut::join(&mut self.port[i].record, &mut self.whole[i].record);
+            self.whole[i].over.next = self.port[i].end.over.val();
             connect!(self.whole[i] <= self.port[i];
-                strobe_in = result_strobe, age_in = age_us, position_in = position,
-                position_valid_in = position_valid, fresh_in = fresh, sequence_in = sequence,
-                first_fall_timestamp_in = first_fall_timestamp, cause_in = cause, flags_in = flags,
-                crc_received_in = crc_received, crc_computed_in = crc_computed,
-                position_crc_in = position_crc, position_width_in = position_width,
-                position_has_f2_in = position_has_f2, recovery_cycles_in = recovery_cycles,
-                delay_cycles_in = delay_cycles, over, info_active, info_1, info_2, info_came,
-                info_good, info_crcs
+                recovery_cycles_in = recovery_cycles, delay_cycles_in = delay_cycles
             );
-            connect!(self.registers[i] <= self.whole[i];
-                result_strobe, age_us, position, position_valid, fresh, sequence,
-                first_fall_timestamp, cause, flags, crc_received, crc_computed, position_crc,
-                position_width, position_has_f2, recovery_cycles, delay_cycles
-            );
+            FrameResultOut::join(&mut self.whole[i].result, &mut self.registers[i].result);
+            connect!(self.registers[i] <= self.whole[i]; recovery_cycles, delay_cycles);
             connect!(self.whole[i] <= self.bank;
                 load, word_address = address, in_range = is_inside
             );
@@ -485,7 +474,7 @@ impl Logic for CardCore {
             self.info_byte[i].next = self.info_byte[i + 1].val() | self.whole[i].read_byte.val();
         }
         for i in 0..self._info_interrupts {
-            self.interrupt[0].result[i].next = self.whole[i].result_strobe.val();
+            self.interrupt[0].result[i].next = self.whole[i].result.result_strobe.val();
         }
         for i in self._infos..self._info_links {
             self.info_byte[i].next = 0.into();
@@ -548,7 +537,9 @@ impl Logic for CardCore {
             connect!(self.run[i] <= self; clock = clk_i, reset = rst_i);
             self.run[i].collects.next = self.stream[0].collects[0].val();
             self.run[i].taken.next = self.registers[i].taken.val();
-            connect!(self.run[i] <= self.port[i]; result_strobe, sequence, first_fall_timestamp);
+            connect!(self.run[i] <= self.port[i].result;
+                result_strobe, sequence, first_fall_timestamp
+            );
             self.run[i].turn.next = self.stream[0].run_turn[0].val();
             self.run[i].take.next = self.stream[0].run_take[0].val();
             self.run[i].counted.next =

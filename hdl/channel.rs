@@ -23,6 +23,7 @@ pub use crate::features::{Features, FixedTimes};
 use crate::frame_settings::FrameSettings;
 use crate::input_filter::InputFilter;
 use crate::line_delay::{self, LineDelay};
+use crate::ports::*;
 use crate::protocol::{PARAMETER_BITS, TEST_VALUE_BITS};
 use crate::receiver::Receiver;
 use crate::second_receiver::SecondReceiver;
@@ -62,90 +63,24 @@ pub struct Channel {
     pub trigger: Signal<In, Bit>,
     /// Strobe: measure the propagation delay again with the next frame.
     pub calibrate: Signal<In, Bit>,
-    /// Data line from the transceiver, asynchronous.
-    pub data_i: Signal<In, Bit>,
-    /// EnDat clock period, in system clock cycles; an odd one has the longer high phase.
-    pub period_cycles: Signal<In, Bits<11>>,
-    /// How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
-    pub first_low_extra_cycles: Signal<In, Bits<11>>,
-    /// Mode command of a triggered frame.
-    pub command: Signal<In, Bits<6>>,
-    /// Mode command of a request.
-    pub request_command: Signal<In, Bits<6>>,
-    /// What it sends besides: MRS code, address or port in the upper 8 bits, data below.
-    pub request_parameter: Signal<In, Bits<24>>,
-    /// Strobe: send the request, a position command with supplement or not, with the next trigger.
-    pub request_ride: Signal<In, Bit>,
-    /// Strobe: send the request in a frame of its own as soon as the line is free. It is not published.
-    pub request_own: Signal<In, Bit>,
-    /// Strobe: forget the request if it has not begun.
-    pub request_cancel: Signal<In, Bit>,
-    /// No triggered frame may begin: triggers are lost, and counted as such.
-    pub hold_off: Signal<In, Bit>,
-    /// Puts the EnDat clock LOW, for the pulse of the power-up sequence.
-    pub clock_low: Signal<In, Bit>,
-    /// Errors forced upon what is received, to try the error paths, as the service's word `force` has them.
-    pub forced: Signal<In, Bits<5>>,
-    /// Position width, 1..=48 bits.
-    pub position_bits: Signal<In, Bits<6>>,
-    /// Pulses on the data line of at most this many system clock cycles are ignored.
-    pub filter_cycles: Signal<In, Bits<4>>,
-    /// And half a system clock cycle more, where DATA is looked at on both edges.
-    pub filter_half: Signal<In, Bit>,
+    /// Settings of one channel, as the host has written them.
+    #[bundle]
+    pub settings_in: PortSettingsIn,
+    /// What the service asks of its channel.
+    #[bundle]
+    pub orders: ServiceOrdersIn,
     /// Where the phase comes from, see [`crate::line_delay::mode`].
     pub phase_mode: Signal<In, Bits<2>>,
     /// Delay in mode `fixed`, in sixteenths of a system clock cycle.
     pub fixed_delay: Signal<In, Bits<15>>,
     /// Each sample is the majority of itself and its neighbours.
     pub majority: Signal<In, Bit>,
-    /// Largest distance of the start edge from its expected place, in system clock cycles.
-    pub start_window_cycles: Signal<In, Bits<6>>,
-    /// Longest wait for the start bit after the turnaround, in microseconds.
-    pub start_timeout_us: Signal<In, Bits<12>>,
-    /// Data must fall within this many system clock cycles after the frame.
-    pub recovery_limit_cycles: Signal<In, Bits<13>>,
-    /// Data must not fall before this after the frame; 0 = not checked.
-    pub recovery_min_cycles: Signal<In, Bits<13>>,
-    /// Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
-    pub watchdog_us: Signal<In, Bits<12>>,
-    /// With 000111: the clock goes on after each position, and the next one follows without a command.
-    pub continuous: Signal<In, Bit>,
-    /// It stops after an error, until the next trigger.
-    pub stop_at_error: Signal<In, Bit>,
-    /// EnDat clock to the transceiver, from a register.
-    pub endat_clk: Signal<Out, Bit>,
-    /// Data line to the transceiver, from a register.
-    pub data_o: Signal<Out, Bit>,
-    /// Driver enable of the data line, from a register.
-    pub data_oe: Signal<Out, Bit>,
-    /// Strobe: a new result can be read from this cycle on.
-    pub result_strobe: Signal<Out, Bit>,
-    /// Last good position, bit 0 = LSB, zeros above its width.
-    pub position: Signal<Out, Bits<48>>,
-    /// There is a good position.
-    pub position_valid: Signal<Out, Bit>,
-    /// The last result brought the position; low = held from an earlier frame.
-    pub fresh: Signal<Out, Bit>,
-    /// Number of results, wrapping.
-    pub sequence: Signal<Out, Bits<16>>,
-    /// Time of the first falling clock edge of the frame that brought the position, in system clock cycles.
-    pub first_fall_timestamp: Signal<Out, Bits<32>>,
-    /// Age of the position in microseconds; stops at 65535.
-    pub age_us: Signal<Out, Bits<16>>,
-    /// Primary cause of the last result, see [`crate::transaction::cause`].
-    pub cause: Signal<Out, Bits<5>>,
-    /// Raw flags of the last result.
-    pub flags: Signal<Out, Bits<20>>,
-    /// CRC received in the last whole frame.
-    pub crc_received: Signal<Out, Bits<5>>,
-    /// CRC computed for the last whole frame.
-    pub crc_computed: Signal<Out, Bits<5>>,
-    /// CRC that came with the position.
-    pub position_crc: Signal<Out, Bits<5>>,
-    /// Width of the position.
-    pub position_width: Signal<Out, Bits<6>>,
-    /// The position came with F2 (EnDat 2.2); its error bits are F1 = 0, F2 = 1.
-    pub position_has_f2: Signal<Out, Bit>,
+    /// The line of one encoder.
+    #[bundle]
+    pub line: LineOut,
+    /// Result of a trigger.
+    #[bundle]
+    pub result: FrameResultOut,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked propagation delay tD, synchroniser and filter included, in system clock cycles.
@@ -166,32 +101,14 @@ pub struct Channel {
     pub line_high: Signal<Out, Bit>,
     /// Strobe: a trigger has been lost.
     pub displaced: Signal<Out, Bit>,
-    /// Strobe: a frame, triggered or not, has ended; `over_cause` to `reply_good` are of it.
-    pub over: Signal<Out, Bit>,
-    /// The frame had the request.
-    pub over_request: Signal<Out, Bit>,
-    /// Primary cause of the frame, as `cause`.
-    pub over_cause: Signal<Out, Bits<5>>,
-    /// Raw flags of the frame, as `flags`.
-    pub over_flags: Signal<Out, Bits<20>>,
+    /// A frame, triggered or not, has ended.
+    #[bundle]
+    pub end: FrameEndOut,
     /// Answer of the last request with a frame of its own: 8 and 16 bits, or a position or test values from bit 0 on.
     pub reply: Signal<Out, Bits<48>>,
-    /// The same as it came, bit 0 first: what comes MSB first stands the other way round.
-    pub answer: Signal<Out, Bits<48>>,
-    /// Its CRC is right.
-    pub reply_good: Signal<Out, Bit>,
-    /// The encoder sends after each EnDat 2.2 position: bit 0 additional data 1, bit 1 additional data 2.
-    pub info_active: Signal<Out, Bits<2>>,
-    /// Additional data 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
-    pub info_1: Signal<Out, Bits<24>>,
-    /// Additional data 2 as it came last.
-    pub info_2: Signal<Out, Bits<24>>,
-    /// Additional data in the last frame: bit 0 additional data 1, bit 1 additional data 2.
-    pub info_came: Signal<Out, Bits<2>>,
-    /// Their CRCs are right.
-    pub info_good: Signal<Out, Bits<2>>,
-    /// The CRCs with which they came: additional data 1 in bits 4..0, additional data 2 in bits 9..5.
-    pub info_crcs: Signal<Out, Bits<10>>,
+    /// Record of the additional data that follow each position.
+    #[bundle]
+    pub record: AdditionalDataOut,
     /// The propagation delay is known: frames run at the full clock, requests may ride.
     pub calibrated: Signal<Out, Bit>,
     /// Strobe: the data line is sampled for a bit of the answer.
@@ -291,19 +208,17 @@ impl Logic for Channel {
         );
 
         connect!(self.settings <= self.transaction; is_at_rest, start);
-        connect!(self.settings <= self;
-            period_cycles, first_low_extra_cycles, command, frame_command = command_now,
-            filter_cycles, filter_half, position_bits, start_window_cycles, start_timeout_us,
-            recovery_limit_cycles, recovery_min_cycles, watchdog_us
-        );
+        PortSettingsIn::link(&mut self.settings_in, &mut self.settings.wanted);
+        self.settings.frame_command.next = self.command_now.val();
+        connect!(self.settings <= self.orders; recovery_min_cycles, watchdog_us);
 
-        self.period.next = self.settings.period_cycles_now.val();
+        self.period.next = self.settings.now.period_cycles.val();
         if self.transaction.slow.val() {
             self.period.next = self.calibration_period_cycles.val();
         }
 
         // Which command the next frame has is settled before it begins, and stays until all has been told of it.
-        connect!(self <= self.settings; command_now, payload_bits = position_bits_now);
+        connect!(self <= self.settings.now; command_now = command, payload_bits = position_bits);
         if self.has_requests.val() {
             self.command_now.next = self.frame_command.q.val();
             if self.shape.has_parameter.val() {
@@ -317,13 +232,15 @@ impl Logic for Channel {
         self.ride_wanted.next = false;
         for i in 0..self._requests {
             connect!(self.own_asked[i] <= self; clock, reset);
-            self.own_asked[i].raise.next = self.request_own.val() & !self.request_cancel.val();
-            self.own_asked[i].clear.next =
-                self.request_cancel.val() | (self.transaction.begun.val() & self.frame_own.q.val());
+            self.own_asked[i].raise.next =
+                self.orders.request_own.val() & !self.orders.request_cancel.val();
+            self.own_asked[i].clear.next = self.orders.request_cancel.val()
+                | (self.transaction.begun.val() & self.frame_own.q.val());
             self.own_wanted.next = self.own_asked[i].is_set.val();
             connect!(self.ride_asked[i] <= self; clock, reset);
-            self.ride_asked[i].raise.next = self.request_ride.val() & !self.request_cancel.val();
-            self.ride_asked[i].clear.next = self.request_cancel.val()
+            self.ride_asked[i].raise.next =
+                self.orders.request_ride.val() & !self.orders.request_cancel.val();
+            self.ride_asked[i].clear.next = self.orders.request_cancel.val()
                 | (self.transaction.begun.val() & self.frame_ride.q.val());
             self.ride_wanted.next = self.ride_asked[i].is_set.val();
         }
@@ -331,21 +248,19 @@ impl Logic for Channel {
             & self.transaction.is_at_rest.val()
             & self.has_requests.val()
         {
-            self.frame_command.d.next = self.command.val();
+            self.frame_command.d.next = self.settings_in.command.val();
             self.frame_own.d.next = self.own_wanted.val();
             self.frame_ride.d.next =
                 self.ride_wanted.val() & self.transaction.calibrated.val() & !self.own_wanted.val();
             if self.own_wanted.val() | (self.ride_wanted.val() & self.transaction.calibrated.val())
             {
-                self.frame_command.d.next = self.request_command.val();
+                self.frame_command.d.next = self.orders.request_command.val();
             }
         }
         self.shape.command.next = self.command_now.val();
 
-        self.filter.pin.next = self.data_i.val();
-        connect!(self.filter <= self.settings;
-            filter_cycles = filter_cycles_now, filter_half = filter_half_now
-        );
+        self.filter.pin.next = self.line.data_i.val();
+        connect!(self.filter <= self.settings.now; filter_cycles, filter_half);
         self.filter.majority.next = self.majority.val();
         self.filter.both_edges.next = self.receiver.started.val();
 
@@ -357,7 +272,8 @@ impl Logic for Channel {
         self.sender.aborts.next = self.transaction.aborts.val()
             | (!self.receiver.skipping.val() & !self.transaction.start_supplement.val());
         connect!(self.sender <= self.transaction; start, start_supplement);
-        connect!(self.sender <= self; command = command_now, parameter_word = request_parameter);
+        self.sender.command.next = self.command_now.val();
+        self.sender.parameter_word.next = self.orders.request_parameter.val();
         self.sender.has_parameter.next = self.shape.has_parameter.val();
 
         connect!(self.delay <= self.transaction; drain, run, acquire, last_cell, slow, going_on);
@@ -366,7 +282,7 @@ impl Logic for Channel {
         self.delay.in_answer.next = self.receiver.started.val() & !self.receiver.skipping.val();
         connect!(self.delay <= self; mode = phase_mode, fixed_delay, period_cycles = period);
         connect!(self.delay <= self.receiver; hunting, follow = start_found, none_under_way);
-        self.delay.start_window_cycles.next = self.settings.start_window_cycles_now.val();
+        self.delay.start_window_cycles.next = self.settings.now.start_window_cycles.val();
 
         connect!(self.receiver <= self.transaction; start, aborts, acquire, start_supplement, going_on);
         self.receiver.rise.next = self.clock_gen.rise.val();
@@ -379,7 +295,8 @@ impl Logic for Channel {
         connect!(self.receiver <= self.shape; has_f1, has_f2, has_parameter, has_supplement);
         connect!(self.receiver <= self.add_info; infos, look);
 
-        connect!(self.transaction <= self; tick_us, trigger, calibrate, hold_off, stop_at_error);
+        connect!(self.transaction <= self; tick_us, trigger, calibrate);
+        connect!(self.transaction <= self.orders; hold_off, stop_at_error);
         self.transaction.level.next = self.filter.level.val();
         self.transaction.is_fixed.next = self.phase_mode.val() == self.fixed_mode.val();
         connect!(self.transaction <= self.delay; sample, center, delay_upset = is_upset);
@@ -387,7 +304,7 @@ impl Logic for Channel {
             hunting, started, start_refused, answer_done = done, finished, last_bit, separated, info_missing
         );
         // In fewer than four cycles additional data would begin before the position is taken.
-        self.wanted_shape.command.next = self.command.val();
+        self.wanted_shape.command.next = self.settings_in.command.val();
         if self.has_requests.val() {
             self.wanted_shape.command.next = self.frame_command.q.val();
         }
@@ -396,20 +313,21 @@ impl Logic for Channel {
             | (self.wanted_shape.is_known.val()
                 & (self.frame_own.q.val()
                     | (self.frame_ride.q.val() & self.wanted_shape.has_f2.val()))))
-            & (!self.needs_four.val() | self.period_cycles.val().get_bits::<9>(2).any());
+            & (!self.needs_four.val()
+                | self.settings_in.period_cycles.val().get_bits::<9>(2).any());
         connect!(self.transaction <= self.shape; has_parameter, has_supplement);
         self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.val();
         self.transaction.is_own.next = self.frame_own.q.val();
-        self.transaction.continuous.next = self.continuous.val()
+        self.transaction.continuous.next = self.orders.continuous.val()
             & self.shape.has_f1.val()
             & !self.shape.has_f2.val()
             & !self.shape.has_test_values.val();
-        self.transaction.line_wanted.next = self.own_wanted.val() | self.hold_off.val();
+        self.transaction.line_wanted.next = self.own_wanted.val() | self.orders.hold_off.val();
         connect!(self.transaction <= self.receiver;
             gap_good, again = latched, gap_low, gap_high, is_echo, serial_ok, parallel_ok, f1, f2
         );
-        self.forced_now.next = self.forced.val().get_bits::<4>(0);
-        if self.forced.val().get_bit(4) & !self.frame_own.q.val() {
+        self.forced_now.next = self.orders.forced.val().get_bits::<4>(0);
+        if self.orders.forced.val().get_bit(4) & !self.frame_own.q.val() {
             self.forced_now.next = 0.into();
         }
         if self.has_requests.val() {
@@ -424,11 +342,11 @@ impl Logic for Channel {
             all_ended
         );
         connect!(self.transaction <= self.settings;
-            first_low_extra_cycles = first_low_extra_cycles_now,
-            start_timeout_us = start_timeout_us_now,
-            recovery_limit_cycles = recovery_limit_cycles_now,
             recovery_min_cycles = recovery_min_cycles_now, watchdog_us = watchdog_us_now,
             settings_upset = is_upset
+        );
+        connect!(self.transaction <= self.settings.now;
+            first_low_extra_cycles, start_timeout_us, recovery_limit_cycles
         );
 
         connect!(self.snapshot <= self; tick_us, timestamp, width_in = payload_bits);
@@ -464,7 +382,7 @@ impl Logic for Channel {
         self.add_info.answer_done.next = self.receiver.done.val();
         connect!(self.add_info <= self.shape; has_f2, has_supplement);
         self.add_info.command.next = self.command_now.val();
-        self.add_info.mrs.next = self.request_parameter.val().get_bits::<8>(16);
+        self.add_info.mrs.next = self.orders.request_parameter.val().get_bits::<8>(16);
         self.add_info.info_done.next = self.info_taken.q.val() & self.has_requests.val();
         connect!(self.add_info <= self; crc_ok, word);
         self.add_info.crc.next = self.receiver.crc_received.val();
@@ -477,17 +395,14 @@ impl Logic for Channel {
             self.data_pin.d.next = false;
             self.oe_pin.d.next = true;
         }
-        if self.clock_low.val() & self.has_requests.val() {
+        if self.orders.clock_low.val() & self.has_requests.val() {
             self.clk_pin.d.next = false;
         }
-        self.endat_clk.next = self.clk_pin.q.val();
-        self.data_o.next = self.data_pin.q.val();
-        self.data_oe.next = self.oe_pin.q.val();
+        self.line.endat_clk.next = self.clk_pin.q.val();
+        self.line.data_o.next = self.data_pin.q.val();
+        self.line.data_oe.next = self.oe_pin.q.val();
 
-        connect!(self <= self.snapshot;
-            result_strobe, position, position_valid, fresh, sequence, first_fall_timestamp, age_us,
-            cause, flags, crc_received, crc_computed, position_crc, position_width, position_has_f2
-        );
+        FrameResultOut::link(&mut self.result, &mut self.snapshot.result);
         connect!(self <= self.delay;
             delay_cycles, phase, edge_measured = measured, edge_offset = offset, sample_second
         );
@@ -496,9 +411,10 @@ impl Logic for Channel {
             (self.frame_own.q.val() | self.frame_ride.q.val()) & !self.transaction.is_at_rest.val();
         self.line_high.next = (self.filter.level.val() | self.transaction.is_probed.val())
             & !self.transaction.run.val();
-        self.over_request.next = self.frame_own.q.val() | self.frame_ride.q.val();
-        connect!(self <= self.transaction; recovery_cycles, busy, displaced, over, over_cause = cause, over_flags = flags, calibrated);
-        self.answer.next = self.reply_word.q.val();
+        self.end.over_request.next = self.frame_own.q.val() | self.frame_ride.q.val();
+        connect!(self <= self.transaction; recovery_cycles, busy, displaced, calibrated);
+        connect!(self.end <= self.transaction; over, over_cause = cause, over_flags = flags);
+        self.end.answer.next = self.reply_word.q.val();
         self.reply.next = self.reply_word.q.val();
         self.turned.next = 0.into();
         for i in 0..24 {
@@ -510,11 +426,8 @@ impl Logic for Channel {
         if self.reply_has_parameter.q.val() {
             self.reply.next = bit_cast::<48, 24>(self.turned.val());
         }
-        self.reply_good.next = self.reply_right.q.val();
-        connect!(self <= self.add_info;
-            info_active = active, info_1, info_2, info_came = came, info_good = good,
-            info_crcs = crcs
-        );
+        self.end.reply_good.next = self.reply_right.q.val();
+        AdditionalDataOut::link(&mut self.record, &mut self.add_info.record);
         for i in 0..self._seconds {
             connect!(self.second[i] <= self.transaction; start, aborts, acquire, start_supplement, going_on, good, cause, flags);
             connect!(self.snapshot <= self.second[i]; good = good_told, cause_in = cause_told, flags_in = flags_told);
@@ -531,8 +444,8 @@ impl Logic for Channel {
             self.second[i].forced.next = self.forced_now.val().get_bit(3) & self.has_requests.val();
             if self.second[i].differs.val() {
                 self.transaction.settings_upset.next = true;
-                self.info_good.next = 0.into();
-                self.reply_good.next = false;
+                self.record.info_good.next = 0.into();
+                self.end.reply_good.next = false;
             }
         }
         self.sample_strobe.next = self.delay.sample.val() & !self.receiver.skipping.val();

@@ -12,6 +12,7 @@
 
 use crate::config::CardConfig;
 use crate::config_ring::ConfigRing;
+use crate::ports::{FrameResultIn, PortSettingsOut};
 use crate::regs::config_words;
 use crate::several::each;
 use endat_macros::kernel;
@@ -38,34 +39,9 @@ pub struct ChannelRegisters {
     pub new_set: Signal<In, Bit>,
     /// The channel does not take a trigger; its configuration must not change.
     pub busy: Signal<In, Bit>,
-    /// Strobe: a new result is there.
-    pub result_strobe: Signal<In, Bit>,
-    /// Last good position.
-    pub position: Signal<In, Bits<48>>,
-    /// There is a good position.
-    pub position_valid: Signal<In, Bit>,
-    /// The last result brought the position.
-    pub fresh: Signal<In, Bit>,
-    /// Number of results.
-    pub sequence: Signal<In, Bits<16>>,
-    /// First falling clock edge of the position's frame.
-    pub first_fall_timestamp: Signal<In, Bits<32>>,
-    /// Age of the position, in microseconds.
-    pub age_us: Signal<In, Bits<16>>,
-    /// Primary cause.
-    pub cause: Signal<In, Bits<5>>,
-    /// Raw flags.
-    pub flags: Signal<In, Bits<20>>,
-    /// CRC as received.
-    pub crc_received: Signal<In, Bits<5>>,
-    /// CRC as computed.
-    pub crc_computed: Signal<In, Bits<5>>,
-    /// CRC that came with the position.
-    pub position_crc: Signal<In, Bits<5>>,
-    /// Width of the position.
-    pub position_width: Signal<In, Bits<6>>,
-    /// The position came with F2.
-    pub position_has_f2: Signal<In, Bit>,
+    /// Result of a trigger.
+    #[bundle]
+    pub result: FrameResultIn,
     /// Recovery time, in system clock cycles.
     pub recovery_cycles: Signal<In, Bits<13>>,
     /// Tracked line delay, in system clock cycles.
@@ -104,28 +80,13 @@ pub struct ChannelRegisters {
     pub trigger_skip: Signal<Out, Bits<5>>,
     /// Trigger sources that are not for this channel.
     pub ignored_sources: Signal<Out, Bits<3>>,
-    /// EnDat clock period, or a bit of T-format, in system clock cycles.
-    pub period_cycles: Signal<Out, Bits<11>>,
-    /// First low phase minus half a period, in system clock cycles.
-    pub first_low_extra_cycles: Signal<Out, Bits<11>>,
-    /// Mode command.
-    pub command: Signal<Out, Bits<6>>,
-    /// Position width.
-    pub position_bits: Signal<Out, Bits<6>>,
-    /// Input filter, in system clock cycles.
-    pub filter_cycles: Signal<Out, Bits<4>>,
-    /// And half a cycle more.
-    pub filter_half: Signal<Out, Bit>,
-    /// Half width of the start window, in system clock cycles.
-    pub start_window_cycles: Signal<Out, Bits<6>>,
+    /// Settings of one channel, as the host has written them.
+    #[bundle]
+    pub settings: PortSettingsOut,
     /// T-format: request ID of a trigger.
     pub request_id: Signal<Out, Bits<4>>,
     /// T-format: longest pause between two fields, in microseconds.
     pub field_gap_us: Signal<Out, Bits<3>>,
-    /// Longest wait for the start bit, or for a reply of T-format, in microseconds.
-    pub start_timeout_us: Signal<Out, Bits<12>>,
-    /// Longest recovery time, in system clock cycles.
-    pub recovery_limit_cycles: Signal<Out, Bits<13>>,
     /// The words of the result as they are now, for the second interface; none without one.
     pub live: Vec<Signal<Out, Bits<32>>>,
     waiting: Reg<Bit>,
@@ -186,26 +147,26 @@ impl Logic for ChannelRegisters {
         self.ring.reset.next = self.reset.val();
 
         // A trigger that the channel does not take gives no result of its own.
-        if self.result_strobe.val() {
+        if self.result.result_strobe.val() {
             self.waiting.d.next = false;
         }
         self.taken.next = self.trigger.val() & !self.busy.val();
         if self.new_set.val() {
             self.waiting.d.next = self.trigger.val() & !self.busy.val();
         }
-        self.owes.next = self.waiting.q.val() & !self.result_strobe.val();
-        self.brought.next = self.waiting.q.val() & self.result_strobe.val();
+        self.owes.next = self.waiting.q.val() & !self.result.result_strobe.val();
+        self.brought.next = self.waiting.q.val() & self.result.result_strobe.val();
 
         // A trigger that comes with a result is newer than it.
         self.behind_now.next =
-            self.trigger.val() | (self.behind.q.val() & !self.result_strobe.val());
+            self.trigger.val() | (self.behind.q.val() & !self.result.result_strobe.val());
         self.behind.d.next = self.behind_now.val();
         self.stale_now.next = self.stale.q.val() | self.trigger.val();
         self.age_base.next = self.age.q.val();
         self.age_tick.next = self.tick_us.val() & !self.age.q.val().all();
         if self.load.val() {
             self.stale_now.next = self.behind_now.val();
-            self.age_base.next = self.age_us.val();
+            self.age_base.next = self.result.age_us.val();
             self.age_tick.next = false;
         }
         self.age_now.next = self.age_base.val() + bit_cast::<16, 1>(self.age_tick.val().into());
@@ -216,27 +177,33 @@ impl Logic for ChannelRegisters {
             self.age_shown.d.next = self.age_now.val();
         }
 
-        self.word[0].next = place!(self.sequence.val(), result.status.sequence)
-            | place!(self.cause.val(), result.status.cause)
-            | place!(self.position_valid.val(), result.status.valid)
-            | place!(self.fresh.val(), result.status.fresh)
-            | place!(self.flags.val().get_bits::<8>(12), result.status.line);
-        self.word[1].next = self.position.val().get_bits::<32>(0);
+        self.word[0].next = place!(self.result.sequence.val(), result.status.sequence)
+            | place!(self.result.cause.val(), result.status.cause)
+            | place!(self.result.position_valid.val(), result.status.valid)
+            | place!(self.result.fresh.val(), result.status.fresh)
+            | place!(
+                self.result.flags.val().get_bits::<8>(12),
+                result.status.line
+            );
+        self.word[1].next = self.result.position.val().get_bits::<32>(0);
         // A good position has F1 = 0, and F2 = 1 where there is one: that there is one says all.
         self.word[2].next = place!(
-            self.position.val().get_bits::<16>(32),
+            self.result.position.val().get_bits::<16>(32),
             result.position_high.value
-        ) | place!(self.position_crc.val(), result.position_high.crc)
-            | place!(self.position_has_f2.val(), result.position_high.f2)
-            | place!(self.position_width.val(), result.position_high.width);
-        self.word[3].next = self.first_fall_timestamp.val();
-        self.word[4].next = place!(self.crc_received.val(), result.evidence.crc_received)
-            | place!(self.crc_computed.val(), result.evidence.crc_computed)
+        ) | place!(self.result.position_crc.val(), result.position_high.crc)
+            | place!(self.result.position_has_f2.val(), result.position_high.f2)
+            | place!(self.result.position_width.val(), result.position_high.width);
+        self.word[3].next = self.result.first_fall_timestamp.val();
+        self.word[4].next = place!(self.result.crc_received.val(), result.evidence.crc_received)
+            | place!(self.result.crc_computed.val(), result.evidence.crc_computed)
             | place!(
                 self.delay_cycles.val().get_bits::<10>(0),
                 result.evidence.delay_cycles
             )
-            | place!(self.flags.val().get_bits::<12>(0), result.evidence.flags);
+            | place!(
+                self.result.flags.val().get_bits::<12>(0),
+                result.evidence.flags
+            );
         self.word[5].next = place!(
             self.recovery_cycles.val(),
             result.age_recovery.recovery_cycles
@@ -249,7 +216,7 @@ impl Logic for ChannelRegisters {
         }
         for i in self._lives..self._live_ends {
             self.live[i].next = self.word[i].val()
-                | place!(self.age_us.val(), result.age_recovery.age_us)
+                | place!(self.result.age_us.val(), result.age_recovery.age_us)
                 | place!(self.behind_now.val(), result.age_recovery.stale);
         }
         for i in 0..self._words {
@@ -303,24 +270,26 @@ impl Logic for ChannelRegisters {
             | (bit_cast::<3, 1>(
                 field!(self.ring.word0.val(), config.frame.ignore_register).into(),
             ) << 2);
-        self.period_cycles.next = field!(self.config0.q.val(), config.frame.period_cycles);
-        self.position_bits.next = field!(self.config0.q.val(), config.frame.position_bits);
-        self.first_low_extra_cycles.next =
+        self.settings.period_cycles.next = field!(self.config0.q.val(), config.frame.period_cycles);
+        self.settings.position_bits.next = field!(self.config0.q.val(), config.frame.position_bits);
+        self.settings.first_low_extra_cycles.next =
             field!(self.config1.q.val(), config.timing.first_low_extra_cycles);
-        self.start_window_cycles.next =
+        self.settings.start_window_cycles.next =
             field!(self.config1.q.val(), config.timing.start_window_cycles);
-        self.filter_cycles.next = field!(self.config1.q.val(), config.timing.filter_cycles);
-        self.filter_half.next = field!(self.config1.q.val(), config.timing.filter_half);
+        self.settings.filter_cycles.next =
+            field!(self.config1.q.val(), config.timing.filter_cycles);
+        self.settings.filter_half.next = field!(self.config1.q.val(), config.timing.filter_half);
         self.field_gap_us.next = field!(self.config2.q.val(), config.limits.field_gap_us);
-        self.start_timeout_us.next = field!(self.config2.q.val(), config.limits.start_timeout_us);
-        self.recovery_limit_cycles.next =
+        self.settings.start_timeout_us.next =
+            field!(self.config2.q.val(), config.limits.start_timeout_us);
+        self.settings.recovery_limit_cycles.next =
             field!(self.config2.q.val(), config.limits.recovery_limit_cycles);
 
         // With settings that nobody wrote nothing goes out: these are no commands.
-        self.command.next = field!(self.config0.q.val(), config.frame.command);
+        self.settings.command.next = field!(self.config0.q.val(), config.frame.command);
         self.request_id.next = field!(self.config1.q.val(), config.timing.request_id);
         if self.ring.is_damaged.val() | self.card_damaged.val() {
-            self.command.next = 0.into();
+            self.settings.command.next = 0.into();
             self.request_id.next = 15.into();
         }
     }

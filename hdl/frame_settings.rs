@@ -9,6 +9,7 @@
 //!
 //! What decides where a position stands in the answer, command and width, is guarded: its parity is taken as the frame begins.
 
+use crate::ports::{PortSettingsIn, PortSettingsOut};
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -27,50 +28,20 @@ pub struct FrameSettings {
     pub start: Signal<In, Bit>,
     /// Mode command of the frame, wherever it comes from.
     pub frame_command: Signal<In, Bits<6>>,
-    /// EnDat clock period, in system clock cycles.
-    pub period_cycles: Signal<In, Bits<11>>,
-    /// How much longer than half a period the first low phase is, in system clock cycles.
-    pub first_low_extra_cycles: Signal<In, Bits<11>>,
-    /// Mode command.
-    pub command: Signal<In, Bits<6>>,
-    /// Position width.
-    pub position_bits: Signal<In, Bits<6>>,
-    /// Longest pulse on the data line that is ignored, in system clock cycles.
-    pub filter_cycles: Signal<In, Bits<4>>,
-    /// Largest distance of the start edge from its expected place, in system clock cycles.
-    pub start_window_cycles: Signal<In, Bits<6>>,
-    /// Longest wait for the start bit, in microseconds.
-    pub start_timeout_us: Signal<In, Bits<12>>,
-    /// Longest recovery time, in system clock cycles.
-    pub recovery_limit_cycles: Signal<In, Bits<13>>,
+    /// Settings of one channel, as the host has written them.
+    #[bundle]
+    pub wanted: PortSettingsIn,
     /// Shortest recovery time, in system clock cycles.
     pub recovery_min_cycles: Signal<In, Bits<13>>,
     /// Longest time of a frame, in microseconds; 0 = not watched.
     pub watchdog_us: Signal<In, Bits<12>>,
-    /// Half a system clock cycle more of the filter.
-    pub filter_half: Signal<In, Bit>,
-    /// The same, of the frame.
-    pub period_cycles_now: Signal<Out, Bits<11>>,
-    /// The same, of the frame.
-    pub first_low_extra_cycles_now: Signal<Out, Bits<11>>,
-    /// The same, of the frame.
-    pub command_now: Signal<Out, Bits<6>>,
-    /// The same, of the frame.
-    pub position_bits_now: Signal<Out, Bits<6>>,
-    /// The same, of the frame.
-    pub filter_cycles_now: Signal<Out, Bits<4>>,
-    /// The same, of the frame.
-    pub start_window_cycles_now: Signal<Out, Bits<6>>,
-    /// The same, of the frame.
-    pub start_timeout_us_now: Signal<Out, Bits<12>>,
-    /// The same, of the frame.
-    pub recovery_limit_cycles_now: Signal<Out, Bits<13>>,
+    /// Settings of one channel, as the host has written them.
+    #[bundle("_now")]
+    pub now: PortSettingsOut,
     /// The same, of the frame.
     pub recovery_min_cycles_now: Signal<Out, Bits<13>>,
     /// The same, of the frame.
     pub watchdog_us_now: Signal<Out, Bits<12>>,
-    /// The same, of the frame.
-    pub filter_half_now: Signal<Out, Bit>,
     /// Command or width are not what they were when the frame began.
     pub is_upset: Signal<Out, Bit>,
     period_held: Reg<Bits<11>>,
@@ -92,17 +63,17 @@ impl Logic for FrameSettings {
     #[kernel]
     fn update(&mut self) {
         if self.is_at_rest.val() {
-            self.period_held.d.next = self.period_cycles.val();
-            self.first_low_extra_held.d.next = self.first_low_extra_cycles.val();
-            self.command_held.d.next = self.command.val();
-            self.position_held.d.next = self.position_bits.val();
-            self.filter_held.d.next = self.filter_cycles.val();
-            self.start_window_held.d.next = self.start_window_cycles.val();
-            self.start_timeout_held.d.next = self.start_timeout_us.val();
-            self.recovery_limit_held.d.next = self.recovery_limit_cycles.val();
+            self.period_held.d.next = self.wanted.period_cycles.val();
+            self.first_low_extra_held.d.next = self.wanted.first_low_extra_cycles.val();
+            self.command_held.d.next = self.wanted.command.val();
+            self.position_held.d.next = self.wanted.position_bits.val();
+            self.filter_held.d.next = self.wanted.filter_cycles.val();
+            self.start_window_held.d.next = self.wanted.start_window_cycles.val();
+            self.start_timeout_held.d.next = self.wanted.start_timeout_us.val();
+            self.recovery_limit_held.d.next = self.wanted.recovery_limit_cycles.val();
             self.recovery_min_held.d.next = self.recovery_min_cycles.val();
             self.watchdog_held.d.next = self.watchdog_us.val();
-            self.filter_half_held.d.next = self.filter_half.val();
+            self.filter_half_held.d.next = self.wanted.filter_half.val();
         }
         self.parity_now.next = self.frame_command.val().xor() ^ self.position_held.q.val().xor();
         if self.start.val() {
@@ -110,16 +81,16 @@ impl Logic for FrameSettings {
         }
         self.is_upset.next = self.parity_now.val() ^ self.parity.q.val();
 
-        self.period_cycles_now.next = self.period_held.q.val();
-        self.first_low_extra_cycles_now.next = self.first_low_extra_held.q.val();
-        self.command_now.next = self.command_held.q.val();
-        self.position_bits_now.next = self.position_held.q.val();
-        self.filter_cycles_now.next = self.filter_held.q.val();
-        self.start_window_cycles_now.next = self.start_window_held.q.val();
-        self.start_timeout_us_now.next = self.start_timeout_held.q.val();
-        self.recovery_limit_cycles_now.next = self.recovery_limit_held.q.val();
+        self.now.period_cycles.next = self.period_held.q.val();
+        self.now.first_low_extra_cycles.next = self.first_low_extra_held.q.val();
+        self.now.command.next = self.command_held.q.val();
+        self.now.position_bits.next = self.position_held.q.val();
+        self.now.filter_cycles.next = self.filter_held.q.val();
+        self.now.start_window_cycles.next = self.start_window_held.q.val();
+        self.now.start_timeout_us.next = self.start_timeout_held.q.val();
+        self.now.recovery_limit_cycles.next = self.recovery_limit_held.q.val();
         self.recovery_min_cycles_now.next = self.recovery_min_held.q.val();
         self.watchdog_us_now.next = self.watchdog_held.q.val();
-        self.filter_half_now.next = self.filter_half_held.q.val();
+        self.now.filter_half.next = self.filter_half_held.q.val();
     }
 }

@@ -35,6 +35,7 @@ pub mod line_delay;
 pub mod line_health;
 pub mod line_monitor;
 pub mod phase_tracker;
+pub mod ports;
 pub use endat_regs::protocol;
 pub mod receiver;
 pub mod recovery_counter;

@@ -11,6 +11,7 @@
 //!
 //! Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 
+use crate::ports::FrameResultOut;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -57,34 +58,9 @@ pub struct Snapshot {
     pub cause_in: Signal<In, Bits<5>>,
     /// Raw flags.
     pub flags_in: Signal<In, Bits<20>>,
-    /// Strobe: a new result can be read from this cycle on.
-    pub result_strobe: Signal<Out, Bit>,
-    /// Last good position, zeros above its width.
-    pub position: Signal<Out, Bits<48>>,
-    /// There is a good position.
-    pub position_valid: Signal<Out, Bit>,
-    /// The last result brought the position; low = held from an earlier frame.
-    pub fresh: Signal<Out, Bit>,
-    /// Number of results, wrapping.
-    pub sequence: Signal<Out, Bits<16>>,
-    /// Time of the first falling edge of the frame that brought the position.
-    pub first_fall_timestamp: Signal<Out, Bits<32>>,
-    /// Age of the position in microseconds: 0 until its frame has ended, counted from there; stops at 65535.
-    pub age_us: Signal<Out, Bits<16>>,
-    /// Primary cause of the last result.
-    pub cause: Signal<Out, Bits<5>>,
-    /// Raw flags of the last result.
-    pub flags: Signal<Out, Bits<20>>,
-    /// CRC received in the last whole frame.
-    pub crc_received: Signal<Out, Bits<5>>,
-    /// CRC computed for the last whole frame.
-    pub crc_computed: Signal<Out, Bits<5>>,
-    /// CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read.
-    pub position_crc: Signal<Out, Bits<5>>,
-    /// Width of the position.
-    pub position_width: Signal<Out, Bits<6>>,
-    /// The position came with F2.
-    pub position_has_f2: Signal<Out, Bit>,
+    /// Result of a trigger.
+    #[bundle]
+    pub result: FrameResultOut,
     strobe: Reg<Bit>,
     loaded: Reg<Bit>,
     held: Reg<Bits<48>>,
@@ -241,19 +217,19 @@ impl Logic for Snapshot {
             self.cause_held.d.next = self.upset_cause.val();
             self.flags_held.d.next = self.flags_in.val() | self.upset_flag.val();
         }
-        self.result_strobe.next = self.strobe.q.val();
-        self.position.next = self.held.q.val();
-        self.position_valid.next = self.valid.q.val();
-        self.fresh.next = self.is_fresh.q.val();
-        self.sequence.next = self.count.q.val();
-        self.first_fall_timestamp.next = self.stamp.q.val();
-        self.age_us.next = self.age_shown.q.val();
-        self.cause.next = self.cause_held.q.val();
-        self.flags.next = self.flags_held.q.val();
-        self.crc_received.next = self.received.q.val();
-        self.crc_computed.next = self.computed.q.val();
-        self.position_crc.next = self.held_crc.q.val();
-        self.position_width.next = self.held_width.q.val();
-        self.position_has_f2.next = self.held_f2.q.val();
+        self.result.result_strobe.next = self.strobe.q.val();
+        self.result.position.next = self.held.q.val();
+        self.result.position_valid.next = self.valid.q.val();
+        self.result.fresh.next = self.is_fresh.q.val();
+        self.result.sequence.next = self.count.q.val();
+        self.result.first_fall_timestamp.next = self.stamp.q.val();
+        self.result.age_us.next = self.age_shown.q.val();
+        self.result.cause.next = self.cause_held.q.val();
+        self.result.flags.next = self.flags_held.q.val();
+        self.result.crc_received.next = self.received.q.val();
+        self.result.crc_computed.next = self.computed.q.val();
+        self.result.position_crc.next = self.held_crc.q.val();
+        self.result.position_width.next = self.held_width.q.val();
+        self.result.position_has_f2.next = self.held_f2.q.val();
     }
 }

@@ -17,6 +17,7 @@
 //!
 //! Without the additional data (T-format) all of it is wires.
 
+use crate::ports::{AdditionalDataIn, FrameResultIn, FrameResultOut};
 use crate::regs::{BLOCK_STRIDE, INFO_FIRST, RESULT_BASE};
 use crate::several::each;
 use rtl_design::reg::Reg;
@@ -34,86 +35,27 @@ pub struct WholeResult {
     pub tick_us: Signal<In, Bit>,
     /// Strobe: the channel takes a trigger.
     pub taken: Signal<In, Bit>,
-    /// Strobe: a new result is there.
-    pub strobe_in: Signal<In, Bit>,
-    /// Age of the position, in microseconds.
-    pub age_in: Signal<In, Bits<16>>,
-    /// Last good position.
-    pub position_in: Signal<In, Bits<48>>,
-    /// There is a good position.
-    pub position_valid_in: Signal<In, Bit>,
-    /// The result brought the position.
-    pub fresh_in: Signal<In, Bit>,
-    /// Number of results.
-    pub sequence_in: Signal<In, Bits<16>>,
-    /// First falling clock edge of the position's frame.
-    pub first_fall_timestamp_in: Signal<In, Bits<32>>,
-    /// Primary cause.
-    pub cause_in: Signal<In, Bits<5>>,
-    /// Raw flags.
-    pub flags_in: Signal<In, Bits<20>>,
-    /// CRC as received.
-    pub crc_received_in: Signal<In, Bits<5>>,
-    /// CRC as computed.
-    pub crc_computed_in: Signal<In, Bits<5>>,
-    /// CRC that came with the position.
-    pub position_crc_in: Signal<In, Bits<5>>,
-    /// Width of the position.
-    pub position_width_in: Signal<In, Bits<6>>,
-    /// The position came with F2.
-    pub position_has_f2_in: Signal<In, Bit>,
+    /// Result of a trigger.
+    #[bundle("_in")]
+    pub result_in: FrameResultIn,
     /// Recovery time, in system clock cycles.
     pub recovery_cycles_in: Signal<In, Bits<13>>,
     /// Tracked line delay, in system clock cycles.
     pub delay_cycles_in: Signal<In, Bits<11>>,
     /// Strobe: a frame has ended.
     pub over: Signal<In, Bit>,
-    /// The encoder sends after each EnDat 2.2 position: bit 0 additional data 1, bit 1 additional data 2.
-    pub info_active: Signal<In, Bits<2>>,
-    /// Additional data 1 as it came last: WRN, RM, Busy, I4..I0, 16 bits.
-    pub info_1: Signal<In, Bits<24>>,
-    /// Additional data 2 as it came last.
-    pub info_2: Signal<In, Bits<24>>,
-    /// The frame brought: bit 0 additional data 1, bit 1 additional data 2.
-    pub info_came: Signal<In, Bits<2>>,
-    /// Their CRCs are right.
-    pub info_good: Signal<In, Bits<2>>,
-    /// The CRCs with which they came: additional data 1 in bits 4..0, additional data 2 in bits 9..5.
-    pub info_crcs: Signal<In, Bits<10>>,
+    /// Record of the additional data that follow each position.
+    #[bundle]
+    pub record: AdditionalDataIn,
     /// The frame of the newest result is not over: additional data may still come.
     pub is_open: Signal<Out, Bit>,
     /// Additional data 1 of the newest result's frame: 24 bits, came, good, due.
     pub word_1: Signal<Out, Bits<27>>,
     /// Additional data 2 of it.
     pub word_2: Signal<Out, Bits<27>>,
-    /// Strobe: a new whole result is there; all that follows is of it.
-    pub result_strobe: Signal<Out, Bit>,
-    /// Age of the position, in microseconds.
-    pub age_us: Signal<Out, Bits<16>>,
-    /// Last good position.
-    pub position: Signal<Out, Bits<48>>,
-    /// There is a good position.
-    pub position_valid: Signal<Out, Bit>,
-    /// The result brought the position.
-    pub fresh: Signal<Out, Bit>,
-    /// Number of results.
-    pub sequence: Signal<Out, Bits<16>>,
-    /// First falling clock edge of the position's frame.
-    pub first_fall_timestamp: Signal<Out, Bits<32>>,
-    /// Primary cause.
-    pub cause: Signal<Out, Bits<5>>,
-    /// Raw flags.
-    pub flags: Signal<Out, Bits<20>>,
-    /// CRC as received.
-    pub crc_received: Signal<Out, Bits<5>>,
-    /// CRC as computed.
-    pub crc_computed: Signal<Out, Bits<5>>,
-    /// CRC that came with the position.
-    pub position_crc: Signal<Out, Bits<5>>,
-    /// Width of the position.
-    pub position_width: Signal<Out, Bits<6>>,
-    /// The position came with F2.
-    pub position_has_f2: Signal<Out, Bit>,
+    /// Result of a trigger.
+    #[bundle]
+    pub result: FrameResultOut,
     /// Recovery time, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
     /// Tracked line delay, in system clock cycles.
@@ -185,10 +127,10 @@ impl Logic for WholeResult {
         // A frame that is given up before its position ends a cycle before its result is there; one that withdraws its position changes the
         // result a cycle after its end.
         self.past.d.next = self.over.val();
-        self.opens.next = self.strobe_in.val()
+        self.opens.next = self.result_in.result_strobe.val()
             & !self.past.q.val()
-            & self.info_active.val().any()
-            & (self.position_has_f2_in.val() | !self.fresh_in.val());
+            & self.record.info_active.val().any()
+            & (self.result_in.position_has_f2.val() | !self.result_in.fresh.val());
         self.open_now.next = self.open.q.val() | self.opens.val();
         // The next frame: that of the result must have ended.
         self.closes.next = self.open.q.val() & (self.past.q.val() | self.taken.val());
@@ -196,46 +138,49 @@ impl Logic for WholeResult {
         self.is_open.next = self.open_now.val();
 
         // The content counts if its CRC is right; the CRC stands as it came.
-        self.filled_1.next = (bit_cast::<31, 5>(self.info_crcs.val().get_bits::<5>(0)) << 26)
-            | (bit_cast::<31, 1>(self.info_came.val().get_bits::<1>(0)) << 24);
-        if self.info_came.val().get_bit(0) & self.info_good.val().get_bit(0) {
+        self.filled_1.next = (bit_cast::<31, 5>(self.record.info_crcs.val().get_bits::<5>(0))
+            << 26)
+            | (bit_cast::<31, 1>(self.record.info_came.val().get_bits::<1>(0)) << 24);
+        if self.record.info_came.val().get_bit(0) & self.record.info_good.val().get_bit(0) {
             self.filled_1.next = self.filled_1.val()
-                | bit_cast::<31, 24>(self.info_1.val())
+                | bit_cast::<31, 24>(self.record.info_1.val())
                 | (bit_cast::<31, 1>(1.into()) << 25);
         }
-        self.filled_2.next = (bit_cast::<31, 5>(self.info_crcs.val().get_bits::<5>(5)) << 26)
-            | (bit_cast::<31, 1>(self.info_came.val().get_bits::<1>(1)) << 24);
-        if self.info_came.val().get_bit(1) & self.info_good.val().get_bit(1) {
+        self.filled_2.next = (bit_cast::<31, 5>(self.record.info_crcs.val().get_bits::<5>(5))
+            << 26)
+            | (bit_cast::<31, 1>(self.record.info_came.val().get_bits::<1>(1)) << 24);
+        if self.record.info_came.val().get_bit(1) & self.record.info_good.val().get_bit(1) {
             self.filled_2.next = self.filled_2.val()
-                | bit_cast::<31, 24>(self.info_2.val())
+                | bit_cast::<31, 24>(self.record.info_2.val())
                 | (bit_cast::<31, 1>(1.into()) << 25);
         }
 
         // While nothing is open the result may still change: its cause when the frame ends, an upset at any time.
         self.follows.next = !self.open_now.val() | self.closes.val();
-        self.whole.d.next = (self.strobe_in.val() & !self.opens.val()) | self.closes.val();
+        self.whole.d.next =
+            (self.result_in.result_strobe.val() & !self.opens.val()) | self.closes.val();
         self.age.d.next = self.age.q.val();
         if self.tick_us.val() & !self.age.q.val().all() {
             self.age.d.next = self.age.q.val() + 1;
         }
         if self.follows.val() {
-            self.age.d.next = self.age_in.val();
-            self.position_kept.d.next = self.position_in.val();
-            self.position_valid_kept.d.next = self.position_valid_in.val();
-            self.fresh_kept.d.next = self.fresh_in.val();
-            self.sequence_kept.d.next = self.sequence_in.val();
-            self.first_fall_timestamp_kept.d.next = self.first_fall_timestamp_in.val();
-            self.cause_kept.d.next = self.cause_in.val();
-            self.flags_kept.d.next = self.flags_in.val();
-            self.crc_received_kept.d.next = self.crc_received_in.val();
-            self.crc_computed_kept.d.next = self.crc_computed_in.val();
-            self.position_crc_kept.d.next = self.position_crc_in.val();
-            self.position_width_kept.d.next = self.position_width_in.val();
-            self.position_has_f2_kept.d.next = self.position_has_f2_in.val();
+            self.age.d.next = self.result_in.age_us.val();
+            self.position_kept.d.next = self.result_in.position.val();
+            self.position_valid_kept.d.next = self.result_in.position_valid.val();
+            self.fresh_kept.d.next = self.result_in.fresh.val();
+            self.sequence_kept.d.next = self.result_in.sequence.val();
+            self.first_fall_timestamp_kept.d.next = self.result_in.first_fall_timestamp.val();
+            self.cause_kept.d.next = self.result_in.cause.val();
+            self.flags_kept.d.next = self.result_in.flags.val();
+            self.crc_received_kept.d.next = self.result_in.crc_received.val();
+            self.crc_computed_kept.d.next = self.result_in.crc_computed.val();
+            self.position_crc_kept.d.next = self.result_in.position_crc.val();
+            self.position_width_kept.d.next = self.result_in.position_width.val();
+            self.position_has_f2_kept.d.next = self.result_in.position_has_f2.val();
             self.recovery_cycles_kept.d.next = self.recovery_cycles_in.val();
             self.delay_cycles_kept.d.next = self.delay_cycles_in.val();
         }
-        if self.strobe_in.val() & !self.opens.val() {
+        if self.result_in.result_strobe.val() & !self.opens.val() {
             self.first.d.next = 0.into();
             self.second.d.next = 0.into();
         }
@@ -243,37 +188,37 @@ impl Logic for WholeResult {
             self.first.d.next = self.filled_1.val();
             self.second.d.next = self.filled_2.val();
         }
-        self.result_strobe.next = self.strobe_in.val();
-        self.age_us.next = self.age_in.val();
-        self.position.next = self.position_in.val();
-        self.position_valid.next = self.position_valid_in.val();
-        self.fresh.next = self.fresh_in.val();
-        self.sequence.next = self.sequence_in.val();
-        self.first_fall_timestamp.next = self.first_fall_timestamp_in.val();
-        self.cause.next = self.cause_in.val();
-        self.flags.next = self.flags_in.val();
-        self.crc_received.next = self.crc_received_in.val();
-        self.crc_computed.next = self.crc_computed_in.val();
-        self.position_crc.next = self.position_crc_in.val();
-        self.position_width.next = self.position_width_in.val();
-        self.position_has_f2.next = self.position_has_f2_in.val();
+        self.result.result_strobe.next = self.result_in.result_strobe.val();
+        self.result.age_us.next = self.result_in.age_us.val();
+        self.result.position.next = self.result_in.position.val();
+        self.result.position_valid.next = self.result_in.position_valid.val();
+        self.result.fresh.next = self.result_in.fresh.val();
+        self.result.sequence.next = self.result_in.sequence.val();
+        self.result.first_fall_timestamp.next = self.result_in.first_fall_timestamp.val();
+        self.result.cause.next = self.result_in.cause.val();
+        self.result.flags.next = self.result_in.flags.val();
+        self.result.crc_received.next = self.result_in.crc_received.val();
+        self.result.crc_computed.next = self.result_in.crc_computed.val();
+        self.result.position_crc.next = self.result_in.position_crc.val();
+        self.result.position_width.next = self.result_in.position_width.val();
+        self.result.position_has_f2.next = self.result_in.position_has_f2.val();
         self.recovery_cycles.next = self.recovery_cycles_in.val();
         self.delay_cycles.next = self.delay_cycles_in.val();
         if self.has_infos.val() {
-            self.result_strobe.next = self.whole.q.val();
-            self.age_us.next = self.age.q.val();
-            self.position.next = self.position_kept.q.val();
-            self.position_valid.next = self.position_valid_kept.q.val();
-            self.fresh.next = self.fresh_kept.q.val();
-            self.sequence.next = self.sequence_kept.q.val();
-            self.first_fall_timestamp.next = self.first_fall_timestamp_kept.q.val();
-            self.cause.next = self.cause_kept.q.val();
-            self.flags.next = self.flags_kept.q.val();
-            self.crc_received.next = self.crc_received_kept.q.val();
-            self.crc_computed.next = self.crc_computed_kept.q.val();
-            self.position_crc.next = self.position_crc_kept.q.val();
-            self.position_width.next = self.position_width_kept.q.val();
-            self.position_has_f2.next = self.position_has_f2_kept.q.val();
+            self.result.result_strobe.next = self.whole.q.val();
+            self.result.age_us.next = self.age.q.val();
+            self.result.position.next = self.position_kept.q.val();
+            self.result.position_valid.next = self.position_valid_kept.q.val();
+            self.result.fresh.next = self.fresh_kept.q.val();
+            self.result.sequence.next = self.sequence_kept.q.val();
+            self.result.first_fall_timestamp.next = self.first_fall_timestamp_kept.q.val();
+            self.result.cause.next = self.cause_kept.q.val();
+            self.result.flags.next = self.flags_kept.q.val();
+            self.result.crc_received.next = self.crc_received_kept.q.val();
+            self.result.crc_computed.next = self.crc_computed_kept.q.val();
+            self.result.position_crc.next = self.position_crc_kept.q.val();
+            self.result.position_width.next = self.position_width_kept.q.val();
+            self.result.position_has_f2.next = self.position_has_f2_kept.q.val();
             self.recovery_cycles.next = self.recovery_cycles_kept.q.val();
             self.delay_cycles.next = self.delay_cycles_kept.q.val();
         }
@@ -285,7 +230,7 @@ impl Logic for WholeResult {
             self.word_1.next = bit_cast::<27, 1>(1.into()) << 26;
             self.word_2.next = bit_cast::<27, 1>(1.into()) << 26;
         } else {
-            if !self.strobe_in.val() {
+            if !self.result_in.result_strobe.val() {
                 self.word_1.next = bit_cast::<27, 26>(self.first.q.val().get_bits::<26>(0));
                 self.word_2.next = bit_cast::<27, 26>(self.second.q.val().get_bits::<26>(0));
             }

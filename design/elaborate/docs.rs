@@ -17,10 +17,27 @@ pub struct TypeDocs {
     pub parts: &'static [(&'static str, &'static [&'static str])],
     /// Fields that are lists of at most one signal, whose name has no number.
     pub optional: &'static [&'static str],
+    /// Fields that are bundles of ports, what comes behind the ports' names, and what is written about them.
+    pub bundles: &'static [(&'static str, &'static str, &'static TypeDocs)],
     /// What is proved about it: SystemVerilog, see [`properties`](super::properties). Empty where there is nothing.
     pub properties: &'static str,
     /// Enums among the types of its fields.
     pub enums: &'static [&'static TypeDocs],
+}
+
+impl TypeDocs {
+    /// One with a name, and nothing else.
+    pub const fn named(name: &'static str) -> Self {
+        Self {
+            name,
+            lines: &[],
+            parts: &[],
+            optional: &[],
+            bundles: &[],
+            properties: "",
+            enums: &[],
+        }
+    }
 }
 
 /// A type with documentation that elaboration hands on.
@@ -35,6 +52,9 @@ const DOCS_TIMING: &str = "rtl_design_docs";
 /// [`TimingInfo`] name of optional fields.
 const OPTIONAL_TIMING: &str = "rtl_design_optional";
 
+/// [`TimingInfo`] name of bundles.
+const BUNDLE_TIMING: &str = "rtl_design_bundle";
+
 /// [`TimingInfo`] name of properties.
 const PROPERTIES_TIMING: &str = "rtl_design_properties";
 
@@ -45,11 +65,11 @@ pub fn timing(docs: &TypeDocs) -> Vec<TimingInfo> {
         clock: docs.name.into(),
         inputs: docs.lines.iter().map(|line| plain(line)).collect(),
         outputs: (docs.parts.iter())
-            .map(|(name, lines)| {
-                let lines = lines.iter().map(|line| plain(line));
-                let text: Vec<String> = [(*name).into()].into_iter().chain(lines).collect();
-                text.join("\n")
-            })
+            .map(|(name, lines)| part((*name).into(), lines))
+            .chain(docs.bundles.iter().flat_map(|(bundle, _, of)| {
+                let ports = of.parts.iter();
+                ports.map(move |(port, lines)| part(format!("{bundle}${port}"), lines))
+            }))
             .collect(),
     };
     let enums = docs.enums.iter().map(|docs| of_one(docs));
@@ -65,14 +85,35 @@ pub fn timing(docs: &TypeDocs) -> Vec<TimingInfo> {
         inputs: docs.optional.iter().map(|&name| name.into()).collect(),
         outputs: vec![],
     };
+    let bundles = docs.bundles.iter().map(|(field, suffix, _)| TimingInfo {
+        name: BUNDLE_TIMING.into(),
+        clock: (*field).into(),
+        inputs: vec![(*suffix).into()],
+        outputs: vec![],
+    });
     let own = [of_one(docs), optional, properties];
-    own.into_iter().chain(enums).collect()
+    own.into_iter().chain(bundles).chain(enums).collect()
+}
+
+/// A part and its lines, in one text.
+fn part(name: String, lines: &[&str]) -> String {
+    let lines = lines.iter().map(|line| plain(line));
+    let text: Vec<String> = [name].into_iter().chain(lines).collect();
+    text.join("\n")
 }
 
 /// Optional fields among the timings of a block.
 pub(super) fn optional_of(timings: &[TimingInfo]) -> Vec<String> {
     let found = timings.iter().find(|t| t.name == OPTIONAL_TIMING);
     found.map_or(vec![], |t| t.inputs.clone())
+}
+
+/// Bundles among the timings of a block: the field, and what comes behind the names of its ports.
+pub(super) fn bundles_of(timings: &[TimingInfo]) -> Vec<(String, String)> {
+    let found = timings.iter().filter(|t| t.name == BUNDLE_TIMING);
+    found
+        .map(|t| (t.clock.clone(), t.inputs.concat()))
+        .collect()
 }
 
 /// Properties among the timings of a block.
@@ -143,30 +184,34 @@ mod tests {
     #[test]
     fn what_is_written_arrives_in_the_tree() {
         const STATES: TypeDocs = TypeDocs {
-            name: "State",
-            lines: &[],
             parts: &[("Idle", &[" Nothing."])],
-            optional: &[],
-            properties: "",
-            enums: &[],
+            ..TypeDocs::named("State")
+        };
+        const FRAME: TypeDocs = TypeDocs {
+            parts: &[("strobe", &[" It is new."])],
+            ..TypeDocs::named("FrameOut")
         };
         let block = TypeDocs {
             name: "Timer",
             lines: &[" A timer.", " Of 8 bits."],
             parts: &[("clock", &[" System clock."]), ("level", &[])],
             optional: &["level"],
+            bundles: &[("frame", "_now", &FRAME)],
             properties: "// p: words",
             enums: &[&STATES],
         };
         assert_eq!(properties_of(&timing(&block)), "// p: words");
         assert_eq!(optional_of(&timing(&block)), ["level"]);
+        let bundle = ("frame".to_owned(), "_now".to_owned());
+        assert_eq!(bundles_of(&timing(&block)), [bundle]);
         let [timer, state] = &of(&timing(&block))[..] else {
             panic!("two of them")
         };
         assert_eq!(timer.name, "Timer");
         assert_eq!(timer.lines, ["A timer.", "Of 8 bits."]);
         let clock = ("clock".to_owned(), vec!["System clock.".to_owned()]);
-        assert_eq!(timer.parts, [clock, ("level".to_owned(), vec![])]);
+        let strobe = ("frame$strobe".to_owned(), vec!["It is new.".to_owned()]);
+        assert_eq!(timer.parts, [clock, ("level".to_owned(), vec![]), strobe]);
         assert_eq!(state.parts[0].1, ["Nothing."]);
     }
 }

@@ -24,8 +24,12 @@ pub(super) struct Draft<'a> {
 }
 impl Draft<'_> {
     pub(super) fn docs(&self, key: &str) -> Vec<String> {
-        let field = key.split('$').next().unwrap_or(key);
-        self.fields.get(field).map_or(vec![], |docs| docs.to_vec())
+        let mut parts = key.split('$');
+        let field = parts.next().unwrap_or(key);
+        let port = parts.find(|part| !part.starts_with(|c: char| c.is_ascii_digit()));
+        let of_port = port.and_then(|port| self.fields.get(format!("{field}${port}").as_str()));
+        let found = of_port.or_else(|| self.fields.get(field));
+        found.map_or(vec![], |docs| docs.to_vec())
     }
 
     pub(super) fn net(

@@ -36,6 +36,8 @@ pub(super) struct BlockNode {
     pub docs: Vec<Docs>,
     /// Lists of at most one signal.
     optional: Vec<String>,
+    /// Bundles, and what comes behind the names of their ports.
+    bundles: Vec<(String, String)>,
     /// What is proved about it.
     pub properties: String,
 }
@@ -52,6 +54,7 @@ impl BlockNode {
             hdl: node.hdl(),
             docs: docs::of(&timing),
             optional: docs::optional_of(&timing),
+            bundles: docs::bundles_of(&timing),
             properties: docs::properties_of(&timing),
             timing,
         }
@@ -79,6 +82,26 @@ impl BlockNode {
     pub fn constants(&self) -> impl Iterator<Item = &AtomNode> {
         let is_constant = |a: &&AtomNode| matches!(a.kind, AtomKind::Constant);
         self.atoms.iter().filter(is_constant)
+    }
+
+    /// The Verilog name of a field.
+    fn verilog_name(&self, key: &str) -> String {
+        if let Some(field) = key.strip_suffix("$0") {
+            if self.optional.iter().any(|optional| optional == field) {
+                return verilog_name(field);
+            }
+        }
+        let Some((field, rest)) = key.split_once('$') else {
+            return verilog_name(key);
+        };
+        let Some((_, suffix)) = self.bundles.iter().find(|(bundle, _)| bundle == field) else {
+            return verilog_name(key);
+        };
+        // A port of a list of bundles has its number behind its name.
+        match rest.split_once('$') {
+            Some((number, port)) => verilog_name(&format!("{port}{suffix}${number}")),
+            None => verilog_name(&format!("{rest}{suffix}")),
+        }
     }
 
     fn push_field(&mut self, name: &str) {
@@ -155,10 +178,7 @@ impl Probe for Reader {
             .chain([name])
             .collect::<Vec<_>>()
             .join("$");
-        let name = match key.strip_suffix("$0") {
-            Some(field) if block.optional.iter().any(|o| o == field) => verilog_name(field),
-            _ => verilog_name(&key),
-        };
+        let name = block.verilog_name(&key);
         let width_bits = signal.bits();
         if width_bits == 0 || width_bits > MAX_WIDTH_BITS {
             let error = block.error(

@@ -196,12 +196,18 @@ impl<B: Block> Engine for KernelEngine<B> {
     }
 }
 
-/// A [`KernelEngine`] of a block, from the names of its ports: `kernel_engine!(block; clock; in a, b; out c)`.
+/// A [`KernelEngine`] of a block, from the names of its ports: `kernel_engine!(block; clock; in a, b; out c, bundle.d)`.
 #[macro_export]
 macro_rules! kernel_engine {
-    ($block:expr; $clock:ident; in $($input:ident),* $(,)?; out $($output:ident),* $(,)?) => {
+    ($block:expr; $clock:ident; in $($($input:ident).+),* $(,)?; out $($($output:ident).+),* $(,)?) => {
         $crate::engine::KernelEngine::new($block, |b| &mut b.$clock)
-            $(.input(stringify!($input), |b| &mut b.$input))*
-            $(.output(stringify!($output), |b| &mut b.$output))*
+            $(.input($crate::engine::port_of(stringify!($($input).+)), |b| &mut b.$($input).+))*
+            $(.output($crate::engine::port_of(stringify!($($output).+)), |b| &mut b.$($output).+))*
     };
+}
+
+/// The port's own name in `bundle.port`.
+#[doc(hidden)]
+pub fn port_of(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path).trim()
 }

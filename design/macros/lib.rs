@@ -3,6 +3,7 @@
 //! [`macro@Block`] makes a block of its parts, so that its `new` names only those of which something is to be said. [`macro@kernel`] stands
 //! where rust-hdl has `#[hdl_gen]`, and connects clock and reset of every register that the kernel assigns.
 
+mod bundle;
 mod connect;
 
 use proc_macro::TokenStream;
@@ -17,7 +18,7 @@ use syn::{
     Type, TypePath,
 };
 
-/// The parts of a block, and what is written about them. Signals begin empty, registers with 0 or what `#[start(...)]` says,
+/// The parts of a block, and what is written about them. Signals and bundles begin empty, registers with 0 or what `#[start(...)]` says,
 /// children marked `#[start]` as they are by default. What else there is (constants, children, lists, and registers marked
 /// `#[given]`) must be given, by name and all of it, to `Self::from_parts`:
 ///
@@ -37,10 +38,13 @@ use syn::{
 ///
 /// `#[optional]` on a list of at most one signal: its name is emitted without a number.
 ///
+/// `#[bundle]` on a field whose type comes from [`macro@ports`]: its ports are emitted by their own names, or, as `#[bundle("_now")]`, with that
+/// behind them.
+///
 /// Where it is the only block of its file, what stands at the head of the file is its documentation, drawing included.
 ///
 /// `#[properties("x.sv")]` on the block names the file, beside the source, with what is proved about it.
-#[proc_macro_derive(Block, attributes(start, given, optional, properties))]
+#[proc_macro_derive(Block, attributes(start, given, optional, bundle, properties))]
 pub fn block(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
     let name = &input.ident;
@@ -63,7 +67,12 @@ pub fn block(input: TokenStream) -> TokenStream {
                     Err(error) => return error.into_compile_error().into(),
                 }
             }
-            None if attribute("given").is_some() || !begins_empty(kind) => given.push((part, kind)),
+            None if attribute("given").is_some()
+                || !(begins_empty(kind)
+                    || attribute("bundle").is_some() && !bundle::is_list(kind)) =>
+            {
+                given.push((part, kind))
+            }
             _ => own.push(quote!(#part: ::core::default::Default::default())),
         }
     }
@@ -105,7 +114,7 @@ pub fn states(input: TokenStream) -> TokenStream {
     match &input.data {
         Data::Enum(data) => {
             let states = data.variants.iter().map(|v| (&v.ident, &v.attrs[..]));
-            docs(&input, states, &[], &[]).into()
+            docs(&input, states, Special::default()).into()
         }
         _ => refuse(&input.ident, "states are those of an enum"),
     }
@@ -121,26 +130,49 @@ fn described<'a>(
         parameters: parameters.filter_map(parameter).collect(),
         enums: vec![],
     };
-    for field in fields.clone() {
-        found.visit_type(&field.ty);
+    let mut special = Special::default();
+    let mut named = vec![];
+    for field in fields {
+        let Some(name) = &field.ident else { continue };
+        named.push((name, &field.attrs[..]));
+        let attribute = |name: &str| field.attrs.iter().find(|a| a.path().is_ident(name));
+        if attribute("optional").is_some() {
+            special.optional.push(name);
+        }
+        match attribute("bundle").map(bundle::suffix) {
+            None => found.visit_type(&field.ty),
+            Some(Err(error)) => return error.into_compile_error(),
+            Some(Ok(suffix)) => special.bundles.push((name, bundle::of(&field.ty), suffix)),
+        }
     }
-    let named = fields
-        .into_iter()
-        .filter_map(|f| Some((f.ident.as_ref()?, &f.attrs[..])));
-    let named: Vec<_> = named.collect();
-    let is_optional = |attribute: &Attribute| attribute.path().is_ident("optional");
-    let optional = named.iter().filter(|(_, a)| a.iter().any(is_optional));
-    let optional: Vec<&Ident> = optional.map(|(name, _)| *name).collect();
-    docs(input, named.into_iter(), &optional, &found.enums)
+    special.enums = found.enums;
+    docs(input, named.into_iter(), special)
 }
 
-/// The documentation of a type, its parts, those that are optional, and these enums.
+/// What is not the same for all parts of a type.
+#[derive(Default)]
+struct Special<'a> {
+    optional: Vec<&'a Ident>,
+    /// Fields that are bundles, their types, and what comes behind the names of their ports.
+    bundles: Vec<(&'a Ident, &'a Type, String)>,
+    enums: Vec<&'a Ident>,
+}
+
+/// The documentation of a type and its parts.
 fn docs<'a>(
     input: &DeriveInput,
     parts: impl Iterator<Item = (&'a Ident, &'a [Attribute])>,
-    optional: &[&Ident],
-    enums: &[&Ident],
+    special: Special,
 ) -> TokenStream2 {
+    let Special {
+        optional,
+        bundles,
+        enums,
+    } = special;
+    let bundles = bundles.iter().map(|(name, kind, suffix)| {
+        let docs = quote!(&<#kind as ::rtl_design::elaborate::docs::Described>::DOCS);
+        quote!((stringify!(#name), #suffix, #docs))
+    });
     let name = &input.ident;
     let (generics, arguments, bounds) = input.generics.split_for_impl();
     let own = match lines_of_file(name) {
@@ -164,6 +196,7 @@ fn docs<'a>(
                 lines: &[#(#own),*],
                 parts: &[#(#parts),*],
                 optional: &[#(stringify!(#optional)),*],
+                bundles: &[#(#bundles),*],
                 properties: #properties,
                 enums: &[#(&<#enums as ::rtl_design::elaborate::docs::Described>::DOCS),*],
             };
@@ -241,6 +274,35 @@ fn begins_empty(kind: &Type) -> bool {
             .iter()
             .any(|name| last.ident == name)
     })
+}
+
+/// Ports that travel together: of `struct Frame` the types `FrameOut`, for the block that drives them, and `FrameIn`, for one that takes
+/// them. Fields are written with what they carry; one marked `#[back]` runs the other way.
+///
+/// ```ignore
+/// /// What a frame brought.
+/// #[ports]
+/// pub struct Frame {
+///     /// Strobe: it is new.
+///     pub strobe: Bit,
+///     /// The other end takes it.
+///     #[back]
+///     pub taken: Bit,
+/// }
+/// ```
+///
+/// A block has them by `#[bundle]`, see [`macro@Block`]. In a kernel they are wired as rust-hdl's interfaces are: `FrameOut::link` from a
+/// child's bundle to the block's own of the same direction, `FrameIn::link` from the block's own to a child's, and `FrameOut::join` from the
+/// bundle of one child to that of another.
+#[proc_macro_attribute]
+pub fn ports(arguments: TokenStream, item: TokenStream) -> TokenStream {
+    if !arguments.is_empty() {
+        let span = proc_macro2::Span::call_site();
+        return refuse(&Ident::new("ports", span), "ports takes no arguments");
+    }
+    bundle::expand(parse_macro_input!(item as DeriveInput))
+        .unwrap_or_else(|error| error.into_compile_error())
+        .into()
 }
 
 /// The kernel of a block: `#[hdl_gen]` of rust-hdl, in which each register that has its `d.next` assigned holds its value

@@ -1,5 +1,6 @@
 //! Tests of the whole way: blocks, designs, engines, Verilog.
 
+mod bundles;
 mod clean;
 mod designs;
 mod errors;

@@ -396,8 +396,8 @@ fn a_trigger_starts_both_protocols() {
     // Nobody answers: in the T-format channel that is known soonest, and the host sees both results together.
     host.idle(4_000);
     let port = &host.card.core.port[1];
-    assert_eq!(port.sequence.val().to_u64(), 1);
-    assert_eq!(port.cause.val().to_u64(), cause::NO_ANSWER);
+    assert_eq!(port.result.sequence.val().to_u64(), 1);
+    assert_eq!(port.result.cause.val().to_u64(), cause::NO_ANSWER);
     assert_eq!(host.read(address(RESULT, "status", 1), 1), [0]);
     assert!(host.falls[1].is_empty(), "no clock");
     assert!(!host.falls[0].is_empty());

@@ -32,23 +32,23 @@ fn read(uut: &mut ChannelRegisters, word: usize) -> u32 {
 /// Sets one of the result inputs.
 fn set(uut: &mut ChannelRegisters, register: &str, field: &str, value: u64) {
     match (register, field) {
-        ("status", "sequence") => uut.sequence.next = value.into(),
-        ("status", "cause") => uut.cause.next = value.into(),
-        ("status", "valid") => uut.position_valid.next = value == 1,
-        ("status", "fresh") => uut.fresh.next = value == 1,
-        ("status", "line") => uut.flags.next = (value << 12).into(),
-        ("position_low", _) => uut.position.next = value.into(),
-        ("position_high", "crc") => uut.position_crc.next = value.into(),
-        ("position_high", "f2") => uut.position_has_f2.next = value == 1,
-        ("position_high", "width") => uut.position_width.next = value.into(),
-        ("position_high", _) => uut.position.next = (value << 32).into(),
-        ("timestamp", _) => uut.first_fall_timestamp.next = value.into(),
-        ("evidence", "crc_received") => uut.crc_received.next = value.into(),
-        ("evidence", "crc_computed") => uut.crc_computed.next = value.into(),
+        ("status", "sequence") => uut.result.sequence.next = value.into(),
+        ("status", "cause") => uut.result.cause.next = value.into(),
+        ("status", "valid") => uut.result.position_valid.next = value == 1,
+        ("status", "fresh") => uut.result.fresh.next = value == 1,
+        ("status", "line") => uut.result.flags.next = (value << 12).into(),
+        ("position_low", _) => uut.result.position.next = value.into(),
+        ("position_high", "crc") => uut.result.position_crc.next = value.into(),
+        ("position_high", "f2") => uut.result.position_has_f2.next = value == 1,
+        ("position_high", "width") => uut.result.position_width.next = value.into(),
+        ("position_high", _) => uut.result.position.next = (value << 32).into(),
+        ("timestamp", _) => uut.result.first_fall_timestamp.next = value.into(),
+        ("evidence", "crc_received") => uut.result.crc_received.next = value.into(),
+        ("evidence", "crc_computed") => uut.result.crc_computed.next = value.into(),
         ("evidence", "delay_cycles") => uut.delay_cycles.next = value.into(),
         ("age_recovery", "delay_high") => uut.delay_cycles.next = (value << 10).into(),
-        ("evidence", "flags") => uut.flags.next = value.into(),
-        ("age_recovery", "age_us") => uut.age_us.next = value.into(),
+        ("evidence", "flags") => uut.result.flags.next = value.into(),
+        ("age_recovery", "age_us") => uut.result.age_us.next = value.into(),
         ("age_recovery", "recovery_cycles") => uut.recovery_cycles.next = value.into(),
         ("age_recovery", "stale") => uut.trigger.next = value == 1,
         other => panic!("the table has a field that the test does not know: {other:?}"),
@@ -93,11 +93,11 @@ fn every_result_field_is_where_the_table_says() {
 fn words_stand_still_without_load_and_read_as_zero_when_not_selected() {
     let mut uut = new();
     uut.load.next = true;
-    uut.sequence.next = 7u64.into();
+    uut.result.sequence.next = 7u64.into();
     step(&mut uut);
     uut.load.next = false;
-    uut.sequence.next = 8u64.into();
-    uut.position.next = 0xffff_ffff_ffffu64.into();
+    uut.result.sequence.next = 8u64.into();
+    uut.result.position.next = 0xffff_ffff_ffffu64.into();
     step(&mut uut);
     assert_eq!(
         (read(&mut uut, 0), read(&mut uut, 1), read(&mut uut, 2)),
@@ -114,21 +114,21 @@ fn words_stand_still_without_load_and_read_as_zero_when_not_selected() {
 /// One of the configuration outputs.
 fn output(uut: &ChannelRegisters, field: &str) -> u64 {
     match field {
-        "period_cycles" => uut.period_cycles.val().to_u64(),
-        "position_bits" => uut.position_bits.val().to_u64(),
-        "command" => uut.command.val().to_u64(),
+        "period_cycles" => uut.settings.period_cycles.val().to_u64(),
+        "position_bits" => uut.settings.position_bits.val().to_u64(),
+        "command" => uut.settings.command.val().to_u64(),
         "skip" => uut.trigger_skip.val().to_u64(),
         "ignore_pin" => uut.ignored_sources.val().to_u64() & 1,
         "ignore_timer" => uut.ignored_sources.val().to_u64() >> 1 & 1,
         "ignore_register" => uut.ignored_sources.val().to_u64() >> 2,
-        "first_low_extra_cycles" => uut.first_low_extra_cycles.val().to_u64(),
-        "start_window_cycles" => uut.start_window_cycles.val().to_u64(),
-        "filter_cycles" => uut.filter_cycles.val().to_u64(),
-        "filter_half" => uut.filter_half.val().into(),
+        "first_low_extra_cycles" => uut.settings.first_low_extra_cycles.val().to_u64(),
+        "start_window_cycles" => uut.settings.start_window_cycles.val().to_u64(),
+        "filter_cycles" => uut.settings.filter_cycles.val().to_u64(),
+        "filter_half" => uut.settings.filter_half.val().into(),
         "request_id" => uut.request_id.val().to_u64(),
         "field_gap_us" => uut.field_gap_us.val().to_u64(),
-        "start_timeout_us" => uut.start_timeout_us.val().to_u64(),
-        "recovery_limit_cycles" => uut.recovery_limit_cycles.val().to_u64(),
+        "start_timeout_us" => uut.settings.start_timeout_us.val().to_u64(),
+        "recovery_limit_cycles" => uut.settings.recovery_limit_cycles.val().to_u64(),
         other => panic!("the table has a field that the test does not know: {other}"),
     }
 }
@@ -235,11 +235,11 @@ fn a_result_is_owed_from_a_trigger_that_is_taken_to_its_result() {
     let pulse = |uut: &mut ChannelRegisters, trigger: bool, result: bool| {
         uut.trigger.next = trigger;
         uut.new_set.next = trigger;
-        uut.result_strobe.next = result;
+        uut.result.result_strobe.next = result;
         step(uut);
         uut.trigger.next = false;
         uut.new_set.next = false;
-        uut.result_strobe.next = false;
+        uut.result.result_strobe.next = false;
         step(uut);
         uut.owes.val()
     };
@@ -269,11 +269,11 @@ fn held_words_grow_old_by_themselves() {
     uut.tick_us.next = true;
     uut.show.next = true;
     uut.load.next = true;
-    uut.age_us.next = 0xfff0u64.into();
+    uut.result.age_us.next = 0xfff0u64.into();
     step(&mut uut);
     uut.load.next = false;
     // A newer position has another age.
-    uut.age_us.next = 0u64.into();
+    uut.result.age_us.next = 0u64.into();
     (0..5).for_each(|_| step(&mut uut));
     uut.show.next = false;
     step(&mut uut);

@@ -6,6 +6,7 @@
 //! ```
 
 use super::map::input;
+use crate::ports::{AdditionalDataIn, FrameEndIn, ServiceOrdersOut};
 use crate::several::each;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
@@ -18,26 +19,12 @@ pub struct ServiceChannel {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Strobe: a frame has ended.
-    pub over: Signal<In, Bit>,
-    /// It had the request.
-    pub over_request: Signal<In, Bit>,
-    /// Its primary cause.
-    pub over_cause: Signal<In, Bits<5>>,
-    /// Answer of a request with a frame of its own, the bit that came first in bit 0.
-    pub reply: Signal<In, Bits<48>>,
-    /// Its CRC is right.
-    pub reply_good: Signal<In, Bit>,
-    /// Additional data that the encoder sends.
-    pub info_active: Signal<In, Bits<2>>,
-    /// Additional data 1.
-    pub info_1: Signal<In, Bits<24>>,
-    /// Additional data 2.
-    pub info_2: Signal<In, Bits<24>>,
-    /// Additional data that the last frame brought.
-    pub info_came: Signal<In, Bits<2>>,
-    /// Additional data whose CRC is right, in the last frame.
-    pub info_good: Signal<In, Bits<2>>,
+    /// A frame, triggered or not, has ended.
+    #[bundle]
+    pub end: FrameEndIn,
+    /// Record of the additional data that follow each position.
+    #[bundle]
+    pub record: AdditionalDataIn,
     /// The frame under way has the request.
     pub request_runs: Signal<In, Bit>,
     /// DATA is HIGH, and no frame is on the wire.
@@ -64,34 +51,13 @@ pub struct ServiceChannel {
     pub command_now: Signal<Out, Bits<6>>,
     /// Position width for the channel.
     pub position_bits_now: Signal<Out, Bits<6>>,
-    /// Mode command of the request.
-    pub request_command: Signal<Out, Bits<6>>,
-    /// 24 bits of the request.
-    pub request_parameter: Signal<Out, Bits<24>>,
-    /// Strobe: the request rides on the next triggered frame.
-    pub request_ride: Signal<Out, Bit>,
-    /// Strobe: the request gets a frame of its own.
-    pub request_own: Signal<Out, Bit>,
-    /// Strobe: a request that has not begun is forgotten.
-    pub request_cancel: Signal<Out, Bit>,
+    /// What the service asks of its channel.
+    #[bundle]
+    pub orders: ServiceOrdersOut,
     /// Strobe: the next frame measures the line delay.
     pub calibrate: Signal<Out, Bit>,
-    /// Triggers are lost.
-    pub hold_off: Signal<Out, Bit>,
-    /// The EnDat clock is LOW.
-    pub clock_low: Signal<Out, Bit>,
     /// The channel's alarm.
     pub alarm: Signal<Out, Bit>,
-    /// Forced errors, as [`word::FORCE`](endat_regs::service::word::FORCE).
-    pub forced: Signal<Out, Bits<5>>,
-    /// Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
-    pub watchdog_us: Signal<Out, Bits<12>>,
-    /// Shortest recovery time, in system clock cycles; 0 = not checked.
-    pub recovery_min_cycles: Signal<Out, Bits<13>>,
-    /// The clock goes on after each position.
-    pub continuous: Signal<Out, Bit>,
-    /// It stops after an error.
-    pub stop_at_error: Signal<Out, Bit>,
     /// Port that the program reads or writes.
     pub io_address: Signal<In, Bits<5>>,
     /// Strobe: it is read.
@@ -162,30 +128,30 @@ impl Logic for ServiceChannel {
             | (bit_cast::<16, 1>(self.request_written.q.val().into()) << 2)
             | (bit_cast::<16, 1>(self.control_written.q.val().into()) << 3)
             | (bit_cast::<16, 1>(self.line_high.val().into()) << 4)
-            | (bit_cast::<16, 1>(self.reply_good.val().into()) << 5)
-            | (bit_cast::<16, 2>(self.info_good.val()) << 6)
-            | (bit_cast::<16, 1>(self.info_active.val().get_bits::<1>(0)) << 8)
+            | (bit_cast::<16, 1>(self.end.reply_good.val().into()) << 5)
+            | (bit_cast::<16, 2>(self.record.info_good.val()) << 6)
+            | (bit_cast::<16, 1>(self.record.info_active.val().get_bits::<1>(0)) << 8)
             | (bit_cast::<16, 1>(self.missed.q.val().into()) << 9)
             | (bit_cast::<16, 1>(self.fresh.val().into()) << 10)
             | (bit_cast::<16, 1>(self.request_runs.val().into()) << 11)
-            | (bit_cast::<16, 2>(self.info_came.val()) << 12);
+            | (bit_cast::<16, 2>(self.record.info_came.val()) << 12);
         // What comes MSB first stands the other way round in the answer.
         self.turned.next = 0.into();
         for i in 0..24 {
             self.turned.next = self
                 .turned
                 .val()
-                .replace_bit(23 - i, self.reply.val().get_bit(i));
+                .replace_bit(23 - i, self.end.answer.val().get_bit(i));
         }
         self.seen[0].d.next = self.status.val();
         self.seen[1].d.next = bit_cast::<16, 5>(self.event_cause.q.val());
-        self.seen[2].d.next = self.info_1.val().get_bits::<16>(0);
-        self.seen[3].d.next = bit_cast::<16, 8>(self.info_1.val().get_bits::<8>(16));
-        self.seen[4].d.next = self.info_2.val().get_bits::<16>(0);
-        self.seen[5].d.next = bit_cast::<16, 8>(self.info_2.val().get_bits::<8>(16));
-        self.seen[6].d.next = self.reply.val().get_bits::<16>(0);
-        self.seen[7].d.next = self.reply.val().get_bits::<16>(16);
-        self.seen[8].d.next = self.reply.val().get_bits::<16>(32);
+        self.seen[2].d.next = self.record.info_1.val().get_bits::<16>(0);
+        self.seen[3].d.next = bit_cast::<16, 8>(self.record.info_1.val().get_bits::<8>(16));
+        self.seen[4].d.next = self.record.info_2.val().get_bits::<16>(0);
+        self.seen[5].d.next = bit_cast::<16, 8>(self.record.info_2.val().get_bits::<8>(16));
+        self.seen[6].d.next = self.end.answer.val().get_bits::<16>(0);
+        self.seen[7].d.next = self.end.answer.val().get_bits::<16>(16);
+        self.seen[8].d.next = self.end.answer.val().get_bits::<16>(32);
         self.seen[9].d.next = self.turned.val().get_bits::<16>(0);
         self.seen[10].d.next = bit_cast::<16, 8>(self.turned.val().get_bits::<8>(16));
         self.seen[11].d.next = self.lost_count.q.val();
@@ -279,11 +245,11 @@ impl Logic for ServiceChannel {
                 _ => {}
             }
         }
-        if self.over.val() {
+        if self.end.over.val() {
             self.has_event.d.next = true;
             self.missed.d.next = self.has_event.q.val();
-            self.event_request.d.next = self.over_request.val();
-            self.event_cause.d.next = self.over_cause.val();
+            self.event_request.d.next = self.end.over_request.val();
+            self.event_cause.d.next = self.end.over_cause.val();
         }
         if self.host_write.val() & !self.host_half.val() {
             if self.host_address.val() == 0 {
@@ -294,21 +260,21 @@ impl Logic for ServiceChannel {
             }
         }
 
-        self.request_command.next = self.out_command.q.val();
-        self.request_parameter.next = bit_cast::<24, 16>(self.out_data.q.val())
+        self.orders.request_command.next = self.out_command.q.val();
+        self.orders.request_parameter.next = bit_cast::<24, 16>(self.out_data.q.val())
             | (bit_cast::<24, 8>(self.out_address.q.val()) << 16);
-        self.request_ride.next = self.out_go.q.val().get_bit(0);
-        self.request_own.next = self.out_go.q.val().get_bit(1);
-        self.request_cancel.next = self.out_go.q.val().get_bit(2);
+        self.orders.request_ride.next = self.out_go.q.val().get_bit(0);
+        self.orders.request_own.next = self.out_go.q.val().get_bit(1);
+        self.orders.request_cancel.next = self.out_go.q.val().get_bit(2);
         self.calibrate.next = self.out_go.q.val().get_bit(3);
-        self.hold_off.next = self.out_control.q.val().get_bit(0);
-        self.clock_low.next = self.out_control.q.val().get_bit(1);
+        self.orders.hold_off.next = self.out_control.q.val().get_bit(0);
+        self.orders.clock_low.next = self.out_control.q.val().get_bit(1);
         self.alarm.next = self.out_control.q.val().get_bit(2);
-        self.forced.next = self.out_force.q.val();
-        self.watchdog_us.next = self.out_watchdog.q.val();
-        self.recovery_min_cycles.next = self.out_recovery.q.val();
-        self.continuous.next = self.out_continuous.q.val().get_bit(0);
-        self.stop_at_error.next = self.out_continuous.q.val().get_bit(1);
+        self.orders.forced.next = self.out_force.q.val();
+        self.orders.watchdog_us.next = self.out_watchdog.q.val();
+        self.orders.recovery_min_cycles.next = self.out_recovery.q.val();
+        self.orders.continuous.next = self.out_continuous.q.val().get_bit(0);
+        self.orders.stop_at_error.next = self.out_continuous.q.val().get_bit(1);
         self.period_now_cycles.next = self.period_cycles.val();
         if self.out_period.q.val().any() {
             self.period_now_cycles.next = self.out_period.q.val();

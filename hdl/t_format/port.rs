@@ -16,6 +16,7 @@ use super::primary::LowestCause;
 use super::reply::Reply;
 use crate::features::Features;
 use crate::input_filter::InputFilter;
+use crate::ports::FrameResultOut;
 use crate::snapshot::Snapshot;
 use endat_macros::kernel;
 use rtl_design::reg::Reg;
@@ -59,24 +60,9 @@ pub struct TFormatPort {
     pub over: Signal<Out, Bit>,
     /// It was the host's.
     pub over_request: Signal<Out, Bit>,
-    /// Strobe: a new result can be read from this cycle on.
-    pub result_strobe: Signal<Out, Bit>,
-    /// Last good position: multi-turn in bits 47..24, single-turn in bits 23..0.
-    pub position: Signal<Out, Bits<48>>,
-    /// There is a good position.
-    pub position_valid: Signal<Out, Bit>,
-    /// The last result brought the position, or a part of it.
-    pub fresh: Signal<Out, Bit>,
-    /// Number of results, wrapping.
-    pub sequence: Signal<Out, Bits<16>>,
-    /// Time of the start bit of the request that brought the position, in system clock cycles.
-    pub first_fall_timestamp: Signal<Out, Bits<32>>,
-    /// Age of the position in microseconds; stops at 65535.
-    pub age_us: Signal<Out, Bits<16>>,
-    /// Primary cause of the last result, see [`super::cause`].
-    pub cause: Signal<Out, Bits<5>>,
-    /// Raw flags of the last result, see [`super::cause`].
-    pub flags: Signal<Out, Bits<20>>,
+    /// Result of a trigger.
+    #[bundle]
+    pub result: FrameResultOut,
     /// Word that the host accesses, see [`word`].
     pub host_address: Signal<In, Bits<3>>,
     /// Strobe: read it.
@@ -293,14 +279,14 @@ impl Logic for TFormatPort {
         // A part that does not come stays as it was, if that was good.
         self.single.next = 0.into();
         if self.has_had_single.q.val() {
-            self.single.next = self.snapshot.position.val().get_bits::<24>(0);
+            self.single.next = self.snapshot.result.position.val().get_bits::<24>(0);
         }
         if self.exchange.has_single.val() {
             self.single.next = self.reply.single_turn.val();
         }
         self.multi.next = 0.into();
         if self.has_had_multi.q.val() {
-            self.multi.next = self.snapshot.position.val().get_bits::<24>(24);
+            self.multi.next = self.snapshot.result.position.val().get_bits::<24>(24);
         }
         if self.exchange.has_multi.val() {
             self.multi.next = self.reply.multi_turn.val();
@@ -330,13 +316,10 @@ impl Logic for TFormatPort {
         self.snapshot.flags_in.next = bit_cast::<20, 16>(self.flags_in.val());
         self.over.next = self.exchange.publish.val();
         self.over_request.next = self.is_own.val();
-        connect!(self <= self.snapshot;
-            result_strobe, position, position_valid, fresh, sequence, first_fall_timestamp, age_us,
-            cause, flags
-        );
+        FrameResultOut::link(&mut self.result, &mut self.snapshot.result);
 
         // What the words of the host show. What the snapshot has withdrawn is there no more.
-        if !self.snapshot.position_valid.val() {
+        if !self.snapshot.result.position_valid.val() {
             self.has_had_single.d.next = false;
             self.has_had_multi.d.next = false;
         }

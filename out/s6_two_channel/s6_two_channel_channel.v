@@ -31,9 +31,7 @@ module s6_two_channel_channel (
     input  wire         trigger,
     // Strobe: measure the propagation delay again with the next frame.
     input  wire         calibrate,
-    // Data line from the transceiver, asynchronous.
-    input  wire         data_i,
-    // EnDat clock period, in system clock cycles; an odd one has the longer high phase.
+    // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
     input  wire  [10:0] period_cycles,
     // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     input  wire  [10:0] first_low_extra_cycles,
@@ -47,31 +45,33 @@ module s6_two_channel_channel (
     input  wire         filter_half,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
-    // Longest wait for the start bit after the turnaround, in microseconds.
+    // Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
     input  wire  [11:0] start_timeout_us,
     // Data must fall within this many system clock cycles after the frame.
     input  wire  [12:0] recovery_limit_cycles,
-    // EnDat clock to the transceiver, from a register.
+    // EnDat clock to the transceiver, from a register; it rests HIGH.
     output wire         endat_clk,
     // Data line to the transceiver, from a register.
     output wire         data_o,
     // Driver enable of the data line, from a register.
     output wire         data_oe,
+    // Data line from the transceiver, asynchronous.
+    input  wire         data_i,
     // Strobe: a new result can be read from this cycle on.
     output wire         result_strobe,
-    // Last good position, bit 0 = LSB, zeros above its width.
+    // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     output wire  [47:0] position,
     // There is a good position.
     output wire         position_valid,
-    // The last result brought the position; low = held from an earlier frame.
+    // The last result brought the position, or in T-format a part of it; low = held from an earlier frame.
     output wire         fresh,
     // Number of results, wrapping.
     output wire  [15:0] sequence_value,
-    // Time of the first falling clock edge of the frame that brought the position, in system clock cycles.
+    // Time of the first falling edge of the position's frame (CLOCK; T-format: start bit), in system clock cycles.
     output wire  [31:0] first_fall_timestamp,
-    // Age of the position in microseconds; stops at 65535.
+    // Age of the position in microseconds: 0 until its frame has ended, counted from there; stops at 65535.
     output wire  [15:0] age_us,
-    // Primary cause of the last result, see cause.
+    // Primary cause of the last result, a code of the channel's protocol.
     output wire   [4:0] cause,
     // Raw flags of the last result.
     output wire  [19:0] flags,
@@ -79,9 +79,9 @@ module s6_two_channel_channel (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
     output wire   [4:0] position_crc,
-    // Width of the position.
+    // Width of the position; 0 in T-format.
     output wire   [5:0] position_width,
     // The position came with F2 (EnDat 2.2); its error bits are F1 = 0, F2 = 1.
     output wire         position_has_f2,
@@ -91,9 +91,9 @@ module s6_two_channel_channel (
     output wire  [10:0] delay_cycles,
     // A trigger would not be taken.
     output wire         busy,
-    // Primary cause of the frame, as cause.
+    // Its primary cause, as that of a result.
     output wire   [4:0] over_cause,
-    // Raw flags of the frame, as flags.
+    // Its raw flags.
     output wire  [19:0] over_flags
 );
     localparam  [10:0] CALIBRATION_PERIOD_CYCLES = 11'd500;
@@ -167,10 +167,10 @@ module s6_two_channel_channel (
     wire   [5:0] settings_command_now;
     wire   [5:0] settings_position_bits_now;
     wire   [3:0] settings_filter_cycles_now;
+    wire         settings_filter_half_now;
     wire   [5:0] settings_start_window_cycles_now;
     wire  [11:0] settings_start_timeout_us_now;
     wire  [12:0] settings_recovery_limit_cycles_now;
-    wire         settings_filter_half_now;
     wire         settings_is_upset;
     reg          clk_pin; initial clk_pin = 1'b1;
     reg          data_pin; initial data_pin = 1'b0;
@@ -369,19 +369,19 @@ module s6_two_channel_channel (
         .command(command),
         .position_bits(position_bits),
         .filter_cycles(filter_cycles),
+        .filter_half(filter_half),
         .start_window_cycles(start_window_cycles),
         .start_timeout_us(start_timeout_us),
         .recovery_limit_cycles(recovery_limit_cycles),
-        .filter_half(filter_half),
         .period_cycles_now(settings_period_cycles_now),
         .first_low_extra_cycles_now(settings_first_low_extra_cycles_now),
         .command_now(settings_command_now),
         .position_bits_now(settings_position_bits_now),
         .filter_cycles_now(settings_filter_cycles_now),
+        .filter_half_now(settings_filter_half_now),
         .start_window_cycles_now(settings_start_window_cycles_now),
         .start_timeout_us_now(settings_start_timeout_us_now),
         .recovery_limit_cycles_now(settings_recovery_limit_cycles_now),
-        .filter_half_now(settings_filter_half_now),
         .is_upset(settings_is_upset)
     );
 

@@ -26,33 +26,33 @@ module s6_two_channel_channel_registers (
     input  wire         new_set,
     // The channel does not take a trigger; its configuration must not change.
     input  wire         busy,
-    // Strobe: a new result is there.
+    // Strobe: a new result can be read from this cycle on.
     input  wire         result_strobe,
-    // Last good position.
+    // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     input  wire  [47:0] position,
     // There is a good position.
     input  wire         position_valid,
-    // The last result brought the position.
+    // The last result brought the position, or in T-format a part of it; low = held from an earlier frame.
     input  wire         fresh,
-    // Number of results.
+    // Number of results, wrapping.
     input  wire  [15:0] sequence_value,
-    // First falling clock edge of the position's frame.
+    // Time of the first falling edge of the position's frame (CLOCK; T-format: start bit), in system clock cycles.
     input  wire  [31:0] first_fall_timestamp,
-    // Age of the position, in microseconds.
+    // Age of the position in microseconds: 0 until its frame has ended, counted from there; stops at 65535.
     input  wire  [15:0] age_us,
-    // Primary cause.
+    // Primary cause of the last result, a code of the channel's protocol.
     input  wire   [4:0] cause,
-    // Raw flags.
+    // Raw flags of the last result.
     input  wire  [19:0] flags,
-    // CRC as received.
+    // CRC received in the last whole frame.
     input  wire   [4:0] crc_received,
-    // CRC as computed.
+    // CRC computed for the last whole frame.
     input  wire   [4:0] crc_computed,
-    // CRC that came with the position.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
     input  wire   [4:0] position_crc,
-    // Width of the position.
+    // Width of the position; 0 in T-format.
     input  wire   [5:0] position_width,
-    // The position came with F2.
+    // The position came with F2 (EnDat 2.2); its error bits are F1 = 0, F2 = 1.
     input  wire         position_has_f2,
     // Recovery time, in system clock cycles.
     input  wire  [12:0] recovery_cycles,
@@ -88,23 +88,23 @@ module s6_two_channel_channel_registers (
     output wire   [8:0] ring_out,
     // The card's own settings are not what was written.
     input  wire         card_damaged,
-    // EnDat clock period, or a bit of T-format, in system clock cycles.
+    // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
     output wire  [10:0] period_cycles,
-    // First low phase minus half a period, in system clock cycles.
+    // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     output wire  [10:0] first_low_extra_cycles,
-    // Mode command.
+    // Mode command of a triggered frame.
     output reg    [5:0] command,
-    // Position width.
+    // Position width, 1..=48 bits.
     output wire   [5:0] position_bits,
-    // Input filter, in system clock cycles.
+    // Pulses on the data line of at most this many system clock cycles are ignored.
     output wire   [3:0] filter_cycles,
-    // And half a cycle more.
+    // And half a system clock cycle more, where DATA is looked at on both edges.
     output wire         filter_half,
-    // Half width of the start window, in system clock cycles.
+    // Largest distance of the start edge from its expected place, in system clock cycles.
     output wire   [5:0] start_window_cycles,
-    // Longest wait for the start bit, or for a reply of T-format, in microseconds.
+    // Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
     output wire  [11:0] start_timeout_us,
-    // Longest recovery time, in system clock cycles.
+    // Data must fall within this many system clock cycles after the frame.
     output wire  [12:0] recovery_limit_cycles
 );
     wire         behind_now;

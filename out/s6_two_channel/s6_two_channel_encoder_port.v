@@ -26,8 +26,6 @@ module s6_two_channel_encoder_port (
     input  wire         trigger,
     // Strobe: measure the propagation delay again with the next frame.
     input  wire         calibrate,
-    // Data line from the transceiver, asynchronous.
-    input  wire         data_i,
     // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
     input  wire  [10:0] period_cycles,
     // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
@@ -46,27 +44,29 @@ module s6_two_channel_encoder_port (
     input  wire  [11:0] start_timeout_us,
     // Data must fall within this many system clock cycles after the frame.
     input  wire  [12:0] recovery_limit_cycles,
-    // EnDat clock to the transceiver, from a register.
+    // EnDat clock to the transceiver, from a register; it rests HIGH.
     output wire         endat_clk,
     // Data line to the transceiver, from a register.
     output wire         data_o,
     // Driver enable of the data line, from a register.
     output wire         data_oe,
+    // Data line from the transceiver, asynchronous.
+    input  wire         data_i,
     // Strobe: a new result can be read from this cycle on.
     output wire         result_strobe,
     // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     output wire  [47:0] position,
     // There is a good position.
     output wire         position_valid,
-    // The last result brought the position; low = held from an earlier frame.
+    // The last result brought the position, or in T-format a part of it; low = held from an earlier frame.
     output wire         fresh,
     // Number of results, wrapping.
     output wire  [15:0] sequence_value,
-    // Time of the first falling clock edge of the frame that brought the position, in system clock cycles.
+    // Time of the first falling edge of the position's frame (CLOCK; T-format: start bit), in system clock cycles.
     output wire  [31:0] first_fall_timestamp,
-    // Age of the position in microseconds; stops at 65535.
+    // Age of the position in microseconds: 0 until its frame has ended, counted from there; stops at 65535.
     output wire  [15:0] age_us,
-    // Primary cause of the last result, see cause; its flags mean something else in T-format.
+    // Primary cause of the last result, a code of the channel's protocol.
     output wire   [4:0] cause,
     // Raw flags of the last result.
     output wire  [19:0] flags,
@@ -74,11 +74,11 @@ module s6_two_channel_encoder_port (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position; 0 on a T-format channel.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
     output wire   [4:0] position_crc,
-    // Width of the position; 0 on a T-format channel.
+    // Width of the position; 0 in T-format.
     output wire   [5:0] position_width,
-    // The position came with F2.
+    // The position came with F2 (EnDat 2.2); its error bits are F1 = 0, F2 = 1.
     output wire         position_has_f2,
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles,
@@ -87,9 +87,9 @@ module s6_two_channel_encoder_port (
     // A trigger would not be taken.
     output wire         busy
 );
-    // Primary cause of the frame, as cause.
+    // Its primary cause, as that of a result.
     wire   [4:0] over_cause;
-    // Raw flags of the frame, as flags.
+    // Its raw flags.
     wire  [19:0] over_flags;
     wire         _unused_ok = &{1'b0, over_cause, over_flags};
 
@@ -100,7 +100,6 @@ module s6_two_channel_encoder_port (
         .timestamp(timestamp),
         .trigger(trigger),
         .calibrate(calibrate),
-        .data_i(data_i),
         .period_cycles(period_cycles),
         .first_low_extra_cycles(first_low_extra_cycles),
         .command(command),
@@ -113,6 +112,7 @@ module s6_two_channel_encoder_port (
         .endat_clk(endat_clk),
         .data_o(data_o),
         .data_oe(data_oe),
+        .data_i(data_i),
         .result_strobe(result_strobe),
         .position(position),
         .position_valid(position_valid),

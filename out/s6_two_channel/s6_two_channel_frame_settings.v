@@ -23,42 +23,42 @@ module s6_two_channel_frame_settings (
     input  wire         start,
     // Mode command of the frame, wherever it comes from.
     input  wire   [5:0] frame_command,
-    // EnDat clock period, in system clock cycles.
+    // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
     input  wire  [10:0] period_cycles,
-    // How much longer than half a period the first low phase is, in system clock cycles.
+    // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     input  wire  [10:0] first_low_extra_cycles,
-    // Mode command.
+    // Mode command of a triggered frame.
     input  wire   [5:0] command,
-    // Position width.
+    // Position width, 1..=48 bits.
     input  wire   [5:0] position_bits,
-    // Longest pulse on the data line that is ignored, in system clock cycles.
+    // Pulses on the data line of at most this many system clock cycles are ignored.
     input  wire   [3:0] filter_cycles,
+    // And half a system clock cycle more, where DATA is looked at on both edges.
+    input  wire         filter_half,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
-    // Longest wait for the start bit, in microseconds.
+    // Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
     input  wire  [11:0] start_timeout_us,
-    // Longest recovery time, in system clock cycles.
+    // Data must fall within this many system clock cycles after the frame.
     input  wire  [12:0] recovery_limit_cycles,
-    // Half a system clock cycle more of the filter.
-    input  wire         filter_half,
-    // The same, of the frame.
+    // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
     output wire  [10:0] period_cycles_now,
-    // The same, of the frame.
+    // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     output wire  [10:0] first_low_extra_cycles_now,
-    // The same, of the frame.
+    // Mode command of a triggered frame.
     output wire   [5:0] command_now,
-    // The same, of the frame.
+    // Position width, 1..=48 bits.
     output wire   [5:0] position_bits_now,
-    // The same, of the frame.
+    // Pulses on the data line of at most this many system clock cycles are ignored.
     output wire   [3:0] filter_cycles_now,
-    // The same, of the frame.
-    output wire   [5:0] start_window_cycles_now,
-    // The same, of the frame.
-    output wire  [11:0] start_timeout_us_now,
-    // The same, of the frame.
-    output wire  [12:0] recovery_limit_cycles_now,
-    // The same, of the frame.
+    // And half a system clock cycle more, where DATA is looked at on both edges.
     output wire         filter_half_now,
+    // Largest distance of the start edge from its expected place, in system clock cycles.
+    output wire   [5:0] start_window_cycles_now,
+    // Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
+    output wire  [11:0] start_timeout_us_now,
+    // Data must fall within this many system clock cycles after the frame.
+    output wire  [12:0] recovery_limit_cycles_now,
     // Command or width are not what they were when the frame began.
     output wire         is_upset
 );

@@ -51,19 +51,19 @@ module s6_two_channel_snapshot (
     input  wire  [19:0] flags_in,
     // Strobe: a new result can be read from this cycle on.
     output wire         result_strobe,
-    // Last good position, zeros above its width.
+    // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
     output wire  [47:0] position,
     // There is a good position.
     output wire         position_valid,
-    // The last result brought the position; low = held from an earlier frame.
+    // The last result brought the position, or in T-format a part of it; low = held from an earlier frame.
     output wire         fresh,
     // Number of results, wrapping.
     output wire  [15:0] sequence_value,
-    // Time of the first falling edge of the frame that brought the position.
+    // Time of the first falling edge of the position's frame (CLOCK; T-format: start bit), in system clock cycles.
     output wire  [31:0] first_fall_timestamp,
     // Age of the position in microseconds: 0 until its frame has ended, counted from there; stops at 65535.
     output wire  [15:0] age_us,
-    // Primary cause of the last result.
+    // Primary cause of the last result, a code of the channel's protocol.
     output wire   [4:0] cause,
     // Raw flags of the last result.
     output wire  [19:0] flags,
@@ -71,11 +71,11 @@ module s6_two_channel_snapshot (
     output wire   [4:0] crc_received,
     // CRC computed for the last whole frame.
     output wire   [4:0] crc_computed,
-    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read.
+    // CRC that came with the position: with it, error bits that are no alarm and the width a host checks what it has read. 0 in T-format.
     output wire   [4:0] position_crc,
-    // Width of the position.
+    // Width of the position; 0 in T-format.
     output wire   [5:0] position_width,
-    // The position came with F2.
+    // The position came with F2 (EnDat 2.2); its error bits are F1 = 0, F2 = 1.
     output wire         position_has_f2
 );
     localparam   [4:0] UPSET_CAUSE = 5'd31;

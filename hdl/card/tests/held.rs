@@ -22,7 +22,7 @@ fn results_follow_when_two_channels_are_half_a_frame_apart() {
     host.card.endat_data_i[1].next = false;
     host.idle(3_000);
     let (mut owing, mut last) = (0, [0; 2]);
-    let at_first = [0, 1].map(|i| host.card.core.port[i].sequence.val().to_u64());
+    let at_first = [0, 1].map(|i| host.card.core.port[i].result.sequence.val().to_u64());
     for _ in 0..5 {
         for _ in 0..7_000 {
             host.step(true);
@@ -36,7 +36,7 @@ fn results_follow_when_two_channels_are_half_a_frame_apart() {
             *last = sequence;
         }
     }
-    let at_last = [0, 1].map(|i| host.card.core.port[i].sequence.val().to_u64());
+    let at_last = [0, 1].map(|i| host.card.core.port[i].result.sequence.val().to_u64());
     assert!(at_last
         .iter()
         .zip(at_first)
@@ -55,8 +55,8 @@ fn results_follow_when_the_host_polls_in_step_with_the_timer() {
     let now = address(CARD, "trigger_now", 0);
     host.idle(100);
     host.write(now, &[1]);
-    let (triggered, results_before) = (host.cycle, host.card.core.port[1].sequence.val());
-    while host.card.core.port[1].sequence.val() == results_before {
+    let (triggered, results_before) = (host.cycle, host.card.core.port[1].result.sequence.val());
+    while host.card.core.port[1].result.sequence.val() == results_before {
         host.step(true);
     }
     let frame = host.cycle - triggered;

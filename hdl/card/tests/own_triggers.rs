@@ -71,10 +71,10 @@ fn each_channel_takes_the_triggers_that_are_its_own() {
     assert!(phase < 3);
     assert!(taken[2].is_empty() && taken[3].is_empty());
     host.write(address(CARD_CONFIG, "trigger_sources", 0), &[4 | 8 << 8]);
-    let before = host.card.core.port[2].sequence.val();
+    let before = host.card.core.port[2].result.sequence.val();
     host.write(address(CARD, "trigger_now", 0), &[1]);
     host.idle(50);
-    let sequence = |i: usize| host.card.core.port[i].sequence.val();
+    let sequence = |i: usize| host.card.core.port[i].result.sequence.val();
     assert_eq!(sequence(2), before + 1);
     assert_eq!(sequence(3).to_u64(), 0);
     // The disabled channel's line is as bad as the others': nothing is said about it.
@@ -138,7 +138,10 @@ fn a_disabled_channel_is_not_waited_for_and_says_nothing() {
         "no frame any more"
     );
     let core = &host.card.core;
-    assert!(core.port[1].cause.val().any(), "its last frame was bad");
+    assert!(
+        core.port[1].result.cause.val().any(),
+        "its last frame was bad"
+    );
     assert_eq!(core.faulty[1].val(), core.faulty[2].val());
     assert!(!core.led_channel_o[1].val());
 }

@@ -91,8 +91,8 @@ impl Rig {
     }
 
     fn result(&self) -> (u64, u64) {
-        let sequence = self.uut.sequence.val().to_u64();
-        (sequence, self.uut.cause.val().to_u64())
+        let sequence = self.uut.result.sequence.val().to_u64();
+        (sequence, self.uut.result.cause.val().to_u64())
     }
 }
 
@@ -107,9 +107,9 @@ fn a_trigger_sends_its_request_and_silence_is_told_as_such() {
     assert_eq!(rig.falls.len(), 3);
     assert_eq!(rig.falls[1] - rig.falls[0], 3 * 8);
     assert_eq!(rig.result(), (1, cause::NO_ANSWER));
-    assert!(!rig.uut.fresh.val() && !rig.uut.position_valid.val());
+    assert!(!rig.uut.result.fresh.val() && !rig.uut.result.position_valid.val());
     assert_eq!(
-        rig.uut.flags.val().to_u64(),
+        rig.uut.result.flags.val().to_u64(),
         cause::flag(cause::NO_ANSWER),
         "raw flags"
     );
@@ -142,7 +142,7 @@ fn the_hosts_request_gives_no_result_and_waits_for_its_turn() {
     rig.send(2, 0, 0);
     assert_eq!(rig.answer(), (0, false, true), "waiting");
     let before = rig.falls.len();
-    while rig.uut.sequence.val().to_u64() == 0 {
+    while rig.uut.result.sequence.val().to_u64() == 0 {
         rig.step();
         assert!(rig.falls.len() <= before + 3, "one exchange at a time");
     }
@@ -202,11 +202,11 @@ fn a_trigger_that_is_not_taken_is_told_by_the_next_result() {
     rig.trigger();
     rig.us(60);
     assert_eq!(rig.result().0, 1);
-    assert_eq!(rig.uut.flags.val().to_u64() & overrun, overrun);
+    assert_eq!(rig.uut.result.flags.val().to_u64() & overrun, overrun);
     rig.trigger();
     rig.us(60);
     assert_eq!(rig.result().0, 2);
-    assert_eq!(rig.uut.flags.val().to_u64() & overrun, 0);
+    assert_eq!(rig.uut.result.flags.val().to_u64() & overrun, 0);
 }
 
 /// A bit of one cycle would never end.

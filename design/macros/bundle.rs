@@ -1,0 +1,101 @@
+//! Bundles: ports that travel together, said once for both ends.
+
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::{
+    Attribute, Data, DeriveInput, Error, Field, Fields, GenericArgument, LitStr, Meta,
+    PathArguments, Result, Type,
+};
+
+/// Both ends of these ports.
+pub fn expand(input: DeriveInput) -> Result<TokenStream> {
+    let refuse = |text| Err(Error::new(input.ident.span(), text));
+    let Data::Struct(data) = &input.data else {
+        return refuse("ports are the fields of a struct");
+    };
+    let Fields::Named(fields) = &data.fields else {
+        return refuse("ports have names");
+    };
+    if !input.generics.params.is_empty() {
+        return refuse("ports have no parameters");
+    }
+    let names = ["Out", "In"].map(|end| format_ident!("{}{end}", input.ident));
+    let [out, taken] = &names;
+    let (visible, attributes) = (&input.vis, &input.attrs);
+    let idents: Vec<_> = fields.named.iter().map(|field| &field.ident).collect();
+    let ends = [(out, taken, true), (taken, out, false)].map(|(name, other, drives)| {
+        let ports = fields.named.iter().map(|field| port(field, drives));
+        let documented = fields.named.iter().map(|Field { ident, attrs, .. }| {
+            let lines = super::lines(attrs);
+            quote!((stringify!(#ident), &[#(#lines),*]))
+        });
+        quote! {
+            #(#attributes)*
+            #[derive(Clone, Debug, Default, LogicInterface)]
+            #visible struct #name { #(#ports),* }
+
+            impl #name {
+                /// Wires it to the other end, both of them children's.
+                #visible fn join(&mut self, other: &mut #other) {
+                    #(self.#idents.join(&mut other.#idents);)*
+                }
+            }
+
+            impl ::rtl_design::elaborate::docs::Described for #name {
+                const DOCS: ::rtl_design::elaborate::docs::TypeDocs = ::rtl_design::elaborate::docs::TypeDocs {
+                    parts: &[#(#documented),*],
+                    ..::rtl_design::elaborate::docs::TypeDocs::named(stringify!(#name))
+                };
+            }
+        }
+    });
+    Ok(quote!(#(#ends)*))
+}
+
+/// One port at the end that drives the bundle, or at the other.
+fn port(field: &Field, drives: bool) -> TokenStream {
+    let Field {
+        attrs,
+        vis,
+        ident,
+        ty,
+        ..
+    } = field;
+    let is_back = |attribute: &Attribute| attribute.path().is_ident("back");
+    let kept = attrs.iter().filter(|a| !is_back(a));
+    let direction = match drives != attrs.iter().any(is_back) {
+        true => quote!(Out),
+        false => quote!(In),
+    };
+    quote!(#(#kept)* #vis #ident: Signal<#direction, #ty>)
+}
+
+/// What `#[bundle("_now")]` puts behind the names of its ports; `#[bundle]` nothing.
+pub fn suffix(attribute: &Attribute) -> Result<String> {
+    match &attribute.meta {
+        Meta::Path(_) => Ok(String::new()),
+        _ => Ok(attribute.parse_args::<LitStr>()?.value()),
+    }
+}
+
+/// The type of a bundle; of a list of bundles that of one.
+pub fn of(kind: &Type) -> &Type {
+    element(kind).unwrap_or(kind)
+}
+
+/// Whether it is a list of bundles.
+pub fn is_list(kind: &Type) -> bool {
+    element(kind).is_some()
+}
+
+fn element(kind: &Type) -> Option<&Type> {
+    let Type::Path(path) = kind else { return None };
+    let last = path.path.segments.last()?;
+    match &last.arguments {
+        PathArguments::AngleBracketed(inner) if last.ident == "Vec" => match inner.args.first() {
+            Some(GenericArgument::Type(inner)) => Some(inner),
+            _ => None,
+        },
+        _ => None,
+    }
+}
