@@ -20,6 +20,7 @@ use crate::clock_gen::ClockGen;
 use crate::command_sender::CommandSender;
 use crate::command_shape::CommandShape;
 pub use crate::features::{Features, FixedTimes};
+use crate::frame_ports::*;
 use crate::frame_settings::FrameSettings;
 use crate::input_filter::InputFilter;
 use crate::line_delay::{self, LineDelay};
@@ -207,21 +208,22 @@ impl Logic for Channel {
             self.snapshot, self.add_info, self.settings <= self; clock, reset
         );
 
-        connect!(self.settings <= self.transaction; is_at_rest, start);
+        self.settings.is_at_rest.next = self.transaction.is_at_rest.val();
+        self.settings.start.next = self.transaction.control.start.val();
         PortSettingsIn::link(&mut self.settings_in, &mut self.settings.wanted);
         self.settings.frame_command.next = self.command_now.val();
         connect!(self.settings <= self.orders; recovery_min_cycles, watchdog_us);
 
-        self.period.next = self.settings.now.period_cycles.val();
-        if self.transaction.slow.val() {
+        self.period.next = self.settings.period_cycles_now.val();
+        if self.transaction.cell_control.slow.val() {
             self.period.next = self.calibration_period_cycles.val();
         }
 
         // Which command the next frame has is settled before it begins, and stays until all has been told of it.
-        connect!(self <= self.settings.now; command_now = command, payload_bits = position_bits);
+        connect!(self <= self.settings; command_now, payload_bits = position_bits_now);
         if self.has_requests.val() {
             self.command_now.next = self.frame_command.q.val();
-            if self.shape.has_parameter.val() {
+            if self.shape.shape.has_parameter.val() {
                 self.payload_bits.next = self.parameter_bits.val();
             }
             if self.shape.has_test_values.val() {
@@ -260,102 +262,104 @@ impl Logic for Channel {
         self.shape.command.next = self.command_now.val();
 
         self.filter.pin.next = self.line.data_i.val();
-        connect!(self.filter <= self.settings.now; filter_cycles, filter_half);
+        connect!(self.filter <= self.settings;
+            filter_cycles = filter_cycles_now, filter_half = filter_half_now
+        );
         self.filter.majority.next = self.majority.val();
-        self.filter.both_edges.next = self.receiver.started.val();
+        self.filter.both_edges.next = self.receiver.progress.started.val();
 
-        connect!(self.clock_gen <= self.transaction; start, hold_low, stop);
+        connect!(self.clock_gen <= self.transaction; hold_low, stop);
+        self.clock_gen.start.next = self.transaction.control.start.val();
         self.clock_gen.period_cycles.next = self.period.val();
 
         self.sender.fall.next = self.clock_gen.fall.val();
         // Outside of a command nothing is left to send, whatever a register says.
-        self.sender.aborts.next = self.transaction.aborts.val()
-            | (!self.receiver.skipping.val() & !self.transaction.start_supplement.val());
-        connect!(self.sender <= self.transaction; start, start_supplement);
+        self.sender.aborts.next = self.transaction.control.aborts.val()
+            | (!self.receiver.progress.skipping.val()
+                & !self.transaction.control.start_supplement.val());
+        connect!(self.sender <= self.transaction.control; start, start_supplement);
         self.sender.command.next = self.command_now.val();
         self.sender.parameter_word.next = self.orders.request_parameter.val();
-        self.sender.has_parameter.next = self.shape.has_parameter.val();
+        self.sender.has_parameter.next = self.shape.shape.has_parameter.val();
 
-        connect!(self.delay <= self.transaction; drain, run, acquire, last_cell, slow, going_on);
+        CellControlOut::join(&mut self.transaction.cell_control, &mut self.delay.control);
+        connect!(self.delay <= self.transaction.control; acquire, going_on);
         connect!(self.delay <= self.clock_gen; will_rise, rise);
         connect!(self.delay <= self.filter; data_edge = edge_strobe, edge_second);
-        self.delay.in_answer.next = self.receiver.started.val() & !self.receiver.skipping.val();
+        self.delay.in_answer.next =
+            self.receiver.progress.started.val() & !self.receiver.progress.skipping.val();
         connect!(self.delay <= self; mode = phase_mode, fixed_delay, period_cycles = period);
-        connect!(self.delay <= self.receiver; hunting, follow = start_found, none_under_way);
-        self.delay.start_window_cycles.next = self.settings.now.start_window_cycles.val();
+        connect!(self.delay <= self.receiver.progress;
+            hunting, follow = start_found, none_under_way
+        );
+        self.delay.start_window_cycles.next = self.settings.start_window_cycles_now.val();
 
-        connect!(self.receiver <= self.transaction; start, aborts, acquire, start_supplement, going_on);
+        ControlOut::join(&mut self.transaction.control, &mut self.receiver.control);
         self.receiver.rise.next = self.clock_gen.rise.val();
-        connect!(self.receiver <= self.delay; pulse, sample, edge_in_window);
+        CellsOut::join(&mut self.delay.cells, &mut self.receiver.cells);
         self.receiver.level.next = self.filter.level.val();
         if self.has_double.val() & !self.delay.sample_second.val() {
             self.receiver.level.next = self.filter.level_first.val();
         }
         connect!(self.receiver <= self; payload_bits, command = command_now);
-        connect!(self.receiver <= self.shape; has_f1, has_f2, has_parameter, has_supplement);
+        AnswerShapeOut::join(&mut self.shape.shape, &mut self.receiver.shape);
         connect!(self.receiver <= self.add_info; infos, look);
 
-        connect!(self.transaction <= self; tick_us, trigger, calibrate);
-        connect!(self.transaction <= self.orders; hold_off, stop_at_error);
+        self.transaction.tick_us.next = self.tick_us.val();
+        connect!(self.transaction.next_frame <= self; trigger, calibrate);
+        connect!(self.transaction.next_frame <= self.orders; hold_off, stop_at_error);
         self.transaction.level.next = self.filter.level.val();
         self.transaction.is_fixed.next = self.phase_mode.val() == self.fixed_mode.val();
-        connect!(self.transaction <= self.delay; sample, center, delay_upset = is_upset);
-        connect!(self.transaction <= self.receiver;
-            hunting, started, start_refused, answer_done = done, finished, last_bit, separated, info_missing
-        );
+        CellsOut::join(&mut self.delay.cells, &mut self.transaction.cells);
+        self.transaction.delay_upset.next = self.delay.is_upset.val();
+        ProgressOut::join(&mut self.receiver.progress, &mut self.transaction.progress);
         // In fewer than four cycles additional data would begin before the position is taken.
         self.wanted_shape.command.next = self.settings_in.command.val();
         if self.has_requests.val() {
             self.wanted_shape.command.next = self.frame_command.q.val();
         }
         // A trigger takes positions only, with a request or without: another command's answer is none, and may change the encoder.
-        self.transaction.is_known.next = (self.wanted_shape.is_position.val()
+        self.transaction.next_frame.is_known.next = (self.wanted_shape.is_position.val()
             | (self.wanted_shape.is_known.val()
                 & (self.frame_own.q.val()
-                    | (self.frame_ride.q.val() & self.wanted_shape.has_f2.val()))))
+                    | (self.frame_ride.q.val() & self.wanted_shape.shape.has_f2.val()))))
             & (!self.needs_four.val()
                 | self.settings_in.period_cycles.val().get_bits::<9>(2).any());
-        connect!(self.transaction <= self.shape; has_parameter, has_supplement);
-        self.transaction.begin_own.next = self.frame_own.q.val() & self.own_wanted.val();
-        self.transaction.is_own.next = self.frame_own.q.val();
-        self.transaction.continuous.next = self.orders.continuous.val()
-            & self.shape.has_f1.val()
-            & !self.shape.has_f2.val()
+        AnswerShapeOut::join(&mut self.shape.shape, &mut self.transaction.shape);
+        self.transaction.next_frame.begin_own.next = self.frame_own.q.val() & self.own_wanted.val();
+        self.transaction.next_frame.is_own.next = self.frame_own.q.val();
+        self.transaction.next_frame.continuous.next = self.orders.continuous.val()
+            & self.shape.shape.has_f1.val()
+            & !self.shape.shape.has_f2.val()
             & !self.shape.has_test_values.val();
-        self.transaction.line_wanted.next = self.own_wanted.val() | self.orders.hold_off.val();
-        connect!(self.transaction <= self.receiver;
-            gap_good, again = latched, gap_low, gap_high, is_echo, serial_ok, parallel_ok, f1, f2
-        );
+        self.transaction.next_frame.line_wanted.next =
+            self.own_wanted.val() | self.orders.hold_off.val();
+        AnswerCheckOut::join(&mut self.receiver.verdict, &mut self.transaction.check);
         self.forced_now.next = self.orders.forced.val().get_bits::<4>(0);
         if self.orders.forced.val().get_bit(4) & !self.frame_own.q.val() {
             self.forced_now.next = 0.into();
         }
         if self.has_requests.val() {
-            self.transaction.f1.next = self.receiver.f1.val() ^ self.forced_now.val().get_bit(0);
-            self.transaction.f2.next = self.receiver.f2.val() ^ self.forced_now.val().get_bit(1);
-            self.transaction.serial_ok.next =
-                self.receiver.serial_ok.val() & !self.forced_now.val().get_bit(2);
+            self.transaction.check.f1.next =
+                self.receiver.verdict.f1.val() ^ self.forced_now.val().get_bit(0);
+            self.transaction.check.f2.next =
+                self.receiver.verdict.f2.val() ^ self.forced_now.val().get_bit(1);
+            self.transaction.check.serial_ok.next =
+                self.receiver.verdict.serial_ok.val() & !self.forced_now.val().get_bit(2);
         }
         self.transaction.will_rise.next = self.clock_gen.will_rise.val();
-        connect!(self.transaction <= self.receiver;
-            no_pulse_left = all_sent, one_pulse_left = one_to_send, none_under_way, all_used,
-            all_ended
-        );
-        connect!(self.transaction <= self.settings;
-            recovery_min_cycles = recovery_min_cycles_now, watchdog_us = watchdog_us_now,
-            settings_upset = is_upset
-        );
-        connect!(self.transaction <= self.settings.now;
-            first_low_extra_cycles, start_timeout_us, recovery_limit_cycles
-        );
+        FrameLimitsOut::join(&mut self.settings.limits, &mut self.transaction.limits);
+        self.transaction.settings_upset.next = self.settings.is_upset.val();
 
         connect!(self.snapshot <= self; tick_us, timestamp, width_in = payload_bits);
         self.snapshot.delay_cycles.next = self.delay.delay_cycles.val();
-        connect!(self.snapshot <= self.transaction; first_fall = start, publish, good, late_fault, withdraw, confirm, cause_in = cause, flags_in = flags);
-        self.snapshot.has_f2_in.next = self.shape.has_f2.val();
+        self.snapshot.first_fall.next = self.transaction.control.start.val();
+        ToldOut::join(&mut self.transaction.told, &mut self.snapshot.told);
+        self.snapshot.has_f2_in.next = self.shape.shape.has_f2.val();
         connect!(self.snapshot <= self.receiver;
-            latched, position_in = payload, crc_received_in = crc_received, crc_computed_in = crc_computed
+            position_in = payload, crc_received_in = crc_received, crc_computed_in = crc_computed
         );
+        self.snapshot.latched.next = self.receiver.progress.latched.val();
 
         // What comes MSB first stands the other way round in the payload.
         self.word.next = 0.into();
@@ -365,29 +369,30 @@ impl Logic for Channel {
                 .val()
                 .replace_bit(23 - i, self.receiver.payload.val().get_bit(i));
         }
-        self.crc_ok.next = self.receiver.serial_ok.val() & self.receiver.parallel_ok.val();
-        self.info_taken.d.next = self.receiver.info_done.val();
-        self.reply_taken.d.next = self.receiver.done.val() & self.frame_own.q.val();
+        self.crc_ok.next =
+            self.receiver.verdict.serial_ok.val() & self.receiver.verdict.parallel_ok.val();
+        self.info_taken.d.next = self.receiver.progress.info_done.val();
+        self.reply_taken.d.next = self.receiver.progress.done.val() & self.frame_own.q.val();
         if self.reply_taken.q.val() {
             self.reply_word.d.next = self.receiver.payload.val();
-            self.reply_has_parameter.d.next = self.shape.has_parameter.val();
+            self.reply_has_parameter.d.next = self.shape.shape.has_parameter.val();
             self.reply_right.d.next = self.crc_ok.val();
         }
-        if self.transaction.start.val() {
+        if self.transaction.control.start.val() {
             self.reply_right.d.next = false;
         }
 
-        self.add_info.start.next = self.transaction.start.val();
-        connect!(self.add_info <= self.delay; center, sample);
-        self.add_info.answer_done.next = self.receiver.done.val();
-        connect!(self.add_info <= self.shape; has_f2, has_supplement);
+        self.add_info.start.next = self.transaction.control.start.val();
+        connect!(self.add_info <= self.delay.cells; center, sample);
+        self.add_info.answer_done.next = self.receiver.progress.done.val();
+        connect!(self.add_info <= self.shape.shape; has_f2, has_supplement);
         self.add_info.command.next = self.command_now.val();
         self.add_info.mrs.next = self.orders.request_parameter.val().get_bits::<8>(16);
         self.add_info.info_done.next = self.info_taken.q.val() & self.has_requests.val();
         connect!(self.add_info <= self; crc_ok, word);
         self.add_info.crc.next = self.receiver.crc_received.val();
         self.add_info.over.next = self.transaction.over.val() & self.has_requests.val();
-        self.add_info.flags.next = self.transaction.flags.val().get_bits::<12>(0);
+        self.add_info.flags.next = self.transaction.told.flags.val().get_bits::<12>(0);
         self.clk_pin.d.next = self.clock_gen.endat_clk.val();
         self.data_pin.d.next = self.sender.data.val();
         self.oe_pin.d.next = self.sender.oe.val();
@@ -410,10 +415,11 @@ impl Logic for Channel {
         self.request_runs.next =
             (self.frame_own.q.val() | self.frame_ride.q.val()) & !self.transaction.is_at_rest.val();
         self.line_high.next = (self.filter.level.val() | self.transaction.is_probed.val())
-            & !self.transaction.run.val();
+            & !self.transaction.cell_control.run.val();
         self.end.over_request.next = self.frame_own.q.val() | self.frame_ride.q.val();
         connect!(self <= self.transaction; recovery_cycles, busy, displaced, calibrated);
-        connect!(self.end <= self.transaction; over, over_cause = cause, over_flags = flags);
+        self.end.over.next = self.transaction.over.val();
+        connect!(self.end <= self.transaction.told; over_cause = cause, over_flags = flags);
         self.end.answer.next = self.reply_word.q.val();
         self.reply.next = self.reply_word.q.val();
         self.turned.next = 0.into();
@@ -429,18 +435,20 @@ impl Logic for Channel {
         self.end.reply_good.next = self.reply_right.q.val();
         AdditionalDataOut::link(&mut self.record, &mut self.add_info.record);
         for i in 0..self._seconds {
-            connect!(self.second[i] <= self.transaction; start, aborts, acquire, start_supplement, going_on, good, cause, flags);
-            connect!(self.snapshot <= self.second[i]; good = good_told, cause_in = cause_told, flags_in = flags_told);
+            ControlOut::join(&mut self.transaction.control, &mut self.second[i].control);
+            CellsOut::join(&mut self.delay.cells, &mut self.second[i].cells);
+            AnswerShapeOut::join(&mut self.shape.shape, &mut self.second[i].shape);
+            ProgressOut::join(&mut self.receiver.progress, &mut self.second[i].progress);
+            AnswerCheckOut::join(&mut self.receiver.verdict, &mut self.second[i].check);
+            connect!(self.second[i] <= self.receiver; payload, crc_received);
+            connect!(self.second[i] <= self.transaction.told; good, cause, flags);
+            connect!(self.snapshot.told <= self.second[i];
+                good = good_told, cause = cause_told, flags = flags_told
+            );
             self.second[i].rise.next = self.clock_gen.rise.val();
-            connect!(self.second[i] <= self.delay; pulse, sample, edge_in_window);
             connect!(self.second[i] <= self.filter; level);
-            connect!(self.second[i] <= self.shape; has_f1, has_f2, has_parameter, has_supplement);
             connect!(self.second[i] <= self.add_info; infos, look);
             connect!(self.second[i] <= self; clock, reset, payload_bits, command = command_now);
-            connect!(self.second[i] <= self.receiver;
-                skipping, hunting, started, all_sent, none_under_way, all_ended, done, info_done, separated, finished, gap_good,
-                latched, payload, f1, f2, crc_received, serial_ok, parallel_ok
-            );
             self.second[i].forced.next = self.forced_now.val().get_bit(3) & self.has_requests.val();
             if self.second[i].differs.val() {
                 self.transaction.settings_upset.next = true;
@@ -448,6 +456,7 @@ impl Logic for Channel {
                 self.end.reply_good.next = false;
             }
         }
-        self.sample_strobe.next = self.delay.sample.val() & !self.receiver.skipping.val();
+        self.sample_strobe.next =
+            self.delay.cells.sample.val() & !self.receiver.progress.skipping.val();
     }
 }

@@ -12,6 +12,7 @@
 //!
 //! Ref: [`crate::protocol::ModeCommand`].
 
+use crate::frame_ports::AnswerShapeOut;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
@@ -24,16 +25,11 @@ pub struct CommandShape {
     pub is_known: Signal<Out, Bit>,
     /// It is 000111 or 111000.
     pub is_position: Signal<Out, Bit>,
-    /// The answer begins with F1.
-    pub has_f1: Signal<Out, Bit>,
-    /// F2 follows F1; the selected additional data follow the position.
-    pub has_f2: Signal<Out, Bit>,
-    /// 24 bits follow the command, and the answer is 24 bits.
-    pub has_parameter: Signal<Out, Bit>,
+    /// What an answer consists of.
+    #[bundle]
+    pub shape: AnswerShapeOut,
     /// The answer is 40 bits of test values.
     pub has_test_values: Signal<Out, Bit>,
-    /// A supplement follows the answer.
-    pub has_supplement: Signal<Out, Bit>,
     has_all: Constant<Bit>,
     left: Signal<Local, Bits<3>>,
     right: Signal<Local, Bits<3>>,
@@ -63,22 +59,22 @@ impl Logic for CommandShape {
         self.is_two.next = self.left.val() == 2;
 
         self.is_known.next = self.is_position.val();
-        self.has_f1.next = true;
-        self.has_f2.next = self.command.val().get_bit(5);
-        self.has_parameter.next = false;
+        self.shape.has_f1.next = true;
+        self.shape.has_f2.next = self.command.val().get_bit(5);
+        self.shape.has_parameter.next = false;
         self.has_test_values.next = false;
-        self.has_supplement.next = false;
+        self.shape.has_supplement.next = false;
         if self.has_all.val() {
             self.is_known.next = self.is_complement.val()
                 | (self.is_same.val() & self.left.val().any() & !self.left.val().all());
             self.has_test_values.next = self.is_complement.val() & self.is_two.val();
-            self.has_supplement.next = self.is_same.val() & !self.is_two.val();
-            self.has_parameter.next =
+            self.shape.has_supplement.next = self.is_same.val() & !self.is_two.val();
+            self.shape.has_parameter.next =
                 (self.is_complement.val() & !self.is_position.val() & !self.is_two.val())
                     | (self.is_same.val() & self.is_two.val());
-            self.has_f2.next = (self.is_position.val() & self.left.val().any())
+            self.shape.has_f2.next = (self.is_position.val() & self.left.val().any())
                 | (self.is_same.val() & !self.is_two.val());
-            self.has_f1.next =
+            self.shape.has_f1.next =
                 !((self.is_complement.val() & !self.is_position.val() & !self.is_two.val())
                     | (self.is_same.val() & self.is_two.val()));
         }
@@ -106,10 +102,10 @@ mod tests {
             let command = ModeCommand::from_code(code);
             assert_eq!(s.is_known.val(), command.is_some(), "{code:06b}");
             if let Some(c) = command {
-                assert_eq!(s.has_f1.val(), c.error_bits() > 0, "{c:?}");
-                assert_eq!(s.has_f2.val(), c.has_f2(), "{c:?}");
-                assert_eq!(s.has_parameter.val(), c.has_parameter(), "{c:?}");
-                assert_eq!(s.has_supplement.val(), c.has_supplement(), "{c:?}");
+                assert_eq!(s.shape.has_f1.val(), c.error_bits() > 0, "{c:?}");
+                assert_eq!(s.shape.has_f2.val(), c.has_f2(), "{c:?}");
+                assert_eq!(s.shape.has_parameter.val(), c.has_parameter(), "{c:?}");
+                assert_eq!(s.shape.has_supplement.val(), c.has_supplement(), "{c:?}");
                 let values = c == ModeCommand::SendTestValues;
                 assert_eq!(s.has_test_values.val(), values, "{c:?}");
             }
@@ -124,7 +120,7 @@ mod tests {
             let position = command.filter(|c| ModeCommand::POSITION.contains(c));
             assert_eq!(s.is_known.val(), position.is_some(), "{code:06b}");
             if let Some(c) = position {
-                assert_eq!(s.has_f2.val(), c.has_f2());
+                assert_eq!(s.shape.has_f2.val(), c.has_f2());
             }
         }
     }

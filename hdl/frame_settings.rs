@@ -9,7 +9,8 @@
 //!
 //! What decides where a position stands in the answer, command and width, is guarded: its parity is taken as the frame begins.
 
-use crate::ports::{PortSettingsIn, PortSettingsOut};
+use crate::frame_ports::FrameLimitsOut;
+use crate::ports::PortSettingsIn;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -35,13 +36,21 @@ pub struct FrameSettings {
     pub recovery_min_cycles: Signal<In, Bits<13>>,
     /// Longest time of a frame, in microseconds; 0 = not watched.
     pub watchdog_us: Signal<In, Bits<12>>,
-    /// Settings of one channel, as the host has written them.
+    /// EnDat clock period of the frame.
+    pub period_cycles_now: Signal<Out, Bits<11>>,
+    /// Mode command of a triggered frame, as that began.
+    pub command_now: Signal<Out, Bits<6>>,
+    /// Position width of the frame.
+    pub position_bits_now: Signal<Out, Bits<6>>,
+    /// Input filter of the frame.
+    pub filter_cycles_now: Signal<Out, Bits<4>>,
+    /// Half a system clock cycle more.
+    pub filter_half_now: Signal<Out, Bit>,
+    /// Start window of the frame.
+    pub start_window_cycles_now: Signal<Out, Bits<6>>,
+    /// How long the parts of the frame may take.
     #[bundle("_now")]
-    pub now: PortSettingsOut,
-    /// The same, of the frame.
-    pub recovery_min_cycles_now: Signal<Out, Bits<13>>,
-    /// The same, of the frame.
-    pub watchdog_us_now: Signal<Out, Bits<12>>,
+    pub limits: FrameLimitsOut,
     /// Command or width are not what they were when the frame began.
     pub is_upset: Signal<Out, Bit>,
     period_held: Reg<Bits<11>>,
@@ -81,16 +90,16 @@ impl Logic for FrameSettings {
         }
         self.is_upset.next = self.parity_now.val() ^ self.parity.q.val();
 
-        self.now.period_cycles.next = self.period_held.q.val();
-        self.now.first_low_extra_cycles.next = self.first_low_extra_held.q.val();
-        self.now.command.next = self.command_held.q.val();
-        self.now.position_bits.next = self.position_held.q.val();
-        self.now.filter_cycles.next = self.filter_held.q.val();
-        self.now.start_window_cycles.next = self.start_window_held.q.val();
-        self.now.start_timeout_us.next = self.start_timeout_held.q.val();
-        self.now.recovery_limit_cycles.next = self.recovery_limit_held.q.val();
-        self.recovery_min_cycles_now.next = self.recovery_min_held.q.val();
-        self.watchdog_us_now.next = self.watchdog_held.q.val();
-        self.now.filter_half.next = self.filter_half_held.q.val();
+        self.period_cycles_now.next = self.period_held.q.val();
+        self.limits.first_low_extra_cycles.next = self.first_low_extra_held.q.val();
+        self.command_now.next = self.command_held.q.val();
+        self.position_bits_now.next = self.position_held.q.val();
+        self.filter_cycles_now.next = self.filter_held.q.val();
+        self.start_window_cycles_now.next = self.start_window_held.q.val();
+        self.limits.start_timeout_us.next = self.start_timeout_held.q.val();
+        self.limits.recovery_limit_cycles.next = self.recovery_limit_held.q.val();
+        self.limits.recovery_min_cycles.next = self.recovery_min_held.q.val();
+        self.limits.watchdog_us.next = self.watchdog_held.q.val();
+        self.filter_half_now.next = self.filter_half_held.q.val();
     }
 }

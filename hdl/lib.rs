@@ -27,6 +27,7 @@ pub mod crc5;
 pub mod direct;
 pub mod encoder_port;
 pub mod features;
+pub mod frame_ports;
 pub mod frame_settings;
 pub mod half_period;
 pub mod input_filter;

@@ -16,6 +16,7 @@
 //! Ref: HEIDENHAIN PWM 20 user's manual, propagation delay compensation; TI motor-control SDK, `endat_main.asm`.
 
 use crate::features::Features;
+use crate::frame_ports::{CellControlIn, CellsOut};
 use crate::half_period::HalfPeriod;
 use crate::phase_tracker::PhaseTracker;
 use rtl_design::reg::Reg;
@@ -29,16 +30,13 @@ pub struct LineDelay {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Low between frames: forgets everything but the delay.
-    pub run: Signal<In, Bit>,
+    /// How the cells of a frame run.
+    #[bundle]
+    pub control: CellControlIn,
     /// No clock pulse has been sent whose cell has not ended.
     pub none_under_way: Signal<In, Bit>,
-    /// The clock waits: when all cells have ended, a new burst of pulses begins.
-    pub drain: Signal<In, Bit>,
     /// This frame measures the delay instead of using it.
     pub acquire: Signal<In, Bit>,
-    /// Strobe: the next sample comes half a period after this, which may be that of another clock.
-    pub last_cell: Signal<In, Bit>,
     /// The start bit may come now.
     pub hunting: Signal<In, Bit>,
     /// Strobe one cycle before each rising clock edge.
@@ -51,8 +49,6 @@ pub struct LineDelay {
     pub edge_second: Signal<In, Bit>,
     /// The cell is one of the answer behind the start bit: its edge counts (alignment only).
     pub in_answer: Signal<In, Bit>,
-    /// The frame runs at the calibration clock.
-    pub slow: Signal<In, Bit>,
     /// Where the phase comes from, see [`mode`] (alignment only).
     pub mode: Signal<In, Bits<2>>,
     /// Delay in mode `fixed`, in sixteenths of a system clock cycle.
@@ -65,16 +61,11 @@ pub struct LineDelay {
     pub period_cycles: Signal<In, Bits<11>>,
     /// Largest distance of the start edge from its expected place, in system clock cycles.
     pub start_window_cycles: Signal<In, Bits<6>>,
-    /// Strobe: sample the data line.
-    pub sample: Signal<Out, Bit>,
     /// With `sample`: half a cycle later than others (double edge only).
     pub sample_second: Signal<Out, Bit>,
-    /// Strobe: the middle of the expected place of a data edge.
-    pub center: Signal<Out, Bit>,
-    /// A rising data edge lies within the window of this cell.
-    pub edge_in_window: Signal<Out, Bit>,
-    /// Strobe: a clock pulse is sent that the answer needs; not one before the start edge of a frame that measures.
-    pub pulse: Signal<Out, Bit>,
+    /// Places of the answer's cells.
+    #[bundle]
+    pub cells: CellsOut,
     /// The tracked delay is not what was measured: a register was upset. Until it is measured again.
     pub is_upset: Signal<Out, Bit>,
     /// Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
@@ -248,7 +239,8 @@ impl Logic for LineDelay {
 
         self.half.period_cycles.next = self.period_cycles.val();
         self.half.second.next = self.second_half.q.val();
-        self.half.restart.next = !self.cells_run.q.val() | self.last_cell.val() | self.snap.val();
+        self.half.restart.next =
+            !self.cells_run.q.val() | self.control.last_cell.val() | self.snap.val();
         self.half.began.next = self.acquired.val() | self.snap.val();
         // An odd period has halves of a whole number of half cycles: every other one begins in the middle of a cycle.
         if self.has_double.val() {
@@ -276,7 +268,7 @@ impl Logic for LineDelay {
         }
 
         // Of the edges before an acquired start bit that which launched it is the only one that counts.
-        self.pulse.next = self.acquired.val()
+        self.cells.pulse.next = self.acquired.val()
             | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
 
         // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
@@ -359,7 +351,7 @@ impl Logic for LineDelay {
             }
         }
         // While the mean is still being looked for every edge counts.
-        self.is_open.next = self.has_alignment.val() & self.slow.val();
+        self.is_open.next = self.has_alignment.val() & self.control.slow.val();
         self.good_edge.next = self.has_alignment.val()
             & self.sample_now.val()
             & self.edge_now.val()
@@ -386,13 +378,14 @@ impl Logic for LineDelay {
             self.tracker[i].edge_strobe.next = self.measured_now.q.val();
             self.tracker[i].offset.next = self.offset_now.q.val();
             self.tracker[i].acquire.next = self.acquire.val();
-            self.tracker[i].quick.next = self.slow.val() | self.is_frame.val();
+            self.tracker[i].quick.next = self.control.slow.val() | self.is_frame.val();
             self.tracker[i].is_fixed.next = self.mode.val() == self.fixed_mode.val();
             self.tracker[i].fixed_delay.next = self.fixed_delay.val();
         }
 
         // All cells of a burst have ended: the next rising edge begins a new one.
-        self.over.next = !self.run.val() | (self.drain.val() & self.none_under_way.val());
+        self.over.next =
+            !self.control.run.val() | (self.control.drain.val() & self.none_under_way.val());
         self.afresh.d.next = self.over.val();
         if self.afresh.q.val() {
             self.cells_run.d.next = false;
@@ -411,9 +404,9 @@ impl Logic for LineDelay {
             self.edge_error.d.next = 0.into();
             self.edge_outside.d.next = false;
         }
-        self.sample.next = self.sample_now.val();
-        self.center.next = self.center_now.val();
-        self.edge_in_window.next =
+        self.cells.sample.next = self.sample_now.val();
+        self.cells.center.next = self.center_now.val();
+        self.cells.edge_in_window.next =
             self.edge_now.val() & (!self.edge_outside.q.val() | self.is_open.val());
         self.sample_second.next = self.second.q.val();
         self.delay_cycles.next = self.delay_now.val();

@@ -22,6 +22,7 @@ pub mod field;
 
 use crate::crc5::{Crc5Check, Crc5Serial, ORDER_OF_X};
 use crate::features::Features;
+use crate::frame_ports::{AnswerCheckOut, AnswerShapeIn, CellsIn, ControlIn, ProgressOut};
 use crate::protocol;
 use field::Field;
 use rtl_design::reg::Reg;
@@ -36,98 +37,39 @@ pub struct Receiver {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// One-cycle strobe: a frame begins.
-    pub start: Signal<In, Bit>,
-    /// The frame is given up: nothing is expected any more.
-    pub aborts: Signal<In, Bit>,
-    /// The frame measures the propagation delay: cells before the start bit are counted by clock edges.
-    pub acquire: Signal<In, Bit>,
+    /// What a receiver is told of the frame.
+    #[bundle]
+    pub control: ControlIn,
     /// Strobe of each rising clock edge.
     pub rise: Signal<In, Bit>,
-    /// Strobe: a clock pulse is sent that the answer needs.
-    pub pulse: Signal<In, Bit>,
-    /// Strobe: sample `level`.
-    pub sample: Signal<In, Bit>,
+    /// Places of the answer's cells.
+    #[bundle]
+    pub cells: CellsIn,
     /// The data line.
     pub level: Signal<In, Bit>,
-    /// The start edge of this cell lies in its window.
-    pub edge_in_window: Signal<In, Bit>,
     /// Bits between error bits and CRC, 1..=48.
     pub payload_bits: Signal<In, Bits<6>>,
-    /// The answer begins with F1.
-    pub has_f1: Signal<In, Bit>,
-    /// The frame carries F2.
-    pub has_f2: Signal<In, Bit>,
-    /// 24 bits are sent before the answer, and the answer is 24 bits.
-    pub has_parameter: Signal<In, Bit>,
-    /// The clock is parked LOW after the answer.
-    pub has_supplement: Signal<In, Bit>,
+    /// What an answer consists of.
+    #[bundle]
+    pub shape: AnswerShapeIn,
     /// Blocks of additional data that follow the position, 0..=2.
     pub infos: Signal<In, Bits<2>>,
     /// Strobe: what is HIGH now is a recovery time, which may be over in the middle of this cell.
     pub look: Signal<In, Bit>,
-    /// One-cycle strobe: the supplement begins.
-    pub start_supplement: Signal<In, Bit>,
-    /// The clock goes on after this answer, and another one follows.
-    pub going_on: Signal<In, Bit>,
     /// Mode command that was sent.
     pub command: Signal<In, Bits<6>>,
-    /// The line is undefined: samples are not looked at.
-    pub skipping: Signal<Out, Bit>,
-    /// The start bit may come now.
-    pub hunting: Signal<Out, Bit>,
-    /// Strobe with `sample`: this sample is a good start bit.
-    pub start_found: Signal<Out, Bit>,
-    /// Strobe one cycle after `sample`: it was high, but its edge is outside the window.
-    pub start_refused: Signal<Out, Bit>,
-    /// The start bit has been taken.
-    pub started: Signal<Out, Bit>,
-    /// All clock pulses have been sent.
-    pub all_sent: Signal<Out, Bit>,
-    /// All but one.
-    pub one_to_send: Signal<Out, Bit>,
-    /// The cell of each pulse that was sent has ended.
-    pub none_under_way: Signal<Out, Bit>,
-    /// The counts of cells and pulses agree that this cell is the last one.
-    pub all_used: Signal<Out, Bit>,
-    /// They agree that there is none left.
-    pub all_ended: Signal<Out, Bit>,
-    /// Strobe: payload, error bits, CRC and verdict of the answer without additional data are valid.
-    pub done: Signal<Out, Bit>,
-    /// Strobe: payload and verdict of a block of additional data are valid.
-    pub info_done: Signal<Out, Bit>,
-    /// Strobe: the LOW in front of a block of additional data has come. Payload and verdict stay for two more cycles.
-    pub separated: Signal<Out, Bit>,
-    /// Strobe: a block of additional data should begin, but the line is HIGH.
-    pub info_missing: Signal<Out, Bit>,
-    /// Strobe: the last bit of an answer or of additional data has been sampled.
-    pub last_bit: Signal<Out, Bit>,
-    /// Strobe: the answer with all its additional data, or the supplement, is complete.
-    pub finished: Signal<Out, Bit>,
-    /// Strobe: while the clock goes on, the cell after the last CRC bit is HIGH, as it should.
-    pub gap_good: Signal<Out, Bit>,
-    /// Strobe: while the clock goes on, the cell after the last CRC bit is LOW.
-    pub gap_low: Signal<Out, Bit>,
-    /// Strobe: while the clock goes on, the second cell after the last CRC bit is HIGH.
-    pub gap_high: Signal<Out, Bit>,
-    /// Strobe: the encoder has taken the next position, one propagation delay ago.
-    pub latched: Signal<Out, Bit>,
-    /// What came begins with the mode command, leading zeros aside.
-    pub is_echo: Signal<Out, Bit>,
+    /// How far a receiver is.
+    #[bundle]
+    pub progress: ProgressOut,
+    /// What an answer says of itself.
+    #[bundle]
+    pub verdict: AnswerCheckOut,
     /// Payload, bit 0 = the bit received first, zeros above its width.
     pub payload: Signal<Out, Bits<48>>,
-    /// Error bit 1, high = alarm.
-    pub f1: Signal<Out, Bit>,
-    /// Error bit 2, low = alarm; high in frames without it.
-    pub f2: Signal<Out, Bit>,
     /// CRC as received; bit 4 came first.
     pub crc_received: Signal<Out, Bits<5>>,
     /// CRC computed from the bits as they came.
     pub crc_computed: Signal<Out, Bits<5>>,
-    /// The serial register over the wire bits says the CRC is right.
-    pub serial_ok: Signal<Out, Bit>,
-    /// The stored word fits the received CRC, now.
-    pub parallel_ok: Signal<Out, Bit>,
     #[start]
     check: Crc5Check,
     #[start]
@@ -253,7 +195,7 @@ impl Logic for Receiver {
                 self.cells_after.next = 61.into();
             }
             // Parked before that edge.
-            if self.has_supplement.val() {
+            if self.shape.has_supplement.val() {
                 self.cells_after.next = 0.into();
                 if self.infos_left.q.val() == 1 {
                     self.cells_after.next = 30.into();
@@ -267,12 +209,12 @@ impl Logic for Receiver {
             }
         }
 
-        self.skip_step.next = self.sample.val();
-        if self.acquire.val() {
+        self.skip_step.next = self.cells.sample.val();
+        if self.control.acquire.val() {
             self.skip_step.next = self.rise.val();
         }
         self.start_sample.next =
-            (self.field.q.val() == Field::Start) & self.sample.val() & self.level.val();
+            (self.field.q.val() == Field::Start) & self.cells.sample.val() & self.level.val();
         self.covered_bit.next = false;
         self.crc_bit.next = false;
         self.last_payload.d.next = false;
@@ -287,7 +229,7 @@ impl Logic for Receiver {
         self.again.next = false;
 
         // Where a bit has few system clock cycles cells go on until the end has been seen.
-        self.counts.next = self.sample.val()
+        self.counts.next = self.cells.sample.val()
             & ((self.field.q.val() != Field::Done) | self.left.q.val().get_bits::<6>(1).any());
         if self.counts.val()
             & (self.field.q.val() != Field::Skip)
@@ -296,9 +238,9 @@ impl Logic for Receiver {
             self.left.d.next = self.left.q.val() - 1;
         }
         // Each cell has its pulse. How many cells there are before the start bit is not known: each of them is one pulse more.
-        self.one_more.next = self.sample.val() & (self.field.q.val() == Field::Start);
-        self.one_less.next = self.pulse.val()
-            | (self.acquire.val() & self.rise.val() & (self.field.q.val() == Field::Skip));
+        self.one_more.next = self.cells.sample.val() & (self.field.q.val() == Field::Start);
+        self.one_less.next = self.cells.pulse.val()
+            | (self.control.acquire.val() & self.rise.val() & (self.field.q.val() == Field::Skip));
         if self.one_more.val() & !self.one_less.val() {
             self.to_send.d.next = self.to_send.q.val() + 1;
         }
@@ -306,10 +248,10 @@ impl Logic for Receiver {
             self.to_send.d.next = self.to_send.q.val() - 1;
         }
         // A third count, modulo 8, of the pulses that are on the cable.
-        if self.pulse.val() & !self.counts.val() {
+        if self.cells.pulse.val() & !self.counts.val() {
             self.under_way.d.next = self.under_way.q.val() + 1;
         }
-        if self.counts.val() & !self.pulse.val() {
+        if self.counts.val() & !self.cells.pulse.val() {
             self.under_way.d.next = self.under_way.q.val() - 1;
         }
         match self.field.q.val() {
@@ -325,32 +267,32 @@ impl Logic for Receiver {
                 }
             }
             Field::Start => {
-                if self.start_sample.val() & self.edge_in_window.val() {
+                if self.start_sample.val() & self.cells.edge_in_window.val() {
                     self.field.d.next = Field::F1;
-                    if !self.has_f1.val() & self.has_all.val() {
+                    if !self.shape.has_f1.val() & self.has_all.val() {
                         self.field.d.next = Field::Payload;
                     }
                 }
             }
             Field::F1 => {
-                if self.sample.val() {
+                if self.cells.sample.val() {
                     self.covered_bit.next = true;
                     self.f1_bit.d.next = self.level.val();
                     self.field.d.next = Field::Payload;
-                    if self.has_f2.val() {
+                    if self.shape.has_f2.val() {
                         self.field.d.next = Field::F2;
                     }
                 }
             }
             Field::F2 => {
-                if self.sample.val() {
+                if self.cells.sample.val() {
                     self.covered_bit.next = true;
                     self.f2_bit.d.next = self.level.val();
                     self.field.d.next = Field::Payload;
                 }
             }
             Field::Payload => {
-                if self.sample.val() {
+                if self.cells.sample.val() {
                     self.covered_bit.next = true;
                     // This bit, five of the CRC, and what comes behind.
                     if self.left.q.val() == (self.cells_after.val() + 6) {
@@ -360,7 +302,7 @@ impl Logic for Receiver {
                 }
             }
             Field::Crc => {
-                if self.sample.val() {
+                if self.cells.sample.val() {
                     self.crc_bit.next = true;
                     if self.left.q.val() == (self.cells_after.val() + 1) {
                         self.last_taken.d.next = true;
@@ -368,7 +310,7 @@ impl Logic for Receiver {
                         if self.infos_left.q.val().any() & self.has_all.val() {
                             self.field.d.next = Field::Separator;
                         }
-                        if self.going_on.val() & self.has_continuous.val() {
+                        if self.control.going_on.val() & self.has_continuous.val() {
                             self.field.d.next = Field::GapHigh;
                         }
                     }
@@ -379,7 +321,7 @@ impl Logic for Receiver {
                     self.missing.d.next = true;
                     self.field.d.next = Field::Done;
                 }
-                if self.sample.val() {
+                if self.cells.sample.val() {
                     self.separator.next = true;
                     self.infos_left.d.next = self.infos_left.q.val() - 1;
                     self.field.d.next = Field::Payload;
@@ -390,7 +332,7 @@ impl Logic for Receiver {
                 }
             }
             Field::GapHigh => {
-                if self.sample.val() {
+                if self.cells.sample.val() {
                     self.low_gap.d.next = !self.level.val();
                     self.good_gap.d.next = self.level.val();
                     self.field.d.next = Field::GapLow;
@@ -400,7 +342,7 @@ impl Logic for Receiver {
                 }
             }
             Field::GapLow => {
-                if self.sample.val() {
+                if self.cells.sample.val() {
                     self.high_gap.d.next = self.level.val();
                     self.again.next = true;
                     self.field.d.next = Field::Start;
@@ -411,7 +353,7 @@ impl Logic for Receiver {
             }
             Field::Done => {}
             Field::Supplement => {
-                if self.sample.val() & (self.left.q.val() == 2) {
+                if self.cells.sample.val() & (self.left.q.val() == 2) {
                     self.supplement_over.d.next = true;
                     self.field.d.next = Field::Done;
                 }
@@ -460,10 +402,10 @@ impl Logic for Receiver {
         // Aligned when 5, 5 + 1 or 5 + 2 bits (modulo 15) have gone in; never after the first shift.
         self.align_first.d.next = self.take_crc.q.val();
         self.aligned_at.next = 5.into();
-        if self.has_f2.val() {
+        if self.shape.has_f2.val() {
             self.aligned_at.next = 6.into();
         }
-        if self.has_all.val() & (!self.has_f1.val() | self.in_info.q.val()) {
+        if self.has_all.val() & (!self.shape.has_f1.val() | self.in_info.q.val()) {
             self.aligned_at.next = 4.into();
         }
         if self.last_payload.q.val() {
@@ -482,16 +424,18 @@ impl Logic for Receiver {
         if self.crc_bit.val() {
             self.crc_bits.d.next = (self.crc_bits.q.val() << 1).replace_bit(0, self.level.val());
         }
-        self.check.clear.next = self.start.val()
+        self.check.clear.next = self.control.start.val()
             | (self.new_block.q.val() & self.has_all.val())
             | (self.again.val() & self.has_continuous.val());
-        self.check.word_bit.next = self.sample.val() & (self.field.q.val() == Field::Payload);
-        connect!(self.check <= self; crc_bit, bit = level, has_f2);
+        self.check.word_bit.next = self.cells.sample.val() & (self.field.q.val() == Field::Payload);
+        connect!(self.check <= self; crc_bit, bit = level);
+        self.check.has_f2.next = self.shape.has_f2.val();
         self.check.word.next = self.word.q.val().get_bits::<48>(0);
-        self.check.has_f1.next = !self.has_all.val() | (self.has_f1.val() & !self.in_info.q.val());
+        self.check.has_f1.next =
+            !self.has_all.val() | (self.shape.has_f1.val() & !self.in_info.q.val());
         self.check.f1.next = self.f1_bit.q.val();
         self.check.f2.next = self.f2_bit.q.val();
-        self.serial.clear.next = self.start.val()
+        self.serial.clear.next = self.control.start.val()
             | (self.separator.val() & self.has_all.val())
             | (self.again.val() & self.has_continuous.val());
         self.serial.enable.next = self.covered_bit.val() | self.crc_bit.val();
@@ -516,30 +460,30 @@ impl Logic for Receiver {
         }
         // Cells of the frame besides payload and additional data.
         self.cells_around.next = self.fixed_cells.val();
-        if self.has_f2.val() {
+        if self.shape.has_f2.val() {
             self.cells_around.next = self.fixed_cells.val() + 1;
         }
         if self.has_all.val() {
-            if self.has_supplement.val() {
+            if self.shape.has_supplement.val() {
                 self.cells_around.next = self.fixed_cells.val();
             }
             if self.infos.val() == 1 {
                 self.cells_around.next = self.fixed_cells.val() + 31;
-                if self.has_supplement.val() {
+                if self.shape.has_supplement.val() {
                     self.cells_around.next = self.fixed_cells.val() + 30;
                 }
             }
             if self.infos.val() == 2 {
                 self.cells_around.next = self.fixed_cells.val() + 61;
-                if self.has_supplement.val() {
+                if self.shape.has_supplement.val() {
                     self.cells_around.next = self.fixed_cells.val() + 60;
                 }
             }
-            if self.has_parameter.val() {
+            if self.shape.has_parameter.val() {
                 self.cells_around.next = self.fixed_cells.val() + 23;
             }
         }
-        if self.start.val() {
+        if self.control.start.val() {
             self.field.d.next = Field::Skip;
             self.left.d.next = bit_cast::<7, 6>(self.payload_bits.val()) + self.cells_around.val();
             self.to_send.d.next =
@@ -555,7 +499,7 @@ impl Logic for Receiver {
             self.infos_left.d.next = self.infos.val();
             if self.has_all.val() {
                 self.f1_bit.d.next = false;
-                if self.has_parameter.val() {
+                if self.shape.has_parameter.val() {
                     self.covered.d.next = self.long_skip_from.val();
                     self.skip_rounds.d.next = 2.into();
                 }
@@ -570,7 +514,9 @@ impl Logic for Receiver {
             self.in_info.d.next = false;
         }
         // The first bits from the first HIGH on, until it has gone through all places.
-        if self.sample.val() & (self.field.q.val() != Field::Skip) & !self.heard.q.val().get_bit(6)
+        if self.cells.sample.val()
+            & (self.field.q.val() != Field::Skip)
+            & !self.heard.q.val().get_bit(6)
         {
             self.heard.d.next = (self.heard.q.val() << 1).replace_bit(0, self.level.val());
         }
@@ -578,65 +524,66 @@ impl Logic for Receiver {
         if self.heard.q.val() == (bit_cast::<7, 6>(self.command.val()) << 1) {
             self.echo.d.next = true;
         }
-        if self.start.val() | self.again.val() {
+        if self.control.start.val() | self.again.val() {
             self.heard.d.next = 0.into();
             self.echo.d.next = false;
         }
-        if self.aborts.val() {
+        if self.control.aborts.val() {
             self.field.d.next = Field::Done;
         }
-        if self.start_supplement.val() & self.has_all.val() {
+        if self.control.start_supplement.val() & self.has_all.val() {
             self.field.d.next = Field::Supplement;
             self.left.d.next = self.supplement_cells.val();
             self.to_send.d.next = self.supplement_cells.val();
             self.under_way.d.next = 0.into();
         }
 
-        self.skipping.next =
+        self.progress.skipping.next =
             (self.field.q.val() == Field::Skip) | (self.field.q.val() == Field::Supplement);
         self.hunting_now.d.next = self.field.q.val() == Field::Start;
-        self.hunting.next = self.hunting_now.q.val();
-        self.start_found.next = self.start_sample.val() & self.edge_in_window.val();
-        self.refused.d.next = self.start_sample.val() & !self.edge_in_window.val();
-        self.start_refused.next = self.refused.q.val();
+        self.progress.hunting.next = self.hunting_now.q.val();
+        self.progress.start_found.next = self.start_sample.val() & self.cells.edge_in_window.val();
+        self.refused.d.next = self.start_sample.val() & !self.cells.edge_in_window.val();
+        self.progress.start_refused.next = self.refused.q.val();
         self.started_now.d.next =
             (self.field.q.val() != Field::Skip) & (self.field.q.val() != Field::Start);
-        self.started.next = self.started_now.q.val();
-        self.all_sent.next = !self.to_send.q.val().any();
-        self.one_to_send.next = self.to_send.q.val() == 1;
-        self.none_under_way.next = self.to_send.q.val() == self.left.q.val();
+        self.progress.started.next = self.started_now.q.val();
+        self.progress.all_sent.next = !self.to_send.q.val().any();
+        self.progress.one_to_send.next = self.to_send.q.val() == 1;
+        self.progress.none_under_way.next = self.to_send.q.val() == self.left.q.val();
         // Looked at where the counts have stood for a cycle at least: a cycle late, which keeps three comparisons out of the cause's path.
         self.used.d.next =
-            self.all_sent.val() & (self.left.q.val() == 1) & (self.under_way.q.val() == 1);
-        self.all_used.next = self.used.q.val();
-        self.ended.d.next =
-            self.all_sent.val() & self.none_under_way.val() & !self.under_way.q.val().any();
-        self.all_ended.next = self.ended.q.val();
-        self.done.next = self.done_now.q.val();
-        self.info_done.next = false;
-        self.separated.next = false;
-        self.info_missing.next = false;
-        self.last_bit.next = self.last_taken.q.val();
-        self.finished.next = self.done_now.q.val();
+            self.progress.all_sent.val() & (self.left.q.val() == 1) & (self.under_way.q.val() == 1);
+        self.progress.all_used.next = self.used.q.val();
+        self.ended.d.next = self.progress.all_sent.val()
+            & self.progress.none_under_way.val()
+            & !self.under_way.q.val().any();
+        self.progress.all_ended.next = self.ended.q.val();
+        self.progress.done.next = self.done_now.q.val();
+        self.progress.info_done.next = false;
+        self.progress.separated.next = false;
+        self.progress.info_missing.next = false;
+        self.progress.last_bit.next = self.last_taken.q.val();
+        self.progress.finished.next = self.done_now.q.val();
         if self.has_all.val() {
-            self.done.next = self.done_now.q.val() & !self.in_info.q.val();
-            self.info_done.next = self.done_now.q.val() & self.in_info.q.val();
-            self.separated.next = self.low_separator.q.val();
-            self.info_missing.next = self.missing.q.val();
-            self.finished.next = (self.done_now.q.val() & !self.infos_left.q.val().any())
+            self.progress.done.next = self.done_now.q.val() & !self.in_info.q.val();
+            self.progress.info_done.next = self.done_now.q.val() & self.in_info.q.val();
+            self.progress.separated.next = self.low_separator.q.val();
+            self.progress.info_missing.next = self.missing.q.val();
+            self.progress.finished.next = (self.done_now.q.val() & !self.infos_left.q.val().any())
                 | self.supplement_over.q.val();
         }
-        self.gap_good.next = self.good_gap.q.val() & self.has_continuous.val();
-        self.gap_low.next = self.low_gap.q.val() & self.has_continuous.val();
-        self.gap_high.next = self.high_gap.q.val() & self.has_continuous.val();
-        self.latched.next = self.again.val() & self.has_continuous.val();
-        self.is_echo.next = self.echo.q.val() & self.has_diagnosis.val();
+        self.progress.gap_good.next = self.good_gap.q.val() & self.has_continuous.val();
+        self.progress.gap_low.next = self.low_gap.q.val() & self.has_continuous.val();
+        self.progress.gap_high.next = self.high_gap.q.val() & self.has_continuous.val();
+        self.progress.latched.next = self.again.val() & self.has_continuous.val();
+        self.verdict.is_echo.next = self.echo.q.val() & self.has_diagnosis.val();
         self.payload.next = self.word.q.val().get_bits::<48>(0);
-        self.f1.next = self.f1_bit.q.val();
-        self.f2.next = self.f2_bit.q.val();
+        self.verdict.f1.next = self.f1_bit.q.val();
+        self.verdict.f2.next = self.f2_bit.q.val();
         self.crc_received.next = self.crc_bits.q.val();
         self.crc_computed.next = self.crc_calc.q.val();
-        self.serial_ok.next = self.serial_good.q.val();
-        self.parallel_ok.next = self.parallel_equal.q.val();
+        self.verdict.serial_ok.next = self.serial_good.q.val();
+        self.verdict.parallel_ok.next = self.parallel_equal.q.val();
     }
 }

@@ -11,6 +11,7 @@
 //!
 //! Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 
+use crate::frame_ports::ToldIn;
 use crate::ports::FrameResultOut;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
@@ -34,16 +35,9 @@ pub struct Snapshot {
     pub latched: Signal<In, Bit>,
     /// Propagation delay, in system clock cycles.
     pub delay_cycles: Signal<In, Bits<11>>,
-    /// Strobe: take the result of a trigger.
-    pub publish: Signal<In, Bit>,
-    /// With `publish`: the position is good.
-    pub good: Signal<In, Bit>,
-    /// Strobe: replace cause and flags of the present result.
-    pub late_fault: Signal<In, Bit>,
-    /// Strobe: the present result's position is not good after all; the one before comes back.
-    pub withdraw: Signal<In, Bit>,
-    /// Strobe: nothing can withdraw the present result any more.
-    pub confirm: Signal<In, Bit>,
+    /// What has become of a frame.
+    #[bundle("_in")]
+    pub told: ToldIn,
     /// Position of the frame.
     pub position_in: Signal<In, Bits<48>>,
     /// Width of the position.
@@ -54,10 +48,6 @@ pub struct Snapshot {
     pub crc_received_in: Signal<In, Bits<5>>,
     /// CRC as computed.
     pub crc_computed_in: Signal<In, Bits<5>>,
-    /// Primary cause.
-    pub cause_in: Signal<In, Bits<5>>,
-    /// Raw flags.
-    pub flags_in: Signal<In, Bits<20>>,
     /// Result of a trigger.
     #[bundle]
     pub result: FrameResultOut,
@@ -123,11 +113,12 @@ impl Logic for Snapshot {
         }
         // Of the cycle before: the sum of all its bits is too long a way to what loads.
         self.moment_sum.d.next = self.moment.q.val().xor();
-        self.moment_wrong.next = self.good.val()
+        self.moment_wrong.next = self.told.good.val()
             & !self.timed.q.val()
             & (self.moment_sum.q.val() ^ self.moment_parity.q.val());
-        self.take_good.next = self.publish.val() & self.good.val() & !self.moment_wrong.val();
-        self.take_back.next = self.withdraw.val() & self.unconfirmed.q.val();
+        self.take_good.next =
+            self.told.publish.val() & self.told.good.val() & !self.moment_wrong.val();
+        self.take_back.next = self.told.withdraw.val() & self.unconfirmed.q.val();
         self.ago.next = 0.into();
         if self.latched.val() {
             self.ago.next = self.delay_cycles.val();
@@ -140,15 +131,15 @@ impl Logic for Snapshot {
         if self.tick_us.val() & !self.age_full.q.val() {
             self.age.d.next = self.age.q.val() + 1;
         }
-        if self.confirm.val() & self.unconfirmed.q.val() {
+        if self.told.confirm.val() & self.unconfirmed.q.val() {
             self.age.d.next = 0.into();
         }
         self.age_shown.d.next = self.age.q.val();
         self.age_shown.reset.next =
             self.reset.val() | self.unconfirmed.q.val() | self.take_good.val();
-        self.strobe.d.next = self.publish.val();
-        if self.publish.val() {
-            self.is_fresh.d.next = self.good.val() & !self.moment_wrong.val();
+        self.strobe.d.next = self.told.publish.val();
+        if self.told.publish.val() {
+            self.is_fresh.d.next = self.told.good.val() & !self.moment_wrong.val();
             self.count.d.next = self.count.q.val() + 1;
             self.received.d.next = self.crc_received_in.val();
             self.computed.d.next = self.crc_computed_in.val();
@@ -169,7 +160,7 @@ impl Logic for Snapshot {
             self.earlier_valid.d.next = self.valid.q.val();
             self.earlier_parity.d.next = self.parity.q.val();
         }
-        if self.confirm.val() | self.take_back.val() {
+        if self.told.confirm.val() | self.take_back.val() {
             self.unconfirmed.d.next = false;
         }
         if self.take_good.val() {
@@ -202,9 +193,9 @@ impl Logic for Snapshot {
             self.parity.d.next = self.earlier_parity.q.val();
             self.is_fresh.d.next = false;
         }
-        if self.publish.val() | self.late_fault.val() {
-            self.cause_held.d.next = self.cause_in.val();
-            self.flags_held.d.next = self.flags_in.val();
+        if self.told.publish.val() | self.told.late_fault.val() {
+            self.cause_held.d.next = self.told.cause.val();
+            self.flags_held.d.next = self.told.flags.val();
         }
         self.upset_now.next = self.is_upset.q.val() & !self.take_good.val() & self.valid.q.val();
         if self.upset_now.val() {
@@ -213,9 +204,9 @@ impl Logic for Snapshot {
             self.cause_held.d.next = self.upset_cause.val();
             self.flags_held.d.next = self.flags_held.q.val() | self.upset_flag.val();
         }
-        if self.publish.val() & self.moment_wrong.val() {
+        if self.told.publish.val() & self.moment_wrong.val() {
             self.cause_held.d.next = self.upset_cause.val();
-            self.flags_held.d.next = self.flags_in.val() | self.upset_flag.val();
+            self.flags_held.d.next = self.told.flags.val() | self.upset_flag.val();
         }
         self.result.result_strobe.next = self.strobe.q.val();
         self.result.position.next = self.held.q.val();

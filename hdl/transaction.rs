@@ -26,6 +26,7 @@ pub mod primary;
 pub mod verdict;
 
 use crate::features::{Features, FixedTimes};
+use crate::frame_ports::*;
 use crate::line_health::LineHealth;
 use crate::several::each;
 use crate::sure_bit::SureBit;
@@ -48,134 +49,53 @@ pub struct Transaction {
     pub reset: Signal<In, Bit>,
     /// One-cycle strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
-    /// One-cycle strobe: take a position.
-    pub trigger: Signal<In, Bit>,
-    /// Strobe: measure the propagation delay again with the next frame.
-    pub calibrate: Signal<In, Bit>,
+    /// What begins the next frame, and what it is.
+    #[bundle]
+    pub next_frame: NextFrameIn,
     /// The delay comes from a register: no frame measures it.
     pub is_fixed: Signal<In, Bit>,
     /// The data line.
     pub level: Signal<In, Bit>,
-    /// Strobe: the data line is sampled.
-    pub sample: Signal<In, Bit>,
-    /// Strobe: middle of the expected place of a data edge.
-    pub center: Signal<In, Bit>,
-    /// The receiver waits for the start bit.
-    pub hunting: Signal<In, Bit>,
-    /// The start bit has been taken.
-    pub started: Signal<In, Bit>,
-    /// Strobe: a start bit outside its window.
-    pub start_refused: Signal<In, Bit>,
-    /// Strobe: the answer without additional data has been taken.
-    pub answer_done: Signal<In, Bit>,
-    /// Strobe: the answer with all that follows it has been taken, or the supplement is over.
-    pub finished: Signal<In, Bit>,
-    /// Strobe: the last bit before the tail has been sampled; with double edge, where `finished` may be some cells late.
-    pub last_bit: Signal<In, Bit>,
-    /// Strobe: the LOW in front of a block of additional data has come.
-    pub separated: Signal<In, Bit>,
-    /// Strobe: a block of additional data has not come.
-    pub info_missing: Signal<In, Bit>,
-    /// The mode command of the next frame is one that the core sends.
-    pub is_known: Signal<In, Bit>,
-    /// 24 bits belong to the command; its answer may take long.
-    pub has_parameter: Signal<In, Bit>,
-    /// A supplement follows the answer.
-    pub has_supplement: Signal<In, Bit>,
-    /// Begin a frame without a trigger; `is_own` is high.
-    pub begin_own: Signal<In, Bit>,
-    /// The frame under way, or the next one, is not a trigger's.
-    pub is_own: Signal<In, Bit>,
-    /// No frame may begin.
-    pub hold_off: Signal<In, Bit>,
-    /// The clock goes on after each position, and the next one follows without a command.
-    pub continuous: Signal<In, Bit>,
-    /// It stops after an error.
-    pub stop_at_error: Signal<In, Bit>,
-    /// The line is wanted for something else.
-    pub line_wanted: Signal<In, Bit>,
-    /// Strobe: the cell after the last CRC bit is HIGH, while the clock goes on.
-    pub gap_good: Signal<In, Bit>,
-    /// Strobe: the next answer has begun, while the clock goes on.
-    pub again: Signal<In, Bit>,
-    /// Strobe: the cell after the last CRC bit is LOW, while the clock goes on.
-    pub gap_low: Signal<In, Bit>,
-    /// Strobe: the cell before the next start bit is HIGH, while the clock goes on.
-    pub gap_high: Signal<In, Bit>,
+    /// Places of the answer's cells.
+    #[bundle]
+    pub cells: CellsIn,
+    /// How far a receiver is.
+    #[bundle]
+    pub progress: ProgressIn,
+    /// What an answer consists of.
+    #[bundle]
+    pub shape: AnswerShapeIn,
     /// Settings of the frame are not what they were at its start.
     pub settings_upset: Signal<In, Bit>,
-    /// The answer begins with the own mode command.
-    pub is_echo: Signal<In, Bit>,
-    /// Serial CRC verdict.
-    pub serial_ok: Signal<In, Bit>,
-    /// Parallel CRC verdict.
-    pub parallel_ok: Signal<In, Bit>,
-    /// Error bit 1, high = alarm.
-    pub f1: Signal<In, Bit>,
-    /// Error bit 2, low = alarm.
-    pub f2: Signal<In, Bit>,
+    /// What an answer says of itself.
+    #[bundle]
+    pub check: AnswerCheckIn,
     /// Strobe one cycle before each rising clock edge.
     pub will_rise: Signal<In, Bit>,
-    /// All clock pulses have been sent.
-    pub no_pulse_left: Signal<In, Bit>,
-    /// All but one.
-    pub one_pulse_left: Signal<In, Bit>,
-    /// The cell of each pulse that was sent has ended.
-    pub none_under_way: Signal<In, Bit>,
-    /// This cell is the last one: all had their pulse, and every pulse its cell.
-    pub all_used: Signal<In, Bit>,
-    /// There is none left, of either.
-    pub all_ended: Signal<In, Bit>,
     /// The tracked delay is not what was measured.
     pub delay_upset: Signal<In, Bit>,
-    /// How much longer than half a period the first low phase is; 0, or at least 4 cycles.
-    pub first_low_extra_cycles: Signal<In, Bits<11>>,
-    /// Longest wait for the start bit after the turnaround.
-    pub start_timeout_us: Signal<In, Bits<12>>,
-    /// Data must fall within this after the frame.
-    pub recovery_limit_cycles: Signal<In, Bits<13>>,
-    /// Data must not fall before this after the frame.
-    pub recovery_min_cycles: Signal<In, Bits<13>>,
-    /// Longest time from the first falling edge to the end of the recovery time; 0 = not watched.
-    pub watchdog_us: Signal<In, Bits<12>>,
-    /// One-cycle strobe: the first falling clock edge comes at the end of this cycle.
-    pub start: Signal<Out, Bit>,
-    /// A frame is under way on the wire.
-    pub run: Signal<Out, Bit>,
-    /// Driver off, at once.
-    pub aborts: Signal<Out, Bit>,
+    /// How long the parts of a frame may take.
+    #[bundle]
+    pub limits: FrameLimitsIn,
+    /// What a receiver is told of the frame.
+    #[bundle]
+    pub control: ControlOut,
+    /// How the cells of a frame run.
+    #[bundle]
+    pub cell_control: CellControlOut,
     /// Keeps the clock low.
     pub hold_low: Signal<Out, Bit>,
-    /// The clock waits for the cells of all pulses sent.
-    pub drain: Signal<Out, Bit>,
     /// Keeps the clock high: no frame, or all its edges have been sent.
     pub stop: Signal<Out, Bit>,
     /// Drives the line LOW, to see whether it follows.
     pub probe: Signal<Out, Bit>,
     /// It has just done so, or does.
     pub is_probed: Signal<Out, Bit>,
-    /// The clock goes on after this frame.
-    pub going_on: Signal<Out, Bit>,
-    /// One-cycle strobe: the last cell has begun; the period may change with it.
-    pub last_cell: Signal<Out, Bit>,
-    /// One-cycle strobe: the supplement begins.
-    pub start_supplement: Signal<Out, Bit>,
-    /// This frame measures the propagation delay.
-    pub acquire: Signal<Out, Bit>,
-    /// This frame runs at the calibration clock.
-    pub slow: Signal<Out, Bit>,
     /// A trigger would not be taken.
     pub busy: Signal<Out, Bit>,
-    /// Strobe: result of a trigger, `cause` and `flags` are valid.
-    pub publish: Signal<Out, Bit>,
-    /// With `publish`: the position is good.
-    pub good: Signal<Out, Bit>,
-    /// Strobe: something was wrong after the result had been published.
-    pub late_fault: Signal<Out, Bit>,
-    /// Strobe: the published position is not good after all.
-    pub withdraw: Signal<Out, Bit>,
-    /// Strobe: the published position stands.
-    pub confirm: Signal<Out, Bit>,
+    /// What has become of a frame.
+    #[bundle]
+    pub told: ToldOut,
     /// Strobe, in the same cycle: a frame is begun, or refused.
     pub begun: Signal<Out, Bit>,
     /// No frame is under way, and all that there is to tell of the last one has been told.
@@ -186,10 +106,6 @@ pub struct Transaction {
     pub displaced: Signal<Out, Bit>,
     /// The propagation delay is known.
     pub calibrated: Signal<Out, Bit>,
-    /// Primary cause, with `publish`, `late_fault` or `over`.
-    pub cause: Signal<Out, Bits<5>>,
-    /// Raw flags, see [`cause::flag`](mod@cause::flag).
-    pub flags: Signal<Out, Bits<20>>,
     /// Recovery time tm of the last frame, in system clock cycles.
     pub recovery_cycles: Signal<Out, Bits<13>>,
     #[start]
@@ -337,25 +253,27 @@ impl Logic for Transaction {
     fn update(&mut self) {
         clock!(self, clock, health, verdict);
         self.phase.reset.next = false;
-        self.extra.d.next = self.first_low_extra_cycles.val().any();
+        self.extra.d.next = self.limits.first_low_extra_cycles.val().any();
         self.health.reset.next = self.reset.val();
         self.verdict.reset.next = self.reset.val();
 
-        self.own.next = self.is_own.val() & self.has_all.val();
-        self.triggered.next = self.trigger.val() & !(self.hold_off.val() & self.has_all.val());
+        self.own.next = self.next_frame.is_own.val() & self.has_all.val();
+        self.triggered.next =
+            self.next_frame.trigger.val() & !(self.next_frame.hold_off.val() & self.has_all.val());
         // The position that a measuring frame has made possible.
         self.owed.next = self.once_more.q.val()
             & self.owing.q.val()
-            & !(self.hold_off.val() & self.has_all.val());
-        self.wanted.next =
-            self.triggered.val() | self.owed.val() | (self.begin_own.val() & self.has_all.val());
+            & !(self.next_frame.hold_off.val() & self.has_all.val());
+        self.wanted.next = self.triggered.val()
+            | self.owed.val()
+            | (self.next_frame.begin_own.val() & self.has_all.val());
         self.proof.next = false;
         self.plugged.next = false;
         self.refuse.next = false;
         self.normal_end.next = false;
         self.supplement_now.d.next = false;
-        self.limit.next = bit_cast::<16, 12>(self.start_timeout_us.val());
-        if self.has_all.val() & self.has_parameter.val() {
+        self.limit.next = bit_cast::<16, 12>(self.limits.start_timeout_us.val());
+        if self.has_all.val() & self.shape.has_parameter.val() {
             self.limit.next = self.parameter_timeout_us.val();
         }
         self.in_us.next = false;
@@ -391,7 +309,8 @@ impl Logic for Transaction {
             Phase::NotReady => {
                 self.limit.next = self.ready_low_cycles.val();
                 self.timer_clear.next = self.level.val();
-                self.idle.next = self.level.val() & !(self.hold_off.val() & self.has_all.val());
+                self.idle.next =
+                    self.level.val() & !(self.next_frame.hold_off.val() & self.has_all.val());
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::Ready;
                 }
@@ -412,8 +331,8 @@ impl Logic for Transaction {
             Phase::Ready => {
                 self.timer_clear.next = true;
                 // A trigger just behind one that was refused is lost: the result that is being told would be taken for its own.
-                self.idle.next =
-                    !(self.hold_off.val() & self.has_all.val()) & !self.verdict.is_telling.val();
+                self.idle.next = !(self.next_frame.hold_off.val() & self.has_all.val())
+                    & !self.verdict.is_telling.val();
                 if self.level.val() {
                     self.phase.d.next = Phase::NotReady;
                     self.plugged.next = true;
@@ -423,7 +342,7 @@ impl Logic for Transaction {
                     }
                 } else {
                     if self.wanted.val() & !self.verdict.is_telling.val() {
-                        if self.is_known.val() {
+                        if self.next_frame.is_known.val() {
                             self.accept.next = true;
                             self.phase.d.next = Phase::Frame;
                             if self.extra.q.val() {
@@ -436,7 +355,7 @@ impl Logic for Transaction {
                     }
                     // The line is wanted for long; the trigger has a result all the same: nothing wrong, no position.
                     if self.once_more.q.val()
-                        & self.hold_off.val()
+                        & self.next_frame.hold_off.val()
                         & self.has_all.val()
                         & !self.own.val()
                     {
@@ -451,7 +370,7 @@ impl Logic for Transaction {
             Phase::FirstLow => {
                 self.running.next = true;
                 self.watched.next = true;
-                self.limit.next = bit_cast::<16, 11>(self.first_low_extra_cycles.val());
+                self.limit.next = bit_cast::<16, 11>(self.limits.first_low_extra_cycles.val());
                 if self.timer_hit.q.val() {
                     self.phase.d.next = Phase::Frame;
                     self.timer_clear.next = true;
@@ -461,60 +380,67 @@ impl Logic for Transaction {
                 self.running.next = true;
                 self.watched.next = true;
                 self.in_us.next = true;
-                self.timer_clear.next =
-                    (self.hunting.val() ^ self.was_hunting.q.val()) | self.finished.val();
+                self.timer_clear.next = (self.progress.hunting.val() ^ self.was_hunting.q.val())
+                    | self.progress.finished.val();
                 // A receiver that has lost its place.
-                if self.endless.val() & !self.hunting.val() {
+                if self.endless.val() & !self.progress.hunting.val() {
                     self.found.next = self.tail_low.val();
                     self.give_up.next = true;
                 }
                 // In the first cycle of the hunt the timer is still that of what was before.
-                if self.timer_hit.q.val() & self.hunting.val() & self.was_hunting.q.val() {
+                if self.timer_hit.q.val() & self.progress.hunting.val() & self.was_hunting.q.val() {
                     self.found.next = self.no_start.val();
                     self.give_up.next = true;
                     // The result is told; the clock goes on as long again, to know a late encoder from a silent one.
-                    if self.has_diagnosis.val() & !self.has_parameter.val() & !self.late.q.val() {
+                    if self.has_diagnosis.val()
+                        & !self.shape.has_parameter.val()
+                        & !self.late.q.val()
+                    {
                         self.give_up.next = false;
                         self.announce.next = true;
                         self.timer_clear.next = true;
                     }
                 }
-                if self.late.q.val() & (self.started.val() | self.start_refused.val()) {
+                if self.late.q.val()
+                    & (self.progress.started.val() | self.progress.start_refused.val())
+                {
                     self.found.next = self.no_start_bit.val() | self.late_start.val();
                     self.give_up.next = true;
                 }
-                if self.start_refused.val() & !self.late.q.val() {
+                if self.progress.start_refused.val() & !self.late.q.val() {
                     self.found.next = self.start_window.val();
                     self.give_up.next = true;
                 }
-                if self.answer_done.val() {
+                if self.progress.done.val() {
                     self.answer_taken.next = true;
                 }
-                if self.separated.val() & self.has_all.val() {
+                if self.progress.separated.val() & self.has_all.val() {
                     self.proof.next = true;
                 }
-                if self.has_continuous.val() & self.gap_good.val() {
+                if self.has_continuous.val() & self.progress.gap_good.val() {
                     self.proof.next = true;
                 }
-                if self.has_continuous.val() & self.again.val() {
+                if self.has_continuous.val() & self.progress.latched.val() {
                     self.normal_end.next = true;
                 }
-                if self.info_missing.val() & self.has_all.val() {
+                if self.progress.info_missing.val() & self.has_all.val() {
                     self.found.next = self.info_not_there.val();
                     self.give_up.next = true;
                 }
-                if self.has_continuous.val() & self.gap_low.val() {
+                if self.has_continuous.val() & self.progress.gap_low.val() {
                     self.found.next = self.tail_low.val();
                     self.give_up.next = true;
                 }
-                if self.has_continuous.val() & self.gap_high.val() {
+                if self.has_continuous.val() & self.progress.gap_high.val() {
                     self.found.next = self.not_falling.val();
                     self.give_up.next = true;
                     self.found_late.next = true;
                 }
-                if self.finished.val() & !self.going.val() {
+                if self.progress.finished.val() & !self.going.val() {
                     self.phase.d.next = Phase::Tail;
-                    if self.has_all.val() & self.has_supplement.val() & !self.in_supplement.q.val()
+                    if self.has_all.val()
+                        & self.shape.has_supplement.val()
+                        & !self.in_supplement.q.val()
                     {
                         self.phase.d.next = Phase::Park;
                     }
@@ -531,7 +457,7 @@ impl Logic for Transaction {
                     self.timer_clear.next = true;
                     self.in_supplement.d.next = true;
                     self.supplement_now.d.next = true;
-                    if !self.all_ended.val() {
+                    if !self.progress.all_ended.val() {
                         self.found.next = self.upset.val();
                         self.give_up.next = true;
                     }
@@ -559,12 +485,12 @@ impl Logic for Transaction {
             Phase::Recovery => {
                 self.running.next = !self.tail_sampled.q.val();
                 self.watched.next = true;
-                self.limit.next = bit_cast::<16, 13>(self.recovery_limit_cycles.val());
+                self.limit.next = bit_cast::<16, 13>(self.limits.recovery_limit_cycles.val());
                 // A request's command may have another range than the triggers' one.
                 if self.own.val() {
                     self.limit.next = self.own_recovery_limit_cycles.val();
                 }
-                if self.sample.val() {
+                if self.cells.sample.val() {
                     self.tail_sampled.d.next = true;
                     self.proof.next = !self.tail_sampled.q.val() & self.level.val();
                 }
@@ -580,12 +506,15 @@ impl Logic for Transaction {
                     }
                 }
                 // Each cell had its pulse, but for one whose count was upset.
-                if self.sample.val() & !self.tail_sampled.q.val() & !self.all_used.val() {
+                if self.cells.sample.val()
+                    & !self.tail_sampled.q.val()
+                    & !self.progress.all_used.val()
+                {
                     self.found.next = self.upset.val();
                     self.give_up.next = true;
                 }
                 // The encoder still sends, or has stopped early: its frame has another length than ours.
-                if self.sample.val() & !self.tail_sampled.q.val() & !self.level.val() {
+                if self.cells.sample.val() & !self.tail_sampled.q.val() & !self.level.val() {
                     self.found.next = self.tail_low.val();
                     self.give_up.next = true;
                 }
@@ -634,11 +563,11 @@ impl Logic for Transaction {
         }
         // The mode is left with the clock HIGH for longer than tm, whatever the encoder is at.
         self.leave.next = self.going.val()
-            & self.gap_good.val()
-            & (!self.continuous.val()
-                | self.line_wanted.val()
+            & self.progress.gap_good.val()
+            & (!self.next_frame.continuous.val()
+                | self.next_frame.line_wanted.val()
                 | !self.known.val()
-                | (self.stop_at_error.val() & self.verdict.is_bad.val()));
+                | (self.next_frame.stop_at_error.val() & self.verdict.is_bad.val()));
         if self.leave.val() {
             self.normal_end.next = true;
         }
@@ -669,8 +598,8 @@ impl Logic for Transaction {
             self.under_way.d.next = false;
         }
 
-        self.was_hunting.d.next = self.hunting.val();
-        self.was_center.d.next = self.center.val();
+        self.was_hunting.d.next = self.progress.hunting.val();
+        self.was_center.d.next = self.cells.center.val();
         self.timer_step.d.next = !self.in_us.val() | self.tick_us.val();
         if self.timer_step.q.val() {
             self.timer.d.next = self.timer.q.val() + 1;
@@ -693,10 +622,12 @@ impl Logic for Transaction {
         }
         self.in_tail.next = self.phase.q.val() == Phase::Tail;
         self.in_recovery.next = self.phase.q.val() == Phase::Recovery;
-        self.last_cell.next = self.in_tail.val() & self.was_center.q.val();
+        self.cell_control.last_cell.next = self.in_tail.val() & self.was_center.q.val();
         connect!(self.last_edge <= self;
-            clock, reset, start = accept, last_bit, in_tail, in_recovery, no_pulse_left,
-            one_pulse_left, will_rise, none_under_way, started, going, running
+            clock, reset, start = accept, in_tail, in_recovery, will_rise, going, running
+        );
+        connect!(self.last_edge <= self.progress;
+            last_bit, no_pulse_left = all_sent, one_pulse_left = one_to_send, none_under_way, started
         );
         self.rise_back.next = self.last_edge.comes.val();
         self.last_edge.was_center.next = self.was_center.q.val();
@@ -708,12 +639,10 @@ impl Logic for Transaction {
         self.verdict.settings_upset.next = self.settings_upset.val() | self.delay_upset.val();
         self.verdict.give_up.next = self.give_up.val();
         self.verdict.is_late.next = self.answered.q.val() | self.found_late.val();
-        connect!(self.verdict <= self;
-            refuse, announce, normal_end, is_going = going, is_own = own, serial_ok, parallel_ok,
-            f1, f2, is_echo
-        );
+        connect!(self.verdict <= self; refuse, announce, normal_end, is_going = going, is_own = own);
+        AnswerCheckIn::link(&mut self.check, &mut self.verdict.check);
         self.verdict.recovery_cycles.next = self.recovery.q.val();
-        self.verdict.recovery_min_cycles.next = self.recovery_min_cycles.val();
+        self.verdict.recovery_min_cycles.next = self.limits.recovery_min_cycles.val();
         // The mean over several frames, if it is taken; the last of them makes the delay known.
         if self.verdict.is_received.val()
             & self.measuring.q.val()
@@ -729,7 +658,7 @@ impl Logic for Transaction {
         if self.verdict.is_doubtful.val() & !self.going.val() {
             self.is_calibrated.d.next = false;
         }
-        self.lost.next = self.trigger.val()
+        self.lost.next = self.next_frame.trigger.val()
             & !self.going.val()
             & ((!self.accept.val() & !self.idle.val())
                 | (self.accept.val() & self.own.val())
@@ -737,7 +666,7 @@ impl Logic for Transaction {
         self.verdict.lost.next = self.lost.val();
         self.known.next =
             self.is_calibrated.q.val() | (self.has_alignment.val() & self.is_fixed.val());
-        if self.verdict.publish.val() | self.refuse.val() {
+        if self.verdict.told.publish.val() | self.refuse.val() {
             self.owing.d.next = false;
         }
         // What else becomes of that frame is the trigger's result, not something that comes behind it.
@@ -769,8 +698,10 @@ impl Logic for Transaction {
         self.going.next = false;
         for i in 0..self._runs {
             connect!(self.runs[i] <= self; clock, reset);
-            self.runs[i].raise.next =
-                self.accept.val() & self.continuous.val() & self.known.val() & !self.own.val();
+            self.runs[i].raise.next = self.accept.val()
+                & self.next_frame.continuous.val()
+                & self.known.val()
+                & !self.own.val();
             self.runs[i].clear.next =
                 self.leave.val() | self.verdict.gave_up.val() | self.accept.val();
             self.going.next = self.runs[i].is_set.val();
@@ -790,7 +721,8 @@ impl Logic for Transaction {
             self.high_at_tick.d.next = self.level.val();
         }
         // A fixed delay is not a measured one: what is tracked afterwards has to be found first.
-        self.afresh.next = self.calibrate.val() | self.plugged.val() | self.delay_upset.val();
+        self.afresh.next =
+            self.next_frame.calibrate.val() | self.plugged.val() | self.delay_upset.val();
         if self.afresh.val() | (self.has_alignment.val() & self.is_fixed.val()) {
             self.is_calibrated.d.next = false;
         }
@@ -798,14 +730,15 @@ impl Logic for Transaction {
             self.passes.d.next = 0.into();
         }
         self.run_now.d.next = self.running.val();
-        self.run.next = self.run_now.q.val();
+        self.cell_control.run.next = self.run_now.q.val();
         self.start_now.d.next = self.accept.val();
-        self.start.next = self.start_now.q.val();
-        self.aborts.next = self.verdict.gave_up.val();
+        self.control.start.next = self.start_now.q.val();
+        self.control.aborts.next = self.verdict.gave_up.val();
         // Taking the start bit ends its cell; `started` comes when the comparison knows that.
-        self.sent.next = self.last_edge.all_sent.val() & self.started.val() & !self.going.val();
+        self.sent.next =
+            self.last_edge.all_sent.val() & self.progress.started.val() & !self.going.val();
         self.parking.next = false;
-        if self.has_all.val() & self.has_supplement.val() & !self.in_supplement.q.val() {
+        if self.has_all.val() & self.shape.has_supplement.val() & !self.in_supplement.q.val() {
             self.parking.next = (self.sent.val() & (self.phase.q.val() == Phase::Frame))
                 | (self.phase.q.val() == Phase::Park);
             self.sent.next = false;
@@ -814,19 +747,21 @@ impl Logic for Transaction {
             | self.last_edge.holds.val()
             | self.parking.val();
         self.hold_low.next = self.hold.q.val();
-        self.drain.next = self.last_edge.stalled.val();
+        self.cell_control.drain.next = self.last_edge.stalled.val();
         if self.has_all.val() {
-            self.drain.next = self.last_edge.stalled.val() | (self.phase.q.val() == Phase::Park);
+            self.cell_control.drain.next =
+                self.last_edge.stalled.val() | (self.phase.q.val() == Phase::Park);
         }
         self.stop_now.d.next = !self.running.val() | self.verdict.gave_up.val() | self.leave.val();
         // The high phase of the last pulse may last two cycles only.
         self.stop.next = self.stop_now.q.val() | self.sent.val();
-        self.acquire.next = self.acquiring.q.val();
-        self.slow.next = self.slow_now.q.val();
-        self.busy.next =
-            !self.idle.val() | self.once_more.q.val() | (self.begin_own.val() & self.has_all.val());
-        connect!(self <= self.verdict; publish, good, late_fault, withdraw, confirm, cause, flags);
-        self.start_supplement.next = self.supplement_now.q.val();
+        self.control.acquire.next = self.acquiring.q.val();
+        self.cell_control.slow.next = self.slow_now.q.val();
+        self.busy.next = !self.idle.val()
+            | self.once_more.q.val()
+            | (self.next_frame.begin_own.val() & self.has_all.val());
+        ToldOut::link(&mut self.told, &mut self.verdict.told);
+        self.control.start_supplement.next = self.supplement_now.q.val();
         self.over.next = self.verdict.over.val();
         self.begun.next = self.accept.val() | self.refuse.val();
         // A reset may have come in the middle of a frame. After power-up nobody has begun one.
@@ -847,13 +782,14 @@ impl Logic for Transaction {
         }
         self.is_probed.next =
             (self.probing.q.val() | self.settling.q.val()) & self.has_diagnosis.val();
-        self.going_on.next = self.going.val();
+        self.control.going_on.next = self.going.val();
 
         connect!(self.health <= self; tick_us, level);
         self.health.start.next = self.start_now.q.val();
         self.health.under_way.next =
-            self.watched.val() & !self.has_parameter.val() & !self.going.val();
-        connect!(self.health <= self; watchdog_us, probed);
+            self.watched.val() & !self.shape.has_parameter.val() & !self.going.val();
+        self.health.watchdog_us.next = self.limits.watchdog_us.val();
+        self.health.probed.next = self.probed.val();
         self.health.is_ready.next = self.phase.q.val() == Phase::Ready;
     }
 }

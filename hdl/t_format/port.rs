@@ -300,20 +300,20 @@ impl Logic for TFormatPort {
         self.snapshot.first_fall.next = !self.exchange.tx.val() & !self.started.q.val();
         self.snapshot.latched.next = false;
         self.snapshot.delay_cycles.next = 0.into();
-        self.snapshot.publish.next = self.exchange.publish.val() & !self.is_own.val();
-        self.snapshot.good.next = self.takes.val();
+        self.snapshot.told.publish.next = self.exchange.publish.val() & !self.is_own.val();
+        self.snapshot.told.good.next = self.takes.val();
         // All that an exchange shows is seen before its end.
-        self.snapshot.late_fault.next = false;
-        self.snapshot.withdraw.next = false;
-        self.snapshot.confirm.next = true;
+        self.snapshot.told.late_fault.next = false;
+        self.snapshot.told.withdraw.next = false;
+        self.snapshot.told.confirm.next = true;
         self.snapshot.width_in.next = 0.into();
         self.snapshot.has_f2_in.next = false;
         self.snapshot.position_in.next =
             bit_cast::<48, 24>(self.single.val()) | (bit_cast::<48, 24>(self.multi.val()) << 24);
         self.snapshot.crc_received_in.next = 0.into();
         self.snapshot.crc_computed_in.next = 0.into();
-        self.snapshot.cause_in.next = self.code.val();
-        self.snapshot.flags_in.next = bit_cast::<20, 16>(self.flags_in.val());
+        self.snapshot.told.cause.next = self.code.val();
+        self.snapshot.told.flags.next = bit_cast::<20, 16>(self.flags_in.val());
         self.over.next = self.exchange.publish.val();
         self.over_request.next = self.is_own.val();
         FrameResultOut::link(&mut self.result, &mut self.snapshot.result);

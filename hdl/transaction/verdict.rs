@@ -13,6 +13,7 @@
 use super::cause::{self, flag};
 use super::primary::PrimaryCause;
 use crate::features::{Features, FixedTimes};
+use crate::frame_ports::{AnswerCheckIn, ToldOut};
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -51,16 +52,9 @@ pub struct Verdict {
     pub is_own: Signal<In, Bit>,
     /// Strobe: a trigger has been lost.
     pub lost: Signal<In, Bit>,
-    /// Serial CRC verdict.
-    pub serial_ok: Signal<In, Bit>,
-    /// Parallel CRC verdict.
-    pub parallel_ok: Signal<In, Bit>,
-    /// Error bit 1, high = alarm.
-    pub f1: Signal<In, Bit>,
-    /// Error bit 2, low = alarm.
-    pub f2: Signal<In, Bit>,
-    /// The answer begins with the own mode command.
-    pub is_echo: Signal<In, Bit>,
+    /// What an answer says of itself.
+    #[bundle]
+    pub check: AnswerCheckIn,
     /// Recovery time tm of the frame that has ended.
     pub recovery_cycles: Signal<In, Bits<13>>,
     /// Data must not fall before this.
@@ -79,26 +73,15 @@ pub struct Verdict {
     pub gave_up: Signal<Out, Bit>,
     /// There is still something to tell.
     pub is_telling: Signal<Out, Bit>,
-    /// Strobe: result of a trigger, `cause` and `flags` are valid.
-    pub publish: Signal<Out, Bit>,
+    /// What has become of a frame.
+    #[bundle]
+    pub told: ToldOut,
     /// Strobe, instead of `publish`: the delay is measured, now the position itself.
     pub once_more: Signal<Out, Bit>,
-    /// With `publish`: the position is good.
-    pub good: Signal<Out, Bit>,
-    /// Strobe: something was wrong after the result was published.
-    pub late_fault: Signal<Out, Bit>,
-    /// Strobe: and its position is not good after all.
-    pub withdraw: Signal<Out, Bit>,
-    /// Strobe: the published position stands.
-    pub confirm: Signal<Out, Bit>,
     /// Strobe: a frame has ended in whatever way.
     pub over: Signal<Out, Bit>,
     /// Strobe: a trigger has been lost.
     pub displaced: Signal<Out, Bit>,
-    /// Primary cause, with `publish`, `late_fault` or `over`.
-    pub cause: Signal<Out, Bits<5>>,
-    /// Raw flags, see [`cause::flag`](mod@cause::flag).
-    pub flags: Signal<Out, Bits<20>>,
     #[start]
     chooser: PrimaryCause,
     has_diagnosis: Constant<Bit>,
@@ -132,7 +115,7 @@ pub struct Verdict {
     over_now: Reg<Bit>,
     lost_now: Reg<Bit>,
     flags_now: Reg<Bits<20>>,
-    told: Signal<Local, Bits<20>>,
+    found_all: Signal<Local, Bits<20>>,
     crc_bad: Signal<Local, Bit>,
     bad_now: Signal<Local, Bit>,
     proven: Signal<Local, Bit>,
@@ -197,27 +180,28 @@ impl Logic for Verdict {
 
         // Of what has been told: the choice is kept out of the path of what is found.
         self.chooser.flags.next = self.flags_now.q.val();
-        self.crc_bad.next = !(self.serial_ok.val() & self.parallel_ok.val());
-        self.bad_now.next = self.crc_bad.val() | self.f1.val() | !self.f2.val();
+        self.crc_bad.next = !(self.check.serial_ok.val() & self.check.parallel_ok.val());
+        self.bad_now.next = self.crc_bad.val() | self.check.f1.val() | !self.check.f2.val();
         self.is_bad.next = self.bad_now.val();
         self.is_pending.next = self.pending.q.val() | self.taken_now.q.val();
         self.proven.next = self.prove.val() & self.is_pending.val();
-        self.told.next = self.seen.q.val();
+        self.found_all.next = self.seen.q.val();
         if self.proven.val() | (self.is_pending.val() & self.gave_up_now.q.val()) {
             if self.crc_bad.val() {
-                self.told.next = self.told.val() | self.crc_wrong.val();
-                if self.has_diagnosis.val() & self.is_echo.val() {
-                    self.told.next = self.told.val() | self.crc_wrong.val() | self.own_echo.val();
+                self.found_all.next = self.found_all.val() | self.crc_wrong.val();
+                if self.has_diagnosis.val() & self.check.is_echo.val() {
+                    self.found_all.next =
+                        self.found_all.val() | self.crc_wrong.val() | self.own_echo.val();
                 }
             }
-            if self.f1.val() {
-                self.told.next = self.told.val() | self.f1_set.val();
+            if self.check.f1.val() {
+                self.found_all.next = self.found_all.val() | self.f1_set.val();
             }
-            if !self.f2.val() {
-                self.told.next = self.told.val() | self.f2_clear.val();
+            if !self.check.f2.val() {
+                self.found_all.next = self.found_all.val() | self.f2_clear.val();
             }
-            if !self.parallel_ok.val() {
-                self.told.next = self.told.val() | self.parallel_wrong.val();
+            if !self.check.parallel_ok.val() {
+                self.found_all.next = self.found_all.val() | self.parallel_wrong.val();
             }
         }
         if self.taken_now.q.val() {
@@ -231,11 +215,11 @@ impl Logic for Verdict {
             & !self.is_own.val();
         // A frame is not given up for nothing: the state that says so was upset.
         if self.upset.val() | (self.gave_up_now.q.val() & !self.seen.q.val().any()) {
-            self.told.next = self.told.val() | self.stored_upset.val();
+            self.found_all.next = self.found_all.val() | self.stored_upset.val();
         }
         // That is for the result to say.
         if self.overrun.q.val() & !self.measured.val() {
-            self.told.next = self.told.val() | self.trigger_overrun.val();
+            self.found_all.next = self.found_all.val() | self.trigger_overrun.val();
         }
         self.recovery_min.next = self.recovery_min_cycles.val();
         if self.is_own.val() {
@@ -247,7 +231,7 @@ impl Logic for Verdict {
             & !self.chooser.cause.val().any()
             & (self.recovery_cycles.val() < self.recovery_min.val());
         if self.early.val() {
-            self.told.next = self.told.val() | self.too_short.val();
+            self.found_all.next = self.found_all.val() | self.too_short.val();
         }
         if self.proven.val()
             | self.gave_up_now.q.val()
@@ -255,7 +239,7 @@ impl Logic for Verdict {
             | self.announced.q.val()
             | self.early.val()
         {
-            self.flags_now.d.next = self.told.val();
+            self.flags_now.d.next = self.found_all.val();
             if !self.is_own.val() & !self.measured.val() {
                 self.overrun.d.next = false;
             }
@@ -299,15 +283,15 @@ impl Logic for Verdict {
             | self.gave_up_now.q.val()
             | self.refused.q.val()
             | self.over_now.q.val();
-        self.publish.next = self.publish_now.q.val();
-        self.good.next = self.good_now.q.val();
+        self.told.publish.next = self.publish_now.q.val();
+        self.told.good.next = self.good_now.q.val();
         self.once_more.next = self.once_more_now.q.val();
-        self.late_fault.next = self.late_now.q.val();
-        self.withdraw.next = self.withdraw_now.q.val();
-        self.confirm.next = self.confirm_now.q.val();
+        self.told.late_fault.next = self.late_now.q.val();
+        self.told.withdraw.next = self.withdraw_now.q.val();
+        self.told.confirm.next = self.confirm_now.q.val();
         self.over.next = self.over_now.q.val();
         self.displaced.next = self.lost_now.q.val();
-        self.cause.next = self.chooser.cause.val();
-        self.flags.next = self.flags_now.q.val();
+        self.told.cause.next = self.chooser.cause.val();
+        self.told.flags.next = self.flags_now.q.val();
     }
 }

@@ -112,10 +112,10 @@ module s6_two_channel_channel (
     wire         sender_aborts;
     wire         sender_data;
     wire         sender_oe;
+    wire         delay_pulse;
     wire         delay_sample;
     wire         delay_center;
     wire         delay_edge_in_window;
-    wire         delay_pulse;
     wire         delay_is_upset;
     wire         receiver_level;
     wire         receiver_skipping;
@@ -129,27 +129,27 @@ module s6_two_channel_channel (
     wire         receiver_all_ended;
     wire         receiver_done;
     wire         receiver_finished;
-    wire  [47:0] receiver_payload;
     wire         receiver_f1;
     wire         receiver_f2;
-    wire   [4:0] receiver_crc_received;
-    wire   [4:0] receiver_crc_computed;
     wire         receiver_serial_ok;
     wire         receiver_parallel_ok;
+    wire  [47:0] receiver_payload;
+    wire   [4:0] receiver_crc_received;
+    wire   [4:0] receiver_crc_computed;
     wire         transaction_is_known;
-    reg          transaction_serial_ok;
     reg          transaction_f1;
     reg          transaction_f2;
+    reg          transaction_serial_ok;
     wire         transaction_start;
-    wire         transaction_run;
     wire         transaction_aborts;
-    wire         transaction_hold_low;
-    wire         transaction_drain;
-    wire         transaction_stop;
-    wire         transaction_last_cell;
-    wire         transaction_start_supplement;
     wire         transaction_acquire;
+    wire         transaction_start_supplement;
+    wire         transaction_run;
+    wire         transaction_drain;
+    wire         transaction_last_cell;
     wire         transaction_slow;
+    wire         transaction_hold_low;
+    wire         transaction_stop;
     wire         transaction_publish;
     wire         transaction_good;
     wire         transaction_late_fault;
@@ -163,12 +163,12 @@ module s6_two_channel_channel (
     wire         wanted_shape_has_f2;
     wire   [5:0] settings_frame_command;
     wire  [10:0] settings_period_cycles_now;
-    wire  [10:0] settings_first_low_extra_cycles_now;
     wire   [5:0] settings_command_now;
     wire   [5:0] settings_position_bits_now;
     wire   [3:0] settings_filter_cycles_now;
     wire         settings_filter_half_now;
     wire   [5:0] settings_start_window_cycles_now;
+    wire  [10:0] settings_first_low_extra_cycles_now;
     wire  [11:0] settings_start_timeout_us_now;
     wire  [12:0] settings_recovery_limit_cycles_now;
     wire         settings_is_upset;
@@ -214,10 +214,10 @@ module s6_two_channel_channel (
         .clock(clock),
         .reset(reset),
         .run(transaction_run),
-        .none_under_way(receiver_none_under_way),
         .drain(transaction_drain),
-        .acquire(transaction_acquire),
         .last_cell(transaction_last_cell),
+        .none_under_way(receiver_none_under_way),
+        .acquire(transaction_acquire),
         .hunting(receiver_hunting),
         .will_rise(clock_gen_will_rise),
         .rise(clock_gen_rise),
@@ -225,10 +225,10 @@ module s6_two_channel_channel (
         .follow(receiver_start_found),
         .period_cycles(period),
         .start_window_cycles(settings_start_window_cycles_now),
+        .pulse(delay_pulse),
         .sample(delay_sample),
         .center(delay_center),
         .edge_in_window(delay_edge_in_window),
-        .pulse(delay_pulse),
         .is_upset(delay_is_upset),
         .delay_cycles(delay_cycles)
     );
@@ -238,14 +238,14 @@ module s6_two_channel_channel (
         .start(transaction_start),
         .aborts(transaction_aborts),
         .acquire(transaction_acquire),
+        .start_supplement(transaction_start_supplement),
         .rise(clock_gen_rise),
         .pulse(delay_pulse),
         .sample(delay_sample),
-        .level(receiver_level),
         .edge_in_window(delay_edge_in_window),
+        .level(receiver_level),
         .payload_bits(payload_bits),
         .has_f2(shape_has_f2),
-        .start_supplement(transaction_start_supplement),
         .skipping(receiver_skipping),
         .hunting(receiver_hunting),
         .start_found(receiver_start_found),
@@ -257,13 +257,13 @@ module s6_two_channel_channel (
         .all_ended(receiver_all_ended),
         .done(receiver_done),
         .finished(receiver_finished),
-        .payload(receiver_payload),
         .f1(receiver_f1),
         .f2(receiver_f2),
-        .crc_received(receiver_crc_received),
-        .crc_computed(receiver_crc_computed),
         .serial_ok(receiver_serial_ok),
-        .parallel_ok(receiver_parallel_ok)
+        .parallel_ok(receiver_parallel_ok),
+        .payload(receiver_payload),
+        .crc_received(receiver_crc_received),
+        .crc_computed(receiver_crc_computed)
     );
     s6_two_channel_transaction u_transaction (
         .clock(clock),
@@ -271,48 +271,48 @@ module s6_two_channel_channel (
         .tick_us(tick_us),
         .trigger(trigger),
         .calibrate(calibrate),
+        .is_known(transaction_is_known),
         .level(filter_level),
         .sample(delay_sample),
         .center(delay_center),
         .hunting(receiver_hunting),
-        .started(receiver_started),
         .start_refused(receiver_start_refused),
-        .answer_done(receiver_done),
-        .finished(receiver_finished),
-        .is_known(transaction_is_known),
-        .settings_upset(settings_is_upset),
-        .serial_ok(transaction_serial_ok),
-        .parallel_ok(receiver_parallel_ok),
-        .f1(transaction_f1),
-        .f2(transaction_f2),
-        .no_pulse_left(receiver_all_sent),
+        .started(receiver_started),
+        .all_sent(receiver_all_sent),
         .none_under_way(receiver_none_under_way),
         .all_used(receiver_all_used),
         .all_ended(receiver_all_ended),
+        .done(receiver_done),
+        .finished(receiver_finished),
+        .settings_upset(settings_is_upset),
+        .f1(transaction_f1),
+        .f2(transaction_f2),
+        .serial_ok(transaction_serial_ok),
+        .parallel_ok(receiver_parallel_ok),
         .delay_upset(delay_is_upset),
         .first_low_extra_cycles(settings_first_low_extra_cycles_now),
         .start_timeout_us(settings_start_timeout_us_now),
         .recovery_limit_cycles(settings_recovery_limit_cycles_now),
         .start(transaction_start),
-        .run(transaction_run),
         .aborts(transaction_aborts),
-        .hold_low(transaction_hold_low),
-        .drain(transaction_drain),
-        .stop(transaction_stop),
-        .last_cell(transaction_last_cell),
-        .start_supplement(transaction_start_supplement),
         .acquire(transaction_acquire),
+        .start_supplement(transaction_start_supplement),
+        .run(transaction_run),
+        .drain(transaction_drain),
+        .last_cell(transaction_last_cell),
         .slow(transaction_slow),
+        .hold_low(transaction_hold_low),
+        .stop(transaction_stop),
         .busy(busy),
         .publish(transaction_publish),
         .good(transaction_good),
         .late_fault(transaction_late_fault),
         .withdraw(transaction_withdraw),
         .confirm(transaction_confirm),
-        .is_at_rest(transaction_is_at_rest),
-        .displaced(displaced),
         .cause(over_cause),
         .flags(over_flags),
+        .is_at_rest(transaction_is_at_rest),
+        .displaced(displaced),
         .recovery_cycles(recovery_cycles)
     );
     s6_two_channel_snapshot u_snapshot (
@@ -321,18 +321,18 @@ module s6_two_channel_channel (
         .tick_us(tick_us),
         .timestamp(timestamp),
         .first_fall(transaction_start),
-        .publish(transaction_publish),
-        .good(transaction_good),
-        .late_fault(transaction_late_fault),
-        .withdraw(transaction_withdraw),
-        .confirm(transaction_confirm),
+        .publish_in(transaction_publish),
+        .good_in(transaction_good),
+        .late_fault_in(transaction_late_fault),
+        .withdraw_in(transaction_withdraw),
+        .confirm_in(transaction_confirm),
+        .cause_in(over_cause),
+        .flags_in(over_flags),
         .position_in(receiver_payload),
         .width_in(payload_bits),
         .has_f2_in(shape_has_f2),
         .crc_received_in(receiver_crc_received),
         .crc_computed_in(receiver_crc_computed),
-        .cause_in(over_cause),
-        .flags_in(over_flags),
         .result_strobe(result_strobe),
         .position(position),
         .position_valid(position_valid),
@@ -374,12 +374,12 @@ module s6_two_channel_channel (
         .start_timeout_us(start_timeout_us),
         .recovery_limit_cycles(recovery_limit_cycles),
         .period_cycles_now(settings_period_cycles_now),
-        .first_low_extra_cycles_now(settings_first_low_extra_cycles_now),
         .command_now(settings_command_now),
         .position_bits_now(settings_position_bits_now),
         .filter_cycles_now(settings_filter_cycles_now),
         .filter_half_now(settings_filter_half_now),
         .start_window_cycles_now(settings_start_window_cycles_now),
+        .first_low_extra_cycles_now(settings_first_low_extra_cycles_now),
         .start_timeout_us_now(settings_start_timeout_us_now),
         .recovery_limit_cycles_now(settings_recovery_limit_cycles_now),
         .is_upset(settings_is_upset)
@@ -400,9 +400,9 @@ module s6_two_channel_channel (
     assign transaction_is_known = wanted_shape_is_position;
 
     always @* begin
-        transaction_serial_ok = receiver_serial_ok;
         transaction_f1 = receiver_f1;
         transaction_f2 = receiver_f2;
+        transaction_serial_ok = receiver_serial_ok;
     end
 
     always @* begin

@@ -41,21 +41,21 @@ module s6_two_channel_frame_settings (
     input  wire  [11:0] start_timeout_us,
     // Data must fall within this many system clock cycles after the frame.
     input  wire  [12:0] recovery_limit_cycles,
-    // EnDat clock period, in system clock cycles; an odd one has the longer high phase. T-format: a bit, 8 to 127.
+    // EnDat clock period of the frame.
     output wire  [10:0] period_cycles_now,
+    // Mode command of a triggered frame, as that began.
+    output wire   [5:0] command_now,
+    // Position width of the frame.
+    output wire   [5:0] position_bits_now,
+    // Input filter of the frame.
+    output wire   [3:0] filter_cycles_now,
+    // Half a system clock cycle more.
+    output wire         filter_half_now,
+    // Start window of the frame.
+    output wire   [5:0] start_window_cycles_now,
     // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     output wire  [10:0] first_low_extra_cycles_now,
-    // Mode command of a triggered frame.
-    output wire   [5:0] command_now,
-    // Position width, 1..=48 bits.
-    output wire   [5:0] position_bits_now,
-    // Pulses on the data line of at most this many system clock cycles are ignored.
-    output wire   [3:0] filter_cycles_now,
-    // And half a system clock cycle more, where DATA is looked at on both edges.
-    output wire         filter_half_now,
-    // Largest distance of the start edge from its expected place, in system clock cycles.
-    output wire   [5:0] start_window_cycles_now,
-    // Longest wait for the start bit after the turnaround, in microseconds. T-format: longest pause before the reply, 1 to 63.
+    // Longest wait for the start bit after the turnaround, in microseconds.
     output wire  [11:0] start_timeout_us_now,
     // Data must fall within this many system clock cycles after the frame.
     output wire  [12:0] recovery_limit_cycles_now,

@@ -23,16 +23,16 @@ module s6_two_channel_line_delay (
     input  wire         clock,
     // Synchronous reset.
     input  wire         reset,
-    // Low between frames: forgets everything but the delay.
+    // A frame is under way on the wire; low between frames, where everything but the delay is forgotten.
     input  wire         run,
+    // The clock waits: when the cells of all pulses that were sent have ended, a new burst begins.
+    input  wire         drain,
+    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another clock.
+    input  wire         last_cell,
     // No clock pulse has been sent whose cell has not ended.
     input  wire         none_under_way,
-    // The clock waits: when all cells have ended, a new burst of pulses begins.
-    input  wire         drain,
     // This frame measures the delay instead of using it.
     input  wire         acquire,
-    // Strobe: the next sample comes half a period after this, which may be that of another clock.
-    input  wire         last_cell,
     // The start bit may come now.
     input  wire         hunting,
     // Strobe one cycle before each rising clock edge.
@@ -47,14 +47,14 @@ module s6_two_channel_line_delay (
     input  wire  [10:0] period_cycles,
     // Largest distance of the start edge from its expected place, in system clock cycles.
     input  wire   [5:0] start_window_cycles,
-    // Strobe: sample the data line.
+    // Strobe: a clock pulse is sent that the answer needs; not one before the start edge of a frame that measures.
+    output wire         pulse,
+    // Strobe: the data line is sampled.
     output wire         sample,
     // Strobe: the middle of the expected place of a data edge.
     output wire         center,
     // A rising data edge lies within the window of this cell.
     output wire         edge_in_window,
-    // Strobe: a clock pulse is sent that the answer needs; not one before the start edge of a frame that measures.
-    output wire         pulse,
     // The tracked delay is not what was measured: a register was upset. Until it is measured again.
     output wire         is_upset,
     // Tracked propagation delay tD including synchroniser and filter, in system clock cycles.

@@ -26,28 +26,28 @@ module s6_two_channel_receiver (
     input  wire         clock,
     // Synchronous reset.
     input  wire         reset,
-    // One-cycle strobe: a frame begins.
+    // One-cycle strobe: a frame begins; the first falling clock edge comes at the end of this cycle.
     input  wire         start,
-    // The frame is given up: nothing is expected any more.
+    // The frame is given up: driver off at once, nothing is expected any more.
     input  wire         aborts,
     // The frame measures the propagation delay: cells before the start bit are counted by clock edges.
     input  wire         acquire,
-    // Strobe of each rising clock edge.
-    input  wire         rise,
-    // Strobe: a clock pulse is sent that the answer needs.
-    input  wire         pulse,
-    // Strobe: sample level.
-    input  wire         sample,
-    // The data line.
-    input  wire         level,
-    // The start edge of this cell lies in its window.
-    input  wire         edge_in_window,
-    // Bits between error bits and CRC, 1..=48.
-    input  wire   [5:0] payload_bits,
-    // The frame carries F2.
-    input  wire         has_f2,
     // One-cycle strobe: the supplement begins.
     input  wire         start_supplement,
+    // Strobe of each rising clock edge.
+    input  wire         rise,
+    // Strobe: a clock pulse is sent that the answer needs; not one before the start edge of a frame that measures.
+    input  wire         pulse,
+    // Strobe: the data line is sampled.
+    input  wire         sample,
+    // A rising data edge lies within the window of this cell.
+    input  wire         edge_in_window,
+    // The data line.
+    input  wire         level,
+    // Bits between error bits and CRC, 1..=48.
+    input  wire   [5:0] payload_bits,
+    // F2 follows F1; the selected additional data follow the position.
+    input  wire         has_f2,
     // The line is undefined: samples are not looked at.
     output wire         skipping,
     // The start bit may come now.
@@ -58,7 +58,7 @@ module s6_two_channel_receiver (
     output wire         start_refused,
     // The start bit has been taken.
     output wire         started,
-    // All clock pulses have been sent.
+    // All clock pulses have been sent, or are on their way to the pin.
     output wire         all_sent,
     // The cell of each pulse that was sent has ended.
     output wire         none_under_way,
@@ -70,20 +70,20 @@ module s6_two_channel_receiver (
     output reg          done,
     // Strobe: the answer with all its additional data, or the supplement, is complete.
     output reg          finished,
-    // Payload, bit 0 = the bit received first, zeros above its width.
-    output wire  [47:0] payload,
     // Error bit 1, high = alarm.
     output wire         f1,
     // Error bit 2, low = alarm; high in frames without it.
     output wire         f2,
-    // CRC as received; bit 4 came first.
-    output wire   [4:0] crc_received,
-    // CRC computed from the bits as they came.
-    output wire   [4:0] crc_computed,
     // The serial register over the wire bits says the CRC is right.
     output wire         serial_ok,
     // The stored word fits the received CRC, now.
-    output wire         parallel_ok
+    output wire         parallel_ok,
+    // Payload, bit 0 = the bit received first, zeros above its width.
+    output wire  [47:0] payload,
+    // CRC as received; bit 4 came first.
+    output wire   [4:0] crc_received,
+    // CRC computed from the bits as they came.
+    output wire   [4:0] crc_computed
 );
     localparam   [3:0] SKIP_FROM = 4'd5;
     localparam   [6:0] FIXED_CELLS = 7'd17;
@@ -490,11 +490,11 @@ module s6_two_channel_receiver (
 
 `ifdef FORMAL
 `ifndef FORMAL_ANY_STATE
+    wire [0:0] going_on = 1'd0;
     wire [0:0] has_f1 = 1'd1;
     wire [0:0] has_parameter = 1'd0;
     wire [0:0] has_supplement = 1'd0;
     wire [1:0] infos = 2'd0;
-    wire [0:0] going_on = 1'd0;
     wire [0:0] waiting = 1'd0;
     wire [0:0] in_info = 1'd0;
     // crc_as_received: The CRC is found right exactly if it equals one that is computed apart from it over the bits as sampled.

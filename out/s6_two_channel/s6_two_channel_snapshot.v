@@ -25,16 +25,20 @@ module s6_two_channel_snapshot (
     input  wire  [31:0] timestamp,
     // Strobe: the first falling edge of a frame, which latches the position in the encoder.
     input  wire         first_fall,
-    // Strobe: take the result of a trigger.
-    input  wire         publish,
+    // Strobe: result of a trigger, cause and flags are valid.
+    input  wire         publish_in,
     // With publish: the position is good.
-    input  wire         good,
-    // Strobe: replace cause and flags of the present result.
-    input  wire         late_fault,
-    // Strobe: the present result's position is not good after all; the one before comes back.
-    input  wire         withdraw,
-    // Strobe: nothing can withdraw the present result any more.
-    input  wire         confirm,
+    input  wire         good_in,
+    // Strobe: something was wrong after the result was published; cause and flags replace those of the result.
+    input  wire         late_fault_in,
+    // Strobe: the published position is not good after all; the one before comes back.
+    input  wire         withdraw_in,
+    // Strobe: the published position stands, nothing can withdraw it any more.
+    input  wire         confirm_in,
+    // Primary cause, with publish, late_fault or the end of a frame.
+    input  wire   [4:0] cause_in,
+    // Raw flags, see flag.
+    input  wire  [19:0] flags_in,
     // Position of the frame.
     input  wire  [47:0] position_in,
     // Width of the position.
@@ -45,10 +49,6 @@ module s6_two_channel_snapshot (
     input  wire   [4:0] crc_received_in,
     // CRC as computed.
     input  wire   [4:0] crc_computed_in,
-    // Primary cause.
-    input  wire   [4:0] cause_in,
-    // Raw flags.
-    input  wire  [19:0] flags_in,
     // Strobe: a new result can be read from this cycle on.
     output wire         result_strobe,
     // Last good position, bit 0 = LSB, zeros above its width. T-format: multi-turn in bits 47..24, single-turn in 23..0.
@@ -157,17 +157,17 @@ module s6_two_channel_snapshot (
         if (tick_us & !age_full) begin
             age_next = age + 16'd1;
         end
-        if (confirm & unconfirmed) begin
+        if (confirm_in & unconfirmed) begin
             age_next = 16'd0;
         end
     end
-    assign moment_wrong = good & !timed & (moment_sum ^ moment_parity);
-    assign take_good = publish & good & !moment_wrong;
-    assign take_back = withdraw & unconfirmed;
+    assign moment_wrong = good_in & !timed & (moment_sum ^ moment_parity);
+    assign take_good = publish_in & good_in & !moment_wrong;
+    assign take_back = withdraw_in & unconfirmed;
 
     always @* begin
         unconfirmed_next = unconfirmed;
-        if (confirm | take_back) begin
+        if (confirm_in | take_back) begin
             unconfirmed_next = 1'b0;
         end
         if (take_good) begin
@@ -207,8 +207,8 @@ module s6_two_channel_snapshot (
         parity_next = parity;
         cause_held_next = cause_held;
         flags_held_next = flags_held;
-        if (publish) begin
-            is_fresh_next = good & !moment_wrong;
+        if (publish_in) begin
+            is_fresh_next = good_in & !moment_wrong;
             count_next = count + 16'd1;
             received_next = crc_received_in;
             computed_next = crc_computed_in;
@@ -243,7 +243,7 @@ module s6_two_channel_snapshot (
             parity_next = earlier_parity;
             is_fresh_next = 1'b0;
         end
-        if (publish | late_fault) begin
+        if (publish_in | late_fault_in) begin
             cause_held_next = cause_in;
             flags_held_next = flags_in;
         end
@@ -253,7 +253,7 @@ module s6_two_channel_snapshot (
             cause_held_next = UPSET_CAUSE;
             flags_held_next = flags_held | UPSET_FLAG;
         end
-        if (publish & moment_wrong) begin
+        if (publish_in & moment_wrong) begin
             cause_held_next = UPSET_CAUSE;
             flags_held_next = flags_in | UPSET_FLAG;
         end
@@ -306,7 +306,7 @@ module s6_two_channel_snapshot (
             received <= 5'd0;
             computed <= 5'd0;
         end else begin
-            strobe <= publish;
+            strobe <= publish_in;
             loaded <= take_good;
             held <= held_next;
             held_crc <= held_crc_next;

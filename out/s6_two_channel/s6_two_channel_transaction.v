@@ -33,90 +33,90 @@ module s6_two_channel_transaction (
     input  wire         trigger,
     // Strobe: measure the propagation delay again with the next frame.
     input  wire         calibrate,
+    // The mode command is one that the core sends.
+    input  wire         is_known,
     // The data line.
     input  wire         level,
     // Strobe: the data line is sampled.
     input  wire         sample,
-    // Strobe: middle of the expected place of a data edge.
+    // Strobe: the middle of the expected place of a data edge.
     input  wire         center,
-    // The receiver waits for the start bit.
+    // The start bit may come now.
     input  wire         hunting,
+    // Strobe one cycle after sample: it was high, but its edge is outside the window.
+    input  wire         start_refused,
     // The start bit has been taken.
     input  wire         started,
-    // Strobe: a start bit outside its window.
-    input  wire         start_refused,
-    // Strobe: the answer without additional data has been taken.
-    input  wire         answer_done,
-    // Strobe: the answer with all that follows it has been taken, or the supplement is over.
-    input  wire         finished,
-    // The mode command of the next frame is one that the core sends.
-    input  wire         is_known,
-    // Settings of the frame are not what they were at its start.
-    input  wire         settings_upset,
-    // Serial CRC verdict.
-    input  wire         serial_ok,
-    // Parallel CRC verdict.
-    input  wire         parallel_ok,
-    // Error bit 1, high = alarm.
-    input  wire         f1,
-    // Error bit 2, low = alarm.
-    input  wire         f2,
-    // All clock pulses have been sent.
-    input  wire         no_pulse_left,
+    // All clock pulses have been sent, or are on their way to the pin.
+    input  wire         all_sent,
     // The cell of each pulse that was sent has ended.
     input  wire         none_under_way,
-    // This cell is the last one: all had their pulse, and every pulse its cell.
+    // The counts of cells and pulses agree that this cell is the last one.
     input  wire         all_used,
-    // There is none left, of either.
+    // They agree that there is none left.
     input  wire         all_ended,
+    // Strobe: payload, error bits, CRC and verdict of the answer without additional data are valid.
+    input  wire         done,
+    // Strobe: the answer with all its additional data, or the supplement, is complete.
+    input  wire         finished,
+    // Settings of the frame are not what they were at its start.
+    input  wire         settings_upset,
+    // Error bit 1, high = alarm.
+    input  wire         f1,
+    // Error bit 2, low = alarm; high in frames without it.
+    input  wire         f2,
+    // The serial register over the wire bits says the CRC is right.
+    input  wire         serial_ok,
+    // The stored word fits the received CRC, now.
+    input  wire         parallel_ok,
     // The tracked delay is not what was measured.
     input  wire         delay_upset,
-    // How much longer than half a period the first low phase is; 0, or at least 4 cycles.
+    // How much longer than half a period the first low phase is: 0, or at least 4 system clock cycles (tST).
     input  wire  [10:0] first_low_extra_cycles,
-    // Longest wait for the start bit after the turnaround.
+    // Longest wait for the start bit after the turnaround, in microseconds.
     input  wire  [11:0] start_timeout_us,
-    // Data must fall within this after the frame.
+    // Data must fall within this many system clock cycles after the frame.
     input  wire  [12:0] recovery_limit_cycles,
-    // One-cycle strobe: the first falling clock edge comes at the end of this cycle.
+    // One-cycle strobe: a frame begins; the first falling clock edge comes at the end of this cycle.
     output wire         start,
-    // A frame is under way on the wire.
-    output wire         run,
-    // Driver off, at once.
+    // The frame is given up: driver off at once, nothing is expected any more.
     output wire         aborts,
-    // Keeps the clock low.
-    output wire         hold_low,
-    // The clock waits for the cells of all pulses sent.
-    output wire         drain,
-    // Keeps the clock high: no frame, or all its edges have been sent.
-    output wire         stop,
-    // One-cycle strobe: the last cell has begun; the period may change with it.
-    output wire         last_cell,
+    // The frame measures the propagation delay: cells before the start bit are counted by clock edges.
+    output wire         acquire,
     // One-cycle strobe: the supplement begins.
     output wire         start_supplement,
-    // This frame measures the propagation delay.
-    output wire         acquire,
+    // A frame is under way on the wire; low between frames, where everything but the delay is forgotten.
+    output wire         run,
+    // The clock waits: when the cells of all pulses that were sent have ended, a new burst begins.
+    output wire         drain,
+    // One-cycle strobe: the last cell has begun. The next sample comes half a period after this, which may be that of another clock.
+    output wire         last_cell,
     // This frame runs at the calibration clock.
     output wire         slow,
+    // Keeps the clock low.
+    output wire         hold_low,
+    // Keeps the clock high: no frame, or all its edges have been sent.
+    output wire         stop,
     // A trigger would not be taken.
     output wire         busy,
     // Strobe: result of a trigger, cause and flags are valid.
     output wire         publish,
     // With publish: the position is good.
     output wire         good,
-    // Strobe: something was wrong after the result had been published.
+    // Strobe: something was wrong after the result was published; cause and flags replace those of the result.
     output wire         late_fault,
-    // Strobe: the published position is not good after all.
+    // Strobe: the published position is not good after all; the one before comes back.
     output wire         withdraw,
-    // Strobe: the published position stands.
+    // Strobe: the published position stands, nothing can withdraw it any more.
     output wire         confirm,
+    // Primary cause, with publish, late_fault or the end of a frame.
+    output wire   [4:0] cause,
+    // Raw flags, see flag.
+    output wire  [19:0] flags,
     // No frame is under way, and all that there is to tell of the last one has been told.
     output wire         is_at_rest,
     // Strobe: a trigger has been lost.
     output wire         displaced,
-    // Primary cause, with publish, late_fault or over.
-    output wire   [4:0] cause,
-    // Raw flags, see flag.
-    output wire  [19:0] flags,
     // Recovery time tm of the last frame, in system clock cycles.
     output wire  [12:0] recovery_cycles
 );
@@ -223,7 +223,7 @@ module s6_two_channel_transaction (
         .clock(clock),
         .reset(reset),
         .start(accept),
-        .no_pulse_left(no_pulse_left),
+        .no_pulse_left(all_sent),
         .none_under_way(none_under_way),
         .started(started),
         .running(running),
@@ -249,10 +249,10 @@ module s6_two_channel_transaction (
         .refuse(refuse),
         .normal_end(normal_end),
         .lost(lost),
-        .serial_ok(serial_ok),
-        .parallel_ok(parallel_ok),
         .f1(f1),
         .f2(f2),
+        .serial_ok(serial_ok),
+        .parallel_ok(parallel_ok),
         .taken(verdict_taken),
         .is_pending(verdict_is_pending),
         .is_received(verdict_is_received),
@@ -260,14 +260,14 @@ module s6_two_channel_transaction (
         .gave_up(aborts),
         .is_telling(verdict_is_telling),
         .publish(publish),
-        .once_more(verdict_once_more),
         .good(good),
         .late_fault(late_fault),
         .withdraw(withdraw),
         .confirm(confirm),
-        .displaced(displaced),
         .cause(cause),
-        .flags(flags)
+        .flags(flags),
+        .once_more(verdict_once_more),
+        .displaced(displaced)
     );
 
     assign triggered = trigger;
@@ -378,7 +378,7 @@ module s6_two_channel_transaction (
                     found = START_WINDOW;
                     give_up = 1'b1;
                 end
-                if (answer_done) begin
+                if (done) begin
                     answer_taken = 1'b1;
                 end
                 if (finished) begin
@@ -616,7 +616,6 @@ module s6_two_channel_transaction (
     localparam         HAS_DIAGNOSIS = 1'b0;
     localparam         HAS_CONTINUOUS = 1'b0;
     wire [0:0] is_own = 1'd0;
-    wire [0:0] again = 1'd0;
     wire [0:0] own = 1'd0;
     wire [0:0] announce = 1'd0;
     wire [0:0] found_late = 1'd0;

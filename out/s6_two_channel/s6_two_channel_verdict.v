@@ -38,14 +38,14 @@ module s6_two_channel_verdict (
     input  wire         normal_end,
     // Strobe: a trigger has been lost.
     input  wire         lost,
-    // Serial CRC verdict.
-    input  wire         serial_ok,
-    // Parallel CRC verdict.
-    input  wire         parallel_ok,
     // Error bit 1, high = alarm.
     input  wire         f1,
-    // Error bit 2, low = alarm.
+    // Error bit 2, low = alarm; high in frames without it.
     input  wire         f2,
+    // The serial register over the wire bits says the CRC is right.
+    input  wire         serial_ok,
+    // The stored word fits the received CRC, now.
+    input  wire         parallel_ok,
     // Strobe: answer_taken, a cycle later.
     output wire         taken,
     // An answer has been taken, and not been published yet.
@@ -60,22 +60,22 @@ module s6_two_channel_verdict (
     output wire         is_telling,
     // Strobe: result of a trigger, cause and flags are valid.
     output wire         publish,
-    // Strobe, instead of publish: the delay is measured, now the position itself.
-    output wire         once_more,
     // With publish: the position is good.
     output wire         good,
-    // Strobe: something was wrong after the result was published.
+    // Strobe: something was wrong after the result was published; cause and flags replace those of the result.
     output wire         late_fault,
-    // Strobe: and its position is not good after all.
+    // Strobe: the published position is not good after all; the one before comes back.
     output wire         withdraw,
-    // Strobe: the published position stands.
+    // Strobe: the published position stands, nothing can withdraw it any more.
     output wire         confirm,
-    // Strobe: a trigger has been lost.
-    output wire         displaced,
-    // Primary cause, with publish, late_fault or over.
+    // Primary cause, with publish, late_fault or the end of a frame.
     output wire   [4:0] cause,
     // Raw flags, see flag.
-    output wire  [19:0] flags
+    output wire  [19:0] flags,
+    // Strobe, instead of publish: the delay is measured, now the position itself.
+    output wire         once_more,
+    // Strobe: a trigger has been lost.
+    output wire         displaced
 );
     localparam  [19:0] POSSIBLE = 20'h80647;
     localparam  [19:0] CRC_WRONG = 20'd8;
@@ -85,7 +85,7 @@ module s6_two_channel_verdict (
     localparam  [19:0] TRIGGER_OVERRUN = 20'd128;
     localparam  [19:0] STORED_UPSET = 20'h80000;
 
-    reg   [19:0] told;
+    reg   [19:0] found_all;
     wire         crc_bad;
     wire         bad_now;
     wire         proven;
@@ -144,26 +144,26 @@ module s6_two_channel_verdict (
     assign measured = proven & is_measuring & !bad_now & !upset;
 
     always @* begin
-        told = seen;
+        found_all = seen;
         if (proven | (is_pending & gave_up_now)) begin
             if (crc_bad) begin
-                told = told | CRC_WRONG;
+                found_all = found_all | CRC_WRONG;
             end
             if (f1) begin
-                told = told | F1_SET;
+                found_all = found_all | F1_SET;
             end
             if (!f2) begin
-                told = told | F2_CLEAR;
+                found_all = found_all | F2_CLEAR;
             end
             if (!parallel_ok) begin
-                told = told | PARALLEL_WRONG;
+                found_all = found_all | PARALLEL_WRONG;
             end
         end
         if (upset | (gave_up_now & !(|seen))) begin
-            told = told | STORED_UPSET;
+            found_all = found_all | STORED_UPSET;
         end
         if (overrun & !measured) begin
-            told = told | TRIGGER_OVERRUN;
+            found_all = found_all | TRIGGER_OVERRUN;
         end
     end
 
@@ -171,7 +171,7 @@ module s6_two_channel_verdict (
         flags_now_next = flags_now;
         overrun_next = overrun;
         if (proven | gave_up_now | refused) begin
-            flags_now_next = told;
+            flags_now_next = found_all;
             if (!measured) begin
                 overrun_next = 1'b0;
             end

@@ -118,9 +118,9 @@ fn second_receivers_agree_in_three_ways() {
     block.connect_all();
     let design = elaborate(&block, "second_receiver").unwrap();
     let mut kernel = kernel_engine!(block; clock;
-        in reset, start, aborts, acquire, rise, pulse, sample, level, edge_in_window, look, start_supplement, going_on, payload_bits, has_f1, has_f2,
-        has_parameter, has_supplement, infos, command, skipping, hunting, started, all_sent, none_under_way, all_ended, done, info_done, separated,
-        finished, gap_good, latched, payload, f1, f2, crc_received, serial_ok, parallel_ok, forced, good, cause, flags;
+        in reset, control.start, control.aborts, control.acquire, rise, cells.pulse, cells.sample, level, cells.edge_in_window, look, control.start_supplement, control.going_on, payload_bits, shape.has_f1, shape.has_f2,
+        shape.has_parameter, shape.has_supplement, infos, command, progress.skipping, progress.hunting, progress.started, progress.all_sent, progress.none_under_way, progress.all_ended, progress.done, progress.info_done, progress.separated,
+        progress.finished, progress.gap_good, progress.latched, payload, check.f1, check.f2, crc_received, check.serial_ok, check.parallel_ok, forced, good, cause, flags;
         out differs, good_told, cause_told, flags_told);
     let mut rng = Rng::new(11);
     let engine = Compiled::new(&design).unwrap();
