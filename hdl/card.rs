@@ -22,7 +22,7 @@ use crate::config::CardConfig;
 use crate::direct::DirectOutput;
 use crate::encoder_port::EncoderPort;
 use crate::interrupt::Interrupt;
-use crate::ports::*;
+use crate::ports::{AdditionalDataOut, FrameResultOut, PortSettingsOut};
 use crate::recovery_counter::RecoveryCounter;
 use crate::register_bank::RegisterBank;
 use crate::second_interface::{record::SecondRecord, SecondInterface};
@@ -35,6 +35,7 @@ use crate::whole_result::WholeResult;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
+use self::ports::{AccessIn, PushOut};
 use parts::{blink_bit, channel_triggers, port, served_channels};
 
 pub use parts::{bare_port, service_times, services};
@@ -51,38 +52,12 @@ pub struct CardCore {
     pub trigger_i: Signal<In, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<Out, Bit>,
-    /// Word address of an access, constant from `access` to `done`.
-    pub word_address: Signal<In, Bits<11>>,
-    /// The front's address fits `word_address`; otherwise a read gives 0 and a write does nothing.
-    pub in_range: Signal<In, Bit>,
-    /// Byte of the word, 0 = most significant; 0 in a write.
-    pub lane: Signal<In, Bits<2>>,
-    /// One-cycle strobe: begin an access, with the address stable since the cycle before.
-    pub access: Signal<In, Bit>,
-    /// With `access`: write a word; low = read a byte.
-    pub write: Signal<In, Bit>,
-    /// Word to write; moves up by a byte in each cycle with `take_byte`.
-    pub write_data: Signal<In, Bits<32>>,
-    /// The host is reading: results must not change.
-    pub reading: Signal<In, Bit>,
-    /// A byte of the configuration word passes, most significant first: in a write it is replaced by that of `write_data`.
-    pub take_byte: Signal<Out, Bit>,
-    /// With `take_byte`: the byte that stood there.
-    pub passing_byte: Signal<Out, Bits<8>>,
-    /// Byte that was read, from `done` to the next `access`.
-    pub read_byte: Signal<Out, Bits<8>>,
-    /// One-cycle strobe: the access has ended.
-    pub done: Signal<Out, Bit>,
-    /// Frames of the stream are to be pushed; low without a stream.
-    pub push: Signal<Out, Bit>,
-    /// A frame is being pushed: its first byte has been taken, its last one has not.
-    pub in_frame: Signal<Out, Bit>,
-    /// `push_byte` is the next byte to push.
-    pub push_valid: Signal<Out, Bit>,
-    /// The next byte.
-    pub push_byte: Signal<Out, Bits<8>>,
-    /// Strobe, with `push_valid` only: the byte is taken.
-    pub push_take: Signal<In, Bit>,
+    /// A front's access to the register bank.
+    #[bundle]
+    pub front: AccessIn,
+    /// Frames of the stream that are sent without being asked for; all low without a stream.
+    #[bundle]
+    pub pushed: PushOut,
     /// Cropped position of the channel, for logic in the same device.
     pub direct_position_o: Vec<Signal<Out, Bits<32>>>,
     /// The cropped position is that of the last result.
@@ -235,10 +210,7 @@ impl Logic for CardCore {
         }
 
         self.tick_us.next = self.timebase.tick_us.val();
-        connect!(self <= self.bank; take_byte, passing_byte, read_byte, done);
-        connect!(self.bank <= self;
-            word_address, in_range, lane, access, write, write_data, reading
-        );
+        AccessIn::link(&mut self.front, &mut self.bank.front);
         self.bank.trigger_count.next = self.trigger.trigger_count.val();
 
         // From the first channel to the last: read bytes and "some channel" signals. The ring runs the other way.
@@ -259,15 +231,15 @@ impl Logic for CardCore {
             PortSettingsOut::join(&mut self.registers[i].settings, &mut self.port[i].settings);
             connect!(self.port[i] <= self.registers[i]; request_id, field_gap_us);
 
-            connect!(self.port[i].window <= self.bank;
+            connect!(self.port[i].window <= self.bank.service;
                 host_address = service_address, host_line = service_line,
                 host_half = service_half, host_data = service_data
             );
-            self.port[i].window.host_read.next = self.bank.service_read.val().get_bit(i);
-            self.port[i].window.host_write.next = self.bank.service_write.val().get_bit(i);
+            self.port[i].window.host_read.next = self.bank.service.service_read.val().get_bit(i);
+            self.port[i].window.host_write.next = self.bank.service.service_write.val().get_bit(i);
             // A word that is not asked for is 0.
             self.selected[i].next = 0.into();
-            if self.bank.service_channels.val().get_bit(i) {
+            if self.bank.service.service_channels.val().get_bit(i) {
                 self.selected[i].next = self.port[i].window.host_word.val();
             }
             self.service_link[i + 1].next = self.service_link[i].val() | self.selected[i].val();
@@ -279,7 +251,7 @@ impl Logic for CardCore {
             connect!(self.registers[i] <= self.port[i]; busy, recovery_cycles, delay_cycles);
 
             connect!(self.registers[i] <= self.bank; load, show, word_skip);
-            self.registers[i].lane.next = self.lane.val();
+            self.registers[i].lane.next = self.front.lane.val();
             self.registers[i].skip.next = self.bank.channel_skip.val().get_bit(i);
             self.registers[i].read_in.next = self.read_link[i].val();
             self.read_link[i + 1].next = self.registers[i].read_out.val();
@@ -317,7 +289,7 @@ impl Logic for CardCore {
         }
 
         // Services, each for two channels; the last one may have one only. A word that was not asked for is 0.
-        self.in_service.next = !self.bank.service_line.val();
+        self.in_service.next = !self.bank.service.service_line.val();
         for i in 0..self._served {
             self.port[i].io_address[0].next = self.io_address[i].val();
             self.port[i].io_out[0].next = self.io_out[i].val();
@@ -335,20 +307,33 @@ impl Logic for CardCore {
             self.service[i].io_in[0].next = self.io_in[2 * i].val();
             self.io_read[2 * i].next = self.service[i].io_read[0].val();
             self.io_write[2 * i].next = self.service[i].io_write[0].val();
-            self.service[i].host_address.next = self.bank.service_address.val();
-            self.service[i].host_second.next = self.bank.service_channels.val().get_bit(2 * i + 1);
-            self.service[i].host_read.next =
-                self.in_service.val() & self.bank.service_read.val().get_bits::<2>(2 * i).any();
-            self.service[i].host_clear.next = self.bank.service_clear.val();
-            self.service[i].host_write.next =
-                self.in_service.val() & self.bank.service_write.val().get_bits::<2>(2 * i).any();
-            connect!(self.service[i] <= self.bank;
+            self.service[i].host_address.next = self.bank.service.service_address.val();
+            self.service[i].host_second.next =
+                self.bank.service.service_channels.val().get_bit(2 * i + 1);
+            self.service[i].host_read.next = self.in_service.val()
+                & self
+                    .bank
+                    .service
+                    .service_read
+                    .val()
+                    .get_bits::<2>(2 * i)
+                    .any();
+            self.service[i].host_clear.next = self.bank.service.service_clear.val();
+            self.service[i].host_write.next = self.in_service.val()
+                & self
+                    .bank
+                    .service
+                    .service_write
+                    .val()
+                    .get_bits::<2>(2 * i)
+                    .any();
+            connect!(self.service[i] <= self.bank.service;
                 host_half = service_half, host_data = service_data
             );
             self.word_link[i + 1].next = self.word_link[i].val() | self.service[i].host_word.val();
         }
         for i in self._services..self._service_links {
-            self.bank.service_word.next = self.word_link[i].val();
+            self.bank.service.service_word.next = self.word_link[i].val();
         }
         for i in 0..self._pairs {
             self.service[i].io_in[1].next = self.io_in[2 * i + 1].val();
@@ -358,10 +343,10 @@ impl Logic for CardCore {
 
         // The stream, and each channel's place in a set.
         self.part_byte[0].next = 0.into();
-        self.push.next = false;
-        self.in_frame.next = false;
-        self.push_valid.next = false;
-        self.push_byte.next = 0.into();
+        self.pushed.push.next = false;
+        self.pushed.in_frame.next = false;
+        self.pushed.push_valid.next = false;
+        self.pushed.push_byte.next = 0.into();
         for i in 0..self._streams {
             connect!(self.stream[i] <= self; clock = clk_i, reset = rst_i);
             connect!(self.stream[i] <= self.trigger; trigger, trigger_count);
@@ -374,13 +359,12 @@ impl Logic for CardCore {
             self.set_byte_at[i].next = self.stream[i].byte_at.val();
             self.stream[i].selected.next = self.bank.stream_selected.val();
             self.stream[i].word.next = self.bank.address.val().get_bits::<2>(0);
-            self.stream[i].lane.next = self.lane.val();
+            self.stream[i].lane.next = self.front.lane.val();
             self.stream[i].access.next = self.bank.begins.val();
-            self.stream[i].write.next = self.write.val();
-            self.stream[i].write_data.next = self.write_data.val().get_bits::<2>(0);
+            self.stream[i].write.next = self.front.write.val();
+            self.stream[i].write_data.next = self.front.write_data.val().get_bits::<2>(0);
             self.part_byte[0].next = self.stream[i].read_byte.val();
-            connect!(self <= self.stream[i]; push, in_frame, push_valid, push_byte);
-            self.stream[i].push_take.next = self.push_take.val();
+            PushOut::link(&mut self.pushed, &mut self.stream[i].pushed);
         }
         for i in 0..self._sets {
             connect!(self.set[i] <= self; clock = clk_i, reset = rst_i);
@@ -404,13 +388,14 @@ impl Logic for CardCore {
         }
 
         // Outputs within the device.
-        self.part_write.next = self.bank.begins.val() & self.write.val();
+        self.part_write.next = self.bank.begins.val() & self.front.write.val();
         for i in 0..self._directs {
             connect!(self.direct[i] <= self; clock = clk_i, reset = rst_i);
             connect!(self.direct[i] <= self.port[i].result; result_strobe, position, fresh, cause);
             self.direct[i].alarm.next = self.port[i].alarm.val();
             connect!(self.direct[i] <= self.bank; word_address = address, in_range = is_inside);
-            connect!(self.direct[i] <= self; lane, write = part_write, write_data);
+            connect!(self.direct[i] <= self.front; lane, write_data);
+            self.direct[i].write.next = self.part_write.val();
             self.direct_byte[i].next =
                 self.direct_byte[i + 1].val() | self.direct[i].read_byte.val();
         }
@@ -428,7 +413,8 @@ impl Logic for CardCore {
         for i in 0..self._interrupts {
             connect!(self.interrupt[i] <= self; clock = clk_i, reset = rst_i);
             connect!(self.interrupt[i] <= self.bank; word_address = address, in_range = is_inside);
-            connect!(self.interrupt[i] <= self; lane, write = part_write, write_data);
+            connect!(self.interrupt[i] <= self.front; lane, write_data);
+            self.interrupt[i].write.next = self.part_write.val();
             self.part_byte[1].next = self.interrupt[i].read_byte.val();
             self.irq_o.next = self.interrupt[i].irq.val();
         }
@@ -445,7 +431,7 @@ impl Logic for CardCore {
             connect!(self.recovery[i] <= self.port[i].line; endat_clk, data_oe);
             self.recovery[i].data_i.next = self.endat_data_i[i].val();
             connect!(self.recovery[i] <= self.bank; word_address = address, in_range = is_inside);
-            self.recovery[i].lane.next = self.lane.val();
+            self.recovery[i].lane.next = self.front.lane.val();
             self.recovery_byte[i].next =
                 self.recovery_byte[i + 1].val() | self.recovery[i].read_byte.val();
         }
@@ -470,7 +456,7 @@ impl Logic for CardCore {
             connect!(self.whole[i] <= self.bank;
                 load, word_address = address, in_range = is_inside
             );
-            self.whole[i].lane.next = self.lane.val();
+            self.whole[i].lane.next = self.front.lane.val();
             self.info_byte[i].next = self.info_byte[i + 1].val() | self.whole[i].read_byte.val();
         }
         for i in 0..self._info_interrupts {
@@ -575,6 +561,7 @@ impl Logic for CardCore {
 
 mod build;
 mod parts;
+pub mod ports;
 #[cfg(test)]
 mod tests;
 pub(crate) mod top;

@@ -254,6 +254,7 @@ impl Logic for EncoderPort {
             self.end.over_cause.next = 0.into();
             self.end.over_flags.next = 0.into();
             self.reply.next = 0.into();
+            self.end.answer.next = 0.into();
             self.end.reply_good.next = false;
             self.record.info_active.next = 0.into();
             self.record.info_1.next = 0.into();

@@ -19,6 +19,7 @@
 //! end. For a host that reads in step with the triggers, so that there never is a moment between two reads in which the words may follow,
 //! they follow as the read begins, if the second trigger has come by then. See `docs/host-link.md`.
 
+use crate::card::ports::{AccessIn, ServiceWordsOut};
 use crate::config::CardConfig;
 use crate::config_ring::{ConfigRing, RING_BYTES};
 use crate::regs::{config_words, start, CARD};
@@ -34,34 +35,15 @@ pub struct RegisterBank {
     pub clock: Signal<In, Clock>,
     /// Synchronous reset.
     pub reset: Signal<In, Bit>,
-    /// Word address; what stood there in the cycle before `access` counts until `done`.
-    pub word_address: Signal<In, Bits<11>>,
-    /// The address fits `word_address`; otherwise a read gives 0 and a write does nothing. It counts like the address.
-    pub in_range: Signal<In, Bit>,
-    /// Byte of the word, 0 = most significant.
-    pub lane: Signal<In, Bits<2>>,
-    /// One-cycle strobe: begin an access, with the address stable since the cycle before. Before `done` of the last one it does nothing.
-    pub access: Signal<In, Bit>,
+    /// A front's access to the register bank.
+    #[bundle]
+    pub front: AccessIn,
     /// One-cycle strobe: the access begins, in the cycle of `access`.
     pub begins: Signal<Out, Bit>,
     /// Word address of the access that begins or is being carried out.
     pub address: Signal<Out, Bits<11>>,
     /// Its `in_range`.
     pub is_inside: Signal<Out, Bit>,
-    /// With `access`: write a word; low = read a byte.
-    pub write: Signal<In, Bit>,
-    /// Word to write.
-    pub write_data: Signal<In, Bits<32>>,
-    /// A byte of the configuration word passes the head, most significant first: in a write that of `write_data` replaces it.
-    pub take_byte: Signal<Out, Bit>,
-    /// With `take_byte`: the byte that stood there.
-    pub passing_byte: Signal<Out, Bits<8>>,
-    /// Byte that was read, from `done` to the next `access`.
-    pub read_byte: Signal<Out, Bits<8>>,
-    /// One-cycle strobe: the access has ended.
-    pub done: Signal<Out, Bit>,
-    /// The host is reading: results must not change.
-    pub reading: Signal<In, Bit>,
     /// Strobe: a channel takes a trigger.
     pub taken: Signal<In, Bit>,
     /// A channel owes a result of the last trigger that was taken.
@@ -88,24 +70,9 @@ pub struct RegisterBank {
     pub ring_out: Signal<Out, Bits<9>>,
     /// The card's own settings are not what was written.
     pub is_damaged: Signal<Out, Bit>,
-    /// The word is one of a line monitor or a T-format port, not of a service.
-    pub service_line: Signal<Out, Bit>,
-    /// Word of a service's RAM, a line monitor or a T-format port.
-    pub service_address: Signal<Out, Bits<7>>,
-    /// The channel that it belongs to, one bit per channel.
-    pub service_channels: Signal<Out, Bits<8>>,
-    /// Strobe: an access begins; the word that was read before is not asked for any more.
-    pub service_clear: Signal<Out, Bit>,
-    /// Strobe, one bit per channel: read it.
-    pub service_read: Signal<Out, Bits<8>>,
-    /// The word read.
-    pub service_word: Signal<In, Bits<32>>,
-    /// Strobe, one bit per channel: write one half of it; the high one comes first.
-    pub service_write: Signal<Out, Bits<8>>,
-    /// The half: 1 = high.
-    pub service_half: Signal<Out, Bit>,
-    /// What is written.
-    pub service_data: Signal<Out, Bits<16>>,
+    /// Words that are not the bank's own.
+    #[bundle]
+    pub service: ServiceWordsOut,
     /// The word is one of the stream's four.
     pub stream_selected: Signal<Out, Bit>,
     /// Byte that was read from the words of stream, direct outputs and interrupt; 0 if it is none of them.
@@ -269,10 +236,10 @@ impl Logic for RegisterBank {
 
         // What an access is stands from its begin to its end, whatever the front shows.
         self.busy.next = self.turning.q.val() | self.ended.q.val();
-        self.starts.next = self.access.val() & !self.busy.val();
+        self.starts.next = self.front.access.val() & !self.busy.val();
         if !self.busy.val() {
-            self.held_address.d.next = self.word_address.val();
-            self.held_inside.d.next = self.in_range.val();
+            self.held_address.d.next = self.front.word_address.val();
+            self.held_inside.d.next = self.front.in_range.val();
         }
         self.begins.next = self.starts.val();
         self.address.next = self.held_address.q.val();
@@ -286,8 +253,9 @@ impl Logic for RegisterBank {
         self.at_end.next = self.block_end.val() & (self.block_at.q.val() == self.last_block.val());
         if !self.whole_turn.val() {
             // The first byte of a RAM word waits for the RAM.
-            self.at_end.next =
-                self.service_skip.q.val() | self.lane.val().any() | (self.byte_at.q.val() == 9);
+            self.at_end.next = self.service_skip.q.val()
+                | self.front.lane.val().any()
+                | (self.byte_at.q.val() == 9);
         }
         if self.turning.q.val() {
             self.byte_at.d.next = self.byte_at.q.val() + 1;
@@ -304,24 +272,25 @@ impl Logic for RegisterBank {
         }
         if self.starts.val() {
             self.turning.d.next = true;
-            self.write_now.d.next = self.write.val();
+            self.write_now.d.next = self.front.write.val();
         }
         self.turn.d.next = self.turning.q.val() & self.whole_turn.val();
         self.ended.d.next = self.turning.q.val() & self.at_end.val();
         self.done_now.d.next = self.ended.q.val();
         self.ring_turn.next = self.turn.q.val();
         self.ring_home.next = !self.turn.q.val();
-        self.done.next = self.done_now.q.val();
+        self.front.done.next = self.done_now.q.val();
 
-        self.low_page.next = self.in_range.val() & !self.word_address.val().get_bits::<2>(9).any();
-        self.low_address.next = self.word_address.val().get_bits::<9>(0);
+        self.low_page.next =
+            self.front.in_range.val() & !self.front.word_address.val().get_bits::<2>(9).any();
+        self.low_address.next = self.front.word_address.val().get_bits::<9>(0);
 
         // Configuration: the ring carries 3 of the 8 words that a block has room for.
         if !self.busy.val() {
             self.config_page.d.next = self.low_page.val()
-                & self.word_address.val().get_bit(8)
-                & !self.word_address.val().get_bit(7)
-                & !self.word_address.val().get_bit(2);
+                & self.front.word_address.val().get_bit(8)
+                & !self.front.word_address.val().get_bit(7)
+                & !self.front.word_address.val().get_bit(2);
         }
         self.at_word.next = self.turning.q.val()
             & self.config_page.q.val()
@@ -329,8 +298,8 @@ impl Logic for RegisterBank {
             & (self.byte_at.q.val().get_bits::<2>(2) == self.held_address.q.val().get_bits::<2>(0));
         self.passes.d.next = self.at_word.val();
         self.byte_passes.d.next =
-            self.at_word.val() & (self.byte_at.q.val().get_bits::<2>(0) == self.lane.val());
-        self.written.next = self.write_data.val().get_bits::<8>(24);
+            self.at_word.val() & (self.byte_at.q.val().get_bits::<2>(0) == self.front.lane.val());
+        self.written.next = self.front.write_data.val().get_bits::<8>(24);
         self.head.next = self.ring.byte_out.val();
         if self.passes.q.val() & self.write_now.q.val() {
             self.head.next = bit_cast::<9, 8>(self.written.val())
@@ -342,17 +311,18 @@ impl Logic for RegisterBank {
         if self.starts.val() {
             self.ring_byte.d.next = 0.into();
         }
-        self.take_byte.next = self.passes.q.val();
-        self.passing_byte.next = self.ring.byte_out.val().get_bits::<8>(0);
+        self.front.take_byte.next = self.passes.q.val();
+        self.front.passing_byte.next = self.ring.byte_out.val().get_bits::<8>(0);
         self.ring.turn.next = self.turn.q.val();
         self.ring.byte_in.next = self.ring_in.val();
         self.ring_out.next = self.head.val();
         self.is_damaged.next = self.ring.is_damaged.val();
 
         // The card's own words.
-        self.card_page.next = self.low_page.val() & !self.word_address.val().get_bits::<5>(4).any();
+        self.card_page.next =
+            self.low_page.val() & !self.front.word_address.val().get_bits::<5>(4).any();
         self.stream_selected.next =
-            self.card_page.val() & self.word_address.val().get_bits::<2>(2).all();
+            self.card_page.val() & self.front.word_address.val().get_bits::<2>(2).all();
         self.rom_word.next = 0.into();
         match self.held_address.q.val().get_bits::<3>(0).index() {
             0 => {
@@ -375,7 +345,7 @@ impl Logic for RegisterBank {
             }
             _ => {}
         }
-        match self.lane.val().index() {
+        match self.front.lane.val().index() {
             0 => {
                 self.rom_byte.d.next = self.rom_word.val().get_bits::<8>(24);
                 self.count_byte.d.next = self.count_held.q.val().get_bits::<8>(24);
@@ -393,16 +363,17 @@ impl Logic for RegisterBank {
                 self.count_byte.d.next = self.count_held.q.val().get_bits::<8>(0);
             }
         }
-        self.rom_skip.d.next = !self.card_page.val() | self.word_address.val().get_bit(3);
+        self.rom_skip.d.next = !self.card_page.val() | self.front.word_address.val().get_bit(3);
         self.count_skip.d.next =
             !self.low_page.val() | (self.low_address.val() != self.trigger_count_at.val());
-        self.strobe.next = self.starts.val() & self.write.val() & self.low_page.val();
+        self.strobe.next = self.starts.val() & self.front.write.val() & self.low_page.val();
         self.trigger_strobe.d.next = self.strobe.val()
             & (self.low_address.val() == self.trigger_now_at.val())
-            & self.write_data.val().get_bit(0);
+            & self.front.write_data.val().get_bit(0);
         self.calibrate_strobe.d.next = 0.into();
         if self.strobe.val() & (self.low_address.val() == self.calibrate_at.val()) {
-            self.calibrate_strobe.d.next = field!(self.write_data.val(), card.calibrate.channels);
+            self.calibrate_strobe.d.next =
+                field!(self.front.write_data.val(), card.calibrate.channels);
         }
         self.trigger_now.next = self.trigger_strobe.q.val();
         self.calibrate.next = self.calibrate_strobe.q.val();
@@ -418,14 +389,14 @@ impl Logic for RegisterBank {
         self.restart.next = self.done_now.q.val()
             & self.write_now.q.val()
             & self.config_page.q.val()
-            & !self.word_address.val().get_bits::<2>(0).any();
+            & !self.front.word_address.val().get_bits::<2>(0).any();
         self.period_cycles.next = self.active_period.q.val();
 
         // Results.
         // Reading blocks a cycle late: the first byte is read later still.
-        self.read_before.d.next = self.reading.val();
+        self.read_before.d.next = self.front.reading.val();
         self.show.next = !self.read_before.q.val();
-        self.blocked_now.next = self.reading.val() | self.hold.q.val();
+        self.blocked_now.next = self.front.reading.val() | self.hold.q.val();
         self.blocked.d.next = self.blocked_now.val();
         self.mixed_now.next = self.owes.val() & (self.brought.val() | self.mixed.q.val());
         self.mixed.d.next = self.mixed_now.val() & !self.taken.val();
@@ -444,9 +415,9 @@ impl Logic for RegisterBank {
             self.count_held.d.next = self.trigger_count.val();
         }
         self.result_page.next =
-            self.low_page.val() & self.word_address.val().get_bits::<2>(7).all();
+            self.low_page.val() & self.front.word_address.val().get_bits::<2>(7).all();
         self.skipped_words.d.next = 63.into();
-        match self.word_address.val().get_bits::<3>(0).index() {
+        match self.front.word_address.val().get_bits::<3>(0).index() {
             0 => {
                 self.skipped_words.d.next = 62.into();
             }
@@ -469,7 +440,7 @@ impl Logic for RegisterBank {
         }
         self.skipped_channels.d.next = 255.into();
         if self.result_page.val() {
-            match self.word_address.val().get_bits::<4>(3).index() {
+            match self.front.word_address.val().get_bits::<4>(3).index() {
                 0 => {
                     self.skipped_channels.d.next = 254.into();
                 }
@@ -502,27 +473,28 @@ impl Logic for RegisterBank {
 
         // Services: 128 words each, from 0x400 on. A word is read whole with its first byte, and written in two halves, one
         // block of the ring after the other.
-        self.service_page.next =
-            self.has_service.val() & self.in_range.val() & self.word_address.val().get_bit(10);
+        self.service_page.next = self.has_service.val()
+            & self.front.in_range.val()
+            & self.front.word_address.val().get_bit(10);
         // Line monitors: 64 words each, from 0x200 on, in the same way.
         self.line_page.next = self.has_line.val()
-            & self.in_range.val()
-            & !self.word_address.val().get_bit(10)
-            & self.word_address.val().get_bit(9);
+            & self.front.in_range.val()
+            & !self.front.word_address.val().get_bit(10)
+            & self.front.word_address.val().get_bit(9);
         // T-format ports: 8 words each, from 0x0C0 on, in the same way.
         self.t_format_page.next = self.has_t_format.val()
             & self.low_page.val()
-            & !self.word_address.val().get_bit(8)
-            & self.word_address.val().get_bits::<2>(6).all();
+            & !self.front.word_address.val().get_bit(8)
+            & self.front.word_address.val().get_bits::<2>(6).all();
         self.word_page.next =
             self.service_page.val() | self.line_page.val() | self.t_format_page.val();
-        self.service_line.next = self.line_selected.q.val();
-        self.service_channel.next = self.word_address.val().get_bits::<3>(7);
+        self.service.service_line.next = self.line_selected.q.val();
+        self.service_channel.next = self.front.word_address.val().get_bits::<3>(7);
         if self.line_page.val() {
-            self.service_channel.next = self.word_address.val().get_bits::<3>(6);
+            self.service_channel.next = self.front.word_address.val().get_bits::<3>(6);
         }
         if self.t_format_page.val() {
-            self.service_channel.next = self.word_address.val().get_bits::<3>(3);
+            self.service_channel.next = self.front.word_address.val().get_bits::<3>(3);
         }
         self.selected.next = 0.into();
         if self.word_page.val() {
@@ -563,37 +535,37 @@ impl Logic for RegisterBank {
             }
         }
         self.service_first.d.next = self.starts.val();
-        self.service_address.next = self.held_address.q.val().get_bits::<7>(0);
-        self.service_channels.next = self.service_selected.q.val();
-        self.service_clear.next = self.service_first.q.val() & !self.lane.val().any();
-        self.service_read.next = 0.into();
-        if self.service_first.q.val() & !self.write_now.q.val() & !self.lane.val().any() {
-            self.service_read.next = self.service_selected.q.val();
+        self.service.service_address.next = self.held_address.q.val().get_bits::<7>(0);
+        self.service.service_channels.next = self.service_selected.q.val();
+        self.service.service_clear.next = self.service_first.q.val() & !self.front.lane.val().any();
+        self.service.service_read.next = 0.into();
+        if self.service_first.q.val() & !self.write_now.q.val() & !self.front.lane.val().any() {
+            self.service.service_read.next = self.service_selected.q.val();
         }
-        self.service_write.next = 0.into();
-        self.service_half.next = !self.block_at.q.val().any();
+        self.service.service_write.next = 0.into();
+        self.service.service_half.next = !self.block_at.q.val().any();
         if self.write_now.q.val()
             & (self.service_first.q.val()
                 | ((self.block_at.q.val() == 1) & !self.byte_at.q.val().any()))
         {
-            self.service_write.next = self.service_selected.q.val();
+            self.service.service_write.next = self.service_selected.q.val();
         }
-        self.service_data.next = self.write_data.val().get_bits::<16>(0);
-        if self.service_half.val() {
-            self.service_data.next = self.write_data.val().get_bits::<16>(16);
+        self.service.service_data.next = self.front.write_data.val().get_bits::<16>(0);
+        if self.service.service_half.val() {
+            self.service.service_data.next = self.front.write_data.val().get_bits::<16>(16);
         }
-        match self.lane.val().index() {
+        match self.front.lane.val().index() {
             0 => {
-                self.service_byte.d.next = self.service_word.val().get_bits::<8>(24);
+                self.service_byte.d.next = self.service.service_word.val().get_bits::<8>(24);
             }
             1 => {
-                self.service_byte.d.next = self.service_word.val().get_bits::<8>(16);
+                self.service_byte.d.next = self.service.service_word.val().get_bits::<8>(16);
             }
             2 => {
-                self.service_byte.d.next = self.service_word.val().get_bits::<8>(8);
+                self.service_byte.d.next = self.service.service_word.val().get_bits::<8>(8);
             }
             _ => {
-                self.service_byte.d.next = self.service_word.val().get_bits::<8>(0);
+                self.service_byte.d.next = self.service.service_word.val().get_bits::<8>(0);
             }
         }
 
@@ -603,6 +575,6 @@ impl Logic for RegisterBank {
             | self.channel_byte.val()
             | self.service_byte.q.val()
             | self.part_byte.val();
-        self.read_byte.next = self.byte.q.val();
+        self.front.read_byte.next = self.byte.q.val();
     }
 }

@@ -11,6 +11,7 @@
 //! What a set and a frame look like is told in `docs/stream.md`. A set that is closed is taken whole in one cycle, then written in its own
 //! time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
 
+use crate::card::ports::PushOut;
 use crate::several::each;
 use buffer::{FrameBuffer, SetParts};
 use endat_macros::kernel;
@@ -84,16 +85,9 @@ pub struct Stream {
     pub write_data: Signal<In, Bits<2>>,
     /// Byte that was read, from the cycle after `access` on; 0 if the word is not one of the stream's.
     pub read_byte: Signal<Out, Bits<8>>,
-    /// Frames are to be pushed.
-    pub push: Signal<Out, Bit>,
-    /// A frame is being pushed: its first byte has been taken, its last one has not.
-    pub in_frame: Signal<Out, Bit>,
-    /// `push_byte` is the next byte to push.
-    pub push_valid: Signal<Out, Bit>,
-    /// The next byte.
-    pub push_byte: Signal<Out, Bits<8>>,
-    /// Strobe, with `push_valid` only: the byte is taken.
-    pub push_take: Signal<In, Bit>,
+    /// Frames of the stream that are sent without being asked for; all low without a stream.
+    #[bundle]
+    pub pushed: PushOut,
     buffer: FrameBuffer,
     #[given]
     collect: Reg<Bit>,
@@ -377,23 +371,23 @@ impl Logic for Stream {
         self.read_byte.next = self.byte_read.q.val();
 
         // The other end. A frame goes one way from its first byte to its last.
-        self.push.next = self.push_on.q.val();
-        self.in_frame.next = self.pushing.q.val();
-        self.push_byte.next = self.buffer.data.val();
-        self.push_valid.next = self.buffer.ready.val()
+        self.pushed.push.next = self.push_on.q.val();
+        self.pushed.in_frame.next = self.pushing.q.val();
+        self.pushed.push_byte.next = self.buffer.data.val();
+        self.pushed.push_valid.next = self.buffer.ready.val()
             & (self.pushing.q.val()
                 | (self.push_on.q.val() & !self.mid_frame.q.val() & !self.flush.q.val()));
         // What a clear throws away, or is left of a frame that the host read half of.
         self.skip.next = self.buffer.ready.val()
             & !self.pushing.q.val()
             & (self.flush.q.val() | (self.push_on.q.val() & self.mid_frame.q.val()));
-        self.take.next = self.bus_take.val() | self.push_take.val() | self.skip.val();
+        self.take.next = self.bus_take.val() | self.pushed.push_take.val() | self.skip.val();
         self.buffer.take.next = self.take.val();
         self.more.next = self.buffer.data.val().any();
         if self.take.val() {
             self.mid_frame.d.next = self.more.val();
         }
-        if self.push_take.val() {
+        if self.pushed.push_take.val() {
             self.pushing.d.next = self.more.val();
         }
         // An upset: nothing is left of a frame, and answers would wait for its end for ever.

@@ -19,6 +19,7 @@ pub mod field_order;
 pub mod moments;
 pub mod outcome;
 pub mod port;
+pub mod ports;
 pub mod primary;
 pub mod protocol;
 pub mod reply;

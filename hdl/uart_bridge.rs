@@ -20,6 +20,7 @@
 //!
 //! Ref: LiteX, `litex/soc/cores/uart.py` (gateware) and `litex/tools/remote/comm_uart.py` (client).
 
+use crate::card::ports::{AccessOut, PushIn};
 use crate::uart::{UartReceiver, UartTransmitter};
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block, States};
@@ -61,36 +62,12 @@ pub struct UartBridge {
     pub rx: Signal<In, Bit>,
     /// Serial line to the host, from a register.
     pub tx: Signal<Out, Bit>,
-    /// Word address of the access, constant from `access` to `done`.
-    pub word_address: Signal<Out, Bits<11>>,
-    /// The host's 32-bit address fits `word_address`.
-    pub in_range: Signal<Out, Bit>,
-    /// Byte of the word, 0 = most significant; 0 in a write.
-    pub lane: Signal<Out, Bits<2>>,
-    /// One-cycle strobe: begin an access.
-    pub access: Signal<Out, Bit>,
-    /// With `access`: a whole word is to be written; low = one byte is to be read.
-    pub write: Signal<Out, Bit>,
-    /// Word to write; moves up by a byte in each cycle with `take_byte`.
-    pub write_data: Signal<Out, Bits<32>>,
-    /// The bank takes the most significant byte of `write_data`.
-    pub take_byte: Signal<In, Bit>,
-    /// Byte that has been read, from `done` to the next `access`.
-    pub read_byte: Signal<In, Bits<8>>,
-    /// One-cycle strobe: the access has ended.
-    pub done: Signal<In, Bit>,
-    /// A read command is being answered: results must not change.
-    pub reading: Signal<Out, Bit>,
-    /// Frames are being pushed: answers begin with 0xFF.
-    pub push: Signal<In, Bit>,
-    /// A frame has begun and not yet ended.
-    pub in_frame: Signal<In, Bit>,
-    /// `push_byte` can be sent.
-    pub push_valid: Signal<In, Bit>,
-    /// Next byte to push.
-    pub push_byte: Signal<In, Bits<8>>,
-    /// Strobe: `push_byte` is taken.
-    pub push_take: Signal<Out, Bit>,
+    /// A front's access to the register bank.
+    #[bundle]
+    pub bank: AccessOut,
+    /// Frames of the stream that are sent without being asked for; all low without a stream.
+    #[bundle]
+    pub pushed: PushIn,
     receiver: UartReceiver,
     transmitter: UartTransmitter,
     #[start(BridgeState::Command)]
@@ -148,23 +125,24 @@ impl Logic for UartBridge {
 
         self.receiver.rx.next = self.rx.val();
         // A frame that has begun goes first; none begins while an answer is due.
-        self.from_stream.next = self.in_frame.val() | (self.state.q.val() != BridgeState::Read);
-        self.transmitter.data.next = self.read_byte.val();
+        self.from_stream.next =
+            self.pushed.in_frame.val() | (self.state.q.val() != BridgeState::Read);
+        self.transmitter.data.next = self.bank.read_byte.val();
         self.transmitter.valid.next = self.byte_ready.q.val();
         if self.marker.q.val() {
             self.transmitter.data.next = 255.into();
         }
         if self.from_stream.val() {
-            connect!(self.transmitter <= self; data = push_byte, valid = push_valid);
+            connect!(self.transmitter <= self.pushed; data = push_byte, valid = push_valid);
         }
-        self.push_take.next = self.transmitter.accept.val() & self.from_stream.val();
+        self.pushed.push_take.next = self.transmitter.accept.val() & self.from_stream.val();
         self.answer_sent.next =
             self.transmitter.accept.val() & !self.from_stream.val() & !self.marker.q.val();
         if self.transmitter.accept.val() & !self.from_stream.val() {
             self.marker.d.next = false;
         }
         // The first answer after the last frame has its mark, too: so the host knows it from a frame.
-        if self.push.val() {
+        if self.pushed.push.val() {
             self.marked.d.next = true;
         }
         self.tx.next = self.transmitter.tx.val();
@@ -265,14 +243,14 @@ impl Logic for UartBridge {
             self.words_left.d.next = self.words_left.q.val() - 1;
             if self.last_word.q.val() {
                 self.state.d.next = BridgeState::Command;
-                if !self.writing.q.val() & !self.push.val() {
+                if !self.writing.q.val() & !self.pushed.push.val() {
                     self.marked.d.next = false;
                 }
             }
         }
 
         // A written word keeps its address until its access has ended.
-        if self.done.val() & self.writing.q.val() {
+        if self.bank.done.val() & self.writing.q.val() {
             self.step_address.d.next = !self.fixed.q.val();
         }
         self.next_address.next = bit_cast::<12, 11>(self.address.q.val()) + 1;
@@ -306,7 +284,7 @@ impl Logic for UartBridge {
         if self.access_now.q.val() & self.writing.q.val() {
             self.write_busy.d.next = true;
         }
-        if self.done.val() {
+        if self.bank.done.val() {
             self.write_busy.d.next = false;
         }
         self.data_moves.next = self.has_byte.q.val() & !self.write_busy.q.val();
@@ -317,11 +295,11 @@ impl Logic for UartBridge {
             self.next_byte.d.next = self.receiver.data.val();
             self.has_byte.d.next = true;
         }
-        if self.data_moves.val() | self.take_byte.val() {
+        if self.data_moves.val() | self.bank.take_byte.val() {
             self.data.d.next = (self.data.q.val() << 8) | bit_cast::<32, 8>(self.next_byte.q.val());
         }
 
-        if self.done.val() & (self.state.q.val() == BridgeState::Read) {
+        if self.bank.done.val() & (self.state.q.val() == BridgeState::Read) {
             self.byte_ready.d.next = true;
         }
         // What is left of an answer that was given up is not the beginning of the next one.
@@ -348,13 +326,13 @@ impl Logic for UartBridge {
             self.state.d.next = BridgeState::Command;
         }
 
-        self.word_address.next = self.address.q.val();
-        self.in_range.next = !self.out_of_range.q.val();
-        self.lane.next = self.byte_lane.q.val();
-        self.access.next = self.access_now.q.val();
-        self.write.next = self.writing.q.val();
-        self.write_data.next = self.data.q.val();
-        self.reading.next = self.state.q.val() == BridgeState::Read;
+        self.bank.word_address.next = self.address.q.val();
+        self.bank.in_range.next = !self.out_of_range.q.val();
+        self.bank.lane.next = self.byte_lane.q.val();
+        self.bank.access.next = self.access_now.q.val();
+        self.bank.write.next = self.writing.q.val();
+        self.bank.write_data.next = self.data.q.val();
+        self.bank.reading.next = self.state.q.val() == BridgeState::Read;
     }
 }
 

@@ -12,6 +12,7 @@
 //! Ref: ARM IHI 0024B, AMBA 3 APB Protocol v1.0.
 
 use super::word_access::WordAccess;
+use crate::card::ports::AccessOut;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::several::each;
@@ -44,26 +45,9 @@ pub struct ApbFront {
     pub pslverr: Signal<Out, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
-    /// To the bank: word address.
-    pub word_address: Signal<Out, Bits<11>>,
-    /// To the bank: byte of the word, 0 = most significant.
-    pub lane: Signal<Out, Bits<2>>,
-    /// To the bank: begin an access.
-    pub access: Signal<Out, Bit>,
-    /// To the bank: with `access`, write.
-    pub bank_write: Signal<Out, Bit>,
-    /// To the bank: word to write.
-    pub bank_data: Signal<Out, Bits<32>>,
-    /// To the bank: results must not change.
-    pub reading: Signal<Out, Bit>,
-    /// From the bank: a byte of the configuration word passes.
-    pub take_byte: Signal<In, Bit>,
-    /// From the bank: the byte that passes.
-    pub passing_byte: Signal<In, Bits<8>>,
-    /// From the bank: the byte that was read.
-    pub read_byte: Signal<In, Bits<8>>,
-    /// From the bank: the access has ended.
-    pub done: Signal<In, Bit>,
+    /// A front's access to the register bank.
+    #[bundle]
+    pub bank: AccessOut,
     #[start]
     words: WordAccess,
     busy: Reg<Bit>,
@@ -82,11 +66,11 @@ impl Logic for ApbFront {
     #[kernel]
     fn update(&mut self) {
         connect!(self.words <= self;
-            clock, reset, tick_us, take_byte, passing_byte, read_byte, done
+            clock, reset, tick_us
         );
         self.words.keep_moment.next = false;
         self.words.end_moment.next = false;
-        connect!(self <= self.words; lane, access, bank_data, reading);
+        AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         // Also in the second cycle of a transfer, if one that was abandoned kept it waiting.
         self.start.next = self.psel.val() & !self.busy.q.val() & !self.ready.q.val();
@@ -117,11 +101,9 @@ impl Logic for ApbFront {
             self.ready.d.next = self.enabled.val() & !self.abandoned.q.val();
         }
 
-        self.words.word_address.next = self.address.q.val();
-        self.words.write.next = self.writing.q.val();
-        self.words.write_data.next = self.pwdata.val();
-        self.word_address.next = self.address.q.val();
-        self.bank_write.next = self.writing.q.val();
+        self.words.address_in.next = self.address.q.val();
+        self.words.write_in.next = self.writing.q.val();
+        self.words.data_in.next = self.pwdata.val();
         self.prdata.next = self.words.read_data.val();
         self.pready.next = self.ready.q.val();
         self.pslverr.next = self.error.q.val();

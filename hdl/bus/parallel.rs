@@ -18,6 +18,7 @@
 
 use super::strobes::BusStrobes;
 use super::word_access::WordAccess;
+use crate::card::ports::AccessOut;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::several::each;
@@ -48,26 +49,9 @@ pub struct ParallelFront {
     pub data_enable: Signal<Out, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
-    /// To the bank: word address.
-    pub word_address: Signal<Out, Bits<11>>,
-    /// To the bank: byte of the word, 0 = most significant.
-    pub lane: Signal<Out, Bits<2>>,
-    /// To the bank: begin an access.
-    pub access: Signal<Out, Bit>,
-    /// To the bank: with `access`, write.
-    pub bank_write: Signal<Out, Bit>,
-    /// To the bank: word to write.
-    pub bank_data: Signal<Out, Bits<32>>,
-    /// To the bank: results must not change.
-    pub reading: Signal<Out, Bit>,
-    /// From the bank: a byte of the configuration word passes.
-    pub take_byte: Signal<In, Bit>,
-    /// From the bank: the byte that passes.
-    pub passing_byte: Signal<In, Bits<8>>,
-    /// From the bank: the byte that was read.
-    pub read_byte: Signal<In, Bits<8>>,
-    /// From the bank: the access has ended.
-    pub done: Signal<In, Bit>,
+    /// A front's access to the register bank.
+    #[bundle]
+    pub bank: AccessOut,
     #[start]
     words: WordAccess,
     #[start]
@@ -106,11 +90,11 @@ impl Logic for ParallelFront {
     #[kernel]
     fn update(&mut self) {
         connect!(self.words <= self;
-            clock, reset, tick_us, take_byte, passing_byte, read_byte, done
+            clock, reset, tick_us
         );
         self.words.keep_moment.next = false;
         self.words.end_moment.next = false;
-        connect!(self <= self.words; lane, access, bank_data, reading);
+        AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         connect!(self.strobes <= self; clock, reset, cs_n, rd_n, wr_n, register_at, data_in);
 
@@ -239,12 +223,10 @@ impl Logic for ParallelFront {
         }
 
         self.words.request.next = self.request.q.val();
-        self.words.word_address.next = self.address.q.val();
-        self.words.write.next = self.writing.q.val();
-        self.words.write_data.next = bit_cast::<32, 16>(self.window_low.q.val())
+        self.words.address_in.next = self.address.q.val();
+        self.words.write_in.next = self.writing.q.val();
+        self.words.data_in.next = bit_cast::<32, 16>(self.window_low.q.val())
             | (bit_cast::<32, 16>(self.window_high.q.val()) << 16);
-        self.word_address.next = self.address.q.val();
-        self.bank_write.next = self.writing.q.val();
     }
 }
 

@@ -12,6 +12,7 @@
 //! if the host's clock does not, the check sum of its answer is wrong.
 
 use super::word_access::WordAccess;
+use crate::card::ports::AccessOut;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::service::program::ServiceTimes;
@@ -59,30 +60,11 @@ pub struct SpiFront {
     pub miso: Signal<Out, Bit>,
     /// The card drives `miso`, straight from `cs_n`.
     pub miso_enable: Signal<Out, Bit>,
-    /// To the bank: the address fits `word_address`.
-    pub in_range: Signal<Out, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
-    /// To the bank: word address.
-    pub word_address: Signal<Out, Bits<11>>,
-    /// To the bank: byte of the word, 0 = most significant.
-    pub lane: Signal<Out, Bits<2>>,
-    /// To the bank: begin an access.
-    pub access: Signal<Out, Bit>,
-    /// To the bank: with `access`, write.
-    pub bank_write: Signal<Out, Bit>,
-    /// To the bank: word to write.
-    pub bank_data: Signal<Out, Bits<32>>,
-    /// To the bank: results must not change.
-    pub reading: Signal<Out, Bit>,
-    /// From the bank: a byte of the configuration word passes.
-    pub take_byte: Signal<In, Bit>,
-    /// From the bank: the byte that passes.
-    pub passing_byte: Signal<In, Bits<8>>,
-    /// From the bank: the byte that was read.
-    pub read_byte: Signal<In, Bits<8>>,
-    /// From the bank: the access has ended.
-    pub done: Signal<In, Bit>,
+    /// A front's access to the register bank.
+    #[bundle]
+    pub bank: AccessOut,
     #[start]
     words: WordAccess,
     sck_0: SyncReg<Bit>,
@@ -145,10 +127,10 @@ impl Logic for SpiFront {
     #[kernel]
     fn update(&mut self) {
         connect!(self.words <= self;
-            clock, reset, tick_us, take_byte, passing_byte, read_byte, done, keep_moment = selected
+            clock, reset, tick_us, keep_moment = selected
         );
         self.words.end_moment.next = !self.selected.val();
-        connect!(self <= self.words; lane, access, bank_data, reading);
+        AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         self.sck_0.d.next = self.sck.val();
         self.sck_1.d.next = self.sck_0.q.val();
@@ -332,12 +314,10 @@ impl Logic for SpiFront {
         }
 
         self.words.request.next = self.request.q.val();
-        self.words.word_address.next = self.access_address.q.val();
-        self.words.write.next = self.access_writes.q.val();
-        self.words.write_data.next = self.data.q.val();
-        self.word_address.next = self.access_address.q.val();
-        self.in_range.next = !self.access_outside.q.val();
-        self.bank_write.next = self.access_writes.q.val();
+        self.words.address_in.next = self.access_address.q.val();
+        self.words.write_in.next = self.access_writes.q.val();
+        self.words.data_in.next = self.data.q.val();
+        self.bank.in_range.next = !self.access_outside.q.val();
         self.miso.next = self.shift_out.q.val().get_bit(31);
         // No register: the line is free as soon as the frame ends.
         self.miso_enable.next = !self.cs_n.val();
@@ -361,9 +341,8 @@ card_top! {
         /// The card drives `spi_miso_o`, straight from `spi_cs_n_i`.
         spi_miso_oe: Bit => miso_enable,
     }
-    to_core { in_range => in_range, bank_write => write, bank_data => write_data }
-    to_front { passing_byte => passing_byte }
-    fixed { push_take: false }
+    pushed {}
+    silent { pushed }
 }
 
 impl SpiCard {

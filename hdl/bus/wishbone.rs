@@ -11,6 +11,7 @@
 //! Ref: OpenCores, Wishbone B4, chapter 3 (classic cycles), 32-bit port, granularity 8 bits.
 
 use super::word_access::WordAccess;
+use crate::card::ports::AccessOut;
 use crate::card::{top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::several::each;
@@ -45,26 +46,9 @@ pub struct WishboneFront {
     pub err: Signal<Out, Bit>,
     /// Strobe each microsecond.
     pub tick_us: Signal<In, Bit>,
-    /// To the bank: word address.
-    pub word_address: Signal<Out, Bits<11>>,
-    /// To the bank: byte of the word, 0 = most significant.
-    pub lane: Signal<Out, Bits<2>>,
-    /// To the bank: begin an access.
-    pub access: Signal<Out, Bit>,
-    /// To the bank: with `access`, write.
-    pub bank_write: Signal<Out, Bit>,
-    /// To the bank: word to write.
-    pub bank_data: Signal<Out, Bits<32>>,
-    /// To the bank: results must not change.
-    pub reading: Signal<Out, Bit>,
-    /// From the bank: a byte of the configuration word passes.
-    pub take_byte: Signal<In, Bit>,
-    /// From the bank: the byte that passes.
-    pub passing_byte: Signal<In, Bits<8>>,
-    /// From the bank: the byte that was read.
-    pub read_byte: Signal<In, Bits<8>>,
-    /// From the bank: the access has ended.
-    pub done: Signal<In, Bit>,
+    /// A front's access to the register bank.
+    #[bundle]
+    pub bank: AccessOut,
     #[start]
     words: WordAccess,
     busy: Reg<Bit>,
@@ -83,11 +67,11 @@ impl Logic for WishboneFront {
     #[kernel]
     fn update(&mut self) {
         connect!(self.words <= self;
-            clock, reset, tick_us, take_byte, passing_byte, read_byte, done
+            clock, reset, tick_us
         );
         self.words.keep_moment.next = false;
         self.words.end_moment.next = false;
-        connect!(self <= self.words; lane, access, bank_data, reading);
+        AccessOut::link(&mut self.bank, &mut self.words.bank);
 
         // Also later than the first cycle of a transfer, if one that was abandoned kept it waiting.
         self.asks.next = self.cyc.val() & self.stb.val();
@@ -118,11 +102,9 @@ impl Logic for WishboneFront {
             self.acknowledge.d.next = self.asks.val() & !self.abandoned.q.val();
         }
 
-        self.words.word_address.next = self.address.q.val();
-        self.words.write.next = self.writing.q.val();
-        self.words.write_data.next = self.dat_write.val();
-        self.word_address.next = self.address.q.val();
-        self.bank_write.next = self.writing.q.val();
+        self.words.address_in.next = self.address.q.val();
+        self.words.write_in.next = self.writing.q.val();
+        self.words.data_in.next = self.dat_write.val();
         self.dat_read.next = self.words.read_data.val();
         self.ack.next = self.acknowledge.q.val();
         self.err.next = self.error.q.val();

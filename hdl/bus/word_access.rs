@@ -14,6 +14,7 @@
 //! monitor; 5 for a strobe; a turn of the configuration ring (12 cycles for the card and each channel) and 4 for a configuration word,
 //! read or written, and for a word that is written to a service or line monitor.
 
+use crate::card::ports::AccessOut;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -33,11 +34,11 @@ pub struct WordAccess {
     /// Strobe: begin an access; not before the last one has finished.
     pub request: Signal<In, Bit>,
     /// Word address, constant from `request` to `finished`.
-    pub word_address: Signal<In, Bits<11>>,
+    pub address_in: Signal<In, Bits<11>>,
     /// Write; constant from `request` to `finished`.
-    pub write: Signal<In, Bit>,
+    pub write_in: Signal<In, Bit>,
     /// Word to write, with `request`.
-    pub write_data: Signal<In, Bits<32>>,
+    pub data_in: Signal<In, Bits<32>>,
     /// The front is within a burst: the moment does not end by itself.
     pub keep_moment: Signal<In, Bit>,
     /// Strobe: the moment ends.
@@ -46,22 +47,9 @@ pub struct WordAccess {
     pub finished: Signal<Out, Bit>,
     /// Word that was read, from `finished` to the next `request`.
     pub read_data: Signal<Out, Bits<32>>,
-    /// To the bank: byte of the word, 0 = most significant.
-    pub lane: Signal<Out, Bits<2>>,
-    /// To the bank: begin an access.
-    pub access: Signal<Out, Bit>,
-    /// To the bank: word to write.
-    pub bank_data: Signal<Out, Bits<32>>,
-    /// To the bank: results must not change.
-    pub reading: Signal<Out, Bit>,
-    /// From the bank: a byte of the configuration word passes.
-    pub take_byte: Signal<In, Bit>,
-    /// From the bank: the byte that passes.
-    pub passing_byte: Signal<In, Bits<8>>,
-    /// From the bank: the byte that was read.
-    pub read_byte: Signal<In, Bits<8>>,
-    /// From the bank: the access has ended.
-    pub done: Signal<In, Bit>,
+    /// A front's access to the register bank.
+    #[bundle]
+    pub bank: AccessOut,
     data: Reg<Bits<32>>,
     byte_lane: Reg<Bits<2>>,
     access_now: Reg<Bit>,
@@ -79,11 +67,11 @@ pub struct WordAccess {
 impl Logic for WordAccess {
     #[kernel]
     fn update(&mut self) {
-        self.is_result.next = !self.write.val() & (self.word_address.val().get_bits::<4>(7) == 3);
+        self.is_result.next = !self.write_in.val() & (self.address_in.val().get_bits::<4>(7) == 3);
         self.is_config.next =
-            (self.word_address.val().get_bits::<4>(7) == 2) & !self.word_address.val().get_bit(2);
+            (self.address_in.val().get_bits::<4>(7) == 2) & !self.address_in.val().get_bit(2);
         self.goes_on.next = self.holding.q.val()
-            & (self.word_address.val().get_bits::<7>(0) > self.last_read.q.val());
+            & (self.address_in.val().get_bits::<7>(0) > self.last_read.q.val());
 
         // A moment: `reading` falls for two cycles, in which the held words take over what is there.
         self.access_now.d.next = false;
@@ -112,15 +100,15 @@ impl Logic for WordAccess {
         if self.request.val() {
             // What is absent reads as 0.
             self.data.d.next = 0.into();
-            if self.write.val() {
-                self.data.d.next = self.write_data.val();
+            if self.write_in.val() {
+                self.data.d.next = self.data_in.val();
             }
             self.byte_lane.d.next = 0.into();
-            self.whole.d.next = self.write.val() | self.is_config.val();
+            self.whole.d.next = self.write_in.val() | self.is_config.val();
             self.access_now.d.next = true;
             if self.is_result.val() {
                 self.quiet_us.d.next = 0.into();
-                self.last_read.d.next = self.word_address.val().get_bits::<7>(0);
+                self.last_read.d.next = self.address_in.val().get_bits::<7>(0);
                 self.holding.d.next = self.goes_on.val();
                 if !self.goes_on.val() {
                     self.settle.d.next = 3.into();
@@ -128,16 +116,16 @@ impl Logic for WordAccess {
                 }
             }
         }
-        if self.take_byte.val() {
+        if self.bank.take_byte.val() {
             self.data.d.next =
-                (self.data.q.val() << 8) | bit_cast::<32, 8>(self.passing_byte.val());
+                (self.data.q.val() << 8) | bit_cast::<32, 8>(self.bank.passing_byte.val());
         }
-        if self.done.val() {
+        if self.bank.done.val() {
             if self.whole.q.val() {
                 self.end_now.d.next = true;
             } else {
                 self.data.d.next =
-                    (self.data.q.val() << 8) | bit_cast::<32, 8>(self.read_byte.val());
+                    (self.data.q.val() << 8) | bit_cast::<32, 8>(self.bank.read_byte.val());
                 self.byte_lane.d.next = self.byte_lane.q.val() + 1;
                 self.access_now.d.next = !self.byte_lane.q.val().all();
                 self.end_now.d.next = self.byte_lane.q.val().all();
@@ -146,9 +134,12 @@ impl Logic for WordAccess {
 
         self.finished.next = self.end_now.q.val();
         self.read_data.next = self.data.q.val();
-        self.lane.next = self.byte_lane.q.val();
-        self.access.next = self.access_now.q.val();
-        self.bank_data.next = self.data.q.val();
-        self.reading.next = self.holding.q.val();
+        self.bank.word_address.next = self.address_in.val();
+        self.bank.in_range.next = true;
+        self.bank.write.next = self.write_in.val();
+        self.bank.lane.next = self.byte_lane.q.val();
+        self.bank.access.next = self.access_now.q.val();
+        self.bank.write_data.next = self.data.q.val();
+        self.bank.reading.next = self.holding.q.val();
     }
 }

@@ -2,9 +2,9 @@
 
 /// A top: core, front, and who is connected to whom.
 ///
-/// Pins of the front stand in groups, inputs and outputs, in the order in which they are emitted, each with the front's name for it. The last
-/// three lists connect what fronts do differently; `fixed` are ports of the core that this front does not use. Without the lists it is a bus whose
-/// every address fits, and its front needs nothing to begin.
+/// Pins of the front stand in groups, inputs and outputs, in the order in which they are emitted, each with the front's name for it. Frames of the
+/// stream go out through the front's bundle that `pushed` names; `silent` where it has none. Without both it is a bus whose front needs nothing to
+/// begin.
 macro_rules! card_top {
     (
         $(#[$($about:tt)*])*
@@ -13,9 +13,8 @@ macro_rules! card_top {
             in { $( $(#[$($doc_in:tt)*])* $pin_in:ident: $bits_in:ident $(<$width_in:tt>)? => $port_in:ident, )* }
             out { $( $(#[$($doc_out:tt)*])* $pin_out:ident: $bits_out:ident $(<$width_out:tt>)? => $port_out:ident, )* }
         )*
-        to_core { $($out_of_front:ident => $into_core:ident),* }
-        to_front { $($out_of_core:ident => $into_front:ident),* }
-        fixed { $($constant:ident: $value:literal),* }
+        pushed { $($pushed:ident)? }
+        silent { $($silent:ident)? }
     ) => {
         $(#[$($about)*])*
         #[derive(LogicBlock, Block)]
@@ -113,9 +112,10 @@ macro_rules! card_top {
                     connect!(self <= self.$front; $($pin_out = $port_out),*);
                 )*
 
-                connect!(self.$front <= self.core; tick_us, take_byte, read_byte, done $(, $into_front = $out_of_core)*);
-                connect!(self.core <= self.$front; word_address, lane, access, reading $(, $into_core = $out_of_front)*);
-                $( self.core.$constant.next = $value; )*
+                self.$front.tick_us.next = self.core.tick_us.val();
+                AccessOut::join(&mut self.$front.bank, &mut self.core.front);
+                $( PushOut::join(&mut self.core.$pushed, &mut self.$front.$pushed); )?
+                $( self.core.$silent.push_take.next = false; )?
 
                 for i in 0..self._direct_ports {
                     self.direct_position_o[i].next = self.core.direct_position_o[i].val();
@@ -150,9 +150,8 @@ macro_rules! card_top {
             $(#[$($about)*])*
             $card, $parts: front: $kind, irq_o
             $( in { $($in)* } out { $($out)* } )*
-            to_core { bank_write => write, bank_data => write_data }
-            to_front { passing_byte => passing_byte }
-            fixed { in_range: true, push_take: false }
+            pushed {}
+            silent { pushed }
         }
 
         impl $card {

@@ -4,6 +4,7 @@
 //! uart_rx_i, uart_tx_o <-> UartBridge <-> CardCore <-> trigger_i, endat_*, led_*
 //! ```
 
+use super::ports::{AccessOut, PushOut};
 use super::{service_times, top::card_top, CardCore};
 use crate::config::CardConfig;
 use crate::service::program::ServiceTimes;
@@ -23,9 +24,8 @@ card_top! {
         /// Serial line to the host.
         uart_tx_o: Bit => tx,
     }
-    to_core { in_range => in_range, write => write, write_data => write_data, push_take => push_take }
-    to_front { push => push, in_frame => in_frame, push_valid => push_valid, push_byte => push_byte }
-    fixed {}
+    pushed { pushed }
+    silent {}
 }
 
 impl Card {

@@ -8,6 +8,7 @@
 
 use super::exchange::Exchange;
 use super::outcome::Outcome;
+use super::ports::{FieldBitsOut, FieldsOut, ReadingOut, ReplyPartsOut};
 use super::reply::Reply;
 use crate::features::Features;
 use crate::input_filter::InputFilter;
@@ -47,38 +48,9 @@ pub struct TFormatChannel {
     pub driver: Signal<Out, Bit>,
     /// An exchange is under way.
     pub busy: Signal<Out, Bit>,
-    /// A new result can be read from this cycle on.
-    pub result_strobe: Signal<Out, Bit>,
-    /// The last reply was good; low = what stands here is of an earlier one.
-    pub fresh: Signal<Out, Bit>,
-    /// Number of results, wrapping.
-    pub sequence: Signal<Out, Bits<8>>,
-    /// Last good single-turn position.
-    pub single_turn: Signal<Out, Bits<24>>,
-    /// There is one.
-    pub single_valid: Signal<Out, Bit>,
-    /// Parity of `single_turn` as it came, and of `single_valid`; whoever shows them compares.
-    pub single_parity: Signal<Out, Bit>,
-    /// Last good multi-turn position.
-    pub multi_turn: Signal<Out, Bits<24>>,
-    /// There is one.
-    pub multi_valid: Signal<Out, Bit>,
-    /// Parity of `multi_turn` as it came, and of `multi_valid`.
-    pub multi_parity: Signal<Out, Bit>,
-    /// Kind of encoder, as it came last.
-    pub encoder_id: Signal<Out, Bits<8>>,
-    /// EEPROM data as they came last.
-    pub memory_data: Signal<Out, Bits<8>>,
-    /// Alarm field as it came last.
-    pub alarm: Signal<Out, Bits<8>>,
-    /// Status field of the last reply; 0 if none came.
-    pub status: Signal<Out, Bits<8>>,
-    /// CRC of the last reply.
-    pub crc: Signal<Out, Bits<8>>,
-    /// ID that the last reply repeats.
-    pub reply_id: Signal<Out, Bits<4>>,
-    /// Raw flags of the last exchange, see [`super::cause`].
-    pub flags: Signal<Out, Bits<16>>,
+    /// What stands at the outputs of a receiver without registers.
+    #[bundle]
+    pub reading: ReadingOut,
     filter: InputFilter,
     #[start]
     exchange: Exchange,
@@ -117,28 +89,19 @@ impl Logic for TFormatChannel {
         self.exchange.bit_cycles.next = bit_cast::<7, 5>(self.bit_cycles.val());
         connect!(self.exchange <= self; reply_gap_us, field_gap_us);
         self.exchange.level.next = self.filter.level.val();
-        self.exchange.status.next = self.reply.status.val();
+        self.exchange.status.next = self.reply.fields.status.val();
         connect!(self <= self.exchange; tx, driver, busy);
 
         self.reply.idle.next = !self.exchange.busy.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
-        connect!(self.reply <= self.exchange; is_status, is_single, is_multi, is_byte, is_alarm);
+        FieldBitsOut::join(&mut self.exchange.field, &mut self.reply.field);
 
         connect!(self.outcome <= self.exchange;
             publish, good, flags_in = flags, reply_id_in = reply_id, crc_in = crc
         );
-        connect!(self.outcome <= self.reply;
-            status_in = status, single_turn_in = single_turn, multi_turn_in = multi_turn,
-            single_parity_in = single_parity, multi_parity_in = multi_parity, byte_in = byte_field,
-            alarm_in = alarm
-        );
-        connect!(self.outcome <= self.exchange;
-            has_single, has_multi, has_identity, has_alarm, is_memory
-        );
-        connect!(self <= self.outcome;
-            result_strobe, fresh, sequence, single_turn, single_valid, single_parity, multi_parity,
-            multi_turn, multi_valid, encoder_id, memory_data, alarm, status, crc, reply_id, flags
-        );
+        FieldsOut::join(&mut self.reply.fields, &mut self.outcome.fields);
+        ReplyPartsOut::join(&mut self.exchange.parts, &mut self.outcome.parts);
+        ReadingOut::link(&mut self.reading, &mut self.outcome.reading);
     }
 }

@@ -25,6 +25,7 @@
 
 use super::exchange::Exchange;
 use super::moments::Moments;
+use super::ports::{FieldBitsOut, ReplyPartsOut};
 use super::protocol::{BIT_HZ, FAST_BIT_HZ, SYSTEM_HZ};
 use super::reply_bytes::ReplyBytes;
 use crate::bus::strobes::BusStrobes;
@@ -256,14 +257,12 @@ impl Logic for AsyncDsp {
         self.reply.idle.next = !self.exchange.busy.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
-        connect!(self.reply <= self.exchange; is_status, is_single, is_multi, is_byte, is_alarm);
+        FieldBitsOut::join(&mut self.exchange.field, &mut self.reply.field);
         connect!(self.reply <= self.moments; copy, tail);
 
         connect!(self.moments <= self.exchange; verdict = publish, good, flags, reply_id, crc);
         connect!(self.moments <= self.reply; single_parity, multi_parity);
-        connect!(self.moments <= self.exchange;
-            has_single, has_multi, has_identity, has_alarm, is_memory
-        );
+        ReplyPartsOut::join(&mut self.exchange.parts, &mut self.moments.parts);
         connect!(self.moments <= self.reply; head, second);
         connect!(self.moments <= self.strobes; register, reading);
         self.moments.request_id.next = self.request_id.q.val();

@@ -18,6 +18,7 @@
 
 use super::bit_grid::BitGrid;
 use super::field_order::FieldOrder;
+use super::ports::{FieldBitsOut, ReplyPartsOut};
 use super::request_bits::RequestBits;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block, States};
@@ -80,16 +81,9 @@ pub struct Exchange {
     pub busy: Signal<Out, Bit>,
     /// Strobe: `level` is a data bit of the reply.
     pub take: Signal<Out, Bit>,
-    /// It belongs to the status field.
-    pub is_status: Signal<Out, Bit>,
-    /// It belongs to the single-turn position.
-    pub is_single: Signal<Out, Bit>,
-    /// It belongs to the multi-turn position.
-    pub is_multi: Signal<Out, Bit>,
-    /// It belongs to the kind of encoder or to EEPROM data.
-    pub is_byte: Signal<Out, Bit>,
-    /// It belongs to the alarm field.
-    pub is_alarm: Signal<Out, Bit>,
+    /// Which field of the reply a data bit belongs to.
+    #[bundle]
+    pub field: FieldBitsOut,
     /// Strobe: the exchange has ended; what follows belongs to it.
     pub publish: Signal<Out, Bit>,
     /// The reply is good.
@@ -100,16 +94,9 @@ pub struct Exchange {
     pub reply_id: Signal<Out, Bits<4>>,
     /// CRC of the reply as received.
     pub crc: Signal<Out, Bits<8>>,
-    /// Replies to this request bring a single-turn position.
-    pub has_single: Signal<Out, Bit>,
-    /// They bring a multi-turn position.
-    pub has_multi: Signal<Out, Bit>,
-    /// They bring the kind of encoder.
-    pub has_identity: Signal<Out, Bit>,
-    /// They bring alarms.
-    pub has_alarm: Signal<Out, Bit>,
-    /// They bring EEPROM data.
-    pub is_memory: Signal<Out, Bit>,
+    /// What replies to a request bring.
+    #[bundle]
+    pub parts: ReplyPartsOut,
     #[start]
     grid: BitGrid,
     #[start]
@@ -223,7 +210,7 @@ impl Logic for Exchange {
         }
         // One field, or four.
         self.request_us.next = 3.into();
-        if self.order.is_memory.val() {
+        if self.order.parts.is_memory.val() {
             self.request_us.next = 15.into();
         }
         self.rest_us.next = bit_cast::<7, 3>(self.field_gap_us.val()) | 8;
@@ -503,10 +490,8 @@ impl Logic for Exchange {
         self.tx.next = self.line.q.val();
         self.driver.next = self.drives.q.val() & self.enabled.q.val();
         self.busy.next = self.phase.q.val() != Phase::Rest;
-        connect!(self <= self.order; is_status, is_single, is_multi);
-        self.is_byte.next = self.order.is_identity.val() | self.order.is_data.val();
-        connect!(self <= self.order;
-            is_alarm, has_single, has_multi, has_identity, has_alarm, is_memory
-        );
+        connect!(self.field <= self.order; is_status, is_single, is_multi, is_alarm);
+        self.field.is_byte.next = self.order.is_identity.val() | self.order.is_data.val();
+        ReplyPartsOut::link(&mut self.parts, &mut self.order.parts);
     }
 }

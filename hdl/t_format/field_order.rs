@@ -9,6 +9,7 @@
 //!         Control -> Address -> Data -> Crc                                               6, D
 //! ```
 
+use super::ports::ReplyPartsOut;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block, States};
 use rust_hdl::prelude::*;
@@ -83,16 +84,9 @@ pub struct FieldOrder {
     pub is_data: Signal<Out, Bit>,
     /// It is the CRC.
     pub is_crc: Signal<Out, Bit>,
-    /// The reply brings a single-turn position.
-    pub has_single: Signal<Out, Bit>,
-    /// The reply brings a multi-turn position.
-    pub has_multi: Signal<Out, Bit>,
-    /// The reply brings the kind of encoder.
-    pub has_identity: Signal<Out, Bit>,
-    /// The reply brings alarms.
-    pub has_alarm: Signal<Out, Bit>,
-    /// The request is one to the EEPROM.
-    pub is_memory: Signal<Out, Bit>,
+    /// What replies to a request bring.
+    #[bundle]
+    pub parts: ReplyPartsOut,
     kind: Reg<FieldKind>,
     is_write: Signal<Local, Bit>,
     is_everything: Signal<Local, Bit>,
@@ -144,11 +138,11 @@ impl Logic for FieldOrder {
                 self.is_known.next = false;
             }
         }
-        self.has_single.next = self.with_single.val();
-        self.is_memory.next = self.memory.val();
-        self.has_multi.next = self.is_turns.val() | self.is_everything.val();
-        self.has_identity.next = self.is_kind.val() | self.is_everything.val();
-        self.has_alarm.next = self.is_everything.val();
+        self.parts.has_single.next = self.with_single.val();
+        self.parts.is_memory.next = self.memory.val();
+        self.parts.has_multi.next = self.is_turns.val() | self.is_everything.val();
+        self.parts.has_identity.next = self.is_kind.val() | self.is_everything.val();
+        self.parts.has_alarm.next = self.is_everything.val();
 
         self.is_control.next = self.kind.q.val() == FieldKind::Control;
         self.is_status.next = self.kind.q.val() == FieldKind::Status;

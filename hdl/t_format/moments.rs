@@ -13,6 +13,7 @@
 //! The parity of the positions, formed of the bits as they came, is compared when the moment is taken, in the clocks in which the
 //! processor still reads address 0, whose word is in no RAM.
 
+use super::ports::ReplyPartsIn;
 use super::verdict_bytes::VerdictBytes;
 use rtl_design::memory::Memory;
 use rtl_design::reg::Reg;
@@ -42,16 +43,9 @@ pub struct Moments {
     pub single_parity: Signal<In, Bit>,
     /// Parity of the multi-turn position as it came.
     pub multi_parity: Signal<In, Bit>,
-    /// The reply has a single-turn position.
-    pub has_single: Signal<In, Bit>,
-    /// It has a multi-turn position.
-    pub has_multi: Signal<In, Bit>,
-    /// It has the kind of encoder.
-    pub has_identity: Signal<In, Bit>,
-    /// It has alarms.
-    pub has_alarm: Signal<In, Bit>,
-    /// It has EEPROM data.
-    pub is_memory: Signal<In, Bit>,
+    /// What replies to a request bring.
+    #[bundle]
+    pub parts: ReplyPartsIn,
     /// Next byte of the reply, see [`super::reply_bytes`].
     pub head: Signal<In, Bits<8>>,
     /// The one behind it.
@@ -154,8 +148,8 @@ impl Logic for Moments {
         self.published.next = self.ends.val() & !self.clears.val();
 
         // What is told about the reply comes behind its fields. EEPROM data, too, which are the same field as the kind of encoder.
-        self.takes_single.next = self.good.val() & self.has_single.val();
-        self.takes_multi.next = self.good.val() & self.has_multi.val();
+        self.takes_single.next = self.good.val() & self.parts.has_single.val();
+        self.takes_multi.next = self.good.val() & self.parts.has_multi.val();
         connect!(self.verdict_bytes <= self; good, flags, reply_id);
         self.verdict_bytes.valid.next =
             bit_cast::<2, 1>((self.had_single.q.val() | self.takes_single.val()).into())
@@ -187,7 +181,7 @@ impl Logic for Moments {
                 self.brings.next = self.takes_single.val();
             }
             6 => {
-                self.brings.next = self.good.val() & self.has_identity.val();
+                self.brings.next = self.good.val() & self.parts.has_identity.val();
             }
             7 => {
                 self.brings.next = self.takes_multi.val();
@@ -199,10 +193,10 @@ impl Logic for Moments {
                 self.brings.next = self.takes_multi.val();
             }
             10 => {
-                self.brings.next = self.good.val() & self.has_alarm.val();
+                self.brings.next = self.good.val() & self.parts.has_alarm.val();
             }
             14 => {
-                self.brings.next = self.good.val() & self.is_memory.val();
+                self.brings.next = self.good.val() & self.parts.is_memory.val();
             }
             _ => {}
         }

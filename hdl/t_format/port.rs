@@ -12,6 +12,7 @@
 
 use super::cause;
 use super::exchange::Exchange;
+use super::ports::FieldBitsOut;
 use super::primary::LowestCause;
 use super::reply::Reply;
 use crate::features::Features;
@@ -230,14 +231,14 @@ impl Logic for TFormatPort {
         }
         connect!(self.exchange <= self; reply_gap_us, field_gap_us);
         self.exchange.level.next = self.filter.level.val();
-        self.exchange.status.next = self.reply.status.val();
+        self.exchange.status.next = self.reply.fields.status.val();
         connect!(self <= self.exchange; data_o = tx, data_oe = driver);
         self.busy.next = self.is_busy.val();
 
         self.reply.idle.next = !self.exchange.busy.val();
         self.reply.take.next = self.exchange.take.val();
         self.reply.level.next = self.filter.level.val();
-        connect!(self.reply <= self.exchange; is_status, is_single, is_multi, is_byte, is_alarm);
+        FieldBitsOut::join(&mut self.exchange.field, &mut self.reply.field);
 
         // A trigger that was not taken is told by the result of the exchange under way, or of the next one.
         self.overrun.next = self.lost.q.val() & !self.is_own.val();
@@ -249,13 +250,13 @@ impl Logic for TFormatPort {
         }
         // What is stored is what came, and it is known for whom.
         self.reply_fits.next = !self.is_torn.val();
-        if self.exchange.has_single.val()
-            & (self.reply.single_turn.val().xor() != self.reply.single_parity.val())
+        if self.exchange.parts.has_single.val()
+            & (self.reply.fields.single_turn.val().xor() != self.reply.fields.single_parity.val())
         {
             self.reply_fits.next = false;
         }
-        if self.exchange.has_multi.val()
-            & (self.reply.multi_turn.val().xor() != self.reply.multi_parity.val())
+        if self.exchange.parts.has_multi.val()
+            & (self.reply.fields.multi_turn.val().xor() != self.reply.fields.multi_parity.val())
         {
             self.reply_fits.next = false;
         }
@@ -281,21 +282,21 @@ impl Logic for TFormatPort {
         if self.has_had_single.q.val() {
             self.single.next = self.snapshot.result.position.val().get_bits::<24>(0);
         }
-        if self.exchange.has_single.val() {
-            self.single.next = self.reply.single_turn.val();
+        if self.exchange.parts.has_single.val() {
+            self.single.next = self.reply.fields.single_turn.val();
         }
         self.multi.next = 0.into();
         if self.has_had_multi.q.val() {
             self.multi.next = self.snapshot.result.position.val().get_bits::<24>(24);
         }
-        if self.exchange.has_multi.val() {
-            self.multi.next = self.reply.multi_turn.val();
+        if self.exchange.parts.has_multi.val() {
+            self.multi.next = self.reply.fields.multi_turn.val();
         }
         self.started.d.next = self.started.q.val() | !self.exchange.tx.val();
         self.takes.next = self.exchange.publish.val()
             & self.good.val()
             & !self.is_own.val()
-            & (self.exchange.has_single.val() | self.exchange.has_multi.val());
+            & (self.exchange.parts.has_single.val() | self.exchange.parts.has_multi.val());
         connect!(self.snapshot <= self; tick_us, timestamp);
         self.snapshot.first_fall.next = !self.exchange.tx.val() & !self.started.q.val();
         self.snapshot.latched.next = false;
@@ -323,14 +324,14 @@ impl Logic for TFormatPort {
             self.has_had_single.d.next = false;
             self.has_had_multi.d.next = false;
         }
-        if self.takes.val() & self.exchange.has_single.val() {
+        if self.takes.val() & self.exchange.parts.has_single.val() {
             self.has_had_single.d.next = true;
         }
-        if self.takes.val() & self.exchange.has_multi.val() {
+        if self.takes.val() & self.exchange.parts.has_multi.val() {
             self.has_had_multi.d.next = true;
         }
         if self.exchange.publish.val() {
-            self.status.d.next = self.reply.status.val();
+            self.status.d.next = self.reply.fields.status.val();
             self.crc.d.next = self.exchange.crc.val();
             if self.is_own.val() | self.is_torn.val() {
                 self.echo.d.next = self.exchange.reply_id.val();
@@ -338,14 +339,14 @@ impl Logic for TFormatPort {
                 self.done.d.next = true;
             }
             if self.good.val() {
-                if self.exchange.has_identity.val() {
-                    self.identity.d.next = self.reply.byte_field.val();
+                if self.exchange.parts.has_identity.val() {
+                    self.identity.d.next = self.reply.fields.byte_field.val();
                 }
-                if self.exchange.has_alarm.val() {
-                    self.alarms.d.next = self.reply.alarm.val();
+                if self.exchange.parts.has_alarm.val() {
+                    self.alarms.d.next = self.reply.fields.alarm.val();
                 }
-                if self.exchange.is_memory.val() {
-                    self.memory.d.next = self.reply.byte_field.val();
+                if self.exchange.parts.is_memory.val() {
+                    self.memory.d.next = self.reply.fields.byte_field.val();
                 }
             }
         }

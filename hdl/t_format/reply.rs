@@ -1,6 +1,7 @@
 //! Reply: the fields of a reply while they come, each in a shift register of its own, and the parities of the positions as they
 //! came, which go with them wherever they are kept.
 
+use super::ports::{FieldBitsIn, FieldsOut};
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -18,30 +19,12 @@ pub struct Reply {
     pub take: Signal<In, Bit>,
     /// The bit.
     pub level: Signal<In, Bit>,
-    /// It belongs to the status field.
-    pub is_status: Signal<In, Bit>,
-    /// It belongs to the single-turn position.
-    pub is_single: Signal<In, Bit>,
-    /// It belongs to the multi-turn position.
-    pub is_multi: Signal<In, Bit>,
-    /// It belongs to the kind of encoder or to EEPROM data.
-    pub is_byte: Signal<In, Bit>,
-    /// It belongs to the alarm field.
-    pub is_alarm: Signal<In, Bit>,
-    /// Status field; 0 before it has come.
-    pub status: Signal<Out, Bits<8>>,
-    /// Single-turn position.
-    pub single_turn: Signal<Out, Bits<24>>,
-    /// Multi-turn position.
-    pub multi_turn: Signal<Out, Bits<24>>,
-    /// Parity of the bits of the single-turn position that have come.
-    pub single_parity: Signal<Out, Bit>,
-    /// Parity of the bits of the multi-turn position that have come.
-    pub multi_parity: Signal<Out, Bit>,
-    /// Kind of encoder, or EEPROM data.
-    pub byte_field: Signal<Out, Bits<8>>,
-    /// Alarm field.
-    pub alarm: Signal<Out, Bits<8>>,
+    /// Which field of the reply a data bit belongs to.
+    #[bundle]
+    pub field: FieldBitsIn,
+    /// What a reply has brought, field by field.
+    #[bundle]
+    pub fields: FieldsOut,
     status_bits: Reg<Bits<8>>,
     single_bits: Reg<Bits<24>>,
     multi_bits: Reg<Bits<24>>,
@@ -62,39 +45,39 @@ impl Logic for Reply {
         self.multi_bits.reset.next = false;
         self.byte_bits.reset.next = false;
         self.alarm_bits.reset.next = false;
-        if self.take.val() & self.is_status.val() {
+        if self.take.val() & self.field.is_status.val() {
             self.status_bits.d.next = bit_cast::<8, 7>(self.status_bits.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.level.val().into()) << 7);
         }
-        if self.take.val() & self.is_single.val() {
+        if self.take.val() & self.field.is_single.val() {
             self.single_bits.d.next =
                 bit_cast::<24, 23>(self.single_bits.q.val().get_bits::<23>(1))
                     | (bit_cast::<24, 1>(self.level.val().into()) << 23);
         }
-        if self.take.val() & self.is_single.val() {
+        if self.take.val() & self.field.is_single.val() {
             self.single_sum.d.next = self.single_sum.q.val() ^ self.level.val();
         }
-        if self.take.val() & self.is_multi.val() {
+        if self.take.val() & self.field.is_multi.val() {
             self.multi_sum.d.next = self.multi_sum.q.val() ^ self.level.val();
         }
-        if self.take.val() & self.is_multi.val() {
+        if self.take.val() & self.field.is_multi.val() {
             self.multi_bits.d.next = bit_cast::<24, 23>(self.multi_bits.q.val().get_bits::<23>(1))
                 | (bit_cast::<24, 1>(self.level.val().into()) << 23);
         }
-        if self.take.val() & self.is_byte.val() {
+        if self.take.val() & self.field.is_byte.val() {
             self.byte_bits.d.next = bit_cast::<8, 7>(self.byte_bits.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.level.val().into()) << 7);
         }
-        if self.take.val() & self.is_alarm.val() {
+        if self.take.val() & self.field.is_alarm.val() {
             self.alarm_bits.d.next = bit_cast::<8, 7>(self.alarm_bits.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.level.val().into()) << 7);
         }
-        self.status.next = self.status_bits.q.val();
-        self.single_turn.next = self.single_bits.q.val();
-        self.multi_turn.next = self.multi_bits.q.val();
-        self.single_parity.next = self.single_sum.q.val();
-        self.multi_parity.next = self.multi_sum.q.val();
-        self.byte_field.next = self.byte_bits.q.val();
-        self.alarm.next = self.alarm_bits.q.val();
+        self.fields.status.next = self.status_bits.q.val();
+        self.fields.single_turn.next = self.single_bits.q.val();
+        self.fields.multi_turn.next = self.multi_bits.q.val();
+        self.fields.single_parity.next = self.single_sum.q.val();
+        self.fields.multi_parity.next = self.multi_sum.q.val();
+        self.fields.byte_field.next = self.byte_bits.q.val();
+        self.fields.alarm.next = self.alarm_bits.q.val();
     }
 }

@@ -7,6 +7,7 @@
 //!
 //! So no multiplexer is needed to fetch a field, and a bit takes one logic cell: its look-up table chooses the direction.
 
+use super::ports::FieldBitsIn;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
@@ -24,16 +25,9 @@ pub struct ReplyBytes {
     pub take: Signal<In, Bit>,
     /// The bit.
     pub level: Signal<In, Bit>,
-    /// It belongs to the status field.
-    pub is_status: Signal<In, Bit>,
-    /// It belongs to the single-turn position.
-    pub is_single: Signal<In, Bit>,
-    /// It belongs to the multi-turn position.
-    pub is_multi: Signal<In, Bit>,
-    /// It belongs to the kind of encoder or to EEPROM data.
-    pub is_byte: Signal<In, Bit>,
-    /// It belongs to the alarm field.
-    pub is_alarm: Signal<In, Bit>,
+    /// Which field of the reply a data bit belongs to.
+    #[bundle]
+    pub field: FieldBitsIn,
     /// All fields move on by a byte.
     pub copy: Signal<In, Bit>,
     /// What comes behind the last of them.
@@ -67,30 +61,30 @@ impl Logic for ReplyBytes {
         self.multi_sum.reset.next = self.forget.val();
         self.status_bits.reset.next = self.forget.val();
         self.judged.reset.next = self.forget.val();
-        if self.take.val() & self.is_status.val() {
+        if self.take.val() & self.field.is_status.val() {
             self.status_bits.d.next = bit_cast::<8, 7>(self.status_bits.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.level.val().into()) << 7);
         }
-        if self.take.val() & self.is_single.val() {
+        if self.take.val() & self.field.is_single.val() {
             self.single_bits.d.next =
                 bit_cast::<24, 23>(self.single_bits.q.val().get_bits::<23>(1))
                     | (bit_cast::<24, 1>(self.level.val().into()) << 23);
         }
-        if self.take.val() & self.is_single.val() {
+        if self.take.val() & self.field.is_single.val() {
             self.single_sum.d.next = self.single_sum.q.val() ^ self.level.val();
         }
-        if self.take.val() & self.is_multi.val() {
+        if self.take.val() & self.field.is_multi.val() {
             self.multi_sum.d.next = self.multi_sum.q.val() ^ self.level.val();
         }
-        if self.take.val() & self.is_multi.val() {
+        if self.take.val() & self.field.is_multi.val() {
             self.multi_bits.d.next = bit_cast::<24, 23>(self.multi_bits.q.val().get_bits::<23>(1))
                 | (bit_cast::<24, 1>(self.level.val().into()) << 23);
         }
-        if self.take.val() & self.is_byte.val() {
+        if self.take.val() & self.field.is_byte.val() {
             self.byte_bits.d.next = bit_cast::<8, 7>(self.byte_bits.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.level.val().into()) << 7);
         }
-        if self.take.val() & self.is_alarm.val() {
+        if self.take.val() & self.field.is_alarm.val() {
             self.alarm_bits.d.next = bit_cast::<8, 7>(self.alarm_bits.q.val().get_bits::<7>(1))
                 | (bit_cast::<8, 1>(self.level.val().into()) << 7);
         }

@@ -44,17 +44,17 @@ impl Link {
         let uut = &mut self.uut;
         uut.rx.next = rx;
         uut.tick_us.next = self.cycle.is_multiple_of(MICROSECOND);
-        uut.done.next = self.busy == 1;
+        uut.bank.done.next = self.busy == 1;
         uut.clock.next = false.into();
         settle(uut);
         if self.busy > 0 {
             self.busy -= 1;
         }
-        if uut.access.val() {
-            let address = uut.word_address.val().to_u16();
-            let hit = uut.in_range.val();
-            if uut.write.val() {
-                let value = uut.write_data.val().to_u32();
+        if uut.bank.access.val() {
+            let address = uut.bank.word_address.val().to_u16();
+            let hit = uut.bank.in_range.val();
+            if uut.bank.write.val() {
+                let value = uut.bank.write_data.val().to_u32();
                 self.writes.push((address, hit, value));
                 if hit {
                     self.words.insert(address, value);
@@ -65,8 +65,8 @@ impl Link {
                 } else {
                     0
                 };
-                let byte = word.to_be_bytes()[uut.lane.val().to_u64() as usize];
-                uut.read_byte.next = u64::from(byte).into();
+                let byte = word.to_be_bytes()[uut.bank.lane.val().to_u64() as usize];
+                uut.bank.read_byte.next = u64::from(byte).into();
             }
             self.busy = 40;
             self.left = self.left.map(|left| left.wrapping_sub(1));
@@ -155,14 +155,17 @@ fn longest_read_gives_255_words() {
 #[test]
 fn results_are_frozen_from_the_first_to_the_last_byte_that_is_read() {
     let mut link = Link::new();
-    assert!(!link.uut.reading.val());
+    assert!(!link.uut.bank.reading.val());
     link.send(&[2, 1, 0, 0, 0, 0]);
     link.idle(20);
-    assert!(link.uut.reading.val());
+    assert!(link.uut.bank.reading.val());
     link.idle(3 * 10 * BIT);
-    assert!(link.uut.reading.val(), "the last byte has not been read");
+    assert!(
+        link.uut.bank.reading.val(),
+        "the last byte has not been read"
+    );
     link.idle(2 * 10 * BIT);
-    assert!(!link.uut.reading.val());
+    assert!(!link.uut.bank.reading.val());
 }
 
 #[test]
@@ -283,7 +286,7 @@ proptest! {
         let mut link = Link::new();
         for &byte in &bytes {
             link.send_bits(byte, true);
-            if link.uut.reading.val() {
+            if link.uut.bank.reading.val() {
                 break;
             }
         }
@@ -294,7 +297,7 @@ proptest! {
             .collect();
         let n = link.writes.len();
         prop_assert!(n <= expected.len() && link.writes[..] == expected[..n], "{:?} {:?}", link.writes, expected);
-        if !link.uut.reading.val() && !bytes.iter().any(|b| matches!(b, 2 | 4)) {
+        if !link.uut.bank.reading.val() && !bytes.iter().any(|b| matches!(b, 2 | 4)) {
             prop_assert_eq!(n, expected.len());
         }
     }

@@ -28,13 +28,13 @@ module s6_two_channel_card_core (
     input  wire         trigger_i,
     // Strobe each microsecond.
     output wire         tick_us,
-    // Word address of an access, constant from access to done.
+    // Word address; what stood there in the cycle before access counts until done.
     input  wire  [10:0] word_address,
-    // The front's address fits word_address; otherwise a read gives 0 and a write does nothing.
+    // The front's address fits word_address; otherwise a read gives 0 and a write does nothing. It counts like the address.
     input  wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     input  wire   [1:0] lane,
-    // One-cycle strobe: begin an access, with the address stable since the cycle before.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does nothing.
     input  wire         access,
     // With access: write a word; low = read a byte.
     input  wire         write,
@@ -42,13 +42,13 @@ module s6_two_channel_card_core (
     input  wire  [31:0] write_data,
     // The host is reading: results must not change.
     input  wire         reading,
-    // A byte of the configuration word passes, most significant first: in a write it is replaced by that of write_data.
+    // A byte of the configuration word passes the head, most significant first: in a write that of write_data replaces it.
     output wire         take_byte,
     // Byte that was read, from done to the next access.
     output wire   [7:0] read_byte,
     // One-cycle strobe: the access has ended.
     output wire         done,
-    // Frames of the stream are to be pushed; low without a stream.
+    // Frames are to be pushed.
     output wire         push,
     // A frame is being pushed: its first byte has been taken, its last one has not.
     output wire         in_frame,
@@ -223,14 +223,14 @@ module s6_two_channel_card_core (
         .in_range(in_range),
         .lane(lane),
         .access(access),
-        .begins(bank_begins),
-        .address(bank_address),
         .write(write),
         .write_data(write_data),
+        .reading(reading),
         .take_byte(take_byte),
         .read_byte(read_byte),
         .done(done),
-        .reading(reading),
+        .begins(bank_begins),
+        .address(bank_address),
         .taken(taken_2),
         .owes(owes_2),
         .brought(brought_2),

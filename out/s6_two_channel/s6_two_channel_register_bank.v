@@ -29,28 +29,28 @@ module s6_two_channel_register_bank (
     input  wire         reset,
     // Word address; what stood there in the cycle before access counts until done.
     input  wire  [10:0] word_address,
-    // The address fits word_address; otherwise a read gives 0 and a write does nothing. It counts like the address.
+    // The front's address fits word_address; otherwise a read gives 0 and a write does nothing. It counts like the address.
     input  wire         in_range,
-    // Byte of the word, 0 = most significant.
+    // Byte of the word, 0 = most significant; 0 in a write.
     input  wire   [1:0] lane,
     // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does nothing.
     input  wire         access,
-    // One-cycle strobe: the access begins, in the cycle of access.
-    output wire         begins,
-    // Word address of the access that begins or is being carried out.
-    output wire  [10:0] address,
     // With access: write a word; low = read a byte.
     input  wire         write,
-    // Word to write.
+    // Word to write; moves up by a byte in each cycle with take_byte.
     input  wire  [31:0] write_data,
+    // The host is reading: results must not change.
+    input  wire         reading,
     // A byte of the configuration word passes the head, most significant first: in a write that of write_data replaces it.
     output wire         take_byte,
     // Byte that was read, from done to the next access.
     output wire   [7:0] read_byte,
     // One-cycle strobe: the access has ended.
     output wire         done,
-    // The host is reading: results must not change.
-    input  wire         reading,
+    // One-cycle strobe: the access begins, in the cycle of access.
+    output wire         begins,
+    // Word address of the access that begins or is being carried out.
+    output wire  [10:0] address,
     // Strobe: a channel takes a trigger.
     input  wire         taken,
     // A channel owes a result of the last trigger that was taken.

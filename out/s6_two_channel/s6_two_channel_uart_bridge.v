@@ -34,35 +34,35 @@ module s6_two_channel_uart_bridge (
     input  wire         rx,
     // Serial line to the host, from a register.
     output wire         tx,
-    // Word address of the access, constant from access to done.
+    // Word address; what stood there in the cycle before access counts until done.
     output wire  [10:0] word_address,
-    // The host's 32-bit address fits word_address.
+    // The front's address fits word_address; otherwise a read gives 0 and a write does nothing. It counts like the address.
     output wire         in_range,
     // Byte of the word, 0 = most significant; 0 in a write.
     output wire   [1:0] lane,
-    // One-cycle strobe: begin an access.
+    // One-cycle strobe: begin an access, with the address stable since the cycle before. Before done of the last one it does nothing.
     output wire         access,
-    // With access: a whole word is to be written; low = one byte is to be read.
+    // With access: write a word; low = read a byte.
     output wire         write,
     // Word to write; moves up by a byte in each cycle with take_byte.
     output wire  [31:0] write_data,
-    // The bank takes the most significant byte of write_data.
+    // The host is reading: results must not change.
+    output wire         reading,
+    // A byte of the configuration word passes the head, most significant first: in a write that of write_data replaces it.
     input  wire         take_byte,
-    // Byte that has been read, from done to the next access.
+    // Byte that was read, from done to the next access.
     input  wire   [7:0] read_byte,
     // One-cycle strobe: the access has ended.
     input  wire         done,
-    // A read command is being answered: results must not change.
-    output wire         reading,
-    // Frames are being pushed: answers begin with 0xFF.
+    // Frames are to be pushed.
     input  wire         push,
-    // A frame has begun and not yet ended.
+    // A frame is being pushed: its first byte has been taken, its last one has not.
     input  wire         in_frame,
-    // push_byte can be sent.
+    // push_byte is the next byte to push.
     input  wire         push_valid,
-    // Next byte to push.
+    // The next byte.
     input  wire   [7:0] push_byte,
-    // Strobe: push_byte is taken.
+    // Strobe, with push_valid only: the byte is taken.
     output wire         push_take
 );
     localparam  [16:0] TIMEOUT_US = 17'd100000;
