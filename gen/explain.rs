@@ -2,9 +2,9 @@
 
 use crate::board::Pll;
 use crate::config::{phase_name, Project};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::{read_bytes, CardConfig, ChannelConfig};
-use endat_hdl::timing::deviation_ppm;
+use endat_hdl::endat::timing::deviation_ppm;
 use serde::Serialize;
 use stream::StreamReport;
 use t_format::TFormatReport;

@@ -9,7 +9,7 @@ use crate::config::{Project, Receiver};
 use crate::error::GenError;
 use crate::template::render;
 use crate::testbench::RESET_CYCLES;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
 use endat_sim::decimal;
 use minijinja::context;

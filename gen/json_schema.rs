@@ -5,7 +5,7 @@ use crate::board::BOARD_KEYS;
 use crate::config::keys::*;
 use crate::config::words::{RECEIVER_BUS, T_FORMAT};
 use crate::form::key::{Key, Kind, Usual};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CHANNELS as COUNTS;
 use serde_json::{json, Map, Value};
 

@@ -36,7 +36,7 @@ pub mod virtual_card;
 
 use artifact::Artifact;
 use config::Project;
-use endat_hdl::bus::{
+use endat_hdl::card::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard, HostBus,
 };

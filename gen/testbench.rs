@@ -10,18 +10,18 @@ use crate::artifact::Artifact;
 use crate::config::Project;
 use crate::error::GenError;
 use crate::template;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::{service_times, services};
-use endat_hdl::channel::CALIBRATION_FRAMES;
 use endat_hdl::config::{CardConfig, ChannelConfig, PhaseSource};
+use endat_hdl::endat::channel::CALIBRATION_FRAMES;
+use endat_hdl::endat::service::program::{program, ServiceTimes, CLEAR_CYCLES};
+use endat_hdl::endat::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
+use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::{INFO_BITS, SUPPLEMENT_PULSES};
 use endat_hdl::regs::{
     start, Block, BLOCK_STRIDE, CARD, CARD_CONFIG, CHANNEL_CONFIG, DIRECT, INTERRUPT, LINE, RESULT,
     SERVICE,
 };
-use endat_hdl::service::program::{program, ServiceTimes, CLEAR_CYCLES};
-use endat_hdl::timing::{cycles_at_least, cycles_at_most, cycles_to_ns};
-use endat_hdl::transaction::cause;
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 use serde::Serialize;

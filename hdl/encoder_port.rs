@@ -10,15 +10,15 @@
 //!
 //! For a design with a bus of its own this is the block to take: everything of one encoder, without a host link.
 
-use crate::channel::Channel;
-use crate::features::{Features, FixedTimes};
-use crate::line_monitor::{LineMonitor, LineStart};
+use crate::endat::channel::Channel;
+use crate::endat::features::{Features, FixedTimes};
+use crate::endat::line_monitor::{LineMonitor, LineStart};
+use crate::endat::service::program::ServiceTimes;
+use crate::endat::service::{channel::ServiceChannel, Service};
+use crate::endat::transaction::cause;
 use crate::ports::*;
-use crate::service::program::ServiceTimes;
-use crate::service::{channel::ServiceChannel, Service};
 use crate::several::each;
 use crate::t_format::port::TFormatPort;
-use crate::transaction::cause;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 

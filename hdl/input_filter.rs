@@ -7,7 +7,7 @@
 //!
 //! The delay it adds is part of the propagation delay that the receiver measures, so it needs no correction.
 
-use crate::features::Features;
+use crate::endat::features::Features;
 use rtl_design::reg::{FallReg, Reg, SyncReg};
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;

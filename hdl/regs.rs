@@ -2,9 +2,9 @@
 
 pub use endat_regs::*;
 
+use crate::card::config_ring::RING_WORDS;
 use crate::config::{CardConfig, ChannelConfig, OwnTrigger};
-use crate::config_ring::RING_WORDS;
-use crate::line_monitor::LineStart;
+use crate::endat::line_monitor::LineStart;
 use protocol::MAX_POSITION_BITS;
 
 /// Whether a card of this configuration has a part.

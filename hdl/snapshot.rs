@@ -11,7 +11,7 @@
 //!
 //! Ref: Liu et al., "Angle encoder data acquisition system based on FPGA", 2024 (held data and error report).
 
-use crate::frame_ports::ToldIn;
+use crate::endat::ports::ToldIn;
 use crate::ports::FrameResultOut;
 use rtl_design::reg::Reg;
 use rtl_design::{kernel, Block};

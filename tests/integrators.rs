@@ -160,7 +160,7 @@ fn packaged(name: &str, folder: &Path) -> String {
 /// Catches a bus that Vivado would show as loose pins, and an interrupt that nobody can connect.
 #[test]
 fn the_vivado_script_names_bus_clock_reset_and_interrupt() {
-    use endat_hdl::bus::HostBus;
+    use endat_hdl::card::bus::HostBus;
     if !require("tclsh", "Vivado interfaces") {
         return;
     }

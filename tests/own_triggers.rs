@@ -146,7 +146,7 @@ fn an_open_plug_is_disabled_and_reports_no_more() {
 
 #[test]
 fn a_card_without_own_triggers_has_no_logic_for_them() {
-    let plain = crate::bus::text(endat_hdl::bus::HostBus::Apb, "");
+    let plain = crate::bus::text(endat_hdl::card::bus::HostBus::Apb, "");
     let project = parse("card.toml", &plain).unwrap();
     assert!(!project.card.own_triggers());
     let has_it = |project| {

@@ -3,9 +3,9 @@
 use crate::tools;
 use endat_gen::area::{GUARDS, ICE40, XC6S};
 use endat_hdl::config::{needed_baud, read_bytes, CHANNELS};
+use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{result_words, CARD, CARD_CONFIG, RESULT};
-use endat_hdl::transaction::cause;
 
 const README: &str = include_str!("../README.md");
 

@@ -5,13 +5,13 @@
 
 use crate::stream::rig::{Set, FRESH, MISSING, TAKEN, VALID};
 use endat_gen::config::{load_preset, Project, PRESETS};
+use endat_hdl::card::uart::BIT_CYCLES_MIN;
 use endat_hdl::card::{service_times, Card};
 use endat_hdl::config::{CardConfig, ChannelConfig, StreamStart};
+use endat_hdl::endat::service::program::ServiceTimes;
+use endat_hdl::endat::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS, SHORT_RECOVERY_MIN_NS};
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::service::program::ServiceTimes;
 use endat_hdl::t_format::protocol::RATE_TOLERANCE_PPM;
-use endat_hdl::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS, SHORT_RECOVERY_MIN_NS};
-use endat_hdl::uart::BIT_CYCLES_MIN;
 use endat_sim::bench::{Bench, Link, PinNames, TFormatLink, Uart};
 use endat_sim::encoder::EncoderConfig;
 use endat_sim::line::LineConfig;

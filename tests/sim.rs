@@ -1,8 +1,8 @@
 //! The bench from the command line: the elaborated channel in every scenario.
 
 use crate::program::{bad, good, run, Dir};
-use endat_hdl::channel::{Channel, FixedTimes};
-use endat_hdl::service::program::{steps, Step};
+use endat_hdl::endat::channel::{Channel, FixedTimes};
+use endat_hdl::endat::service::program::{steps, Step};
 use endat_sim::encoder::Defect;
 use endat_sim::scenario::{self, RunOptions};
 use rtl_design::elaborate::elaborate;

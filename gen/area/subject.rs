@@ -5,32 +5,32 @@ use crate::artifact::Artifact;
 use crate::config::{load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
 use crate::verilog;
-use endat_hdl::bus::{
+use endat_hdl::card::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard,
 };
+use endat_hdl::card::direct::DirectOutput;
+use endat_hdl::card::interrupt::Interrupt;
+use endat_hdl::card::recovery_counter::RecoveryCounter;
+use endat_hdl::card::second_interface::{record::SecondRecord, SecondInterface};
+use endat_hdl::card::stream::{buffer::SetParts, channel::SetChannel, Stream};
 use endat_hdl::card::Card;
-use endat_hdl::channel::{Channel, Features, FixedTimes};
 use endat_hdl::config::CardConfig;
-use endat_hdl::crc5::{Crc5Check, Crc5Fixed, Crc5Serial};
-use endat_hdl::direct::DirectOutput;
 use endat_hdl::encoder_port::EncoderPort;
-use endat_hdl::interrupt::Interrupt;
-use endat_hdl::line_delay::LineDelay;
-use endat_hdl::line_monitor::LineStart;
-use endat_hdl::receiver::Receiver;
-use endat_hdl::recovery_counter::RecoveryCounter;
-use endat_hdl::second_interface::{record::SecondRecord, SecondInterface};
-use endat_hdl::second_receiver::SecondReceiver;
-use endat_hdl::service::program::ServiceTimes;
+use endat_hdl::endat::channel::{Channel, Features, FixedTimes};
+use endat_hdl::endat::crc5::{Crc5Check, Crc5Fixed, Crc5Serial};
+use endat_hdl::endat::line_delay::LineDelay;
+use endat_hdl::endat::line_monitor::LineStart;
+use endat_hdl::endat::receiver::Receiver;
+use endat_hdl::endat::second_receiver::SecondReceiver;
+use endat_hdl::endat::service::program::ServiceTimes;
+use endat_hdl::endat::transaction::{cause, Transaction};
 use endat_hdl::snapshot::Snapshot;
-use endat_hdl::stream::{buffer::SetParts, channel::SetChannel, Stream};
 use endat_hdl::t_format::{
     channel::TFormatChannel,
     dsp::{AsyncDsp, TFormatStart},
     port::TFormatPort,
 };
-use endat_hdl::transaction::{cause, Transaction};
 use rtl_design::elaborate::{block_name, elaborate, Design};
 use rtl_design::verilog::file_name;
 use rust_hdl::prelude::Block;

@@ -11,14 +11,14 @@ use super::preset_run::{project, run, ChannelRun, Conditions};
 use super::{cycle_times, fault, CycleTime, CycleTimeOptions};
 use crate::config::Project;
 use crate::error::GenError;
+use endat_hdl::card::direct::CROP_CYCLES;
 use endat_hdl::config::CHANNELS;
 use endat_hdl::config::{filter_longest, ChannelConfig, ChannelRequest};
-use endat_hdl::direct::CROP_CYCLES;
-use endat_hdl::protocol::ModeCommand;
-use endat_hdl::timing::{
+use endat_hdl::endat::timing::{
     PERIOD_CYCLES_MIN, PERIOD_CYCLES_MIN_DOUBLE, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
-use endat_hdl::{channel::Channel, channel::FixedTimes};
+use endat_hdl::endat::{channel::Channel, channel::FixedTimes};
+use endat_hdl::protocol::ModeCommand;
 use endat_sim::scenario::{self, RunOptions};
 use endat_sim::{decimal, Time, NS, US};
 use rtl_design::elaborate::elaborate;

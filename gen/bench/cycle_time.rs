@@ -9,12 +9,12 @@ mod behind;
 use super::fault;
 use crate::error::GenError;
 use behind::Behind;
+use endat_hdl::endat::timing::{
+    cycles_at_least, READY_LOW_NS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
+};
 use endat_hdl::protocol::{
     ModeCommand::{self, SendPosition, SendPositionAddInfo},
     LEAD_PULSES,
-};
-use endat_hdl::timing::{
-    cycles_at_least, READY_LOW_NS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
 use endat_sim::campaign::{Case, Traces};
 use endat_sim::encoder::FrameLog;

@@ -2,7 +2,7 @@
 
 use super::design::CardDesign;
 use crate::error::GenError;
-use endat_hdl::uart::bit_cycles;
+use endat_hdl::card::uart::bit_cycles;
 use endat_sim::bench::{Bench, Link, PinNames};
 use endat_sim::encoder::{EncoderConfig, PositionSource};
 use endat_sim::line::LineConfig;

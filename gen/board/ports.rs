@@ -1,6 +1,6 @@
 //! Ports of a board top: what each is for, and which a card has.
 
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CHANNELS;
 use std::collections::BTreeSet;
 

@@ -9,7 +9,7 @@ use crate::error::Diagnostic;
 use crate::form::document::parse;
 use crate::form::key::Key;
 use crate::form::reader::{At, Source, Table};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_host::did_you_mean::closest;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -5,9 +5,10 @@ use super::{to_json, Outcome};
 use crate::bench::{self, CycleTimeOptions, Options};
 use crate::error::GenError;
 use clap::{Args, Subcommand};
+use endat_hdl::config::CABLE_M_MAX;
+use endat_hdl::endat::timing::RECOVERY_MAX_NS;
+use endat_hdl::endat::timing::SHORT_RECOVERY_MIN_NS;
 use endat_hdl::protocol::POSITION_BITS;
-use endat_hdl::timing::RECOVERY_MAX_NS;
-use endat_hdl::{config::CABLE_M_MAX, timing::SHORT_RECOVERY_MIN_NS};
 use std::io::Write;
 
 /// Arguments of `bench`.

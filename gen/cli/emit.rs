@@ -6,7 +6,7 @@ use crate::artifact::{self, Artifact};
 use crate::config::Configuration;
 use crate::error::GenError;
 use clap::Args;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use std::sync::atomic::Ordering;
 
 /// Arguments of `emit`.

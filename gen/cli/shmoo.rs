@@ -7,8 +7,8 @@ use super::{to_json, Outcome};
 use crate::error::{shown, GenError};
 use clap::{Args, ValueEnum};
 use endat_hdl::config::{SYSTEM_HZ_MAX, SYSTEM_HZ_MIN};
+use endat_hdl::endat::timing;
 use endat_hdl::protocol::{ModeCommand, POSITION_BITS};
-use endat_hdl::timing;
 use endat_sim::decimal;
 use endat_sim::diagram::{is_drawing, map_svg};
 use endat_sim::shmoo::{

@@ -4,9 +4,9 @@ use super::pictures::{draw, Drawn, Pictures};
 use super::{to_json, Outcome};
 use crate::error::{shown, GenError};
 use clap::Args;
-use endat_hdl::channel::{Channel, FixedTimes};
 use endat_hdl::encoder_port::EncoderPort;
-use endat_hdl::service::program::ServiceTimes;
+use endat_hdl::endat::channel::{Channel, FixedTimes};
+use endat_hdl::endat::service::program::ServiceTimes;
 use endat_sim::bench::Bench;
 use endat_sim::scenario::{
     self, t_format, t_format::TFormatReport, ChannelReport, FrameReport, Report, RunOptions,
@@ -288,7 +288,7 @@ fn frame_json(frame: &FrameReport) -> Value {
             "crc_computed": r.crc_computed,
         })),
         "answer": frame.answer.as_ref().map(|a| json!({
-            "cause": endat_hdl::transaction::cause::name(a.cause),
+            "cause": endat_hdl::endat::transaction::cause::name(a.cause),
             "word": a.word,
             "crc_good": a.crc_good,
         })),

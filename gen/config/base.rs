@@ -2,7 +2,7 @@
 
 use super::keys::{BASE_ADDRESS as KEY, SCK_HZ};
 use super::reader::Table;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_regs::MAP_BYTES;
 
 /// Reads where a system has the registers; `None` if something is wrong.

@@ -4,7 +4,7 @@
 
 use super::words::start_name;
 use crate::board::{Assignment, Board};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::*;
 use sha2::{Digest, Sha256};
 

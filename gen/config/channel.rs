@@ -5,8 +5,8 @@ use super::reader::{At, Table};
 use super::{protocol, trigger};
 use crate::form::key::Key;
 use endat_hdl::config::{ChannelRequest, START_WINDOW_BITS};
+use endat_hdl::endat::timing::{cycles_at_most, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 use endat_hdl::protocol::ModeCommand;
-use endat_hdl::timing::{cycles_at_most, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 use std::collections::BTreeMap;
 
 /// Where a key of the resolved request was written: path and line.

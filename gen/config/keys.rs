@@ -6,11 +6,11 @@ use crate::board;
 pub use crate::form::key::CHANNELS;
 use crate::form::key::{self, keys, Choice};
 pub use crate::form::key::{Key, Kind, Usual};
+use endat_hdl::card::stream::buffer::BUFFER_BYTES;
 use endat_hdl::config::{ERROR_TEST_MS, LIST};
-use endat_hdl::stream::buffer::BUFFER_BYTES;
+use endat_hdl::endat::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 use endat_hdl::t_format::dsp::TFormatStart;
 use endat_hdl::t_format::protocol::{BIT_HZ, FAST_BIT_HZ};
-use endat_hdl::timing::{RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 use endat_regs::MAP_BYTES;
 use std::ops::RangeInclusive;
 

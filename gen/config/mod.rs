@@ -27,7 +27,7 @@ use crate::board::{Assignment, Board, Pll};
 use crate::error::{shown, Diagnostic, GenError};
 use crate::form::with_text;
 pub(crate) use crate::form::{asked, document, reader};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CardConfig;
 pub use receiver::Receiver;
 use std::path::Path;

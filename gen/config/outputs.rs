@@ -3,7 +3,7 @@
 use super::keys::OUTPUT_PARTS;
 use super::parts::read_parts;
 use super::reader::Table;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::OutputParts;
 
 /// Reads the table, for a card with this bus, on a board or not; `None` if something is wrong.

@@ -3,7 +3,7 @@
 use super::keys::{ERROR_TEST_PERIOD as PERIOD, SAFETY_PARTS as PARTS};
 use super::parts::read_parts;
 use super::reader::Table;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::SafetyParts;
 
 /// What else the card has, as far as it could be read.

@@ -10,7 +10,7 @@ use super::{
     base, canonical, check_name, line, outputs, protocol, safety, service, stream, trigger, Project,
 };
 use crate::board::{card_ports, Assignment, Board, MorePorts};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::*;
 use std::path::Path;
 use toml::de::DeTable;

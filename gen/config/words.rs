@@ -1,7 +1,7 @@
 //! Words that stand for something in a configuration.
 
 use crate::form::key::Choice;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::{PhaseSource, StreamStart};
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::t_format::protocol::Request;

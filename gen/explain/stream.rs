@@ -1,8 +1,8 @@
 //! What a stream makes of the line.
 
 use crate::config::start_name;
+use endat_hdl::card::stream::buffer::frame_bytes;
 use endat_hdl::config::{stream_baud, CardConfig};
-use endat_hdl::stream::buffer::frame_bytes;
 use endat_sim::decimal;
 use serde::Serialize;
 use std::fmt;

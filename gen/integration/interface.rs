@@ -1,7 +1,7 @@
 //! The bus of a core as tools know it that connect by interface: its name there, and which port is which of its signals.
 
 use super::Port;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use serde::Serialize;
 
 /// One signal of an interface.

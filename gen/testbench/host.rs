@@ -3,9 +3,9 @@
 use super::{clock_ns, real};
 use crate::error::GenError;
 use crate::template;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
+use endat_hdl::card::config_ring::RING_BYTES;
 use endat_hdl::config::CardConfig;
-use endat_hdl::config_ring::RING_BYTES;
 use minijinja::context;
 use serde::Serialize;
 
@@ -138,7 +138,7 @@ pub fn host(bus: HostBus, card: &CardConfig) -> Result<Option<Host>, GenError> {
         uart_bit_ns => real(1e9 / card.baud as f64),
         pushes => pushes(bus, card),
         // Twice the longest frame of a stream.
-        frame_bits => real((2 * 10 * endat_hdl::stream::buffer::frame_bytes(card.channels.len(), card.stream.additional_data)) as f64),
+        frame_bits => real((2 * 10 * endat_hdl::card::stream::buffer::frame_bytes(card.channels.len(), card.stream.additional_data)) as f64),
         sck_half_ns => real(SCK_HALF_CYCLES * clk_ns),
         access_cycles_max => access_cycles_max(card),
     };

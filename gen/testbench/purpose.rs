@@ -7,17 +7,17 @@ use super::{
 };
 use crate::error::GenError;
 use crate::template;
+use endat_hdl::card::channel_registers::RESULT_WORDS;
+use endat_hdl::card::second_interface::{MARK, RECORD_WORDS};
 use endat_hdl::card::services;
-use endat_hdl::channel_registers::RESULT_WORDS;
 use endat_hdl::config::{CardConfig, ChannelConfig, ChannelRequest, PhaseSource};
-use endat_hdl::line_delay::mode;
-use endat_hdl::protocol::ModeCommand;
-use endat_hdl::regs::{start, CHANNEL_CONFIG, LINE, RECOVERY, RESULT, SERVICE};
-use endat_hdl::second_interface::{MARK, RECORD_WORDS};
-use endat_hdl::service::program::forced_errors;
-use endat_hdl::timing::{
+use endat_hdl::endat::line_delay::mode;
+use endat_hdl::endat::service::program::forced_errors;
+use endat_hdl::endat::timing::{
     cycles_to_ns, PARAMETER_GAP_MS, RECOVERY_MIN_NS, TST_FROM_HZ, TST_USUAL_NS,
 };
+use endat_hdl::protocol::ModeCommand;
+use endat_hdl::regs::{start, CHANNEL_CONFIG, LINE, RECOVERY, RESULT, SERVICE};
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 

@@ -2,15 +2,15 @@
 
 use crate::error::GenError;
 use crate::template;
-use endat_hdl::channel::TIMESTAMP_TO_FIRST_FALL_CYCLES;
 use endat_hdl::config::{CardConfig, ChannelConfig, TFormatRequest};
+use endat_hdl::endat::channel::TIMESTAMP_TO_FIRST_FALL_CYCLES;
+use endat_hdl::endat::timing::cycles_to_ns;
 use endat_hdl::regs::{Block, T_FORMAT};
 use endat_hdl::t_format::cause;
 use endat_hdl::t_format::protocol::{
     control, Content, Request, BIT_HZ, FAST_BIT_HZ, FIELD_BITS, RATE_TOLERANCE_PPM, REST_US,
     WAIT_GRACE_US,
 };
-use endat_hdl::timing::cycles_to_ns;
 use minijinja::context;
 use minijinja::value::{Serde, Value};
 use serde::Serialize;

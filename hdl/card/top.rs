@@ -163,7 +163,7 @@ macro_rules! card_top {
             /// A card with other waits of its services, for quick tests.
             pub fn with_times(
                 config: &CardConfig,
-                service: &crate::service::program::ServiceTimes,
+                service: &crate::endat::service::program::ServiceTimes,
             ) -> Self {
                 Self::behind(Default::default(), CardCore::with_times(config, service))
             }

@@ -1,47 +1,324 @@
-//! The card with a UART: [`CardCore`] behind a [`UartBridge`].
+//! UART, 8N1: a receiver that samples in the middle of each bit, and a transmitter.
 //!
 //! ```text
-//! uart_rx_i, uart_tx_o <-> UartBridge <-> CardCore <-> trigger_i, endat_*, led_*
+//! rx / tx  ~~~~\_____X__d0_X__d1_X ... X__d7_X~~~~~~~~
+//!               start                          stop
+//! samples         ^     ^     ^          ^     ^
+//! strobe   ____________________________________/\_____
 //! ```
+//!
+//! A start bit that is high again at its middle was noise and is forgotten; a byte whose stop bit is low is
+//! dropped and reported as `framing_error`. A line that stays low (break) gives one framing error, no bytes.
 
-use super::ports::{AccessOut, PushOut};
-use super::{service_times, top::card_top, CardCore};
-use crate::config::CardConfig;
-use crate::service::program::ServiceTimes;
-use crate::several::each;
-use crate::uart_bridge::{UartBridge, TIMEOUT_US};
+use rtl_design::reg::{Reg, SyncReg};
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;
 
-card_top! {
-    /// The whole core with a UART to the host; the number of channels is that of [`CardConfig::channels`].
-    Card, CardParts: bridge: UartBridge
-    in {
-        /// Serial line from the host, asynchronous.
-        uart_rx_i: Bit => rx,
+/// Fewest system clock cycles in a bit that the receiver can halve and sample.
+pub const BIT_CYCLES_MIN: u64 = 8;
+/// Most system clock cycles in a bit that the counters hold.
+pub const BIT_CYCLES_MAX: u64 = (1 << 15) - 1;
+
+/// System clock cycles in one bit, to the nearest cycle and within the limits of the counters.
+pub const fn bit_cycles(system_hz: u64, baud: u64) -> u64 {
+    let cycles = (system_hz + baud / 2) / if baud == 0 { 1 } else { baud };
+    if cycles < BIT_CYCLES_MIN {
+        BIT_CYCLES_MIN
+    } else if cycles > BIT_CYCLES_MAX {
+        BIT_CYCLES_MAX
+    } else {
+        cycles
     }
-    out {
-        /// Serial line to the host.
-        uart_tx_o: Bit => tx,
-    }
-    pushed { pushed }
-    silent {}
 }
 
-impl Card {
-    /// A card.
-    pub fn new(config: &CardConfig) -> Self {
-        Self::with_timeout(config, TIMEOUT_US)
+/// Deviation of the rate that `bit_cycles` makes from `baud`, in parts per million.
+pub fn baud_error_ppm(system_hz: u64, baud: u64, bit_cycles: u64) -> f64 {
+    crate::endat::timing::deviation_ppm(system_hz as f64 / bit_cycles as f64, baud as f64)
+}
+
+/// UART receiver.
+#[derive(LogicBlock, Block)]
+#[properties("../properties/uart_receiver.sv")]
+pub struct UartReceiver {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Serial line, asynchronous, idle HIGH.
+    pub rx: Signal<In, Bit>,
+    /// Received byte, with `strobe`.
+    pub data: Signal<Out, Bits<8>>,
+    /// High for one cycle: `data` is a whole byte.
+    pub strobe: Signal<Out, Bit>,
+    /// High for one cycle: a byte ended with a low stop bit and was dropped.
+    pub framing_error: Signal<Out, Bit>,
+    #[start(true)]
+    sync0: SyncReg<Bit>,
+    #[start(true)]
+    sync1: SyncReg<Bit>,
+    #[start(true)]
+    previous: Reg<Bit>,
+    active: Reg<Bit>,
+    in_start_bit: Reg<Bit>,
+    count: Reg<Bits<15>>,
+    sample: Reg<Bit>,
+    #[start(MARKER.into())]
+    shift: Reg<Bits<10>>,
+    good: Reg<Bit>,
+    bad: Reg<Bit>,
+    limit: Signal<Local, Bits<15>>,
+    hit: Signal<Local, Bit>,
+    shifted: Signal<Local, Bits<10>>,
+    middle_count: Constant<Bits<15>>,
+    last_count: Constant<Bits<15>>,
+    marker: Constant<Bits<10>>,
+}
+
+impl UartReceiver {
+    /// A receiver for bits of `bit_cycles` system clock cycles.
+    pub fn new(bit_cycles: u64) -> Self {
+        Self::from_parts(UartReceiverParts {
+            // Two cycles pass between the edge at the synchroniser and the first count, and from the last count to the sample.
+            middle_count: Constant::new((bit_cycles / 2).saturating_sub(2).into()),
+            last_count: Constant::new((bit_cycles - 1).into()),
+            marker: Constant::new(MARKER.into()),
+        })
+    }
+}
+
+/// Shift register before the start bit: the one falls out with the stop bit.
+const MARKER: u64 = 1 << 9;
+
+impl Logic for UartReceiver {
+    #[kernel]
+    fn update(&mut self) {
+        self.sync0.d.next = self.rx.val();
+        self.sync1.d.next = self.sync0.q.val();
+        self.previous.d.next = self.sync1.q.val();
+
+        self.limit.next = self.last_count.val();
+        if self.in_start_bit.q.val() {
+            self.limit.next = self.middle_count.val();
+        }
+        self.hit.next = self.count.q.val() == self.limit.val();
+        self.count.d.next = self.count.q.val() + 1;
+        if self.hit.val() | !self.active.q.val() {
+            self.count.d.next = 0.into();
+        }
+        self.sample.d.next = self.hit.val() & self.active.q.val();
+        self.good.d.next = false;
+        self.bad.d.next = false;
+        self.shifted.next = bit_cast::<10, 9>(self.shift.q.val().get_bits::<9>(1))
+            | (bit_cast::<10, 1>(self.sync1.q.val().into()) << 9);
+
+        if self.sample.q.val() {
+            self.in_start_bit.d.next = false;
+            self.shift.d.next = self.shifted.val();
+            if self.in_start_bit.q.val() & self.sync1.q.val() {
+                self.active.d.next = false;
+            }
+            if self.shift.q.val().get_bit(0) {
+                self.active.d.next = false;
+                self.good.d.next = self.sync1.q.val();
+                self.bad.d.next = !self.sync1.q.val();
+            }
+        }
+        if !self.active.q.val() {
+            self.shift.d.next = self.marker.val();
+            self.sample.d.next = false;
+            // An edge, not a level: a line held low is not a row of start bits.
+            self.active.d.next = self.previous.q.val() & !self.sync1.q.val();
+            self.in_start_bit.d.next = true;
+        }
+        self.data.next = self.shift.q.val().get_bits::<8>(1);
+        self.strobe.next = self.good.q.val();
+        self.framing_error.next = self.bad.q.val();
+    }
+}
+
+/// UART transmitter.
+#[derive(LogicBlock, Block)]
+#[properties("../properties/uart_transmitter.sv")]
+pub struct UartTransmitter {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Byte to send; held while `valid` is high and `accept` has not come.
+    pub data: Signal<In, Bits<8>>,
+    /// `data` shall be sent.
+    pub valid: Signal<In, Bit>,
+    /// High for one cycle: `data` has been taken.
+    pub accept: Signal<Out, Bit>,
+    /// Serial line, idle HIGH, from a register.
+    pub tx: Signal<Out, Bit>,
+    count: Reg<Bits<15>>,
+    bit_end: Reg<Bit>,
+    #[start(1.into())]
+    shift: Reg<Bits<10>>,
+    #[start(true)]
+    empty: Reg<Bit>,
+    hit: Signal<Local, Bit>,
+    take: Signal<Local, Bit>,
+    last_count: Constant<Bits<15>>,
+    stop_bit: Constant<Bits<10>>,
+}
+
+impl UartTransmitter {
+    /// A transmitter of bits of `bit_cycles` system clock cycles.
+    pub fn new(bit_cycles: u64) -> Self {
+        Self::from_parts(UartTransmitterParts {
+            last_count: Constant::new((bit_cycles - 1).into()),
+            stop_bit: Constant::new((1u64 << 9).into()),
+        })
+    }
+}
+
+impl Logic for UartTransmitter {
+    #[kernel]
+    fn update(&mut self) {
+        // Bits begin on a fixed grid, so that a byte is loaded in the shift register's own step.
+        self.hit.next = self.count.q.val() == self.last_count.val();
+        self.count.d.next = self.count.q.val() + 1;
+        if self.hit.val() {
+            self.count.d.next = 0.into();
+        }
+        self.bit_end.d.next = self.hit.val();
+
+        // Only the stop bit is left, and it stays until there is something to send.
+        self.empty.d.next = !self.shift.q.val().get_bits::<9>(1).any();
+        self.take.next = self.bit_end.q.val() & self.empty.q.val() & self.valid.val();
+        if self.bit_end.q.val() & !self.empty.q.val() {
+            self.shift.d.next = bit_cast::<10, 9>(self.shift.q.val().get_bits::<9>(1));
+        }
+        if self.take.val() {
+            self.shift.d.next = (bit_cast::<10, 8>(self.data.val()) << 1) | self.stop_bit.val();
+        }
+        self.accept.next = self.take.val();
+        self.tx.next = self.shift.q.val().get_bit(0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::tick;
+
+    fn receiver(bit_cycles: u64) -> UartReceiver {
+        let mut uut = UartReceiver::new(bit_cycles);
+        uut.rx.next = true;
+        uut.connect_all();
+        uut
     }
 
-    /// A card with another limit on pauses within a host command, for quick tests.
-    pub fn with_timeout(config: &CardConfig, timeout_us: u64) -> Self {
-        Self::with_times(config, timeout_us, &service_times(config))
+    /// Runs the receiver over a line whose level at each cycle is `line`; bytes and framing errors.
+    fn receive(uut: &mut UartReceiver, line: impl IntoIterator<Item = bool>) -> (Vec<u8>, usize) {
+        let (mut bytes, mut errors) = (Vec::new(), 0);
+        for level in line {
+            uut.rx.next = level;
+            tick(uut, |u, level| u.clock.next = level.into());
+            if uut.strobe.val() {
+                bytes.push(uut.data.val().to_u8());
+            }
+            errors += usize::from(uut.framing_error.val());
+        }
+        (bytes, errors)
     }
 
-    /// A card with other waits, too.
-    pub fn with_times(config: &CardConfig, timeout_us: u64, service: &ServiceTimes) -> Self {
-        let bridge = UartBridge::new(config.uart_bit_cycles, timeout_us);
-        Self::behind(bridge, CardCore::with_times(config, service))
+    /// Levels of `bytes` at a sender whose bits last `bit` cycles and whose first edge comes `phase` cycles late.
+    fn line(bytes: &[u8], bit: f64, phase: f64) -> Vec<bool> {
+        let mut bits = Vec::new();
+        for byte in bytes {
+            bits.push(false);
+            bits.extend((0..8).map(|i| byte >> i & 1 == 1));
+            bits.push(true);
+        }
+        let cycles = ((bits.len() + 2) as f64 * bit + phase) as usize;
+        (0..cycles)
+            .map(|cycle| {
+                let index = (cycle as f64 - phase) / bit;
+                index < 0.0 || bits.get(index as usize).copied().unwrap_or(true)
+            })
+            .collect()
+    }
+
+    const BYTES: [u8; 9] = [0x00, 0xff, 0x55, 0xaa, 0x01, 0x80, 0x7f, 0xfe, 0x1b];
+
+    #[test]
+    fn receiver_takes_two_per_cent_of_rate_error_at_any_phase() {
+        for bit_cycles in [8, 9, 11, 33, 109, 434] {
+            for error in [-0.02, -0.01, 0.0, 0.01, 0.02] {
+                for phase in [0.0, 0.3, 0.7] {
+                    let bit = bit_cycles as f64 * (1.0 + error);
+                    let bytes = if bit_cycles > 50 {
+                        &BYTES[2..5]
+                    } else {
+                        &BYTES[..]
+                    };
+                    let got = receive(&mut receiver(bit_cycles), line(bytes, bit, phase));
+                    assert_eq!(got, (bytes.to_vec(), 0), "{bit_cycles} {error} {phase}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn receiver_forgets_a_glitch_that_is_gone_at_mid_bit() {
+        let mut uut = receiver(16);
+        let mut levels = vec![true; 40];
+        levels[10..15].fill(false);
+        // A byte right behind it is not spoilt.
+        levels.truncate(24);
+        levels.extend(line(&[0xa5], 16.0, 0.0));
+        assert_eq!(receive(&mut uut, levels), (vec![0xa5], 0));
+    }
+
+    #[test]
+    fn receiver_drops_a_byte_without_stop_bit_and_reports_a_break_once() {
+        let mut uut = receiver(16);
+        let mut levels = line(&[0x0f], 16.0, 0.0);
+        levels[9 * 16..10 * 16].fill(false);
+        assert_eq!(receive(&mut uut, levels), (vec![], 1));
+        assert_eq!(receive(&mut uut, vec![false; 16 * 100]), (vec![], 1));
+        let mut levels = vec![true; 16];
+        levels.extend(line(&[0x3c], 16.0, 0.0));
+        assert_eq!(receive(&mut uut, levels), (vec![0x3c], 0));
+    }
+
+    #[test]
+    fn transmitter_sends_back_to_back_bytes_with_exact_bits() {
+        for bit_cycles in [8, 33, 109] {
+            let mut uut = UartTransmitter::new(bit_cycles);
+            uut.connect_all();
+            let (mut sent, mut levels) = (0, Vec::new());
+            for _ in 0..bit_cycles * 10 * (BYTES.len() as u64 + 1) {
+                uut.valid.next = sent < BYTES.len();
+                uut.data.next = u64::from(BYTES[sent.min(BYTES.len() - 1)]).into();
+                uut.clock.next = false.into();
+                crate::testing::settle(&mut uut);
+                let accept = uut.accept.val();
+                tick(&mut uut, |u, level| u.clock.next = level.into());
+                sent += usize::from(accept);
+                levels.push(uut.tx.val());
+            }
+            let first = levels.iter().position(|l| !l).unwrap();
+            let expected = line(&BYTES, bit_cycles as f64, 0.0);
+            let frames = BYTES.len() * 10 * bit_cycles as usize;
+            assert_eq!(
+                levels[first..first + frames],
+                expected[..frames],
+                "{bit_cycles}"
+            );
+            assert!(levels[first + frames..].iter().all(|l| *l));
+        }
+    }
+
+    #[test]
+    fn rate_error_is_that_of_the_nearest_divisor() {
+        assert_eq!(bit_cycles(100_000_000, 3_000_000), 33);
+        assert_eq!(baud_error_ppm(100_000_000, 3_000_000, 33).round(), 10_101.0);
+        assert_eq!(bit_cycles(100_000_000, 115_200), 868);
+        assert_eq!(bit_cycles(100_000_000, 0), BIT_CYCLES_MAX);
+        assert_eq!(bit_cycles(8_000_000, 8_000_000), BIT_CYCLES_MIN);
     }
 }

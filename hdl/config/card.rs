@@ -1,9 +1,9 @@
 //! Card requests into cycles: sampling timer and host link.
 
 use super::*;
+use crate::card::stream::buffer::{frame_bytes, frame_cycles, BUFFER_BYTES};
+use crate::endat::timing::*;
 use crate::protocol::LEAD_PULSES;
-use crate::stream::buffer::{frame_bytes, frame_cycles, BUFFER_BYTES};
-use crate::timing::*;
 use endat_regs::result_words;
 
 /// Where the upper limit of the UART rate comes from when it is not the system clock.

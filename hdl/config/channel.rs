@@ -4,8 +4,8 @@ use super::limits::{
     cycles_at_most_ns, cycles_to_ns_up, recovery_most_ns, start_wait_ns, tcal_most_ns,
 };
 use super::*;
+use crate::endat::timing::*;
 use crate::protocol::{INFO_BITS, LEAD_PULSES, SUPPLEMENT_PULSES};
-use crate::timing::*;
 
 impl ChannelConfig {
     /// Whether it speaks EnDat; otherwise T-format.

@@ -1,13 +1,13 @@
 //! What each key may be, whatever the other keys say.
 
 use super::*;
-use crate::channel_trigger::SKIP_BITS;
+use crate::card::channel_trigger::SKIP_BITS;
+use crate::card::stream::buffer::BUFFER_BYTES;
+use crate::endat::timing::*;
 use crate::protocol::POSITION_BITS;
-use crate::stream::buffer::BUFFER_BYTES;
 use crate::t_format::protocol::{
     BIT_HZ, FAST_BIT_HZ, FIELD_GAP_US_MAX, FILTER_CYCLES_MAX, REPLY_GAP_US_MAX,
 };
-use crate::timing::*;
 use endat_regs::service::{ERROR_TEST_MS_MAX, ERROR_TEST_PATIENCE_MS};
 
 /// System clock cycles in the shortest period of the serial clock, behind SPI.

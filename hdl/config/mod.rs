@@ -21,8 +21,8 @@ pub use parts::{
 };
 pub use t_format::{is_rate, is_triggered, TFormatRequest};
 
+use crate::endat::timing::{calibration_hz, TST_FROM_HZ, TST_USUAL_NS};
 use crate::protocol::ModeCommand;
-use crate::timing::{calibration_hz, TST_FROM_HZ, TST_USUAL_NS};
 use endat_regs::{CARD_CONFIG, CHANNELS_MAX, CHANNEL_CONFIG, LINE};
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -30,7 +30,7 @@ use std::ops::RangeInclusive;
 /// Channels a card may have.
 pub const CHANNELS: RangeInclusive<usize> = 1..=CHANNELS_MAX;
 /// Codes of additional data that a service selects in turn.
-pub const LIST: usize = crate::service::map::word::LIST_MAX as usize;
+pub const LIST: usize = crate::endat::service::map::word::LIST_MAX as usize;
 /// Bits of the EnDat period and of the first low phase, in the blocks.
 pub const PERIOD_BITS: u32 = CHANNEL_CONFIG.field("frame", "period_cycles").width;
 /// Bits of the drift that gives alarm, in sixteenths of a cycle, in the blocks.

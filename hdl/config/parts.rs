@@ -1,9 +1,9 @@
 //! Parts that a card may have besides triggered positions.
 
 use super::LIST;
-use crate::line_delay::mode;
-use crate::line_monitor::LineStart;
-use crate::timing::sixteenths;
+use crate::endat::line_delay::mode;
+use crate::endat::line_monitor::LineStart;
+use crate::endat::timing::sixteenths;
 
 /// What a channel does about its line delay besides following it by a cycle for each frame; what is not asked for takes no logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,7 +89,7 @@ pub struct SafetyParts {
 /// The stream of sample sets (`docs/stream.md`); without a buffer there is none, and no logic for it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct StreamParts {
-    /// Bytes of the buffer, one of [`crate::stream::buffer::BUFFER_BYTES`]; 0 = no stream.
+    /// Bytes of the buffer, one of [`crate::card::stream::buffer::BUFFER_BYTES`]; 0 = no stream.
     pub fifo_bytes: u64,
     /// What it does after reset.
     pub start: StreamStart,

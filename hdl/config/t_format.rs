@@ -2,10 +2,10 @@
 
 use super::channel::check_filter;
 use super::*;
+use crate::endat::timing::*;
 use crate::t_format::protocol::{
     Request, BIT_HZ, CARD_BIT_CYCLES_MIN, FAST_BIT_HZ, RATE_TOLERANCE_PPM, REST_US,
 };
-use crate::timing::*;
 
 /// Position bits of a T-format channel: multi-turn in bits 47..24, single-turn in 23..0.
 const POSITION_BITS: u32 = 48;

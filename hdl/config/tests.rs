@@ -1,7 +1,7 @@
 //! Tests of [`super`]: the published tables, and every refusal.
 
 use super::*;
-use crate::timing::{PERIOD_CYCLES_MIN, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
+use crate::endat::timing::{PERIOD_CYCLES_MIN, RECOVERY_MAX_NS, RECOVERY_MIN_NS};
 
 fn rcn_8510() -> ChannelRequest {
     ChannelRequest {

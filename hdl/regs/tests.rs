@@ -1,8 +1,8 @@
 use super::*;
 use crate::config::TFormatRequest;
 use crate::config::{CardRequest, ChannelConfig, ChannelRequest, TriggerSources};
+use crate::endat::service::program::{self, step_name};
 use crate::protocol::ModeCommand;
-use crate::service::program::{self, step_name};
 
 /// The card of the tests: two unlike channels, a UART of 8 cycles per bit.
 pub fn test_config() -> CardConfig {
@@ -135,7 +135,7 @@ fn the_bridge_reaches_every_word() {
         };
         let address = block.address(last, channel);
         assert!(
-            address < 1 << crate::uart_bridge::ADDRESS_BITS,
+            address < 1 << crate::card::uart_bridge::ADDRESS_BITS,
             "{}",
             block.name
         );

@@ -10,7 +10,7 @@ use super::exchange::Exchange;
 use super::outcome::Outcome;
 use super::ports::{FieldBitsOut, FieldsOut, ReadingOut, ReplyPartsOut};
 use super::reply::Reply;
-use crate::features::Features;
+use crate::endat::features::Features;
 use crate::input_filter::InputFilter;
 use rtl_design::{kernel, Block};
 use rust_hdl::prelude::*;

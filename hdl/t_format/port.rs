@@ -15,7 +15,7 @@ use super::exchange::Exchange;
 use super::ports::FieldBitsOut;
 use super::primary::LowestCause;
 use super::reply::Reply;
-use crate::features::Features;
+use crate::endat::features::Features;
 use crate::input_filter::InputFilter;
 use crate::ports::FrameResultOut;
 use crate::snapshot::Snapshot;

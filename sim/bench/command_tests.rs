@@ -9,7 +9,8 @@ use crate::{
     test_receiver::{TestReceiver, LATENCY},
     MS, US,
 };
-use endat_hdl::{protocol::ModeCommand::SendPosition, transaction::cause};
+use endat_hdl::endat::transaction::cause;
+use endat_hdl::protocol::ModeCommand::SendPosition;
 
 const SYSTEM_HZ: u64 = 128_000_000;
 

@@ -2,7 +2,7 @@
 
 use super::pins::find;
 use crate::Time;
-use endat_hdl::transaction::cause;
+use endat_hdl::endat::transaction::cause;
 use rtl_design::engine::{Engine, Port, PortId};
 
 /// A result of the block `Channel`; the fields have the names of its ports.

@@ -1,6 +1,7 @@
 //! The levels that configure a channel, in system clock cycles.
 
-use endat_hdl::{protocol::ModeCommand, timing};
+use endat_hdl::endat::timing;
+use endat_hdl::protocol::ModeCommand;
 
 /// Configuration of a channel; the fields have the names of its ports.
 ///
@@ -20,7 +21,7 @@ pub struct ChannelSettings {
     pub filter_cycles: u64,
     /// And half a cycle more; with `double_edge`.
     pub filter_half: bool,
-    /// Where the phase comes from, see [`endat_hdl::line_delay::mode`].
+    /// Where the phase comes from, see [`endat_hdl::endat::line_delay::mode`].
     pub phase_mode: u64,
     /// The delay in mode `fixed`, in sixteenths of a cycle.
     pub fixed_delay: u64,

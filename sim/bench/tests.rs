@@ -6,10 +6,8 @@ use crate::{
     test_receiver::{Bug, TestReceiver, LATENCY},
     MS, NS,
 };
-use endat_hdl::{
-    protocol::ModeCommand::{self, SendPosition, SendPositionAddInfo},
-    transaction::cause,
-};
+use endat_hdl::endat::transaction::cause;
+use endat_hdl::protocol::ModeCommand::{self, SendPosition, SendPositionAddInfo};
 use rtl_design::engine::PortId;
 
 const SYSTEM_HZ: u64 = 128_000_000;

@@ -7,13 +7,13 @@ use crate::{
     line::{Conflict, LineConfig, Sample, Who},
     Time, MS,
 };
-use endat_hdl::{
+use endat_hdl::endat::{
     channel::{Channel, Features, FixedTimes, CALIBRATION_FRAMES},
     line_delay::mode,
-    protocol::ModeCommand,
     timing,
     transaction::cause,
 };
+use endat_hdl::protocol::ModeCommand;
 use rtl_design::elaborate::{elaborate, Design, ElaborateError};
 use rtl_design::engine::Engine;
 use rust_hdl::prelude::Block;

@@ -8,11 +8,8 @@ use crate::{
     rng::Rng,
     Time, NS, US,
 };
-use endat_hdl::{
-    channel::Features,
-    protocol::{ModeCommand, POSITION_BITS},
-    timing,
-};
+use endat_hdl::endat::{channel::Features, timing};
+use endat_hdl::protocol::{ModeCommand, POSITION_BITS};
 
 /// System clock and EnDat clock in hertz, that every width and cable is tried at.
 pub const RATES: [(u64, u64); 10] = [

@@ -7,10 +7,8 @@ use crate::{
     line::{GlitchRate, LineConfig, Wire},
     Time, MS, NS, US,
 };
-use endat_hdl::{
-    protocol::ModeCommand::{self, SendPosition, SendPositionAddInfo},
-    transaction::cause,
-};
+use endat_hdl::endat::transaction::cause;
+use endat_hdl::protocol::ModeCommand::{self, SendPosition, SendPositionAddInfo};
 
 /// Abort time of the stories in which frames are given up: long enough for the encoder's own time-out, short enough to be simulated.
 const SHORT_ABORT_US: u64 = 200;

@@ -15,7 +15,8 @@ use crate::{
     line::LineConfig,
     Time, MS, US,
 };
-use endat_hdl::{channel::Features, protocol::ModeCommand};
+use endat_hdl::endat::channel::Features;
+use endat_hdl::protocol::ModeCommand;
 use rtl_design::engine::Engine;
 
 /// One EnDat port of a scenario.

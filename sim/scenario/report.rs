@@ -7,7 +7,7 @@ use crate::{
     line::Conflict,
     Time,
 };
-use endat_hdl::{timing, transaction::cause};
+use endat_hdl::endat::{timing, transaction::cause};
 use rtl_design::engine::Engine;
 use std::fmt;
 

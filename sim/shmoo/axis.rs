@@ -5,10 +5,8 @@ use crate::{
     line::{GlitchRate, Jitter, Wire},
     Time, MS, NS,
 };
-use endat_hdl::{
-    channel::DELAY_OFFSET_CYCLES, config::PERIOD_BITS, line_delay::mode, protocol::ModeCommand,
-    timing,
-};
+use endat_hdl::endat::{channel::DELAY_OFFSET_CYCLES, line_delay::mode, timing};
+use endat_hdl::{config::PERIOD_BITS, protocol::ModeCommand};
 
 /// A property of line, encoder or channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use crate::{
     line::Sample,
     Time, US,
 };
-use endat_hdl::transaction::cause;
+use endat_hdl::endat::transaction::cause;
 
 /// What becomes of a frame; what stands later is worse.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

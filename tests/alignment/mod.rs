@@ -8,7 +8,8 @@ mod three_ways;
 mod tolerance;
 mod wander;
 
-use endat_hdl::{line_delay::mode, protocol::ModeCommand};
+use endat_hdl::endat::line_delay::mode;
+use endat_hdl::protocol::ModeCommand;
 use endat_sim::{
     campaign::{self, Case, Outcome, RunOptions, Traces},
     encoder::FrameLog,

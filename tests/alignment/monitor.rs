@@ -1,9 +1,9 @@
 //! The line's words behind the host link of a card: settings, edges, alarms.
 
+use endat_hdl::endat::line_delay::mode;
 use endat_hdl::{
     card::Card,
     config::LineParts,
-    line_delay::mode,
     regs::{BLOCKS, LINE, RESULT},
 };
 use endat_sim::{

@@ -2,7 +2,7 @@
 
 use super::Kind;
 use crate::three_way::{three_way, Stimulus};
-use endat_hdl::channel::{Channel, FixedTimes};
+use endat_hdl::endat::channel::{Channel, FixedTimes};
 use rtl_design::elaborate::elaborate;
 use rtl_design::engine::Compiled;
 use rtl_design::kernel_engine;

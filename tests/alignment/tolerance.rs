@@ -1,7 +1,7 @@
 //! How much jitter the phase stands: against the ideal `0.5 - 1 / places`.
 
 use super::{run, Count, Kind};
-use endat_hdl::line_delay::mode;
+use endat_hdl::endat::line_delay::mode;
 use endat_sim::campaign::Case;
 
 fn sum(counts: &[Count]) -> Count {

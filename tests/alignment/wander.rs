@@ -1,7 +1,7 @@
 //! Delays that change: slowly, and by a step.
 
 use super::{count, Kind};
-use endat_hdl::{line_delay::mode, transaction::cause};
+use endat_hdl::endat::{line_delay::mode, transaction::cause};
 use endat_sim::{campaign::Traces, line::Jitter, MS, US};
 use rtl_design::engine::Compiled;
 

@@ -3,8 +3,8 @@
 use super::text;
 use crate::stream::rig::Named;
 use endat_gen::config::parse;
-use endat_hdl::bus::HostBus;
-use endat_hdl::register_bank::{ring_bytes, RegisterBank};
+use endat_hdl::card::bus::HostBus;
+use endat_hdl::card::register_bank::{ring_bytes, RegisterBank};
 use endat_sim::rng::Rng;
 
 /// Everything that a front says changes at random in the middle of accesses, and accesses come while one is busy.

@@ -3,7 +3,7 @@
 use super::text;
 use crate::constraints::{judge, lint_top, play};
 use endat_gen::config::{parse, Project};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::regs::ID;
 
 const BOARD: &str = "[board]\nname = \"papilio_pro\"\n";

@@ -1,7 +1,7 @@
 //! What holds behind every bus.
 
 use super::{Master, WORD_BUSES};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::regs::{Access, CARD, CARD_CONFIG, RESULT};
 use std::collections::BTreeMap;
 

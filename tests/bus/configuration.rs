@@ -2,7 +2,7 @@
 
 use super::{text, WORD_BUSES};
 use endat_gen::config::{load_preset, parse, DEFAULT_PRESET};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 
 #[test]
 fn a_card_with_a_bus_has_a_test_bench_and_no_board_top() {

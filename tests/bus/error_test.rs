@@ -2,10 +2,10 @@
 
 use super::{at, frame, sound, text, Master};
 use endat_gen::config::parse;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
+use endat_hdl::endat::service::map::{control, force, state};
+use endat_hdl::endat::transaction::cause;
 use endat_hdl::regs::{CARD, RESULT, SERVICE};
-use endat_hdl::service::map::{control, force, state};
-use endat_hdl::transaction::cause;
 use endat_sim::encoder::{Defect, EncoderConfig};
 use std::collections::BTreeSet;
 

@@ -1,7 +1,7 @@
 //! What each bus has of its own: back to back, left in the middle, refused.
 
 use super::Master;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::regs::ID;
 
 /// A scratch word.

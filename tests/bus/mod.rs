@@ -18,7 +18,7 @@ mod three_ways;
 mod uart;
 
 use endat_gen::config::{parse, Project};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::config::CardConfig;
 use endat_hdl::regs::{Block, CARD};
 use endat_sim::bench::{Bench, Link, PinNames};

@@ -1,7 +1,7 @@
 //! The card behind the parallel bus.
 
 use super::Master;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::regs::{words, CARD, CARD_CONFIG};
 use std::collections::BTreeMap;
 

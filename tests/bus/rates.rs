@@ -2,7 +2,7 @@
 
 use super::Master;
 use endat_gen::config::load_preset;
-use endat_hdl::channel::CALIBRATION_FRAMES;
+use endat_hdl::endat::channel::CALIBRATION_FRAMES;
 use endat_hdl::regs::{Block, CARD, CHANNEL_CONFIG, RESULT};
 use endat_sim::US;
 

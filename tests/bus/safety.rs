@@ -3,8 +3,8 @@
 use super::{at, frame, sound, text, Master, WORD_BUSES};
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::parse;
-use endat_hdl::bus::HostBus;
-use endat_hdl::recovery_counter::RecoveryCounter;
+use endat_hdl::card::bus::HostBus;
+use endat_hdl::card::recovery_counter::RecoveryCounter;
 use endat_hdl::regs::{COUNTER_SPACING, RECOVERY, RESULT};
 use endat_sim::encoder::{Defect, EncoderConfig};
 use endat_sim::rng::Rng;

@@ -2,12 +2,12 @@
 
 use super::{at, frame, Master, WORD_BUSES};
 use crate::three_way::{three_way, Stimulus};
-use endat_hdl::bus::HostBus;
-use endat_hdl::features::Features;
+use endat_hdl::card::bus::HostBus;
+use endat_hdl::endat::features::Features;
+use endat_hdl::endat::second_receiver::SecondReceiver;
+use endat_hdl::endat::service::map::force;
+use endat_hdl::endat::transaction::cause;
 use endat_hdl::regs::{RESULT, SERVICE};
-use endat_hdl::second_receiver::SecondReceiver;
-use endat_hdl::service::map::force;
-use endat_hdl::transaction::cause;
 use endat_sim::campaign::faults::Faults;
 use endat_sim::campaign::port::Port;
 use endat_sim::campaign::upsets::{Draw, Upsets};

@@ -1,7 +1,7 @@
 //! The card behind SPI, with a host that knows nothing but the frames of the page.
 
 use super::Master;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_hdl::regs::{words, CARD, CARD_CONFIG, ID, RESULT};
 use std::collections::BTreeMap;
 

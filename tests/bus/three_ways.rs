@@ -3,7 +3,7 @@
 use super::text;
 use crate::three_way::{three_way, Stimulus};
 use endat_gen::config::parse;
-use endat_hdl::bus::{
+use endat_hdl::card::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard, HostBus,
 };

@@ -2,12 +2,12 @@
 
 use super::text;
 use endat_gen::config::parse;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
+use endat_hdl::card::uart::BIT_CYCLES_MIN;
 use endat_hdl::card::Card;
 use endat_hdl::config::{CardConfig, UART_TOLERANCE_PPM};
+use endat_hdl::endat::timing::{deviation_ppm, period_cycles};
 use endat_hdl::regs::{CARD_CONFIG, CHANNEL_CONFIG};
-use endat_hdl::timing::{deviation_ppm, period_cycles};
-use endat_hdl::uart::BIT_CYCLES_MIN;
 use endat_sim::bench::{Bench, Uart};
 use endat_sim::rng::Rng;
 use rtl_design::elaborate::elaborate;

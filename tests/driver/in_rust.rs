@@ -10,7 +10,7 @@ use endat_driver::{
     Spi, Uart,
 };
 use endat_gen::config::parse;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_sim::encoder::Defect;
 use std::cell::RefCell;
 use std::convert::Infallible;

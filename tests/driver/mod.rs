@@ -7,7 +7,7 @@ mod rig;
 use crate::program::{bad, good, Dir};
 use crate::tools;
 use endat_gen::config::{parse, Project};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_sim::encoder::Defect;
 use rig::{Rig, ALL_PARTS};
 use std::path::{Path, PathBuf};

@@ -4,12 +4,12 @@
 use super::compiled;
 use crate::bus::{parallel, spi, Master};
 use endat_gen::config::{parse, Project};
-use endat_hdl::bus::{
+use endat_hdl::card::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard, HostBus,
 };
 use endat_hdl::card::{service_times, Card};
-use endat_hdl::service::program::ServiceTimes;
+use endat_hdl::endat::service::program::ServiceTimes;
 use endat_sim::bench::{Bench, Link};
 use endat_sim::encoder::{Defect, EncoderConfig, Violation};
 use endat_sim::line::LineConfig;

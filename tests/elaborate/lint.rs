@@ -9,14 +9,14 @@ use clean::{elaborated, simulators_are_content, write, yosys_is_content};
 use endat_gen::area;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::load_preset;
-use endat_hdl::bus::{
+use endat_hdl::card::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard,
 };
 use endat_hdl::card::Card;
-use endat_hdl::channel::{Channel, FixedTimes};
 use endat_hdl::config::OutputParts;
-use endat_hdl::sequencer::Sequencer;
+use endat_hdl::endat::channel::{Channel, FixedTimes};
+use endat_hdl::endat::sequencer::Sequencer;
 use endat_hdl::t_format::dsp::{AsyncDsp, TFormatStart};
 use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;

@@ -3,7 +3,7 @@
 use super::desk::Desk;
 use endat_gen::config::{parse, Project};
 use endat_gen::virtual_card::VirtualConfig;
-use endat_hdl::transaction::cause;
+use endat_hdl::endat::transaction::cause;
 
 /// All of the service but the continuous clock.
 const SERVICE: &str = "\"requests\", \"diagnosis\", \"initialise\"";

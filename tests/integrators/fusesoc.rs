@@ -6,7 +6,7 @@ use crate::tools::{folder, require, require_all, run};
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_any_preset, parse, Configuration};
 use endat_gen::emit;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use std::fs;
 use std::path::Path;
 

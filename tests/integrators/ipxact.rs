@@ -5,7 +5,7 @@ use crate::bus::text;
 use crate::tools::{require, run};
 use endat_gen::config::parse;
 use endat_gen::emit;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 
 /// Interfaces with the ports behind them, which the component must have; address block and files.
 const SCRIPT: &str = "

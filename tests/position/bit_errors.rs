@@ -1,10 +1,8 @@
 //! Wrong bits in an answer: none of them becomes a position.
 
 use super::rig::*;
-use endat_hdl::{
-    protocol::ModeCommand::{SendPosition, SendPositionAddInfo},
-    transaction::cause,
-};
+use endat_hdl::endat::transaction::cause;
+use endat_hdl::protocol::ModeCommand::{SendPosition, SendPositionAddInfo};
 use endat_sim::encoder::Defect;
 use rtl_design::engine::Compiled;
 

@@ -1,6 +1,6 @@
 //! The core's three CRC blocks against published vectors and a CRC library.
 
-use endat_hdl::crc5::{Crc5Check, Crc5Fixed, Crc5Serial, MAX_COVERED_BITS};
+use endat_hdl::endat::crc5::{Crc5Check, Crc5Fixed, Crc5Serial, MAX_COVERED_BITS};
 use endat_sim::rng::Rng;
 use rtl_design::elaborate::elaborate;
 use rtl_design::engine::{Compiled, Engine};

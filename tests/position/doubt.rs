@@ -1,11 +1,11 @@
 //! What the core itself has reason to doubt is no position: lines that change under way, settings that change, registers that are upset.
 
 use super::rig::*;
-use endat_hdl::{
+use endat_hdl::endat::{
     channel::{Channel, Features, FixedTimes},
-    protocol::ModeCommand::{SendPosition, SendPositionAddInfo},
     transaction::cause,
 };
+use endat_hdl::protocol::ModeCommand::{SendPosition, SendPositionAddInfo};
 use endat_sim::{encoder::Defect, rng::Rng, Time, MS, NS, US};
 use rtl_design::elaborate::elaborate;
 use rtl_design::engine::{Compiled, Keep};

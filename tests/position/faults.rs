@@ -1,7 +1,8 @@
 //! Every fault ends in its own cause, within its limit; the last good position stays and the next frame is good again.
 
 use super::rig::*;
-use endat_hdl::{protocol::LEAD_PULSES, transaction::cause};
+use endat_hdl::endat::transaction::cause;
+use endat_hdl::protocol::LEAD_PULSES;
 use endat_sim::{
     bench::ChannelResult,
     encoder::{Defect, FrameEnd, Violation},

@@ -2,7 +2,7 @@
 
 use super::rig::*;
 use endat_hdl::{
-    channel,
+    endat::channel,
     protocol::{
         ModeCommand::{self, SendPosition, SendPositionAddInfo},
         DRIVER_OFF_FALL, DRIVER_ON_FALL, FIRST_COMMAND_FALL, MODE_COMMAND_BITS,

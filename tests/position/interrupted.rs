@@ -1,7 +1,7 @@
 //! Plugs pulled, supplies lost, resets and triggers at any moment.
 
 use super::rig::*;
-use endat_hdl::transaction::cause;
+use endat_hdl::endat::transaction::cause;
 use endat_sim::{bench::ChannelResult, encoder::Defect, rng::Rng, Time, MS, NS, US};
 use rtl_design::engine::Engine;
 

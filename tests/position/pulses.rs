@@ -4,7 +4,7 @@ use super::{
     doubt::{open_rig, register},
     rig::*,
 };
-use endat_hdl::transaction::cause;
+use endat_hdl::endat::transaction::cause;
 use endat_sim::{encoder::FrameLog, Time, MS, NS, US};
 
 /// A count that is inverted in one place makes the frame longer or shorter, and the other counts see it.

@@ -1,7 +1,8 @@
 //! Sequence, age, time stamp, delay and recovery time that come with a position.
 
 use super::rig::*;
-use endat_hdl::{channel, protocol::ModeCommand::SendPositionAddInfo, transaction::cause};
+use endat_hdl::endat::{channel, transaction::cause};
+use endat_hdl::protocol::ModeCommand::SendPositionAddInfo;
 use endat_sim::{encoder::Defect, Time, NS, US};
 use rtl_design::engine::{Compiled, Engine};
 

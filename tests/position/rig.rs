@@ -1,9 +1,7 @@
 //! Benches of one elaborated channel, and what a sound run looks like.
 
-use endat_hdl::{
-    channel::{Channel, Features, FixedTimes},
-    protocol::ModeCommand,
-};
+use endat_hdl::endat::channel::{Channel, Features, FixedTimes};
+use endat_hdl::protocol::ModeCommand;
 pub use endat_sim::campaign::{ABORT_US, RATES};
 use endat_sim::{
     bench::{Bench, ChannelResult, ChannelSettings, Link},

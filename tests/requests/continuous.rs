@@ -1,9 +1,8 @@
 //! Continuous clock: one position after the other without a command, and the ways out.
 
 use super::rig::Rig;
-use endat_hdl::{
-    channel::TIMESTAMP_TO_FIRST_FALL_CYCLES, protocol::ModeCommand::*, transaction::cause,
-};
+use endat_hdl::endat::{channel::TIMESTAMP_TO_FIRST_FALL_CYCLES, transaction::cause};
+use endat_hdl::protocol::ModeCommand::*;
 use endat_sim::{
     bench::ChannelSettings,
     encoder::{Defect, EncoderConfig, FrameEnd, LatchEdge, PositionSource},

@@ -1,11 +1,11 @@
 //! What is wrong with a line or an encoder, told apart, within its limit and at every phase of a frame.
 
 use super::rig::Rig;
-use endat_hdl::{
-    protocol::ModeCommand::*,
+use endat_hdl::endat::{
     timing::{recovery_min_cycles, PROBE_US, RECOVERY_MIN_NS, SETTLE_US},
     transaction::cause::{self, flag},
 };
+use endat_hdl::protocol::ModeCommand::*;
 use endat_sim::{
     bench::{ChannelResult, ChannelSettings},
     campaign::ABORT_US,

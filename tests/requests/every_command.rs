@@ -1,10 +1,8 @@
 //! Every command with every combination of additional data, at every width, rate and cable.
 
 use super::rig::Rig;
-use endat_hdl::{
-    protocol::ModeCommand::{self, *},
-    transaction::cause,
-};
+use endat_hdl::endat::transaction::cause;
+use endat_hdl::protocol::ModeCommand::{self, *};
 use endat_sim::{
     encoder::{area, EncoderConfig, FrameEnd},
     US,

@@ -2,7 +2,7 @@
 
 use super::lanes::*;
 use crate::position::rig::believes;
-use endat_hdl::{
+use endat_hdl::endat::{
     timing::{PROBE_US, SETTLE_US},
     transaction::cause,
 };

@@ -1,7 +1,8 @@
 //! Additional data: errors in it, and a record that finds the truth again.
 
 use super::rig::Rig;
-use endat_hdl::{protocol::ModeCommand::*, transaction::cause};
+use endat_hdl::endat::transaction::cause;
+use endat_hdl::protocol::ModeCommand::*;
 use endat_sim::{
     encoder::{Defect, EncoderConfig},
     MS,

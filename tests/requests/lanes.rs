@@ -1,11 +1,11 @@
 //! Channels with requests side by side, each with an encoder, a line and a mishap of its own, in the longest frame that there is:
 //! additional data 1 and 2 and a supplement.
 
-use endat_hdl::{
+use endat_hdl::endat::{
     channel::{Channel, Features, FixedTimes},
-    protocol::ModeCommand::{self, *},
     transaction::cause,
 };
+use endat_hdl::protocol::ModeCommand::{self, *};
 use endat_sim::{
     bench::{ChannelResult, ChannelSettings, LaneBench, Link, PinNames},
     campaign::{ABORT_US, SAMPLE_LATENCY_CYCLES},

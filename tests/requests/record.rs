@@ -1,10 +1,8 @@
 //! The record of additional data finds the truth again after any frame, whatever recovery time, calculation time and clock.
 
 use super::lanes::*;
-use endat_hdl::{
-    protocol::ModeCommand::{PositionSelectMemory, SendPositionAddInfo},
-    transaction::cause,
-};
+use endat_hdl::endat::transaction::cause;
+use endat_hdl::protocol::ModeCommand::{PositionSelectMemory, SendPositionAddInfo};
 use endat_sim::{
     bench::ChannelSettings,
     encoder::{Defect, EncoderConfig},

@@ -1,10 +1,10 @@
 //! A channel with requests on its bench.
 
-use endat_hdl::{
+use endat_hdl::endat::{
     channel::{Channel, Features, FixedTimes},
-    protocol::ModeCommand,
     transaction::cause,
 };
+use endat_hdl::protocol::ModeCommand;
 use endat_sim::{
     bench::{Bench, ChannelSettings, Link},
     campaign::{ABORT_US, SAMPLE_LATENCY_CYCLES},

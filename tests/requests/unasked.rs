@@ -1,11 +1,11 @@
 //! What nobody has asked for is not sent.
 
 use super::rig::{fixed_times, Rig};
-use endat_hdl::{
+use endat_hdl::endat::{
     channel::{Channel, Features},
-    protocol::ModeCommand,
     transaction::cause,
 };
+use endat_hdl::protocol::ModeCommand;
 use endat_sim::{
     bench::{Bench, ChannelSettings, Link, PinNames},
     encoder::{area, EncoderConfig},

@@ -23,7 +23,7 @@ impl Host {
     }
 
     fn with(config: &CardConfig, encoders: &[Device]) -> Self {
-        let times = endat_hdl::service::program::ServiceTimes {
+        let times = endat_hdl::endat::service::program::ServiceTimes {
             system_khz: (config.system_hz / 1_000) as u32,
             ..times(true)
         };

@@ -1,11 +1,11 @@
 //! Slots, position 2, counters, threshold, forced errors.
 
 use super::rig::{quick, Make, Rig, ENDAT_HZ};
-use endat_hdl::{
-    protocol::ModeCommand::*,
+use endat_hdl::endat::{
     service::map::{control, info_status, state, word, COUNTER_BAD_INFOS, COUNTER_POSITION_2},
     transaction::cause,
 };
+use endat_hdl::protocol::ModeCommand::*;
 use endat_sim::{
     encoder::{Defect, EncoderConfig, PositionSource},
     MS,

@@ -1,7 +1,7 @@
 //! Initialisation: every device from nothing, what fails, and what happens after a plug.
 
 use super::rig::{quick, Make, Rig, ENDAT_HZ};
-use endat_hdl::service::{
+use endat_hdl::endat::service::{
     map::{plate, state, word, NAME_PLATE, PLATE_DELAY},
     program::{step_name, steps},
 };

@@ -1,12 +1,12 @@
 //! What the host sets in a frame's limits and in the continuous clock.
 
 use super::rig::{quick, Make, Rig, SYSTEM_HZ};
-use endat_hdl::{
-    protocol::ModeCommand::*,
+use endat_hdl::endat::{
     service::map::{word, COUNTER_POSITION_2},
     timing::{recovery_min_cycles, RECOVERY_MIN_NS, SHORT_RECOVERY_MIN_NS},
     transaction::cause,
 };
+use endat_hdl::protocol::ModeCommand::*;
 use endat_sim::{
     encoder::{Defect, EncoderConfig, LatchEdge},
     MS, US,

@@ -1,11 +1,11 @@
 //! Ten seconds of a busy host: the words that it reads and writes cost no sample.
 
 use super::rig::{quick, Make, Rig};
-use endat_hdl::{
-    protocol::ModeCommand::{self, *},
+use endat_hdl::endat::{
     service::map::{request_state, word},
     transaction::cause,
 };
+use endat_hdl::protocol::ModeCommand::{self, *};
 use endat_sim::{
     encoder::{area, EncoderConfig, PositionSource},
     rng::Rng,

@@ -1,10 +1,8 @@
 //! Requests of the host.
 
 use super::rig::{quick, Rig};
-use endat_hdl::{
-    protocol::ModeCommand::*,
-    service::map::{request_state, word},
-};
+use endat_hdl::endat::service::map::{request_state, word};
+use endat_hdl::protocol::ModeCommand::*;
 use endat_sim::encoder::{area, Defect, EncoderConfig, PositionSource};
 
 fn encoder() -> EncoderConfig {

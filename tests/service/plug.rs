@@ -5,14 +5,16 @@ use crate::requests::lanes::{
     self, Rig, FRAME_TIME, HALF_PERIOD, LANES, POSITION_BITS, RECOVERY, SYSTEM_HZ,
 };
 use endat_hdl::{
-    channel::FixedTimes,
     encoder_port::EncoderPort,
-    protocol::ModeCommand::{self, *},
-    service::{
-        map::{request_state, state, word},
-        program::ServiceTimes,
+    endat::{
+        channel::FixedTimes,
+        service::{
+            map::{request_state, state, word},
+            program::ServiceTimes,
+        },
+        transaction::cause,
     },
-    transaction::cause,
+    protocol::ModeCommand::{self, *},
 };
 use endat_sim::{campaign::ABORT_US, encoder::EncoderConfig, Time, MS, US};
 use rtl_design::elaborate::elaborate;

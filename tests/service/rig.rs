@@ -1,14 +1,16 @@
 //! An encoder port with its service on a bench, and a host at its memory.
 
 use endat_hdl::{
-    channel::FixedTimes,
     config::LIST,
     encoder_port::EncoderPort,
-    protocol::ModeCommand,
-    service::{
-        map::{request_state, state, word},
-        program::ServiceTimes,
+    endat::{
+        channel::FixedTimes,
+        service::{
+            map::{request_state, state, word},
+            program::ServiceTimes,
+        },
     },
+    protocol::ModeCommand,
 };
 use endat_sim::{
     bench::{Bench, ChannelSettings, Link},

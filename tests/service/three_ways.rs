@@ -2,12 +2,11 @@
 
 use super::rig::{quick, times, ENDAT_HZ, SYSTEM_HZ};
 use crate::three_way::{three_way, Stimulus};
-use endat_hdl::{
+use endat_hdl::endat::{
     channel::FixedTimes,
-    encoder_port::EncoderPort,
-    protocol::ModeCommand,
     service::{map::word, program::ServiceTimes},
 };
+use endat_hdl::{encoder_port::EncoderPort, protocol::ModeCommand};
 use endat_sim::{
     bench::{Bench, ChannelSettings, Link, PinNames},
     encoder::EncoderConfig,

@@ -2,10 +2,8 @@
 
 use super::plug::{encoder, ready, Hosts, PERIOD, STUCK_MS};
 use crate::requests::lanes::{self, Rig, LANES};
-use endat_hdl::{
-    protocol::ModeCommand::*,
-    service::map::{control, request_state, word},
-};
+use endat_hdl::endat::service::map::{control, request_state, word};
+use endat_hdl::protocol::ModeCommand::*;
 use endat_sim::{rng::Rng, Time, MS, US};
 
 /// The registers, with what is inverted in them.

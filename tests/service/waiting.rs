@@ -1,11 +1,11 @@
 //! Requests that ride on a trigger, and no trigger comes.
 
 use super::rig::{quick, Rig};
-use endat_hdl::{
-    protocol::ModeCommand::*,
+use endat_hdl::endat::{
     service::map::{control, request_state, word},
     timing::REQUEST_WAIT_MS,
 };
+use endat_hdl::protocol::ModeCommand::*;
 use endat_sim::{encoder::EncoderConfig, MS};
 
 fn rig() -> Rig {

@@ -1,7 +1,7 @@
 //! The buffer: overflow, clear, on and off, readers of every kind.
 
 use super::rig::*;
-use endat_hdl::stream::buffer::{frame_bytes, BUFFER_BYTES};
+use endat_hdl::card::stream::buffer::{frame_bytes, BUFFER_BYTES};
 
 fn channels(n: usize, position: u64) -> Vec<Channel> {
     let one = Channel {

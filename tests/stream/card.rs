@@ -6,7 +6,7 @@ use endat_hdl::config::StreamStart::{Collect, Off, Push};
 use endat_hdl::regs::{CARD, CARD_CONFIG, VERSION};
 
 /// Cause of a result whose channel has missed a trigger.
-const OVERRUN: u16 = endat_hdl::transaction::cause::TRIGGER_OVERRUN as u16;
+const OVERRUN: u16 = endat_hdl::endat::transaction::cause::TRIGGER_OVERRUN as u16;
 
 /// Sets of a run without loss: whole, consecutive from the first trigger on, at the timer's distance, with the encoders' positions.
 /// The first frame measures the delay, slowly: until then a channel may be missing, or busy. The number of sets after that.

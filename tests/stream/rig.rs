@@ -2,7 +2,7 @@
 
 use crate::three_way::Stimulus;
 use crc::{Crc, CRC_16_IBM_3740};
-use endat_hdl::stream::{buffer::SetParts, channel::SetChannel, Stream};
+use endat_hdl::card::stream::{buffer::SetParts, channel::SetChannel, Stream};
 use rtl_design::elaborate::elaborate;
 use rtl_design::engine::{Compiled, Engine, PortId};
 use rust_hdl::prelude::Block;
@@ -368,6 +368,6 @@ impl Rig {
 
     /// Long enough for a set to be written.
     pub fn written(&mut self) {
-        self.run(endat_hdl::stream::buffer::frame_cycles(self.set.len(), false) + 4);
+        self.run(endat_hdl::card::stream::buffer::frame_cycles(self.set.len(), false) + 4);
     }
 }

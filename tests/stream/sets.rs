@@ -1,7 +1,7 @@
 //! What is in a set, and what never gets into one.
 
 use super::rig::*;
-use endat_hdl::transaction::cause;
+use endat_hdl::endat::transaction::cause;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 

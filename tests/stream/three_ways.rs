@@ -2,7 +2,7 @@
 
 use super::rig::{Access, Channel, Rig};
 use crate::three_way::{three_way, Stimulus};
-use endat_hdl::stream::{buffer::SetParts, channel::SetChannel, Stream};
+use endat_hdl::card::stream::{buffer::SetParts, channel::SetChannel, Stream};
 use rtl_design::elaborate::elaborate;
 use rtl_design::kernel_engine;
 use rust_hdl::prelude::Block;

@@ -4,7 +4,7 @@ use super::mutations::{mutation, Mutation};
 use super::testbench::{assert_passes, check_mutations, run_bench};
 use crate::tools;
 use endat_gen::config::parse;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 
 const APB: &[Mutation] = &[
     mutation(

@@ -7,7 +7,7 @@ use super::{file_of, is_core, name_of};
 use crate::bus::text;
 use crate::tools;
 use endat_gen::config::parse;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use rtl_design::elaborate::block_name;
 use std::fs;
 

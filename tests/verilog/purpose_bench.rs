@@ -6,7 +6,7 @@ use super::testbench::{assert_passes, check_mutations, run_bench};
 use crate::tools;
 use endat_gen::artifact::Artifact;
 use endat_gen::config::{load_preset, parse};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 
 const BROKEN: &[Mutation] = &[
     mutation(

@@ -7,7 +7,7 @@ use endat_gen::artifact::Artifact;
 use endat_gen::config::{parse, preset};
 pub use endat_gen::readers::passes;
 use endat_hdl::config::{ServiceParts, LIST};
-use endat_hdl::service::program::{program, ServiceTimes};
+use endat_hdl::endat::service::program::{program, ServiceTimes};
 
 /// The bench has passed.
 pub fn assert_passes(text: &str) {

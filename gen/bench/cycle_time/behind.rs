@@ -1,13 +1,13 @@
 //! Frames with additional data and a supplement.
 
 use super::{Rate, Subject, CYCLES, MHZ};
-use endat_hdl::channel::{Channel, Features, FixedTimes};
+use endat_hdl::endat::channel::{Channel, Features, FixedTimes};
+use endat_hdl::endat::timing::PARK_NS;
+use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::{
     ModeCommand::{self, PositionErrorReset, PositionSelectMemory, SendPositionAddInfo},
     INFO_BITS, SUPPLEMENT_PULSES,
 };
-use endat_hdl::timing::PARK_NS;
-use endat_hdl::transaction::cause;
 use endat_sim::bench::{Bench, Link, PinNames};
 use endat_sim::campaign::{Case, Traces};
 use endat_sim::{Time, MS, NS};

@@ -6,13 +6,13 @@ use super::told::{Kind, Known, Round, Seen, Verdict, What};
 use super::CYCLES_PER_US;
 use super::{CHANNELS, CONFIG_WORDS, SERVICE_WORDS};
 use endat_driver::Reading;
+use endat_hdl::card::stream::buffer::frame_bytes;
+use endat_hdl::endat::service::map::{control, request_state, word};
+use endat_hdl::endat::timing::PARAMETER_TIMEOUT_US;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{
     result_words, BLOCK_STRIDE, CARD, CONFIG_BASE, RESULT_BASE, SERVICE, SERVICE_BASE,
 };
-use endat_hdl::service::map::{control, request_state, word};
-use endat_hdl::stream::buffer::frame_bytes;
-use endat_hdl::timing::PARAMETER_TIMEOUT_US;
 use endat_host::result::of_burst;
 use endat_host::stream::SampleSet;
 use std::collections::VecDeque;

@@ -8,12 +8,12 @@ mod told;
 
 use crate::config;
 use crate::error::GenError;
+use endat_hdl::card::config_ring::RING_WORDS;
 use endat_hdl::card::{service_times, Card};
 use endat_hdl::config::CardConfig;
-use endat_hdl::config_ring::RING_WORDS;
+use endat_hdl::endat::service::map::word;
+use endat_hdl::endat::service::program::ServiceTimes;
 use endat_hdl::regs::config_words;
-use endat_hdl::service::map::word;
-use endat_hdl::service::program::ServiceTimes;
 use endat_sim::bench::{LaneBench, LaneUart, Link, PinNames};
 use endat_sim::campaign::port::{is_count, Class, Mark};
 use endat_sim::campaign::upsets::{Draw, Flops};

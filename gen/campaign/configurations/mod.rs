@@ -10,7 +10,7 @@ use crate::config::{parse_any, Configuration};
 use crate::error::GenError;
 use crate::readers::{is_bench, Reader, LINTERS};
 use crate::{emit, scratch, t_format};
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use endat_sim::campaign::{Campaign, Row, Tally};
 use sha2::{Digest, Sha256};
 use std::ops::Range;

@@ -11,7 +11,7 @@ use endat_regs::{Named, BLOCKS};
 use std::fmt::Write;
 
 /// Causes of EnDat frames, which the services count.
-const SERVICE_CAUSES: std::ops::Range<u32> = 0..endat_hdl::transaction::cause::COUNT as u32;
+const SERVICE_CAUSES: std::ops::Range<u32> = 0..endat_hdl::endat::transaction::cause::COUNT as u32;
 
 /// Everything called `name`: keys of a configuration, causes, registers, fields, values, with or without block and channel in front.
 pub fn text(typed: &str) -> Result<String, GenError> {

@@ -6,7 +6,7 @@ use super::interrupted;
 use crate::error::GenError;
 use crate::virtual_card::{serve, Door, VirtualCard, VirtualConfig, CABLE_M};
 use clap::Args;
-use endat_hdl::bus::HostBus;
+use endat_hdl::card::bus::HostBus;
 use std::io::Write;
 use std::time::Duration;
 

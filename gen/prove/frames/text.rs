@@ -1,7 +1,7 @@
 //! The Verilog around a channel for the proof of a frame: encoder and cable.
 
 use super::{Case, Settings};
-use endat_hdl::transaction::cause::TRIGGER_OVERRUN;
+use endat_hdl::endat::transaction::cause::TRIGGER_OVERRUN;
 use rtl_design::elaborate::{Direction, Module};
 use rtl_design::verilog::emitted_name;
 use std::fmt::Write;

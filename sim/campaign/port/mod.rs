@@ -16,10 +16,8 @@ use crate::{
     line::{FaultKind, Jitter, LineConfig},
     Time, NS, US,
 };
-use endat_hdl::{
-    channel::{Channel, Features, FixedTimes},
-    protocol::ModeCommand,
-};
+use endat_hdl::endat::channel::{Channel, Features, FixedTimes};
+use endat_hdl::protocol::ModeCommand;
 use rtl_design::elaborate::{elaborate, Design};
 use rtl_design::engine::{Keep, LaneWords, Lanes, PortId};
 use rust_hdl::prelude::Block;

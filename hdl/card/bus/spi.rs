@@ -1,0 +1,358 @@
+//! SPI front: frames of mode 0 with a check sum, most significant bit first.
+//!
+//! ```text
+//! read    03 a1 a0 n  xx  -- -- -- -- ... -- --          write   02 a1 a0 n  d3 d2 d1 d0 c1 c0  d3 d2 d1 d0 c1 c0 ...
+//! answer  s  -- -- -- --  d3 d2 d1 d0 ... c1 c0          answer  s
+//! ```
+//!
+//! Addresses count words and rise; `n` words, 1 to 255. `c1 c0` is CRC-16/CCITT-FALSE (polynomial 0x1021, start 0xFFFF): in a read over
+//! the four bytes of the request and all words that came, in a write over everything before it, from the second word on over that
+//! word. A word is written when its check sum is right; otherwise nothing more of the frame is. `s` is 0xA0, or 0xA2 if the last write was refused.
+//! All result words of a frame are of one moment. A frame may end anywhere. A read that comes while a word is still being written waits for it;
+//! if the host's clock does not, the check sum of its answer is wrong.
+
+use super::word_access::WordAccess;
+use crate::card::ports::AccessOut;
+use crate::card::stream::buffer::CRC16_POLYNOMIAL;
+use crate::card::{top::card_top, CardCore};
+use crate::config::CardConfig;
+use crate::endat::service::program::ServiceTimes;
+use crate::several::each;
+use rtl_design::reg::{Reg, SyncReg};
+use rtl_design::{kernel, Block, States};
+use rust_hdl::prelude::*;
+
+/// What the byte means.
+#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
+pub enum SpiState {
+    /// 2 = write, 3 = read.
+    Command,
+    /// Word address, bits 15..8.
+    AddressHigh,
+    /// Word address, bits 7..0.
+    AddressLow,
+    /// Number of words.
+    Length,
+    /// Nothing: the first word is being read.
+    Turnaround,
+    /// A word, in either direction.
+    Data,
+    /// Check sum, in either direction.
+    Crc,
+    /// Nothing until the frame ends.
+    Ignore,
+}
+
+/// SPI slave in front of the register bank.
+#[derive(LogicBlock, Block)]
+pub struct SpiFront {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Serial clock, idle low, asynchronous; at most an eighth of the system clock.
+    pub sck: Signal<In, Bit>,
+    /// Chip select, active low, asynchronous.
+    pub cs_n: Signal<In, Bit>,
+    /// Data from the host, taken with the rising edge, asynchronous.
+    pub mosi: Signal<In, Bit>,
+    /// Data to the host; changes after the falling edge.
+    pub miso: Signal<Out, Bit>,
+    /// The card drives `miso`, straight from `cs_n`.
+    pub miso_enable: Signal<Out, Bit>,
+    /// Strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// A front's access to the register bank.
+    #[bundle]
+    pub bank: AccessOut,
+    #[start]
+    words: WordAccess,
+    sck_0: SyncReg<Bit>,
+    sck_1: SyncReg<Bit>,
+    sck_2: Reg<Bit>,
+    cs_0: SyncReg<Bit>,
+    cs_1: SyncReg<Bit>,
+    mosi_0: SyncReg<Bit>,
+    mosi_1: SyncReg<Bit>,
+    #[start(SpiState::Command)]
+    state: Reg<SpiState>,
+    bit_count: Reg<Bits<3>>,
+    byte_in: Reg<Bits<8>>,
+    byte_end: Reg<Bit>,
+    byte_count: Reg<Bits<2>>,
+    #[start(0xffffu64.into())]
+    crc: Reg<Bits<16>>,
+    shift_out: Reg<Bits<32>>,
+    load_word: Reg<Bit>,
+    load_crc: Reg<Bit>,
+    late: Reg<Bit>,
+    writing: Reg<Bit>,
+    words_left: Reg<Bits<8>>,
+    address: Reg<Bits<11>>,
+    out_of_range: Reg<Bit>,
+    data: Reg<Bits<32>>,
+    asked: Reg<Bit>,
+    busy: Reg<Bit>,
+    request: Reg<Bit>,
+    access_address: Reg<Bits<11>>,
+    access_outside: Reg<Bit>,
+    access_writes: Reg<Bit>,
+    refused: Reg<Bit>,
+    selected: Signal<Local, Bit>,
+    rise: Signal<Local, Bit>,
+    fall: Signal<Local, Bit>,
+    crc_bit: Signal<Local, Bit>,
+    crc_runs: Signal<Local, Bit>,
+    step_address: Signal<Local, Bit>,
+    waits: Signal<Local, Bit>,
+    next_address: Signal<Local, Bits<12>>,
+    last_word: Signal<Local, Bit>,
+    crc_sent: Signal<Local, Bits<16>>,
+    polynomial: Constant<Bits<16>>,
+    accepted_word: Constant<Bits<32>>,
+    refused_word: Constant<Bits<32>>,
+}
+
+impl Default for SpiFront {
+    fn default() -> Self {
+        Self::from_parts(SpiFrontParts {
+            polynomial: Constant::new(CRC16_POLYNOMIAL.into()),
+            accepted_word: Constant::new(0xa000_0000u64.into()),
+            refused_word: Constant::new(0xa200_0000u64.into()),
+        })
+    }
+}
+
+impl Logic for SpiFront {
+    #[kernel]
+    fn update(&mut self) {
+        connect!(self.words <= self;
+            clock, reset, tick_us, keep_moment = selected
+        );
+        self.words.end_moment.next = !self.selected.val();
+        AccessOut::link(&mut self.bank, &mut self.words.bank);
+
+        self.sck_0.d.next = self.sck.val();
+        self.sck_1.d.next = self.sck_0.q.val();
+        self.sck_2.d.next = self.sck_1.q.val();
+        self.cs_0.d.next = !self.cs_n.val();
+        self.cs_1.d.next = self.cs_0.q.val();
+        self.mosi_0.d.next = self.mosi.val();
+        self.mosi_1.d.next = self.mosi_0.q.val();
+        self.selected.next = self.cs_1.q.val();
+        self.rise.next = self.selected.val() & self.sck_1.q.val() & !self.sck_2.q.val();
+        self.fall.next = self.selected.val() & !self.sck_1.q.val() & self.sck_2.q.val();
+
+        // Bits.
+        self.crc_runs.next = (self.state.q.val() == SpiState::Command)
+            | (self.state.q.val() == SpiState::AddressHigh)
+            | (self.state.q.val() == SpiState::AddressLow)
+            | (self.state.q.val() == SpiState::Length)
+            | (self.state.q.val() == SpiState::Data)
+            | ((self.state.q.val() == SpiState::Crc) & self.writing.q.val());
+        self.crc_bit.next = self.mosi_1.q.val();
+        if (self.state.q.val() == SpiState::Data) & !self.writing.q.val() {
+            self.crc_bit.next = self.shift_out.q.val().get_bit(31);
+        }
+        self.byte_end.d.next = self.rise.val() & self.bit_count.q.val().all();
+        if self.rise.val() {
+            self.bit_count.d.next = self.bit_count.q.val() + 1;
+            self.byte_in.d.next =
+                (self.byte_in.q.val() << 1) | bit_cast::<8, 1>(self.mosi_1.q.val().into());
+            if self.crc_runs.val() {
+                self.crc.d.next = self.crc.q.val() << 1;
+                if self.crc.q.val().get_bit(15) ^ self.crc_bit.val() {
+                    self.crc.d.next = (self.crc.q.val() << 1) ^ self.polynomial.val();
+                }
+            }
+        }
+
+        // One access after the other, each with an address and a direction of its own: the next frame may have begun.
+        self.request.d.next = false;
+        self.step_address.next = false;
+        self.waits.next = self.asked.q.val() | self.busy.q.val();
+        if self.words.finished.val() {
+            self.busy.d.next = false;
+        }
+        if self.asked.q.val() & !self.busy.q.val() {
+            self.asked.d.next = false;
+            self.busy.d.next = true;
+            self.request.d.next = true;
+            self.access_address.d.next = self.address.q.val();
+            self.access_outside.d.next = self.out_of_range.q.val();
+            self.access_writes.d.next = self.writing.q.val();
+            self.step_address.next = self.writing.q.val();
+        }
+
+        // Bytes.
+        self.last_word.next = self.words_left.q.val() == 1;
+        if self.byte_end.q.val() {
+            match self.state.q.val() {
+                SpiState::Command => {
+                    self.state.d.next = SpiState::Ignore;
+                    self.writing.d.next = self.byte_in.q.val() == 2;
+                    if (self.byte_in.q.val() == 2) | (self.byte_in.q.val() == 3) {
+                        self.state.d.next = SpiState::AddressHigh;
+                    }
+                }
+                SpiState::AddressHigh => {
+                    self.state.d.next = SpiState::AddressLow;
+                    self.address.d.next =
+                        bit_cast::<11, 3>(self.byte_in.q.val().get_bits::<3>(0)) << 8;
+                    self.out_of_range.d.next = self.byte_in.q.val().get_bits::<5>(3).any();
+                }
+                SpiState::AddressLow => {
+                    self.state.d.next = SpiState::Length;
+                    self.address.d.next =
+                        self.address.q.val() | bit_cast::<11, 8>(self.byte_in.q.val());
+                    // The first word is there before the host can ask for it.
+                    self.asked.d.next = !self.writing.q.val();
+                }
+                SpiState::Length => {
+                    self.words_left.d.next = self.byte_in.q.val();
+                    self.byte_count.d.next = 0.into();
+                    self.state.d.next = SpiState::Turnaround;
+                    if self.writing.q.val() {
+                        self.state.d.next = SpiState::Data;
+                    }
+                    if !self.byte_in.q.val().any() {
+                        self.state.d.next = SpiState::Ignore;
+                    }
+                }
+                SpiState::Turnaround => {
+                    self.state.d.next = SpiState::Data;
+                    self.load_word.d.next = true;
+                }
+                SpiState::Data => {
+                    self.byte_count.d.next = self.byte_count.q.val() + 1;
+                    if self.writing.q.val() {
+                        self.data.d.next =
+                            (self.data.q.val() << 8) | bit_cast::<32, 8>(self.byte_in.q.val());
+                    }
+                    if self.byte_count.q.val().all() {
+                        if self.writing.q.val() {
+                            self.state.d.next = SpiState::Crc;
+                        } else {
+                            self.words_left.d.next = self.words_left.q.val() - 1;
+                            self.load_word.d.next = !self.last_word.val();
+                            if self.last_word.val() {
+                                self.load_crc.d.next = true;
+                                self.state.d.next = SpiState::Crc;
+                            }
+                        }
+                    }
+                }
+                SpiState::Crc => {
+                    self.byte_count.d.next = self.byte_count.q.val() + 1;
+                    if self.byte_count.q.val().get_bit(0) {
+                        self.state.d.next = SpiState::Ignore;
+                        if self.writing.q.val() {
+                            // A check sum behind what it belongs to leaves 0.
+                            self.refused.d.next = self.crc.q.val().any() | self.waits.val();
+                            if !self.crc.q.val().any() & !self.waits.val() {
+                                self.asked.d.next = true;
+                                self.words_left.d.next = self.words_left.q.val() - 1;
+                                self.byte_count.d.next = 0.into();
+                                self.crc.d.next = 0xffff.into();
+                                if !self.last_word.val() {
+                                    self.state.d.next = SpiState::Data;
+                                }
+                            }
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+
+        // A clock that is too fast must not pass for an answer: the check sum goes out wrong.
+        self.crc_sent.next = self.crc.q.val();
+        if self.late.q.val() {
+            self.crc_sent.next = !self.crc.q.val();
+        }
+        // What goes out changes with the falling edge.
+        if self.fall.val() {
+            self.shift_out.d.next = self.shift_out.q.val() << 1;
+            self.load_word.d.next = false;
+            self.load_crc.d.next = false;
+            if self.load_word.q.val() {
+                self.shift_out.d.next = self.words.read_data.val();
+                self.late.d.next = self.late.q.val() | self.waits.val();
+                self.step_address.next = !self.last_word.val();
+                self.asked.d.next = !self.last_word.val();
+            }
+            if self.load_crc.q.val() {
+                self.shift_out.d.next = bit_cast::<32, 16>(self.crc_sent.val()) << 16;
+            }
+        }
+
+        self.next_address.next = bit_cast::<12, 11>(self.address.q.val()) + 1;
+        if self.step_address.val() {
+            self.address.d.next = self.next_address.val().get_bits::<11>(0);
+            if self.next_address.val().get_bit(11) {
+                self.out_of_range.d.next = true;
+            }
+        }
+
+        // Between frames; a word that is being written has what it needs.
+        if !self.selected.val() {
+            self.state.d.next = SpiState::Command;
+            self.bit_count.d.next = 0.into();
+            self.byte_end.d.next = false;
+            self.byte_count.d.next = 0.into();
+            self.crc.d.next = 0xffff.into();
+            self.load_word.d.next = false;
+            self.load_crc.d.next = false;
+            self.late.d.next = false;
+            if !self.writing.q.val() {
+                self.asked.d.next = false;
+            }
+            self.shift_out.d.next = self.accepted_word.val();
+            if self.refused.q.val() {
+                self.shift_out.d.next = self.refused_word.val();
+            }
+        }
+
+        self.words.request.next = self.request.q.val();
+        self.words.address_in.next = self.access_address.q.val();
+        self.words.write_in.next = self.access_writes.q.val();
+        self.words.data_in.next = self.data.q.val();
+        self.bank.in_range.next = !self.access_outside.q.val();
+        self.miso.next = self.shift_out.q.val().get_bit(31);
+        // No register: the line is free as soon as the frame ends.
+        self.miso_enable.next = !self.cs_n.val();
+    }
+}
+
+card_top! {
+    /// The whole core behind SPI; the number of channels is that of [`CardConfig::channels`].
+    SpiCard, SpiCardParts: front: SpiFront, irq_o
+    in {
+        /// Serial clock, idle low, asynchronous; at most an eighth of the system clock.
+        spi_sck_i: Bit => sck,
+        /// Chip select, active low, asynchronous.
+        spi_cs_n_i: Bit => cs_n,
+        /// Data from the host, taken with the rising edge, asynchronous.
+        spi_mosi_i: Bit => mosi,
+    }
+    out {
+        /// Data to the host; changes after the falling edge.
+        spi_miso_o: Bit => miso,
+        /// The card drives `spi_miso_o`, straight from `spi_cs_n_i`.
+        spi_miso_oe: Bit => miso_enable,
+    }
+    pushed {}
+    silent { pushed }
+}
+
+impl SpiCard {
+    /// A card.
+    pub fn new(config: &CardConfig) -> Self {
+        Self::behind(Default::default(), CardCore::new(config))
+    }
+
+    /// A card with other waits of its services, for quick tests.
+    pub fn with_times(config: &CardConfig, service: &ServiceTimes) -> Self {
+        Self::behind(Default::default(), CardCore::with_times(config, service))
+    }
+}

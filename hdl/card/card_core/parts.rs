@@ -1,0 +1,108 @@
+//! What a card's parts are made of, as its configuration wants them.
+
+use crate::card::channel_trigger::ChannelTrigger;
+use crate::config::{CardConfig, ChannelConfig};
+use crate::encoder_port::EncoderPort;
+use crate::endat::features::{Features, FixedTimes};
+use crate::endat::line_monitor::LineStart;
+use crate::endat::service::program::ServiceTimes;
+use crate::endat::service::CHANNELS_SERVED;
+
+/// Time stamp bit that toggles about `hz` times a second.
+pub(super) fn blink_bit(system_hz: u64, hz: u64) -> u64 {
+    u64::from((system_hz / (2 * hz)).max(1).ilog2())
+}
+
+/// What decides whether a channel takes a trigger, of so many channels.
+pub(super) fn channel_triggers(card: &CardConfig, channels: usize) -> Vec<ChannelTrigger> {
+    let of = |channel: &ChannelConfig| {
+        let own = channel.request.trigger.unwrap_or_default();
+        ChannelTrigger::new(own.ignored(), own.skip(), !own.enabled)
+    };
+    card.channels.iter().take(channels).map(of).collect()
+}
+
+/// The times of a channel that are fixed in the design.
+fn times(card: &CardConfig, channel: &ChannelConfig) -> FixedTimes {
+    FixedTimes {
+        ready_low_cycles: channel.ready_low_cycles,
+        abort_us: channel.abort_us,
+        calibration_period_cycles: channel.calibration_period_cycles(card.system_hz),
+        ..FixedTimes::at(card.system_hz)
+    }
+}
+
+/// The features of its channels besides those of a service.
+fn line(card: &CardConfig) -> Features {
+    Features {
+        alignment: card.line.alignment,
+        margin: card.line.margin,
+        double_edge: card.line.double_edge,
+        second_receiver: card.safety.second_receiver,
+        ..Features::NONE
+    }
+}
+
+fn line_start(card: &CardConfig) -> LineStart {
+    LineStart {
+        clears: !card.initial_values,
+        ..card.line.start(card.system_hz)
+    }
+}
+
+/// Parts and waits of a card's services.
+pub fn service_times(config: &CardConfig) -> ServiceTimes {
+    ServiceTimes {
+        initialise: config.service.initialise,
+        diagnosis: config.service.diagnosis,
+        continuous: config.service.continuous,
+        infos: config.service.infos,
+        error_test_ms: config.safety.error_test_ms,
+        second_receiver: config.safety.second_receiver,
+        clears_ram: !config.initial_values,
+        ..ServiceTimes::at(config.system_hz)
+    }
+}
+
+/// Channels from the first one on that have a place at a service: to the last one that speaks EnDat.
+pub(super) fn served_channels(card: &CardConfig) -> usize {
+    let last = card.endat_channels().last();
+    last.filter(|_| card.service.requests)
+        .map_or(0, |(index, _)| index + 1)
+}
+
+/// Services of a card; each has room for [`CHANNELS_SERVED`] channels that follow each other.
+pub fn services(card: &CardConfig) -> usize {
+    served_channels(card).div_ceil(CHANNELS_SERVED)
+}
+
+/// The port of a channel, at a service of the card where there is one.
+pub(super) fn port(card: &CardConfig, index: usize, service: &ServiceTimes) -> EncoderPort {
+    let channel = &card.channels[index];
+    if !channel.is_endat() {
+        return EncoderPort::t_format(index < served_channels(card));
+    }
+    let service = card.service.requests.then_some(service);
+    EncoderPort::served(
+        times(card, channel),
+        service,
+        channel.wants_short_recovery(),
+        line(card),
+        line_start(card),
+    )
+}
+
+/// The first channel's port alone, for those who bring registers and triggers of their own.
+pub fn bare_port(card: &CardConfig) -> EncoderPort {
+    let (channel, service) = (&card.channels[0], service_times(card));
+    if !channel.is_endat() {
+        return EncoderPort::t_format(false);
+    }
+    EncoderPort::with_line(
+        times(card, channel),
+        card.service.requests.then_some(&service),
+        channel.wants_short_recovery(),
+        line(card),
+        line_start(card),
+    )
+}

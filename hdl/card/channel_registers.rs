@@ -1,0 +1,299 @@
+//! Registers of one channel: the result as the host reads it, and the configuration.
+//!
+//! ```text
+//! channel's result --(load)--> held words, their age runs on --> byte of each word, of the selected word only --> OR --> read_out
+//! ring block of the channel --(ring stands still, channel not busy)--> configuration of the channel
+//!                           \--(its parity is wrong)--> no command
+//! ```
+//!
+//! The held words of all channels are loaded by the same signal, so they belong together: [`crate::card::register_bank`] says when. What stands for longer
+//! than a trigger says so: the age counts the time that the words are held, `stale` a trigger that has come since. A byte that is not selected
+//! is 0 in its register: the read path is an OR, and the selection costs no logic but the registers' reset.
+
+use crate::card::config_ring::ConfigRing;
+use crate::config::CardConfig;
+use crate::ports::{FrameResultIn, PortSettingsOut};
+use crate::regs::config_words;
+use crate::several::each;
+use endat_macros::kernel;
+use rtl_design::reg::Reg;
+use rtl_design::Block;
+use rust_hdl::prelude::*;
+
+/// Words of a result.
+pub const RESULT_WORDS: usize = 6;
+
+/// Host side of one channel.
+#[derive(LogicBlock, Block)]
+#[properties("../properties/channel_registers.sv")]
+pub struct ChannelRegisters {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// The channel's trigger.
+    pub trigger: Signal<In, Bit>,
+    /// Strobe: some channel takes a trigger; results of another trigger than this are not waited for.
+    pub new_set: Signal<In, Bit>,
+    /// The channel does not take a trigger; its configuration must not change.
+    pub busy: Signal<In, Bit>,
+    /// Result of a trigger.
+    #[bundle]
+    pub result: FrameResultIn,
+    /// Recovery time, in system clock cycles.
+    pub recovery_cycles: Signal<In, Bits<13>>,
+    /// Tracked line delay, in system clock cycles.
+    pub delay_cycles: Signal<In, Bits<11>>,
+    /// The channel takes the trigger.
+    pub taken: Signal<Out, Bit>,
+    /// The channel took the trigger of the last `new_set`, and its result is not there yet.
+    pub owes: Signal<Out, Bit>,
+    /// Strobe: this result is the one that the channel owed.
+    pub brought: Signal<Out, Bit>,
+    /// The held words follow the result.
+    pub load: Signal<In, Bit>,
+    /// Nothing is being read: age and `stale` of the held words go on.
+    pub show: Signal<In, Bit>,
+    /// Words that are not read, one bit per word.
+    pub word_skip: Signal<In, Bits<6>>,
+    /// Byte of the word, 0 = most significant.
+    pub lane: Signal<In, Bits<2>>,
+    /// This channel's result is not read.
+    pub skip: Signal<In, Bit>,
+    /// Read byte of the channels before this one.
+    pub read_in: Signal<In, Bits<8>>,
+    /// `read_in`, or this channel's byte; 2 cycles after `word_skip`.
+    pub read_out: Signal<Out, Bits<8>>,
+    /// The configuration ring moves on by one byte.
+    pub ring_turn: Signal<In, Bit>,
+    /// The configuration ring stands still, its words are in place.
+    pub ring_home: Signal<In, Bit>,
+    /// Byte from the ring block behind, its parity in bit 8.
+    pub ring_in: Signal<In, Bits<9>>,
+    /// Byte to the ring block in front.
+    pub ring_out: Signal<Out, Bits<9>>,
+    /// The card's own settings are not what was written.
+    pub card_damaged: Signal<In, Bit>,
+    /// Triggers left out after each that the channel takes; this and the next one as they stand on the ring.
+    pub trigger_skip: Signal<Out, Bits<5>>,
+    /// Trigger sources that are not for this channel.
+    pub ignored_sources: Signal<Out, Bits<3>>,
+    /// Settings of one channel, as the host has written them.
+    #[bundle]
+    pub settings: PortSettingsOut,
+    /// T-format: request ID of a trigger.
+    pub request_id: Signal<Out, Bits<4>>,
+    /// T-format: longest pause between two fields, in microseconds.
+    pub field_gap_us: Signal<Out, Bits<3>>,
+    /// The words of the result as they are now, for the second interface; none without one.
+    pub live: Vec<Signal<Out, Bits<32>>>,
+    waiting: Reg<Bit>,
+    behind: Reg<Bit>,
+    behind_now: Signal<Local, Bit>,
+    stale: Reg<Bit>,
+    stale_now: Signal<Local, Bit>,
+    stale_shown: Reg<Bit>,
+    age: Reg<Bits<16>>,
+    age_base: Signal<Local, Bits<16>>,
+    age_tick: Signal<Local, Bit>,
+    age_now: Signal<Local, Bits<16>>,
+    age_shown: Reg<Bits<16>>,
+    held: Vec<Reg<Bits<32>>>,
+    word: Vec<Signal<Local, Bits<32>>>,
+    shown: Vec<Signal<Local, Bits<32>>>,
+    byte: Vec<Reg<Bits<8>>>,
+    read_byte: Reg<Bits<8>>,
+    ring: ConfigRing,
+    #[given]
+    config0: Reg<Bits<32>>,
+    #[given]
+    config1: Reg<Bits<32>>,
+    #[given]
+    config2: Reg<Bits<32>>,
+    _words: usize,
+    _lives: usize,
+    _live_ends: usize,
+}
+
+impl ChannelRegisters {
+    /// The registers of channel `channel` of a card.
+    pub fn new(config: &CardConfig, channel: usize) -> Self {
+        let words = config_words(config, Some(channel));
+        let active = |i: usize| Reg::new(u64::from(words[i]).into());
+        let lives = RESULT_WORDS * usize::from(config.safety.second_interface);
+        Self::from_parts(ChannelRegistersParts {
+            held: each(RESULT_WORDS),
+            word: each(RESULT_WORDS),
+            shown: each(RESULT_WORDS),
+            byte: each(RESULT_WORDS),
+            ring: ConfigRing::new(words),
+            config0: active(0),
+            config1: active(1),
+            config2: active(2),
+            live: each(lives),
+            _words: RESULT_WORDS,
+            _lives: lives.saturating_sub(1),
+            _live_ends: lives,
+        })
+    }
+}
+
+impl Logic for ChannelRegisters {
+    #[kernel]
+    fn update(&mut self) {
+        clock!(self, clock, ring);
+        self.ring.reset.next = self.reset.val();
+
+        // A trigger that the channel does not take gives no result of its own.
+        if self.result.result_strobe.val() {
+            self.waiting.d.next = false;
+        }
+        self.taken.next = self.trigger.val() & !self.busy.val();
+        if self.new_set.val() {
+            self.waiting.d.next = self.trigger.val() & !self.busy.val();
+        }
+        self.owes.next = self.waiting.q.val() & !self.result.result_strobe.val();
+        self.brought.next = self.waiting.q.val() & self.result.result_strobe.val();
+
+        // A trigger that comes with a result is newer than it.
+        self.behind_now.next =
+            self.trigger.val() | (self.behind.q.val() & !self.result.result_strobe.val());
+        self.behind.d.next = self.behind_now.val();
+        self.stale_now.next = self.stale.q.val() | self.trigger.val();
+        self.age_base.next = self.age.q.val();
+        self.age_tick.next = self.tick_us.val() & !self.age.q.val().all();
+        if self.load.val() {
+            self.stale_now.next = self.behind_now.val();
+            self.age_base.next = self.result.age_us.val();
+            self.age_tick.next = false;
+        }
+        self.age_now.next = self.age_base.val() + bit_cast::<16, 1>(self.age_tick.val().into());
+        self.stale.d.next = self.stale_now.val();
+        self.age.d.next = self.age_now.val();
+        if self.show.val() {
+            self.stale_shown.d.next = self.stale_now.val();
+            self.age_shown.d.next = self.age_now.val();
+        }
+
+        self.word[0].next = place!(self.result.sequence.val(), result.status.sequence)
+            | place!(self.result.cause.val(), result.status.cause)
+            | place!(self.result.position_valid.val(), result.status.valid)
+            | place!(self.result.fresh.val(), result.status.fresh)
+            | place!(
+                self.result.flags.val().get_bits::<8>(12),
+                result.status.line
+            );
+        self.word[1].next = self.result.position.val().get_bits::<32>(0);
+        // A good position has F1 = 0, and F2 = 1 where there is one: that there is one says all.
+        self.word[2].next = place!(
+            self.result.position.val().get_bits::<16>(32),
+            result.position_high.value
+        ) | place!(self.result.position_crc.val(), result.position_high.crc)
+            | place!(self.result.position_has_f2.val(), result.position_high.f2)
+            | place!(self.result.position_width.val(), result.position_high.width);
+        self.word[3].next = self.result.first_fall_timestamp.val();
+        self.word[4].next = place!(self.result.crc_received.val(), result.evidence.crc_received)
+            | place!(self.result.crc_computed.val(), result.evidence.crc_computed)
+            | place!(
+                self.delay_cycles.val().get_bits::<10>(0),
+                result.evidence.delay_cycles
+            )
+            | place!(
+                self.result.flags.val().get_bits::<12>(0),
+                result.evidence.flags
+            );
+        self.word[5].next = place!(
+            self.recovery_cycles.val(),
+            result.age_recovery.recovery_cycles
+        ) | place!(
+            self.delay_cycles.val().get_bit(10),
+            result.age_recovery.delay_high
+        );
+        for i in 0..self._lives {
+            self.live[i].next = self.word[i].val();
+        }
+        for i in self._lives..self._live_ends {
+            self.live[i].next = self.word[i].val()
+                | place!(self.result.age_us.val(), result.age_recovery.age_us)
+                | place!(self.behind_now.val(), result.age_recovery.stale);
+        }
+        for i in 0..self._words {
+            connect!(self.held[i] <= self; clock, reset);
+            self.held[i].d.next = self.held[i].q.val();
+            if self.load.val() {
+                self.held[i].d.next = self.word[i].val();
+            }
+            self.shown[i].next = self.held[i].q.val();
+        }
+        self.shown[5].next = self.held[5].q.val()
+            | place!(self.age_shown.q.val(), result.age_recovery.age_us)
+            | place!(self.stale_shown.q.val(), result.age_recovery.stale);
+        for i in 0..self._words {
+            self.byte[i].clock.next = self.clock.val();
+            // A reset by deselection alone takes no logic; what a reset of the card would clear is never shown.
+            self.byte[i].reset.next = self.word_skip.val().get_bit(i);
+            match self.lane.val().index() {
+                0 => {
+                    self.byte[i].d.next = self.shown[i].val().get_bits::<8>(24);
+                }
+                1 => {
+                    self.byte[i].d.next = self.shown[i].val().get_bits::<8>(16);
+                }
+                2 => {
+                    self.byte[i].d.next = self.shown[i].val().get_bits::<8>(8);
+                }
+                _ => {
+                    self.byte[i].d.next = self.shown[i].val().get_bits::<8>(0);
+                }
+            }
+        }
+        self.read_byte.reset.next = self.skip.val();
+        self.read_byte.d.next = self.byte[0].q.val()
+            | self.byte[1].q.val()
+            | self.byte[2].q.val()
+            | self.byte[3].q.val()
+            | self.byte[4].q.val()
+            | self.byte[5].q.val();
+        self.read_out.next = self.read_in.val() | self.read_byte.q.val();
+
+        connect!(self.ring <= self; turn = ring_turn, byte_in = ring_in);
+        self.ring_out.next = self.ring.byte_out.val();
+        if self.ring_home.val() & !self.busy.val() {
+            self.config0.d.next = self.ring.word0.val();
+            self.config1.d.next = self.ring.word1.val();
+            self.config2.d.next = self.ring.word2.val();
+        }
+        self.trigger_skip.next = field!(self.ring.word0.val(), config.frame.skip);
+        self.ignored_sources.next = bit_cast::<3, 2>(self.ring.word0.val().get_bits::<2>(22))
+            | (bit_cast::<3, 1>(
+                field!(self.ring.word0.val(), config.frame.ignore_register).into(),
+            ) << 2);
+        self.settings.period_cycles.next = field!(self.config0.q.val(), config.frame.period_cycles);
+        self.settings.position_bits.next = field!(self.config0.q.val(), config.frame.position_bits);
+        self.settings.first_low_extra_cycles.next =
+            field!(self.config1.q.val(), config.timing.first_low_extra_cycles);
+        self.settings.start_window_cycles.next =
+            field!(self.config1.q.val(), config.timing.start_window_cycles);
+        self.settings.filter_cycles.next =
+            field!(self.config1.q.val(), config.timing.filter_cycles);
+        self.settings.filter_half.next = field!(self.config1.q.val(), config.timing.filter_half);
+        self.field_gap_us.next = field!(self.config2.q.val(), config.limits.field_gap_us);
+        self.settings.start_timeout_us.next =
+            field!(self.config2.q.val(), config.limits.start_timeout_us);
+        self.settings.recovery_limit_cycles.next =
+            field!(self.config2.q.val(), config.limits.recovery_limit_cycles);
+
+        // With settings that nobody wrote nothing goes out: these are no commands.
+        self.settings.command.next = field!(self.config0.q.val(), config.frame.command);
+        self.request_id.next = field!(self.config1.q.val(), config.timing.request_id);
+        if self.ring.is_damaged.val() | self.card_damaged.val() {
+            self.settings.command.next = 0.into();
+            self.request_id.next = 15.into();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,184 @@
+//! Second interface: what the channels have to say, for a second controller, over an SPI of its own that can only be read.
+//!
+//! ```text
+//! cs_n  ~~\__________________________________________________________________/~~
+//! miso    5E c r r | hash | 8 words of channel 0 | 0 . k k | 8 words of channel 1 | 1 . k k | 0 ...
+//!         ^ all channels are taken here, in one cycle
+//! ```
+//!
+//! Mode 0, 32 bits to a word, most significant first. `c` channels; `r r` counts what has been read before, so that an answer is never the one
+//! before. The words are those of the register block `result`; behind them stand the channel's number and `k k`, CRC-16/CCITT-FALSE (polynomial
+//! 0x1021, start 0xFFFF) over everything since the check sum before. The controller may stop anywhere.
+//!
+//! Nothing that comes in here reaches the card but clock and select: whatever the second controller does, the first one does not see it.
+
+pub mod record;
+
+use crate::card::stream::buffer::CRC16_POLYNOMIAL;
+use crate::regs::RESULT;
+use rtl_design::reg::{Reg, SyncReg};
+use rtl_design::{kernel, Block, States};
+use rust_hdl::prelude::*;
+
+/// What begins an answer.
+pub const MARK: u8 = 0x5E;
+
+/// Words of a channel, its check sum not counted.
+pub const RECORD_WORDS: usize = RESULT.registers.len();
+
+/// What is on the line.
+#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
+pub enum SecondState {
+    /// Mark, channels, count.
+    Head,
+    /// Configuration hash.
+    Hash,
+    /// A word of a channel.
+    Record,
+    /// Number of the channel, check sum.
+    CheckSum,
+    /// Nothing more.
+    Rest,
+}
+
+/// The SPI slave of the second interface.
+#[derive(LogicBlock, Block)]
+pub struct SecondInterface {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Serial clock, idle low, asynchronous; at most an eighth of the system clock.
+    pub sck: Signal<In, Bit>,
+    /// Chip select, active low, asynchronous.
+    pub cs_n: Signal<In, Bit>,
+    /// Data to the controller; changes after the falling edge.
+    pub miso: Signal<Out, Bit>,
+    /// The card drives `miso`, straight from `cs_n`.
+    pub miso_enable: Signal<Out, Bit>,
+    /// Strobe: the records take what the channels have to say.
+    pub take: Signal<Out, Bit>,
+    /// Channel whose word is next.
+    pub channel: Signal<Out, Bits<4>>,
+    /// The next word of it; behind the last one that of the check sum.
+    pub word_at: Signal<Out, Bits<4>>,
+    /// That word.
+    pub word: Signal<In, Bits<32>>,
+    sck_0: SyncReg<Bit>,
+    sck_1: SyncReg<Bit>,
+    sck_2: Reg<Bit>,
+    cs_0: SyncReg<Bit>,
+    cs_1: SyncReg<Bit>,
+    cs_2: Reg<Bit>,
+    #[start(SecondState::Head)]
+    state: Reg<SecondState>,
+    bit_count: Reg<Bits<5>>,
+    #[start(0xffffu64.into())]
+    crc: Reg<Bits<16>>,
+    shift_out: Reg<Bits<32>>,
+    reads: Reg<Bits<16>>,
+    channel_at: Reg<Bits<4>>,
+    next: Reg<Bits<4>>,
+    rise: Signal<Local, Bit>,
+    fall: Signal<Local, Bit>,
+    at_check_sum: Signal<Local, Bit>,
+    channels: Constant<Bits<4>>,
+    check_sum: Constant<Bits<4>>,
+    head: Constant<Bits<16>>,
+    hash: Constant<Bits<32>>,
+    polynomial: Constant<Bits<16>>,
+}
+
+impl SecondInterface {
+    /// That of a card with so many channels and this configuration hash.
+    pub fn new(channels: usize, hash: u64) -> Self {
+        let head = u64::from(MARK) << 8 | channels as u64;
+        Self::from_parts(SecondInterfaceParts {
+            channels: Constant::new((channels as u64).into()),
+            check_sum: Constant::new((RECORD_WORDS as u64).into()),
+            head: Constant::new(head.into()),
+            hash: Constant::new(hash.into()),
+            polynomial: Constant::new(CRC16_POLYNOMIAL.into()),
+        })
+    }
+}
+
+impl Logic for SecondInterface {
+    #[kernel]
+    fn update(&mut self) {
+        self.sck_0.d.next = self.sck.val();
+        self.sck_1.d.next = self.sck_0.q.val();
+        self.sck_2.d.next = self.sck_1.q.val();
+        self.cs_0.d.next = !self.cs_n.val();
+        self.cs_1.d.next = self.cs_0.q.val();
+        self.cs_2.d.next = self.cs_1.q.val();
+        self.rise.next = self.sck_1.q.val() & !self.sck_2.q.val();
+        self.fall.next = !self.sck_1.q.val() & self.sck_2.q.val();
+        self.take.next = self.cs_1.q.val() & !self.cs_2.q.val();
+
+        if self.rise.val() {
+            self.bit_count.d.next = self.bit_count.q.val() + 1;
+            self.crc.d.next = self.crc.q.val() << 1;
+            if self.crc.q.val().get_bit(15) ^ self.shift_out.q.val().get_bit(31) {
+                self.crc.d.next = (self.crc.q.val() << 1) ^ self.polynomial.val();
+            }
+        }
+
+        // What goes out changes with the falling edge.
+        self.at_check_sum.next = self.next.q.val() == self.check_sum.val();
+        if self.fall.val() {
+            self.shift_out.d.next = self.shift_out.q.val() << 1;
+            if self.bit_count.q.val() == 0 {
+                self.shift_out.d.next = self.word.val();
+                self.next.d.next = self.next.q.val() + 1;
+                self.state.d.next = SecondState::Record;
+                if self.at_check_sum.val() {
+                    self.state.d.next = SecondState::CheckSum;
+                    self.channel_at.d.next = self.channel_at.q.val() + 1;
+                    self.next.d.next = 0.into();
+                }
+                match self.state.q.val() {
+                    SecondState::Head => {
+                        self.state.d.next = SecondState::Hash;
+                        self.shift_out.d.next = self.hash.val();
+                        self.next.d.next = 0.into();
+                    }
+                    SecondState::CheckSum => {
+                        self.crc.d.next = 0xffff.into();
+                        if self.channel_at.q.val() == self.channels.val() {
+                            self.state.d.next = SecondState::Rest;
+                        }
+                    }
+                    SecondState::Rest => {
+                        self.state.d.next = SecondState::Rest;
+                        self.next.d.next = 0.into();
+                        self.shift_out.d.next = 0.into();
+                    }
+                    _ => {}
+                }
+            }
+            if (self.bit_count.q.val() == 16) & (self.state.q.val() == SecondState::CheckSum) {
+                self.shift_out.d.next = bit_cast::<32, 16>(self.crc.q.val()) << 16;
+            }
+        }
+
+        if !self.cs_1.q.val() {
+            self.state.d.next = SecondState::Head;
+            self.bit_count.d.next = 0.into();
+            self.crc.d.next = 0xffff.into();
+            self.channel_at.d.next = 0.into();
+            self.next.d.next = 0.into();
+            self.shift_out.d.next = (bit_cast::<32, 16>(self.head.val()) << 16)
+                | bit_cast::<32, 16>(self.reads.q.val());
+        }
+        if self.cs_2.q.val() & !self.cs_1.q.val() {
+            self.reads.d.next = self.reads.q.val() + 1;
+        }
+
+        self.channel.next = self.channel_at.q.val();
+        self.word_at.next = self.next.q.val();
+        self.miso.next = self.shift_out.q.val().get_bit(31);
+        // No register: the line is free as soon as the controller lets go.
+        self.miso_enable.next = !self.cs_n.val();
+    }
+}

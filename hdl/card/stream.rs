@@ -1,0 +1,404 @@
+//! Stream: the results of each trigger as one set in a buffer, for a host that wants all of them.
+//!
+//! ```text
+//! trigger, time stamp, count --> set under way --(all channels have their result, or the next trigger)--> closed set
+//!                                                                                                            |
+//! SetChannel 0, 1, ... (owes, replaced; byte of the closed set) ------------------------------- byte --> FrameBuffer
+//!                                                                                                            |
+//! host's registers: control, state, data, clear <---- bytes ------------------------------------------------+----> push
+//! ```
+//!
+//! What a set and a frame look like is told in `docs/stream.md`. A set that is closed is taken whole in one cycle, then written in its own
+//! time; if the next one is closed before that has ended, or does not fit into the buffer, it is dropped and counted.
+
+use crate::card::ports::PushOut;
+use crate::several::each;
+use buffer::{FrameBuffer, SetParts};
+use endat_macros::kernel;
+use rtl_design::reg::Reg;
+use rtl_design::Block;
+use rust_hdl::prelude::*;
+
+pub mod buffer;
+pub mod channel;
+pub mod run;
+
+/// Collector, buffer and their registers.
+#[derive(LogicBlock, Block)]
+#[properties("../properties/stream.sv")]
+pub struct Stream {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe to all channels.
+    pub trigger: Signal<In, Bit>,
+    /// Triggers since reset; counts a cycle after `trigger`.
+    pub trigger_count: Signal<In, Bits<32>>,
+    /// Free-running time in system clock cycles.
+    pub timestamp: Signal<In, Bits<32>>,
+    /// A channel that took the trigger has no result yet.
+    pub owes: Signal<In, Bit>,
+    /// The result of a channel has been replaced by another one.
+    pub replaced: Signal<In, Bit>,
+    /// Strobe: the channels keep what belongs to the set.
+    pub take_set: Signal<Out, Bit>,
+    /// Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
+    pub block: Signal<Out, Bits<4>>,
+    /// Which of them.
+    pub byte_at: Signal<Out, Bits<3>>,
+    /// Of channel n its other 8 bytes: the additional data, where sets have them.
+    pub second: Vec<Signal<Out, Bit>>,
+    /// Sets are collected; where a running clock makes sets of its own, as the next eight.
+    pub collects: Vec<Signal<Out, Bit>>,
+    /// The channel whose turn it is.
+    pub run_turn: Vec<Signal<Out, Bits<3>>>,
+    /// A position of its running clock waits.
+    pub run_ready: Vec<Signal<In, Bit>>,
+    /// Number of its result.
+    pub run_sequence: Vec<Signal<In, Bits<16>>>,
+    /// Its moment.
+    pub run_moment: Vec<Signal<In, Bits<32>>>,
+    /// First byte of its set.
+    pub run_head: Vec<Signal<In, Bits<8>>>,
+    /// Place of its channel in a set.
+    pub run_place: Vec<Signal<In, Bits<7>>>,
+    /// Strobe: it is taken.
+    pub run_take: Vec<Signal<Out, Bit>>,
+    /// A position of a running clock has been lost.
+    pub run_lost: Vec<Signal<In, Bit>>,
+    /// Strobe: one of those has been counted.
+    pub run_counted: Vec<Signal<Out, Bit>>,
+    /// That byte of the channels.
+    pub channel_byte: Signal<In, Bits<8>>,
+    /// The word that is accessed is one of the stream's.
+    pub selected: Signal<In, Bit>,
+    /// Which of its four words: control, state, data, clear.
+    pub word: Signal<In, Bits<2>>,
+    /// Byte of the word, 0 = most significant.
+    pub lane: Signal<In, Bits<2>>,
+    /// One-cycle strobe: begin an access.
+    pub access: Signal<In, Bit>,
+    /// With `access`: write a word; low = read a byte.
+    pub write: Signal<In, Bit>,
+    /// Low bits of the word to write.
+    pub write_data: Signal<In, Bits<2>>,
+    /// Byte that was read, from the cycle after `access` on; 0 if the word is not one of the stream's.
+    pub read_byte: Signal<Out, Bits<8>>,
+    /// Frames of the stream that are sent without being asked for; all low without a stream.
+    #[bundle]
+    pub pushed: PushOut,
+    buffer: FrameBuffer,
+    #[given]
+    collect: Reg<Bit>,
+    #[given]
+    push_on: Reg<Bit>,
+    open: Reg<Bit>,
+    first: Reg<Bit>,
+    spoilt: Reg<Bit>,
+    sequence: Reg<Bits<16>>,
+    moment: Reg<Bits<32>>,
+    sequence_taken: Reg<Bits<16>>,
+    moment_taken: Reg<Bits<32>>,
+    lost_taken: Reg<Bits<8>>,
+    lost_before: Reg<Bits<8>>,
+    lost_all: Reg<Bits<16>>,
+    head_byte: Reg<Bits<8>>,
+    state_held: Reg<Bits<24>>,
+    byte_read: Reg<Bits<8>>,
+    flush: Reg<Bit>,
+    mid_frame: Reg<Bit>,
+    pushing: Reg<Bit>,
+    turn: Vec<Reg<Bits<3>>>,
+    is_run: Vec<Reg<Bit>>,
+    head_taken: Vec<Reg<Bits<8>>>,
+    place_taken: Vec<Reg<Bits<7>>>,
+    run_now: Vec<Signal<Local, Bit>>,
+    run_counts: Vec<Signal<Local, Bit>>,
+    wanted: Signal<Local, Bit>,
+    good: Signal<Local, Bit>,
+    take_now: Signal<Local, Bit>,
+    lost_now: Signal<Local, Bit>,
+    reads: Signal<Local, Bit>,
+    writes: Signal<Local, Bit>,
+    bus_may: Signal<Local, Bit>,
+    bus_take: Signal<Local, Bit>,
+    skip: Signal<Local, Bit>,
+    take: Signal<Local, Bit>,
+    more: Signal<Local, Bit>,
+    clear: Signal<Local, Bit>,
+    head: Constant<Bits<8>>,
+    _seconds: usize,
+    _runs: usize,
+}
+
+/// Type of a set of positions, in the upper half of its first byte.
+pub const SET_TYPE: u64 = 1;
+/// Type of one with additional data.
+pub const INFO_SET_TYPE: u64 = 2;
+/// Type of one with a position of a running clock.
+pub const RUN_SET_TYPE: u64 = 3;
+
+impl Stream {
+    /// A stream with a buffer of `bytes` bytes (one of [`buffer::BUFFER_BYTES`]) for `channels` channels, with `collect` and `push` as
+    /// they are after reset; `parts` is what sets have.
+    pub fn new(bytes: u64, channels: usize, collect: bool, push: bool, parts: SetParts) -> Self {
+        let (seconds, runs) = (usize::from(parts.additional_data), usize::from(parts.runs));
+        let set_type = if parts.additional_data {
+            INFO_SET_TYPE
+        } else {
+            SET_TYPE
+        };
+        Self::from_parts(StreamParts {
+            collect: Reg::new(collect),
+            push_on: Reg::new(push),
+            second: each(seconds),
+            collects: each(runs),
+            run_turn: each(runs),
+            run_ready: each(runs),
+            run_sequence: each(runs),
+            run_moment: each(runs),
+            run_head: each(runs),
+            run_place: each(runs),
+            run_take: each(runs),
+            run_lost: each(runs),
+            run_counted: each(runs),
+            buffer: FrameBuffer::new(bytes, channels, parts),
+            turn: each(runs),
+            is_run: each(runs),
+            head_taken: each(runs),
+            place_taken: each(runs),
+            run_now: each(runs),
+            run_counts: each(runs),
+            head: Constant::new((set_type << 4 | channels as u64).into()),
+            _seconds: seconds,
+            _runs: runs,
+        })
+    }
+}
+
+// rust-hdl's macro drops match guards.
+#[allow(clippy::collapsible_match)]
+impl Logic for Stream {
+    #[kernel]
+    fn update(&mut self) {
+        clock!(self, clock, buffer);
+        self.buffer.reset.next = self.reset.val();
+        self.spoilt.reset.next = self.trigger.val();
+
+        // The set under way. The number of its trigger is there a cycle after the trigger.
+        self.first.d.next = self.trigger.val();
+        if self.trigger.val() {
+            self.moment.d.next = self.timestamp.val();
+        }
+        if self.first.q.val() {
+            self.sequence.d.next = self.trigger_count.val().get_bits::<16>(0);
+        }
+        if self.replaced.val() {
+            self.spoilt.d.next = true;
+        }
+        self.wanted.next =
+            self.open.q.val() & !self.first.q.val() & (!self.owes.val() | self.trigger.val());
+        self.good.next = self.buffer.room.val() & !self.spoilt.q.val() & !self.replaced.val();
+        self.take_now.next = self.wanted.val() & self.buffer.idle.val() & self.good.val();
+        self.lost_now.next = (self.wanted.val() & self.buffer.idle.val() & !self.good.val())
+            | (self.open.q.val()
+                & self.trigger.val()
+                & (self.first.q.val() | !self.buffer.idle.val()));
+        if self.take_now.val() | self.lost_now.val() {
+            self.open.d.next = false;
+        }
+        if self.trigger.val() & self.collect.q.val() {
+            self.open.d.next = true;
+        }
+        self.take_set.next = self.take_now.val();
+        self.buffer.start.next = self.take_now.val();
+        if self.take_now.val() {
+            self.sequence_taken.d.next = self.sequence.q.val();
+            self.moment_taken.d.next = self.moment.q.val();
+            self.lost_taken.d.next = self.lost_before.q.val();
+        }
+        self.lost_before.reset.next = self.reset.val() | self.clear.val() | self.take_now.val();
+        self.lost_all.reset.next = self.reset.val() | self.clear.val();
+        if self.lost_now.val() & !self.lost_before.q.val().all() {
+            self.lost_before.d.next = self.lost_before.q.val() + 1;
+        }
+        if self.lost_now.val() & !self.lost_all.q.val().all() {
+            self.lost_all.d.next = self.lost_all.q.val() + 1;
+        }
+
+        // A position of a running clock, when no set of a trigger wants the buffer, one channel after the other.
+        for i in 0..self._runs {
+            connect!(self.turn[i] <= self; clock, reset);
+            connect!(self.is_run[i] <= self; clock, reset);
+            connect!(self.head_taken[i] <= self; clock, reset);
+            connect!(self.place_taken[i] <= self; clock, reset);
+            self.run_now[i].next = self.run_ready[i].val()
+                & self.buffer.idle.val()
+                & self.buffer.single_room[i].val()
+                & !self.wanted.val()
+                & !self.trigger.val()
+                & !self.run_lost[i].val();
+            self.turn[i].d.next = self.turn[i].q.val();
+            self.is_run[i].d.next = self.is_run[i].q.val();
+            self.head_taken[i].d.next = self.head_taken[i].q.val();
+            self.place_taken[i].d.next = self.place_taken[i].q.val();
+            // Whose turn it is keeps it until it is taken: otherwise the first one behind the turns of no channel would have most of the room.
+            if self.run_now[i].val() | !self.run_ready[i].val() {
+                self.turn[i].d.next = self.turn[i].q.val() + 1;
+            }
+            if self.take_now.val() {
+                self.is_run[i].d.next = false;
+            }
+            self.lost_before.reset.next =
+                self.reset.val() | self.clear.val() | self.take_now.val() | self.run_now[i].val();
+            if self.run_now[i].val() {
+                self.is_run[i].d.next = true;
+                self.head_taken[i].d.next = self.run_head[i].val();
+                self.place_taken[i].d.next = self.run_place[i].val();
+                self.sequence_taken.d.next = self.run_sequence[i].val();
+                self.moment_taken.d.next = self.run_moment[i].val();
+                self.lost_taken.d.next = self.lost_before.q.val();
+            }
+            // One is counted in a cycle.
+            self.run_counts[i].next =
+                self.run_lost[i].val() & !self.lost_now.val() & !self.take_now.val();
+            if self.run_counts[i].val() & !self.lost_before.q.val().all() {
+                self.lost_before.d.next = self.lost_before.q.val() + 1;
+            }
+            if self.run_counts[i].val() & !self.lost_all.q.val().all() {
+                self.lost_all.d.next = self.lost_all.q.val() + 1;
+            }
+            self.buffer.start.next = self.take_now.val() | self.run_now[i].val();
+            self.buffer.single[i].next = self.is_run[i].q.val();
+            self.buffer.single_place[i].next = self.place_taken[i].q.val();
+            self.collects[i].next = self.collect.q.val();
+            self.run_turn[i].next = self.turn[i].q.val();
+            self.run_take[i].next = self.run_now[i].val();
+            self.run_counted[i].next = self.run_counts[i].val();
+        }
+        for i in 0..self._seconds {
+            self.second[i].next = self.buffer.second[i].val();
+        }
+
+        // Its bytes.
+        connect!(self <= self.buffer; block, byte_at);
+        self.head_byte.reset.next = self.buffer.block.val().any();
+        match self.buffer.byte_at.val().index() {
+            0 => {
+                self.head_byte.d.next = self.head.val();
+            }
+            1 => {
+                self.head_byte.d.next = self.lost_taken.q.val();
+            }
+            2 => {
+                self.head_byte.d.next = self.sequence_taken.q.val().get_bits::<8>(0);
+            }
+            3 => {
+                self.head_byte.d.next = self.sequence_taken.q.val().get_bits::<8>(8);
+            }
+            4 => {
+                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(0);
+            }
+            5 => {
+                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(8);
+            }
+            6 => {
+                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(16);
+            }
+            _ => {
+                self.head_byte.d.next = self.moment_taken.q.val().get_bits::<8>(24);
+            }
+        }
+        for i in 0..self._runs {
+            if self.is_run[i].q.val() & !self.buffer.byte_at.val().any() {
+                self.head_byte.d.next = self.head_taken[i].q.val();
+            }
+        }
+        self.buffer.set_byte.next = self.head_byte.q.val() | self.channel_byte.val();
+
+        // The host's words.
+        self.reads.next = self.access.val() & self.selected.val() & !self.write.val();
+        self.writes.next = self.access.val() & self.selected.val() & self.write.val();
+        self.clear.next =
+            self.writes.val() & (self.word.val() == 3) & self.write_data.val().get_bit(0);
+        if self.writes.val() & !self.word.val().any() {
+            self.collect.d.next = field!(self.write_data.val(), card.stream_control.collect);
+            self.push_on.d.next = field!(self.write_data.val(), card.stream_control.push);
+        }
+        self.bus_may.next = self.buffer.ready.val()
+            & !self.push_on.q.val()
+            & !self.pushing.q.val()
+            & !self.flush.q.val();
+        self.bus_take.next = self.reads.val() & (self.word.val() == 2) & self.bus_may.val();
+        // The state is that of the moment when its first byte was read.
+        if self.reads.val() & !self.lane.val().any() {
+            self.state_held.d.next = bit_cast::<24, 16>(self.buffer.waiting_bytes.val())
+                | (bit_cast::<24, 8>(self.lost_all.q.val().get_bits::<8>(0)) << 16);
+        }
+        self.byte_read.reset.next = self.access.val() & !self.reads.val();
+        if self.reads.val() {
+            self.byte_read.d.next = 0.into();
+            match self.word.val().index() {
+                0 => {
+                    if self.lane.val().all() {
+                        self.byte_read.d.next = bit_cast::<8, 1>(self.collect.q.val().into())
+                            | (bit_cast::<8, 1>(self.push_on.q.val().into()) << 1);
+                    }
+                }
+                1 => match self.lane.val().index() {
+                    0 => {
+                        self.byte_read.d.next = self.lost_all.q.val().get_bits::<8>(8);
+                    }
+                    1 => {
+                        self.byte_read.d.next = self.state_held.q.val().get_bits::<8>(16);
+                    }
+                    2 => {
+                        self.byte_read.d.next = self.state_held.q.val().get_bits::<8>(8);
+                    }
+                    _ => {
+                        self.byte_read.d.next = self.state_held.q.val().get_bits::<8>(0);
+                    }
+                },
+                2 => {
+                    if self.bus_may.val() {
+                        self.byte_read.d.next = self.buffer.data.val();
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.read_byte.next = self.byte_read.q.val();
+
+        // The other end. A frame goes one way from its first byte to its last.
+        self.pushed.push.next = self.push_on.q.val();
+        self.pushed.in_frame.next = self.pushing.q.val();
+        self.pushed.push_byte.next = self.buffer.data.val();
+        self.pushed.push_valid.next = self.buffer.ready.val()
+            & (self.pushing.q.val()
+                | (self.push_on.q.val() & !self.mid_frame.q.val() & !self.flush.q.val()));
+        // What a clear throws away, or is left of a frame that the host read half of.
+        self.skip.next = self.buffer.ready.val()
+            & !self.pushing.q.val()
+            & (self.flush.q.val() | (self.push_on.q.val() & self.mid_frame.q.val()));
+        self.take.next = self.bus_take.val() | self.pushed.push_take.val() | self.skip.val();
+        self.buffer.take.next = self.take.val();
+        self.more.next = self.buffer.data.val().any();
+        if self.take.val() {
+            self.mid_frame.d.next = self.more.val();
+        }
+        if self.pushed.push_take.val() {
+            self.pushing.d.next = self.more.val();
+        }
+        // An upset: nothing is left of a frame, and answers would wait for its end for ever.
+        if self.pushing.q.val() & !self.buffer.waiting_bytes.val().any() {
+            self.pushing.d.next = false;
+        }
+        if !self.pushing.q.val() & !self.buffer.waiting_bytes.val().any() {
+            self.flush.d.next = false;
+        }
+        if self.clear.val() {
+            self.flush.d.next = true;
+        }
+    }
+}

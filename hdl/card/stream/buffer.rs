@@ -1,0 +1,346 @@
+//! Frame buffer: takes a set byte by byte, adds the CRC, encodes it with COBS on the way into a block RAM, and gives
+//! whole frames out again.
+//!
+//! ```text
+//!                     +--------> CRC-16 -----+
+//! block, byte_at --> set byte ---------------+--> byte --> COBS --> block RAM --> data, ready
+//!                                                  start of frame ^  written ^        ^ read
+//! RAM   .... frame frame | n  b  b  b  n  b ...                                  take-+
+//!            ^ read_at     ^ start_at    ^ code_at: kept for the distance to the next zero
+//! ```
+//!
+//! The place of the next code byte is kept free and written when the zero is met. A reader sees the frame only when its end is written:
+//! `start_at` is taken forward over all of it at once. A byte takes 16 cycles: one for each bit of the CRC, and time for the rest.
+//!
+//! Ref: S. Cheshire, M. Baker, "Consistent Overhead Byte Stuffing", IEEE/ACM Transactions on Networking 7 (2), 1999.
+
+use crate::several::each;
+use rtl_design::memory::Memory;
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// Sizes that a buffer can have, in bytes.
+pub const BUFFER_BYTES: [u64; 4] = [1024, 2048, 4096, 8192];
+/// System clock cycles for each byte that is written.
+pub const BYTE_CYCLES: u64 = 16;
+/// Generator of the CRC, without x^16.
+pub const CRC16_POLYNOMIAL: u64 = 0x1021;
+/// Start value of the CRC (CRC-16/IBM-3740).
+const CRC16_PRESET: u64 = 0xFFFF;
+
+/// Bytes of a set of `channels` channels, with `additional_data` or without, CRC included.
+pub const fn set_bytes(channels: usize, additional_data: bool) -> u64 {
+    8 + 8 * channels as u64 * (1 + additional_data as u64) + 2
+}
+
+/// Bytes of its frame: COBS takes one, the end another.
+pub const fn frame_bytes(channels: usize, additional_data: bool) -> u64 {
+    set_bytes(channels, additional_data) + 2
+}
+
+/// System clock cycles from the moment when a set is closed until the next one can be.
+pub const fn frame_cycles(channels: usize, additional_data: bool) -> u64 {
+    BYTE_CYCLES * (set_bytes(channels, additional_data) + 3) + 2
+}
+
+/// What sets have besides the positions of triggers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SetParts {
+    /// Additional data.
+    pub additional_data: bool,
+    /// Positions of a running clock, each in a set of its own.
+    pub runs: bool,
+}
+
+/// Encoder and buffer.
+#[derive(LogicBlock, Block)]
+#[properties("../../properties/frame_buffer.sv")]
+pub struct FrameBuffer {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe: write a frame; only while `idle` and `room`.
+    pub start: Signal<In, Bit>,
+    /// No frame is being written.
+    pub idle: Signal<Out, Bit>,
+    /// A whole frame fits.
+    pub room: Signal<Out, Bit>,
+    /// And behind a single one another frame, so that the sets of triggers keep their place.
+    pub single_room: Vec<Signal<Out, Bit>>,
+    /// Which 8 bytes of the set are asked for: 0 = head, n + 1 = channel n.
+    pub block: Signal<Out, Bits<4>>,
+    /// Which of them.
+    pub byte_at: Signal<Out, Bits<3>>,
+    /// Of channel n its other 8 bytes: the additional data.
+    pub second: Vec<Signal<Out, Bit>>,
+    /// The set has but one channel and no additional data; stays put while it is written, as the next one.
+    pub single: Vec<Signal<In, Bit>>,
+    /// Place of that channel: 8 times its block.
+    pub single_place: Vec<Signal<In, Bits<7>>>,
+    /// That byte, at most 4 cycles later; 0 if there is no such block.
+    pub set_byte: Signal<In, Bits<8>>,
+    /// Bytes that wait; a frame counts when it is whole.
+    pub waiting_bytes: Signal<Out, Bits<16>>,
+    /// `data` is the next byte.
+    pub ready: Signal<Out, Bit>,
+    /// The next byte of the frames.
+    pub data: Signal<Out, Bits<8>>,
+    /// Strobe, with `ready` only: the byte is taken.
+    pub take: Signal<In, Bit>,
+    ram1k: Vec<Memory<8, 10>>,
+    ram2k: Vec<Memory<8, 11>>,
+    ram4k: Vec<Memory<8, 12>>,
+    ram8k: Vec<Memory<8, 13>>,
+    writing: Reg<Bit>,
+    cycle_at: Reg<Bits<4>>,
+    at: Reg<Bits<7>>,
+    in_tail: Reg<Bit>,
+    is_end: Reg<Bit>,
+    is_past: Reg<Bit>,
+    byte_now: Reg<Bits<8>>,
+    is_zero: Reg<Bit>,
+    byte_end: Reg<Bit>,
+    #[start(CRC16_PRESET.into())]
+    crc: Reg<Bits<16>>,
+    #[start(1u64.into())]
+    run: Reg<Bits<7>>,
+    write_at: Reg<Bits<13>>,
+    code_at: Reg<Bits<13>>,
+    start_at: Reg<Bits<13>>,
+    read_at: Reg<Bits<13>>,
+    used: Reg<Bits<13>>,
+    #[start(true)]
+    fits: Reg<Bit>,
+    took: Reg<Bit>,
+    in_second: Vec<Reg<Bit>>,
+    single_fits: Vec<Reg<Bit>>,
+    run_high: Vec<Reg<Bit>>,
+    block_ends: Vec<Signal<Local, Bit>>,
+    bit_index: Signal<Local, Bits<3>>,
+    feedback: Signal<Local, Bit>,
+    advance: Signal<Local, Bit>,
+    write: Signal<Local, Bit>,
+    write_address: Signal<Local, Bits<13>>,
+    write_byte: Signal<Local, Bits<8>>,
+    read_byte: Signal<Local, Bits<8>>,
+    tail_block: Constant<Bits<4>>,
+    mask: Constant<Bits<13>>,
+    most_used: Constant<Bits<13>>,
+    polynomial: Constant<Bits<16>>,
+    _ram1k: usize,
+    _ram2k: usize,
+    _ram4k: usize,
+    _ram8k: usize,
+    _seconds: usize,
+    _singles: usize,
+    _block_ends: usize,
+}
+
+impl FrameBuffer {
+    /// A buffer of `bytes` bytes, one of [`BUFFER_BYTES`], for sets of `channels` channels; with additional data, and single positions of a running
+    /// clock among them, if the parts say so.
+    ///
+    /// # Panics
+    /// If there is no such buffer.
+    pub fn new(bytes: u64, channels: usize, parts: SetParts) -> Self {
+        let (seconds, singles) = (usize::from(parts.additional_data), usize::from(parts.runs));
+        assert!(BUFFER_BYTES.contains(&bytes), "buffer of {bytes} bytes");
+        let of = |size: usize| usize::from(BUFFER_BYTES[size] == bytes);
+        Self::from_parts(FrameBufferParts {
+            second: each(seconds),
+            single: each(singles),
+            single_room: each(singles),
+            single_place: each(singles),
+            ram1k: (0..of(0)).map(|_| Default::default()).collect(),
+            ram2k: (0..of(1)).map(|_| Default::default()).collect(),
+            ram4k: (0..of(2)).map(|_| Default::default()).collect(),
+            ram8k: (0..of(3)).map(|_| Default::default()).collect(),
+            in_second: each(seconds),
+            single_fits: each(singles),
+            run_high: each(seconds),
+            block_ends: each(seconds.max(singles)),
+            tail_block: Constant::new((channels as u64 + 1).into()),
+            mask: Constant::new((bytes - 1).into()),
+            // One place stays free: full is not empty.
+            most_used: Constant::new(
+                (bytes - 1 - frame_bytes(channels, parts.additional_data)).into(),
+            ),
+            polynomial: Constant::new(CRC16_POLYNOMIAL.into()),
+            _ram1k: of(0),
+            _ram2k: of(1),
+            _ram4k: of(2),
+            _ram8k: of(3),
+            _seconds: seconds,
+            _singles: singles,
+            _block_ends: seconds.max(singles),
+        })
+    }
+}
+
+impl Logic for FrameBuffer {
+    #[kernel]
+    fn update(&mut self) {
+        // Each frame begins anew.
+        self.at.reset.next = !self.writing.q.val();
+        self.crc.reset.next = !self.writing.q.val();
+        self.run.reset.next =
+            !self.writing.q.val() | (self.byte_end.q.val() & self.is_zero.q.val());
+
+        // Which byte, and which of its 16 cycles.
+        self.cycle_at.d.next = self.cycle_at.q.val() + 1;
+        self.byte_end.d.next = self.writing.q.val() & (self.cycle_at.q.val() == 14);
+        if self.byte_end.q.val() {
+            self.at.d.next = self.at.q.val() + 1;
+        }
+        // Two blocks of a channel have one number; a single one is followed by the tail.
+        for i in 0..self._block_ends {
+            self.block_ends[i].next =
+                self.byte_end.q.val() & self.at.q.val().get_bits::<3>(0).all();
+        }
+        for i in 0..self._seconds {
+            self.in_second[i].clock.next = self.clock.val();
+            self.in_second[i].reset.next = !self.writing.q.val();
+            self.in_second[i].d.next = self.in_second[i].q.val();
+            if self.block_ends[i].val() {
+                self.in_second[i].d.next =
+                    self.at.q.val().get_bits::<4>(3).any() & !self.in_second[i].q.val();
+                if self.at.q.val().get_bits::<4>(3).any() & !self.in_second[i].q.val() {
+                    self.at.d.next = self.at.q.val() & 0x78;
+                }
+            }
+            self.second[i].next = self.in_second[i].q.val();
+            self.run_high[i].clock.next = self.clock.val();
+            self.run_high[i].reset.next =
+                !self.writing.q.val() | (self.byte_end.q.val() & self.is_zero.q.val());
+            self.run_high[i].d.next = self.run_high[i].q.val();
+            if self.byte_end.q.val() & self.run.q.val().all() {
+                self.run_high[i].d.next = true;
+            }
+        }
+        for i in 0..self._singles {
+            if self.block_ends[i].val() & self.single[i].val() {
+                self.at.d.next = bit_cast::<7, 4>(self.tail_block.val()) << 3;
+                if !self.at.q.val().get_bits::<4>(3).any() {
+                    self.at.d.next = self.single_place[i].val();
+                }
+            }
+        }
+        if !self.writing.q.val() {
+            self.cycle_at.d.next = 0.into();
+        }
+        self.block.next = self.at.q.val().get_bits::<4>(3);
+        self.byte_at.next = self.at.q.val().get_bits::<3>(0);
+        // The tail: 0, 1 = CRC, 2 = the zero that COBS puts at the end, 3 = the end of the frame, 4 = time for the counters.
+        self.in_tail.d.next = self.at.q.val().get_bits::<4>(3) == self.tail_block.val();
+        self.is_end.d.next = self.in_tail.q.val() & self.at.q.val().get_bits::<2>(0).all();
+        self.is_past.d.next = self.in_tail.q.val() & self.at.q.val().get_bit(2);
+
+        self.byte_now.d.next = self.set_byte.val();
+        if self.in_tail.q.val() & !self.at.q.val().get_bits::<2>(1).any() {
+            self.byte_now.d.next = self.crc.q.val().get_bits::<8>(0);
+            if self.at.q.val().get_bit(0) {
+                self.byte_now.d.next = self.crc.q.val().get_bits::<8>(8);
+            }
+        }
+        self.is_zero.d.next = !self.byte_now.q.val().any();
+
+        // A bit of the CRC in each of the second eight cycles.
+        self.bit_index.next = !self.cycle_at.q.val().get_bits::<3>(0);
+        self.feedback.next = self.crc.q.val().get_bit(15)
+            ^ self.byte_now.q.val().get_bit(self.bit_index.val().index());
+        if self.cycle_at.q.val().get_bit(3) & !self.in_tail.q.val() {
+            self.crc.d.next = self.crc.q.val() << 1;
+            if self.feedback.val() {
+                self.crc.d.next = (self.crc.q.val() << 1) ^ self.polynomial.val();
+            }
+        }
+
+        // COBS: a zero becomes the place of the next code byte, and its distance goes to the last one.
+        self.advance.next = self.start.val()
+            | (self.byte_end.q.val() & !self.is_end.q.val() & !self.is_past.q.val());
+        if self.advance.val() {
+            self.write_at.d.next = (self.write_at.q.val() + 1) & self.mask.val();
+            if self.start.val() | self.is_zero.q.val() {
+                self.code_at.d.next = self.write_at.q.val();
+            }
+        }
+        if self.byte_end.q.val() {
+            self.run.d.next = self.run.q.val() + 1;
+        }
+        self.write.next = self.byte_end.q.val() & !self.is_past.q.val();
+        self.write_address.next = self.write_at.q.val();
+        self.write_byte.next = self.byte_now.q.val();
+        if self.is_zero.q.val() {
+            self.write_address.next = self.code_at.q.val();
+            self.write_byte.next = bit_cast::<8, 7>(self.run.q.val());
+            for i in 0..self._seconds {
+                if self.run_high[i].q.val() {
+                    self.write_byte.next = bit_cast::<8, 7>(self.run.q.val()) | 0x80;
+                }
+            }
+        }
+        if self.is_end.q.val() {
+            self.write_byte.next = 0.into();
+        }
+        if self.start.val() {
+            self.writing.d.next = true;
+        }
+        if self.byte_end.q.val() & self.is_end.q.val() {
+            self.start_at.d.next = self.write_at.q.val();
+        }
+        if self.byte_end.q.val() & self.is_past.q.val() {
+            self.writing.d.next = false;
+        }
+        self.idle.next = !self.writing.q.val();
+
+        // The other end. A byte that has been taken leaves its place a cycle later, the next one comes with the cycle after that.
+        self.took.d.next = self.take.val();
+        if self.take.val() {
+            self.read_at.d.next = (self.read_at.q.val() + 1) & self.mask.val();
+        }
+        self.used.d.next = (self.start_at.q.val() - self.read_at.q.val()) & self.mask.val();
+        self.fits.d.next = self.used.q.val() <= self.most_used.val();
+        self.room.next = self.fits.q.val();
+        for i in 0..self._singles {
+            connect!(self.single_fits[i] <= self; clock, reset);
+            // More than the longest frame.
+            self.single_fits[i].d.next = self.used.q.val() <= (self.most_used.val() - 144);
+            self.single_room[i].next = self.single_fits[i].q.val();
+        }
+        self.waiting_bytes.next = bit_cast::<16, 13>(self.used.q.val());
+        self.ready.next = self.used.q.val().any() & !self.took.q.val();
+
+        self.read_byte.next = 0.into();
+        for i in 0..self._ram1k {
+            connect!(self.ram1k[i] <= self; clock, write_enable = write);
+            self.ram1k[i].write_address.next = self.write_address.val().get_bits::<10>(0);
+            self.ram1k[i].write_data.next = self.write_byte.val();
+            self.ram1k[i].read_address.next = self.read_at.q.val().get_bits::<10>(0);
+            self.read_byte.next = self.ram1k[i].read_data.val();
+        }
+        for i in 0..self._ram2k {
+            connect!(self.ram2k[i] <= self; clock, write_enable = write);
+            self.ram2k[i].write_address.next = self.write_address.val().get_bits::<11>(0);
+            self.ram2k[i].write_data.next = self.write_byte.val();
+            self.ram2k[i].read_address.next = self.read_at.q.val().get_bits::<11>(0);
+            self.read_byte.next = self.ram2k[i].read_data.val();
+        }
+        for i in 0..self._ram4k {
+            connect!(self.ram4k[i] <= self; clock, write_enable = write);
+            self.ram4k[i].write_address.next = self.write_address.val().get_bits::<12>(0);
+            self.ram4k[i].write_data.next = self.write_byte.val();
+            self.ram4k[i].read_address.next = self.read_at.q.val().get_bits::<12>(0);
+            self.read_byte.next = self.ram4k[i].read_data.val();
+        }
+        for i in 0..self._ram8k {
+            connect!(self.ram8k[i] <= self;
+                clock, write_enable = write, write_address, write_data = write_byte
+            );
+            self.ram8k[i].read_address.next = self.read_at.q.val();
+            self.read_byte.next = self.ram8k[i].read_data.val();
+        }
+        self.data.next = self.read_byte.val();
+    }
+}

@@ -1,0 +1,296 @@
+//! One channel's part of a sample set: which trigger it took, and its result at the moment when the set is closed.
+//!
+//! ```text
+//! trigger, busy --> took, owes           result --(take)--> position, status --> byte of the set
+//!                     ^   |                 ^
+//! result strobe ------+---+-- owes nothing: the set may be closed
+//! ```
+//!
+//! Everything is taken in one cycle, so nothing that comes later can get into the set. Where channels have triggers of their own, one of them may
+//! be slower than the triggers: its result, which was missing when its own set was closed, has the channel's empty place in the next one.
+//!
+//! A set waits for the buffer, and has no CRC of the encoder: a position that an upset has changed meanwhile shows by its parity, and goes out as
+//! one that is not fresh, with the cause of an upset.
+
+use super::buffer::SetParts;
+use crate::endat::transaction::cause;
+use crate::several::each;
+use crate::t_format;
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// A channel's place in a set.
+#[derive(LogicBlock, Block)]
+pub struct SetChannel {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe: the trigger with which a set begins.
+    pub trigger: Signal<In, Bit>,
+    /// The channel does not take a trigger.
+    pub busy: Signal<In, Bit>,
+    /// Strobe: a new result is there.
+    pub result_strobe: Signal<In, Bit>,
+    /// Last good position.
+    pub position: Signal<In, Bits<48>>,
+    /// CRC that came with the position.
+    pub position_crc: Signal<In, Bits<5>>,
+    /// The position came with F2.
+    pub position_has_f2: Signal<In, Bit>,
+    /// There is a good position.
+    pub position_valid: Signal<In, Bit>,
+    /// The last result brought the position.
+    pub fresh: Signal<In, Bit>,
+    /// Primary cause of the last result.
+    pub cause: Signal<In, Bits<5>>,
+    /// Raw flags of the last result.
+    pub flags: Signal<In, Bits<20>>,
+    /// Strobe: the set is closed, its content is what is there now.
+    pub take: Signal<In, Bit>,
+    /// Strobe, never with `take`: a position of a running clock is taken, for a set of its own.
+    pub take_run: Vec<Signal<In, Bit>>,
+    /// Additional data 1 of the result: 24 bits, came, good, due; where sets have additional data, as the next two.
+    pub word_1: Vec<Signal<In, Bits<27>>>,
+    /// Additional data 2 of it.
+    pub word_2: Vec<Signal<In, Bits<27>>>,
+    /// Its other 8 bytes are asked for.
+    pub second: Vec<Signal<In, Bit>>,
+    /// Which 8 bytes of the set are asked for: channel n has number n + 1.
+    pub block: Signal<In, Bits<4>>,
+    /// Which of them: 0 = least significant byte of the position, 6 and 7 = status.
+    pub byte_at: Signal<In, Bits<3>>,
+    /// The byte, 1 cycle later; 0 if another channel's is asked for.
+    pub set_byte: Signal<Out, Bits<8>>,
+    /// The channel took the trigger, and its result is not there yet.
+    pub owes: Signal<Out, Bit>,
+    /// The result of the trigger has been replaced by another one (continuous clock).
+    pub replaced: Signal<Out, Bit>,
+    took: Reg<Bit>,
+    waiting: Reg<Bit>,
+    owed: Reg<Bit>,
+    late: Reg<Bit>,
+    late_now: Signal<Local, Bit>,
+    is_own: Signal<Local, Bit>,
+    position_taken: Reg<Bits<48>>,
+    parity_taken: Reg<Bit>,
+    status_taken: Reg<Bits<16>>,
+    took_taken: Reg<Bit>,
+    missing_taken: Reg<Bit>,
+    byte_now: Reg<Bits<8>>,
+    info_1: Vec<Reg<Bits<24>>>,
+    info_2: Vec<Reg<Bits<24>>>,
+    info_state: Vec<Reg<Bits<8>>>,
+    state_now: Vec<Signal<Local, Bits<8>>>,
+    info_byte: Vec<Reg<Bits<8>>>,
+    open: Signal<Local, Bit>,
+    status: Signal<Local, Bits<16>>,
+    upset_now: Reg<Bit>,
+    parity: Signal<Local, Bit>,
+    shown: Signal<Local, Bits<8>>,
+    has_crc: Constant<Bit>,
+    taken_bit: Constant<Bits<8>>,
+    upset_cause: Constant<Bits<8>>,
+    number: Constant<Bits<4>>,
+    takes_late: Constant<Bit>,
+    _runs: usize,
+    _infos: usize,
+}
+
+impl SetChannel {
+    /// The place of channel `channel`, which speaks EnDat or T-format, for late results too if `takes_late`, and for what else sets have.
+    pub fn new(channel: usize, is_endat: bool, takes_late: bool, parts: SetParts) -> Self {
+        let (runs, infos) = (usize::from(parts.runs), usize::from(parts.additional_data));
+        Self::from_parts(SetChannelParts {
+            take_run: each(runs),
+            word_1: each(infos),
+            word_2: each(infos),
+            second: each(infos),
+            info_1: each(infos),
+            info_2: each(infos),
+            info_state: each(infos),
+            state_now: each(infos),
+            info_byte: each(infos),
+            number: Constant::new((channel as u64 + 1).into()),
+            takes_late: Constant::new(takes_late),
+            has_crc: Constant::new(is_endat),
+            taken_bit: Constant::new((1u64 << 5).into()),
+            upset_cause: Constant::new(
+                match is_endat {
+                    true => cause::UPSET,
+                    false => t_format::cause::UPSET,
+                }
+                .into(),
+            ),
+            _runs: runs,
+            _infos: infos,
+        })
+    }
+}
+
+impl Logic for SetChannel {
+    #[kernel]
+    fn update(&mut self) {
+        if self.result_strobe.val() {
+            self.waiting.d.next = false;
+        }
+        if self.trigger.val() {
+            self.took.d.next = !self.busy.val();
+            self.waiting.d.next = !self.busy.val();
+        }
+        self.open.next = self.waiting.q.val() & !self.result_strobe.val();
+        self.owes.next = self.open.val();
+        self.replaced.next = self.took.q.val() & !self.waiting.q.val() & self.result_strobe.val();
+
+        // A result that was missing in its set, and has come since.
+        self.late_now.next = self.late.q.val() | (self.owed.q.val() & self.result_strobe.val());
+        self.late.d.next = self.late_now.val() & !self.take.val();
+        if self.result_strobe.val() {
+            self.owed.d.next = false;
+        }
+        if self.take.val() & self.open.val() {
+            self.owed.d.next = self.takes_late.val();
+        }
+        // No other result of another trigger gets in: what the channel does not have is 0.
+        self.is_own.next = self.took.q.val() & !self.open.val();
+        self.position_taken.reset.next =
+            self.take.val() & !self.is_own.val() & !self.late_now.val();
+        self.parity_taken.reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
+        self.status_taken.reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
+        self.status.next = bit_cast::<16, 5>(self.cause.val())
+            | (bit_cast::<16, 1>(self.position_valid.val().into()) << 6)
+            | (bit_cast::<16, 1>(self.fresh.val().into()) << 7)
+            | (bit_cast::<16, 7>(self.flags.val().get_bits::<7>(12)) << 8);
+        // The polynomial has the factor x + 1: CRC and what it is of, F1 = 0, F2 = 1 and the position, have the same parity.
+        self.parity.next = self.position_crc.val().xor() ^ self.position_has_f2.val();
+        if !self.has_crc.val() {
+            self.parity.next = self.position.val().xor();
+        }
+        if self.take.val() {
+            self.position_taken.d.next = self.position.val();
+            self.parity_taken.d.next = self.parity.val();
+            self.status_taken.d.next = self.status.val();
+            self.took_taken.d.next = self.took.q.val();
+            self.missing_taken.d.next = self.open.val();
+        }
+        for i in 0..self._runs {
+            if self.take_run[i].val() {
+                self.position_taken.d.next = self.position.val();
+                self.parity_taken.d.next = self.parity.val();
+                self.status_taken.d.next = self.status.val();
+                self.took_taken.d.next = true;
+                self.missing_taken.d.next = false;
+            }
+        }
+
+        // Told with the status byte; the bytes before it have gone out.
+        self.upset_now.reset.next = self.block.val() != self.number.val();
+        self.upset_now.d.next = (self.position_taken.q.val().xor() ^ self.parity_taken.q.val())
+            & (self.byte_at.val() == 6);
+        // A reset by deselection alone takes no logic.
+        self.byte_now.reset.next = self.block.val() != self.number.val();
+        match self.byte_at.val().index() {
+            0 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(0);
+            }
+            1 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(8);
+            }
+            2 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(16);
+            }
+            3 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(24);
+            }
+            4 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(32);
+            }
+            5 => {
+                self.byte_now.d.next = self.position_taken.q.val().get_bits::<8>(40);
+            }
+            6 => {
+                self.byte_now.d.next = self.status_taken.q.val().get_bits::<8>(0)
+                    | (bit_cast::<8, 1>(self.took_taken.q.val().into()) << 5);
+            }
+            _ => {
+                self.byte_now.d.next = self.status_taken.q.val().get_bits::<8>(8)
+                    | (bit_cast::<8, 1>(self.missing_taken.q.val().into()) << 7);
+            }
+        }
+        self.shown.next = self.byte_now.q.val();
+        if self.upset_now.q.val() {
+            self.shown.next =
+                (self.byte_now.q.val() & self.taken_bit.val()) | self.upset_cause.val();
+        }
+        self.set_byte.next = self.shown.val();
+        for i in 0..self._infos {
+            self.info_1[i].clock.next = self.clock.val();
+            self.info_2[i].clock.next = self.clock.val();
+            self.info_state[i].clock.next = self.clock.val();
+            self.info_byte[i].clock.next = self.clock.val();
+            self.info_1[i].d.next = self.info_1[i].q.val();
+            self.info_2[i].d.next = self.info_2[i].q.val();
+            self.info_state[i].d.next = self.info_state[i].q.val();
+            self.state_now[i].next = 0.into();
+            if self.word_1[i].val().get_bit(24) {
+                self.state_now[i].next = self.state_now[i].val() | 1;
+            }
+            if self.word_1[i].val().get_bit(25) {
+                self.state_now[i].next = self.state_now[i].val() | 2;
+            }
+            if self.word_2[i].val().get_bit(24) {
+                self.state_now[i].next = self.state_now[i].val() | 4;
+            }
+            if self.word_2[i].val().get_bit(25) {
+                self.state_now[i].next = self.state_now[i].val() | 8;
+            }
+            if self.word_1[i].val().get_bit(26) {
+                self.state_now[i].next = self.state_now[i].val() | 16;
+            }
+            // They belong to the result, or there is none.
+            self.info_1[i].reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
+            self.info_2[i].reset.next = self.take.val() & !self.is_own.val() & !self.late_now.val();
+            self.info_state[i].reset.next =
+                self.take.val() & !self.is_own.val() & !self.late_now.val();
+            if self.take.val() {
+                self.info_1[i].d.next = self.word_1[i].val().get_bits::<24>(0);
+                self.info_2[i].d.next = self.word_2[i].val().get_bits::<24>(0);
+                self.info_state[i].d.next = self.state_now[i].val();
+            }
+            self.byte_now.reset.next =
+                (self.block.val() != self.number.val()) | self.second[i].val();
+            self.upset_now.reset.next =
+                (self.block.val() != self.number.val()) | self.second[i].val();
+            self.info_byte[i].reset.next =
+                (self.block.val() != self.number.val()) | !self.second[i].val();
+            match self.byte_at.val().index() {
+                0 => {
+                    self.info_byte[i].d.next = self.info_1[i].q.val().get_bits::<8>(0);
+                }
+                1 => {
+                    self.info_byte[i].d.next = self.info_1[i].q.val().get_bits::<8>(8);
+                }
+                2 => {
+                    self.info_byte[i].d.next = self.info_1[i].q.val().get_bits::<8>(16);
+                }
+                3 => {
+                    self.info_byte[i].d.next = self.info_2[i].q.val().get_bits::<8>(0);
+                }
+                4 => {
+                    self.info_byte[i].d.next = self.info_2[i].q.val().get_bits::<8>(8);
+                }
+                5 => {
+                    self.info_byte[i].d.next = self.info_2[i].q.val().get_bits::<8>(16);
+                }
+                6 => {
+                    self.info_byte[i].d.next = self.info_state[i].q.val();
+                }
+                _ => {
+                    self.info_byte[i].d.next = 0.into();
+                }
+            }
+            self.set_byte.next = self.shown.val() | self.info_byte[i].q.val();
+        }
+    }
+}

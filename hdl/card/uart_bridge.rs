@@ -1,0 +1,340 @@
+//! UART bridge: register accesses from a host, in the UARTBone byte format.
+//!
+//! ```text
+//! write   01 len  a3 a2 a1 a0  d3 d2 d1 d0  d3 d2 d1 d0 ...          03: all words to one address
+//! read    02 len  a3 a2 a1 a0                                        04: all words from one address
+//! answer                       d3 d2 d1 d0  d3 d2 d1 d0 ...
+//! ```
+//!
+//! Addresses count words; every field is sent most significant byte first. A command that stops half way is forgotten
+//! after the time-out; a byte with a framing error within a command makes the bridge ignore everything until then. So is an answer that stands still.
+//!
+//! Between answers it pushes the frames of a [`crate::card::stream::Stream`], each in one piece; an answer then begins with 0xFF.
+//!
+//! With the time-out nothing more is read: the byte would meet the next command, and be a word written if that one writes.
+//!
+//! A word is written in at most one turn of the configuration ring, which may take longer than the first byte of the next word; that byte
+//! waits, the second one comes later than any turn ends.
+//!
+//! A byte is read in at most one turn of the configuration ring, while the byte before it is being sent.
+//!
+//! Ref: LiteX, `litex/soc/cores/uart.py` (gateware) and `litex/tools/remote/comm_uart.py` (client).
+
+use crate::card::ports::{AccessOut, PushIn};
+use crate::card::uart::{UartReceiver, UartTransmitter};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block, States};
+use rust_hdl::prelude::*;
+
+/// Longest pause within a command, in microseconds (LiteX: 100 ms).
+pub const TIMEOUT_US: u64 = 100_000;
+/// Bits of a register's word address; any higher address bit makes an access miss.
+pub const ADDRESS_BITS: u32 = 11;
+
+/// What the next byte means.
+#[derive(Copy, Clone, PartialEq, Debug, LogicState, States)]
+pub enum BridgeState {
+    /// Command code.
+    Command,
+    /// Number of words.
+    Length,
+    /// Word address.
+    Address,
+    /// Data from the host.
+    Write,
+    /// Data to the host; bytes from it are dropped.
+    Read,
+    /// Nothing, until the time-out.
+    Discard,
+}
+
+/// UART and UARTBone command interpreter.
+#[derive(LogicBlock, Block)]
+#[properties("../properties/uart_bridge.sv")]
+pub struct UartBridge {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// One-cycle strobe each microsecond.
+    pub tick_us: Signal<In, Bit>,
+    /// Serial line from the host, asynchronous.
+    pub rx: Signal<In, Bit>,
+    /// Serial line to the host, from a register.
+    pub tx: Signal<Out, Bit>,
+    /// A front's access to the register bank.
+    #[bundle]
+    pub bank: AccessOut,
+    /// Frames of the stream that are sent without being asked for; all low without a stream.
+    #[bundle]
+    pub pushed: PushIn,
+    receiver: UartReceiver,
+    transmitter: UartTransmitter,
+    #[start(BridgeState::Command)]
+    state: Reg<BridgeState>,
+    fixed: Reg<Bit>,
+    writing: Reg<Bit>,
+    words_left: Reg<Bits<8>>,
+    address: Reg<Bits<11>>,
+    out_of_range: Reg<Bit>,
+    byte_lane: Reg<Bits<2>>,
+    data: Reg<Bits<32>>,
+    next_byte: Reg<Bits<8>>,
+    has_byte: Reg<Bit>,
+    write_busy: Reg<Bit>,
+    sent: Reg<Bit>,
+    word_end: Reg<Bit>,
+    last_word: Reg<Bit>,
+    no_word: Reg<Bit>,
+    step_address: Reg<Bit>,
+    access_next: Reg<Bit>,
+    access_now: Reg<Bit>,
+    byte_ready: Reg<Bit>,
+    idle_us: Reg<Bits<17>>,
+    expired: Reg<Bit>,
+    stop_timer: Reg<Bit>,
+    marked: Reg<Bit>,
+    marker: Reg<Bit>,
+    from_stream: Signal<Local, Bit>,
+    answer_sent: Signal<Local, Bit>,
+    last_lane: Signal<Local, Bit>,
+    next_lane: Signal<Local, Bit>,
+    next_address: Signal<Local, Bits<12>>,
+    high_bits: Signal<Local, Bit>,
+    data_moves: Signal<Local, Bit>,
+    timeout_us: Constant<Bits<17>>,
+}
+
+impl UartBridge {
+    /// A bridge with bits of `bit_cycles` system clock cycles that forgets a command after a pause of `timeout_us`.
+    pub fn new(bit_cycles: u64, timeout_us: u64) -> Self {
+        Self::from_parts(UartBridgeParts {
+            receiver: UartReceiver::new(bit_cycles),
+            transmitter: UartTransmitter::new(bit_cycles),
+            timeout_us: Constant::new(timeout_us.into()),
+        })
+    }
+}
+
+impl Logic for UartBridge {
+    #[kernel]
+    fn update(&mut self) {
+        clock!(self, clock, receiver, transmitter);
+        self.receiver.reset.next = self.reset.val();
+        self.transmitter.reset.next = self.reset.val();
+
+        self.receiver.rx.next = self.rx.val();
+        // A frame that has begun goes first; none begins while an answer is due.
+        self.from_stream.next =
+            self.pushed.in_frame.val() | (self.state.q.val() != BridgeState::Read);
+        self.transmitter.data.next = self.bank.read_byte.val();
+        self.transmitter.valid.next = self.byte_ready.q.val();
+        if self.marker.q.val() {
+            self.transmitter.data.next = 255.into();
+        }
+        if self.from_stream.val() {
+            connect!(self.transmitter <= self.pushed; data = push_byte, valid = push_valid);
+        }
+        self.pushed.push_take.next = self.transmitter.accept.val() & self.from_stream.val();
+        self.answer_sent.next =
+            self.transmitter.accept.val() & !self.from_stream.val() & !self.marker.q.val();
+        if self.transmitter.accept.val() & !self.from_stream.val() {
+            self.marker.d.next = false;
+        }
+        // The first answer after the last frame has its mark, too: so the host knows it from a frame.
+        if self.pushed.push.val() {
+            self.marked.d.next = true;
+        }
+        self.tx.next = self.transmitter.tx.val();
+
+        self.last_lane.next = self.byte_lane.q.val().all();
+        // Bytes are tens of cycles apart: every decision may take a few, which keeps each one short.
+        self.last_word.d.next = self.words_left.q.val() == 1;
+        self.no_word.d.next = !self.words_left.q.val().any();
+        self.sent.d.next = self.answer_sent.val();
+        self.word_end.d.next = false;
+        self.step_address.d.next = false;
+        self.access_next.d.next = false;
+        self.access_now.d.next = self.access_next.q.val();
+        self.next_lane.next = false;
+        self.high_bits.next = self.receiver.data.val().any();
+        self.stop_timer.d.next = self.receiver.strobe.val();
+
+        match self.state.q.val() {
+            BridgeState::Command => {
+                self.stop_timer.d.next = true;
+                if self.receiver.strobe.val() {
+                    self.writing.d.next = self.receiver.data.val().get_bit(0);
+                    self.fixed.d.next = false;
+                    match self.receiver.data.val().index() {
+                        1 => {
+                            self.state.d.next = BridgeState::Length;
+                        }
+                        2 => {
+                            self.state.d.next = BridgeState::Length;
+                        }
+                        3 => {
+                            self.fixed.d.next = true;
+                            self.state.d.next = BridgeState::Length;
+                        }
+                        4 => {
+                            self.fixed.d.next = true;
+                            self.state.d.next = BridgeState::Length;
+                        }
+                        _ => {}
+                    }
+                }
+            }
+            BridgeState::Length => {
+                if self.receiver.strobe.val() {
+                    self.words_left.d.next = self.receiver.data.val();
+                    self.byte_lane.d.next = 0.into();
+                    self.out_of_range.d.next = false;
+                    self.state.d.next = BridgeState::Address;
+                }
+            }
+            BridgeState::Address => {
+                if self.receiver.strobe.val() {
+                    self.next_lane.next = true;
+                    if self.last_lane.val() {
+                        self.state.d.next = BridgeState::Read;
+                        self.access_next.d.next = !self.writing.q.val() & !self.no_word.q.val();
+                        self.marker.d.next = self.marked.q.val();
+                        if self.writing.q.val() {
+                            self.state.d.next = BridgeState::Write;
+                        }
+                        if self.no_word.q.val() {
+                            self.state.d.next = BridgeState::Command;
+                        }
+                    }
+                }
+            }
+            BridgeState::Write => {
+                if self.receiver.strobe.val() {
+                    self.next_lane.next = true;
+                    self.word_end.d.next = self.last_lane.val();
+                    self.access_next.d.next = self.last_lane.val();
+                }
+            }
+            BridgeState::Read => {
+                // An answer that stands still would stand for ever: a byte of it that is lost in here never comes again.
+                self.stop_timer.d.next = self.transmitter.accept.val();
+                if self.sent.q.val() {
+                    self.next_lane.next = true;
+                    self.word_end.d.next = self.last_lane.val();
+                    self.access_next.d.next = !self.last_lane.val();
+                }
+                if self.word_end.q.val() {
+                    self.access_next.d.next = !self.last_word.q.val();
+                    self.step_address.d.next = !self.fixed.q.val();
+                }
+            }
+            BridgeState::Discard => {
+                self.stop_timer.d.next = false;
+            }
+            _ => {
+                self.state.d.next = BridgeState::Discard;
+            }
+        }
+        if self.next_lane.val() {
+            self.byte_lane.d.next = self.byte_lane.q.val() + 1;
+        }
+        if self.word_end.q.val() {
+            self.words_left.d.next = self.words_left.q.val() - 1;
+            if self.last_word.q.val() {
+                self.state.d.next = BridgeState::Command;
+                if !self.writing.q.val() & !self.pushed.push.val() {
+                    self.marked.d.next = false;
+                }
+            }
+        }
+
+        // A written word keeps its address until its access has ended.
+        if self.bank.done.val() & self.writing.q.val() {
+            self.step_address.d.next = !self.fixed.q.val();
+        }
+        self.next_address.next = bit_cast::<12, 11>(self.address.q.val()) + 1;
+        if self.step_address.q.val() {
+            self.address.d.next = self.next_address.val().get_bits::<11>(0);
+            if self.next_address.val().get_bit(11) {
+                self.out_of_range.d.next = true;
+            }
+        }
+        if (self.state.q.val() == BridgeState::Address) & self.receiver.strobe.val() {
+            self.address.d.next = bit_cast::<11, 8>(self.receiver.data.val());
+            match self.byte_lane.q.val().index() {
+                0 => {
+                    self.out_of_range.d.next = self.high_bits.val();
+                }
+                1 => {
+                    self.out_of_range.d.next = self.out_of_range.q.val() | self.high_bits.val();
+                }
+                2 => {
+                    self.out_of_range.d.next =
+                        self.out_of_range.q.val() | self.receiver.data.val().get_bits::<5>(3).any();
+                }
+                _ => {
+                    self.address.d.next = bit_cast::<11, 8>(self.receiver.data.val())
+                        | (bit_cast::<11, 3>(self.address.q.val().get_bits::<3>(0)) << 8);
+                }
+            }
+        }
+
+        // The word that is being written moves on as it is taken, and its bytes are not mixed with those of the next one.
+        if self.access_now.q.val() & self.writing.q.val() {
+            self.write_busy.d.next = true;
+        }
+        if self.bank.done.val() {
+            self.write_busy.d.next = false;
+        }
+        self.data_moves.next = self.has_byte.q.val() & !self.write_busy.q.val();
+        if self.data_moves.val() {
+            self.has_byte.d.next = false;
+        }
+        if self.receiver.strobe.val() & (self.state.q.val() == BridgeState::Write) {
+            self.next_byte.d.next = self.receiver.data.val();
+            self.has_byte.d.next = true;
+        }
+        if self.data_moves.val() | self.bank.take_byte.val() {
+            self.data.d.next = (self.data.q.val() << 8) | bit_cast::<32, 8>(self.next_byte.q.val());
+        }
+
+        if self.bank.done.val() & (self.state.q.val() == BridgeState::Read) {
+            self.byte_ready.d.next = true;
+        }
+        // What is left of an answer that was given up is not the beginning of the next one.
+        if self.answer_sent.val() | (self.state.q.val() != BridgeState::Read) {
+            self.byte_ready.d.next = false;
+        }
+
+        if self.receiver.framing_error.val()
+            & (self.state.q.val() != BridgeState::Command)
+            & (self.state.q.val() != BridgeState::Read)
+        {
+            self.state.d.next = BridgeState::Discard;
+        }
+        self.expired.d.next = self.idle_us.q.val() == self.timeout_us.val();
+        if self.tick_us.val() {
+            self.idle_us.d.next = self.idle_us.q.val() + 1;
+        }
+        if self.stop_timer.q.val() | self.expired.q.val() {
+            self.idle_us.d.next = 0.into();
+            self.expired.d.next = false;
+        }
+        if self.expired.q.val() {
+            self.access_next.d.next = false;
+            self.state.d.next = BridgeState::Command;
+        }
+
+        self.bank.word_address.next = self.address.q.val();
+        self.bank.in_range.next = !self.out_of_range.q.val();
+        self.bank.lane.next = self.byte_lane.q.val();
+        self.bank.access.next = self.access_now.q.val();
+        self.bank.write.next = self.writing.q.val();
+        self.bank.write_data.next = self.data.q.val();
+        self.bank.reading.next = self.state.q.val() == BridgeState::Read;
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,127 @@
+//! Command shape: what belongs to a mode command, from its two triplets alone.
+//!
+//! ```text
+//! left   right        frame
+//! 000    111          position with F1
+//! 111    000          position with F1, F2, additional data
+//! 010    101          F1 and 40 bits of test values
+//! 010    010          24 bits there, 24 bits back
+//! other  complement   24 bits there, 24 bits back
+//! other  the same     position with F1, F2, additional data; supplement
+//! ```
+//!
+//! Ref: [`crate::protocol::ModeCommand`].
+
+use crate::endat::ports::AnswerShapeOut;
+use rtl_design::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// Decoder of a mode command.
+#[derive(LogicBlock, Block)]
+pub struct CommandShape {
+    /// Mode command.
+    pub command: Signal<In, Bits<6>>,
+    /// It is a mode command that this design sends.
+    pub is_known: Signal<Out, Bit>,
+    /// It is 000111 or 111000.
+    pub is_position: Signal<Out, Bit>,
+    /// What an answer consists of.
+    #[bundle]
+    pub shape: AnswerShapeOut,
+    /// The answer is 40 bits of test values.
+    pub has_test_values: Signal<Out, Bit>,
+    has_all: Constant<Bit>,
+    left: Signal<Local, Bits<3>>,
+    right: Signal<Local, Bits<3>>,
+    is_same: Signal<Local, Bit>,
+    is_complement: Signal<Local, Bit>,
+    is_two: Signal<Local, Bit>,
+}
+
+impl CommandShape {
+    /// A decoder of all commands, or of 000111 and 111000 only.
+    pub fn new(has_all: bool) -> Self {
+        Self::from_parts(CommandShapeParts {
+            has_all: Constant::new(has_all),
+        })
+    }
+}
+
+impl Logic for CommandShape {
+    #[kernel]
+    fn update(&mut self) {
+        self.left.next = self.command.val().get_bits::<3>(3);
+        self.right.next = self.command.val().get_bits::<3>(0);
+        self.is_same.next = self.left.val() == self.right.val();
+        self.is_complement.next = (self.left.val() ^ self.right.val()).all();
+        self.is_position.next =
+            self.is_complement.val() & (self.left.val().all() | !self.left.val().any());
+        self.is_two.next = self.left.val() == 2;
+
+        self.is_known.next = self.is_position.val();
+        self.shape.has_f1.next = true;
+        self.shape.has_f2.next = self.command.val().get_bit(5);
+        self.shape.has_parameter.next = false;
+        self.has_test_values.next = false;
+        self.shape.has_supplement.next = false;
+        if self.has_all.val() {
+            self.is_known.next = self.is_complement.val()
+                | (self.is_same.val() & self.left.val().any() & !self.left.val().all());
+            self.has_test_values.next = self.is_complement.val() & self.is_two.val();
+            self.shape.has_supplement.next = self.is_same.val() & !self.is_two.val();
+            self.shape.has_parameter.next =
+                (self.is_complement.val() & !self.is_position.val() & !self.is_two.val())
+                    | (self.is_same.val() & self.is_two.val());
+            self.shape.has_f2.next = (self.is_position.val() & self.left.val().any())
+                | (self.is_same.val() & !self.is_two.val());
+            self.shape.has_f1.next =
+                !((self.is_complement.val() & !self.is_position.val() & !self.is_two.val())
+                    | (self.is_same.val() & self.is_two.val()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protocol::ModeCommand;
+
+    fn shape(code: u8, has_all: bool) -> CommandShape {
+        let mut block = CommandShape::new(has_all);
+        block.connect_all();
+        block.command.next = u64::from(code).into();
+        block.update_all();
+        block.update_all();
+        block
+    }
+
+    #[test]
+    fn every_code_has_the_shape_of_its_command() {
+        for code in 0..64 {
+            let s = shape(code, true);
+            let command = ModeCommand::from_code(code);
+            assert_eq!(s.is_known.val(), command.is_some(), "{code:06b}");
+            if let Some(c) = command {
+                assert_eq!(s.shape.has_f1.val(), c.error_bits() > 0, "{c:?}");
+                assert_eq!(s.shape.has_f2.val(), c.has_f2(), "{c:?}");
+                assert_eq!(s.shape.has_parameter.val(), c.has_parameter(), "{c:?}");
+                assert_eq!(s.shape.has_supplement.val(), c.has_supplement(), "{c:?}");
+                let values = c == ModeCommand::SendTestValues;
+                assert_eq!(s.has_test_values.val(), values, "{c:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_the_others_only_positions_are_known() {
+        for code in 0..64 {
+            let s = shape(code, false);
+            let command = ModeCommand::from_code(code);
+            let position = command.filter(|c| ModeCommand::POSITION.contains(c));
+            assert_eq!(s.is_known.val(), position.is_some(), "{code:06b}");
+            if let Some(c) = position {
+                assert_eq!(s.shape.has_f2.val(), c.has_f2());
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Settings of a frame: the inputs as they were when it began.
+//!
+//! ```text
+//! trigger     _____/\__________________________
+//! is_at_rest  ~~~~~~~\________________/~~~~~~~
+//! inputs      A   B    C                        whatever they do
+//! *_now       . A   B                  . C      the frame has those of the cycle with the trigger
+//! ```
+//!
+//! What decides where a position stands in the answer, command and width, is guarded: its parity is taken as the frame begins.
+
+use crate::endat::ports::FrameLimitsOut;
+use crate::ports::PortSettingsIn;
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// Settings of one channel's frames.
+#[derive(LogicBlock, Block)]
+#[properties("../properties/frame_settings.sv")]
+pub struct FrameSettings {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// No frame is under way or begins: the inputs are followed.
+    pub is_at_rest: Signal<In, Bit>,
+    /// Strobe: a frame begins.
+    pub start: Signal<In, Bit>,
+    /// Mode command of the frame, wherever it comes from.
+    pub frame_command: Signal<In, Bits<6>>,
+    /// Settings of one channel, as the host has written them.
+    #[bundle]
+    pub wanted: PortSettingsIn,
+    /// Shortest recovery time, in system clock cycles.
+    pub recovery_min_cycles: Signal<In, Bits<13>>,
+    /// Longest time of a frame, in microseconds; 0 = not watched.
+    pub watchdog_us: Signal<In, Bits<12>>,
+    /// EnDat clock period of the frame.
+    pub period_cycles_now: Signal<Out, Bits<11>>,
+    /// Mode command of a triggered frame, as that began.
+    pub command_now: Signal<Out, Bits<6>>,
+    /// Position width of the frame.
+    pub position_bits_now: Signal<Out, Bits<6>>,
+    /// Input filter of the frame.
+    pub filter_cycles_now: Signal<Out, Bits<4>>,
+    /// Half a system clock cycle more.
+    pub filter_half_now: Signal<Out, Bit>,
+    /// Start window of the frame.
+    pub start_window_cycles_now: Signal<Out, Bits<6>>,
+    /// How long the parts of the frame may take.
+    #[bundle("_now")]
+    pub limits: FrameLimitsOut,
+    /// Command or width are not what they were when the frame began.
+    pub is_upset: Signal<Out, Bit>,
+    period_held: Reg<Bits<11>>,
+    first_low_extra_held: Reg<Bits<11>>,
+    command_held: Reg<Bits<6>>,
+    position_held: Reg<Bits<6>>,
+    filter_held: Reg<Bits<4>>,
+    start_window_held: Reg<Bits<6>>,
+    start_timeout_held: Reg<Bits<12>>,
+    recovery_limit_held: Reg<Bits<13>>,
+    recovery_min_held: Reg<Bits<13>>,
+    watchdog_held: Reg<Bits<12>>,
+    filter_half_held: Reg<Bit>,
+    parity: Reg<Bit>,
+    parity_now: Signal<Local, Bit>,
+}
+
+impl Logic for FrameSettings {
+    #[kernel]
+    fn update(&mut self) {
+        if self.is_at_rest.val() {
+            self.period_held.d.next = self.wanted.period_cycles.val();
+            self.first_low_extra_held.d.next = self.wanted.first_low_extra_cycles.val();
+            self.command_held.d.next = self.wanted.command.val();
+            self.position_held.d.next = self.wanted.position_bits.val();
+            self.filter_held.d.next = self.wanted.filter_cycles.val();
+            self.start_window_held.d.next = self.wanted.start_window_cycles.val();
+            self.start_timeout_held.d.next = self.wanted.start_timeout_us.val();
+            self.recovery_limit_held.d.next = self.wanted.recovery_limit_cycles.val();
+            self.recovery_min_held.d.next = self.recovery_min_cycles.val();
+            self.watchdog_held.d.next = self.watchdog_us.val();
+            self.filter_half_held.d.next = self.wanted.filter_half.val();
+        }
+        self.parity_now.next = self.frame_command.val().xor() ^ self.position_held.q.val().xor();
+        if self.start.val() {
+            self.parity.d.next = self.parity_now.val();
+        }
+        self.is_upset.next = self.parity_now.val() ^ self.parity.q.val();
+
+        self.period_cycles_now.next = self.period_held.q.val();
+        self.limits.first_low_extra_cycles.next = self.first_low_extra_held.q.val();
+        self.command_now.next = self.command_held.q.val();
+        self.position_bits_now.next = self.position_held.q.val();
+        self.filter_cycles_now.next = self.filter_held.q.val();
+        self.start_window_cycles_now.next = self.start_window_held.q.val();
+        self.limits.start_timeout_us.next = self.start_timeout_held.q.val();
+        self.limits.recovery_limit_cycles.next = self.recovery_limit_held.q.val();
+        self.limits.recovery_min_cycles.next = self.recovery_min_held.q.val();
+        self.limits.watchdog_us.next = self.watchdog_held.q.val();
+        self.filter_half_now.next = self.filter_half_held.q.val();
+    }
+}

@@ -1,0 +1,420 @@
+//! Line delay: knows how long an answer takes to come back, and says when to sample.
+//!
+//! ```text
+//! rise        /\_________/\_________/\______      clock edges leaving the receiver
+//!             |<-- tD -->|
+//! center      ___________/\_________/\______      where a data edge is expected
+//! sample      ________________/\_________/\_      half a period later: the middle of the bit, the end of its cell
+//! ```
+//!
+//! The propagation delay tD is measured once, in a frame whose period is longer than any cable's delay
+//! (`acquire`), and followed by one cycle per frame afterwards. Sampling from this tracked phase tolerates twice
+//! the jitter that sampling from the start edge of the same frame would.
+//!
+//! A rising edge of the clock and the cell that it launched are a delay apart: `pulse` and `sample` say when each counts.
+//!
+//! Ref: HEIDENHAIN PWM 20 user's manual, propagation delay compensation; TI motor-control SDK, `endat_main.asm`.
+
+use crate::endat::features::Features;
+use crate::endat::phase_tracker::PhaseTracker;
+use crate::endat::ports::{CellControlIn, CellsOut};
+use crate::half_period::HalfPeriod;
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// Sample strobes and start edge window of one channel.
+#[derive(LogicBlock, Block)]
+pub struct LineDelay {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// How the cells of a frame run.
+    #[bundle]
+    pub control: CellControlIn,
+    /// No clock pulse has been sent whose cell has not ended.
+    pub none_under_way: Signal<In, Bit>,
+    /// This frame measures the delay instead of using it.
+    pub acquire: Signal<In, Bit>,
+    /// The start bit may come now.
+    pub hunting: Signal<In, Bit>,
+    /// Strobe one cycle before each rising clock edge.
+    pub will_rise: Signal<In, Bit>,
+    /// Strobe of each rising clock edge.
+    pub rise: Signal<In, Bit>,
+    /// Strobe: the data line has just gone high, or has changed within the answer.
+    pub data_edge: Signal<In, Bit>,
+    /// This edge is half a cycle later than others (double edge only).
+    pub edge_second: Signal<In, Bit>,
+    /// The cell is one of the answer behind the start bit: its edge counts (alignment only).
+    pub in_answer: Signal<In, Bit>,
+    /// Where the phase comes from, see [`mode`] (alignment only).
+    pub mode: Signal<In, Bits<2>>,
+    /// Delay in mode `fixed`, in sixteenths of a system clock cycle.
+    pub fixed_delay: Signal<In, Bits<15>>,
+    /// Strobe, together with `sample`: this sample is a good start bit, follow its edge.
+    pub follow: Signal<In, Bit>,
+    /// The clock goes on after the frame: the phase of the running cells follows, too.
+    pub going_on: Signal<In, Bit>,
+    /// EnDat clock period, in system clock cycles.
+    pub period_cycles: Signal<In, Bits<11>>,
+    /// Largest distance of the start edge from its expected place, in system clock cycles.
+    pub start_window_cycles: Signal<In, Bits<6>>,
+    /// With `sample`: half a cycle later than others (double edge only).
+    pub sample_second: Signal<Out, Bit>,
+    /// Places of the answer's cells.
+    #[bundle]
+    pub cells: CellsOut,
+    /// The tracked delay is not what was measured: a register was upset. Until it is measured again.
+    pub is_upset: Signal<Out, Bit>,
+    /// Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
+    pub delay_cycles: Signal<Out, Bits<11>>,
+    /// The same, mean of many edges, in sixteenths of a cycle (alignment only).
+    pub phase: Signal<Out, Bits<15>>,
+    /// Strobe one cycle after `sample`: an edge of the answer has been measured (alignment only).
+    pub measured: Signal<Out, Bit>,
+    /// Places from the tracked one to this edge, less one, in two's complement.
+    pub offset: Signal<Out, Bits<8>>,
+    half: HalfPeriod,
+    delay: Reg<Bits<11>>,
+    since_rise: Reg<Bits<11>>,
+    timing_armed: Reg<Bit>,
+    delay_over: Reg<Bit>,
+    cells_run: Reg<Bit>,
+    second_half: Reg<Bit>,
+    sample_strobe: Reg<Bit>,
+    center_strobe: Reg<Bit>,
+    center_seen: Reg<Bit>,
+    not_yet: Reg<Bit>,
+    afresh: Reg<Bit>,
+    follow_now: Reg<Bit>,
+    edge_seen: Reg<Bit>,
+    edge_late: Reg<Bit>,
+    edge_error: Reg<Bits<6>>,
+    edge_outside: Reg<Bit>,
+    shorten: Reg<Bit>,
+    lengthen: Reg<Bit>,
+    parity: Reg<Bit>,
+    moved: Reg<Bit>,
+    wrong: Reg<Bit>,
+    parity_now: Signal<Local, Bit>,
+    first_rise: Signal<Local, Bit>,
+    acquired: Signal<Local, Bit>,
+    first_center: Signal<Local, Bit>,
+    center_now: Signal<Local, Bit>,
+    sample_now: Signal<Local, Bit>,
+    step: Signal<Local, Bits<11>>,
+    edge_now: Signal<Local, Bit>,
+    over: Signal<Local, Bit>,
+    tracker: Vec<PhaseTracker>,
+    offset_now: Reg<Bits<8>>,
+    measured_now: Reg<Bit>,
+    second: Reg<Bit>,
+    edge_place: Reg<Bit>,
+    has_alignment: Constant<Bit>,
+    has_double: Constant<Bit>,
+    frame_mode: Constant<Bits<2>>,
+    fixed_mode: Constant<Bits<2>>,
+    places: Signal<Local, Bits<12>>,
+    delay_now: Signal<Local, Bits<11>>,
+    is_frame: Signal<Local, Bit>,
+    snap: Signal<Local, Bit>,
+    next_cell: Signal<Local, Bit>,
+    late_now: Signal<Local, Bit>,
+    place_now: Signal<Local, Bit>,
+    center_place: Signal<Local, Bit>,
+    distance: Signal<Local, Bits<8>>,
+    good_edge: Signal<Local, Bit>,
+    is_open: Signal<Local, Bit>,
+    is_later: Signal<Local, Bit>,
+    due: Signal<Local, Bit>,
+    was_over: Reg<Bit>,
+    _trackers: usize,
+}
+
+pub use endat_regs::line::mode;
+
+impl LineDelay {
+    /// A line delay with these features.
+    pub fn new(features: Features) -> Self {
+        let trackers = usize::from(features.alignment);
+        Self::from_parts(LineDelayParts {
+            half: HalfPeriod::new(features.alignment, features.double_edge),
+            tracker: (0..trackers).map(|_| PhaseTracker::new(features)).collect(),
+            has_alignment: Constant::new(features.alignment),
+            has_double: Constant::new(features.double_edge),
+            frame_mode: Constant::new(mode::FRAME.into()),
+            fixed_mode: Constant::new(mode::FIXED.into()),
+            _trackers: trackers,
+        })
+    }
+}
+
+impl Logic for LineDelay {
+    #[kernel]
+    fn update(&mut self) {
+        clock!(self, clock, half);
+        self.half.reset.next = self.reset.val();
+
+        // tD from the first rising edge of a burst to the first cell; in an acquiring frame from every rising edge.
+        self.first_rise.next = self.rise.val() & (self.acquire.val() | !self.timing_armed.q.val());
+        self.since_rise.d.next = self.since_rise.q.val() + 1;
+        if self.first_rise.val() {
+            self.timing_armed.d.next = true;
+            // The comparison with the tracked delay is registered, and what follows from it as well: it starts two cycles earlier.
+            self.since_rise.d.next = 3.into();
+            if self.acquire.val() {
+                self.since_rise.d.next = 1.into();
+            }
+        }
+        self.places.next = bit_cast::<12, 11>(self.delay.q.val());
+        for i in 0..self._trackers {
+            self.places.next = self.tracker[i].delay_places.val();
+        }
+        self.delay_now.next = self.places.val().get_bits::<11>(0);
+        if self.has_double.val() {
+            self.delay_now.next = self.places.val().get_bits::<11>(1);
+        }
+        // The delay stands from frame to frame: it is guarded.
+        self.moved.d.next = self.follow_now.q.val() | self.acquired.val();
+        for i in 0..self._trackers {
+            self.moved.d.next = self.tracker[i].moves.val();
+        }
+        self.parity_now.next = self.places.val().xor();
+        if self.moved.q.val() {
+            self.parity.d.next = self.parity_now.val();
+        } else {
+            if self.parity_now.val() ^ self.parity.q.val() {
+                self.wrong.d.next = true;
+            }
+        }
+        // One from a register is not measured.
+        if self.acquired.val()
+            | (self.has_alignment.val() & (self.mode.val() == self.fixed_mode.val()))
+        {
+            self.wrong.d.next = false;
+        }
+        self.is_upset.next = self.wrong.q.val();
+        self.delay_over.d.next =
+            self.timing_armed.q.val() & (self.since_rise.q.val() == self.delay_now.val());
+
+        // The middle of a bit of an odd number of places lies on a place, that of others between two.
+        self.is_later.next = false;
+        for i in 0..self._trackers {
+            self.is_later.next = self.tracker[i].past_half.val()
+                & self.period_cycles.val().get_bit(0)
+                & !self.has_double.val();
+        }
+        self.was_over.d.next = self.delay_over.q.val() & self.has_alignment.val();
+        self.due.next = self.delay_over.q.val();
+        if self.is_later.val() {
+            self.due.next = self.was_over.q.val();
+        }
+
+        self.acquired.next = self.acquire.val()
+            & self.hunting.val()
+            & self.data_edge.val()
+            & !self.cells_run.q.val();
+        self.first_center.next =
+            self.acquired.val() | (self.due.val() & !self.cells_run.q.val() & !self.acquire.val());
+        // The half period timer runs one cycle ahead: its ticks are registered before they are used.
+        self.sample_strobe.d.next =
+            self.half.tick.val() & !self.second_half.q.val() & self.cells_run.q.val();
+        self.center_strobe.d.next = (self.half.tick.val() & self.second_half.q.val())
+            | (self.first_center.val() & !self.acquired.val());
+        // Phase from the start bit: its edge is the middle, wherever the tracked one is.
+        self.is_frame.next = self.has_alignment.val() & (self.mode.val() == self.frame_mode.val());
+        self.snap.next = self.is_frame.val()
+            & self.hunting.val()
+            & self.data_edge.val()
+            & !self.edge_seen.q.val()
+            & self.cells_run.q.val()
+            & !self.acquire.val();
+        // With two system clock cycles in a bit one cell more begins before a burst is over.
+        self.sample_now.next = self.sample_strobe.q.val()
+            & !self.snap.val()
+            & !(self.has_double.val() & self.afresh.q.val());
+        self.center_now.next = self.acquired.val() | self.center_strobe.q.val() | self.snap.val();
+
+        self.half.period_cycles.next = self.period_cycles.val();
+        self.half.second.next = self.second_half.q.val();
+        self.half.restart.next =
+            !self.cells_run.q.val() | self.control.last_cell.val() | self.snap.val();
+        self.half.began.next = self.acquired.val() | self.snap.val();
+        // An odd period has halves of a whole number of half cycles: every other one begins in the middle of a cycle.
+        if self.has_double.val() {
+            self.half.second.next = self.second.q.val();
+            if self.half.tick.val() & self.cells_run.q.val() {
+                self.second.d.next = self.second.q.val() ^ self.period_cycles.val().get_bit(0);
+            }
+            if self.first_center.val() {
+                self.second.d.next = self.places.val().get_bit(0);
+            }
+            if self.acquired.val() | self.snap.val() {
+                self.second.d.next = self.edge_second.val();
+            }
+        }
+        if self.half.tick.val() & self.cells_run.q.val() {
+            self.second_half.d.next = !self.second_half.q.val();
+        }
+        if self.first_center.val() | self.snap.val() {
+            self.cells_run.d.next = true;
+            self.second_half.d.next = false;
+        }
+        if self.snap.val() {
+            self.sample_strobe.d.next = false;
+            self.center_strobe.d.next = false;
+        }
+
+        // Of the edges before an acquired start bit that which launched it is the only one that counts.
+        self.cells.pulse.next = self.acquired.val()
+            | (self.will_rise.val() & (!self.acquire.val() | self.cells_run.q.val()));
+
+        // Distance between the data edge and the middle of its place. An edge that is first seen one cycle after the middle
+        // is as good as one that is seen with it: the limits of the bit are as far from both.
+        if self.center_now.val() {
+            self.center_seen.d.next = true;
+        }
+        // An edge behind the sample of the same cycle belongs to the next cell.
+        self.next_cell.next = self.has_double.val()
+            & self.sample_now.val()
+            & self.edge_second.val()
+            & !self.second.q.val();
+        self.edge_now.next =
+            self.edge_seen.q.val() | (self.data_edge.val() & !self.next_cell.val());
+        self.late_now.next = self.edge_late.q.val();
+        self.place_now.next = self.edge_place.q.val();
+        if !self.edge_seen.q.val() {
+            self.late_now.next = self.center_seen.q.val();
+            self.place_now.next = self.edge_second.val();
+        }
+        if self.data_edge.val() {
+            self.edge_seen.d.next = true;
+            self.edge_late.d.next = self.late_now.val();
+            self.edge_place.d.next = self.place_now.val();
+            if self.next_cell.val() {
+                self.edge_late.d.next = false;
+                self.edge_place.d.next = true;
+            }
+        }
+        if (self.center_seen.q.val() & !self.edge_now.val())
+            | (self.edge_seen.q.val() & !self.center_seen.q.val())
+        {
+            self.edge_error.d.next = self.edge_error.q.val() + 1;
+            if self.edge_error.q.val() == self.start_window_cycles.val() {
+                self.edge_outside.d.next = true;
+            }
+        }
+        // The middle is put upon the edge; how early that is, the half under way tells.
+        if self.snap.val() & !self.center_seen.q.val() & !self.center_strobe.q.val() {
+            self.edge_error.d.next = self.half.left_cycles.val().get_bits::<6>(0);
+            if self.half.left_cycles.val() > bit_cast::<10, 6>(self.start_window_cycles.val()) {
+                self.edge_outside.d.next = true;
+            }
+        }
+        self.follow_now.d.next = self.follow.val() & self.edge_error.q.val().any();
+        self.half.shorten.next = self.shorten.q.val();
+        self.half.lengthen.next = self.lengthen.q.val();
+        if self.half.tick.val() {
+            self.shorten.d.next = false;
+            self.lengthen.d.next = false;
+        }
+        if self.follow_now.q.val() {
+            self.delay.d.next = self.delay.q.val() + self.step.val();
+            self.shorten.d.next = self.going_on.val() & !self.edge_late.q.val();
+            self.lengthen.d.next = self.going_on.val() & self.edge_late.q.val();
+        }
+        self.step.next = 0x7FF.into();
+        if self.edge_late.q.val() {
+            self.step.next = 1.into();
+        }
+        if self.acquired.val() {
+            self.delay.d.next = self.since_rise.q.val();
+        }
+        if self.has_alignment.val() {
+            self.delay.d.next = 0.into();
+        }
+
+        // What the cell's edge says of the phase. In mode `frame` only the start bit does.
+        self.center_place.next = false;
+        self.distance.next = bit_cast::<8, 6>(self.edge_error.q.val());
+        if self.has_double.val() {
+            self.center_place.next = self.second.q.val() ^ self.period_cycles.val().get_bit(0);
+            self.distance.next = (bit_cast::<8, 6>(self.edge_error.q.val()) << 1)
+                + bit_cast::<8, 1>(self.center_place.val().into())
+                - bit_cast::<8, 1>(self.place_now.val().into());
+            if self.late_now.val() {
+                self.distance.next = (bit_cast::<8, 6>(self.edge_error.q.val()) << 1)
+                    + bit_cast::<8, 1>(self.place_now.val().into())
+                    + bit_cast::<8, 1>((!self.center_place.val()).into());
+            }
+        }
+        // While the mean is still being looked for every edge counts.
+        self.is_open.next = self.has_alignment.val() & self.control.slow.val();
+        self.good_edge.next = self.has_alignment.val()
+            & self.sample_now.val()
+            & self.edge_now.val()
+            & (!self.edge_outside.q.val() | self.is_open.val())
+            & (self.follow.val() | (self.in_answer.val() & !self.is_frame.val()));
+        self.measured_now.d.next = self.good_edge.val();
+        self.offset_now.d.next = self.distance.val();
+        if !self.late_now.val() {
+            self.offset_now.d.next = !self.distance.val();
+        }
+        if !self.has_alignment.val() {
+            self.offset_now.d.next = 0.into();
+            self.edge_place.d.next = false;
+        }
+        for i in 0..self._trackers {
+            connect!(self.tracker[i] <= self; clock, reset, acquired);
+            self.tracker[i].measured_places.next = bit_cast::<12, 11>(self.since_rise.q.val());
+            if self.has_double.val() {
+                self.tracker[i].measured_places.next =
+                    (bit_cast::<12, 11>(self.since_rise.q.val()) << 1)
+                        | bit_cast::<12, 1>(self.edge_second.val().into());
+            }
+            connect!(self.tracker[i] <= self; starts = first_center, is_later);
+            self.tracker[i].edge_strobe.next = self.measured_now.q.val();
+            self.tracker[i].offset.next = self.offset_now.q.val();
+            self.tracker[i].acquire.next = self.acquire.val();
+            self.tracker[i].quick.next = self.control.slow.val() | self.is_frame.val();
+            self.tracker[i].is_fixed.next = self.mode.val() == self.fixed_mode.val();
+            self.tracker[i].fixed_delay.next = self.fixed_delay.val();
+        }
+
+        // All cells of a burst have ended: the next rising edge begins a new one.
+        self.over.next =
+            !self.control.run.val() | (self.control.drain.val() & self.none_under_way.val());
+        self.afresh.d.next = self.over.val();
+        if self.afresh.q.val() {
+            self.cells_run.d.next = false;
+            self.second_half.d.next = false;
+            self.timing_armed.d.next = false;
+            self.delay_over.d.next = false;
+            self.was_over.d.next = false;
+            self.sample_strobe.d.next = false;
+            self.center_strobe.d.next = false;
+        }
+        self.not_yet.d.next = self.over.val() | (self.acquire.val() & !self.hunting.val());
+        if self.sample_now.val() | self.not_yet.q.val() {
+            self.center_seen.d.next = false;
+            self.edge_seen.d.next =
+                self.next_cell.val() & self.data_edge.val() & !self.not_yet.q.val();
+            self.edge_error.d.next = 0.into();
+            self.edge_outside.d.next = false;
+        }
+        self.cells.sample.next = self.sample_now.val();
+        self.cells.center.next = self.center_now.val();
+        self.cells.edge_in_window.next =
+            self.edge_now.val() & (!self.edge_outside.q.val() | self.is_open.val());
+        self.sample_second.next = self.second.q.val();
+        self.delay_cycles.next = self.delay_now.val();
+        self.measured.next = self.measured_now.q.val();
+        self.offset.next = self.offset_now.q.val();
+        self.phase.next = 0.into();
+        for i in 0..self._trackers {
+            self.phase.next = self.tracker[i].phase.val();
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! Forced errors on a schedule: each in turn in a frame of its own, whose cause is awaited. So it shows that who tells errors still lives.
+//!
+//! Positions of triggers are not touched; a trigger that meets such a frame is lost, as with any request that has a frame of its own.
+
+use super::requests::{code, mailbox};
+use super::{high, low, minus, own, set, set_bits, ServiceTimes};
+use crate::endat::sequencer::assembler::Assembler;
+use crate::endat::service::map::{
+    force, input, output, output::go, state, word, ERROR_TEST_PATIENCE_MS,
+};
+use crate::endat::transaction::cause;
+use crate::protocol::ModeCommand;
+
+/// What is forced, and the cause that must be told.
+const ERRORS: [(u16, u64); 4] = [
+    (force::CRC, cause::CRC),
+    (force::F1, cause::F1),
+    (force::F2, cause::F2),
+    (force::SECOND_RECEIVER, cause::UPSET),
+];
+
+/// How many of them a card forces in turn.
+pub const fn forced_errors(second_receiver: bool) -> usize {
+    ERRORS.len() - !second_receiver as usize
+}
+
+/// What a start sets.
+pub(super) fn start(a: &mut Assembler, times: &ServiceTimes) {
+    for word in [own::TESTING, own::BEHIND, own::TEST_NEXT] {
+        set(a, word, 0);
+    }
+    set(a, low(word::ERROR_TEST), times.error_test_ms);
+    a.inp(input::TIME_MS).st(own::TEST_FROM);
+}
+
+/// From the main loop, while nobody uses the request.
+pub(super) fn error_test(a: &mut Assembler, times: &ServiceTimes) {
+    let (due, send, done) = (a.label(), a.label(), a.label());
+    a.place("error_test").link().st(own::FROM_TEST);
+    a.ld(low(word::ERROR_TEST)).jz(done);
+    a.ld(low(word::STATE)).andi(state::UNPLUGGED).jnz(done);
+    if times.continuous {
+        // It would end the run.
+        a.ld(low(word::CONTINUOUS)).andi(1).jnz(done);
+    }
+    a.inp(input::TIME_MS).sub(own::TEST_FROM);
+    a.sub(low(word::ERROR_TEST)).jc(done);
+    a.ld(own::BEHIND).jnz(due);
+    a.inp(input::TIME_MS).sub(own::TEST_FROM);
+    a.sub(low(word::ERROR_TEST))
+        .addi(minus(ERROR_TEST_PATIENCE_MS))
+        .jnc(done);
+    a.place(due);
+    a.call("let_go").jnz(done);
+    a.inp(input::TIME_MS).st(own::TEST_FROM);
+    a.ldi(0).out(output::ADDRESS).out(output::DATA);
+    set(a, own::TESTING, 1);
+    set(a, own::GO, go::OWN);
+    a.ldi(mailbox::OWN).st(own::MAILBOX);
+
+    // The command of the triggers.
+    let old = a.label();
+    a.ldi(code(ModeCommand::SendPosition)).st(own::MODE);
+    a.inp(input::CONFIGURED).andi(1 << 6).jz(old);
+    a.ldi(code(ModeCommand::SendPositionAddInfo)).st(own::MODE);
+    a.place(old).ld(own::MODE).out(output::COMMAND);
+
+    let count = forced_errors(times.second_receiver);
+    let first = a.label();
+    for (n, error) in ERRORS.into_iter().enumerate().take(count).skip(1) {
+        let other = a.label();
+        a.ld(own::TEST_NEXT).xori(n as u16).jnz(other);
+        set(a, own::TEST_NEXT, (n + 1) as u16 % count as u16);
+        if error.0 == force::F2 {
+            // Answers of EnDat 2.1 have none.
+            a.inp(input::CONFIGURED).andi(1 << 6).jz(first);
+        }
+        force_error(a, error);
+        a.jmp(send).place(other);
+    }
+    // The first one comes last: whatever the word says, something is done.
+    set(a, own::TEST_NEXT, 1);
+    a.place(first);
+    force_error(a, ERRORS[0]);
+
+    a.place(send).call("own_frame");
+    a.ld(low(word::FORCE)).out(output::FORCE);
+    a.ldi(mailbox::IDLE).st(own::MAILBOX);
+    let told = a.label();
+    a.ld(own::RESULT).sub(own::TEST_CAUSE).jz(told);
+    // The line has an error of its own, and that is told: a test of nothing.
+    a.ld(own::RESULT).jnz(done);
+    a.ld(high(word::ERROR_TEST_STATE)).addi(1);
+    a.st(high(word::ERROR_TEST_STATE));
+    set_bits(a, low(word::STATE), state::ERROR_TEST);
+    a.call("alarm").jmp(done);
+    a.place(told);
+    a.ld(low(word::ERROR_TEST_STATE)).addi(1);
+    a.st(low(word::ERROR_TEST_STATE));
+    a.place(done).ldi(0).st(own::TESTING).st(own::BEHIND);
+    a.ld(own::FROM_TEST).jmpa();
+}
+
+/// Forces this error in the next frame of a request's own.
+fn force_error(a: &mut Assembler, (forced, cause): (u16, u64)) {
+    a.ldi(forced | force::OWN_FRAMES).out(output::FORCE);
+    set(a, own::TEST_CAUSE, cause as u16);
+}

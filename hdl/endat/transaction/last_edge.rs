@@ -1,0 +1,148 @@
+//! Last edge: when the last rising edge of CLOCK has come back, from which the recovery time counts.
+//!
+//! ```text
+//! center     /\__/\__/\__/\______    between two samples; the edge is in the middle behind the last bit
+//! last_bit   ___/\_______________    the last bit is sampled
+//! in_tail    _________/~~~\______    double edge: the answer has been worked upon, some cells later
+//! comes      ____________/\______    here the timer begins
+//! ago_cycles             2           with what has passed
+//! ```
+//!
+//! Never are more pulses on the cable than the answer needs: where all are sent before it has begun, CLOCK is held LOW, and the edge comes a cell
+//! later.
+
+use crate::endat::features::Features;
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// Finds the beginning of the recovery time.
+#[derive(LogicBlock, Block)]
+pub struct LastEdge {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Strobe: a frame begins.
+    pub start: Signal<In, Bit>,
+    /// All pulses of the answer are sent, or on their way to the pin.
+    pub no_pulse_left: Signal<In, Bit>,
+    /// One is left.
+    pub one_pulse_left: Signal<In, Bit>,
+    /// Strobe: CLOCK rises in the next cycle.
+    pub will_rise: Signal<In, Bit>,
+    /// None that was sent is still to come back.
+    pub none_under_way: Signal<In, Bit>,
+    /// The start bit has come.
+    pub started: Signal<In, Bit>,
+    /// The clock goes on.
+    pub going: Signal<In, Bit>,
+    /// Pulses are sent.
+    pub running: Signal<In, Bit>,
+    /// Strobe: a cycle ago was the middle between two samples.
+    pub was_center: Signal<In, Bit>,
+    /// Strobe: the last bit before the tail has been sampled; looked at with double edge only.
+    pub last_bit: Signal<In, Bit>,
+    /// The answer has been worked upon, the cell behind it goes on.
+    pub in_tail: Signal<In, Bit>,
+    /// That cell is over.
+    pub in_recovery: Signal<In, Bit>,
+    /// The HIGH behind the answer has been sampled.
+    pub tail_sampled: Signal<In, Bit>,
+    /// A supplement ends the frame: nothing is late there.
+    pub in_supplement: Signal<In, Bit>,
+    /// Strobe: the edge has come back, `ago_cycles` ago; again where it came later than expected.
+    pub comes: Signal<Out, Bit>,
+    /// How long ago, in system clock cycles.
+    pub ago_cycles: Signal<Out, Bits<3>>,
+    /// All pulses are sent.
+    pub all_sent: Signal<Out, Bit>,
+    /// CLOCK is to be held LOW.
+    pub holds: Signal<Out, Bit>,
+    /// It waits for what is under way.
+    pub stalled: Signal<Out, Bit>,
+    has_double: Constant<Bit>,
+    sent: Reg<Bit>,
+    one_left: Reg<Bit>,
+    stall: Reg<Bit>,
+    holds_now: Signal<Local, Bit>,
+    waited: Reg<Bit>,
+    due: Reg<Bit>,
+    ago: Reg<Bits<3>>,
+    is_there: Signal<Local, Bit>,
+    comes_now: Signal<Local, Bit>,
+}
+
+impl LastEdge {
+    /// For a channel with these features.
+    pub fn new(features: Features) -> Self {
+        Self::from_parts(LastEdgeParts {
+            has_double: Constant::new(features.double_edge),
+        })
+    }
+}
+
+impl Logic for LastEdge {
+    #[kernel]
+    fn update(&mut self) {
+        self.sent.d.next = self.no_pulse_left.val();
+        // With two system clock cycles in a bit there is no time to count this pulse.
+        if self.has_double.val() {
+            self.one_left.d.next = self.one_pulse_left.val();
+            self.sent.d.next =
+                self.no_pulse_left.val() | (self.one_left.q.val() & self.will_rise.val());
+        }
+        self.holds_now.next = self.sent.q.val() & !self.started.val() & !self.going.val();
+        if self.holds_now.val() {
+            self.stall.d.next = true;
+        }
+        if self.none_under_way.val() | !self.running.val() {
+            self.stall.d.next = false;
+        }
+        self.all_sent.next = self.sent.q.val();
+        self.stalled.next = self.stall.q.val();
+        self.holds.next = self.stall.q.val() | (self.has_double.val() & self.holds_now.val());
+
+        self.is_there.next = self.was_center.val() & self.waited.q.val();
+        if self.has_double.val() {
+            self.is_there.next = self.was_center.val() & self.due.q.val() & !self.waited.q.val();
+        }
+        self.comes_now.next = (self.in_tail.val() & self.was_center.val())
+            | (self.in_recovery.val() & self.is_there.val() & !self.tail_sampled.val());
+        self.comes.next = self.comes_now.val();
+
+        if self.holds_now.val() {
+            self.waited.d.next = true;
+        }
+        if self.was_center.val()
+            & (self.in_recovery.val() | (self.has_double.val() & self.due.q.val()))
+        {
+            self.waited.d.next = false;
+        }
+        if self.start.val() {
+            self.waited.d.next = false;
+        }
+
+        // With few cycles in a bit the edge has come back before the answer was worked upon.
+        self.ago_cycles.next = 0.into();
+        if self.has_double.val() {
+            if self.is_there.val() {
+                self.due.d.next = false;
+            }
+            if !self.due.q.val() | self.is_there.val() {
+                self.ago.d.next = self.ago.q.val() + 1;
+            }
+            if self.comes_now.val() | self.in_recovery.val() {
+                self.ago.d.next = self.ago.q.val();
+            }
+            if self.last_bit.val() {
+                self.due.d.next = true;
+                self.ago.d.next = 0.into();
+            }
+            if self.in_supplement.val() {
+                self.ago.d.next = 0.into();
+            }
+            self.ago_cycles.next = self.ago.q.val();
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! Verdict: what has happened to a frame is registered, then told with its primary cause.
+//!
+//! ```text
+//! answer_taken, give_up ...  ____/~~\____________
+//! taken, gave_up             _______/~~\_________    the flags are put together
+//! prove                      ___________/~~\_____    what follows the answer fits, too
+//! publish, late_fault, over  ______________/~~\__    cause and flags stay until the next one
+//! ```
+//!
+//! An answer is published when the bit behind it has been seen: one verdict of all that the frame shows. What is seen later (DATA does
+//! not fall, additional data of another length) withdraws it.
+
+use super::cause::{self, flag};
+use super::primary::PrimaryCause;
+use crate::endat::features::{Features, FixedTimes};
+use crate::endat::ports::{AnswerCheckIn, ToldOut};
+use rtl_design::reg::Reg;
+use rtl_design::{kernel, Block};
+use rust_hdl::prelude::*;
+
+/// Result, cause and flags of one channel's frames.
+#[derive(LogicBlock, Block)]
+#[properties("../../properties/verdict.sv")]
+pub struct Verdict {
+    /// System clock.
+    pub clock: Signal<In, Clock>,
+    /// Synchronous reset.
+    pub reset: Signal<In, Bit>,
+    /// Flags that go with `give_up`, `refuse` or `announce`, see [`cause::flag`](mod@cause::flag).
+    pub found: Signal<In, Bits<20>>,
+    /// Strobe: the answer has been taken; CRC and error bits decide.
+    pub answer_taken: Signal<In, Bit>,
+    /// Strobe, with `taken` or later: the answer has the length it should have; it is published.
+    pub prove: Signal<In, Bit>,
+    /// The frame measures the delay: a good answer to a trigger is not published, its position is asked for once more.
+    pub is_measuring: Signal<In, Bit>,
+    /// Settings of the frame have changed under way.
+    pub settings_upset: Signal<In, Bit>,
+    /// Strobe: the frame is aborted.
+    pub give_up: Signal<In, Bit>,
+    /// With `give_up`: its result has been published.
+    pub is_late: Signal<In, Bit>,
+    /// Strobe: no frame is begun for this trigger.
+    pub refuse: Signal<In, Bit>,
+    /// Strobe: the result is told, and the frame goes on.
+    pub announce: Signal<In, Bit>,
+    /// Strobe: the frame has ended as it should.
+    pub normal_end: Signal<In, Bit>,
+    /// The clock goes on after this frame.
+    pub is_going: Signal<In, Bit>,
+    /// The frame is not a trigger's.
+    pub is_own: Signal<In, Bit>,
+    /// Strobe: a trigger has been lost.
+    pub lost: Signal<In, Bit>,
+    /// What an answer says of itself.
+    #[bundle]
+    pub check: AnswerCheckIn,
+    /// Recovery time tm of the frame that has ended.
+    pub recovery_cycles: Signal<In, Bits<13>>,
+    /// Data must not fall before this.
+    pub recovery_min_cycles: Signal<In, Bits<13>>,
+    /// Strobe: `answer_taken`, a cycle later.
+    pub taken: Signal<Out, Bit>,
+    /// An answer has been taken, and not been published yet.
+    pub is_pending: Signal<Out, Bit>,
+    /// With `taken`: the CRC is right.
+    pub is_received: Signal<Out, Bit>,
+    /// With `taken`: the CRC is wrong, and was so in the frame before.
+    pub is_doubtful: Signal<Out, Bit>,
+    /// With `prove`: the answer has a wrong CRC, or an alarm.
+    pub is_bad: Signal<Out, Bit>,
+    /// Strobe: `give_up`, a cycle later.
+    pub gave_up: Signal<Out, Bit>,
+    /// There is still something to tell.
+    pub is_telling: Signal<Out, Bit>,
+    /// What has become of a frame.
+    #[bundle]
+    pub told: ToldOut,
+    /// Strobe, instead of `publish`: the delay is measured, now the position itself.
+    pub once_more: Signal<Out, Bit>,
+    /// Strobe: a frame has ended in whatever way.
+    pub over: Signal<Out, Bit>,
+    /// Strobe: a trigger has been lost.
+    pub displaced: Signal<Out, Bit>,
+    #[start]
+    chooser: PrimaryCause,
+    has_diagnosis: Constant<Bit>,
+    own_recovery_min_cycles: Constant<Bits<13>>,
+    possible: Constant<Bits<20>>,
+    crc_wrong: Constant<Bits<20>>,
+    parallel_wrong: Constant<Bits<20>>,
+    own_echo: Constant<Bits<20>>,
+    f1_set: Constant<Bits<20>>,
+    f2_clear: Constant<Bits<20>>,
+    trigger_overrun: Constant<Bits<20>>,
+    too_short: Constant<Bits<20>>,
+    stored_upset: Constant<Bits<20>>,
+    seen: Reg<Bits<20>>,
+    taken_now: Reg<Bit>,
+    gave_up_now: Reg<Bit>,
+    gave_up_late: Reg<Bit>,
+    refused: Reg<Bit>,
+    announced: Reg<Bit>,
+    ended: Reg<Bit>,
+    overrun: Reg<Bit>,
+    was_bad: Reg<Bit>,
+    publish_now: Reg<Bit>,
+    good_now: Reg<Bit>,
+    once_more_now: Reg<Bit>,
+    is_silent: Reg<Bit>,
+    pending: Reg<Bit>,
+    withdraw_now: Reg<Bit>,
+    confirm_now: Reg<Bit>,
+    late_now: Reg<Bit>,
+    over_now: Reg<Bit>,
+    lost_now: Reg<Bit>,
+    flags_now: Reg<Bits<20>>,
+    found_all: Signal<Local, Bits<20>>,
+    crc_bad: Signal<Local, Bit>,
+    bad_now: Signal<Local, Bit>,
+    proven: Signal<Local, Bit>,
+    upset: Signal<Local, Bit>,
+    measured: Signal<Local, Bit>,
+    recovery_min: Signal<Local, Bits<13>>,
+    early: Signal<Local, Bit>,
+}
+
+/// Flags that the transaction can find with these features.
+fn possible(features: Features) -> u64 {
+    let mut causes = vec![
+        cause::DATA_NOT_LOW,
+        cause::NO_START_BIT,
+        cause::START_WINDOW,
+        cause::DATA_NOT_FALLING,
+        cause::UNKNOWN_COMMAND,
+        cause::UPSET,
+    ];
+    if features.requests {
+        causes.push(cause::INFO_MISSING);
+    }
+    if features.diagnosis {
+        causes.extend([cause::NO_ENCODER, cause::STUCK_HIGH, cause::STUCK_LOW]);
+        causes.extend([cause::LATE_START, cause::WATCHDOG]);
+    }
+    causes.into_iter().map(flag).sum::<u64>() | flag::TAIL_LOW
+}
+
+impl Verdict {
+    /// A verdict with these fixed times and features.
+    pub fn new(times: FixedTimes, features: Features) -> Self {
+        Self::from_parts(VerdictParts {
+            has_diagnosis: Constant::new(features.diagnosis),
+            own_recovery_min_cycles: Constant::new(times.own_recovery_min_cycles.into()),
+            possible: Constant::new(possible(features).into()),
+            crc_wrong: Constant::new(flag(cause::CRC).into()),
+            parallel_wrong: Constant::new(flag::PARALLEL_CRC.into()),
+            own_echo: Constant::new(flag(cause::OWN_ECHO).into()),
+            f1_set: Constant::new(flag(cause::F1).into()),
+            f2_clear: Constant::new(flag(cause::F2).into()),
+            trigger_overrun: Constant::new(flag(cause::TRIGGER_OVERRUN).into()),
+            too_short: Constant::new(flag(cause::RECOVERY_TOO_SHORT).into()),
+            stored_upset: Constant::new(flag(cause::UPSET).into()),
+        })
+    }
+}
+
+impl Logic for Verdict {
+    #[kernel]
+    fn update(&mut self) {
+        // The frame's bits stay where they are until the verdict: an upset of one of them shows in its CRC.
+        // Synthesis does not see by itself that some flags are never set.
+        self.seen.d.next = self.found.val() & self.possible.val();
+        self.taken_now.d.next = self.answer_taken.val();
+        self.gave_up_now.d.next = self.give_up.val() & !self.gave_up_now.q.val();
+        self.gave_up_late.d.next =
+            self.give_up.val() & !self.gave_up_now.q.val() & self.is_late.val();
+        self.refused.d.next = self.refuse.val();
+        self.announced.d.next = self.announce.val() & self.has_diagnosis.val();
+        self.ended.d.next = self.normal_end.val();
+
+        // Of what has been told: the choice is kept out of the path of what is found.
+        self.chooser.flags.next = self.flags_now.q.val();
+        self.crc_bad.next = !(self.check.serial_ok.val() & self.check.parallel_ok.val());
+        self.bad_now.next = self.crc_bad.val() | self.check.f1.val() | !self.check.f2.val();
+        self.is_bad.next = self.bad_now.val();
+        self.is_pending.next = self.pending.q.val() | self.taken_now.q.val();
+        self.proven.next = self.prove.val() & self.is_pending.val();
+        self.found_all.next = self.seen.q.val();
+        if self.proven.val() | (self.is_pending.val() & self.gave_up_now.q.val()) {
+            if self.crc_bad.val() {
+                self.found_all.next = self.found_all.val() | self.crc_wrong.val();
+                if self.has_diagnosis.val() & self.check.is_echo.val() {
+                    self.found_all.next =
+                        self.found_all.val() | self.crc_wrong.val() | self.own_echo.val();
+                }
+            }
+            if self.check.f1.val() {
+                self.found_all.next = self.found_all.val() | self.f1_set.val();
+            }
+            if !self.check.f2.val() {
+                self.found_all.next = self.found_all.val() | self.f2_clear.val();
+            }
+            if !self.check.parallel_ok.val() {
+                self.found_all.next = self.found_all.val() | self.parallel_wrong.val();
+            }
+        }
+        if self.taken_now.q.val() {
+            self.was_bad.d.next = self.crc_bad.val();
+        }
+        self.upset.next = self.proven.val() & !self.bad_now.val() & self.settings_upset.val();
+        self.measured.next = self.proven.val()
+            & self.is_measuring.val()
+            & !self.bad_now.val()
+            & !self.upset.val()
+            & !self.is_own.val();
+        // A frame is not given up for nothing: the state that says so was upset.
+        if self.upset.val() | (self.gave_up_now.q.val() & !self.seen.q.val().any()) {
+            self.found_all.next = self.found_all.val() | self.stored_upset.val();
+        }
+        // That is for the result to say.
+        if self.overrun.q.val() & !self.measured.val() {
+            self.found_all.next = self.found_all.val() | self.trigger_overrun.val();
+        }
+        self.recovery_min.next = self.recovery_min_cycles.val();
+        if self.is_own.val() {
+            self.recovery_min.next = self.own_recovery_min_cycles.val();
+        }
+        self.early.next = self.has_diagnosis.val()
+            & self.ended.q.val()
+            & !self.is_going.val()
+            & !self.chooser.cause.val().any()
+            & (self.recovery_cycles.val() < self.recovery_min.val());
+        if self.early.val() {
+            self.found_all.next = self.found_all.val() | self.too_short.val();
+        }
+        if self.proven.val()
+            | self.gave_up_now.q.val()
+            | self.refused.q.val()
+            | self.announced.q.val()
+            | self.early.val()
+        {
+            self.flags_now.d.next = self.found_all.val();
+            if !self.is_own.val() & !self.measured.val() {
+                self.overrun.d.next = false;
+            }
+        }
+        if self.lost.val() {
+            self.overrun.d.next = true;
+        }
+        self.lost_now.d.next = self.lost.val();
+        self.once_more_now.d.next = self.measured.val();
+        if self.measured.val() {
+            self.is_silent.d.next = true;
+        }
+        if self.answer_taken.val() {
+            self.is_silent.d.next = false;
+        }
+        self.publish_now.d.next = ((self.proven.val() & !self.measured.val())
+            | self.refused.q.val()
+            | self.announced.q.val()
+            | (self.gave_up_now.q.val() & !self.gave_up_late.q.val()))
+            & !self.is_own.val();
+        if self.taken_now.q.val() {
+            self.pending.d.next = true;
+        }
+        if self.proven.val() | self.gave_up_now.q.val() {
+            self.pending.d.next = false;
+        }
+        self.late_now.d.next = (self.gave_up_late.q.val()
+            | (self.early.val() & !self.is_silent.q.val()))
+            & !self.is_own.val();
+        self.withdraw_now.d.next = self.gave_up_late.q.val() & !self.is_own.val();
+        self.confirm_now.d.next = self.ended.q.val() & !self.is_own.val();
+        self.is_received.next = self.taken_now.q.val() & !self.crc_bad.val();
+        self.is_doubtful.next = self.taken_now.q.val() & self.crc_bad.val() & self.was_bad.q.val();
+        self.good_now.d.next = self.proven.val() & !self.bad_now.val() & !self.upset.val();
+        // `over` comes with cause and flags of whatever ended the frame.
+        self.over_now.d.next = self.ended.q.val() | self.gave_up_now.q.val() | self.refused.q.val();
+
+        self.taken.next = self.taken_now.q.val();
+        self.gave_up.next = self.gave_up_now.q.val();
+        self.is_telling.next = self.ended.q.val()
+            | self.gave_up_now.q.val()
+            | self.refused.q.val()
+            | self.over_now.q.val();
+        self.told.publish.next = self.publish_now.q.val();
+        self.told.good.next = self.good_now.q.val();
+        self.once_more.next = self.once_more_now.q.val();
+        self.told.late_fault.next = self.late_now.q.val();
+        self.told.withdraw.next = self.withdraw_now.q.val();
+        self.told.confirm.next = self.confirm_now.q.val();
+        self.over.next = self.over_now.q.val();
+        self.displaced.next = self.lost_now.q.val();
+        self.told.cause.next = self.chooser.cause.val();
+        self.told.flags.next = self.flags_now.q.val();
+    }
+}
