@@ -311,7 +311,7 @@ impl Logic for Channel {
         self.transaction.level.next = self.filter.level.val();
         self.transaction.is_fixed.next = self.phase_mode.val() == self.fixed_mode.val();
         CellsOut::join(&mut self.delay.cells, &mut self.transaction.cells);
-        self.transaction.delay_upset.next = self.delay.is_upset.val();
+        connect!(self.transaction <= self.delay; center, delay_upset = is_upset);
         ProgressOut::join(&mut self.receiver.progress, &mut self.transaction.progress);
         // In fewer than four cycles additional data would begin before the position is taken.
         self.wanted_shape.command.next = self.settings_in.command.val();
@@ -383,7 +383,8 @@ impl Logic for Channel {
         }
 
         self.add_info.start.next = self.transaction.control.start.val();
-        connect!(self.add_info <= self.delay.cells; center, sample);
+        self.add_info.sample.next = self.delay.cells.sample.val();
+        self.add_info.center.next = self.delay.center.val();
         self.add_info.answer_done.next = self.receiver.progress.done.val();
         connect!(self.add_info <= self.shape.shape; has_f2, has_supplement);
         self.add_info.command.next = self.command_now.val();

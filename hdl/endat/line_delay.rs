@@ -66,6 +66,8 @@ pub struct LineDelay {
     /// Places of the answer's cells.
     #[bundle]
     pub cells: CellsOut,
+    /// Strobe: the middle of the expected place of a data edge.
+    pub center: Signal<Out, Bit>,
     /// The tracked delay is not what was measured: a register was upset. Until it is measured again.
     pub is_upset: Signal<Out, Bit>,
     /// Tracked propagation delay tD including synchroniser and filter, in system clock cycles.
@@ -405,7 +407,7 @@ impl Logic for LineDelay {
             self.edge_outside.d.next = false;
         }
         self.cells.sample.next = self.sample_now.val();
-        self.cells.center.next = self.center_now.val();
+        self.center.next = self.center_now.val();
         self.cells.edge_in_window.next =
             self.edge_now.val() & (!self.edge_outside.q.val() | self.is_open.val());
         self.sample_second.next = self.second.q.val();

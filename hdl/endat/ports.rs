@@ -85,8 +85,6 @@ pub struct Cells {
     pub pulse: Bit,
     /// Strobe: the data line is sampled.
     pub sample: Bit,
-    /// Strobe: the middle of the expected place of a data edge.
-    pub center: Bit,
     /// A rising data edge lies within the window of this cell.
     pub edge_in_window: Bit,
 }

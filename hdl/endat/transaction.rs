@@ -59,6 +59,8 @@ pub struct Transaction {
     /// Places of the answer's cells.
     #[bundle]
     pub cells: CellsIn,
+    /// Strobe: middle of the expected place of a data edge.
+    pub center: Signal<In, Bit>,
     /// How far a receiver is.
     #[bundle]
     pub progress: ProgressIn,
@@ -599,7 +601,7 @@ impl Logic for Transaction {
         }
 
         self.was_hunting.d.next = self.progress.hunting.val();
-        self.was_center.d.next = self.cells.center.val();
+        self.was_center.d.next = self.center.val();
         self.timer_step.d.next = !self.in_us.val() | self.tick_us.val();
         if self.timer_step.q.val() {
             self.timer.d.next = self.timer.q.val() + 1;

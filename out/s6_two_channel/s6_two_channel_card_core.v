@@ -4,8 +4,8 @@
 `timescale 1ns / 1ps
 `default_nettype none
 
-// Card: encoder ports, each for EnDat or T-format, triggers and registers. A front connects the registers to a host: Card with a UART, the tops in
-// bus with another bus.
+// Core of a card: encoder ports, each for EnDat or T-format, triggers and registers. A front connects the registers to a host:
+// Card with a UART, the tops in bus with another bus.
 //
 // trigger_i -> Trigger --+--> EncoderPort 0 -> endat_clk0_o, endat_data0_o, endat_data0_oe <- endat_data0_i
 //               ^        +--> EncoderPort 1 -> ...

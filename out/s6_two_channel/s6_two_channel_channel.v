@@ -114,8 +114,8 @@ module s6_two_channel_channel (
     wire         sender_oe;
     wire         delay_pulse;
     wire         delay_sample;
-    wire         delay_center;
     wire         delay_edge_in_window;
+    wire         delay_center;
     wire         delay_is_upset;
     wire         receiver_level;
     wire         receiver_skipping;
@@ -227,8 +227,8 @@ module s6_two_channel_channel (
         .start_window_cycles(settings_start_window_cycles_now),
         .pulse(delay_pulse),
         .sample(delay_sample),
-        .center(delay_center),
         .edge_in_window(delay_edge_in_window),
+        .center(delay_center),
         .is_upset(delay_is_upset),
         .delay_cycles(delay_cycles)
     );

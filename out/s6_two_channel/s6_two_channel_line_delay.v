@@ -51,10 +51,10 @@ module s6_two_channel_line_delay (
     output wire         pulse,
     // Strobe: the data line is sampled.
     output wire         sample,
-    // Strobe: the middle of the expected place of a data edge.
-    output wire         center,
     // A rising data edge lies within the window of this cell.
     output wire         edge_in_window,
+    // Strobe: the middle of the expected place of a data edge.
+    output wire         center,
     // The tracked delay is not what was measured: a register was upset. Until it is measured again.
     output wire         is_upset,
     // Tracked propagation delay tD including synchroniser and filter, in system clock cycles.

@@ -39,7 +39,7 @@ module s6_two_channel_transaction (
     input  wire         level,
     // Strobe: the data line is sampled.
     input  wire         sample,
-    // Strobe: the middle of the expected place of a data edge.
+    // Strobe: middle of the expected place of a data edge.
     input  wire         center,
     // The start bit may come now.
     input  wire         hunting,
