@@ -80,8 +80,14 @@ macro_rules! readable {
 }
 readable!(In Out Local);
 
-/// Finds a port in a block.
+/// Finds a port in a block, or in a bundle.
 pub type Access<B> = fn(&mut B) -> &mut dyn Pin;
+
+/// Ports that travel together, see [`macro@crate::ports`].
+pub trait Bundle: Sized + 'static {
+    /// Of each its name, whether the block takes it, and where it is.
+    const PINS: &'static [(&'static str, bool, Access<Self>)];
+}
 
 /// Runs a block with a settle loop of its own: no threads, no events.
 ///
@@ -102,11 +108,11 @@ pub struct KernelEngine<B: Block> {
     block: B,
     clock: fn(&mut B) -> &mut Signal<In, Clock>,
     ports: Vec<Port>,
-    access: Vec<Access<B>>,
+    access: Vec<Box<dyn Fn(&mut B) -> &mut dyn Pin>>,
     is_settled: bool,
 }
 
-impl<B: Block> KernelEngine<B> {
+impl<B: Block + 'static> KernelEngine<B> {
     /// Takes a block and connects it.
     pub fn new(mut block: B, clock: fn(&mut B) -> &mut Signal<In, Clock>) -> Self {
         block.connect_all();
@@ -131,13 +137,26 @@ impl<B: Block> KernelEngine<B> {
         self.port_access(name, false, access)
     }
 
-    fn port_access(mut self, name: &str, is_input: bool, access: Access<B>) -> Self {
+    /// Names all ports of a bundle, with `suffix` behind their own names.
+    #[must_use]
+    pub fn bundle<P: Bundle>(mut self, suffix: &str, bundle: fn(&mut B) -> &mut P) -> Self {
+        for &(name, is_input, access) in P::PINS {
+            let name = format!("{name}{suffix}");
+            self = self.port_access(&name, is_input, move |block| access(bundle(block)));
+        }
+        self
+    }
+
+    fn port_access<A>(mut self, name: &str, is_input: bool, access: A) -> Self
+    where
+        A: 'static + Fn(&mut B) -> &mut dyn Pin,
+    {
         self.ports.push(Port {
             name: name.into(),
             width_bits: access(&mut self.block).width_bits(),
             is_input,
         });
-        self.access.push(access);
+        self.access.push(Box::new(access));
         self
     }
 
@@ -167,7 +186,7 @@ impl<B: Block> KernelEngine<B> {
     }
 }
 
-impl<B: Block> Engine for KernelEngine<B> {
+impl<B: Block + 'static> Engine for KernelEngine<B> {
     fn ports(&self) -> &[Port] {
         &self.ports
     }
@@ -196,18 +215,15 @@ impl<B: Block> Engine for KernelEngine<B> {
     }
 }
 
-/// A [`KernelEngine`] of a block, from the names of its ports: `kernel_engine!(block; clock; in a, b; out c, bundle.d)`.
+/// A [`KernelEngine`] of a block, from the names of its ports and bundles: `kernel_engine!(block; clock; in a, b; out c; bundles d)`.
 #[macro_export]
 macro_rules! kernel_engine {
-    ($block:expr; $clock:ident; in $($($input:ident).+),* $(,)?; out $($($output:ident).+),* $(,)?) => {
+    (
+        $block:expr; $clock:ident; in $($input:ident),* $(,)?; out $($output:ident),* $(,)? $(; bundles $($bundle:ident),* $(,)?)?
+    ) => {
         $crate::engine::KernelEngine::new($block, |b| &mut b.$clock)
-            $(.input($crate::engine::port_of(stringify!($($input).+)), |b| &mut b.$($input).+))*
-            $(.output($crate::engine::port_of(stringify!($($output).+)), |b| &mut b.$($output).+))*
+            $(.input(stringify!($input), |b| &mut b.$input))*
+            $(.output(stringify!($output), |b| &mut b.$output))*
+            $($(.bundle("", |b| &mut b.$bundle))*)?
     };
-}
-
-/// The port's own name in `bundle.port`.
-#[doc(hidden)]
-pub fn port_of(path: &str) -> &str {
-    path.rsplit('.').next().unwrap_or(path).trim()
 }

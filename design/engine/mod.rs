@@ -13,9 +13,7 @@ pub use compiled::{has_native_code, Compiled, NetCoverage, Saved};
 pub use form::Keep;
 pub use instrument::Instruments;
 pub use interpreter::Interpreter;
-#[doc(hidden)]
-pub use kernel::port_of;
-pub use kernel::{Access, KernelEngine, Number, Pin};
+pub use kernel::{Access, Bundle, KernelEngine, Number, Pin};
 pub use lanes::{LaneWords, Lanes};
 
 /// Why a design cannot be executed.

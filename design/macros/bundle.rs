@@ -25,6 +25,10 @@ pub fn expand(input: DeriveInput) -> Result<TokenStream> {
     let idents: Vec<_> = fields.named.iter().map(|field| &field.ident).collect();
     let ends = [(out, taken, true), (taken, out, false)].map(|(name, other, drives)| {
         let ports = fields.named.iter().map(|field| port(field, drives));
+        let pins = fields.named.iter().map(|field| {
+            let (ident, is_input) = (&field.ident, !is_driven(field, drives));
+            quote!((stringify!(#ident), #is_input, |bundle| &mut bundle.#ident))
+        });
         let documented = fields.named.iter().map(|Field { ident, attrs, .. }| {
             let lines = super::lines(attrs);
             quote!((stringify!(#ident), &[#(#lines),*]))
@@ -39,6 +43,11 @@ pub fn expand(input: DeriveInput) -> Result<TokenStream> {
                 #visible fn join(&mut self, other: &mut #other) {
                     #(self.#idents.join(&mut other.#idents);)*
                 }
+            }
+
+            impl ::rtl_design::engine::Bundle for #name {
+                const PINS: &'static [(&'static str, bool, ::rtl_design::engine::Access<Self>)] =
+                    &[#(#pins),*];
             }
 
             impl ::rtl_design::elaborate::docs::Described for #name {
@@ -61,13 +70,21 @@ fn port(field: &Field, drives: bool) -> TokenStream {
         ty,
         ..
     } = field;
-    let is_back = |attribute: &Attribute| attribute.path().is_ident("back");
     let kept = attrs.iter().filter(|a| !is_back(a));
-    let direction = match drives != attrs.iter().any(is_back) {
+    let direction = match is_driven(field, drives) {
         true => quote!(Out),
         false => quote!(In),
     };
     quote!(#(#kept)* #vis #ident: Signal<#direction, #ty>)
+}
+
+fn is_back(attribute: &Attribute) -> bool {
+    attribute.path().is_ident("back")
+}
+
+/// Whether an end that drives the bundle, or the other one, drives this port.
+fn is_driven(field: &Field, drives: bool) -> bool {
+    drives != field.attrs.iter().any(is_back)
 }
 
 /// What `#[bundle("_now")]` puts behind the names of its ports; `#[bundle]` nothing.

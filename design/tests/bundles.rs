@@ -112,11 +112,10 @@ fn bundles_agree() {
     let engine = kernel_engine!(block; clock; in reset; out)
         .input("ready_0", |b| &mut b.offers[0].ready)
         .input("ready_1", |b| &mut b.offers[1].ready)
-        .input("value_too", |b| &mut b.passed_in.value)
+        .bundle("_too", |b| &mut b.passed_in)
         .input("ready_on", |b| &mut b.passed_out.ready)
         .output("value_0", |b| &mut b.offers[0].value)
         .output("value_1", |b| &mut b.offers[1].value)
-        .output("ready_too", |b| &mut b.passed_in.ready)
         .output("value_on", |b| &mut b.passed_out.value);
     check("bundles", &design(2), engine, 500);
 }
@@ -142,6 +141,6 @@ fn the_ports_of_a_bundle_in_an_engine_have_their_own_names() {
     let mut counter = Counter::default();
     counter.connect_all();
     let design = elaborate(&counter, "counter").unwrap();
-    let engine = kernel_engine!(counter; clock; in reset, offer.ready; out offer.value);
+    let engine = kernel_engine!(counter; clock; in reset; out; bundles offer);
     check("bundle-counter", &design, engine, 100);
 }

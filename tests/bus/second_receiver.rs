@@ -118,16 +118,9 @@ fn second_receivers_agree_in_three_ways() {
     block.connect_all();
     let design = elaborate(&block, "second_receiver").unwrap();
     let mut kernel = kernel_engine!(block; clock;
-        in reset, rise, level, look, payload_bits, infos, command, payload, crc_received, forced, good, cause, flags,
-        control.start, control.aborts, control.acquire, control.start_supplement, control.going_on,
-        cells.pulse, cells.sample, cells.edge_in_window,
-        shape.has_f1, shape.has_f2, shape.has_parameter, shape.has_supplement,
-        progress.skipping, progress.hunting, progress.start_found, progress.start_refused, progress.started, progress.all_sent,
-        progress.one_to_send, progress.none_under_way, progress.all_used, progress.all_ended, progress.done, progress.info_done,
-        progress.separated, progress.info_missing, progress.last_bit, progress.finished, progress.gap_good, progress.gap_low,
-        progress.gap_high, progress.latched,
-        check.is_echo, check.f1, check.f2, check.serial_ok, check.parallel_ok;
-        out differs, good_told, cause_told, flags_told);
+        in reset, rise, level, look, payload_bits, infos, command, payload, crc_received, forced, good, cause, flags;
+        out differs, good_told, cause_told, flags_told;
+        bundles control, cells, shape, progress, check);
     let mut rng = Rng::new(11);
     let engine = Compiled::new(&design).unwrap();
     let inputs = engine.ports().iter().filter(|p| p.is_input);

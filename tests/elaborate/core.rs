@@ -66,13 +66,9 @@ fn channel_agrees(name: &str, features: Features) {
     block.connect_all();
     let design = elaborate(&block, "channel").unwrap();
     let mut kernel = kernel_engine!(block; clock;
-        in reset, tick_us, timestamp, trigger, calibrate, line.data_i, settings_in.period_cycles, settings_in.first_low_extra_cycles, settings_in.command,
-        settings_in.position_bits, settings_in.filter_cycles, settings_in.filter_half, phase_mode, fixed_delay, majority, settings_in.start_window_cycles, settings_in.start_timeout_us, settings_in.recovery_limit_cycles,
-        orders.recovery_min_cycles, orders.watchdog_us, orders.continuous, orders.stop_at_error, orders.request_command, orders.request_parameter, orders.request_ride, orders.request_own, orders.request_cancel, orders.hold_off, orders.clock_low, orders.forced;
-        out line.endat_clk, line.data_o, line.data_oe, result.result_strobe, result.position, result.position_valid, result.fresh, result.sequence,
-        result.first_fall_timestamp, result.age_us, result.cause, result.flags, result.crc_received, result.crc_computed, result.position_crc, result.position_width, result.position_has_f2, recovery_cycles, delay_cycles, phase, edge_measured, edge_offset, glitch, busy,
-        sample_strobe, sample_second, request_runs, line_high, displaced, end.over, end.over_request, end.over_cause, end.over_flags, reply, end.answer, end.reply_good, record.info_active, record.info_1, record.info_2,
-        record.info_came, record.info_good, record.info_crcs, calibrated);
+        in reset, tick_us, timestamp, trigger, calibrate, phase_mode, fixed_delay, majority;
+        out recovery_cycles, delay_cycles, phase, edge_measured, edge_offset, glitch, busy, sample_strobe, sample_second, request_runs, line_high, displaced, reply, calibrated;
+        bundles line, settings_in, orders, result, end, record);
     let lines = [
         ("tick_us", 2),
         ("trigger", 8),

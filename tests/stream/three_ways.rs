@@ -60,8 +60,9 @@ fn stream_and_channel_agree_in_kernels_engines_and_verilog() {
     block.connect_all();
     let design = elaborate(&block, "stream").unwrap();
     let mut kernel = kernel_engine!(block; clock;
-        in reset, trigger, trigger_count, timestamp, owes, replaced, channel_byte, selected, word, lane, access, write, write_data, pushed.push_take;
-        out take_set, block, byte_at, read_byte, pushed.push, pushed.in_frame, pushed.push_valid, pushed.push_byte);
+        in reset, trigger, trigger_count, timestamp, owes, replaced, channel_byte, selected, word, lane, access, write, write_data;
+        out take_set, block, byte_at, read_byte;
+        bundles pushed);
     let recording = three_way("stream", &mut kernel, &design, &stream).unwrap();
     // Something has happened.
     let pushed = recording.output("push_byte");
