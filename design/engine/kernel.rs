@@ -83,6 +83,9 @@ readable!(In Out Local);
 /// Finds a port in a block, or in a bundle.
 pub type Access<B> = fn(&mut B) -> &mut dyn Pin;
 
+/// The same, also where it is a port of a bundle.
+type Found<B> = Box<dyn Fn(&mut B) -> &mut dyn Pin>;
+
 /// Ports that travel together, see [`macro@crate::ports`].
 pub trait Bundle: Sized + 'static {
     /// Of each its name, whether the block takes it, and where it is.
@@ -108,7 +111,7 @@ pub struct KernelEngine<B: Block> {
     block: B,
     clock: fn(&mut B) -> &mut Signal<In, Clock>,
     ports: Vec<Port>,
-    access: Vec<Box<dyn Fn(&mut B) -> &mut dyn Pin>>,
+    access: Vec<Found<B>>,
     is_settled: bool,
 }
 
