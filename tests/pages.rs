@@ -7,7 +7,7 @@ use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{result_words, CARD, CARD_CONFIG, RESULT};
 
-const README: &str = include_str!("../README.md");
+const SIZE: &str = include_str!("../docs/size.md");
 
 /// Cells of the first row that begins with this text.
 fn row<'p>(page: &'p str, head: &str) -> Vec<&'p str> {
@@ -66,8 +66,8 @@ fn area(subject: &str, family: &str) -> [i64; 2] {
 }
 
 #[test]
-fn the_sizes_in_the_readme_are_those_of_the_area_table() {
-    let mut page = Figures::of("README.md");
+fn the_sizes_are_those_of_the_area_table() {
+    let mut page = Figures::of("docs/size.md");
     for (head, subject) in [
         ("| one port", "channel"),
         ("| the same with all mode commands", "channel_requests"),
@@ -102,6 +102,26 @@ fn the_sizes_in_the_readme_are_those_of_the_area_table() {
         let [ours, theirs] = [one, other].map(|subject| area(subject, XC6S.name));
         page.cells(head, &[0, 1].map(|n| format!("{}; {}", ours[n], theirs[n])));
     }
+    let peer: f64 = row(SIZE, "| public peer")[1].parse().unwrap();
+    let share = |of: f64, lut: i64| lut as f64 / of;
+    let of_device = |lut| format!("{:.1} %", share(57.20, lut));
+    for (head, subject, third) in [
+        (
+            "| one port",
+            "channel",
+            &(|lut| format!("LUT {:.2} of the peer", share(peer, lut))) as &dyn Fn(i64) -> String,
+        ),
+        ("| two-channel card", "card", &|lut| {
+            of_device(lut) + " of the LX9's 5720 LUTs"
+        }),
+        ("| card with everything", "card_service", &of_device),
+    ] {
+        let [lut, ff] = area(subject, XC6S.name);
+        page.cells(head, &[lut.to_string(), ff.to_string(), third(lut)]);
+    }
+    page.check();
+
+    let mut page = Figures::of("README.md");
     // The receiver of T-format has a sentence.
     let [lut, ff] = area("t_format", ICE40.name);
     page.words(
@@ -110,17 +130,19 @@ fn the_sizes_in_the_readme_are_those_of_the_area_table() {
         " LUTs of four inputs and",
     );
     page.words(" LUTs of four inputs and ", &ff.to_string(), " flip-flops");
-    let peer: f64 = row(README, "| public peer")[1].parse().unwrap();
-    let share = |of: f64, lut: i64| lut as f64 / of;
-    let of_device = |lut| format!("{:.1} %", share(57.20, lut));
     for (head, subject, third) in [
         (
             "| one port",
             "channel",
-            &(|lut| format!("LUT {:.2}", share(peer, lut))) as &dyn Fn(i64) -> String,
+            &(|lut| {
+                format!(
+                    "LUT {:.2} of the public position-only receiver's",
+                    share(peer, lut)
+                )
+            }) as &dyn Fn(i64) -> String,
         ),
-        ("| two-channel card", "card", &|lut| {
-            of_device(lut) + " of the LX9's 5720 LUTs"
+        ("| two-channel card", "card_stream", &|lut| {
+            of_device(lut) + " of the LX9"
         }),
         ("| card with everything", "card_service", &of_device),
     ] {
