@@ -36,7 +36,7 @@ pub struct Snapshot {
     /// Propagation delay, in system clock cycles.
     pub delay_cycles: Signal<In, Bits<11>>,
     /// What has become of a frame.
-    #[bundle("_in")]
+    #[bundle]
     pub told: ToldIn,
     /// Position of the frame.
     pub position_in: Signal<In, Bits<48>>,
@@ -194,8 +194,8 @@ impl Logic for Snapshot {
             self.is_fresh.d.next = false;
         }
         if self.told.publish.val() | self.told.late_fault.val() {
-            self.cause_held.d.next = self.told.cause.val();
-            self.flags_held.d.next = self.told.flags.val();
+            self.cause_held.d.next = self.told.cause_told.val();
+            self.flags_held.d.next = self.told.flags_told.val();
         }
         self.upset_now.next = self.is_upset.q.val() & !self.take_good.val() & self.valid.q.val();
         if self.upset_now.val() {
@@ -206,7 +206,7 @@ impl Logic for Snapshot {
         }
         if self.told.publish.val() & self.moment_wrong.val() {
             self.cause_held.d.next = self.upset_cause.val();
-            self.flags_held.d.next = self.told.flags.val() | self.upset_flag.val();
+            self.flags_held.d.next = self.told.flags_told.val() | self.upset_flag.val();
         }
         self.result.result_strobe.next = self.strobe.q.val();
         self.result.position.next = self.held.q.val();

@@ -393,7 +393,7 @@ impl Logic for Channel {
         connect!(self.add_info <= self; crc_ok, word);
         self.add_info.crc.next = self.receiver.crc_received.val();
         self.add_info.over.next = self.transaction.over.val() & self.has_requests.val();
-        self.add_info.flags.next = self.transaction.told.flags.val().get_bits::<12>(0);
+        self.add_info.flags.next = self.transaction.told.flags_told.val().get_bits::<12>(0);
         self.clk_pin.d.next = self.clock_gen.endat_clk.val();
         self.data_pin.d.next = self.sender.data.val();
         self.oe_pin.d.next = self.sender.oe.val();
@@ -420,7 +420,7 @@ impl Logic for Channel {
         self.end.over_request.next = self.frame_own.q.val() | self.frame_ride.q.val();
         connect!(self <= self.transaction; recovery_cycles, busy, displaced, calibrated);
         self.end.over.next = self.transaction.over.val();
-        connect!(self.end <= self.transaction.told; over_cause = cause, over_flags = flags);
+        connect!(self.end <= self.transaction.told; over_cause = cause_told, over_flags = flags_told);
         self.end.answer.next = self.reply_word.q.val();
         self.reply.next = self.reply_word.q.val();
         self.turned.next = 0.into();
@@ -442,9 +442,11 @@ impl Logic for Channel {
             ProgressOut::join(&mut self.receiver.progress, &mut self.second[i].progress);
             AnswerCheckOut::join(&mut self.receiver.verdict, &mut self.second[i].check);
             connect!(self.second[i] <= self.receiver; payload, crc_received);
-            connect!(self.second[i] <= self.transaction.told; good, cause, flags);
+            connect!(self.second[i] <= self.transaction.told;
+                good, cause = cause_told, flags = flags_told
+            );
             connect!(self.snapshot.told <= self.second[i];
-                good = good_told, cause = cause_told, flags = flags_told
+                good = good_told, cause_told, flags_told
             );
             self.second[i].rise.next = self.clock_gen.rise.val();
             connect!(self.second[i] <= self.filter; level);

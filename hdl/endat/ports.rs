@@ -176,7 +176,7 @@ pub struct Told {
     /// Strobe: the published position stands, nothing can withdraw it any more.
     pub confirm: Bit,
     /// Primary cause, with `publish`, `late_fault` or the end of a frame.
-    pub cause: Bits<5>,
+    pub cause_told: Bits<5>,
     /// Raw flags, see [`cause::flag`](mod@crate::endat::transaction::cause::flag).
-    pub flags: Bits<20>,
+    pub flags_told: Bits<20>,
 }

@@ -15,10 +15,10 @@ always @(posedge clock) begin
     end
     if (f_past_valid & !$past(reset)) begin
         one_set: assert ($stable(f_set) | $past(take_good | take_back));
-        one_set_strobe: assert (result_strobe == $past(publish_in));
-        one_number_each: assert (count == $past(count) + {15'd0, $past(publish_in)});
-        if ($past(publish_in & !good_in & !take_back)) bad_is_not_fresh: assert (!is_fresh & $stable(f_set));
-        if (!$past(publish_in | late_fault_in | upset_now)) faults_with_results: assert ($stable({cause_held, flags_held}));
+        one_set_strobe: assert (result_strobe == $past(publish));
+        one_number_each: assert (count == $past(count) + {15'd0, $past(publish)});
+        if ($past(publish & !good & !take_back)) bad_is_not_fresh: assert (!is_fresh & $stable(f_set));
+        if (!$past(publish | late_fault | upset_now)) faults_with_results: assert ($stable({cause_held, flags_held}));
         if ($past(take_back & !take_good)) restored: assert ((held == $past(earlier)) & (stamp == $past(earlier_stamp)) & !is_fresh);
     end
 end

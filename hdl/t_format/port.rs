@@ -313,8 +313,8 @@ impl Logic for TFormatPort {
             bit_cast::<48, 24>(self.single.val()) | (bit_cast::<48, 24>(self.multi.val()) << 24);
         self.snapshot.crc_received_in.next = 0.into();
         self.snapshot.crc_computed_in.next = 0.into();
-        self.snapshot.told.cause.next = self.code.val();
-        self.snapshot.told.flags.next = bit_cast::<20, 16>(self.flags_in.val());
+        self.snapshot.told.cause_told.next = self.code.val();
+        self.snapshot.told.flags_told.next = bit_cast::<20, 16>(self.flags_in.val());
         self.over.next = self.exchange.publish.val();
         self.over_request.next = self.is_own.val();
         FrameResultOut::link(&mut self.result, &mut self.snapshot.result);

@@ -26,19 +26,19 @@ module s6_two_channel_snapshot (
     // Strobe: the first falling edge of a frame, which latches the position in the encoder.
     input  wire         first_fall,
     // Strobe: result of a trigger, cause and flags are valid.
-    input  wire         publish_in,
+    input  wire         publish,
     // With publish: the position is good.
-    input  wire         good_in,
+    input  wire         good,
     // Strobe: something was wrong after the result was published; cause and flags replace those of the result.
-    input  wire         late_fault_in,
+    input  wire         late_fault,
     // Strobe: the published position is not good after all; the one before comes back.
-    input  wire         withdraw_in,
+    input  wire         withdraw,
     // Strobe: the published position stands, nothing can withdraw it any more.
-    input  wire         confirm_in,
+    input  wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
-    input  wire   [4:0] cause_in,
+    input  wire   [4:0] cause_told,
     // Raw flags, see flag.
-    input  wire  [19:0] flags_in,
+    input  wire  [19:0] flags_told,
     // Position of the frame.
     input  wire  [47:0] position_in,
     // Width of the position.
@@ -157,17 +157,17 @@ module s6_two_channel_snapshot (
         if (tick_us & !age_full) begin
             age_next = age + 16'd1;
         end
-        if (confirm_in & unconfirmed) begin
+        if (confirm & unconfirmed) begin
             age_next = 16'd0;
         end
     end
-    assign moment_wrong = good_in & !timed & (moment_sum ^ moment_parity);
-    assign take_good = publish_in & good_in & !moment_wrong;
-    assign take_back = withdraw_in & unconfirmed;
+    assign moment_wrong = good & !timed & (moment_sum ^ moment_parity);
+    assign take_good = publish & good & !moment_wrong;
+    assign take_back = withdraw & unconfirmed;
 
     always @* begin
         unconfirmed_next = unconfirmed;
-        if (confirm_in | take_back) begin
+        if (confirm | take_back) begin
             unconfirmed_next = 1'b0;
         end
         if (take_good) begin
@@ -207,8 +207,8 @@ module s6_two_channel_snapshot (
         parity_next = parity;
         cause_held_next = cause_held;
         flags_held_next = flags_held;
-        if (publish_in) begin
-            is_fresh_next = good_in & !moment_wrong;
+        if (publish) begin
+            is_fresh_next = good & !moment_wrong;
             count_next = count + 16'd1;
             received_next = crc_received_in;
             computed_next = crc_computed_in;
@@ -243,9 +243,9 @@ module s6_two_channel_snapshot (
             parity_next = earlier_parity;
             is_fresh_next = 1'b0;
         end
-        if (publish_in | late_fault_in) begin
-            cause_held_next = cause_in;
-            flags_held_next = flags_in;
+        if (publish | late_fault) begin
+            cause_held_next = cause_told;
+            flags_held_next = flags_told;
         end
         if (upset_now) begin
             valid_next = 1'b0;
@@ -253,9 +253,9 @@ module s6_two_channel_snapshot (
             cause_held_next = UPSET_CAUSE;
             flags_held_next = flags_held | UPSET_FLAG;
         end
-        if (publish_in & moment_wrong) begin
+        if (publish & moment_wrong) begin
             cause_held_next = UPSET_CAUSE;
-            flags_held_next = flags_in | UPSET_FLAG;
+            flags_held_next = flags_told | UPSET_FLAG;
         end
     end
     assign result_strobe = strobe;
@@ -306,7 +306,7 @@ module s6_two_channel_snapshot (
             received <= 5'd0;
             computed <= 5'd0;
         end else begin
-            strobe <= publish_in;
+            strobe <= publish;
             loaded <= take_good;
             held <= held_next;
             held_crc <= held_crc_next;
@@ -366,10 +366,10 @@ module s6_two_channel_snapshot (
         end
         if (f_past_valid & !$past(reset)) begin
             one_set: assert ($stable(f_set) | $past(take_good | take_back));
-            one_set_strobe: assert (result_strobe == $past(publish_in));
-            one_number_each: assert (count == $past(count) + {15'd0, $past(publish_in)});
-            if ($past(publish_in & !good_in & !take_back)) bad_is_not_fresh: assert (!is_fresh & $stable(f_set));
-            if (!$past(publish_in | late_fault_in | upset_now)) faults_with_results: assert ($stable({cause_held, flags_held}));
+            one_set_strobe: assert (result_strobe == $past(publish));
+            one_number_each: assert (count == $past(count) + {15'd0, $past(publish)});
+            if ($past(publish & !good & !take_back)) bad_is_not_fresh: assert (!is_fresh & $stable(f_set));
+            if (!$past(publish | late_fault | upset_now)) faults_with_results: assert ($stable({cause_held, flags_held}));
             if ($past(take_back & !take_good)) restored: assert ((held == $past(earlier)) & (stamp == $past(earlier_stamp)) & !is_fresh);
         end
     end

@@ -110,9 +110,9 @@ module s6_two_channel_transaction (
     // Strobe: the published position stands, nothing can withdraw it any more.
     output wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
-    output wire   [4:0] cause,
+    output wire   [4:0] cause_told,
     // Raw flags, see flag.
-    output wire  [19:0] flags,
+    output wire  [19:0] flags_told,
     // No frame is under way, and all that there is to tell of the last one has been told.
     output wire         is_at_rest,
     // Strobe: a trigger has been lost.
@@ -264,8 +264,8 @@ module s6_two_channel_transaction (
         .late_fault(late_fault),
         .withdraw(withdraw),
         .confirm(confirm),
-        .cause(cause),
-        .flags(flags),
+        .cause_told(cause_told),
+        .flags_told(flags_told),
         .once_more(verdict_once_more),
         .displaced(displaced)
     );

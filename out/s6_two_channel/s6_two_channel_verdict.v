@@ -69,9 +69,9 @@ module s6_two_channel_verdict (
     // Strobe: the published position stands, nothing can withdraw it any more.
     output wire         confirm,
     // Primary cause, with publish, late_fault or the end of a frame.
-    output wire   [4:0] cause,
+    output wire   [4:0] cause_told,
     // Raw flags, see flag.
-    output wire  [19:0] flags,
+    output wire  [19:0] flags_told,
     // Strobe, instead of publish: the delay is measured, now the position itself.
     output wire         once_more,
     // Strobe: a trigger has been lost.
@@ -116,7 +116,7 @@ module s6_two_channel_verdict (
 
     s6_two_channel_primary_cause u_chooser (
         .flags(flags_now),
-        .cause(cause)
+        .cause(cause_told)
     );
 
     assign crc_bad = !(serial_ok & parallel_ok);
@@ -192,7 +192,7 @@ module s6_two_channel_verdict (
     assign withdraw = withdraw_now;
     assign confirm = confirm_now;
     assign displaced = lost_now;
-    assign flags = flags_now;
+    assign flags_told = flags_now;
 
     always @(posedge clock) begin
         if (reset) begin

@@ -47,9 +47,9 @@
         if (ar_in) begin
             if (ar_n - r_out == 0) ar0 <= araddr[12:2]; else ar1 <= araddr[12:2];
         end
-        f_wrote <= !b_out & (f_wrote | (access & bank_write));
-        f_read <= !r_out & (f_read | (access & !bank_write));
-        if (r_out) f_lanes <= 0; else if (access & !bank_write) f_lanes <= lane;
+        f_wrote <= !b_out & (f_wrote | (access & write));
+        f_read <= !r_out & (f_read | (access & !write));
+        if (r_out) f_lanes <= 0; else if (access & !write) f_lanes <= lane;
         if (done && !f_write) f_word <= {f_word[23:0], read_byte};
         f_waits <= (aw_n != 0 && w_n != 0 && !bvalid && !(has_b | has_r)) ? f_waits + 1 : 0;
         f_idle <= (ar_n != 0 && !rvalid && !(has_b | has_r)) ? f_idle + 1 : 0;
@@ -61,11 +61,11 @@
         // One answer to each request, in their order; what the bank does is what the oldest one asks for, once.
         b_is_asked: assert (!bvalid || (aw_n != 0 && w_n != 0));
         r_is_asked: assert (!rvalid || ar_n != 0);
-        if (access && bank_write) begin
+        if (access && write) begin
             writes_the_oldest: assert (aw_n != 0 && w_n != 0 && !f_wrote && !bvalid);
-            writes_what_was_asked: assert (word_address == aw0 && bank_data == w0 && s0 == 15);
+            writes_what_was_asked: assert (word_address == aw0 && write_data == w0 && s0 == 15);
         end
-        if (access && !bank_write) begin
+        if (access && !write) begin
             reads_the_oldest: assert (ar_n != 0 && !rvalid && word_address == ar0);
             bytes_in_order: assert (lane == (f_read ? f_lanes + 2'd1 : 2'd0));
         end
@@ -84,7 +84,7 @@
     always @* begin
         one_place: assert (\u_words.access_now  + (\u_words.settle  != 0) + f_busy + \u_words.end_now  <= 1);
         busy_is_so: assert (busy == (request | f_words) && !(request && f_words));
-        if (f_busy) begin bank_has_it: assert (f_write == bank_write && f_address == word_address); end
+        if (f_busy) begin bank_has_it: assert (f_write == write && f_address == word_address); end
         one_write: assert (!(w_runs && has_b));
         one_read: assert (!(r_runs && has_r));
         aw_count: assert (aw_n == has_aw + w_first);

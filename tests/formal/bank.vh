@@ -18,19 +18,19 @@
         f_busy <= access | (f_busy & !done);
         f_wait <= (f_busy && !done) ? f_wait + 1 : 0;
         p_address <= word_address;
-        p_write <= bank_write;
+        p_write <= write;
         if (access) begin
             f_address <= word_address;
-            f_write <= bank_write;
+            f_write <= write;
         end
     end
     always @* begin
         bank_one_at_a_time: assert (!(access && f_busy));
         if (f_busy) begin
-            bank_address_stands: assert (word_address == f_address && bank_write == f_write);
+            bank_address_stands: assert (word_address == f_address && write == f_write);
         end
         if (access && f_past) begin
-            bank_address_in_time: assert (word_address == p_address && bank_write == p_write);
+            bank_address_in_time: assert (word_address == p_address && write == p_write);
         end
         f_bound: assert (f_wait <= 3);
     end

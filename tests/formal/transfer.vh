@@ -20,8 +20,8 @@
     // What a master is promised.
     always @* begin
         if (t_on && access && !t_left) begin
-            does_what_was_asked: assert (word_address == t_address && bank_write == t_write);
-            writes_the_word: assert (!bank_write || bank_data == t_word);
+            does_what_was_asked: assert (word_address == t_address && write == t_write);
+            writes_the_word: assert (!write || write_data == t_word);
             bytes_in_order: assert (lane == (f_done ? f_lanes + 2'd1 : 2'd0));
         end
         if (t_on && t_answer && !t_error) begin
@@ -40,10 +40,10 @@
         one_place: assert (\u_words.access_now  + (\u_words.settle  != 0) + f_busy + \u_words.end_now  <= 1);
         busy_is_so: assert (busy == (request | f_words) && !(request && f_words));
         if (f_busy) begin
-            bank_has_it: assert (f_write == bank_write && f_address == word_address);
+            bank_has_it: assert (f_write == write && f_address == word_address);
         end
         if (f_mine) begin
-            mine_is_asked: assert (word_address == p_asked && bank_write == p_writes && !p_refused && p_held);
+            mine_is_asked: assert (word_address == p_asked && write == p_writes && !p_refused && p_held);
             mine_is_new: assert (f_done || request || \u_words.settle  != 0 || (\u_words.access_now  && lane == 0));
         end
         if (f_done) begin
@@ -55,7 +55,7 @@
         error_is_answer: assert (!t_error || t_answer);
         if (f_mine && f_words) begin
             whole_is_known: assert (f_whole == (p_writes | p_config));
-            data_is_asked: assert (!(p_writes && !f_done) || bank_data == p_word);
+            data_is_asked: assert (!(p_writes && !f_done) || write_data == p_word);
         end
         if (f_done && f_mine && f_whole) begin
             whole_is_one: assert (lane == 0 && f_lanes == 0 && !\u_words.access_now );

@@ -22,8 +22,8 @@ const APB: &[Mutation] = &[
     mutation(
         "APB: writes only read",
         "apb_front",
-        "assign bank_write = writing;",
-        "assign bank_write = 1'b0;",
+        ".write_in(writing)",
+        ".write_in(1'b0)",
     ),
     mutation(
         "APB: every answer is an error",

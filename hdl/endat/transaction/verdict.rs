@@ -291,7 +291,7 @@ impl Logic for Verdict {
         self.told.confirm.next = self.confirm_now.q.val();
         self.over.next = self.over_now.q.val();
         self.displaced.next = self.lost_now.q.val();
-        self.told.cause.next = self.chooser.cause.val();
-        self.told.flags.next = self.flags_now.q.val();
+        self.told.cause_told.next = self.chooser.cause.val();
+        self.told.flags_told.next = self.flags_now.q.val();
     }
 }
