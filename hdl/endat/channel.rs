@@ -223,7 +223,7 @@ impl Logic for Channel {
         connect!(self <= self.settings; command_now, payload_bits = position_bits_now);
         if self.has_requests.val() {
             self.command_now.next = self.frame_command.q.val();
-            if self.shape.shape.has_parameter.val() {
+            if self.shape.answer.has_parameter.val() {
                 self.payload_bits.next = self.parameter_bits.val();
             }
             if self.shape.has_test_values.val() {
@@ -280,7 +280,7 @@ impl Logic for Channel {
         connect!(self.sender <= self.transaction.control; start, start_supplement);
         self.sender.command.next = self.command_now.val();
         self.sender.parameter_word.next = self.orders.request_parameter.val();
-        self.sender.has_parameter.next = self.shape.shape.has_parameter.val();
+        self.sender.has_parameter.next = self.shape.answer.has_parameter.val();
 
         CellControlOut::join(&mut self.transaction.cell_control, &mut self.delay.control);
         connect!(self.delay <= self.transaction.control; acquire, going_on);
@@ -302,7 +302,7 @@ impl Logic for Channel {
             self.receiver.level.next = self.filter.level_first.val();
         }
         connect!(self.receiver <= self; payload_bits, command = command_now);
-        AnswerShapeOut::join(&mut self.shape.shape, &mut self.receiver.shape);
+        AnswerShapeOut::join(&mut self.shape.answer, &mut self.receiver.shape);
         connect!(self.receiver <= self.add_info; infos, look);
 
         self.transaction.tick_us.next = self.tick_us.val();
@@ -322,15 +322,15 @@ impl Logic for Channel {
         self.transaction.next_frame.is_known.next = (self.wanted_shape.is_position.val()
             | (self.wanted_shape.is_known.val()
                 & (self.frame_own.q.val()
-                    | (self.frame_ride.q.val() & self.wanted_shape.shape.has_f2.val()))))
+                    | (self.frame_ride.q.val() & self.wanted_shape.answer.has_f2.val()))))
             & (!self.needs_four.val()
                 | self.settings_in.period_cycles.val().get_bits::<9>(2).any());
-        AnswerShapeOut::join(&mut self.shape.shape, &mut self.transaction.shape);
+        AnswerShapeOut::join(&mut self.shape.answer, &mut self.transaction.shape);
         self.transaction.next_frame.begin_own.next = self.frame_own.q.val() & self.own_wanted.val();
         self.transaction.next_frame.is_own.next = self.frame_own.q.val();
         self.transaction.next_frame.continuous.next = self.orders.continuous.val()
-            & self.shape.shape.has_f1.val()
-            & !self.shape.shape.has_f2.val()
+            & self.shape.answer.has_f1.val()
+            & !self.shape.answer.has_f2.val()
             & !self.shape.has_test_values.val();
         self.transaction.next_frame.line_wanted.next =
             self.own_wanted.val() | self.orders.hold_off.val();
@@ -355,7 +355,7 @@ impl Logic for Channel {
         self.snapshot.delay_cycles.next = self.delay.delay_cycles.val();
         self.snapshot.first_fall.next = self.transaction.control.start.val();
         ToldOut::join(&mut self.transaction.told, &mut self.snapshot.told);
-        self.snapshot.has_f2_in.next = self.shape.shape.has_f2.val();
+        self.snapshot.has_f2_in.next = self.shape.answer.has_f2.val();
         connect!(self.snapshot <= self.receiver;
             position_in = payload, crc_received_in = crc_received, crc_computed_in = crc_computed
         );
@@ -375,7 +375,7 @@ impl Logic for Channel {
         self.reply_taken.d.next = self.receiver.progress.done.val() & self.frame_own.q.val();
         if self.reply_taken.q.val() {
             self.reply_word.d.next = self.receiver.payload.val();
-            self.reply_has_parameter.d.next = self.shape.shape.has_parameter.val();
+            self.reply_has_parameter.d.next = self.shape.answer.has_parameter.val();
             self.reply_right.d.next = self.crc_ok.val();
         }
         if self.transaction.control.start.val() {
@@ -386,7 +386,7 @@ impl Logic for Channel {
         self.add_info.sample.next = self.delay.cells.sample.val();
         self.add_info.center.next = self.delay.center.val();
         self.add_info.answer_done.next = self.receiver.progress.done.val();
-        connect!(self.add_info <= self.shape.shape; has_f2, has_supplement);
+        connect!(self.add_info <= self.shape.answer; has_f2, has_supplement);
         self.add_info.command.next = self.command_now.val();
         self.add_info.mrs.next = self.orders.request_parameter.val().get_bits::<8>(16);
         self.add_info.info_done.next = self.info_taken.q.val() & self.has_requests.val();
@@ -438,7 +438,7 @@ impl Logic for Channel {
         for i in 0..self._seconds {
             ControlOut::join(&mut self.transaction.control, &mut self.second[i].control);
             CellsOut::join(&mut self.delay.cells, &mut self.second[i].cells);
-            AnswerShapeOut::join(&mut self.shape.shape, &mut self.second[i].shape);
+            AnswerShapeOut::join(&mut self.shape.answer, &mut self.second[i].shape);
             ProgressOut::join(&mut self.receiver.progress, &mut self.second[i].progress);
             AnswerCheckOut::join(&mut self.receiver.verdict, &mut self.second[i].check);
             connect!(self.second[i] <= self.receiver; payload, crc_received);

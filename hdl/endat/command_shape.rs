@@ -27,7 +27,7 @@ pub struct CommandShape {
     pub is_position: Signal<Out, Bit>,
     /// What an answer consists of.
     #[bundle]
-    pub shape: AnswerShapeOut,
+    pub answer: AnswerShapeOut,
     /// The answer is 40 bits of test values.
     pub has_test_values: Signal<Out, Bit>,
     has_all: Constant<Bit>,
@@ -59,22 +59,22 @@ impl Logic for CommandShape {
         self.is_two.next = self.left.val() == 2;
 
         self.is_known.next = self.is_position.val();
-        self.shape.has_f1.next = true;
-        self.shape.has_f2.next = self.command.val().get_bit(5);
-        self.shape.has_parameter.next = false;
+        self.answer.has_f1.next = true;
+        self.answer.has_f2.next = self.command.val().get_bit(5);
+        self.answer.has_parameter.next = false;
         self.has_test_values.next = false;
-        self.shape.has_supplement.next = false;
+        self.answer.has_supplement.next = false;
         if self.has_all.val() {
             self.is_known.next = self.is_complement.val()
                 | (self.is_same.val() & self.left.val().any() & !self.left.val().all());
             self.has_test_values.next = self.is_complement.val() & self.is_two.val();
-            self.shape.has_supplement.next = self.is_same.val() & !self.is_two.val();
-            self.shape.has_parameter.next =
+            self.answer.has_supplement.next = self.is_same.val() & !self.is_two.val();
+            self.answer.has_parameter.next =
                 (self.is_complement.val() & !self.is_position.val() & !self.is_two.val())
                     | (self.is_same.val() & self.is_two.val());
-            self.shape.has_f2.next = (self.is_position.val() & self.left.val().any())
+            self.answer.has_f2.next = (self.is_position.val() & self.left.val().any())
                 | (self.is_same.val() & !self.is_two.val());
-            self.shape.has_f1.next =
+            self.answer.has_f1.next =
                 !((self.is_complement.val() & !self.is_position.val() & !self.is_two.val())
                     | (self.is_same.val() & self.is_two.val()));
         }
@@ -102,10 +102,10 @@ mod tests {
             let command = ModeCommand::from_code(code);
             assert_eq!(s.is_known.val(), command.is_some(), "{code:06b}");
             if let Some(c) = command {
-                assert_eq!(s.shape.has_f1.val(), c.error_bits() > 0, "{c:?}");
-                assert_eq!(s.shape.has_f2.val(), c.has_f2(), "{c:?}");
-                assert_eq!(s.shape.has_parameter.val(), c.has_parameter(), "{c:?}");
-                assert_eq!(s.shape.has_supplement.val(), c.has_supplement(), "{c:?}");
+                assert_eq!(s.answer.has_f1.val(), c.error_bits() > 0, "{c:?}");
+                assert_eq!(s.answer.has_f2.val(), c.has_f2(), "{c:?}");
+                assert_eq!(s.answer.has_parameter.val(), c.has_parameter(), "{c:?}");
+                assert_eq!(s.answer.has_supplement.val(), c.has_supplement(), "{c:?}");
                 let values = c == ModeCommand::SendTestValues;
                 assert_eq!(s.has_test_values.val(), values, "{c:?}");
             }
@@ -120,7 +120,7 @@ mod tests {
             let position = command.filter(|c| ModeCommand::POSITION.contains(c));
             assert_eq!(s.is_known.val(), position.is_some(), "{code:06b}");
             if let Some(c) = position {
-                assert_eq!(s.shape.has_f2.val(), c.has_f2());
+                assert_eq!(s.answer.has_f2.val(), c.has_f2());
             }
         }
     }
