@@ -19,6 +19,7 @@ pub mod did_you_mean;
 mod error;
 pub mod feed;
 pub mod mailbox;
+pub mod motion;
 pub mod name_plate;
 pub mod owner;
 pub mod panda;

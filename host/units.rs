@@ -65,6 +65,36 @@ impl Scale {
         }
     }
 
+    /// The part of a position that is counted on: a T-format encoder does not tell how many counts its turns have.
+    pub fn steps(&self, position: u64) -> u64 {
+        match self {
+            Self::TFormat => position & ((1 << T_FORMAT_SINGLE_BITS) - 1),
+            Self::Rotary { .. } | Self::Linear { .. } => position,
+        }
+    }
+
+    /// Measuring steps, however many and to which side, in the unit of [`Scale::convert`].
+    pub fn value(&self, steps: i128) -> f64 {
+        match *self {
+            Self::Rotary { steps_per_turn } => {
+                let turn = i128::from(steps_per_turn.max(1));
+                let (turns, within) = (steps.div_euclid(turn), steps.rem_euclid(turn));
+                turns as f64 * 360.0 + within as f64 * 360.0 / turn as f64
+            }
+            Self::Linear { step_nm } => steps as f64 * step_nm * 1e-6,
+            Self::TFormat => steps as f64,
+        }
+    }
+
+    /// One measuring step in that unit.
+    pub fn step(&self) -> f64 {
+        match *self {
+            Self::Rotary { steps_per_turn } => 360.0 / steps_per_turn.max(1) as f64,
+            Self::Linear { step_nm } => step_nm * 1e-6,
+            Self::TFormat => 1.0,
+        }
+    }
+
     /// The same in radians, metres, or counts.
     pub fn si(&self, position: u64) -> f64 {
         let units = self.convert(position);
@@ -82,12 +112,7 @@ impl Scale {
 
     /// Digits behind the point that show one measuring step.
     pub fn digits(&self) -> usize {
-        let step = match *self {
-            Self::Rotary { steps_per_turn } => 360.0 / steps_per_turn.max(1) as f64,
-            Self::Linear { step_nm } => step_nm * 1e-6,
-            Self::TFormat => 1.0,
-        };
-        (-step.log10()).ceil().clamp(0.0, 12.0) as usize
+        (-self.step().log10()).ceil().clamp(0.0, 12.0) as usize
     }
 }
 

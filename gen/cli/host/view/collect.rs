@@ -6,6 +6,7 @@ use super::history::History;
 use endat_driver::Reading;
 use endat_host::card::Identity;
 use endat_host::feed::Row;
+use endat_host::motion::ranges;
 use endat_host::name_plate::NamePlate;
 use endat_host::owner::{Handle, Jobs, Losses};
 use endat_host::transport::LinkState;
@@ -85,7 +86,7 @@ impl State {
         };
         Self {
             session,
-            history: History::new(&scales),
+            history: History::new(&scales, &ranges(&scales, &plates)),
             count: Count::new(judge),
             last: None,
             results: Vec::new(),

@@ -5,6 +5,7 @@
 
 use endat_host::causes;
 use endat_host::feed::{cause_codes, Cell, Row};
+use endat_host::motion::{Unwrap, Velocity};
 use endat_host::units::Scale;
 use std::collections::VecDeque;
 
@@ -14,8 +15,6 @@ const FINE_ROWS: usize = 1_000_000;
 const BLOCK_ROWS: usize = 256;
 /// Blocks that are kept: two and a half hours at 10 kHz.
 const BLOCKS: usize = 350_000;
-/// A velocity is that over this time at least: the steps of the encoder are small against it.
-const VELOCITY_OVER_S: f64 = 1e-3;
 
 /// What is drawn over time.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,42 +28,20 @@ pub struct Trace {
 }
 
 /// Positions counted on over turns, and their velocity.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Motion {
-    /// Last position within the turn, and the turns counted until then.
-    last: Option<(f64, f64)>,
-    /// The encoder counts turns itself.
-    is_multiturn: bool,
-    /// Moments and positions of a while.
-    recent: VecDeque<(f64, f64)>,
+    scale: Scale,
+    turns: Unwrap,
+    velocity: Velocity,
 }
 
 impl Motion {
     /// Takes a position; gives it counted on, and the velocity.
-    fn step(&mut self, time_s: f64, position: u64, scale: &Scale) -> (f64, f64) {
-        let units = scale.convert(position);
-        let value = match scale.wraps_at() {
-            None => units.value,
-            Some(turn) => {
-                let told = units.turns.unwrap_or(0) as f64;
-                self.is_multiturn |= told > 0.0;
-                let (last, turns) = self.last.unwrap_or((units.value, 0.0));
-                let jump = ((units.value - last) / turn).round();
-                let turns = match self.is_multiturn {
-                    true => told,
-                    false => turns - jump,
-                };
-                self.last = Some((units.value, turns));
-                units.value + turns * turn
-            }
-        };
-        while self.recent.len() > 1 && time_s - self.recent[1].0 >= VELOCITY_OVER_S {
-            self.recent.pop_front();
-        }
-        let from = self.recent.front().filter(|f| time_s > f.0);
-        let velocity = from.map_or(f64::NAN, |(t, x)| (value - x) / (time_s - t));
-        self.recent.push_back((time_s, value));
-        (value, velocity)
+    fn step(&mut self, time_s: f64, position: u64) -> (f64, f64) {
+        let total = self.turns.step(self.scale.steps(position));
+        let velocity = self.velocity.step(time_s, total);
+        let velocity = velocity.map_or(f64::NAN, |steps| steps * self.scale.step());
+        (self.scale.value(total), velocity)
     }
 }
 
@@ -146,8 +123,8 @@ pub fn names(bits: u64) -> Vec<&'static str> {
 }
 
 impl History {
-    /// Of channels with these scales.
-    pub fn new(scales: &[Scale]) -> Self {
+    /// Of channels with these scales, whose positions begin anew after so many.
+    pub fn new(scales: &[Scale], ranges: &[Option<u64>]) -> Self {
         let mut traces = Vec::new();
         for (n, scale) in scales.iter().enumerate() {
             let unit = scale.convert(0).unit;
@@ -173,7 +150,13 @@ impl History {
         }
         Self {
             scales: scales.to_vec(),
-            motions: vec![Motion::default(); scales.len()],
+            motions: (scales.iter().zip(ranges))
+                .map(|(scale, range)| Motion {
+                    scale: *scale,
+                    turns: Unwrap::new(*range),
+                    velocity: Velocity::default(),
+                })
+                .collect(),
             values: vec![VecDeque::new(); traces.len()],
             causes: vec![VecDeque::new(); scales.len()],
             traces,
@@ -205,11 +188,10 @@ impl History {
     /// Takes a row.
     pub fn push(&mut self, time_s: f64, row: &Row) {
         let mut values = Vec::with_capacity(self.traces.len());
-        let each = row.cells.iter().zip(&mut self.motions).zip(&self.scales);
-        for ((cell, motion), scale) in each {
+        for (cell, motion) in row.cells.iter().zip(&mut self.motions) {
             let position = cell.position.filter(|_| cell.fresh);
             let (value, velocity) = match position {
-                Some(position) => motion.step(time_s, position, scale),
+                Some(position) => motion.step(time_s, position),
                 None => (f64::NAN, f64::NAN),
             };
             values.extend([value, velocity]);
@@ -309,16 +291,18 @@ mod tests {
         }
     }
 
-    fn history() -> History {
-        History::new(&[Scale::Rotary {
+    /// Of an encoder that tells so many turns apart.
+    fn history(turns: u64) -> History {
+        let scale = Scale::Rotary {
             steps_per_turn: TURN,
-        }])
+        };
+        History::new(&[scale], &[Some(turns * TURN)])
     }
 
     /// Catches a decimation that takes every nth row, or means.
     #[test]
     fn one_row_that_is_far_off_is_in_the_plot_of_a_hundred_thousand() {
-        let mut all = history();
+        let mut all = history(1);
         for n in 0..100_000u64 {
             let far = if n == 54_321 { TURN / 8 } else { 0 };
             let cause = if n == 77_777 { "crc" } else { "none" };
@@ -344,7 +328,7 @@ mod tests {
 
     #[test]
     fn what_is_older_than_the_rows_is_there_as_extremes() {
-        let mut all = history();
+        let mut all = history(1);
         let count = FINE_ROWS as u64 + 10_000;
         for n in 0..count {
             let far = if n == 1_000 { TURN / 8 } else { 0 };
@@ -363,7 +347,7 @@ mod tests {
 
     #[test]
     fn turns_are_counted_and_velocity_does_not_jump_with_them() {
-        let mut all = history();
+        let mut all = history(1);
         // A turn in 1000 rows of 0.1 ms: 3600 deg/s, ten turns backwards.
         for n in 0..10_000u64 {
             let position = (TURN * 20 - n * TURN / 1_000) % TURN;
@@ -379,7 +363,7 @@ mod tests {
 
     #[test]
     fn a_multiturn_encoder_counts_itself_and_what_is_not_fresh_is_nothing() {
-        let mut all = history();
+        let mut all = history(4_096);
         for (n, position) in [5 * TURN + 1, 9 * TURN + 1].into_iter().enumerate() {
             all.push(n as f64, &row(Some(position), "none"));
             all.push(n as f64 + 0.5, &row(None, "no_start_bit"));
