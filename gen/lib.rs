@@ -26,6 +26,7 @@ pub mod json_schema;
 pub mod maps;
 pub mod prove;
 pub mod readers;
+pub mod recording;
 mod scratch;
 pub mod t_format;
 pub mod template;

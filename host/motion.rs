@@ -66,20 +66,38 @@ pub fn nearest(change: i128, range: u64) -> i128 {
     }
 }
 
-/// How fast a position changes, over a while.
-#[derive(Clone, Debug)]
-pub struct Velocity {
-    over_s: f64,
-    recent: VecDeque<(f64, i128)>,
+/// What a position can be counted in.
+pub trait Place: Copy {
+    /// How far it is from another one.
+    fn since(self, other: Self) -> f64;
 }
 
-impl Default for Velocity {
+impl Place for i128 {
+    fn since(self, other: Self) -> f64 {
+        (self - other) as f64
+    }
+}
+
+impl Place for f64 {
+    fn since(self, other: Self) -> f64 {
+        self - other
+    }
+}
+
+/// How fast a position changes, over a while.
+#[derive(Clone, Debug)]
+pub struct Velocity<T> {
+    over_s: f64,
+    recent: VecDeque<(f64, T)>,
+}
+
+impl<T: Place> Default for Velocity<T> {
     fn default() -> Self {
         Self::over(VELOCITY_OVER_S)
     }
 }
 
-impl Velocity {
+impl<T: Place> Velocity<T> {
     /// Over this time at least.
     pub fn over(over_s: f64) -> Self {
         Self {
@@ -88,14 +106,14 @@ impl Velocity {
         }
     }
 
-    /// Takes a position that is counted on; gives steps per second, none for the first one.
-    pub fn step(&mut self, time_s: f64, total: i128) -> Option<f64> {
+    /// Takes a position that is counted on; gives its change per second, none for the first one.
+    pub fn step(&mut self, time_s: f64, place: T) -> Option<f64> {
         while self.recent.len() > 1 && time_s - self.recent[1].0 >= self.over_s {
             self.recent.pop_front();
         }
         let from = self.recent.front().filter(|from| time_s > from.0);
-        let velocity = from.map(|(t, x)| (total - x) as f64 / (time_s - t));
-        self.recent.push_back((time_s, total));
+        let velocity = from.map(|(t, x)| place.since(*x) / (time_s - t));
+        self.recent.push_back((time_s, place));
         velocity
     }
 }
@@ -125,7 +143,7 @@ mod tests {
     #[test]
     fn a_velocity_is_that_of_a_while() {
         let mut velocity = Velocity::over(1.0);
-        assert_eq!(velocity.step(0.0, 0), None);
+        assert_eq!(velocity.step(0.0, 0i128), None);
         assert_eq!(velocity.step(0.5, 10), Some(20.0));
         assert_eq!(velocity.step(1.0, 0), Some(0.0));
         // The oldest that is long enough ago.

@@ -3,6 +3,7 @@
 //! CLOCK with its rising edges counted, DATA coloured by who drives it and cut into its fields, the times that matter, and an axis in
 //! microseconds. Long quiet spans are shortened and marked. If the cable is long, both ends are shown.
 
+mod columns;
 mod edges;
 mod groups;
 mod map;
@@ -26,7 +27,7 @@ use crate::{
 pub use edges::{edges_svg, Edges};
 pub use map::map_svg;
 pub use overview::overview_svg;
-pub use series::{series_svg, Series};
+pub use series::{series_svg, Lane, Series};
 pub use svg::is_drawing;
 pub use waves::{waves_svg, Wave};
 

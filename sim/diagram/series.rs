@@ -1,5 +1,6 @@
-//! Draws numbers over time, one panel for each series.
+//! Draws numbers over time, one panel for each series, and below them a lane for each thing that happened.
 
+use super::columns::{Columns, Extremes};
 use super::svg::{text_width, Anchor, Svg};
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -11,21 +12,116 @@ pub struct Series {
     pub name: String,
     /// Their unit.
     pub unit: String,
-    /// Seconds and value; a gap where there was none.
-    pub points: Vec<(f64, Option<f64>)>,
-    /// The value that is 0 again, as 360 degrees are; none if there is none. A step over it is no line.
-    pub wraps_at: Option<f64>,
-    /// Seconds at which there should have been one: marked at the foot of the panel, never thinned out.
-    pub bad: Vec<f64>,
+    values: Columns<Extremes>,
+    bad: Columns<u64>,
+    bad_count: u64,
+    count: u64,
+    last_s: Option<f64>,
 }
 
 impl Series {
-    /// Whether the shorter way from one value to the next is over the wrap.
-    fn is_wrapped(&self, before: Option<f64>, value: Option<f64>) -> bool {
-        match (before, value, self.wraps_at) {
-            (Some(a), Some(b), Some(turn)) => (b - a).abs() > turn / 2.0,
-            _ => false,
+    /// None yet.
+    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            ..Self::default()
         }
+    }
+
+    /// Takes a value, or that there is none: a gap.
+    pub fn push(&mut self, time_s: f64, value: Option<f64>) {
+        self.values.at(time_s).take(time_s, value);
+        self.count += 1;
+        self.last_s = Some(time_s);
+    }
+
+    /// Nothing was measured before what comes next.
+    pub fn gap(&mut self) {
+        if let Some(time_s) = self.last_s {
+            self.values.at(time_s).take(time_s, None);
+        }
+    }
+
+    /// There should have been a value: marked at the foot of the panel, never thinned out.
+    pub fn mark(&mut self, time_s: f64) {
+        *self.bad.at(time_s) += 1;
+        self.bad_count += 1;
+    }
+
+    /// Least and greatest value.
+    fn range(&self) -> Option<(f64, f64)> {
+        let all = self.values.iter().filter(|c| c.1.ends.is_some());
+        range(all.flat_map(|c| [c.1.least, c.1.greatest]))
+    }
+
+    fn times(&self) -> impl Iterator<Item = f64> + '_ {
+        let ends = self.values.iter().filter_map(|c| c.1.ends);
+        let first = self.values.iter().next().map(|c| c.0);
+        ends.flat_map(|e| e.map(|(time, _)| time))
+            .chain(first)
+            .chain(self.last_s)
+    }
+
+    /// Lines without the gaps, as (seconds, value): each column from its first value over its extremes to its last.
+    fn lines(&self) -> Vec<Vec<(f64, f64)>> {
+        let mut lines = vec![Vec::new()];
+        let mut is_broken = false;
+        for (middle, column) in self.values.iter() {
+            let [before, between, behind] = column.gaps;
+            if let Some([first, last]) = column.ends {
+                if is_broken || before {
+                    lines.push(Vec::new());
+                }
+                let line = lines.last_mut().expect("one is there");
+                line.push(first);
+                let is_flat = column.least == column.greatest;
+                if !is_flat {
+                    let (low, high) = ((middle, column.least), (middle, column.greatest));
+                    match last.1 >= first.1 {
+                        true => line.extend([low, high]),
+                        false => line.extend([high, low]),
+                    }
+                }
+                if between {
+                    // What is in the column is shown, and that it does not hang together.
+                    lines.push(Vec::new());
+                }
+                let line = lines.last_mut().expect("one is there");
+                line.push(last);
+                is_broken = behind;
+            } else {
+                is_broken |= before;
+            }
+        }
+        lines.retain(|line| !line.is_empty());
+        lines
+    }
+}
+
+/// Something that happened at times.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lane {
+    /// What.
+    pub name: String,
+    /// How often.
+    pub count: u64,
+    times: Columns<u64>,
+}
+
+impl Lane {
+    /// Not yet.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
+    }
+
+    /// It has happened so often.
+    pub fn push(&mut self, time_s: f64, count: u64) {
+        self.count += count;
+        *self.times.at(time_s) += count;
     }
 }
 
@@ -34,18 +130,21 @@ text{font-family:'DejaVu Sans',Verdana,Helvetica,sans-serif;fill:#1f2937}\
 .title{font-size:19px;font-weight:bold}.sub{font-size:12.5px;fill:#4b5563}.name{font-size:13px;font-weight:bold}\
 .tick{font-size:11px;fill:#374151}path{fill:none}.axis{stroke:#374151;stroke-width:1}.grid{stroke:#e5e7eb;stroke-width:0.8}\
 .series-0{stroke:#0072b2;stroke-width:1.4}.series-1{stroke:#d55e00;stroke-width:1.4}.series-2{stroke:#009e73;stroke-width:1.4}\
-.series-3{stroke:#cc79a7;stroke-width:1.4}.bad{stroke:#b91c1c;stroke-width:1}";
+.series-3{stroke:#cc79a7;stroke-width:1.4}.bad{stroke:#b91c1c;stroke-width:1}.lane{fill:#b91c1c}.floor{fill:#f3f4f6}";
 
 const LEFT: f64 = 110.0;
 const TOP: f64 = 92.0;
 const WIDTH: f64 = 820.0;
 const HEIGHT: f64 = 170.0;
 const GAP: f64 = 54.0;
-/// Columns of the drawing: more points than that are thinned out.
-const POINTS_MAX: usize = 1640;
 const COLOURS: usize = 4;
 /// Height of a mark.
 const MARK: f64 = 9.0;
+/// Of a lane, and from one to the next.
+const LANE: f64 = 12.0;
+const LANE_PITCH: f64 = 20.0;
+/// A single value is so wide.
+const DOT: f64 = 1.0;
 /// Room above and below the values: part of their range.
 const HEADROOM: f64 = 0.08;
 
@@ -76,69 +175,87 @@ pub(super) fn ticks(low: f64, high: f64) -> (Vec<f64>, usize) {
     ((first..=last).map(|n| n as f64 * step).collect(), digits)
 }
 
-/// The series as SVG.
-pub fn series_svg(series: &[Series], title: &str, subtitle: &str) -> String {
+/// Draws a panel whose top is at `top`.
+fn panel(svg: &mut Svg, one: &Series, index: usize, top: f64, x: &dyn Fn(f64) -> f64) {
+    let bottom = top + HEIGHT;
+    let mut label = format!("{} ({})", one.name, one.unit);
+    if one.bad_count > 0 {
+        label += &format!(": {} bad, marked at the foot", one.bad_count);
+    }
+    let values = one.range();
+    if values.is_none() {
+        label += "; no value";
+    }
+    svg.text(LEFT, top - 9.0, Anchor::Start, "name", &label);
+    let has_values = values.is_some();
+    let (low, high) = values.unwrap_or((0.0, 1.0));
+    let room = (high - low) * HEADROOM;
+    let (low, high) = (low - room, high + room);
+    let y = |value: f64| bottom - HEIGHT * (value - low) / (high - low);
+    let (values, digits) = ticks(low, high);
+    // Nothing has an axis where there is nothing.
+    for value in values.into_iter().filter(|_| has_values) {
+        svg.line(&[(LEFT, y(value)), (LEFT + WIDTH, y(value))], "grid");
+        let text = format!("{value:.digits$}");
+        svg.text(
+            LEFT - 8.0 - text_width(&text, 11.0),
+            y(value) + 4.0,
+            Anchor::Start,
+            "tick",
+            &text,
+        );
+    }
+    let class = format!("series-{}", index % COLOURS);
+    for line in one.lines() {
+        let mut points: Vec<(f64, f64)> = line.iter().map(|(t, v)| (x(*t), y(*v))).collect();
+        points
+            .dedup_by_key(|p| (10.0 * p.0).round() as i64 * 100_000 + (10.0 * p.1).round() as i64);
+        if let [only] = points[..] {
+            points = vec![(only.0 - DOT / 2.0, only.1), (only.0 + DOT / 2.0, only.1)];
+        }
+        svg.line(&points, &class);
+    }
+    // One mark for each pixel, however many fall on it.
+    let marks = one.bad.iter().filter(|c| *c.1 > 0);
+    let marks: BTreeSet<i64> = marks.map(|c| x(c.0).round() as i64).collect();
+    for x in marks.into_iter().map(|x| x as f64) {
+        svg.line(&[(x, bottom), (x, bottom - MARK)], "bad");
+    }
+    svg.line(
+        &[(LEFT, top), (LEFT, bottom), (LEFT + WIDTH, bottom)],
+        "axis",
+    );
+}
+
+/// Series and lanes as SVG.
+pub fn series_svg(series: &[Series], lanes: &[Lane], title: &str, subtitle: &str) -> String {
     let mut svg = Svg::new();
     let head = svg.head(title, subtitle);
-    let times = series.iter().flat_map(|s| s.points.iter().map(|p| p.0));
-    let (begin, end) = range(times).unwrap_or((0.0, 1.0));
-    let x = |time: f64| LEFT + WIDTH * (time - begin) / (end - begin);
+    let (begin, end) = range(series.iter().flat_map(Series::times)).unwrap_or((0.0, 1.0));
+    let x = |time: f64| LEFT + WIDTH * ((time - begin) / (end - begin)).clamp(0.0, 1.0);
     let mut top = TOP;
     for (index, one) in series.iter().enumerate() {
-        let bottom = top + HEIGHT;
-        let mut label = format!("{} ({})", one.name, one.unit);
-        if !one.bad.is_empty() {
-            label += &format!(": {} bad, marked at the foot", one.bad.len());
-        }
-        let values = range(one.points.iter().filter_map(|p| p.1));
-        if values.is_none() {
-            label += "; no value";
-        }
-        svg.text(LEFT, top - 9.0, Anchor::Start, "name", &label);
-        let has_values = values.is_some();
-        let (low, high) = values.unwrap_or((0.0, 1.0));
-        let room = (high - low) * HEADROOM;
-        let (low, high) = (low - room, high + room);
-        let y = |value: f64| bottom - HEIGHT * (value - low) / (high - low);
-        let (values, digits) = ticks(low, high);
-        // Nothing has an axis where there is nothing.
-        for value in values.into_iter().filter(|_| has_values) {
-            svg.line(&[(LEFT, y(value)), (LEFT + WIDTH, y(value))], "grid");
-            let text = format!("{value:.digits$}");
-            svg.text(
-                LEFT - 8.0 - text_width(&text, 11.0),
-                y(value) + 4.0,
-                Anchor::Start,
-                "tick",
-                &text,
-            );
-        }
-        let every = one.points.len().div_ceil(POINTS_MAX).max(1);
-        let mut line = Vec::new();
-        let class = format!("series-{}", index % COLOURS);
-        let mut before = None;
-        for (time, value) in one.points.iter().step_by(every) {
-            if value.is_none() || one.is_wrapped(before, *value) {
-                svg.line(&line, &class);
-                line.clear();
-            }
-            line.extend(value.map(|value| (x(*time), y(value))));
-            before = *value;
-        }
-        svg.line(&line, &class);
-        // One mark for each column, however many fall on it.
-        let columns = one.bad.iter().map(|time| x(*time).round() as i64);
-        for column in columns.collect::<BTreeSet<_>>() {
-            let x = column as f64;
-            svg.line(&[(x, bottom), (x, bottom - MARK)], "bad");
-        }
-        svg.line(
-            &[(LEFT, top), (LEFT, bottom), (LEFT + WIDTH, bottom)],
-            "axis",
-        );
-        top = bottom + GAP;
+        panel(&mut svg, one, index, top, &x);
+        top += HEIGHT + GAP;
     }
-    let bottom = top - GAP;
+    let mut bottom = top - GAP;
+    if !lanes.is_empty() {
+        bottom += GAP - LANE_PITCH;
+    }
+    let mut right = LEFT + WIDTH;
+    for lane in lanes {
+        svg.rect(LEFT, bottom, WIDTH, LANE, "floor");
+        let marks = lane.times.iter().filter(|c| *c.1 > 0);
+        let marks: BTreeSet<i64> = marks.map(|c| x(c.0).round() as i64).collect();
+        for x in marks {
+            svg.rect(x as f64 - 0.5, bottom, 1.0, LANE, "lane");
+        }
+        let text = format!("{}: {}", lane.name, lane.count);
+        let place = LEFT + WIDTH + 8.0;
+        svg.text(place, bottom + LANE - 2.0, Anchor::Start, "tick", &text);
+        right = right.max(place + text_width(&text, 11.0));
+        bottom += LANE_PITCH;
+    }
     let (values, digits) = ticks(begin, end);
     for time in values {
         svg.line(&[(x(time), bottom), (x(time), bottom + 5.0)], "axis");
@@ -157,17 +274,24 @@ pub fn series_svg(series: &[Series], title: &str, subtitle: &str) -> String {
         "name",
         "time (s)",
     );
-    svg.finish(
-        (LEFT + WIDTH + 30.0).max(head + 24.0),
-        bottom + 54.0,
-        title,
-        STYLE,
-    )
+    svg.finish((right + 30.0).max(head + 24.0), bottom + 54.0, title, STYLE)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn of(points: impl IntoIterator<Item = (f64, Option<f64>)>) -> Series {
+        let mut one = Series::new("channel 0", "deg");
+        for (time, value) in points {
+            one.push(time, value);
+        }
+        one
+    }
+
+    fn drawn(one: &Series) -> String {
+        series_svg(std::slice::from_ref(one), &[], "log", "")
+    }
 
     #[test]
     fn ticks_are_round_numbers_within_the_range() {
@@ -183,45 +307,26 @@ mod tests {
     /// Catches an axis of numbers that nobody has measured.
     #[test]
     fn a_series_without_values_has_no_axis_of_them() {
-        let one = Series {
-            name: "channel 0".into(),
-            unit: "deg".into(),
-            points: vec![(2.0, None), (3.0, None)],
-            bad: vec![2.0, 3.0],
-            ..Series::default()
-        };
-        let svg = series_svg(std::slice::from_ref(&one), "log", "");
+        let mut one = of([(2.0, None), (3.0, None)]);
+        one.mark(2.0);
+        one.mark(3.0);
+        let svg = drawn(&one);
         assert!(svg.contains("channel 0 (deg): 2 bad, marked at the foot; no value"));
         assert_eq!(svg.matches("class=\"grid\"").count(), 0);
-        let with = Series {
-            points: vec![(2.0, Some(0.0)), (3.0, None)],
-            ..one
-        };
-        assert!(series_svg(&[with], "log", "").contains("class=\"grid\""));
+        assert!(drawn(&of([(2.0, Some(0.0)), (3.0, None)])).contains("class=\"grid\""));
     }
 
     #[test]
     fn a_gap_stays_a_gap_and_long_series_are_thinned_out() {
         let point = |n: usize| (n as f64, (n != 2).then_some(n as f64));
-        let one = Series {
-            name: "channel 0".into(),
-            unit: "deg".into(),
-            points: (0..5).map(point).collect(),
-            ..Series::default()
-        };
-        let svg = series_svg(std::slice::from_ref(&one), "log", "");
+        let one = of((0..5).map(point));
+        let svg = drawn(&one);
         assert_eq!(svg.matches("class=\"series-0\"").count(), 2);
-        let turning = Series {
-            points: [350.0, 355.0, 1.0, 6.0, 359.0]
-                .iter()
-                .enumerate()
-                .map(|(n, v)| (n as f64, Some(*v)))
-                .collect(),
-            wraps_at: Some(360.0),
-            ..one.clone()
-        };
-        let svg = series_svg(std::slice::from_ref(&turning), "log", "");
-        assert_eq!(svg.matches("class=\"series-0\"").count(), 3);
+        // Where rows are missing, too.
+        let mut pause = of((0..5).map(|n| (f64::from(n), Some(1.0))));
+        pause.gap();
+        pause.push(900.0, Some(1.0));
+        assert_eq!(drawn(&pause).matches("class=\"series-0\"").count(), 2);
         // Nothing stands on the frame.
         let tops = svg.lines().filter(|l| l.contains("class=\"series-0\""));
         let tops = tops.flat_map(|l| l.split('"').nth(3).unwrap().split(" L"));
@@ -231,24 +336,33 @@ mod tests {
             high > TOP + 5.0 && low < TOP + HEIGHT - MARK,
             "{high} {low}"
         );
-        let long = Series {
-            points: (0..100_000).map(|n| (n as f64, Some(0.0))).collect(),
-            ..one
-        };
-        assert!(series_svg(std::slice::from_ref(&long), "log", "").len() < 60_000);
+        let mut long = of((0..100_000).map(|n| (f64::from(n), Some(0.0))));
+        assert!(drawn(&long).len() < 60_000);
         // Bad ones are seen however rare they are, and cost no more than the columns.
-        let rare = Series {
-            bad: vec![12_345.0],
-            ..long.clone()
-        };
-        let svg = series_svg(&[rare], "log", "");
+        long.mark(12_345.0);
+        let svg = drawn(&long);
         assert_eq!(svg.matches("class=\"bad\"").count(), 1);
         assert!(svg.contains("channel 0 (deg): 1 bad"));
-        let all = Series {
-            bad: (0..100_000).map(f64::from).collect(),
-            ..long
-        };
-        let svg = series_svg(&[all], "log", "");
-        assert!(svg.matches("class=\"bad\"").count() <= 821);
+        (0..100_000).for_each(|n| long.mark(f64::from(n)));
+        assert!(drawn(&long).matches("class=\"bad\"").count() <= 821);
+    }
+
+    /// Catches a peak that is thinned out, and a lane without what happened once.
+    #[test]
+    fn a_peak_and_a_single_fault_of_a_hundred_thousand_are_drawn() {
+        let value = |n: u32| if n == 54_321 { 10.0 } else { 0.0 };
+        let one = of((0..100_000).map(|n| (f64::from(n), Some(value(n)))));
+        let mut lane = Lane::new("channel 0 crc");
+        lane.push(54_321.0, 1);
+        let svg = series_svg(&[one], &[lane], "log", "");
+        let line = svg
+            .lines()
+            .find(|l| l.contains("class=\"series-0\""))
+            .unwrap();
+        let tops = line.split('"').nth(3).unwrap().split(" L");
+        let tops = tops.map(|p| p.split(' ').nth(1).unwrap().parse::<f64>().unwrap());
+        assert_eq!(tops.filter(|y| *y < TOP + 20.0).count(), 1);
+        assert_eq!(svg.matches("class=\"lane\"").count(), 1);
+        assert!(svg.contains("channel 0 crc: 1"));
     }
 }

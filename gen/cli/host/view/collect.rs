@@ -1,8 +1,11 @@
 //! Takes what the card sends, and keeps what pages ask for.
 
-use super::super::log::count::{Count, Judge};
-use super::super::log::sheet::{Format, Lines, Sheet};
 use super::history::History;
+use crate::recording::count::{Count, Judge};
+use crate::recording::keep::Entry;
+use crate::recording::layout::Layout;
+use crate::recording::lines::Lines;
+use crate::recording::sheet::{Sheet, Text};
 use endat_driver::Reading;
 use endat_host::card::Identity;
 use endat_host::feed::Row;
@@ -125,10 +128,15 @@ impl State {
             let time_s = row.cycles as f64 / hz;
             self.history.push(time_s, &row);
             self.count.note(&row);
+            let entry = Entry {
+                row,
+                values: Vec::new(),
+            };
             self.keep(|recording| {
                 recording.rows += 1;
-                recording.sheet.row(&row)
+                recording.sheet.row(&entry)
             });
+            let row = entry.row;
             self.recent
                 .push_back((time_s, row.trigger, self.count.rows));
             while self.recent.len() > 2 && time_s - self.recent[1].0 >= RATE_OVER_S {
@@ -162,14 +170,9 @@ impl State {
         let file = fs::create_dir_all(folder).and_then(|()| File::create_new(&path));
         let sheet = file.and_then(|file| {
             let hz = f64::from(self.identity.system_hz.max(1));
-            let infos = self.identity.stream_additional_data;
-            Sheet::new(
-                Format::Csv,
-                Lines::file(file),
-                self.scales.clone(),
-                hz,
-                infos,
-            )
+            let mut layout = Layout::of(self.scales.clone());
+            layout.additional_data = self.identity.stream_additional_data;
+            Sheet::new(Text::Csv, Lines::file(file), layout, hz, None)
         });
         let sheet = sheet.map_err(|e| failed(&path, &e))?;
         self.notice = None;
@@ -368,7 +371,8 @@ mod tests {
         let scales = vec![Scale::singleturn(10)];
         let mut state = State::new(0, identity, vec![None], scales.clone());
         let full = File::options().write(true).open("/dev/full").unwrap();
-        let sheet = Sheet::new(Format::Csv, Lines::file(full), scales, 1e6, false).unwrap();
+        let sheet =
+            Sheet::new(Text::Csv, Lines::file(full), Layout::of(scales), 1e6, None).unwrap();
         state.recording = Some(Recording {
             path: "night.csv".into(),
             rows: 0,

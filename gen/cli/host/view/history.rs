@@ -32,7 +32,7 @@ pub struct Trace {
 struct Motion {
     scale: Scale,
     turns: Unwrap,
-    velocity: Velocity,
+    velocity: Velocity<i128>,
 }
 
 impl Motion {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Which cells are bad.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Judge {
     /// Triggers may be for some channels only: a channel that took none has done nothing wrong.
     pub own_triggers: bool,
@@ -14,13 +14,23 @@ pub struct Judge {
 impl Judge {
     /// Whether the trigger should have brought a position, and did not.
     pub fn is_bad(self, cell: &Cell) -> bool {
+        self.misses(cell.fresh, cell.cause)
+    }
+
+    /// The same of what a file says.
+    pub fn misses(self, fresh: bool, cause: &str) -> bool {
         // Without a cause it is an answer that has no position, to a request of the host.
-        let is_excused = match cell.cause {
+        let is_excused = match cause {
             "none" => true,
             NOT_TAKEN | LATE => self.own_triggers,
             _ => false,
         };
-        !cell.fresh && !is_excused
+        !fresh && !is_excused
+    }
+
+    /// Whether something is to be told of it, and be it a warning beside a good position.
+    pub fn is_remarkable(self, cell: &Cell) -> bool {
+        self.is_bad(cell) || cell.fresh && cell.cause != endat_host::causes::name(0)
     }
 }
 

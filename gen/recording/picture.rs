@@ -1,0 +1,220 @@
+//! A drawing of a recording: positions counted on over turns, what is asked for beside them, and the faults as lanes below.
+
+use super::count::Judge;
+use super::layout::DerivedColumn;
+use endat_host::feed::Row;
+use endat_host::motion::{Unwrap, Velocity};
+use endat_host::units::Scale;
+use endat_sim::diagram::{series_svg, Lane, Series};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// A channel of a row, as a drawing and counts want it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seen {
+    /// As the encoder sent it, if that is known.
+    pub raw: Option<u64>,
+    /// In its unit, counted on; only one that this trigger brought.
+    pub position: Option<f64>,
+    /// This trigger brought it.
+    pub fresh: bool,
+    /// The cause.
+    pub cause: Cow<'static, str>,
+}
+
+/// A row, of the card or of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measurement {
+    /// Number of the trigger; none of a running clock.
+    pub trigger: Option<u64>,
+    /// Seconds since the first row.
+    pub time_s: f64,
+    /// Triggers without a row just before.
+    pub missing: u64,
+    /// Each channel.
+    pub cells: Vec<Seen>,
+    /// Each derived column.
+    pub derived: Vec<Option<f64>>,
+}
+
+/// Makes measurements of rows: turns are counted on.
+pub struct Counter {
+    scales: Vec<Scale>,
+    turns: Vec<Unwrap>,
+}
+
+impl Counter {
+    /// Of channels with these scales, whose positions begin anew after so many.
+    pub fn new(scales: &[Scale], ranges: &[Option<u64>]) -> Self {
+        Self {
+            scales: scales.to_vec(),
+            turns: ranges.iter().map(|range| Unwrap::new(*range)).collect(),
+        }
+    }
+
+    /// The position of a channel, counted on.
+    pub fn position(&mut self, channel: usize, raw: u64) -> Option<f64> {
+        let (scale, turns) = (self.scales.get(channel)?, self.turns.get_mut(channel)?);
+        Some(scale.value(turns.step(scale.steps(raw))))
+    }
+
+    /// A row.
+    pub fn measurement(
+        &mut self,
+        row: &Row,
+        time_s: f64,
+        derived: Vec<Option<f64>>,
+    ) -> Measurement {
+        let cells = row.cells.iter().enumerate().map(|(n, cell)| Seen {
+            raw: cell.position,
+            position: (cell.position.filter(|_| cell.fresh)).and_then(|raw| self.position(n, raw)),
+            fresh: cell.fresh,
+            cause: cell.cause.into(),
+        });
+        Measurement {
+            trigger: row.run.is_none().then_some(row.trigger),
+            time_s,
+            missing: row.missing,
+            cells: cells.collect(),
+            derived,
+        }
+    }
+}
+
+/// What is drawn beside positions.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extras {
+    /// Channel 0 without channel 1.
+    pub difference: bool,
+    /// How fast each channel moves.
+    pub velocity: bool,
+}
+
+/// A drawing that grows; its memory does not.
+pub struct Picture {
+    judge: Judge,
+    positions: Vec<Series>,
+    velocities: Vec<(Velocity<f64>, Series)>,
+    difference: Option<Series>,
+    derived: Vec<Series>,
+    lanes: BTreeMap<(usize, Cow<'static, str>), Lane>,
+    missing: Lane,
+    /// Time between rows, mostly: the mean of some.
+    step_s: Option<f64>,
+    last_s: Option<f64>,
+}
+
+/// Rows are missing where nothing came for so many times as long as usual.
+const PAUSE: f64 = 5.0;
+
+impl Picture {
+    /// Of channels with these units.
+    pub fn new(units: &[String], derived: &[DerivedColumn], judge: Judge, extras: Extras) -> Self {
+        let each = || units.iter().enumerate();
+        let has_difference = extras.difference && units.len() > 1 && units[0] == units[1];
+        Self {
+            judge,
+            positions: each()
+                .map(|(n, unit)| Series::new(format!("channel {n}"), unit.clone()))
+                .collect(),
+            velocities: each()
+                .filter(|_| extras.velocity)
+                .map(|(n, unit)| {
+                    let series = Series::new(format!("velocity {n}"), format!("{unit}/s"));
+                    (Velocity::default(), series)
+                })
+                .collect(),
+            difference: has_difference
+                .then(|| Series::new("channel 0 without channel 1", units[0].clone())),
+            derived: (derived.iter())
+                .map(|one| Series::new(one.name.clone(), one.unit.clone()))
+                .collect(),
+            lanes: BTreeMap::new(),
+            missing: Lane::new("triggers without a row"),
+            step_s: None,
+            last_s: None,
+        }
+    }
+
+    fn all(&mut self) -> impl Iterator<Item = &mut Series> {
+        let velocities = self.velocities.iter_mut().map(|v| &mut v.1);
+        (self.positions.iter_mut())
+            .chain(velocities)
+            .chain(&mut self.difference)
+            .chain(&mut self.derived)
+    }
+
+    /// Whether rows are missing just before a moment. A card that is read one by one misses some all the time: only a pause is a gap there.
+    fn is_gap(&mut self, time_s: f64, missing: u64) -> bool {
+        let since = self.last_s.replace(time_s).map(|last| time_s - last);
+        let Some(since) = since.filter(|s| *s > 0.0) else {
+            return false;
+        };
+        let usual = self.step_s.unwrap_or(since);
+        let is_pause = since > PAUSE * usual;
+        if !is_pause {
+            self.step_s = Some(usual + (since - usual) / 16.0);
+        }
+        is_pause && missing > 0
+    }
+
+    /// A row.
+    pub fn push(&mut self, row: &Measurement) {
+        let time_s = row.time_s;
+        if self.is_gap(time_s, row.missing) {
+            self.all().for_each(Series::gap);
+        }
+        if row.missing > 0 {
+            self.missing.push(time_s, row.missing);
+        }
+        let none = endat_host::causes::name(0);
+        for (n, cell) in row.cells.iter().enumerate() {
+            // Beside a running clock's position the other channels have nothing to do.
+            if row.trigger.is_none() && !cell.fresh && cell.cause == none {
+                continue;
+            }
+            if let Some(series) = self.positions.get_mut(n) {
+                series.push(time_s, cell.position);
+                if self.judge.misses(cell.fresh, &cell.cause) {
+                    series.mark(time_s);
+                }
+            }
+            if let Some((velocity, series)) = self.velocities.get_mut(n) {
+                let now = cell.position.map(|p| velocity.step(time_s, p));
+                match now {
+                    // The first one has none, and is no gap.
+                    Some(None) => {}
+                    other => series.push(time_s, other.flatten()),
+                }
+            }
+            if cell.cause != none {
+                let key = (n, cell.cause.clone());
+                let new = || Lane::new(format!("channel {n} {}", cell.cause));
+                self.lanes.entry(key).or_insert_with(new).push(time_s, 1);
+            }
+        }
+        let position = |n: usize| row.cells.get(n).and_then(|c| c.position);
+        if let Some(series) = &mut self.difference {
+            let both = position(0).zip(position(1));
+            series.push(time_s, both.map(|(one, other)| one - other));
+        }
+        for (series, value) in self.derived.iter_mut().zip(&row.derived) {
+            series.push(time_s, *value);
+        }
+    }
+
+    /// The drawing.
+    pub fn svg(&self, title: &str, subtitle: &str) -> String {
+        let velocities = self.velocities.iter().map(|v| &v.1);
+        let all = (self.positions.iter())
+            .chain(&self.difference)
+            .chain(velocities)
+            .chain(&self.derived);
+        let series: Vec<Series> = all.cloned().collect();
+        let mut lanes: Vec<Lane> = self.lanes.values().cloned().collect();
+        if self.missing.count > 0 {
+            lanes.push(self.missing.clone());
+        }
+        series_svg(&series, &lanes, title, subtitle)
+    }
+}
