@@ -14,6 +14,7 @@ mod host;
 mod number;
 mod pictures;
 mod prove;
+mod recorded;
 mod schema;
 mod shmoo;
 mod sim;
@@ -129,8 +130,12 @@ enum Command {
     Id(host::id::IdArgs),
     /// Read the latest position of every channel
     Read(host::read::ReadArgs),
-    /// Log positions as CSV or JSON lines
+    /// Log positions as CSV, JSON lines or Parquet
     Log(host::log::LogArgs),
+    /// Draw a recording: positions over time, faults below them
+    Plot(recorded::plot::PlotArgs),
+    /// Say what is in a recording: rate, what is missing, noise, drift, faults
+    Stats(recorded::stats::StatsArgs),
     /// Watch positions, rate, health and margin live
     Monitor(host::monitor::MonitorArgs),
     /// Watch a card in a browser: positions over time, causes, health, registers; record
@@ -341,6 +346,8 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Id(arguments)) => host::id::run(&arguments),
         Some(Command::Read(arguments)) => host::read::run(&arguments),
         Some(Command::Log(arguments)) => host::log::run(&arguments),
+        Some(Command::Plot(arguments)) => recorded::plot::run(&arguments),
+        Some(Command::Stats(arguments)) => recorded::stats::run(&arguments),
         Some(Command::Monitor(arguments)) => host::monitor::run(&arguments),
         Some(Command::View(arguments)) => host::view::run(&arguments),
         Some(Command::Serve(arguments)) => host::serve::run(&arguments),

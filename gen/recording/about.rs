@@ -1,6 +1,6 @@
 //! What a recording is of: units, clock, card and encoders, in the file itself.
 
-use super::layout::{of_channel, Layout, INFOS};
+use super::layout::{of_channel, Layout};
 use endat_host::card::Identity;
 use endat_host::feed::cause_codes;
 use endat_host::name_plate::NamePlate;
@@ -75,7 +75,7 @@ fn plate(plate: &NamePlate) -> Value {
 
 impl About {
     /// Everything, of file `part` of a recording.
-    pub fn json(&self, layout: &Layout, part: u32) -> Value {
+    pub fn json(&self, layout: &Layout, is_text: bool, part: u32) -> Value {
         let channels = layout.scales.iter().enumerate().map(|(n, one)| {
             let mut object = scale(one, self.ranges.get(n).copied().flatten());
             let is_t_format = self.identity.is_t_format(n);
@@ -100,66 +100,46 @@ impl About {
             "own_triggers": self.identity.has(Part::OwnTrigger),
             "events": self.events,
             "channels": channels.collect::<Vec<_>>(),
-            "columns": columns(layout, self.identity.system_hz),
+            "columns": columns(layout, is_text, self.identity.system_hz),
             "causes": causes,
         })
     }
 }
 
 /// Unit of each column that has one; what the others are.
-fn columns(layout: &Layout, system_hz: u32) -> Value {
-    let mut all = Map::new();
-    let mut put = |name: String, unit: &str, is: &str| {
-        all.insert(name, json!({"unit": unit, "is": is}));
+fn columns(layout: &Layout, is_text: bool, system_hz: u32) -> Value {
+    let by = "by the card's clock, since the first row";
+    let time = match is_text {
+        true => ("time_s", "s".to_owned()),
+        false => ("cycles", format!("1/{system_hz} s")),
     };
-    put(
-        "trigger".into(),
-        "",
-        "number of the trigger, not wrapping; none: a position of a running clock",
-    );
-    put(
-        "cycles".into(),
-        &format!("1/{system_hz} s"),
-        "by the card's clock, since the first row",
-    );
-    put(
-        "time_s".into(),
-        "s",
-        "by the card's clock, since the first row",
-    );
-    put(
-        "missing".into(),
-        "",
-        "triggers without a row just before this one",
-    );
+    let trigger = "number of the trigger, not wrapping; none: a position of a running clock";
+    let missing = "triggers without a row just before this one";
+    let mut all: Vec<(String, String, &str)> = vec![
+        ("trigger".into(), String::new(), trigger),
+        (time.0.into(), time.1, by),
+        ("missing".into(), String::new(), missing),
+    ];
     for (n, scale) in layout.scales.iter().enumerate() {
         let unit = scale.convert(0).unit;
-        let step = format!("{} {unit}", scale.step());
-        put(
-            of_channel(n, "raw"),
-            &step,
-            "position as the encoder sent it; the last good one where fresh is false",
-        );
-        put(of_channel(n, unit), unit, "position within the turn");
-        put(of_channel(n, "turns"), "turns", "whole turns");
-        put(
-            of_channel(n, "fresh"),
-            "",
-            "this trigger brought the position",
-        );
-        put(
-            of_channel(n, "cause"),
-            "",
-            "why it did not, or what else was noticed",
-        );
-        if layout.additional_data {
-            for name in INFOS {
-                put(of_channel(n, name), "", "additional data of the same frame");
-            }
+        let mut put = |name: &str, unit: String, is| all.push((of_channel(n, name), unit, is));
+        let raw = "position as the encoder sent it; the last good one where fresh is false";
+        put("raw", format!("{} {unit}", scale.step()), raw);
+        if is_text {
+            put(unit, unit.into(), "position within the turn");
+            put("turns", "turns".into(), "whole turns");
+        }
+        put("fresh", String::new(), "this trigger brought the position");
+        let cause = "why it did not, or what else was noticed";
+        put("cause", String::new(), cause);
+        for name in layout.infos() {
+            put(name, String::new(), "additional data of the same frame");
         }
     }
-    for one in &layout.derived {
-        put(one.column(), &one.unit, "calculated");
-    }
-    Value::Object(all)
+    let derived = layout.derived.iter();
+    all.extend(derived.map(|one| (one.column(), one.unit.clone(), "calculated")));
+    let objects = all
+        .into_iter()
+        .map(|(name, unit, is)| (name, json!({"unit": unit, "is": is})));
+    Value::Object(objects.collect())
 }

@@ -38,8 +38,11 @@ impl Judge {
 #[derive(Default)]
 pub struct Count {
     judge: Judge,
+    /// Rows.
     pub rows: u64,
+    /// Triggers without a row.
     pub missing: u64,
+    /// Rows in which a channel is bad.
     pub bad: u64,
     /// Cells without a position of their own, by channel and cause.
     causes: BTreeMap<(usize, &'static str), u64>,

@@ -203,6 +203,11 @@ impl Picture {
         }
     }
 
+    /// Whether the difference is drawn.
+    pub fn has_difference(&self) -> bool {
+        self.difference.is_some()
+    }
+
     /// The drawing.
     pub fn svg(&self, title: &str, subtitle: &str) -> String {
         let velocities = self.velocities.iter().map(|v| &v.1);

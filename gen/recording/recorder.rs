@@ -140,7 +140,8 @@ impl Recorder {
             self.number += 1;
         }
         let wishes = &self.wishes;
-        let about = wishes.about.json(&wishes.layout, self.parts + 1);
+        let is_text = wishes.format != Format::Parquet;
+        let about = (wishes.about).json(&wishes.layout, is_text, self.parts + 1);
         self.open = Some(Open::new(
             &wishes.target,
             &mut self.number,

@@ -34,6 +34,7 @@ pub const ABOUT: &str = "about";
 /// Writes rows.
 pub struct Sheet<W: Write> {
     form: Text,
+    /// Where they go.
     pub out: W,
     layout: Layout,
     system_hz: f64,

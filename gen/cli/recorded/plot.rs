@@ -1,0 +1,96 @@
+//! `plot`: a recording as a drawing.
+
+use super::super::number::decimal_if;
+use super::super::pictures::{check_all, write_all, File};
+use super::super::Outcome;
+use super::FileArgs;
+use crate::error::GenError;
+use crate::recording::picture::{Extras, Picture};
+use clap::Args;
+use endat_sim::diagram::is_drawing;
+use std::path::PathBuf;
+
+/// Arguments of `plot`.
+#[derive(Args)]
+pub struct PlotArgs {
+    #[command(flatten)]
+    files: FileArgs,
+    /// Write the drawing into this file [default: the name of the recording, with .svg]
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Draw channel 0 without channel 1, too
+    #[arg(long)]
+    difference: bool,
+    /// Draw how fast each channel moves, too
+    #[arg(long)]
+    velocity: bool,
+    /// Begin at this time of the recording, in seconds
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    from: Option<String>,
+    /// End at this time
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    to: Option<String>,
+}
+
+/// Longest recording: a time beyond is a slip.
+const SECONDS_MAX: f64 = 1e9;
+
+/// Runs the command.
+pub fn run(arguments: &PlotArgs) -> Result<Outcome, GenError> {
+    let from = decimal_if("--from", &arguments.from, 0.0..=SECONDS_MAX)?.unwrap_or(0.0);
+    let to = decimal_if("--to", &arguments.to, 0.0..=SECONDS_MAX)?.unwrap_or(f64::INFINITY);
+    if to <= from {
+        return Err(GenError::input(format!(
+            "--to = {to}: is not behind --from = {from}; give a later time"
+        )));
+    }
+    let path = arguments.out.clone();
+    let path = path.unwrap_or_else(|| arguments.files.files[0].with_extension("svg"));
+    let mut file = File {
+        option: "--out",
+        path,
+        text: String::new(),
+        is_ours: is_drawing,
+    };
+    // Before an hour is read.
+    check_all(&[&file])?;
+    let extras = Extras {
+        difference: arguments.difference,
+        velocity: arguments.velocity,
+    };
+    let mut picture = None;
+    let (mut rows, mut missing) = (0u64, 0u64);
+    let (head, notes) = arguments.files.read(&mut |head, row| {
+        let new = || Picture::new(&head.units, &head.derived, head.judge(), extras);
+        let picture = picture.get_or_insert_with(new);
+        if (from..=to).contains(&row.time_s) {
+            rows += 1;
+            missing += row.missing;
+            picture.push(&row);
+        }
+    })?;
+    let Some(picture) = picture.filter(|_| rows > 0) else {
+        return Err(GenError::input(format!(
+            "--from = {from}, --to = {to}: there are no rows between; give other times"
+        )));
+    };
+    if arguments.difference && !picture.has_difference() {
+        return Err(GenError::input(
+            "--difference: takes two channels of one unit, which this recording has not; leave it out",
+        ));
+    }
+    let of = match head.every() {
+        1 => String::new(),
+        every => format!(", one of {every} rows and every one with a fault"),
+    };
+    let start = head.about["start_time"].as_str();
+    let begun = start.map_or(String::new(), |start| format!(", begun {start}"));
+    let subtitle = format!("{rows} rows{of}, {missing} triggers missing{begun}");
+    file.text = picture.svg(&arguments.files.names(), &subtitle);
+    let mut messages = notes;
+    messages.extend(write_all(&[file])?);
+    Ok(Outcome {
+        messages,
+        ..Outcome::default()
+    })
+}

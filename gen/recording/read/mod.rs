@@ -1,0 +1,320 @@
+//! Reads recordings, in every form that `log` and the live page write, row by row.
+
+mod parquet;
+mod text;
+
+use super::about::scale_of;
+use super::count::Judge;
+use super::layout::DerivedColumn;
+use super::picture::{Counter, Measurement, Seen};
+use crate::error::GenError;
+use endat_host::units::Scale;
+use serde_json::Value;
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// What a file says before its rows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Head {
+    /// Unit of each channel.
+    pub units: Vec<String>,
+    /// Calculated columns; their names are whole.
+    pub derived: Vec<DerivedColumn>,
+    /// What it is of; null if it does not say.
+    pub about: Value,
+}
+
+impl Head {
+    /// What a measuring step is, and after how many it begins anew, of every channel; none if the file does not say.
+    pub fn scales(&self) -> Option<Vec<(Scale, Option<u64>)>> {
+        let channels = self.about["channels"].as_array()?;
+        let all: Option<Vec<_>> = channels.iter().map(scale_of).collect();
+        all.filter(|all| all.len() == self.units.len())
+    }
+
+    /// Which cells are bad.
+    pub fn judge(&self) -> Judge {
+        Judge {
+            own_triggers: self.about["own_triggers"].as_bool().unwrap_or(false),
+        }
+    }
+
+    /// When it began, by the clock of its host.
+    pub fn start(&self) -> Option<SystemTime> {
+        humantime::parse_rfc3339(self.about["start_time"].as_str()?).ok()
+    }
+
+    /// Only one of so many rows is in it.
+    pub fn every(&self) -> u64 {
+        self.about["every"].as_u64().unwrap_or(1)
+    }
+}
+
+/// A channel as a file has it.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Cell {
+    raw: Option<u64>,
+    /// Within the turn, and turns.
+    value: Option<f64>,
+    turns: Option<u64>,
+    fresh: bool,
+    cause: Cow<'static, str>,
+}
+
+/// A row as a file has it.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Parsed {
+    /// Line, or number of the row.
+    line: u64,
+    trigger: Option<u64>,
+    time_s: f64,
+    missing: u64,
+    cells: Vec<Cell>,
+    derived: Vec<Option<f64>>,
+}
+
+/// Something wrong at a line, 0: with the whole file.
+#[derive(Debug, PartialEq)]
+struct Wrong {
+    line: u64,
+    text: String,
+}
+
+impl Wrong {
+    fn at(line: u64, text: impl Into<String>) -> Self {
+        let text = text.into();
+        Self { line, text }
+    }
+}
+
+type Take<'a> = &'a mut dyn FnMut(&Head, Parsed) -> Result<(), Wrong>;
+
+/// A name as rows of a card have it, so that millions of them cost nothing.
+fn cause(name: &str) -> Cow<'static, str> {
+    let known = endat_host::feed::cause_codes().find(|(_, known)| *known == name);
+    known.map_or_else(|| name.to_owned().into(), |(_, known)| known.into())
+}
+
+/// Counts turns on where a file does not say how many measuring steps a turn has.
+#[derive(Clone, Debug, Default)]
+struct TextTurns {
+    is_multiturn: bool,
+    /// Last value within the turn, and turns until then.
+    last: Option<(f64, f64)>,
+}
+
+impl TextTurns {
+    fn step(&mut self, value: f64, told: u64, unit: &str) -> f64 {
+        if unit != "deg" {
+            return value;
+        }
+        self.is_multiturn |= told > 0;
+        let (last, turns) = self.last.unwrap_or((value, 0.0));
+        let turns = match self.is_multiturn {
+            true => told as f64,
+            false => turns - ((value - last) / 360.0).round(),
+        };
+        self.last = Some((value, turns));
+        value + turns * 360.0
+    }
+}
+
+/// Files of a recording, one after the other.
+#[derive(Default)]
+pub struct Reader {
+    head: Option<Head>,
+    counter: Option<Counter>,
+    turns: Vec<TextTurns>,
+    /// Time of the last row of a trigger, of this file only if it has begun anew.
+    last_s: Option<f64>,
+    offset_s: f64,
+    start: Option<SystemTime>,
+    notes: Vec<String>,
+}
+
+impl Reader {
+    /// What the first file says before its rows; none if there was none.
+    pub fn head(&self) -> Option<&Head> {
+        self.head.as_ref()
+    }
+
+    /// What is to be told beside the result.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// Reads a file.
+    pub fn file(
+        &mut self,
+        path: &Path,
+        take: &mut dyn FnMut(&Head, Measurement),
+    ) -> Result<(), GenError> {
+        let at = |wrong: Wrong| {
+            let place = match wrong.line {
+                0 => path.display().to_string(),
+                line => format!("{}:{line}", path.display()),
+            };
+            GenError::input(format!("{place}: {}", wrong.text))
+        };
+        let io = |e| GenError::io("read", path, &e, "give a file of `log` or of the live page");
+        if path.is_dir() {
+            return Err(at(Wrong::at(
+                0,
+                "is a folder; give a file of `log` or of the live page",
+            )));
+        }
+        let mut file = File::open(path).map_err(io)?;
+        let mut begin = [0; 4];
+        let mut count = 0;
+        // A pipe may give less at a time.
+        while count < begin.len() {
+            match file.read(&mut begin[count..]).map_err(io)? {
+                0 => break,
+                more => count += more,
+            }
+        }
+        if count == 0 {
+            return Err(at(Wrong::at(
+                0,
+                "is empty; give a file of `log` or of the live page",
+            )));
+        }
+        let mut is_first = true;
+        let mut notes = Vec::new();
+        let mut next = |head: &Head, row: Parsed| {
+            if std::mem::take(&mut is_first) {
+                self.begin(head)?;
+            }
+            let measurement = self.measurement(row)?;
+            take(self.head.as_ref().unwrap_or(head), measurement);
+            Ok(())
+        };
+        let read = match &begin[..count] == b"PAR1" {
+            true => parquet::read(file, &mut next),
+            false => {
+                // Not every file can be wound back.
+                let rest = match file.rewind() {
+                    Ok(()) => Box::new(file) as Box<dyn Read>,
+                    Err(_) => Box::new(std::io::Cursor::new(begin[..count].to_vec()).chain(file)),
+                };
+                text::read(
+                    BufReader::with_capacity(1 << 16, rest),
+                    &mut next,
+                    &mut notes,
+                )
+            }
+        };
+        let head = read.map_err(at)?;
+        if is_first {
+            self.begin(&head).map_err(at)?;
+        }
+        let notes = notes
+            .into_iter()
+            .map(|note| format!("{}{note}", path.display()));
+        self.notes.extend(notes);
+        Ok(())
+    }
+
+    /// Another file begins.
+    fn begin(&mut self, head: &Head) -> Result<(), Wrong> {
+        let Some(first) = &self.head else {
+            let scales = head.scales();
+            self.counter = scales.map(|all| {
+                let (scales, ranges): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+                Counter::new(&scales, &ranges)
+            });
+            self.turns = vec![TextTurns::default(); head.units.len()];
+            self.start = head.start();
+            self.head = Some(head.clone());
+            return Ok(());
+        };
+        if (&first.units, &first.derived) != (&head.units, &head.derived) {
+            let text = "has other columns than the file before it; give files of one recording";
+            return Err(Wrong::at(0, text));
+        }
+        let (Some(begin), Some(now)) = (self.start, head.start()) else {
+            return Ok(());
+        };
+        // A recording that was begun again later has a time of its own.
+        let since = now.duration_since(begin);
+        let since = since.map_err(|_| {
+            Wrong::at(
+                0,
+                "was begun before the first file; give the older one first",
+            )
+        })?;
+        self.offset_s = since.as_secs_f64();
+        Ok(())
+    }
+
+    fn measurement(&mut self, row: Parsed) -> Result<Measurement, Wrong> {
+        let time_s = row.time_s + self.offset_s;
+        if !time_s.is_finite() {
+            return Err(Wrong::at(
+                row.line,
+                format!("time_s = {time_s}: is no time"),
+            ));
+        }
+        if row.trigger.is_some() {
+            if let Some(last) = self.last_s.filter(|last| time_s < *last) {
+                let text = format!(
+                    "time_s = {time_s}: is before that of the row before it, {last}: another recording begins here; give files of one recording"
+                );
+                return Err(Wrong::at(row.line, text));
+            }
+            self.last_s = Some(time_s);
+        }
+        let mut seen = Vec::with_capacity(row.cells.len());
+        let units = self.head.as_ref().map_or(&[][..], |h| &h.units);
+        for (n, cell) in row.cells.into_iter().enumerate() {
+            let position = match (&mut self.counter, cell.raw, cell.value) {
+                _ if !cell.fresh => None,
+                (Some(counter), Some(raw), _) => counter.position(n, raw),
+                (_, _, Some(value)) => {
+                    let turns = cell.turns.unwrap_or(0);
+                    Some(self.turns[n].step(value, turns, &units[n]))
+                }
+                _ => None,
+            };
+            seen.push(Seen {
+                raw: cell.raw,
+                position,
+                fresh: cell.fresh,
+                cause: cell.cause,
+            });
+        }
+        Ok(Measurement {
+            trigger: row.trigger,
+            time_s,
+            missing: row.missing,
+            cells: seen,
+            derived: row.derived,
+        })
+    }
+}
+
+/// Reads all files; what came before their rows, and what is to be told. Nothing is no recording.
+pub fn read_all(
+    files: &[PathBuf],
+    take: &mut dyn FnMut(&Head, Measurement),
+) -> Result<(Head, Vec<String>), GenError> {
+    let mut reader = Reader::default();
+    let mut rows = 0u64;
+    for file in files {
+        reader.file(file, &mut |head, row| {
+            rows += 1;
+            take(head, row);
+        })?;
+    }
+    if rows == 0 {
+        let names: Vec<String> = files.iter().map(|f| f.display().to_string()).collect();
+        return Err(GenError::input(format!(
+            "{}: has no rows; give a recording that has some",
+            names.join(", ")
+        )));
+    }
+    Ok((reader.head.unwrap_or_default(), reader.notes))
+}

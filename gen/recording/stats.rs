@@ -1,0 +1,296 @@
+//! Figures of a recording, in one pass and constant memory.
+
+use super::histogram::Histogram;
+use super::picture::Measurement;
+use super::read::Head;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+/// What a column of numbers has shown.
+#[derive(Clone, Debug)]
+pub struct Track {
+    /// What it is, and its unit.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Values.
+    pub count: u64,
+    /// Least and greatest.
+    pub range: Option<(f64, f64)>,
+    /// First and last.
+    pub ends: Option<(f64, f64)>,
+    line: Line,
+    window: Vec<(f64, f64)>,
+    window_rows: usize,
+    squares: f64,
+    in_windows: u64,
+    windows: u64,
+    worst: f64,
+    /// Distances from the straight line of each window.
+    pub histogram: Histogram,
+}
+
+/// A straight line through what has come, least squares.
+#[derive(Clone, Copy, Debug, Default)]
+struct Line {
+    count: f64,
+    mean_t: f64,
+    mean_x: f64,
+    tt: f64,
+    tx: f64,
+}
+
+impl Line {
+    fn push(&mut self, t: f64, x: f64) {
+        self.count += 1.0;
+        let (dt, dx) = (t - self.mean_t, x - self.mean_x);
+        self.mean_t += dt / self.count;
+        self.mean_x += dx / self.count;
+        self.tt += dt * (t - self.mean_t);
+        self.tx += dt * (x - self.mean_x);
+    }
+
+    fn slope(&self) -> Option<f64> {
+        (self.tt > 0.0).then(|| self.tx / self.tt)
+    }
+
+    fn at(&self, t: f64) -> f64 {
+        self.mean_x + self.slope().unwrap_or(0.0) * (t - self.mean_t)
+    }
+}
+
+/// Values that a line takes away.
+const LINE_PARAMETERS: f64 = 2.0;
+
+impl Track {
+    fn new(name: String, unit: String, window_rows: usize, step: Option<f64>) -> Self {
+        Self {
+            name,
+            unit,
+            count: 0,
+            range: None,
+            ends: None,
+            line: Line::default(),
+            window: Vec::new(),
+            window_rows,
+            squares: 0.0,
+            in_windows: 0,
+            windows: 0,
+            worst: 0.0,
+            histogram: step.map_or_else(Histogram::default, Histogram::of_width),
+        }
+    }
+
+    fn push(&mut self, time_s: f64, value: Option<f64>) {
+        let Some(value) = value else {
+            // A line does not lead over a gap.
+            self.window.clear();
+            return;
+        };
+        self.count += 1;
+        let (low, high) = self.range.unwrap_or((value, value));
+        self.range = Some((low.min(value), high.max(value)));
+        self.ends = Some((self.ends.map_or(value, |e| e.0), value));
+        self.line.push(time_s, value);
+        self.window.push((time_s, value));
+        if self.window.len() == self.window_rows {
+            self.end_window();
+        }
+    }
+
+    fn end_window(&mut self) {
+        let mut line = Line::default();
+        self.window.iter().for_each(|(t, x)| line.push(*t, *x));
+        let mut squares = 0.0;
+        for (t, x) in self.window.drain(..) {
+            let rest = x - line.at(t);
+            squares += rest * rest;
+            self.histogram.push(rest);
+        }
+        self.squares += squares;
+        self.in_windows += line.count as u64;
+        self.windows += 1;
+        let deviation = (squares / (line.count - LINE_PARAMETERS)).sqrt();
+        self.worst = self.worst.max(deviation);
+    }
+
+    /// Standard deviation about the straight lines of windows: of all, and of the worst window. None without a whole window.
+    pub fn noise(&self) -> Option<(f64, f64)> {
+        let free = self.in_windows as f64 - LINE_PARAMETERS * self.windows as f64;
+        (free > 0.0).then(|| ((self.squares / free).sqrt(), self.worst))
+    }
+
+    /// Slope of the straight line through all, per second.
+    pub fn drift_per_s(&self) -> Option<f64> {
+        self.line.slope()
+    }
+}
+
+/// A channel.
+#[derive(Clone, Debug)]
+pub struct ChannelStats {
+    /// Its positions, counted on.
+    pub track: Track,
+    /// Rows in which it should have brought a position, and did not.
+    pub bad: u64,
+    /// Rows by cause, that of a good one left out.
+    pub causes: BTreeMap<Cow<'static, str>, u64>,
+    /// One measuring step in its unit, if the file says so.
+    pub step: Option<f64>,
+}
+
+/// All figures.
+#[derive(Clone, Debug)]
+pub struct Stats {
+    /// Rows.
+    pub rows: u64,
+    /// Triggers without a row.
+    pub missing: u64,
+    /// How many times rows were missing.
+    pub gaps: u64,
+    /// Rows in which a channel is bad.
+    pub bad_rows: u64,
+    /// Times of the first and the last row.
+    pub times_s: Option<(f64, f64)>,
+    triggers: Option<(u64, u64)>,
+    /// Channels.
+    pub channels: Vec<ChannelStats>,
+    /// Calculated columns.
+    pub derived: Vec<Track>,
+    judge: super::count::Judge,
+}
+
+impl Stats {
+    /// Of a recording that begins so; noise is that of windows of so many rows.
+    pub fn new(head: &Head, window_rows: usize) -> Self {
+        let scales = head.scales();
+        let channels = head.units.iter().enumerate().map(|(n, unit)| {
+            let step = scales.as_ref().map(|all| all[n].0.step());
+            ChannelStats {
+                track: Track::new(format!("channel {n}"), unit.clone(), window_rows, step),
+                bad: 0,
+                causes: BTreeMap::new(),
+                step,
+            }
+        });
+        let derived = head.derived.iter();
+        Self {
+            rows: 0,
+            missing: 0,
+            gaps: 0,
+            bad_rows: 0,
+            times_s: None,
+            triggers: None,
+            channels: channels.collect(),
+            derived: derived
+                .map(|d| Track::new(d.name.clone(), d.unit.clone(), window_rows, None))
+                .collect(),
+            judge: head.judge(),
+        }
+    }
+
+    /// Takes a row.
+    pub fn push(&mut self, row: &Measurement) {
+        self.rows += 1;
+        self.missing += row.missing;
+        self.gaps += u64::from(row.missing > 0);
+        let first = self.times_s.map_or(row.time_s, |t| t.0);
+        self.times_s = Some((first, row.time_s));
+        if let Some(trigger) = row.trigger {
+            self.triggers = Some((self.triggers.map_or(trigger, |t| t.0), trigger));
+        }
+        let none = endat_host::causes::name(0);
+        let mut is_bad = false;
+        for (channel, cell) in self.channels.iter_mut().zip(&row.cells) {
+            // Beside a running clock's position the other channels have nothing to do.
+            if row.trigger.is_none() && !cell.fresh && cell.cause == none {
+                continue;
+            }
+            channel.track.push(row.time_s, cell.position);
+            if self.judge.misses(cell.fresh, &cell.cause) {
+                channel.bad += 1;
+                is_bad = true;
+            }
+            if cell.cause != none {
+                *channel.causes.entry(cell.cause.clone()).or_default() += 1;
+            }
+        }
+        self.bad_rows += u64::from(is_bad);
+        for (track, value) in self.derived.iter_mut().zip(&row.derived) {
+            track.push(row.time_s, *value);
+        }
+    }
+
+    /// From the first row to the last.
+    pub fn duration_s(&self) -> f64 {
+        self.times_s.map_or(0.0, |(first, last)| last - first)
+    }
+
+    /// Triggers per second of the card's time, and rows. None of a single row.
+    pub fn rates_hz(&self) -> Option<(Option<f64>, f64)> {
+        let span_s = Some(self.duration_s()).filter(|s| *s > 0.0)?;
+        let triggers = self
+            .triggers
+            .and_then(|(first, last)| last.checked_sub(first));
+        let rows = (self.rows - 1) as f64 / span_s;
+        Some((triggers.map(|n| n as f64 / span_s), rows))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::picture::Seen;
+    use super::*;
+
+    fn stats(positions: impl Iterator<Item = Option<f64>>) -> Stats {
+        let head = Head {
+            units: vec!["deg".into()],
+            ..Head::default()
+        };
+        let mut all = Stats::new(&head, 100);
+        for (n, position) in positions.enumerate() {
+            all.push(&Measurement {
+                trigger: Some(n as u64 + 7),
+                time_s: n as f64 * 0.01,
+                missing: 0,
+                cells: vec![Seen {
+                    raw: None,
+                    position,
+                    fresh: position.is_some(),
+                    cause: if position.is_some() { "none" } else { "crc" }.into(),
+                }],
+                derived: Vec::new(),
+            });
+        }
+        all
+    }
+
+    /// Catches noise that has the movement in it, and a drift that is that of noise.
+    #[test]
+    fn noise_is_about_a_line_and_drift_is_its_slope() {
+        let noise = |n: u32| if n % 2 == 0 { 0.01 } else { -0.01 };
+        let all = stats((0..10_000).map(|n| Some(5.0 + 0.03 * f64::from(n) + noise(n))));
+        let track = &all.channels[0].track;
+        let (deviation, worst) = track.noise().unwrap();
+        assert!(
+            (deviation - 0.01).abs() < 0.001 && (worst - 0.01).abs() < 0.001,
+            "{deviation} {worst}"
+        );
+        assert!((track.drift_per_s().unwrap() - 3.0).abs() < 1e-4);
+        let (triggers, rows) = all.rates_hz().unwrap();
+        assert!((triggers.unwrap() - 100.0).abs() < 1e-9 && (rows - 100.0).abs() < 1e-9);
+        assert_eq!(
+            track.histogram.bins().iter().map(|b| b.1).sum::<u64>(),
+            10_000
+        );
+    }
+
+    #[test]
+    fn faults_are_counted_and_no_line_leads_over_them() {
+        // A step at each fault: noise of a window that has one in it.
+        let position = |n: u64| (n % 150 != 0).then_some((n / 150) as f64 * 10.0);
+        let all = stats((0..3_000).map(position));
+        assert_eq!((all.bad_rows, all.channels[0].causes["crc"]), (20, 20));
+        assert_eq!(all.channels[0].track.noise().map(|n| n.1), Some(0.0));
+    }
+}
