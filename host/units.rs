@@ -78,7 +78,8 @@ impl Scale {
         match *self {
             Self::Rotary { steps_per_turn } => {
                 let turn = i128::from(steps_per_turn.max(1));
-                let (turns, within) = (steps.div_euclid(turn), steps.rem_euclid(turn));
+                // Towards 0: a step back from 0 keeps all its digits.
+                let (turns, within) = (steps / turn, steps % turn);
                 turns as f64 * 360.0 + within as f64 * 360.0 / turn as f64
             }
             Self::Linear { step_nm } => steps as f64 * step_nm * 1e-6,

@@ -1,7 +1,7 @@
 //! A histogram whose range grows with what comes, in constant memory.
 
 /// Bins, half of them below 0.
-pub const BINS: usize = 64;
+pub const BINS: usize = 32;
 
 /// Counts around 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,9 +60,12 @@ impl Histogram {
         let mut bins = [0; BINS];
         let half = BINS as i64 / 2;
         for (n, count) in self.bins.iter().enumerate() {
-            let place = (n as i64 - half) as f64 / 2.0;
-            // Half ways go towards 0 in turns, as no side has more of them.
-            bins[(place.round() as i64 + half).clamp(0, BINS as i64 - 1) as usize] += count;
+            // What lies between two new bins is shared; the odd one goes towards 0.
+            let place = n as i64 - half;
+            let (near, far) = (place / 2, place / 2 + place % 2);
+            let at = |place: i64| (place + half).clamp(0, BINS as i64 - 1) as usize;
+            bins[at(near)] += count - count / 2;
+            bins[at(far)] += count / 2;
         }
         self.bins = bins;
         self.width = self.width.map(|w| 2.0 * w);

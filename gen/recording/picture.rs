@@ -84,7 +84,7 @@ impl Counter {
 /// What is drawn beside positions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extras {
-    /// Channel 0 without channel 1.
+    /// Channel 0 minus channel 1.
     pub difference: bool,
     /// How fast each channel moves.
     pub velocity: bool,
@@ -125,7 +125,7 @@ impl Picture {
                 })
                 .collect(),
             difference: has_difference
-                .then(|| Series::new("channel 0 without channel 1", units[0].clone())),
+                .then(|| Series::new("channel 0 minus channel 1", units[0].clone())),
             derived: (derived.iter())
                 .map(|one| Series::new(one.name.clone(), one.unit.clone()))
                 .collect(),

@@ -18,7 +18,7 @@ pub struct PlotArgs {
     /// Write the drawing into this file [default: the name of the recording, with .svg]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Draw channel 0 without channel 1, too
+    /// Draw channel 0 minus channel 1, too
     #[arg(long)]
     difference: bool,
     /// Draw how fast each channel moves, too

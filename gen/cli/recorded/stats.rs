@@ -15,7 +15,7 @@ use std::fmt::Write;
 pub struct StatsArgs {
     #[command(flatten)]
     files: FileArgs,
-    /// Noise is the deviation about straight lines through so many rows [default: 100]
+    /// Noise is the deviation about parabolas through so many rows each [default: 100]
     #[arg(long, value_name = "ROWS", allow_negative_numbers = true)]
     window: Option<String>,
     /// As JSON
@@ -23,7 +23,7 @@ pub struct StatsArgs {
     json: bool,
 }
 
-/// Rows of a window: 10 ms at 10 kHz, in which a shaft turns evenly.
+/// Rows of a window: 10 ms at 10 kHz, in which a shaft's acceleration is even.
 const WINDOW: u64 = 100;
 /// Width of the longest bar.
 const BAR: u64 = 40;
@@ -31,7 +31,7 @@ const BAR: u64 = 40;
 /// Runs the command.
 pub fn run(arguments: &StatsArgs) -> Result<Outcome, GenError> {
     let window =
-        number_if("--window", &arguments.window, 3..=1_000_000)?.unwrap_or(WINDOW) as usize;
+        number_if("--window", &arguments.window, 4..=1_000_000)?.unwrap_or(WINDOW) as usize;
     let mut stats = None;
     let (head, notes) = arguments.files.read(&mut |head, row| {
         stats
@@ -177,7 +177,7 @@ fn as_text(stats: &Stats, head: &Head, window: usize) -> String {
     line("bad rows", format!("{} ({percent:.3} %)", stats.bad_rows));
     line(
         "noise",
-        format!("deviation about straight lines through {window} rows"),
+        format!("deviation about parabolas through {window} rows each"),
     );
     for channel in &stats.channels {
         let _ = writeln!(text, "\n{}", channel.track.name);

@@ -3,15 +3,16 @@
 //! Rows are collected into groups. Behind each group stands what makes the file whole, and the next group takes its place: whatever ends
 //! the program, all but the last group is there.
 
+mod columns;
+
 use super::about::KEY;
 use super::keep::Entry;
-use super::layout::{of_channel, DerivedColumn, Layout, INFOS};
-use parquet::basic::Encoding;
-use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int32Type, Int64Type};
+use super::layout::{Layout, INFOS};
+use columns::{columns, Column, Item, Words};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::{FileMetaData, KeyValue, ParquetMetaData, ParquetMetaDataWriter};
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
-use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 use serde_json::Value;
 use std::fs::File;
@@ -24,158 +25,24 @@ pub const GROUP_ROWS: usize = 131_072;
 /// A group is not kept in memory for longer than this.
 const GROUP_TIME: Duration = Duration::from_secs(60);
 
-/// Values of a column; where a column may have none, which rows have one.
-enum Store {
-    Long(Vec<i64>),
-    Int(Vec<i32>),
-    Double(Vec<f64>),
-    Flag(Vec<bool>),
-    Word(Vec<ByteArray>),
+/// What a file can do.
+pub trait Disk: Write + Seek {
+    /// It ends here.
+    fn cut(&mut self, bytes: u64) -> io::Result<()>;
 }
 
-struct Column {
-    name: String,
-    store: Store,
-    /// 1 where there is a value; none of a column that always has one.
-    levels: Option<Vec<i16>>,
-}
-
-/// A value of a row.
-enum Item {
-    Long(Option<u64>),
-    Int(Option<u16>),
-    Double(Option<f64>),
-    Flag(bool),
-    Word(&'static str),
-}
-
-impl Column {
-    fn new(name: impl Into<String>, store: Store, may_lack: bool) -> Self {
-        Self {
-            name: name.into(),
-            store,
-            levels: may_lack.then(Vec::new),
-        }
+impl Disk for File {
+    fn cut(&mut self, bytes: u64) -> io::Result<()> {
+        self.set_len(bytes)
     }
-
-    /// As the parser of schemas reads it.
-    fn schema(&self) -> String {
-        let (kind, means) = match self.store {
-            Store::Long(_) => ("INT64", ""),
-            Store::Int(_) => ("INT32", ""),
-            Store::Double(_) => ("DOUBLE", ""),
-            Store::Flag(_) => ("BOOLEAN", ""),
-            Store::Word(_) => ("BYTE_ARRAY", " (STRING)"),
-        };
-        let presence = if self.levels.is_some() {
-            "OPTIONAL"
-        } else {
-            "REQUIRED"
-        };
-        format!("{presence} {kind} {}{means};", self.name)
-    }
-
-    fn encoding(&self) -> Option<Encoding> {
-        match self.store {
-            Store::Long(_) | Store::Int(_) => Some(Encoding::DELTA_BINARY_PACKED),
-            Store::Flag(_) => Some(Encoding::RLE),
-            Store::Double(_) => Some(Encoding::PLAIN),
-            // A dictionary: a name stands once in a group.
-            Store::Word(_) => None,
-        }
-    }
-
-    fn push(&mut self, item: Item, words: &mut Vec<(&'static str, ByteArray)>) {
-        let is_there = match (&mut self.store, item) {
-            // Positions and counts have 48 bits, or less than 63.
-            (Store::Long(all), Item::Long(value)) => value.map(|v| all.push(v as i64)).is_some(),
-            (Store::Int(all), Item::Int(value)) => value.map(|v| all.push(v.into())).is_some(),
-            (Store::Double(all), Item::Double(value)) => value.map(|v| all.push(v)).is_some(),
-            (Store::Flag(all), Item::Flag(value)) => {
-                all.push(value);
-                true
-            }
-            (Store::Word(all), Item::Word(value)) => {
-                all.push(word(value, words));
-                true
-            }
-            _ => unreachable!("the columns are those of the items"),
-        };
-        if let Some(levels) = &mut self.levels {
-            levels.push(i16::from(is_there));
-        }
-    }
-
-    fn write(&mut self, to: &mut SerializedColumnWriter<'_>) -> Result<(), ParquetError> {
-        let levels = self.levels.as_deref();
-        match &mut self.store {
-            Store::Long(all) => {
-                to.typed::<Int64Type>().write_batch(all, levels, None)?;
-                all.clear();
-            }
-            Store::Int(all) => {
-                to.typed::<Int32Type>().write_batch(all, levels, None)?;
-                all.clear();
-            }
-            Store::Double(all) => {
-                to.typed::<DoubleType>().write_batch(all, levels, None)?;
-                all.clear();
-            }
-            Store::Flag(all) => {
-                to.typed::<BoolType>().write_batch(all, levels, None)?;
-                all.clear();
-            }
-            Store::Word(all) => {
-                to.typed::<ByteArrayType>().write_batch(all, levels, None)?;
-                all.clear();
-            }
-        }
-        if let Some(levels) = &mut self.levels {
-            levels.clear();
-        }
-        Ok(())
-    }
-}
-
-/// The bytes of a name are there once, however many rows have it.
-fn word(name: &'static str, words: &mut Vec<(&'static str, ByteArray)>) -> ByteArray {
-    if let Some((_, known)) = words.iter().find(|(known, _)| std::ptr::eq(*known, name)) {
-        return known.clone();
-    }
-    let new = ByteArray::from(name);
-    words.push((name, new.clone()));
-    new
-}
-
-fn columns(layout: &Layout) -> Vec<Column> {
-    let long = || Store::Long(Vec::new());
-    let mut all = vec![
-        Column::new("trigger", long(), true),
-        Column::new("cycles", long(), false),
-        Column::new("missing", long(), false),
-    ];
-    for n in 0..layout.scales.len() {
-        all.extend([
-            Column::new(of_channel(n, "raw"), long(), true),
-            Column::new(of_channel(n, "fresh"), Store::Flag(Vec::new()), false),
-            Column::new(of_channel(n, "cause"), Store::Word(Vec::new()), false),
-        ]);
-        let infos = layout.infos();
-        all.extend(
-            infos.map(|name| Column::new(of_channel(n, name), Store::Int(Vec::new()), true)),
-        );
-    }
-    let derived = layout.derived.iter().map(DerivedColumn::column);
-    all.extend(derived.map(|name| Column::new(name, Store::Double(Vec::new()), true)));
-    all
 }
 
 /// A file that is being written.
-pub struct ParquetFile {
-    file: File,
+pub struct ParquetFile<D = File> {
+    file: D,
     writer: SerializedFileWriter<Vec<u8>>,
     columns: Vec<Column>,
-    words: Vec<(&'static str, ByteArray)>,
+    words: Words,
     about: Vec<KeyValue>,
     has_infos: bool,
     /// Rows in memory, since when, and those in the file.
@@ -192,9 +59,9 @@ fn broken(error: ParquetError) -> io::Error {
     io::Error::other(error.to_string())
 }
 
-impl ParquetFile {
+impl<D: Disk> ParquetFile<D> {
     /// Begins, in an empty file.
-    pub fn new(file: File, layout: &Layout, about: &Value) -> io::Result<Self> {
+    pub fn new(file: D, layout: &Layout, about: &Value) -> io::Result<Self> {
         let columns = columns(layout);
         let schema: String = columns.iter().map(Column::schema).collect();
         let schema =
@@ -328,11 +195,11 @@ impl ParquetFile {
                 .iter()
                 .try_for_each(|part| self.file.write_all(part))?;
             self.file
-                .set_len(at + parts.iter().map(|p| p.len() as u64).sum::<u64>())
+                .cut(at + parts.iter().map(|p| p.len() as u64).sum::<u64>())
         };
         if let Err(error) = put(self.end, [&group, &footer]) {
             // What is cut off makes room for what stood there.
-            let _ = self.file.set_len(self.end);
+            let _ = self.file.cut(self.end);
             let mut put = |at: u64| -> io::Result<()> {
                 self.file.seek(SeekFrom::Start(at))?;
                 self.file.write_all(&self.footer)
@@ -343,5 +210,151 @@ impl ParquetFile {
         self.end += group.len() as u64;
         self.footer = footer;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::layout::DerivedColumn;
+    use super::super::picture::Measurement;
+    use super::super::read::read_all;
+    use super::*;
+    use endat_driver::AdditionalData as Info;
+    use endat_host::feed::{Cell, Row};
+    use endat_host::units::Scale;
+    use serde_json::json;
+    use std::io::Cursor;
+
+    fn about() -> Value {
+        let channel = json!({"unit": "deg", "steps_per_turn": 1u64 << 48, "range": 1u64 << 48});
+        json!({"system_hz": 1_000, "channels": [channel], "columns": {"v_deg": {"unit": "deg"}}})
+    }
+
+    fn layout() -> Layout {
+        Layout {
+            scales: vec![Scale::singleturn(48)],
+            additional_data: true,
+            derived: vec![DerivedColumn {
+                name: "v".into(),
+                unit: "deg".into(),
+                digits: None,
+            }],
+        }
+    }
+
+    fn entry(n: u64) -> Entry {
+        let info = Info {
+            content: n as u16,
+            ..Info::default()
+        };
+        let is_good = n % 7 != 3;
+        Entry {
+            row: Row {
+                run: (n == 5).then_some(0),
+                trigger: n + 1_000,
+                cycles: n * 10,
+                missing: n % 3,
+                cells: vec![Cell {
+                    position: is_good.then_some((1 << 48) - 50 + n),
+                    fresh: is_good,
+                    cause: if is_good { "none" } else { "crc" },
+                    infos: [Some(info), None],
+                }],
+            },
+            values: vec![is_good.then_some(n as f64 / 8.0)],
+        }
+    }
+
+    fn read(bytes: &[u8]) -> Vec<Measurement> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), bytes).unwrap();
+        let mut rows = Vec::new();
+        read_all(&[file.path().to_owned()], &mut |_, row| rows.push(row)).unwrap();
+        rows
+    }
+
+    fn assert_rows(rows: &[Measurement], count: u64) {
+        assert_eq!(rows.len() as u64, count);
+        for (n, row) in rows.iter().enumerate() {
+            let Entry {
+                row: wanted,
+                values,
+            } = entry(n as u64);
+            let trigger = wanted.run.is_none().then_some(wanted.trigger);
+            assert_eq!((row.trigger, row.missing), (trigger, wanted.missing));
+            assert!((row.time_s - n as f64 * 0.01).abs() < 1e-12);
+            let (cell, other) = (&row.cells[0], &wanted.cells[0]);
+            assert_eq!((cell.raw, cell.fresh), (other.position, other.fresh));
+            assert_eq!((&*cell.cause, &row.derived), (other.cause, &values));
+        }
+    }
+
+    /// A disk with room for so many bytes.
+    #[derive(Clone)]
+    struct Small(Cursor<Vec<u8>>, usize);
+
+    impl Write for Small {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let room = self.1.saturating_sub(self.0.position() as usize);
+            match bytes.len().min(room) {
+                0 => Err(io::ErrorKind::StorageFull.into()),
+                count => self.0.write(&bytes[..count]),
+            }
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    impl Seek for Small {
+        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+            self.0.seek(to)
+        }
+    }
+
+    impl Disk for Small {
+        fn cut(&mut self, bytes: u64) -> io::Result<()> {
+            self.0.get_mut().truncate(bytes as usize);
+            Ok(())
+        }
+    }
+
+    /// Catches a file that is lost with its disk, or with the program, and not only with its last group.
+    #[test]
+    fn a_file_is_whole_behind_every_group_and_on_a_full_disk() {
+        let whole = {
+            let disk = Small(Cursor::default(), usize::MAX);
+            let mut file = ParquetFile::new(disk, &layout(), &about()).unwrap();
+            for n in 0..300 {
+                file.row(&entry(n)).unwrap();
+                if n % 100 == 99 {
+                    file.flush().unwrap();
+                    assert_rows(&read(file.file.0.get_ref()), n + 1);
+                }
+            }
+            file.file.0.into_inner().len()
+        };
+        for room in (whole / 2..whole).step_by(97) {
+            let disk = Small(Cursor::default(), room);
+            let mut file = ParquetFile::new(disk, &layout(), &about()).unwrap();
+            let mut kept = 0;
+            let full = (0..300).try_for_each(|n| {
+                file.row(&entry(n))?;
+                if n % 100 == 99 {
+                    file.flush()?;
+                    kept = n + 1;
+                }
+                Ok::<(), io::Error>(())
+            });
+            assert_eq!(
+                full.map_err(|e| e.kind()),
+                Err(io::ErrorKind::StorageFull),
+                "{room}"
+            );
+            if kept > 0 {
+                assert_rows(&read(file.file.0.get_ref()), kept);
+            }
+        }
     }
 }
