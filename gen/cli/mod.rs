@@ -126,6 +126,8 @@ enum Command {
     Eye(shmoo::ShmooArgs),
     /// Run a card without hardware, for this program and others: the core and encoders, simulated, behind a port
     Card(host::virtual_card::CardArgs),
+    /// Make a fault in a virtual card that runs: plug, cable, encoder
+    Inject(host::inject::InjectArgs),
     /// Ask a card who it is, and what its encoders are
     Id(host::id::IdArgs),
     /// Read the latest position of every channel
@@ -343,6 +345,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         Some(Command::Shmoo(arguments)) => shmoo::run(&arguments).map(with_engine),
         Some(Command::Eye(arguments)) => shmoo::eye(arguments).map(with_engine),
         Some(Command::Card(arguments)) => host::virtual_card::run(&arguments).map(with_engine),
+        Some(Command::Inject(arguments)) => host::inject::run(&arguments),
         Some(Command::Id(arguments)) => host::id::run(&arguments),
         Some(Command::Read(arguments)) => host::read::run(&arguments),
         Some(Command::Log(arguments)) => host::log::run(&arguments),

@@ -8,9 +8,13 @@
 //! Time is simulated time. In the same process ([`VirtualCard`] is a [`Transport`]) a host waits for nothing; behind a port
 //! ([`serve`]) the card keeps real time as well as it can.
 
+mod faults;
 mod serve;
 
-pub use serve::{serve, Door, Pace};
+pub use faults::{Fault, FAULTS};
+pub use serve::{serve, Door, Pace, CONTROL};
+
+use faults::PortOf;
 
 use crate::config::{load_file, load_preset, preset_of, Project, DEFAULT_PRESET};
 use crate::error::{shown, GenError};
@@ -86,6 +90,10 @@ pub struct VirtualCard {
     uart: Uart,
     /// Cycles that a wait of a host takes here, per microsecond.
     cycles_per_us: u64,
+    /// Where the link of each channel is.
+    ports: Vec<PortOf>,
+    /// What it is where nobody has made it worse.
+    jitter: Jitter,
 }
 
 /// A name as people write it: without spaces, dashes and case.
@@ -264,12 +272,18 @@ impl VirtualCard {
         block.connect_all();
         let design = elaborate(&block, "card").map_err(|e| fault(&e))?;
         let engine = Compiled::new(&design).map_err(|e| fault(&e))?;
+        let jitter = match config.jitter_ns {
+            0 => Jitter::None,
+            ns => Jitter::Uniform(ns as Time * NS),
+        };
+        let mut ports = Vec::new();
         let mut links = Vec::new();
         let mut t_format = Vec::new();
         for channel in 0..card.channels.len() {
             let wanted = wanted(project, channel, &config.encoders);
             if !card.channels[channel].is_endat() {
                 let link = t_format_link(project, channel, wanted, config)?;
+                ports.push(PortOf::TFormat(t_format.len()));
                 t_format.push((PinNames::card(channel), link));
                 continue;
             }
@@ -288,9 +302,8 @@ impl VirtualCard {
             }
             let mut line =
                 LineConfig::cable(config.cable_m).seed(config.seed.wrapping_add(channel as u64));
-            if config.jitter_ns > 0 {
-                line.data_in.jitter = Jitter::Uniform(config.jitter_ns as Time * NS);
-            }
+            line.data_in.jitter = jitter;
+            ports.push(PortOf::Endat(links.len()));
             links.push((PinNames::card(channel), Link::new(line, encoder)));
         }
         let mut bench = Bench::new(engine, card.system_hz, links);
@@ -306,6 +319,8 @@ impl VirtualCard {
             bench,
             uart,
             cycles_per_us: (card.system_hz / 1_000_000).max(1),
+            ports,
+            jitter,
         })
     }
 

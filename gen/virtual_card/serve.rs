@@ -9,11 +9,117 @@ use std::time::{Duration, Instant};
 
 /// Where hosts come in.
 pub enum Door {
-    /// One host after the other over TCP.
-    Tcp(TcpListener, Option<TcpStream>),
+    /// One host after the other over TCP, and beside it who makes faults.
+    Tcp(Tcp),
     /// The far end of a pseudo terminal, and the near end, which must stay open.
     #[cfg(unix)]
     Terminal(serialport::TTYPort, serialport::TTYPort),
+}
+
+/// How who makes faults begins; no command of a host does.
+pub const CONTROL: &str = "endat-inject ";
+/// Longest line of faults.
+const CONTROL_BYTES: usize = 256;
+/// Who has said nothing for so long is a host.
+const QUIET: Duration = Duration::from_millis(200);
+/// Connections that wait at most.
+const WAITING_MAX: usize = 16;
+
+/// Connections to a card.
+pub struct Tcp {
+    listener: TcpListener,
+    host: Option<TcpStream>,
+    /// Nobody knows yet what they are, or there is a host; since when.
+    waiting: Vec<(TcpStream, Instant)>,
+    controls: Vec<TcpStream>,
+}
+
+/// What a connection is.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Unknown,
+    Host,
+    Control,
+    Gone,
+}
+
+/// By what it has sent, without taking it.
+fn kind(stream: &TcpStream, since: Instant) -> Kind {
+    let mut begin = [0; CONTROL.len()];
+    match stream.peek(&mut begin) {
+        Ok(0) => Kind::Gone,
+        Ok(count) if begin[..] == *CONTROL.as_bytes() && count == begin.len() => Kind::Control,
+        Ok(count) if CONTROL.as_bytes().starts_with(&begin[..count]) => {
+            match since.elapsed() > QUIET {
+                true => Kind::Host,
+                false => Kind::Unknown,
+            }
+        }
+        Ok(_) => Kind::Host,
+        Err(e) if e.kind() == ErrorKind::WouldBlock => match since.elapsed() > QUIET {
+            true => Kind::Host,
+            false => Kind::Unknown,
+        },
+        Err(_) => Kind::Gone,
+    }
+}
+
+/// What faults somebody asks for; the card stands still meanwhile, so not for long.
+fn line(stream: &mut TcpStream) -> String {
+    let begin = Instant::now();
+    let mut line = Vec::new();
+    let mut byte = [0];
+    while line.len() < CONTROL_BYTES && begin.elapsed() < QUIET {
+        match stream.read(&mut byte) {
+            Ok(1) if byte[0] != b'\n' => line.push(byte[0]),
+            _ => break,
+        }
+    }
+    let text = String::from_utf8_lossy(&line);
+    text.strip_prefix(CONTROL).unwrap_or_default().to_owned()
+}
+
+impl Tcp {
+    /// Lets new ones in, and finds out what they are.
+    fn sort(&mut self) {
+        while let Ok((new, _)) = self.listener.accept() {
+            let good = new.set_nonblocking(true).and(new.set_nodelay(true));
+            if good.is_ok() && self.waiting.len() < WAITING_MAX {
+                self.waiting.push((new, Instant::now()));
+            }
+        }
+        let mut n = 0;
+        while n < self.waiting.len() {
+            let (stream, since) = &self.waiting[n];
+            match kind(stream, *since) {
+                Kind::Control => self.controls.push(self.waiting.remove(n).0),
+                Kind::Host if self.host.is_none() => self.host = Some(self.waiting.remove(n).0),
+                Kind::Gone => drop(self.waiting.remove(n)),
+                Kind::Host | Kind::Unknown => n += 1,
+            }
+        }
+    }
+
+    /// Answers those who make faults; only from this machine.
+    fn answer(&mut self, mut inject: impl FnMut(&str) -> Result<String, String>) {
+        for mut stream in self.controls.drain(..) {
+            let is_here = stream.peer_addr().is_ok_and(|a| a.ip().is_loopback());
+            let ready = stream.set_nonblocking(false);
+            let ready = ready.and(stream.set_read_timeout(Some(QUIET)));
+            if ready.and(stream.set_write_timeout(Some(QUIET))).is_err() {
+                continue;
+            }
+            let answer = match is_here {
+                true => inject(&line(&mut stream)),
+                false => Err("inject: takes no faults from another machine".into()),
+            };
+            let told = match answer {
+                Ok(done) => format!("ok {done}\n"),
+                Err(why) => format!("error {why}\n"),
+            };
+            let _ = stream.write_all(told.as_bytes());
+        }
+    }
 }
 
 impl Door {
@@ -29,7 +135,12 @@ impl Door {
         };
         let listener = TcpListener::bind(address).map_err(fail)?;
         listener.set_nonblocking(true).map_err(fail)?;
-        Ok(Self::Tcp(listener, None))
+        Ok(Self::Tcp(Tcp {
+            listener,
+            host: None,
+            waiting: Vec::new(),
+            controls: Vec::new(),
+        }))
     }
 
     /// Makes a pseudo terminal.
@@ -46,7 +157,8 @@ impl Door {
     /// What a host gives as its port.
     pub fn name(&self) -> String {
         match self {
-            Self::Tcp(listener, _) => listener
+            Self::Tcp(tcp) => tcp
+                .listener
                 .local_addr()
                 .map_or_else(|_| "tcp:?".into(), |a| format!("tcp:{a}")),
             #[cfg(unix)]
@@ -59,7 +171,7 @@ impl Door {
     /// Whether somebody is there; at a pseudo terminal nobody knows.
     fn is_open(&self) -> bool {
         match self {
-            Self::Tcp(_, stream) => stream.is_some(),
+            Self::Tcp(tcp) => tcp.host.is_some(),
             #[cfg(unix)]
             Self::Terminal(..) => true,
         }
@@ -69,21 +181,16 @@ impl Door {
     fn read(&mut self) -> Vec<u8> {
         let mut buffer = [0; 4096];
         match self {
-            Self::Tcp(listener, stream) => {
-                if stream.is_none() {
-                    if let Ok((new, _)) = listener.accept() {
-                        let good = new.set_nonblocking(true).and(new.set_nodelay(true));
-                        *stream = good.is_ok().then_some(new);
-                    }
-                }
-                let Some(open) = stream else {
+            Self::Tcp(tcp) => {
+                tcp.sort();
+                let Some(open) = &mut tcp.host else {
                     return Vec::new();
                 };
                 match open.read(&mut buffer) {
-                    Ok(0) => *stream = None,
+                    Ok(0) => tcp.host = None,
                     Ok(count) => return buffer[..count].to_vec(),
                     Err(e) if e.kind() == ErrorKind::WouldBlock => {}
-                    Err(_) => *stream = None,
+                    Err(_) => tcp.host = None,
                 }
                 Vec::new()
             }
@@ -101,12 +208,12 @@ impl Door {
     /// Gives bytes to the host; what nobody takes is lost, as on a real line.
     fn write(&mut self, bytes: &[u8]) {
         match self {
-            Self::Tcp(_, stream) => {
-                if let Some(open) = stream {
+            Self::Tcp(tcp) => {
+                if let Some(open) = &mut tcp.host {
                     let _ = open.set_nonblocking(false);
                     let _ = open.set_write_timeout(Some(Duration::from_secs(1)));
                     if open.write_all(bytes).is_err() {
-                        *stream = None;
+                        tcp.host = None;
                     } else {
                         let _ = open.set_nonblocking(true);
                     }
@@ -116,6 +223,17 @@ impl Door {
             Self::Terminal(far, _) => {
                 let _ = far.write_all(bytes);
             }
+        }
+    }
+}
+
+impl Door {
+    /// Answers those who make faults.
+    fn answer(&mut self, inject: impl FnMut(&str) -> Result<String, String>) {
+        match self {
+            Self::Tcp(tcp) => tcp.answer(inject),
+            #[cfg(unix)]
+            Self::Terminal(..) => {}
         }
     }
 }
@@ -159,6 +277,7 @@ pub fn serve(
     while !stop.load(Ordering::Relaxed) && !is_over() {
         let was_open = door.is_open();
         let bytes = door.read();
+        door.answer(|words| card.inject(words));
         card.send_bytes(&bytes);
         card.run(SLICE_US * card.cycles_per_us);
         let answer = card.take_bytes();

@@ -83,6 +83,11 @@ impl TFormatLink {
         self.is_open = true;
     }
 
+    /// Puts it in again.
+    pub fn plug(&mut self) {
+        self.is_open = false;
+    }
+
     /// The encoder.
     pub fn encoder(&self) -> &Encoder {
         &self.encoder

@@ -289,6 +289,34 @@ impl Encoder {
         self.config.defects.push((frame..=frame, defect));
     }
 
+    /// The same of so many frames; it takes the place of one of its kind.
+    pub fn spoil(&mut self, frames: u64, defect: Defect) {
+        let kind = std::mem::discriminant(&defect);
+        let defects = &mut self.config.defects;
+        defects.retain(|(_, other)| std::mem::discriminant(other) != kind);
+        let first = self.frames.len() as u64;
+        let last = first.saturating_add(frames.saturating_sub(1));
+        self.config.defects.push((first..=last, defect));
+    }
+
+    /// Nothing is wrong with it from `time` on, and it tells nothing that was.
+    pub fn heal(&mut self, time: Time) {
+        self.config.defects.clear();
+        self.config.causes.clear();
+        self.status.clear(time);
+    }
+
+    /// Its plug is pulled, or put in again, at `time`; what was planned for it is forgotten.
+    pub fn switch_supply(&mut self, time: Time, on: bool) {
+        let delay = if on { self.config.start_up } else { 0 };
+        self.supply = VecDeque::from([(time + delay, on)]);
+    }
+
+    /// It has supply.
+    pub fn is_on(&self) -> bool {
+        self.state != State::Off
+    }
+
     /// Its type plate.
     pub fn config(&self) -> &EncoderConfig {
         &self.config

@@ -97,6 +97,20 @@ impl Line {
         self.fault = Some(fault);
     }
 
+    /// Faults and random glitches are gone.
+    pub fn heal(&mut self, time: Time) {
+        self.fault = None;
+        self.set_random_glitches(time, None);
+        self.changed(time);
+    }
+
+    /// From now on glitches come so.
+    pub fn set_random_glitches(&mut self, time: Time, rate: Option<GlitchRate>) {
+        self.config.random_glitches = rate;
+        self.glitches.clear();
+        self.plan_glitch(time);
+    }
+
     /// From now on edges of all three paths vary so.
     pub fn set_jitter(&mut self, jitter: Jitter, seed: u64) {
         let mut rng = Rng::new(seed);

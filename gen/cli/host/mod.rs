@@ -2,6 +2,7 @@
 
 pub mod explain_name;
 pub mod id;
+pub mod inject;
 pub mod log;
 pub mod margin;
 pub mod monitor;

@@ -4,6 +4,7 @@
 //! the program, all but the last group is there.
 
 mod columns;
+pub mod seal;
 
 use super::about::KEY;
 use super::keep::Entry;
@@ -51,6 +52,8 @@ pub struct ParquetFile<D = File> {
     rows: i64,
     /// Where the last group ends.
     end: u64,
+    /// Check sum of what is before that.
+    sum: seal::Sum,
     /// What makes the file whole, behind it.
     footer: Vec<u8>,
 }
@@ -92,6 +95,7 @@ impl<D: Disk> ParquetFile<D> {
             since: Instant::now(),
             rows: 0,
             end: 0,
+            sum: seal::sum(),
             footer: Vec::new(),
         };
         new.give()?;
@@ -188,7 +192,9 @@ impl<D: Disk> ParquetFile<D> {
     fn give(&mut self) -> io::Result<()> {
         SerializedFileWriter::flush(&mut self.writer)?;
         let group = std::mem::take(self.writer.inner_mut());
-        let footer = self.footer_now()?;
+        let mut sum = self.sum.clone();
+        sum.update(&group);
+        let footer = seal::seal(sum.clone(), &self.footer_now()?);
         let mut put = |at: u64, parts: [&[u8]; 2]| -> io::Result<()> {
             self.file.seek(SeekFrom::Start(at))?;
             parts
@@ -209,6 +215,7 @@ impl<D: Disk> ParquetFile<D> {
         }
         self.end += group.len() as u64;
         self.footer = footer;
+        self.sum = sum;
         Ok(())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::super::about::KEY;
 use super::super::layout::{of_channel, DerivedColumn, INFOS};
+use super::super::parquet::seal;
 use super::{cause, Cell, Head, Parsed, Take, Wrong};
 use parquet::column::reader::ColumnReader;
 use parquet::data_type::ByteArray;
@@ -133,7 +134,18 @@ fn long(values: &Values, row: usize) -> Result<Option<u64>, Wrong> {
 }
 
 /// Reads a file; what it says before its rows.
-pub(super) fn read(file: File, take: Take<'_>) -> Result<Head, Wrong> {
+pub(super) fn read(mut file: File, take: Take<'_>) -> Result<Head, Wrong> {
+    let whole = seal::is_whole(&mut file);
+    let whole = whole.map_err(|e| {
+        foreign(&format!(
+            "cannot be read: {e}; Parquet needs a file, no pipe"
+        ))
+    })?;
+    if !whole {
+        return Err(foreign(
+            "is damaged, or no recording of this program: its check sum is wrong or missing",
+        ));
+    }
     let reader = SerializedFileReader::new(file).map_err(broken)?;
     let meta = reader.metadata().file_metadata();
     let said = meta.key_value_metadata().into_iter().flatten();

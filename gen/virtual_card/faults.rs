@@ -1,0 +1,326 @@
+//! Faults that are made while a virtual card runs: what a cable, a plug or an encoder can do, by name.
+
+use super::VirtualCard;
+use crate::error::shown;
+use endat_host::did_you_mean::closest;
+use endat_sim::encoder::{Cause, Defect};
+use endat_sim::line::{FaultKind, GlitchRate, Jitter, LineFault, Wire};
+use endat_sim::{Time, MS, NS, US};
+
+/// What can be made, what it takes, and what it is.
+pub const FAULTS: [(&str, &str, &str); 13] = [
+    ("unplug", "CHANNEL", "the plug is off: the encoder has no supply, nobody drives DATA"),
+    ("plug", "CHANNEL", "it is in again; the encoder begins anew"),
+    ("crc", "CHANNEL [N]", "a wrong CRC in the next N frames [1]"),
+    ("f1", "CHANNEL [N]", "error bit F1 in the next N frames [1]"),
+    ("f2", "CHANNEL [N]", "error bit F2 in the next N frames [1]"),
+    ("silent", "CHANNEL [N]", "no start bit in the next N frames [1]"),
+    ("slow", "CHANNEL TIME", "the encoder calculates so much longer, as in 30us, until heal"),
+    ("alarm", "CHANNEL [BITS]", "alarms, bit 0 light source to 6 battery [1], until they are cleared"),
+    ("warning", "CHANNEL [BITS]", "the same with warnings"),
+    ("noise", "CHANNEL RATE", "short pulses on DATA, so many per microsecond, as in 1e-3, until heal"),
+    ("jitter", "CHANNEL TIME", "edges come up to so much earlier or later, as in 20ns, until heal"),
+    ("line", "CHANNEL KIND", "a fault of the pair, until heal: stuck_low, stuck_high, open, short, swapped, data_to_clock, noise, glitches"),
+    ("heal", "CHANNEL", "all of these are gone, the plug is in"),
+];
+
+/// What is to be done to a channel.
+#[derive(Clone, Debug, PartialEq)]
+enum Deed {
+    Supply(bool),
+    Spoil(u64, Defect),
+    Slow(Time),
+    Status { alarms: u16, warnings: u16 },
+    Noise(f64),
+    Jitter(Time),
+    Line(FaultKind),
+    Heal,
+}
+
+/// A fault that is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    channel: usize,
+    deed: Deed,
+}
+
+/// Most frames, and longest times, that make sense.
+const FRAMES_MAX: u64 = 1_000_000_000;
+const SLOW_MAX: Time = 10 * MS;
+const JITTER_MAX: Time = US;
+/// Pulses of noise.
+const PULSE: (Time, Time) = (40 * NS, 200 * NS);
+/// Bits of alarms and warnings.
+const STATUS_MAX: u64 = 0xFFFF;
+
+fn wrong(what: &str, text: &str, why: &str) -> String {
+    format!("{what} = {}: {why}", shown(text))
+}
+
+/// A time with its unit.
+fn time(what: &str, text: &str, most: Time) -> Result<Time, String> {
+    let units = [("ns", NS), ("us", US), ("ms", MS)];
+    let found = units
+        .iter()
+        .find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)));
+    let number = found.and_then(|(digits, unit)| Some(digits.parse::<f64>().ok()? * unit as f64));
+    match number {
+        Some(ps) if (0.0..=most as f64).contains(&ps) => Ok(ps as Time),
+        _ => {
+            let limit = format!(
+                "is no time from 0 to {}us; write 20ns, 30us or 2ms",
+                most / US
+            );
+            Err(wrong(what, text, &limit))
+        }
+    }
+}
+
+fn number(what: &str, text: &str, most: u64) -> Result<u64, String> {
+    let plain = text.replace('_', "");
+    let parsed = match plain.strip_prefix("0x") {
+        Some(digits) => u64::from_str_radix(digits, 16),
+        None => plain.parse(),
+    };
+    match parsed {
+        Ok(n) if (1..=most).contains(&n) => Ok(n),
+        _ => Err(wrong(
+            what,
+            text,
+            &format!("is no number from 1 to {most}; write 12 or 0x0C"),
+        )),
+    }
+}
+
+/// The name that may have been meant.
+fn guess<'a>(text: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let known: Vec<&str> = known.collect();
+    match closest(text, known.iter().copied(), |n| n).first() {
+        Some(near) => format!("did you mean {near}?"),
+        None => format!("there are {}", known.join(", ")),
+    }
+}
+
+impl Fault {
+    /// What these words ask for.
+    pub fn parse(words: &[&str]) -> Result<Self, String> {
+        let names = FAULTS.iter().map(|f| f.0);
+        let Some((name, rest)) = words.split_first() else {
+            return Err(format!(
+                "there is no fault; there are {}",
+                names.collect::<Vec<_>>().join(", ")
+            ));
+        };
+        let Some((name, takes, _)) = FAULTS.iter().find(|f| f.0 == *name) else {
+            let why = format!("there is no such fault; {}", guess(name, names));
+            return Err(wrong("inject", name, &why));
+        };
+        let (channel, value) = match rest {
+            [channel] => (channel, None),
+            [channel, value] if *takes != "CHANNEL" => (channel, Some(*value)),
+            _ => {
+                return Err(format!(
+                    "inject {name}: takes {takes}; write for example {name} {}",
+                    takes.replace("CHANNEL", "0")
+                ))
+            }
+        };
+        let channel = channel.parse::<usize>();
+        let channel = channel.map_err(|_| {
+            wrong(
+                "channel",
+                rest[0],
+                "is no number of a channel; write 0 or 1",
+            )
+        })?;
+        let count = || value.map_or(Ok(1), |text| number("frames", text, FRAMES_MAX));
+        let bits = || {
+            value
+                .map_or(Ok(1), |text| number("bits", text, STATUS_MAX))
+                .map(|b| b as u16)
+        };
+        let needed = || value.ok_or_else(|| format!("inject {name}: takes {takes}"));
+        let deed = match *name {
+            "unplug" => Deed::Supply(false),
+            "plug" => Deed::Supply(true),
+            "crc" => Deed::Spoil(count()?, Defect::CrcXor(1)),
+            // With the other bit as it is when all is well.
+            "f1" => Deed::Spoil(count()?, Defect::ErrorBits { f1: true, f2: true }),
+            "f2" => Deed::Spoil(
+                count()?,
+                Defect::ErrorBits {
+                    f1: false,
+                    f2: false,
+                },
+            ),
+            "silent" => Deed::Spoil(count()?, Defect::NoStartBit),
+            "slow" => Deed::Slow(time("slow", needed()?, SLOW_MAX)?),
+            "alarm" => Deed::Status {
+                alarms: bits()?,
+                warnings: 0,
+            },
+            "warning" => Deed::Status {
+                alarms: 0,
+                warnings: bits()?,
+            },
+            "noise" => {
+                let text = needed()?;
+                let limit = "is no rate up to 1 per microsecond; write 1e-3";
+                let rate = text
+                    .parse::<f64>()
+                    .ok()
+                    .filter(|r| (1e-9..=1.0).contains(r));
+                Deed::Noise(rate.ok_or_else(|| wrong("noise", text, limit))?)
+            }
+            "jitter" => Deed::Jitter(time("jitter", needed()?, JITTER_MAX)?),
+            "line" => {
+                let text = needed()?;
+                let kinds = || FaultKind::ALL.iter().filter(|k| !k.is_plug());
+                let kind = kinds().find(|k| k.name() == text).ok_or_else(|| {
+                    let why = format!(
+                        "there is no such fault of a line; {}",
+                        guess(text, kinds().map(|k| k.name()))
+                    );
+                    wrong("line", text, &why)
+                })?;
+                Deed::Line(*kind)
+            }
+            _ => Deed::Heal,
+        };
+        Ok(Self { channel, deed })
+    }
+}
+
+impl VirtualCard {
+    /// Makes a fault now; what was done, or why not.
+    pub fn inject(&mut self, words: &str) -> Result<String, String> {
+        let words: Vec<&str> = words.split_whitespace().collect();
+        let fault = Fault::parse(&words)?;
+        let now = self.bench.now();
+        let seed = self.bench.cycle();
+        let Some(port) = self.ports.get(fault.channel).copied() else {
+            let last = self.ports.len() - 1;
+            return Err(format!("channel = {}: outside 0..{last}", fault.channel));
+        };
+        match (port, fault.deed) {
+            (PortOf::TFormat(index), Deed::Supply(on)) => {
+                let link = self.bench.t_format_mut(index);
+                if on {
+                    link.plug()
+                } else {
+                    link.unplug()
+                }
+            }
+            (PortOf::TFormat(index), Deed::Heal) => self.bench.t_format_mut(index).plug(),
+            (PortOf::TFormat(_), _) => {
+                return Err(format!(
+                    "channel = {}: speaks T-format, which knows unplug, plug and heal only",
+                    fault.channel
+                ));
+            }
+            (PortOf::Endat(index), deed) => self.disturb(index, deed, now, seed),
+        }
+        let seconds = now as f64 / super::SECOND;
+        Ok(format!(
+            "{} at {seconds:.6} s of the card's time",
+            words.join(" ")
+        ))
+    }
+
+    fn disturb(&mut self, index: usize, deed: Deed, now: Time, seed: u64) {
+        let link = self.bench.link_mut(index);
+        match deed {
+            Deed::Supply(on) => {
+                // A plug that is in stays in: the encoder does not begin anew.
+                if link.encoder().is_on() != on {
+                    link.encoder_mut().switch_supply(now, on);
+                }
+            }
+            Deed::Spoil(frames, defect) => link.encoder_mut().spoil(frames, defect),
+            Deed::Slow(by) => link.encoder_mut().spoil(u64::MAX, Defect::LateStart(by)),
+            Deed::Status { alarms, warnings } => link.encoder_mut().add_cause(Cause {
+                during: now..now + 1,
+                alarms,
+                warnings,
+            }),
+            Deed::Noise(rate) => link.disturb(|line| {
+                let rate = GlitchRate {
+                    wire: Wire::Data,
+                    mean_gap: (US as f64 / rate) as Time,
+                    shortest: PULSE.0,
+                    longest: PULSE.1,
+                };
+                line.set_random_glitches(now, Some(rate));
+            }),
+            Deed::Jitter(most) => link.disturb(|line| line.set_jitter(Jitter::Uniform(most), seed)),
+            Deed::Line(kind) => link.disturb(|line| {
+                line.set_fault(LineFault::new(kind, now, Time::MAX, seed));
+            }),
+            Deed::Heal => {
+                let jitter = self.jitter;
+                link.disturb(|line| {
+                    line.heal(now);
+                    line.set_jitter(jitter, seed);
+                });
+                let encoder = link.encoder_mut();
+                encoder.heal(now);
+                if !encoder.is_on() {
+                    encoder.switch_supply(now, true);
+                }
+            }
+        }
+    }
+}
+
+/// Which link of the bench a channel has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum PortOf {
+    /// EnDat.
+    Endat(usize),
+    /// T-format.
+    TFormat(usize),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_misspelt_or_beyond_its_limit_is_told() {
+        let parse = |text: &str| Fault::parse(&text.split_whitespace().collect::<Vec<_>>());
+        for (text, told) in [
+            (
+                "unplgu 0",
+                "inject = unplgu: there is no such fault; did you mean unplug?",
+            ),
+            ("", "there is no fault; there are unplug, plug, crc"),
+            (
+                "unplug",
+                "inject unplug: takes CHANNEL; write for example unplug 0",
+            ),
+            ("unplug 0 1", "takes CHANNEL"),
+            ("unplug x", "channel = x: is no number of a channel"),
+            ("crc 0 0", "frames = 0: is no number from 1 to 1000000000"),
+            ("slow 0 30", "slow = 30: is no time from 0 to 10000us"),
+            ("slow 0", "inject slow: takes CHANNEL TIME"),
+            ("noise 0 2", "noise = 2: is no rate"),
+            ("noise 0 nan", "noise = nan: is no rate"),
+            ("line 0 stuck", "there is no such fault of a line"),
+            ("alarm 0 0x10000", "bits = 0x10000: is no number"),
+        ] {
+            let error = parse(text).unwrap_err();
+            assert!(error.contains(told), "{text}: {error}");
+        }
+        for (name, takes, _) in FAULTS {
+            let value = match takes.split_once(' ').map(|t| t.1) {
+                None => "",
+                Some("TIME") => "0.5us",
+                Some("RATE") => "1e-3",
+                Some("KIND") => "stuck_low",
+                Some(_) => "3",
+            };
+            let text = format!("{name} 1 {value}");
+            assert_eq!(parse(&text).map(|f| f.channel), Ok(1), "{text}");
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Faults of a virtual card that runs, and what a host sees of them.
+
+use super::{slow_card, Served};
+use crate::program::{bad, good};
+use endat_gen::virtual_card::Door;
+use endat_host::feed::{Cell, Feed, Row};
+use endat_host::transport::Port;
+use endat_host::{Bridge, Card};
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// A host that takes rows of a card, while faults are made beside it.
+struct Watcher {
+    port: String,
+    card: Card<Port>,
+    feed: Feed,
+    rows: VecDeque<Row>,
+}
+
+/// Rows in which what is waited for must have come.
+const ROWS_MAX: usize = 2_000;
+
+impl Watcher {
+    fn new(port: &str) -> Self {
+        let link = Port::open(port, 2_000_000).unwrap();
+        let mut card = Card::find(Bridge::new(link)).unwrap();
+        Self {
+            port: port.to_owned(),
+            feed: Feed::begin(&mut card, false).unwrap(),
+            card,
+            rows: VecDeque::new(),
+        }
+    }
+
+    fn inject(&self, words: &str) -> String {
+        let words = words.split(' ');
+        let all: Vec<&str> = ["inject", "--port", &self.port]
+            .into_iter()
+            .chain(words)
+            .collect();
+        good(&all)
+    }
+
+    fn next(&mut self) -> Row {
+        while self.rows.is_empty() {
+            let wait = Duration::from_millis(50);
+            self.feed
+                .fill(&mut self.card, &mut self.rows, wait)
+                .unwrap();
+        }
+        self.rows.pop_front().unwrap()
+    }
+
+    /// The first row from now on in which a channel is so.
+    fn wait(&mut self, channel: usize, is_so: impl Fn(&Cell) -> bool) -> Row {
+        let mut last = None;
+        for _ in 0..ROWS_MAX {
+            let row = self.next();
+            if is_so(&row.cells[channel]) {
+                return row;
+            }
+            last = Some(row);
+        }
+        panic!("never: {last:?}");
+    }
+}
+
+fn is_good(cell: &Cell) -> bool {
+    cell.fresh && cell.cause == "none"
+}
+
+/// Catches a fault that is told and not made, one that does not go, and one that the other channel has, too.
+#[test]
+fn a_plug_that_is_pulled_and_put_in_again_is_seen_and_gone() {
+    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    let mut host = Watcher::new(&card.name);
+    host.wait(0, is_good);
+    let told = host.inject("unplug 0");
+    assert!(told.starts_with("unplug 0 at "), "{told}");
+    let seen = host.wait(0, |cell| !cell.fresh && cell.cause != "not_taken");
+    // Nobody drives DATA, and the receiver's bias is HIGH.
+    assert_eq!(seen.cells[0].cause, "data_not_low", "{seen:?}");
+    assert!(is_good(&seen.cells[1]), "{seen:?}");
+    host.inject("plug 0");
+    host.wait(0, is_good);
+    for (fault, cause) in [
+        ("crc 1", "crc"),
+        ("f1 1 2", "f1"),
+        ("silent 1", "no_start_bit"),
+        ("alarm 1 4", "f1"),
+        ("line 1 stuck_low", "no_start_bit"),
+    ] {
+        host.inject(fault);
+        host.wait(1, |cell| cell.cause == cause);
+        host.inject("heal 1");
+        host.wait(1, is_good);
+        assert!(
+            host.rows.iter().all(|row| is_good(&row.cells[0])),
+            "{fault}"
+        );
+    }
+}
+
+/// Catches somebody who is taken for a host, and a host that waits for one who makes faults.
+#[test]
+fn wrong_faults_and_wrong_cards_are_told() {
+    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    let inject = |words: &[&str]| {
+        let begin = ["inject", "--port", card.name.as_str()];
+        bad(&[&begin[..], words].concat(), 2)
+    };
+    assert!(inject(&["unplgu", "0"]).contains("did you mean unplug?"));
+    assert!(inject(&["unplug", "2"]).contains("channel = 2: outside 0..1"));
+    let elsewhere = bad(
+        &["inject", "--port", "tcp:192.0.2.1:7700", "unplug", "0"],
+        2,
+    );
+    assert!(elsewhere.contains("is another machine"), "{elsewhere}");
+    let serial = bad(&["inject", "--port", "/dev/ttyUSB1", "unplug", "0"], 2);
+    assert!(serial.contains("give tcp:HOST:PORT"), "{serial}");
+    // Another server says something else, or nothing.
+    let other = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = format!("tcp:{}", other.local_addr().unwrap());
+    let end = std::thread::spawn(move || drop(other.accept().unwrap()));
+    let told = bad(&["inject", "--port", &port, "unplug", "0"], 1);
+    end.join().unwrap();
+    assert!(
+        told.contains("no virtual card of this program answers")
+            || told.contains("is the card running?"),
+        "{told}"
+    );
+    let all = good(&["inject", "--list"]);
+    assert!(
+        all.lines().count() > 10 && all.contains("slow CHANNEL TIME"),
+        "{all}"
+    );
+}
