@@ -98,7 +98,7 @@ pub struct Picture {
     difference: Option<Series>,
     derived: Vec<Series>,
     lanes: BTreeMap<(usize, Cow<'static, str>), Lane>,
-    missing: Lane,
+    missing: Option<Lane>,
     /// Time between rows, mostly: the mean of some.
     step_s: Option<f64>,
     last_s: Option<f64>,
@@ -130,7 +130,7 @@ impl Picture {
                 .map(|one| Series::new(one.name.clone(), one.unit.clone()))
                 .collect(),
             lanes: BTreeMap::new(),
-            missing: Lane::new("triggers without a row"),
+            missing: None,
             step_s: None,
             last_s: None,
         }
@@ -164,9 +164,6 @@ impl Picture {
         if self.is_gap(time_s, row.missing) {
             self.all().for_each(Series::gap);
         }
-        if row.missing > 0 {
-            self.missing.push(time_s, row.missing);
-        }
         let none = endat_host::causes::name(0);
         for (n, cell) in row.cells.iter().enumerate() {
             // Beside a running clock's position the other channels have nothing to do.
@@ -189,8 +186,19 @@ impl Picture {
             }
             if cell.cause != none {
                 let key = (n, cell.cause.clone());
-                let new = || Lane::new(format!("channel {n} {}", cell.cause));
+                let new = || self.positions[n].lane(format!("channel {n} {}", cell.cause));
                 self.lanes.entry(key).or_insert_with(new).push(time_s, 1);
+            }
+        }
+        if row.missing > 0 {
+            let new = || {
+                self.positions
+                    .first()
+                    .map(|s| s.lane("triggers without a row"))
+            };
+            self.missing = self.missing.take().or_else(new);
+            if let Some(lane) = &mut self.missing {
+                lane.push(time_s, row.missing);
             }
         }
         let position = |n: usize| row.cells.get(n).and_then(|c| c.position);
@@ -217,9 +225,7 @@ impl Picture {
             .chain(&self.derived);
         let series: Vec<Series> = all.cloned().collect();
         let mut lanes: Vec<Lane> = self.lanes.values().cloned().collect();
-        if self.missing.count > 0 {
-            lanes.push(self.missing.clone());
-        }
+        lanes.extend(self.missing.clone());
         series_svg(&series, &lanes, title, subtitle)
     }
 }

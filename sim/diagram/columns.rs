@@ -42,6 +42,20 @@ impl<T: Column> Columns<T> {
         &mut self.all[place]
     }
 
+    /// Others of the same moments, with nothing in them.
+    pub(super) fn like<U: Column>(&self) -> Columns<U> {
+        Columns {
+            first_s: self.first_s,
+            width_s: self.width_s,
+            all: Vec::new(),
+        }
+    }
+
+    /// How long a row lasts, or two columns if that is longer.
+    pub(super) fn row_s(&self) -> f64 {
+        2.0 * self.width_s
+    }
+
     fn halve(&mut self) {
         let joined = self.all.chunks(2).map(|two| {
             let mut one = two[0].clone();
@@ -73,6 +87,8 @@ pub struct Extremes {
     pub(super) greatest: f64,
     /// There is a gap before the first, between two, or behind the last.
     pub(super) gaps: [bool; 3],
+    /// How many should be there and are not.
+    pub(super) bad: u64,
 }
 
 impl Default for Extremes {
@@ -82,6 +98,7 @@ impl Default for Extremes {
             least: f64::INFINITY,
             greatest: f64::NEG_INFINITY,
             gaps: [false; 3],
+            bad: 0,
         }
     }
 }
@@ -94,7 +111,7 @@ impl Extremes {
                 ends: Some([(time_s, value); 2]),
                 least: value,
                 greatest: value,
-                gaps: [false; 3],
+                ..Self::default()
             },
             None => Self {
                 gaps: [true, false, true],
@@ -126,6 +143,7 @@ impl Column for Extremes {
         };
         self.least = self.least.min(next.least);
         self.greatest = self.greatest.max(next.greatest);
+        self.bad += next.bad;
     }
 }
 
@@ -173,6 +191,14 @@ mod tests {
         }
         let counts: Vec<u64> = all.iter().map(|c| *c.1).filter(|n| *n > 0).collect();
         assert_eq!(counts, [3, 1]);
+        // What happens seldom is as exact in time.
+        let mut seldom: Columns<u64> = Columns::default();
+        (0..1_000).for_each(|n| *seldom.at(f64::from(n)) += 0);
+        let mut seldom: Columns<u64> = seldom.like();
+        *seldom.at(100.0) += 1;
+        *seldom.at(900.0) += 1;
+        let times = seldom.iter().filter(|c| *c.1 > 0).map(|c| c.0.floor());
+        assert_eq!(times.collect::<Vec<_>>(), [100.0, 900.0]);
         // Before the first, as positions of a running clock may be.
         *all.at(-1.0) += 1;
         assert_eq!(all.iter().next().map(|c| *c.1), Some(4));

@@ -13,9 +13,7 @@ pub struct Series {
     /// Their unit.
     pub unit: String,
     values: Columns<Extremes>,
-    bad: Columns<u64>,
     bad_count: u64,
-    count: u64,
     last_s: Option<f64>,
 }
 
@@ -32,7 +30,6 @@ impl Series {
     /// Takes a value, or that there is none: a gap.
     pub fn push(&mut self, time_s: f64, value: Option<f64>) {
         self.values.at(time_s).take(time_s, value);
-        self.count += 1;
         self.last_s = Some(time_s);
     }
 
@@ -45,8 +42,17 @@ impl Series {
 
     /// There should have been a value: marked at the foot of the panel, never thinned out.
     pub fn mark(&mut self, time_s: f64) {
-        *self.bad.at(time_s) += 1;
+        self.values.at(time_s).bad += 1;
         self.bad_count += 1;
+    }
+
+    /// A lane below it, of the same moments.
+    pub fn lane(&self, name: impl Into<String>) -> Lane {
+        Lane {
+            name: name.into(),
+            count: 0,
+            times: self.values.like(),
+        }
     }
 
     /// Least and greatest value.
@@ -110,14 +116,6 @@ pub struct Lane {
 }
 
 impl Lane {
-    /// Not yet.
-    pub fn new(name: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            ..Self::default()
-        }
-    }
-
     /// It has happened so often.
     pub fn push(&mut self, time_s: f64, count: u64) {
         self.count += count;
@@ -143,6 +141,8 @@ const MARK: f64 = 9.0;
 /// Of a lane, and from one to the next.
 const LANE: f64 = 12.0;
 const LANE_PITCH: f64 = 20.0;
+/// Widest mark in it.
+const LANE_MARK_MAX: f64 = 6.0;
 /// A single value is so wide.
 const DOT: f64 = 1.0;
 /// Room above and below the values: part of their range.
@@ -216,7 +216,7 @@ fn panel(svg: &mut Svg, one: &Series, index: usize, top: f64, x: &dyn Fn(f64) ->
         svg.line(&points, &class);
     }
     // One mark for each pixel, however many fall on it.
-    let marks = one.bad.iter().filter(|c| *c.1 > 0);
+    let marks = one.values.iter().filter(|c| c.1.bad > 0);
     let marks: BTreeSet<i64> = marks.map(|c| x(c.0).round() as i64).collect();
     for x in marks.into_iter().map(|x| x as f64) {
         svg.line(&[(x, bottom), (x, bottom - MARK)], "bad");
@@ -243,12 +243,15 @@ pub fn series_svg(series: &[Series], lanes: &[Lane], title: &str, subtitle: &str
         bottom += GAP - LANE_PITCH;
     }
     let mut right = LEFT + WIDTH;
+    // As wide as its row, and to be seen.
+    let row_s = series.iter().map(|s| s.values.row_s()).fold(0.0, f64::max);
+    let width = (WIDTH * row_s / (end - begin)).clamp(1.0, LANE_MARK_MAX);
     for lane in lanes {
         svg.rect(LEFT, bottom, WIDTH, LANE, "floor");
         let marks = lane.times.iter().filter(|c| *c.1 > 0);
         let marks: BTreeSet<i64> = marks.map(|c| x(c.0).round() as i64).collect();
         for x in marks {
-            svg.rect(x as f64 - 0.5, bottom, 1.0, LANE, "lane");
+            svg.rect(x as f64 - 0.5, bottom, width, LANE, "lane");
         }
         let text = format!("{}: {}", lane.name, lane.count);
         let place = LEFT + WIDTH + 8.0;
@@ -352,7 +355,7 @@ mod tests {
     fn a_peak_and_a_single_fault_of_a_hundred_thousand_are_drawn() {
         let value = |n: u32| if n == 54_321 { 10.0 } else { 0.0 };
         let one = of((0..100_000).map(|n| (f64::from(n), Some(value(n)))));
-        let mut lane = Lane::new("channel 0 crc");
+        let mut lane = one.lane("channel 0 crc");
         lane.push(54_321.0, 1);
         let svg = series_svg(&[one], &[lane], "log", "");
         let line = svg

@@ -1,7 +1,10 @@
 //! Faults of a virtual card that runs, and what a host sees of them.
 
-use super::{slow_card, Served};
+use super::{card_of, slow_card, Served};
 use crate::program::{bad, good};
+use crate::tools;
+use endat_gen::recording::count::Judge;
+use endat_gen::recording::picture::{Counter, Extras, Picture};
 use endat_gen::virtual_card::Door;
 use endat_host::feed::{Cell, Feed, Row};
 use endat_host::transport::Port;
@@ -133,5 +136,62 @@ fn wrong_faults_and_wrong_cards_are_told() {
     assert!(
         all.lines().count() > 10 && all.contains("slow CHANNEL TIME"),
         "{all}"
+    );
+}
+
+/// In a card's own time the same faults give the same rows: the drawing of the page, which shows each of them.
+#[test]
+fn the_drawing_of_a_rehearsal_shows_gaps_and_causes() {
+    let mut card = Card::find(Bridge::new(card_of(&slow_card()))).unwrap();
+    let scales = card.scales().unwrap();
+    let ranges = endat_host::motion::ranges(&scales, &[]);
+    let units: Vec<String> = scales
+        .iter()
+        .map(|s| s.convert(0).unit.to_owned())
+        .collect();
+    let mut counter = Counter::new(&scales, &ranges);
+    let extras = Extras {
+        difference: true,
+        velocity: false,
+    };
+    let mut picture = Picture::new(&units, &[], Judge::default(), extras);
+    let mut feed = Feed::begin(&mut card, false).unwrap();
+    let mut rows = VecDeque::new();
+    let mut count = 0;
+    while count < 400 {
+        feed.fill(&mut card, &mut rows, Duration::from_millis(1))
+            .unwrap();
+        for row in rows.drain(..) {
+            let fault = match count {
+                60 => "crc 1",
+                120 => "unplug 0",
+                200 => "plug 0",
+                260 => "f1 1 5",
+                320 => "silent 0",
+                _ => "",
+            };
+            if !fault.is_empty() {
+                card.bridge().transport().inject(fault).unwrap();
+            }
+            count += 1;
+            let time_s = row.cycles as f64 / f64::from(card.identity().system_hz);
+            picture.push(&counter.measurement(&row, time_s, Vec::new()));
+        }
+    }
+    let drawn = picture.svg("A rehearsal", "crc 1, unplug 0, plug 0, f1 1 5, silent 0");
+    for lane in [
+        "channel 0 data_not_low: 3<",
+        "channel 0 no_start_bit: 1<",
+        "channel 1 crc: 1<",
+        "channel 1 f1: 5<",
+    ] {
+        assert!(drawn.contains(lane), "{lane}");
+    }
+    // Before, between and behind the two gaps.
+    assert_eq!(drawn.matches("class=\"series-0\"").count(), 3);
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/recording.svg");
+    assert!(
+        drawn == tools::committed(&path, &drawn),
+        "UPDATE_EXPECT=1 draws docs/recording.svg again"
     );
 }

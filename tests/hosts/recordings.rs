@@ -58,7 +58,8 @@ fn every_form_has_the_same_rows() {
     }
     for file in &files {
         let drawing = file.replace("/r.", "/drawn-") + ".svg";
-        good(&["plot", file, "-o", &drawing, "--difference", "--velocity"]);
+        let plot = run(&["plot", file, "-o", &drawing, "--difference", "--velocity"]);
+        assert_eq!(plot.exit_code, 0, "{plot:?}");
         let drawn = fs::read_to_string(&drawing).unwrap();
         for panel in [
             "channel 1 (deg)",

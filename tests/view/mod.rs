@@ -506,3 +506,44 @@ fn a_browser_shows_the_page_and_obeys_its_keys() {
         text(&output.stderr)
     );
 }
+
+/// Catches a page that makes faults in a card that nobody has called a virtual one, and one whose words are not looked at.
+#[test]
+fn only_a_page_that_rehearses_makes_faults() {
+    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    let inject = "/api/inject?fault=crc&channel=1&value=1000000";
+    let plain = View::local("view_no_rehearsal", &card.name);
+    assert_eq!(plain.ask("POST", inject).0, 405);
+    assert_eq!(
+        plain.ask("GET", "/api/card").1["faults"],
+        serde_json::json!([])
+    );
+    drop(plain);
+    let view = View::new(
+        "view_rehearsal",
+        &card.name,
+        &["--listen", "127.0.0.1:0", "--rehearse"],
+    );
+    let all = view.ask("GET", "/api/card").1["faults"].clone();
+    assert!(
+        all.as_array().unwrap().iter().any(|f| f[0] == "unplug"),
+        "{all}"
+    );
+    let wrong = view.ask("POST", "/api/inject?fault=unplgu&channel=0");
+    assert_eq!(wrong.0, 400);
+    assert!(
+        wrong.1["error"]
+            .as_str()
+            .unwrap()
+            .contains("did you mean unplug?"),
+        "{wrong:?}"
+    );
+    assert_eq!(view.ask("GET", inject).0, 405);
+    let (status, told) = view.ask("POST", inject);
+    assert_eq!(status, 200, "{told}");
+    let begin = Instant::now();
+    while view.ask("GET", "/api/now").1["channels"][1]["cause"] != "crc" {
+        assert!(begin.elapsed() < Duration::from_secs(60), "never");
+        thread::sleep(Duration::from_millis(100));
+    }
+}

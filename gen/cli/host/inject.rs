@@ -37,12 +37,17 @@ pub fn run(arguments: &InjectArgs) -> Result<Outcome, GenError> {
         return Ok(Outcome::good(lines.collect::<String>()));
     }
     let words: Vec<&str> = arguments.fault.iter().map(String::as_str).collect();
-    // Before anybody is asked.
-    Fault::parse(&words).map_err(GenError::input)?;
     let port = arguments.port.as_deref().unwrap_or_default();
+    make(port, &words).map(|done| Outcome::good(done + "\n"))
+}
+
+/// Makes a fault in the card of a port; what was done.
+pub fn make(port: &str, words: &[&str]) -> Result<String, GenError> {
+    // Before anybody is asked.
+    Fault::parse(words).map_err(GenError::input)?;
     let answer = ask(port, &words.join(" "))?;
     match answer.trim_end().split_once(' ') {
-        Some(("ok", done)) => Ok(Outcome::good(format!("{done}\n"))),
+        Some(("ok", done)) => Ok(done.to_owned()),
         Some(("error", why)) => Err(GenError::input(why)),
         _ => Err(GenError::CheckFailed(vec![format!(
             "--port = {port}: no virtual card of this program answers; faults are made in one that `endat-gen card --tcp` has begun"

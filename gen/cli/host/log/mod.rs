@@ -18,8 +18,9 @@ pub use options::LogArgs;
 use progress::{Progress, Watch, SILENCE};
 use std::collections::VecDeque;
 use std::io::{self, Write};
-use std::sync::atomic::Ordering;
-use std::sync::mpsc::{sync_channel, Receiver, RecvTimeoutError, SyncSender};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{channel, Receiver, RecvTimeoutError, Sender};
+use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -180,20 +181,49 @@ fn still(filled: Result<(), HostError>, rows: u64) -> Result<(), Failure> {
     }
 }
 
-/// Batches of rows that wait for the disk at most: half a minute of a card. What comes then is lost in the card, and counted.
-const BATCHES: usize = 256;
+/// Rows that wait for the disk at most: half a minute at 10 kHz. What comes then is lost in the card, and counted.
+const WAITING_MAX: usize = 300_000;
+/// How long a full queue is waited for before it is looked at again.
+const FULL: Duration = Duration::from_millis(1);
+
+/// Rows on their way to the disk.
+struct Queue {
+    give: Sender<Vec<Row>>,
+    waiting: Arc<AtomicUsize>,
+}
+
+impl Queue {
+    /// False if nobody takes them any more.
+    fn put(&self, rows: Vec<Row>) -> bool {
+        let count = rows.len();
+        self.waiting.fetch_add(count, Ordering::Relaxed);
+        let mut is_taken = self.give.send(rows).is_ok();
+        while is_taken && self.waiting.load(Ordering::Relaxed) > WAITING_MAX {
+            thread::sleep(FULL);
+            is_taken = self.give.send(Vec::new()).is_ok();
+        }
+        is_taken
+    }
+}
 
 /// Gives rows to the files, until there are no more or no more are wanted.
-fn write(mut recorder: Recorder, rows: &Receiver<Vec<Row>>) -> (io::Result<()>, Recorder) {
+fn write(
+    mut recorder: Recorder,
+    rows: &Receiver<Vec<Row>>,
+    waiting: &AtomicUsize,
+) -> (io::Result<()>, Recorder) {
     let mut flushed = Instant::now();
     let mut all = || loop {
         match rows.recv_timeout(FLUSH) {
-            Ok(batch) => batch
-                .into_iter()
-                .try_for_each(|row| match recorder.is_over() {
-                    true => Ok(()),
-                    false => recorder.row(row),
-                })?,
+            Ok(batch) => {
+                waiting.fetch_sub(batch.len(), Ordering::Relaxed);
+                for row in batch {
+                    if recorder.is_over() {
+                        return Ok(());
+                    }
+                    recorder.row(row)?;
+                }
+            }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return Ok(()),
         }
@@ -218,11 +248,16 @@ fn record(
     count: &mut Count,
     end: &End,
 ) -> (Result<(), Failure>, Recorder) {
-    let (give, take) = sync_channel(BATCHES);
-    let writer = thread::spawn(move || write(recorder, &take));
+    let (give, take) = channel();
+    let waiting = Arc::new(AtomicUsize::new(0));
+    let queue = Queue {
+        give,
+        waiting: waiting.clone(),
+    };
+    let writer = thread::spawn(move || write(recorder, &take, &waiting));
     let mut progress = Progress::new(end.samples);
-    let taken = take_rows(card, feed, &give, (count, &mut progress), end);
-    drop(give);
+    let taken = take_rows(card, feed, &queue, (count, &mut progress), end);
+    drop(queue);
     progress.clear();
     let (written, recorder) = writer
         .join()
@@ -233,7 +268,7 @@ fn record(
 fn take_rows(
     card: &mut AnyCard,
     feed: &mut Feed,
-    give: &SyncSender<Vec<Row>>,
+    queue: &Queue,
     (count, progress): (&mut Count, &mut Progress),
     end: &End,
 ) -> Result<(), Failure> {
@@ -258,7 +293,7 @@ fn take_rows(
         rows.truncate(usize::try_from(left).unwrap_or(usize::MAX));
         rows.iter().for_each(|row| count.note(row));
         // Nobody takes them any more: the disk is full, or all events are there.
-        let is_over = give.send(rows.drain(..).collect()).is_err()
+        let is_over = !queue.put(rows.drain(..).collect())
             || end.samples == Some(count.rows)
             || (end.seconds).is_some_and(|s| begin.elapsed() >= Duration::from_secs(s));
         if is_over || stop.load(Ordering::Relaxed) {

@@ -1,12 +1,13 @@
 //! What a page asks, and what it is answered.
 
 use super::super::reg;
-use super::super::{id::plate_text, margin};
+use super::super::{id::plate_text, inject, margin};
 use super::collect::{call, Shared};
 use super::guard::Guard;
 use super::history::names;
 use super::http::{Request, Response};
 use crate::error::GenError;
+use crate::virtual_card::FAULTS;
 use endat_host::feed::NO_CAUSES;
 use endat_host::registers::Place;
 use endat_host::{causes, HostError};
@@ -54,6 +55,8 @@ pub struct Api {
     pub port: String,
     /// How long nothing may come before what is shown is old.
     pub may_be_silent: Duration,
+    /// The card is a virtual one, and the page may make faults in it.
+    pub rehearses: bool,
 }
 
 /// An error that a page shows.
@@ -121,6 +124,7 @@ impl Api {
             ("POST", "/api/parameter") => self.parameter(request),
             ("POST", "/api/record") => self.record(true),
             ("POST", "/api/stop") => self.record(false),
+            ("POST", "/api/inject") if self.rehearses => self.inject(request),
             (_, path) if path.starts_with("/api/") => Err(Refusal(
                 405,
                 format!(
@@ -170,6 +174,7 @@ impl Api {
             "traces": traces.collect::<Vec<_>>(),
             "causes": all.chain(others).collect::<serde_json::Map<_, _>>(),
             "folder": self.folder.display().to_string(),
+            "faults": if self.rehearses { &FAULTS[..] } else { &[] },
         })
     }
 
@@ -340,5 +345,13 @@ impl Api {
             .as_ref()
             .map(|r| r.path.display().to_string());
         Ok(json!({ "path": path }))
+    }
+
+    /// A fault of the virtual card.
+    fn inject(&self, request: &Request) -> Result<Value, Refusal> {
+        let of = |name: &str| request.query.get(name).map_or("", |text| text.trim());
+        let words = [of("fault"), of("channel"), of("value")];
+        let words: Vec<&str> = words.into_iter().filter(|w| !w.is_empty()).collect();
+        Ok(json!({ "done": inject::make(&self.port, &words)? }))
     }
 }

@@ -52,6 +52,9 @@ pub struct ViewArgs {
     /// Folder for recordings that are begun on the page [default: recordings]
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
+    /// Let the page make faults: the card is a virtual one behind TCP
+    #[arg(long)]
+    rehearse: bool,
 }
 
 /// A token that nobody guesses.
@@ -95,6 +98,11 @@ pub fn run(arguments: &ViewArgs) -> Result<Outcome, GenError> {
         arguments.port.checked_name()?.to_owned(),
         arguments.port.baud()?,
     );
+    if arguments.rehearse && !name.starts_with("tcp:") {
+        return Err(GenError::input(format!(
+            "--rehearse: faults are made in a virtual card behind TCP, not in {name}; begin one with `endat-gen card --tcp 127.0.0.1:7700`"
+        )));
+    }
     let listener = TcpListener::bind(address).map_err(fail)?;
     let local = listener.local_addr().map_err(fail)?;
     let token = match (&arguments.token, local.ip().is_loopback()) {
@@ -147,6 +155,7 @@ pub fn run(arguments: &ViewArgs) -> Result<Outcome, GenError> {
         folder,
         port,
         may_be_silent,
+        rehearses: arguments.rehearse,
     };
     http::serve(&listener, &stop, move |request| api.answer(request)).map_err(fail)?;
     // The thread has seen the same flag; it leaves the card quiet.

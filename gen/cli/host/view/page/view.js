@@ -440,6 +440,28 @@ async function parameter(event) {
   } catch (error) { out.textContent = error.message; }
 }
 
+// A virtual card takes faults; what each is stands below.
+function faults() {
+  document.querySelector("[data-tab=rehearsal]").hidden = card.faults.length === 0;
+  const select = $("inject").elements.fault;
+  select.replaceChildren(...card.faults.map(([name]) => make("option", name)));
+  faultIs();
+}
+
+function faultIs() {
+  const fault = card.faults.find(([name]) => name === $("inject").elements.fault.value);
+  $("inject-is").textContent = fault ? `${fault[0]} ${fault[1]}: ${fault[2]}` : "";
+}
+
+async function inject(event) {
+  event.preventDefault();
+  const out = $("inject-done");
+  out.textContent = "...";
+  try {
+    out.textContent = (await ask("/api/inject?" + new URLSearchParams(new FormData($("inject"))), "POST")).done;
+  } catch (error) { out.textContent = error.message; }
+}
+
 async function record() {
   try { await ask(now && now.recording ? "/api/stop" : "/api/record", "POST"); } catch (error) {
     complaint = { text: error.message, until: performance.now() + 10000 };
@@ -470,6 +492,8 @@ $("record").addEventListener("click", record);
 $("theme").addEventListener("click", theme);
 $("register-search").addEventListener("input", listed);
 $("parameter").addEventListener("submit", parameter);
+$("inject").addEventListener("submit", inject);
+$("inject").elements.fault.addEventListener("change", faultIs);
 
 const KEYS = {
   p: () => show("position"), v: () => show("velocity"), d: () => show("difference"), l: () => live(), a: () => live("all"),
@@ -516,6 +540,7 @@ async function poll() {
       card = await ask("/api/card");
       plot = null; now = told;
       begin();
+      faults();
       live();
     }
     now = told;
