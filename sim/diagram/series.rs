@@ -248,10 +248,17 @@ pub fn series_svg(series: &[Series], lanes: &[Lane], title: &str, subtitle: &str
     let width = (WIDTH * row_s / (end - begin)).clamp(1.0, LANE_MARK_MAX);
     for lane in lanes {
         svg.rect(LEFT, bottom, WIDTH, LANE, "floor");
-        let marks = lane.times.iter().filter(|c| *c.1 > 0);
-        let marks: BTreeSet<i64> = marks.map(|c| x(c.0).round() as i64).collect();
-        for x in marks {
-            svg.rect(x as f64 - 0.5, bottom, width, LANE, "lane");
+        let mut marks: Vec<(f64, f64)> = Vec::new();
+        for (time, _) in lane.times.iter().filter(|c| *c.1 > 0) {
+            let from = x(time) - width / 2.0;
+            match marks.last_mut() {
+                // What lasts is one mark.
+                Some(last) if from <= last.1 + width / 2.0 => last.1 = from + width,
+                _ => marks.push((from, from + width)),
+            }
+        }
+        for (from, to) in marks {
+            svg.rect(from, bottom, to - from, LANE, "lane");
         }
         let text = format!("{}: {}", lane.name, lane.count);
         let place = LEFT + WIDTH + 8.0;
