@@ -46,7 +46,7 @@ fn scale(scale: &Scale, range: Option<u64>) -> Value {
     object
 }
 
-/// The scale, and after how many positions it begins anew, of what [`scale`] has written.
+/// The scale, and after how many positions it begins anew, of what a channel of a description says.
 pub fn scale_of(object: &Value) -> Option<(Scale, Option<u64>)> {
     let scale = match (
         object["steps_per_turn"].as_u64(),
