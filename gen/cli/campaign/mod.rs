@@ -1,5 +1,6 @@
 //! `campaign`: thousands of cases in lanes; one of them again, alone, with waveforms and a drawing.
 
+mod mutants;
 mod options;
 mod tallies;
 
@@ -23,7 +24,7 @@ pub struct CampaignArgs {
     /// Of merge and page: files that --out has written
     #[arg(value_name = "PART")]
     parts: Vec<PathBuf>,
-    /// Number of random cases [default: random 10000; upsets: every flip-flop in turn; garbage 1000000; configurations 5000, and 2000 spoilt ones]
+    /// Number of random cases [default: random 10000; upsets: every flip-flop in turn; garbage 1000000; configurations 5000, and 2000 spoilt ones; mutants 30 of each block]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     cases: Option<String>,
     /// Of upsets: moments of each kind of frame at which every flip-flop is inverted [default: 65]
@@ -37,10 +38,10 @@ pub struct CampaignArgs {
     /// Of faults: at every N-th quarter of a bit [default: 1]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     step: Option<String>,
-    /// Of upsets, faults, garbage: only this port; of upsets also t_format_port, card [default: all]
+    /// Of upsets, faults, garbage: only this port; of upsets also t_format_port, card; of mutants: only this card [default: all]
     #[arg(long, value_name = "NAME")]
     subject: Option<String>,
-    /// Of upsets: only registers whose hierarchical name begins so
+    /// Of upsets: only registers whose hierarchical name begins so; of mutants: only blocks
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
     /// Seed of the random cases [default: 1]
@@ -85,11 +86,13 @@ enum Name {
     Garbage,
     /// Every word of encoders up to 13 bits, against a reference
     Accept,
+    /// Every block of the emitted Verilog with one bit of one cell changed: who sees it
+    Mutants,
     /// Random configurations: every emission linted in both languages, some benches run; and spoilt ones
     Configurations,
     /// Put the parts of one campaign together
     Merge,
-    /// The page docs/reliability.md, from the files of whole campaigns
+    /// The page docs/reliability.md, from the files of whole campaigns; docs/mutants.md, from that of mutants
     Page,
 }
 

@@ -3,13 +3,13 @@
 use super::{CampaignArgs, Name};
 use crate::error::GenError;
 use clap::ValueEnum;
-use Name::{Accept, Configurations, Faults, Garbage, Merge, Page, Random, Sweep, Upsets};
+use Name::{Accept, Configurations, Faults, Garbage, Merge, Mutants, Page, Random, Sweep, Upsets};
 
 /// Those that count what becomes of each case.
-const COUNTING: &[Name] = &[Upsets, Faults, Garbage, Accept, Configurations];
+const COUNTING: &[Name] = &[Upsets, Faults, Garbage, Accept, Configurations, Mutants];
 /// Those that have cases.
 #[rustfmt::skip]
-const RUNNING: &[Name] = &[Sweep, Random, Upsets, Faults, Garbage, Accept, Configurations];
+const RUNNING: &[Name] = &[Sweep, Random, Upsets, Faults, Garbage, Accept, Configurations, Mutants];
 
 impl CampaignArgs {
     /// Each option that is not of every campaign: whether it is there, and whose it is.
@@ -19,33 +19,41 @@ impl CampaignArgs {
             (
                 "--cases",
                 self.cases.is_some(),
-                &[Random, Upsets, Garbage, Configurations],
+                &[Random, Upsets, Garbage, Configurations, Mutants],
             ),
             ("--moments", self.moments.is_some(), &[Upsets]),
             ("--step", self.step.is_some(), &[Faults]),
             (
                 "--subject",
                 self.subject.is_some(),
-                &[Upsets, Faults, Garbage],
+                &[Upsets, Faults, Garbage, Mutants],
             ),
-            ("--only", self.only.is_some(), &[Upsets]),
+            ("--only", self.only.is_some(), &[Upsets, Mutants]),
             (
                 "--seed",
                 self.seed.is_some(),
-                &[Random, Upsets, Faults, Garbage, Configurations],
+                &[Random, Upsets, Faults, Garbage, Configurations, Mutants],
             ),
             ("--quick", self.quick, COUNTING),
             ("--shard", self.shard.is_some(), COUNTING),
             (
                 "--out",
                 self.out.is_some(),
-                &[Upsets, Faults, Garbage, Accept, Configurations, Merge],
+                &[
+                    Upsets,
+                    Faults,
+                    Garbage,
+                    Accept,
+                    Configurations,
+                    Mutants,
+                    Merge,
+                ],
             ),
             ("--threads", self.threads.is_given(), RUNNING),
             (
                 "--case",
                 self.case.is_some(),
-                &[Sweep, Random, Configurations],
+                &[Sweep, Random, Configurations, Mutants],
             ),
             ("--vcd", self.vcd.is_some(), &[Sweep, Random]),
             ("--svg", self.svg.is_some(), &[Sweep, Random]),

@@ -1,8 +1,9 @@
 //! Campaigns that count what becomes of each case: parts, tables, budgets.
 
-use super::{fault, CampaignArgs, Name};
+use super::{fault, mutants, CampaignArgs, Name};
 use crate::campaign::card::{self, CardUpsets};
 use crate::campaign::configurations::Configurations;
+use crate::campaign::mutants::{page as page_of_mutants, NAME};
 use crate::campaign::part::{merge, shard, Identity, Part};
 use crate::campaign::{budget, page, reference, report};
 use crate::cli::number::{number, number_if};
@@ -39,9 +40,11 @@ pub fn run(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
         Name::Merge => merged(arguments),
         Name::Page => {
             let parts = arguments.parts.iter().map(|path| Part::read(path));
-            Ok(Outcome::good(page::page(
-                &parts.collect::<Result<Vec<_>, _>>()?,
-            )?))
+            let parts = parts.collect::<Result<Vec<_>, _>>()?;
+            Ok(Outcome::good(match &parts[..] {
+                [part] if part.identity.campaign == NAME => page_of_mutants(part),
+                parts => page::page(parts)?,
+            }))
         }
         _ => one(arguments, seed),
     }
@@ -61,6 +64,10 @@ fn one(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
             let plan = format!("seed {seed}");
             ("configurations", plan, Box::new(configurations) as _)
         }
+        Name::Mutants => match mutants::asked(arguments, seed, part)? {
+            mutants::Asked::One(outcome) => return Ok(outcome),
+            mutants::Asked::All(plan, mutants) => (NAME, plan, Box::new(mutants) as _),
+        },
         _ => {
             let (name, plan, campaign) = chosen(arguments, seed)?;
             (name, plan, campaign?)

@@ -1,0 +1,186 @@
+//! All mutants of a card in one program: its bench, with the number of a mutant, says whether it sees it.
+
+use super::list::{files, reading_bare, yosys_must, Mutation};
+use super::{recorder, Emission};
+use crate::artifact::Artifact;
+use crate::error::{shorten, GenError};
+use crate::{readers, scratch, tools};
+use rtl_design::elaborate::Module;
+use rtl_design::verilog::file_name;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// The control input of a module with mutants, and its bits.
+const CONTROL: &str = "mutant";
+const CONTROL_BITS: usize = 20;
+/// A run may take so many times the cycles of the card as it is.
+const LONGER: u64 = 2;
+/// From so many runs on a program that takes longer to make, and runs faster, is worth it.
+const MANY: usize = 100;
+
+/// A module with mutants, and the number of the first of them.
+pub struct Mutated<'a> {
+    /// Its index in the design.
+    pub module: usize,
+    /// They.
+    pub mutations: &'a [Mutation],
+    /// Number of the first one, from 1 on: 0 is the card as it is.
+    pub first: u64,
+}
+
+/// A card with its mutants, and its bench.
+pub struct Program {
+    folder: TempDir,
+    /// What the card is as it was emitted: cycles of the run, and the sum over the ports of each module.
+    whole: Run,
+}
+
+/// A run of a bench.
+#[derive(Debug)]
+pub struct Run {
+    /// The bench has nothing to complain about.
+    pub passes: bool,
+    cycles: u64,
+    sums: Vec<u64>,
+}
+
+impl Run {
+    fn new(text: &str) -> Self {
+        let after = |word: &'static str| text.lines().filter_map(move |l| l.strip_prefix(word));
+        let sums = after("sum ").filter_map(|l| l.split_once(' ')?.1.parse().ok());
+        Self {
+            passes: readers::passes(text),
+            cycles: after("cycles ").find_map(|l| l.parse().ok()).unwrap_or(0),
+            sums: sums.collect(),
+        }
+    }
+}
+
+impl Program {
+    /// Builds it, and sees that the bench passes while no mutant is chosen.
+    pub fn new(emission: &Emission, mutated: &[Mutated]) -> Result<Self, GenError> {
+        let subject = &emission.subject;
+        let folder = scratch::folder()?;
+        crate::artifact::write(folder.path(), &subject.files, scratch::REMEDY)?;
+        for one in mutated {
+            let module = &subject.design.modules[one.module];
+            let text = mutated_text(emission, module, one)?;
+            let file = Artifact::new(file_name(&module.name), text);
+            crate::artifact::write(folder.path(), &[file], scratch::REMEDY)?;
+        }
+        let runs = mutated.iter().map(|m| m.mutations.len()).sum::<usize>();
+        build(
+            folder.path(),
+            emission,
+            if runs < MANY { "-O0" } else { "-O1" },
+        )?;
+        let mut program = Self {
+            folder,
+            whole: Run::new(""),
+        };
+        let (whole, text) = program.play(&[])?;
+        if !whole.passes {
+            return Err(GenError::input(format!(
+                "campaign mutants: {}: the bench does not pass while no mutant is chosen: {}; mend that first",
+                subject.name,
+                shorten(text.trim())
+            )));
+        }
+        program.whole = whole;
+        Ok(program)
+    }
+
+    /// Runs a mutant of a module; whether the bench passes, and whether any port of that module, or directly below, was another one in any cycle.
+    pub fn run(&self, mutant: u64, module: usize) -> Result<(bool, bool), GenError> {
+        let (mutant, watched) = (format!("+mutant={mutant}"), format!("+watched={module}"));
+        let limit = format!("+cycles_max={}", LONGER * self.whole.cycles);
+        let (run, _) = self.play(&[&mutant, &watched, &limit, "+first"])?;
+        let differs = run.sums.get(module) != self.whole.sums.get(module);
+        Ok((run.passes, differs))
+    }
+
+    fn play(&self, plusargs: &[&str]) -> Result<(Run, String), GenError> {
+        let program = self.folder.path().join("obj_dir/sim");
+        let text = tools::run(&program.display().to_string(), self.folder.path(), plusargs)?.text();
+        Ok((Run::new(&text), text))
+    }
+}
+
+/// A module with all its mutants, chosen by a plusarg.
+fn mutated_text(emission: &Emission, module: &Module, one: &Mutated) -> Result<String, GenError> {
+    let subject = &emission.subject;
+    let folder = scratch::folder()?;
+    crate::artifact::write(folder.path(), &files(subject, module), scratch::REMEDY)?;
+    let mut script = reading_bare(subject, module);
+    for (number, mutation) in (one.first..).zip(one.mutations) {
+        script += &format!(
+            "mutate -ctrl {CONTROL} {CONTROL_BITS} {number} {}\n",
+            mutation.options
+        );
+    }
+    let out = "mutated.v";
+    // The control is no port: other modules stay as they are.
+    script += &format!(
+        "delete -input {}/w:{CONTROL}\nselect {}\nwrite_verilog -noattr -selected {out}\n",
+        module.name, module.name
+    );
+    yosys_must(folder.path(), "mutate", script)?;
+    let path = folder.path().join(out);
+    let text = std::fs::read_to_string(&path)
+        .map_err(|e| GenError::io("read", &path, &e, scratch::REMEDY))?;
+    let wire = format!("wire [{}:0] {CONTROL};", CONTROL_BITS - 1);
+    let reg = format!(
+        "reg [{}:0] {CONTROL}; initial if (!$value$plusargs(\"mutant=%d\", {CONTROL})) {CONTROL} = 0;",
+        CONTROL_BITS - 1
+    );
+    match text.matches(&wire).count() {
+        1 => Ok(format!(
+            "`timescale 1ns / 1ps\n{}",
+            text.replace(&wire, &reg)
+        )),
+        count => Err(GenError::fault(
+            "campaign mutants",
+            &format!("{}: {wire} stands there {count} times", module.name),
+        )),
+    }
+}
+
+/// Verilator makes a program of the files in a folder, and the bench.
+fn build(folder: &Path, emission: &Emission, optimised: &str) -> Result<(), GenError> {
+    let bench = &emission.bench;
+    let name = bench.path.trim_end_matches(".v");
+    let recorder = format!("{}.v", recorder::TOP);
+    let files = [
+        bench.clone(),
+        Artifact::new(&recorder, recorder::text(&emission.subject, name)),
+    ];
+    crate::artifact::write(folder, &files, scratch::REMEDY)?;
+    let fast = format!("OPT_FAST={optimised}");
+    let mut arguments = vec![
+        "--binary",
+        "--timing",
+        "-O3",
+        "-Wno-fatal",
+        "-Wno-lint",
+        "-Wno-style",
+        "-MAKEFLAGS",
+        &fast,
+        "--top-module",
+        recorder::TOP,
+        "-o",
+        "sim",
+        &recorder,
+        &bench.path,
+    ];
+    arguments.extend(emission.subject.files.iter().map(|f| f.path.as_str()));
+    let ran = tools::run("verilator", folder, &arguments)?;
+    if ran.is_good {
+        return Ok(());
+    }
+    let text = ran.text();
+    let at = text.find("%Error").unwrap_or(0);
+    Err(GenError::fault(
+        "campaign mutants",
+        &format!("verilator: {}", shorten(text[at..].trim())),
+    ))
+}

@@ -1,0 +1,53 @@
+//! Whether a mutant is one at all: side by side with its module, all inputs alike, no output is ever another one.
+
+use super::list::{children, files, reading_bare, yosys, Mutation};
+use crate::error::GenError;
+use crate::prove::Subject;
+use crate::scratch;
+use rtl_design::elaborate::Module;
+
+/// Seconds for one question.
+const TIMEOUT_S: u32 = 30;
+/// Longest induction, in cycles.
+const STEPS_MAX: u32 = 8;
+
+/// Ways to prove it, from the quick one to the slow one: what is done with both before they are compared, and the question.
+fn ways() -> [(&'static str, String); 3] {
+    let ask = format!("sat -prove trigger 0 -timeout {TIMEOUT_S}");
+    let induct = format!("{ask} -tempinduct -maxsteps {STEPS_MAX}");
+    [
+        // Whatever the registers hold: the same outputs, and the same next contents.
+        ("expose -evert-dff gold gate\n", ask),
+        // From the start values on, with the same contents in every cycle.
+        ("expose -dff gold gate\n", induct.clone()),
+        // From the start values on, whatever is inside.
+        ("", induct),
+    ]
+}
+
+/// Whether it is proved. What stands below the module is cut off: what goes there counts as an output.
+pub fn is_equal(subject: &Subject, module: &Module, mutation: &Mutation) -> Result<bool, GenError> {
+    let folder = scratch::folder()?;
+    crate::artifact::write(folder.path(), &files(subject, module), scratch::REMEDY)?;
+    let name = &module.name;
+    let mut both = format!(
+        "{}copy {name} gold\nmutate {}\nrename {name} gate\n",
+        reading_bare(subject, module),
+        mutation.options
+    );
+    for below in children(subject, module) {
+        both += &format!("expose -evert t:{below}\n");
+    }
+    both += "expose -evert t:$mem*\n";
+    for (prepared, question) in ways() {
+        let script = format!(
+            "{both}{prepared}miter -equiv -flatten gold gate miter\ndelete gold gate\n\
+             opt_merge\nopt_expr\nopt_clean\n{question} miter\n"
+        );
+        let ran = yosys(folder.path(), "equal", script)?;
+        if ran.is_good && ran.stdout.contains("SUCCESS!") {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}

@@ -1,0 +1,287 @@
+//! The campaign over mutants: one bit of one cell of one block of the emitted Verilog is another one, and bench, comparison with the design, or
+//! proof must see it.
+//!
+//! ```text
+//! emission -> list: yosys lists mutants of each block -> bench: all of a card in one program, run with the number of each
+//!                                 not seen at the pins -> recorder: seen at a port of its block?
+//!                                 not seen there       -> equal: does it change anything at all?
+//!                                 it does              -> prove: does a property still hold?
+//! ```
+
+mod bench;
+mod equal;
+mod list;
+mod page;
+mod reasons;
+pub mod recorder;
+
+pub use page::{page, table};
+
+use crate::artifact::{sha256, Artifact};
+use crate::config::{load_any_preset, parse_any, Configuration};
+use crate::error::GenError;
+use crate::prove::{self, Subject};
+use crate::readers::is_bench;
+use bench::{Mutated, Program};
+use endat_sim::campaign::{Campaign, Row, Shard, Tally};
+use list::Mutation;
+use std::ops::Range;
+
+/// The campaign's name.
+pub const NAME: &str = "mutants";
+
+/// Cards that together have all blocks: presets, and one for what no preset has. A block is tried in the first one that has it.
+const SUBJECTS: [&str; 5] = [
+    "s6_two_channel",
+    "async_dsp",
+    "mixed_protocols",
+    "s6_two_channel_service",
+    "ti_three_channel",
+];
+
+/// A card as it is emitted, and its bench.
+pub struct Emission {
+    /// The card.
+    pub subject: Subject,
+    /// What simulates it.
+    pub bench: Artifact,
+}
+
+impl Emission {
+    /// Of a configuration.
+    fn new(configuration: &Configuration) -> Result<Self, GenError> {
+        let (subject, files) = match configuration {
+            Configuration::Card(card) => (Subject::new(card)?, crate::emit(card)?),
+            Configuration::Receiver(receiver) => (
+                Subject::receiver(receiver)?,
+                crate::t_format::emit(receiver)?,
+            ),
+        };
+        let bench = files.into_iter().find(is_bench).ok_or_else(|| {
+            GenError::input(format!("{}: has no bench, one is needed", subject.name))
+        })?;
+        Ok(Self { subject, bench })
+    }
+
+    /// Of a preset.
+    pub fn preset(name: &str) -> Result<Self, GenError> {
+        Self::new(&load_any_preset(name)?)
+    }
+
+    /// Of a configuration's text.
+    pub fn text(name: &str, text: &str) -> Result<Self, GenError> {
+        Self::new(&parse_any(name, text)?)
+    }
+}
+
+/// Names of the cards.
+pub fn subjects() -> impl Iterator<Item = &'static str> {
+    SUBJECTS.into_iter()
+}
+
+/// The mutants of one block.
+struct Group {
+    /// Index of its card.
+    emission: usize,
+    /// Index of its module there.
+    module: usize,
+    mutations: Vec<Mutation>,
+}
+
+/// Mutants of blocks.
+pub struct Mutants {
+    emissions: Vec<Emission>,
+    groups: Vec<Group>,
+    /// Of each card whose mutants are to be run.
+    programs: Vec<Option<Program>>,
+}
+
+/// What saw a mutant, or why it is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Fate {
+    /// The emitted bench.
+    Bench,
+    /// A port of the block, or directly below it, is another one in a cycle of that bench.
+    Ports,
+    /// A property does not hold.
+    Proof,
+    /// Nothing: it is proved that it changes nothing.
+    Equivalent,
+    /// Nothing, and it is not proved that it changes nothing.
+    Survivor,
+}
+
+impl Fate {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Bench,
+        Self::Ports,
+        Self::Proof,
+        Self::Equivalent,
+        Self::Survivor,
+    ];
+
+    /// The class in results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bench => "bench",
+            Self::Ports => "ports",
+            Self::Proof => "proof",
+            Self::Equivalent => "equivalent",
+            Self::Survivor => "survivor",
+        }
+    }
+
+    /// Whether it is seen.
+    pub const fn is_killed(self) -> bool {
+        matches!(self, Self::Bench | Self::Ports | Self::Proof)
+    }
+}
+
+impl Mutants {
+    /// So many mutants of each block whose name begins with `only`, at most. Blocks that two cards have are tried in the first one.
+    pub fn new(
+        emissions: Vec<Emission>,
+        per_block: u64,
+        seed: u64,
+        only: &str,
+    ) -> Result<Self, GenError> {
+        let mut seen: Vec<String> = vec![];
+        let mut groups = vec![];
+        for (index, emission) in emissions.iter().enumerate() {
+            for (place, module) in emission.subject.design.modules.iter().enumerate() {
+                if seen.contains(&module.type_name) || !module.type_name.starts_with(only) {
+                    continue;
+                }
+                seen.push(module.type_name.clone());
+                groups.push(Group {
+                    emission: index,
+                    module: place,
+                    mutations: list::mutations(&emission.subject, module, per_block, seed)?,
+                });
+            }
+        }
+        Ok(Self {
+            programs: emissions.iter().map(|_| None).collect(),
+            emissions,
+            groups,
+        })
+    }
+
+    /// Makes the programs that a part of the campaign needs. A card whose bench does not pass as it is, is refused.
+    pub fn prepare(&mut self, shard: Shard, progress: &dyn Fn(&str)) -> Result<(), GenError> {
+        let all: u64 = self.groups().iter().sum();
+        let cases = shard.cases(all);
+        for (index, emission) in self.emissions.iter().enumerate() {
+            let mut first = 0;
+            let mut mutated = vec![];
+            for group in &self.groups {
+                let end = first + group.mutations.len() as u64;
+                let is_asked = first < cases.end && cases.start < end;
+                if group.emission == index && is_asked {
+                    mutated.push(Mutated {
+                        module: group.module,
+                        mutations: &group.mutations,
+                        first: first + 1,
+                    });
+                }
+                first = end;
+            }
+            if !mutated.is_empty() {
+                progress(&format!("{}: building", emission.subject.name));
+                self.programs[index] = Some(Program::new(emission, &mutated)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs one; what became of it, the block, and its place.
+    pub fn case(&self, case: u64) -> Result<(Fate, &str, &str), GenError> {
+        let mut at = case;
+        let mut groups = self.groups.iter();
+        let group = groups.find(|g| match at.checked_sub(g.mutations.len() as u64) {
+            Some(rest) => {
+                at = rest;
+                false
+            }
+            None => true,
+        });
+        let group = group.ok_or_else(|| GenError::fault(NAME, &"no such case"))?;
+        let mutation = &group.mutations[at as usize];
+        let fate = self.fate(group, mutation, case + 1)?;
+        let module = &self.emissions[group.emission].subject.design.modules[group.module];
+        Ok((fate, &module.type_name, &mutation.place))
+    }
+
+    fn fate(&self, group: &Group, mutation: &Mutation, number: u64) -> Result<Fate, GenError> {
+        let subject = &self.emissions[group.emission].subject;
+        let module = &subject.design.modules[group.module];
+        let program = self.programs[group.emission].as_ref();
+        let program = program.ok_or_else(|| GenError::fault(NAME, &"no program"))?;
+        let (passes, differs) = program.run(number, group.module)?;
+        if !passes {
+            return Ok(Fate::Bench);
+        }
+        if differs {
+            return Ok(Fate::Ports);
+        }
+        if equal::is_equal(subject, module, mutation)? {
+            return Ok(Fate::Equivalent);
+        }
+        let mut first = list::reading(subject, module) + &format!("mutate {}\n", mutation.options);
+        for below in list::children(subject, module) {
+            first += &format!("delete ={below}\n");
+        }
+        Ok(match prove::refutes(subject, group.module, &first)? {
+            Some(true) => Fate::Proof,
+            _ => Fate::Survivor,
+        })
+    }
+}
+
+impl Campaign for Mutants {
+    fn digest(&self) -> u64 {
+        let files = self.emissions.iter().flat_map(|e| &e.subject.files);
+        let benches = self.emissions.iter().map(|e| &e.bench);
+        let texts: String = files.chain(benches).map(|f| f.text.as_str()).collect();
+        let digest = sha256(texts.as_bytes());
+        u64::from_str_radix(&digest[..16], 16).unwrap_or(0)
+    }
+
+    fn groups(&self) -> Vec<u64> {
+        self.groups
+            .iter()
+            .map(|g| g.mutations.len() as u64)
+            .collect()
+    }
+
+    fn run(&self, group: usize, cases: Range<u64>) -> Tally {
+        let mut tally = Tally::default();
+        let before: u64 = self.groups().iter().take(group).sum();
+        let group = &self.groups[group];
+        let subject = &self.emissions[group.emission].subject;
+        for at in cases {
+            let case = before + at;
+            // One that is wrong, or not seen, is told with its number, which runs it alone.
+            let (class, place) = match self.case(case) {
+                Ok((Fate::Survivor, _, place)) => {
+                    (Fate::Survivor.name(), format!("case {case}, {place}"))
+                }
+                Ok((fate, ..)) => (fate.name(), "all".into()),
+                Err(error) => ("not_run", format!("case {case}: {error}")),
+            };
+            let row = Row {
+                subject: subject.name.clone(),
+                kind: subject.design.modules[group.module].type_name.clone(),
+                place,
+                class: class.into(),
+            };
+            tally.add(row, 1);
+        }
+        tally
+    }
+
+    fn batch(&self, _group: usize) -> u64 {
+        1
+    }
+}

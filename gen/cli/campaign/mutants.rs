@@ -1,0 +1,83 @@
+//! `campaign mutants`: what it is asked for, and one mutant alone.
+
+use super::CampaignArgs;
+use crate::campaign::mutants::{subjects, Emission, Mutants};
+use crate::cli::number::number;
+use crate::cli::Outcome;
+use crate::error::{shorten, shown, GenError};
+use endat_sim::campaign::{count, Shard};
+use std::io::Write;
+
+/// Mutants of each block, if not told, and of the one block of `--quick`.
+const USUAL: &str = "30";
+const QUICK: u64 = 20;
+/// The card and the block of `--quick`: small ones.
+const QUICK_SUBJECT: &str = "async_dsp";
+const QUICK_BLOCK: &str = "RequestBits";
+/// Most mutants of a block.
+const PER_BLOCK_MAX: u64 = 1000;
+
+/// What is asked for.
+pub(super) enum Asked {
+    /// One case, which has been run.
+    One(Outcome),
+    /// The plan, and the cases.
+    All(String, Mutants),
+}
+
+fn progress(text: &str) {
+    // A progress line that cannot be written is no reason to stop.
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// The campaign that is asked for, ready to run a part of it; or one case of it.
+pub(super) fn asked(
+    arguments: &CampaignArgs,
+    seed: u64,
+    part: Option<Shard>,
+) -> Result<Asked, GenError> {
+    let told = arguments.cases.as_deref().unwrap_or(USUAL);
+    let (per_block, usual_subject, usual_block) = match arguments.quick {
+        true => (QUICK, Some(QUICK_SUBJECT), QUICK_BLOCK),
+        false => (number("--cases", told, 1..=PER_BLOCK_MAX)?, None, ""),
+    };
+    let subject = arguments.subject.as_deref().or(usual_subject);
+    let only = arguments.only.as_deref().unwrap_or(usual_block);
+    let chosen: Vec<&str> = subjects()
+        .filter(|name| subject.is_none_or(|s| s == *name))
+        .collect();
+    if chosen.is_empty() {
+        return Err(GenError::input(format!(
+            "--subject = {}: is no subject of this campaign; take one of {}",
+            shown(subject.unwrap_or_default()),
+            subjects().collect::<Vec<_>>().join(", ")
+        )));
+    }
+    progress("listing mutants");
+    let emissions: Result<Vec<_>, _> = chosen.iter().map(|name| Emission::preset(name)).collect();
+    let mut mutants = Mutants::new(emissions?, per_block, seed, only)?;
+    let all = count(&mutants);
+    if all == 0 {
+        return Err(GenError::input(format!(
+            "--only = {}: no block of --subject {} begins like this; take a name of the first table of docs/mutants.md, or leave it out",
+            shorten(only),
+            subject.unwrap_or("all")
+        )));
+    }
+    if let Some(index) = &arguments.case {
+        let case = number("--case", index, 0..=all - 1)?;
+        // The part with this case alone.
+        let alone = Shard {
+            index: case + 1,
+            of: all,
+        };
+        mutants.prepare(alone, &progress)?;
+        let (fate, block, place) = mutants.case(case)?;
+        let text = format!("case {case} ({block}, {place}): {}\n", fate.name());
+        return Ok(Asked::One(Outcome::good(text)));
+    }
+    mutants.prepare(part.unwrap_or(Shard::WHOLE), &progress)?;
+    let subject = subject.unwrap_or("all");
+    let plan = format!("{per_block} of a block; seed {seed}; subject {subject}; only {only}*");
+    Ok(Asked::All(plan, mutants))
+}
