@@ -21,7 +21,7 @@ pub struct Budget {
 
 /// Classes that a case is in exactly one of.
 pub fn is_case(row: &Row) -> bool {
-    const CLASSES: [&str; 20] = [
+    const CLASSES: [&str; 21] = [
         "masked",
         "detected",
         "lost",
@@ -38,6 +38,7 @@ pub fn is_case(row: &Row) -> bool {
         "not_found",
         "bench",
         "ports",
+        "alone",
         "proof",
         "equivalent",
         "survivor",

@@ -2,6 +2,7 @@
 
 mod configurations;
 mod counted;
+mod mutants;
 mod results;
 mod schedulers;
 

@@ -7,6 +7,7 @@ mod fronts;
 mod lint;
 pub mod mutations;
 mod netlist;
+mod ports;
 mod purpose_bench;
 mod t_format_bench;
 mod t_format_mutations;

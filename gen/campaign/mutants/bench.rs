@@ -1,12 +1,14 @@
 //! All mutants of a card in one program: its bench, with the number of a mutant, says whether it sees it.
 
 use super::list::{files, reading_bare, yosys_must, Mutation};
-use super::{recorder, Emission};
+use super::{alone, recorder, Emission};
 use crate::artifact::Artifact;
 use crate::error::{shorten, GenError};
+use crate::prove::Subject;
 use crate::{readers, scratch, tools};
-use rtl_design::elaborate::Module;
+use rtl_design::elaborate::{Design, Module};
 use rtl_design::verilog::file_name;
+use std::collections::BTreeMap;
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -31,6 +33,8 @@ pub struct Mutated<'a> {
 /// A card with its mutants, and its bench.
 pub struct Program {
     folder: TempDir,
+    /// The sum over the ports of each module alone, by its index.
+    alone: BTreeMap<usize, Option<u64>>,
     /// What the card is as it was emitted: cycles of the run, and the sum over the ports of each module.
     whole: Run,
 }
@@ -69,15 +73,19 @@ impl Program {
             crate::artifact::write(folder.path(), &[file], scratch::REMEDY)?;
         }
         let runs = mutated.iter().map(|m| m.mutations.len()).sum::<usize>();
-        build(
-            folder.path(),
-            emission,
-            if runs < MANY { "-O0" } else { "-O1" },
-        )?;
+        let optimised = if runs < MANY { "-O0" } else { "-O1" };
+        let modules: Vec<usize> = mutated.iter().map(|m| m.module).collect();
+        build_bench(folder.path(), emission, optimised)?;
+        build_alone(folder.path(), &subject.design, &subject.files, &modules)?;
         let mut program = Self {
             folder,
+            alone: BTreeMap::new(),
             whole: Run::new(""),
         };
+        for module in modules {
+            let sum = program.sum_alone(0, module)?;
+            program.alone.insert(module, sum);
+        }
         let (whole, text) = program.play(&[])?;
         if !whole.passes {
             return Err(GenError::input(format!(
@@ -99,11 +107,70 @@ impl Program {
         Ok((run.passes, differs))
     }
 
+    /// Whether any port of a module, or directly below, is another one while the module is alone with random inputs.
+    pub fn differs_alone(&self, mutant: u64, module: usize) -> Result<bool, GenError> {
+        let whole = self.alone.get(&module).copied().flatten();
+        Ok(self.sum_alone(mutant, module)? != whole)
+    }
+
+    fn sum_alone(&self, mutant: u64, module: usize) -> Result<Option<u64>, GenError> {
+        let plusargs = [format!("+mutant={mutant}"), format!("+alone={module}")];
+        let text = start(
+            self.folder.path(),
+            alone::TOP,
+            &plusargs.each_ref().map(String::as_str),
+        )?;
+        Ok(Run::new(&text).sums.first().copied())
+    }
+
     fn play(&self, plusargs: &[&str]) -> Result<(Run, String), GenError> {
-        let program = self.folder.path().join("obj_dir/sim");
-        let text = tools::run(&program.display().to_string(), self.folder.path(), plusargs)?.text();
+        let text = start(self.folder.path(), recorder::TOP, plusargs)?;
         Ok((Run::new(&text), text))
     }
+}
+
+/// Runs a program that [`build`] has made; what it printed.
+fn start(folder: &Path, top: &str, plusargs: &[&str]) -> Result<String, GenError> {
+    let program = folder.join(program(top));
+    Ok(tools::run(&program.display().to_string(), folder, plusargs)?.text())
+}
+
+fn program(top: &str) -> String {
+    format!("{top}_program/sim")
+}
+
+/// What a card's ports did in its bench.
+pub struct Recording {
+    /// Its inputs, a line for each cycle, the first one lowest.
+    pub inputs: String,
+    /// The sum over the ports of each module, see [`recorder`].
+    pub sums: Vec<u64>,
+}
+
+/// Sums over the ports of each module alone, with its random inputs.
+pub fn sums_alone(subject: &Subject) -> Result<Vec<u64>, GenError> {
+    let folder = scratch::folder()?;
+    crate::artifact::write(folder.path(), &subject.files, scratch::REMEDY)?;
+    let modules: Vec<usize> = (0..subject.design.modules.len()).collect();
+    build_alone(folder.path(), &subject.design, &subject.files, &modules)?;
+    let sum = |module: usize| {
+        let text = start(folder.path(), alone::TOP, &[&format!("+alone={module}")])?;
+        Ok(Run::new(&text).sums.first().copied().unwrap_or(0))
+    };
+    modules.into_iter().map(sum).collect()
+}
+
+/// Runs the bench of a card as it is.
+pub fn record(emission: &Emission) -> Result<Recording, GenError> {
+    let program = Program::new(emission, &[])?;
+    program.play(&["+inputs"])?;
+    let path = program.folder.path().join("inputs.txt");
+    let inputs = std::fs::read_to_string(&path)
+        .map_err(|e| GenError::io("read", &path, &e, scratch::REMEDY))?;
+    Ok(Recording {
+        inputs,
+        sums: program.whole.sums,
+    })
 }
 
 /// A module with all its mutants, chosen by a plusarg.
@@ -124,7 +191,7 @@ fn mutated_text(emission: &Emission, module: &Module, one: &Mutated) -> Result<S
         "delete -input {}/w:{CONTROL}\nselect {}\nwrite_verilog -noattr -selected {out}\n",
         module.name, module.name
     );
-    yosys_must(folder.path(), "mutate", script)?;
+    yosys_must(folder.path(), &module.name, script)?;
     let path = folder.path().join(out);
     let text = std::fs::read_to_string(&path)
         .map_err(|e| GenError::io("read", &path, &e, scratch::REMEDY))?;
@@ -145,34 +212,53 @@ fn mutated_text(emission: &Emission, module: &Module, one: &Mutated) -> Result<S
     }
 }
 
-/// Verilator makes a program of the files in a folder, and the bench.
-fn build(folder: &Path, emission: &Emission, optimised: &str) -> Result<(), GenError> {
+/// The program of the bench.
+fn build_bench(folder: &Path, emission: &Emission, optimised: &str) -> Result<(), GenError> {
     let bench = &emission.bench;
     let name = bench.path.trim_end_matches(".v");
-    let recorder = format!("{}.v", recorder::TOP);
-    let files = [
-        bench.clone(),
-        Artifact::new(&recorder, recorder::text(&emission.subject, name)),
-    ];
+    let mut files = vec![bench.clone()];
+    files.push(Artifact::new(
+        file_name(recorder::TOP),
+        recorder::text(&emission.subject, name),
+    ));
     crate::artifact::write(folder, &files, scratch::REMEDY)?;
+    files.extend(emission.subject.files.iter().cloned());
+    build(folder, recorder::TOP, &files, optimised)
+}
+
+/// The program of modules alone; the card's files are in the folder.
+fn build_alone(
+    folder: &Path,
+    design: &Design,
+    core: &[Artifact],
+    modules: &[usize],
+) -> Result<(), GenError> {
+    if modules.is_empty() {
+        return Ok(());
+    }
+    let mut files = vec![Artifact::new(
+        file_name(alone::TOP),
+        alone::text(design, modules),
+    )];
+    let rows = modules.iter().map(|&index| &design.modules[index]);
+    let rows = rows.map(|m| Artifact::new(alone::rows_file(m), alone::rows_text(m)));
+    crate::artifact::write(folder, &rows.collect::<Vec<_>>(), scratch::REMEDY)?;
+    crate::artifact::write(folder, &files, scratch::REMEDY)?;
+    files.extend(core.iter().cloned());
+    build(folder, alone::TOP, &files, "-O1")
+}
+
+/// Verilator makes a program of files in a folder.
+fn build(folder: &Path, top: &str, files: &[Artifact], optimised: &str) -> Result<(), GenError> {
     let fast = format!("OPT_FAST={optimised}");
-    let mut arguments = vec![
-        "--binary",
-        "--timing",
-        "-O3",
-        "-Wno-fatal",
-        "-Wno-lint",
-        "-Wno-style",
-        "-MAKEFLAGS",
-        &fast,
-        "--top-module",
-        recorder::TOP,
-        "-o",
-        "sim",
-        &recorder,
-        &bench.path,
-    ];
-    arguments.extend(emission.subject.files.iter().map(|f| f.path.as_str()));
+    let program = program(top);
+    let (made, name) = program.split_once('/').unwrap_or(("obj_dir", "sim"));
+    let quiet = ["-Wno-fatal", "-Wno-lint", "-Wno-style"];
+    let mut arguments = vec!["--binary", "--timing", "-O3"];
+    arguments.extend(quiet);
+    arguments.extend(["-MAKEFLAGS", &fast, "--Mdir", made, "-o", name]);
+    arguments.extend(["--top-module", top]);
+    arguments.extend(files.iter().map(|f| f.path.as_str()));
     let ran = tools::run("verilator", folder, &arguments)?;
     if ran.is_good {
         return Ok(());

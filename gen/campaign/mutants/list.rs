@@ -42,7 +42,8 @@ pub fn reading(subject: &Subject, module: &Module) -> String {
         let files: Vec<String> = below.into_iter().map(file_name).collect();
         script += &format!("read_verilog -lib {}\n", files.join(" "));
     }
-    script + &format!("proc {}\n", module.name)
+    // A table as memory has contents, which nothing can change at run time.
+    script + &format!("proc -norom {}\n", module.name)
 }
 
 /// The same without its properties.
@@ -78,7 +79,7 @@ pub fn yosys_must(folder: &Path, name: &str, script: String) -> Result<(), GenEr
     let at = text.find("ERROR").unwrap_or(0);
     Err(GenError::fault(
         "campaign mutants",
-        &format!("{YOSYS}: {}", shorten(text[at..].trim())),
+        &format!("{YOSYS}: {name}.ys: {}", shorten(text[at..].trim())),
     ))
 }
 
@@ -108,7 +109,8 @@ pub fn mutations(
     Ok(found.take(count as usize).collect())
 }
 
-/// A line of the list; none at the output of a register, which would lose its start value: its readers and its input have mutants of their own.
+/// A line of the list; none at the output of a register, which would lose its start value, none of the
+/// contents of a memory.
 /// As `mutate -mode inv -module m -cell c -port A -portbit 2 -wire w -wirebit 2 -src m.v:32.18-32.22 -src ...`.
 fn mutation(line: &str, text: &str) -> Option<Mutation> {
     let words: Vec<&str> = line.split_whitespace().collect();
@@ -137,7 +139,7 @@ fn mutation(line: &str, text: &str) -> Option<Mutation> {
         Some(wire) => format!("{wire}[{}] at {port}", value("-wirebit")?),
         None => format!("{port}[{bit}]"),
     };
-    if port == "Q" {
+    if port == "Q" || value("-cell")?.starts_with("$meminit") {
         return None;
     }
     let place = format!("{}: {what}, {}", spot(source, text), value("-mode")?);

@@ -4,10 +4,12 @@
 //! ```text
 //! emission -> list: yosys lists mutants of each block -> bench: all of a card in one program, run with the number of each
 //!                                 not seen at the pins -> recorder: seen at a port of its block?
+//!                                 not seen there       -> alone: seen with random inputs?
 //!                                 not seen there       -> equal: does it change anything at all?
 //!                                 it does              -> prove: does a property still hold?
 //! ```
 
+pub mod alone;
 mod bench;
 mod equal;
 mod list;
@@ -15,10 +17,11 @@ mod page;
 mod reasons;
 pub mod recorder;
 
+pub use bench::{record, sums_alone, Recording};
 pub use page::{page, table};
 
 use crate::artifact::{sha256, Artifact};
-use crate::config::{load_any_preset, parse_any, Configuration};
+use crate::config::{load_any_preset, Configuration};
 use crate::error::GenError;
 use crate::prove::{self, Subject};
 use crate::readers::is_bench;
@@ -30,13 +33,12 @@ use std::ops::Range;
 /// The campaign's name.
 pub const NAME: &str = "mutants";
 
-/// Cards that together have all blocks: presets, and one for what no preset has. A block is tried in the first one that has it.
-const SUBJECTS: [&str; 5] = [
+/// Cards that together have nearly all blocks of the presets. A block is tried in the first one that has it.
+const SUBJECTS: [&str; 4] = [
     "s6_two_channel",
     "async_dsp",
     "mixed_protocols",
-    "s6_two_channel_service",
-    "ti_three_channel",
+    "artinchip_endat_if",
 ];
 
 /// A card as it is emitted, and its bench.
@@ -66,11 +68,6 @@ impl Emission {
     /// Of a preset.
     pub fn preset(name: &str) -> Result<Self, GenError> {
         Self::new(&load_any_preset(name)?)
-    }
-
-    /// Of a configuration's text.
-    pub fn text(name: &str, text: &str) -> Result<Self, GenError> {
-        Self::new(&parse_any(name, text)?)
     }
 }
 
@@ -103,6 +100,8 @@ pub enum Fate {
     Bench,
     /// A port of the block, or directly below it, is another one in a cycle of that bench.
     Ports,
+    /// A port of the block, or directly below it, is another one while the block is alone with random inputs.
+    Alone,
     /// A property does not hold.
     Proof,
     /// Nothing: it is proved that it changes nothing.
@@ -113,9 +112,10 @@ pub enum Fate {
 
 impl Fate {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Bench,
         Self::Ports,
+        Self::Alone,
         Self::Proof,
         Self::Equivalent,
         Self::Survivor,
@@ -126,6 +126,7 @@ impl Fate {
         match self {
             Self::Bench => "bench",
             Self::Ports => "ports",
+            Self::Alone => "alone",
             Self::Proof => "proof",
             Self::Equivalent => "equivalent",
             Self::Survivor => "survivor",
@@ -134,7 +135,7 @@ impl Fate {
 
     /// Whether it is seen.
     pub const fn is_killed(self) -> bool {
-        matches!(self, Self::Bench | Self::Ports | Self::Proof)
+        matches!(self, Self::Bench | Self::Ports | Self::Alone | Self::Proof)
     }
 }
 
@@ -224,6 +225,9 @@ impl Mutants {
         }
         if differs {
             return Ok(Fate::Ports);
+        }
+        if program.differs_alone(number, group.module)? {
+            return Ok(Fate::Alone);
         }
         if equal::is_equal(subject, module, mutation)? {
             return Ok(Fate::Equivalent);

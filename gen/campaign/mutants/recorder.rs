@@ -1,14 +1,14 @@
 //! The module around a bench: it sums up every port of every block in every cycle, and ends a run that does not end.
 
 use crate::prove::Subject;
-use rtl_design::elaborate::{Design, Direction};
+use rtl_design::elaborate::{Design, Direction, ExprKind, Module};
 use rtl_design::verilog::emitted_name;
 use std::fmt::Write;
 
 /// Its name, and that of its file.
 pub const TOP: &str = "mutants";
-/// What a sum begins with, and the factor of one step: FNV-1a, as everywhere.
-const START: u64 = 0xCBF2_9CE4_8422_2325;
+/// What a sum begins with, and below the factor of one step: FNV-1a.
+pub const START: u64 = 0xCBF2_9CE4_8422_2325;
 const FACTOR: u64 = 0x0100_0000_01B3;
 
 /// A port somewhere in a card.
@@ -16,31 +16,45 @@ const FACTOR: u64 = 0x0100_0000_01B3;
 pub struct Watched {
     /// Names of the instances from the top on, and of the port.
     pub path: String,
+    /// The net that it is in an engine, where a port is one with what it is connected to.
+    pub net: String,
     /// Bits.
     pub width_bits: usize,
 }
 
 /// The ports to watch of each module: its own, and those of the blocks directly below, in every place where it stands.
+#[must_use]
 pub fn watched(design: &Design) -> Vec<Vec<Watched>> {
     let mut found = vec![vec![]; design.modules.len()];
-    walk(design, 0, "", &mut found);
+    let nets = design.top().nets.iter().map(|n| n.name.clone()).collect();
+    walk(design, 0, "", nets, &mut found);
     found
 }
 
-fn walk(design: &Design, index: usize, path: &str, found: &mut [Vec<Watched>]) {
-    found[index].extend(ports(design, index, path));
-    for instance in &design.modules[index].instances {
+/// `nets` are the names that an engine has for those of the module.
+fn walk(design: &Design, index: usize, path: &str, nets: Vec<String>, found: &mut [Vec<Watched>]) {
+    let module = &design.modules[index];
+    found[index].extend(ports(module, path, &nets));
+    for instance in &module.instances {
         let below = format!("{path}{}.", instance.name);
-        found[index].extend(ports(design, instance.module, &below));
-        walk(design, instance.module, &below, found);
+        let child = &design.modules[instance.module];
+        let own = child.nets.iter().map(|n| format!("{below}{}", n.name));
+        let mut inside: Vec<String> = own.collect();
+        for (port, connection) in child.ports.iter().zip(&instance.connections) {
+            if let ExprKind::Net(net) = connection.value.kind {
+                inside[port.net] = nets[net].clone();
+            }
+        }
+        found[index].extend(ports(child, &below, &inside));
+        walk(design, instance.module, &below, inside, found);
     }
 }
 
-fn ports(design: &Design, index: usize, path: &str) -> Vec<Watched> {
-    let module = &design.modules[index];
+fn ports(module: &Module, path: &str, nets: &[String]) -> Vec<Watched> {
     let ports = module.ports.iter().filter(|port| !port.is_clock);
     let port = |net: usize| Watched {
         path: format!("{path}{}", emitted_name(&module.nets[net].name)),
+        net: nets[net].clone(),
         width_bits: module.nets[net].width_bits,
     };
     ports.map(|p| port(p.net)).collect()
@@ -56,9 +70,19 @@ pub fn step(sum: u64, value: u128, width_bits: usize) -> u64 {
     }
 }
 
-/// The sum of nothing.
-pub const fn start() -> u64 {
-    START
+/// The step of a port, and a second one if it is wide.
+pub(super) fn steps(text: &mut String, path: &str, width_bits: usize) {
+    let mut step = |part: &str| {
+        let _ = writeln!(
+            text,
+            "            sum = (sum ^ {path}{part}) * 64'd{FACTOR};"
+        );
+    };
+    if width_bits <= 64 {
+        return step("");
+    }
+    step("[63:0]");
+    step(&format!("[{}:64]", width_bits - 1));
 }
 
 /// The text; `bench` is the module that simulates the card. Plusargs: `watched`, the index of a module (all, if there is none), and `cycles_max`.
@@ -80,20 +104,12 @@ pub fn text(subject: &Subject, bench: &str) -> String {
             sums,
             "        if (watched < 0 || watched == {index}) begin\n            sum = sums[{index}];"
         );
-        for Watched { path, width_bits } in ports {
-            let path = format!("bench.dut.{path}");
-            let low = match width_bits {
-                0..=64 => path.clone(),
-                _ => format!("{path}[63:0]"),
-            };
-            let _ = writeln!(sums, "            sum = (sum ^ {low}) * 64'd{FACTOR};");
-            if *width_bits > 64 {
-                let top = width_bits - 1;
-                let _ = writeln!(
-                    sums,
-                    "            sum = (sum ^ {path}[{top}:64]) * 64'd{FACTOR};"
-                );
-            }
+        for port in ports {
+            steps(
+                &mut sums,
+                &format!("bench.dut.{}", port.path),
+                port.width_bits,
+            );
         }
         let _ = writeln!(sums, "            sums[{index}] = sum;\n        end");
     }
