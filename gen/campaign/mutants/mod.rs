@@ -140,9 +140,11 @@ impl Fate {
 }
 
 impl Mutants {
-    /// So many mutants of each block whose name begins with `only`, at most. Blocks that two cards have are tried in the first one.
+    /// So many mutants of each block whose name begins with `only`, at most, of one card, or of all. Blocks that two cards have are tried in the
+    /// first one.
     pub fn new(
         emissions: Vec<Emission>,
+        card: Option<&str>,
         per_block: u64,
         seed: u64,
         only: &str,
@@ -151,10 +153,14 @@ impl Mutants {
         let mut groups = vec![];
         for (index, emission) in emissions.iter().enumerate() {
             for (place, module) in emission.subject.design.modules.iter().enumerate() {
-                if seen.contains(&module.type_name) || !module.type_name.starts_with(only) {
+                if seen.contains(&module.type_name) {
                     continue;
                 }
                 seen.push(module.type_name.clone());
+                let is_of_card = card.is_none_or(|card| emission.subject.name == card);
+                if !is_of_card || !module.type_name.starts_with(only) {
+                    continue;
+                }
                 groups.push(Group {
                     emission: index,
                     module: place,

@@ -1,10 +1,11 @@
 //! The page of the results.
 
-use super::{reasons, Fate, NAME};
+use super::{reasons, subjects, Fate, NAME};
 use crate::campaign::budget;
-use crate::campaign::part::Part;
+use crate::campaign::part::{Identity, Part};
 use crate::campaign::report::{grouped, Counts};
-use endat_sim::campaign::Tally;
+use crate::error::GenError;
+use endat_sim::campaign::{Shard, Tally};
 use std::fmt::Write;
 
 const HEAD: &str = "# Mutants
@@ -30,6 +31,9 @@ left out, as `mutate` would take the start value away (its input and its readers
 (`prove --frames`) and all other tests of the project are not asked.
 
 Not counted, as none of these cards has them: the fronts of AXI4-Lite, Wishbone, SPI and the parallel bus, `RunChannel`, `RecoveryCounter`, `SecondInterface`, `SecondReceiver`.
+
+The command is in [campaigns.md](campaigns.md), the results are `campaigns/results/mutants_*.csv`, and a test compares this page with them.
+
 ";
 
 /// Counts of some classes.
@@ -75,31 +79,46 @@ pub fn table(tally: &Tally) -> String {
     text
 }
 
-/// The page `docs/mutants.md`.
-pub fn page(part: &Part) -> String {
-    let mut text = format!(
-        "{HEAD}\n{} mutants ({}). The command is in [campaigns.md](campaigns.md), the results are in `campaigns/results/mutants.csv`, and a test compares this page with them.\n\n",
-        part.identity.cases, part.identity.plan
-    );
+/// The page `docs/mutants.md`, from the results of one card or more.
+pub fn page(parts: &[Part]) -> Result<String, GenError> {
+    let mut text = HEAD.to_owned();
+    let mut tally = Tally::default();
+    for part in parts {
+        let Identity {
+            campaign,
+            plan,
+            cases,
+            ..
+        } = &part.identity;
+        if campaign != NAME || part.shard != Shard::WHOLE {
+            return Err(GenError::input(format!(
+                "{campaign} {}: is not a whole campaign {NAME}; merge its parts first, and give {NAME} a page of its own",
+                part.shard
+            )));
+        }
+        let _ = writeln!(text, "- {cases} mutants: {plan}");
+        tally.merge(part.tally.clone());
+    }
+    for card in subjects().filter(|card| tally.rows().all(|(row, _)| row.subject != *card)) {
+        let _ = writeln!(text, "- not run: `{card}`, and the blocks that only it has");
+    }
     for budget in budget::of(NAME) {
-        let (bad, of) = budget.found(&part.tally);
-        let verdict = match budget.holds(&part.tally) {
+        let (bad, of) = budget.found(&tally);
+        let verdict = match budget.holds(&tally) {
             true => "holds",
             false => "not reached",
         };
-        let limit = budget.limit_per_mille;
+        let (what, limit) = (budget.what, budget.limit_per_mille);
         let _ = writeln!(
             text,
-            "- {}: {bad} of {of}, limit {limit} per mille: {verdict}",
-            budget.what
+            "- {what}: {bad} of {of}, limit {limit} per mille: {verdict}"
         );
     }
     text.push('\n');
-    text += &table(&part.tally);
+    text += &table(&tally);
     text += "\n## Survivors\n\nThe line is that of the emitted file; the reasons are typed by people who have looked (`gen/campaign/mutants/reasons.rs`).\n\n\
              | card | block | mutant | reason |\n|---|---|---|---|\n";
-    for (row, _) in part
-        .tally
+    for (row, _) in tally
         .rows()
         .filter(|(r, _)| r.class == Fate::Survivor.name())
     {
@@ -111,5 +130,5 @@ pub fn page(part: &Part) -> String {
             row.subject, row.kind
         );
     }
-    text
+    Ok(text)
 }

@@ -43,23 +43,20 @@ pub(super) fn asked(
     };
     let subject = arguments.subject.as_deref().or(usual_subject);
     let only = arguments.only.as_deref().unwrap_or(usual_block);
-    let chosen: Vec<&str> = subjects()
-        .filter(|name| subject.is_none_or(|s| s == *name))
-        .collect();
-    if chosen.is_empty() {
+    if let Some(name) = subject.filter(|name| subjects().all(|s| s != *name)) {
         return Err(GenError::input(format!(
             "--subject = {}: is no subject of this campaign; take one of {}",
-            shown(subject.unwrap_or_default()),
+            shown(name),
             subjects().collect::<Vec<_>>().join(", ")
         )));
     }
     progress("listing mutants");
-    let emissions: Result<Vec<_>, _> = chosen.iter().map(|name| Emission::preset(name)).collect();
-    let mut mutants = Mutants::new(emissions?, per_block, seed, only)?;
+    let emissions: Result<Vec<_>, _> = subjects().map(Emission::preset).collect();
+    let mut mutants = Mutants::new(emissions?, subject, per_block, seed, only)?;
     let all = count(&mutants);
     if all == 0 {
         return Err(GenError::input(format!(
-            "--only = {}: no block of --subject {} begins like this; take a name of the first table of docs/mutants.md, or leave it out",
+            "--only = {}: no block that is tried in --subject {} begins like this; take a name of the first table of docs/mutants.md, or leave it out",
             shorten(only),
             subject.unwrap_or("all")
         )));

@@ -42,7 +42,7 @@ pub fn run(arguments: &CampaignArgs, seed: u64) -> Result<Outcome, GenError> {
             let parts = arguments.parts.iter().map(|path| Part::read(path));
             let parts = parts.collect::<Result<Vec<_>, _>>()?;
             Ok(Outcome::good(match &parts[..] {
-                [part] if part.identity.campaign == NAME => page_of_mutants(part),
+                [first, ..] if first.identity.campaign == NAME => page_of_mutants(&parts)?,
                 parts => page::page(parts)?,
             }))
         }
