@@ -93,20 +93,28 @@ pub fn mutations(
     let folder = scratch::folder()?;
     let files = files(subject, module);
     crate::artifact::write(folder.path(), &files, scratch::REMEDY)?;
-    let script = format!(
-        "{}mutate -list {} -seed {seed} -o {LIST} {}\n",
-        reading_bare(subject, module),
-        2 * count,
-        module.name
-    );
-    yosys_must(folder.path(), "list", script)?;
-    let path = folder.path().join(LIST);
-    let list = std::fs::read_to_string(&path)
-        .map_err(|e| GenError::io("read", &path, &e, scratch::REMEDY))?;
     let text = files.iter().find(|f| f.path == file_name(&module.name));
     let text = text.map_or("", |f| f.text.as_str());
-    let found = list.lines().filter_map(|line| mutation(line, text));
-    Ok(found.take(count as usize).collect())
+    let name = &module.name;
+    let mut found = vec![];
+    // Where contents of a memory crowd the list, it is made again without them.
+    for chosen in [name.clone(), format!("{name}/* {name}/t:$meminit* %d")] {
+        let script = format!(
+            "{}mutate -list {} -seed {seed} -o {LIST} {chosen}\n",
+            reading_bare(subject, module),
+            2 * count,
+        );
+        yosys_must(folder.path(), name, script)?;
+        let path = folder.path().join(LIST);
+        let list = std::fs::read_to_string(&path)
+            .map_err(|e| GenError::io("read", &path, &e, scratch::REMEDY))?;
+        let mutations = list.lines().filter_map(|line| mutation(line, text));
+        found = mutations.take(count as usize).collect();
+        if found.len() as u64 == count || !list.contains("$meminit") {
+            break;
+        }
+    }
+    Ok(found)
 }
 
 /// A line of the list; none at the output of a register, which would lose its start value, none of the

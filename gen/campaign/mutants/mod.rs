@@ -185,7 +185,7 @@ impl Mutants {
             for group in &self.groups {
                 let end = first + group.mutations.len() as u64;
                 let is_asked = first < cases.end && cases.start < end;
-                if group.emission == index && is_asked {
+                if group.emission == index && is_asked && !group.mutations.is_empty() {
                     mutated.push(Mutated {
                         module: group.module,
                         mutations: &group.mutations,

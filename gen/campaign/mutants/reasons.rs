@@ -1,7 +1,54 @@
 //! Why survivors survive: typed by people who have looked, for those of the results in `campaigns/results`.
 
 /// Block, a piece of its source at the place of the mutant or of its name, and the reason.
-const REASONS: &[(&str, &str, &str)] = &[];
+const REASONS: &[(&str, &str, &str)] = &[
+    (
+        "AsyncDsp",
+        "`if (rst_i) begin`: Y[7]",
+        "changes nothing, which induction does not find: bit 7 of the settings has no meaning, and nothing reads it",
+    ),
+    (
+        "Exchange",
+        "`bad_echo_next = bad_echo | differs;`",
+        "an address of the encoder's memory that comes back with one wrong bit, not the last one: the bench spoils another one, random inputs do not come so far, and no property speaks of it",
+    ),
+    (
+        "Timebase",
+        "count",
+        "changes nothing: the block has no input but its reset, the bench runs through all its states, and no port differs; the induction is too short for it",
+    ),
+    (
+        "UartReceiver",
+        "`count_next = count + 15'd1;`",
+        "follows bit 13 of a count that a bit at this rate never takes so far: changes nothing",
+    ),
+    (
+        "Trigger",
+        "`timer_next = timer + 24'd1;`",
+        "follows the highest bit of the timer: periods from 84 ms on, for which neither the bench nor random inputs wait",
+    ),
+    (
+        "Trigger",
+        "== period_cycles",
+        "a period with another pattern in two of its bits than bench and random inputs have waited for",
+    ),
+    ("UartBridge", "`if (tick_us) begin`", TIME_OUT),
+    ("UartBridge", "`if (stop_timer | expired) begin`", TIME_OUT),
+    ("UartBridge", "idle_us_next", TIME_OUT),
+    (
+        "Card",
+        "core_push_byte",
+        "bytes that the stream pushes: the emitted bench does not switch it on, and random levels at the pins are no commands",
+    ),
+    (
+        "EncoderPort",
+        "first_fall_timestamp[30]",
+        "time stamps from 10 s on: the bench ends before, and random inputs begin no frame then",
+    ),
+];
+
+/// A time that is longer than all runs.
+const TIME_OUT: &str = "the time-out after 100 ms of a command that is not whole: neither the bench nor random inputs wait for it";
 
 /// The reason for a survivor, if somebody has given one.
 pub fn reason(block: &str, place: &str) -> Option<&'static str> {
