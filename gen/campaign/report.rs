@@ -71,7 +71,6 @@ pub fn text(campaign: &str, tally: &Tally) -> String {
         "upsets" => upsets(tally),
         "accept" => accept(tally),
         "configurations" => configurations(tally),
-        super::mutants::NAME => super::mutants::table(tally),
         _ => disturbed(tally),
     }
 }

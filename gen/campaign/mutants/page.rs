@@ -21,7 +21,7 @@ again and again, and each of these mutants is given to those who should see it, 
 | proof | a property of [proofs.md](proofs.md) that holds from the start values does not hold any more |
 
 What the ports do is compared with the design, for the unchanged Verilog, by `tests/verilog/ports.rs`: in the suite for the T-format receiver in its bench and each block of the shipped \
-card alone; for all cards here, both ways, with `-- --ignored`. A mutant of the columns *ports* and *alone* would turn these tests red.
+card alone; with `-- --ignored` for the others, but for benches that set registers inside their card. A mutant of the columns *ports* and *alone* would turn these tests red.
 
 A mutant that none of them sees may change nothing at all: where yosys proves, with all inputs free, that no port ever differs, it is *equivalent*, and does not count. \
 All others survive, and are listed below; that a solver finds no proof in half a minute does not say that something changes.
@@ -114,6 +114,17 @@ pub fn page(parts: &[Part]) -> Result<String, GenError> {
             "- {what}: {bad} of {of}, limit {limit} per mille: {verdict}"
         );
     }
+    let survivors = tally
+        .rows()
+        .filter(|(r, _)| r.class == Fate::Survivor.name());
+    let reasons = survivors.filter_map(|(r, _)| reasons::reason(&r.kind, &r.place));
+    let nothing = reasons
+        .filter(|reason| reason.starts_with(reasons::NOTHING))
+        .count();
+    let _ = writeln!(
+        text,
+        "- of the survivors, that change nothing by what people have found, without a proof: {nothing}"
+    );
     text.push('\n');
     text += &table(&tally);
     text += "\n## Survivors\n\nThe line is that of the emitted file; the reasons are typed by people who have looked (`gen/campaign/mutants/reasons.rs`).\n\n\

@@ -1,5 +1,8 @@
 //! Why survivors survive: typed by people who have looked, for those of the results in `campaigns/results`.
 
+/// How a reason begins that takes a survivor for equivalent.
+pub const NOTHING: &str = "changes nothing";
+
 /// Block, a piece of its source at the place of the mutant or of its name, and the reason.
 const REASONS: &[(&str, &str, &str)] = &[
     (
@@ -20,7 +23,7 @@ const REASONS: &[(&str, &str, &str)] = &[
     (
         "UartReceiver",
         "`count_next = count + 15'd1;`",
-        "follows bit 13 of a count that a bit at this rate never takes so far: changes nothing",
+        "changes nothing: follows bit 13 of a count that a bit at this rate never takes so far",
     ),
     (
         "Trigger",

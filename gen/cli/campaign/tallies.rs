@@ -3,7 +3,7 @@
 use super::{fault, mutants, CampaignArgs, Name};
 use crate::campaign::card::{self, CardUpsets};
 use crate::campaign::configurations::Configurations;
-use crate::campaign::mutants::{page as page_of_mutants, NAME};
+use crate::campaign::mutants::{page as page_of_mutants, table as table_of_mutants, NAME};
 use crate::campaign::part::{merge, shard, Identity, Part};
 use crate::campaign::{budget, page, reference, report};
 use crate::cli::number::{number, number_if};
@@ -126,8 +126,13 @@ fn alone(configurations: &Configurations, index: &str) -> Result<Outcome, GenErr
 fn summary(part: &Part) -> Outcome {
     let (lines, holds) = budget::lines(&part.identity.campaign, &part.tally);
     let is_whole = part.shard == Shard::WHOLE;
+    let campaign = part.identity.campaign.as_str();
+    let table = match campaign {
+        NAME => table_of_mutants(&part.tally),
+        _ => report::text(campaign, &part.tally),
+    };
     Outcome {
-        stdout: report::text(&part.identity.campaign, &part.tally) + &lines,
+        stdout: table + &lines,
         exit_code: u8::from(is_whole && !holds),
         ..Outcome::default()
     }
