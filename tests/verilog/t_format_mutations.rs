@@ -222,14 +222,14 @@ pub const T_FORMAT_MUTATIONS: &[Mutation] = &[
     mutation(
         "causes of the flag below",
         PORT,
-        ".cause_in(code)",
-        ".cause_in({code[4:1], 1'b0})",
+        ".cause_told(code)",
+        ".cause_told({code[4:1], 1'b0})",
     ),
     mutation(
         "T-format channel not triggered",
         "card_core",
-        ".trigger(trigger_of_0),\n        .data_i(",
-        ".trigger(1'b0),\n        .data_i(",
+        ".trigger(trigger_of_0),\n        .period_cycles(",
+        ".trigger(1'b0),\n        .period_cycles(",
     ),
 ];
 
