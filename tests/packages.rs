@@ -2,6 +2,7 @@
 
 use crate::program::Dir;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -49,6 +50,43 @@ fn rust_version_is_what_the_dependencies_need() {
             "{}: rust-version = {said}: {name} needs {greatest:?}; raise it in Cargo.toml",
             package["name"]
         );
+    }
+}
+
+/// Packages of a build and the features they have in it.
+fn features(arguments: &[&str]) -> BTreeMap<String, String> {
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--locked", "--prefix", "none"])
+        .args(["--format", "{p}|{f}"])
+        .args(arguments)
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    let lines = String::from_utf8(output.stdout).unwrap();
+    let lines = lines.lines().filter_map(|line| line.split_once('|'));
+    let cut =
+        |(package, features): (&str, &str)| (package.to_owned(), features.replace(" (*)", ""));
+    lines.map(cut).collect()
+}
+
+/// Catches a dependency that the program, or the wheel, has with other features than the tests: it is then built twice, with all that
+/// stands upon it.
+#[test]
+fn program_tests_and_wheel_are_built_once() {
+    let tests = features(&["--edges", "normal,build,dev"]);
+    for build in [&[][..], &["--package", "endat-python"]] {
+        let others = features(&[build, &["--edges", "normal,build"]].concat());
+        assert!(others.len() > 100, "{build:?}: {}", others.len());
+        for (package, has) in others {
+            let as_tested = tests.get(&package).is_none_or(|tested| *tested == has);
+            assert!(
+                as_tested,
+                "{package}: features = {has:?}, in the tests {:?}: give Cargo.toml the same",
+                tests[&package]
+            );
+        }
     }
 }
 

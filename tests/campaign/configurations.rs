@@ -54,7 +54,7 @@ fn one_configuration_is_shown_alone() {
         (["--case", "14"], "--case = 14: outside 0..13"),
         (
             ["--subject", "port"],
-            "campaign configurations: --subject: is only of upsets, faults, garbage; leave it out",
+            "campaign configurations: --subject: is only of upsets, faults, garbage, mutants; leave it out",
         ),
     ] {
         let outcome = run(&[&["campaign", "configurations", "--quick"], &arguments[..]].concat());
