@@ -74,9 +74,9 @@ fn is_plain_field(field: &syn::ExprField) -> bool {
 
 impl<'ast> Visit<'ast> for Kernel<'_, '_> {
     fn visit_arm(&mut self, arm: &'ast syn::Arm) {
-        if let Some((_, guard)) = &arm.guard {
+        if let syn::Pat::Guard(guarded) = &arm.pat {
             self.report(
-                guard.span(),
+                guarded.guard.span(),
                 "match guard, which rust-hdl drops; write an if inside the arm",
             );
         }
