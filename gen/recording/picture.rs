@@ -25,6 +25,8 @@ pub struct Seen {
 /// A row, of the card or of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurement {
+    /// It is the first row of a file.
+    pub begins_file: bool,
     /// Number of the trigger; none of a running clock.
     pub trigger: Option<u64>,
     /// Seconds since the first row.
@@ -72,6 +74,7 @@ impl Counter {
             cause: cell.cause.into(),
         });
         Measurement {
+            begins_file: false,
             trigger: row.run.is_none().then_some(row.trigger),
             time_s,
             missing: row.missing,
@@ -144,9 +147,11 @@ impl Picture {
             .chain(&mut self.derived)
     }
 
-    /// Whether rows are missing just before a moment. A card that is read one by one misses some all the time: only a pause is a gap there.
-    fn is_gap(&mut self, time_s: f64, missing: u64) -> bool {
-        let since = self.last_s.replace(time_s).map(|last| time_s - last);
+    /// Whether rows are missing just before a row, or are in no file. A card that is read one by one misses some all the time: only a pause
+    /// is a gap there.
+    fn is_gap(&mut self, row: &Measurement) -> bool {
+        let last = self.last_s.replace(row.time_s);
+        let since = last.map(|last| row.time_s - last);
         let Some(since) = since.filter(|s| *s > 0.0) else {
             return false;
         };
@@ -155,13 +160,13 @@ impl Picture {
         if !is_pause {
             self.step_s = Some(usual + (since - usual) / 16.0);
         }
-        is_pause && missing > 0
+        is_pause && (row.missing > 0 || row.begins_file)
     }
 
     /// A row.
     pub fn push(&mut self, row: &Measurement) {
         let time_s = row.time_s;
-        if self.is_gap(time_s, row.missing) {
+        if self.is_gap(row) {
             self.all().for_each(Series::gap);
         }
         let none = endat_host::causes::name(0);
@@ -227,5 +232,38 @@ impl Picture {
         let mut lanes: Vec<Lane> = self.lanes.values().cloned().collect();
         lanes.extend(self.missing.clone());
         series_svg(&series, &lanes, title, subtitle)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::count::Judge;
+    use super::*;
+
+    /// Catches a curve that is drawn through rows that are in no file.
+    #[test]
+    fn a_pause_is_a_gap_between_files_only() {
+        let drawn = |begins_file: bool| {
+            let units = ["deg".to_owned()];
+            let mut picture = Picture::new(&units, &[], Judge::default(), Extras::default());
+            for n in 0..40 {
+                let is_behind = n >= 20;
+                picture.push(&Measurement {
+                    begins_file: begins_file && n == 20,
+                    trigger: Some(n),
+                    time_s: n as f64 * 0.01 + if is_behind { 5.0 } else { 0.0 },
+                    missing: 0,
+                    cells: vec![Seen {
+                        raw: None,
+                        position: Some(1.0),
+                        fresh: true,
+                        cause: endat_host::causes::name(0).into(),
+                    }],
+                    derived: Vec::new(),
+                });
+            }
+            picture.svg("", "")
+        };
+        assert_ne!(drawn(true), drawn(false));
     }
 }

@@ -230,6 +230,12 @@ impl Stats {
         if let Some(trigger) = row.trigger {
             self.triggers = Some((self.triggers.map_or(trigger, |t| t.0), trigger));
         }
+        if row.begins_file {
+            // What came between the files is in none of them.
+            let channels = self.channels.iter_mut().map(|channel| &mut channel.track);
+            let tracks = channels.chain(&mut self.derived);
+            tracks.for_each(|track| track.window.clear());
+        }
         let none = endat_host::causes::name(0);
         let mut is_bad = false;
         for (channel, cell) in self.channels.iter_mut().zip(&row.cells) {
@@ -281,6 +287,7 @@ mod tests {
         let mut all = Stats::new(&head, 100);
         for (n, position) in positions.enumerate() {
             all.push(&Measurement {
+                begins_file: n == 0 || n == 1_550,
                 trigger: Some(n as u64 + 7),
                 time_s: n as f64 * 0.01,
                 missing: 0,
@@ -316,6 +323,15 @@ mod tests {
             track.histogram.bins().iter().map(|b| b.1).sum::<u64>(),
             10_000
         );
+    }
+
+    /// Catches noise that is the way from one file to the next.
+    #[test]
+    fn no_window_leads_from_one_file_to_the_next() {
+        let position = |n: u64| Some(if n < 1_550 { 0.0 } else { 10.0 });
+        let all = stats((0..3_000).map(position));
+        let worst = all.channels[0].track.noise().unwrap().1;
+        assert!(worst < 1e-9, "{worst}");
     }
 
     #[test]

@@ -67,10 +67,7 @@ fn time(what: &str, text: &str, most: Time) -> Result<Time, String> {
     match number {
         Some(ps) if (0.0..=most as f64).contains(&ps) => Ok(ps as Time),
         _ => {
-            let limit = format!(
-                "is no time from 0 to {}us; write 20ns, 30us or 2ms",
-                most / US
-            );
+            let limit = format!("is no time from 0 to {}us; write 20ns or 0.5us", most / US);
             Err(wrong(what, text, &limit))
         }
     }

@@ -131,6 +131,8 @@ pub struct Reader {
     /// Time of the last row of a trigger, of this file only if it has begun anew.
     last_s: Option<f64>,
     offset_s: f64,
+    /// The next row is the first one of its file.
+    begins_file: bool,
     start: Option<SystemTime>,
     notes: Vec<String>,
 }
@@ -220,6 +222,7 @@ impl Reader {
 
     /// Another file begins.
     fn begin(&mut self, head: &Head) -> Result<(), Wrong> {
+        self.begins_file = true;
         let Some(first) = &self.head else {
             let scales = head.scales();
             self.counter = scales.map(|all| {
@@ -287,6 +290,7 @@ impl Reader {
             });
         }
         Ok(Measurement {
+            begins_file: std::mem::take(&mut self.begins_file),
             trigger: row.trigger,
             time_s,
             missing: row.missing,
