@@ -280,6 +280,11 @@ mod tests {
     use super::*;
 
     fn stats(positions: impl Iterator<Item = Option<f64>>) -> Stats {
+        in_two_files(positions, 0)
+    }
+
+    /// The second one begins with this row.
+    fn in_two_files(positions: impl Iterator<Item = Option<f64>>, second: u64) -> Stats {
         let head = Head {
             units: vec!["deg".into()],
             ..Head::default()
@@ -287,7 +292,7 @@ mod tests {
         let mut all = Stats::new(&head, 100);
         for (n, position) in positions.enumerate() {
             all.push(&Measurement {
-                begins_file: n == 0 || n == 1_550,
+                begins_file: n == 0 || n as u64 == second,
                 trigger: Some(n as u64 + 7),
                 time_s: n as f64 * 0.01,
                 missing: 0,
@@ -329,7 +334,7 @@ mod tests {
     #[test]
     fn no_window_leads_from_one_file_to_the_next() {
         let position = |n: u64| Some(if n < 1_550 { 0.0 } else { 10.0 });
-        let all = stats((0..3_000).map(position));
+        let all = in_two_files((0..3_000).map(position), 1_550);
         let worst = all.channels[0].track.noise().unwrap().1;
         assert!(worst < 1e-9, "{worst}");
     }
