@@ -270,8 +270,7 @@ fn run(folder: &Path, words: &[String], install: &str) -> Result<(), GenError> {
 
 /// What nextpnr reports.
 fn read_report(path: &Path, seed: u32, system_hz: u64) -> Result<Attempt, GenError> {
-    let text = std::fs::read_to_string(path);
-    let text = text.map_err(|e| GenError::io("read", path, &e, scratch::REMEDY))?;
+    let text = scratch::read(path)?;
     let report: Value =
         serde_json::from_str(&text).map_err(|e| GenError::fault("report of nextpnr", &e))?;
     attempt(&report, seed, system_hz).ok_or_else(|| {

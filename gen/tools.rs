@@ -151,6 +151,12 @@ pub fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<Ran, GenE
     })
 }
 
+/// What a program has said from a word on, all of it if the word is not there; short, and in one line.
+pub fn from(text: &str, word: &str) -> String {
+    let at = text.find(word).unwrap_or(0);
+    crate::error::shorten(text[at..].trim())
+}
+
 /// The number of a version in what a program says, as in `Verilator 5.006 2023-01-22` or `valgrind-3.19.0`.
 fn number(text: &str) -> Option<&str> {
     let words = text.split(|c: char| c.is_whitespace() || "(),:\"".contains(c));

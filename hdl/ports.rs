@@ -5,7 +5,7 @@
 //! ServiceChannel --ServiceOrders--> Channel
 //! AddInfo --AdditionalData--> Channel, EncoderPort, ServiceChannel, WholeResult
 //! Snapshot --FrameResult--> Channel, EncoderPort, WholeResult, ChannelRegisters
-//! Channel --FrameEnd--> EncoderPort, ServiceChannel, WholeResult
+//! Channel --FrameEnd--> EncoderPort, ServiceChannel
 //! ```
 
 use rtl_design::ports;

@@ -37,9 +37,22 @@ pub fn closest<T>(
     found
 }
 
+/// `did you mean NAME?`, of the name that is closest; none if none is.
+pub fn guess<'a>(typed: &str, names: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let near = closest(typed, names, |name| name);
+    near.first().map(|near| format!("did you mean {near}?"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_guess_is_the_closest_name() {
+        let guess = |typed| guess(typed, ["a1", "c1", "dd"]);
+        assert_eq!(guess("b1").as_deref(), Some("did you mean a1?"));
+        assert_eq!(guess("colour"), None);
+    }
 
     #[test]
     fn a_slip_is_found_and_a_foreign_word_is_not() {

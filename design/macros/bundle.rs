@@ -7,6 +7,9 @@ use syn::{
     PathArguments, Result, Type,
 };
 
+/// Marks a port that runs the other way.
+const BACK: &str = "back";
+
 /// Both ends of these ports.
 pub fn expand(input: DeriveInput) -> Result<TokenStream> {
     let refuse = |text| Err(Error::new(input.ident.span(), text));
@@ -29,10 +32,9 @@ pub fn expand(input: DeriveInput) -> Result<TokenStream> {
             let (ident, is_input) = (&field.ident, !is_driven(field, drives));
             quote!((stringify!(#ident), #is_input, |bundle| &mut bundle.#ident))
         });
-        let documented = fields.named.iter().map(|Field { ident, attrs, .. }| {
-            let lines = super::lines(attrs);
-            quote!((stringify!(#ident), &[#(#lines),*]))
-        });
+        let named = fields.named.iter();
+        let named = named.filter_map(|f| Some((f.ident.as_ref()?, &f.attrs)));
+        let documented = named.map(|(port, attributes)| super::documented(port, attributes));
         quote! {
             #(#attributes)*
             #[derive(Clone, Debug, Default, LogicInterface)]
@@ -70,7 +72,7 @@ fn port(field: &Field, drives: bool) -> TokenStream {
         ty,
         ..
     } = field;
-    let kept = attrs.iter().filter(|a| !is_back(a));
+    let kept = attrs.iter().filter(|a| !a.path().is_ident(BACK));
     let direction = match is_driven(field, drives) {
         true => quote!(Out),
         false => quote!(In),
@@ -78,13 +80,9 @@ fn port(field: &Field, drives: bool) -> TokenStream {
     quote!(#(#kept)* #vis #ident: Signal<#direction, #ty>)
 }
 
-fn is_back(attribute: &Attribute) -> bool {
-    attribute.path().is_ident("back")
-}
-
 /// Whether an end that drives the bundle, or the other one, drives this port.
 fn is_driven(field: &Field, drives: bool) -> bool {
-    drives != field.attrs.iter().any(is_back)
+    drives == super::attribute(&field.attrs, BACK).is_none()
 }
 
 /// What `#[bundle("_now")]` puts behind the names of its ports; `#[bundle]` nothing.

@@ -59,7 +59,7 @@ pub fn block(input: TokenStream) -> TokenStream {
     let (mut own, mut given) = (vec![], vec![]);
     for field in &fields.named {
         let (part, kind) = (&field.ident, &field.ty);
-        let attribute = |name: &str| field.attrs.iter().find(|a| a.path().is_ident(name));
+        let attribute = |name| attribute(&field.attrs, name);
         match attribute("start") {
             Some(start) if start.meta.require_path_only().is_err() => {
                 match start.parse_args::<Expr>() {
@@ -135,7 +135,7 @@ fn described<'a>(
     for field in fields {
         let Some(name) = &field.ident else { continue };
         named.push((name, &field.attrs[..]));
-        let attribute = |name: &str| field.attrs.iter().find(|a| a.path().is_ident(name));
+        let attribute = |name| attribute(&field.attrs, name);
         if attribute("optional").is_some() {
             special.optional.push(name);
         }
@@ -179,16 +179,13 @@ fn docs<'a>(
         file if file.is_empty() => lines(&input.attrs).into_iter().cloned().collect(),
         file => file,
     };
-    let properties = input.attrs.iter().find(|a| a.path().is_ident("properties"));
-    let properties = match properties.map(Attribute::parse_args::<LitStr>) {
-        None => quote!(""),
-        Some(Ok(file)) => quote_spanned!(file.span()=> include_str!(#file)),
-        Some(Err(error)) => return error.into_compile_error(),
-    };
-    let parts = parts.map(|(part, attributes)| {
-        let lines = lines(attributes);
-        quote!((stringify!(#part), &[#(#lines),*]))
-    });
+    let properties =
+        match attribute(&input.attrs, "properties").map(Attribute::parse_args::<LitStr>) {
+            None => quote!(""),
+            Some(Ok(file)) => quote_spanned!(file.span()=> include_str!(#file)),
+            Some(Err(error)) => return error.into_compile_error(),
+        };
+    let parts = parts.map(|(part, attributes)| documented(part, attributes));
     quote! {
         impl #generics ::rtl_design::elaborate::docs::Described for #name #arguments #bounds {
             const DOCS: ::rtl_design::elaborate::docs::TypeDocs = ::rtl_design::elaborate::docs::TypeDocs {
@@ -215,6 +212,17 @@ fn lines_of_file(name: &Ident) -> Vec<Lit> {
     shown
         .map(|line| Lit::Str(LitStr::new(line, name.span())))
         .collect()
+}
+
+/// A part and the lines of its documentation.
+fn documented(part: &Ident, attributes: &[Attribute]) -> TokenStream2 {
+    let lines = lines(attributes);
+    quote!((stringify!(#part), &[#(#lines),*]))
+}
+
+/// The attribute of this name, if there is one.
+fn attribute<'a>(attributes: &'a [Attribute], name: &str) -> Option<&'a Attribute> {
+    attributes.iter().find(|a| a.path().is_ident(name))
 }
 
 /// The lines of a documentation.

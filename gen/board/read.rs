@@ -10,7 +10,7 @@ use crate::form::document::parse;
 use crate::form::key::Key;
 use crate::form::reader::{At, Source, Table};
 use endat_hdl::card::bus::HostBus;
-use endat_host::did_you_mean::closest;
+use endat_host::did_you_mean::guess;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use toml::de::DeTable;
@@ -364,8 +364,7 @@ fn take_words_of_pins(
 
 fn check_signal(table: &Table<'_, '_>, key: &str, at: &At<String>, known: &[String]) {
     if !known.iter().any(|signal| signal == key) {
-        let near = closest(key, known, |known| known);
-        let near = near.first().map(|near| format!("did you mean {near}?"));
+        let near = guess(key, known.iter().map(String::as_str));
         let near = near.unwrap_or_else(|| format!("signals: {}", known.join(", ")));
         table.complain(
             at.line,

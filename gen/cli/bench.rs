@@ -1,6 +1,7 @@
 //! `bench`: measures the simulators, and the core in simulation.
 
 use super::number::number;
+use super::work::tell;
 use super::{to_json, Outcome};
 use crate::bench::{self, CycleTimeOptions, Options};
 use crate::error::GenError;
@@ -9,7 +10,6 @@ use endat_hdl::config::CABLE_M_MAX;
 use endat_hdl::endat::timing::RECOVERY_MAX_NS;
 use endat_hdl::endat::timing::SHORT_RECOVERY_MIN_NS;
 use endat_hdl::protocol::POSITION_BITS;
-use std::io::Write;
 
 /// Arguments of `bench`.
 #[derive(Args)]
@@ -140,8 +140,7 @@ fn engines(arguments: &EnginesArgs) -> Result<Outcome, GenError> {
         outside: !arguments.own,
         instructions: arguments.instructions,
     };
-    // A progress line that cannot be written is no reason to stop.
-    let progress = |what: &str| drop(writeln!(std::io::stderr(), "bench: {what}"));
+    let progress = |what: &str| tell(&format!("bench: {what}"));
     let report = bench::run(options, &progress)?;
     let mut outcome = Outcome::good(if arguments.json {
         to_json(&report)?

@@ -1,5 +1,6 @@
 //! `prove`: proves what the blocks of a card promise, on its Verilog.
 
+use super::work::tell;
 use super::{to_json, Outcome, SourceArgs};
 use crate::artifact::{read_regular, Artifact};
 use crate::config::{load_any_preset, Configuration, Project, PRESETS, RECEIVER_PRESETS};
@@ -7,7 +8,6 @@ use crate::error::GenError;
 use crate::prove::frames::{prove_cases, Line, Undriven, PHASES_MAX};
 use crate::prove::{self, Report, Subject};
 use clap::Args;
-use std::io::Write;
 use std::path::PathBuf;
 
 /// Largest Verilog file that is read.
@@ -64,7 +64,7 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
         };
         return frames(arguments, &subject, project, delay_cycles);
     }
-    let report = prove::prove(&subject, arguments.out.as_deref(), &progress)?;
+    let report = prove::prove(&subject, arguments.out.as_deref(), &tell)?;
     let stdout = match arguments.json {
         true => to_json(&report)?,
         false => report.to_string(),
@@ -100,7 +100,7 @@ fn frames(
     delay_cycles: u32,
 ) -> Result<Outcome, GenError> {
     let line = Line::usual(delay_cycles, arguments.undriven, project.card.system_hz);
-    let mut report = prove::frames::prove(subject, project, line, PHASES_MAX, &progress)?;
+    let mut report = prove::frames::prove(subject, project, line, PHASES_MAX, &tell)?;
     if let (Some(folder), Some(broken)) = (&arguments.out, &mut report.broken) {
         broken.keep(folder, &format!("{}_frames", subject.name))?;
     }
@@ -124,17 +124,12 @@ fn page() -> Result<Outcome, GenError> {
     let mut reports = vec![];
     for (name, _) in PRESETS.iter().chain(RECEIVER_PRESETS) {
         let subject = subject(&load_any_preset(name)?)?;
-        reports.push(prove::prove(&subject, None, &progress)?);
+        reports.push(prove::prove(&subject, None, &tell)?);
     }
-    let frames = prove_cases(&progress)?;
+    let frames = prove_cases(&tell)?;
     let is_good = reports.iter().all(Report::is_good) && frames.iter().all(|f| f.broken.is_none());
     Ok(Outcome {
         exit_code: u8::from(!is_good),
         ..Outcome::good(prove::page(&reports, &frames))
     })
-}
-
-fn progress(text: &str) {
-    // A progress line that cannot be written is no reason to stop.
-    let _ = writeln!(std::io::stderr(), "{text}");
 }

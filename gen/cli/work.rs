@@ -38,8 +38,13 @@ pub fn progress(of: usize, what: &'static str) -> impl Fn(usize) + Sync {
     move |done: usize| {
         let percent = 100 * done / of;
         if shown_percent.fetch_max(percent, Ordering::Relaxed) / 10 < percent / 10 {
-            // A progress line that cannot be written is no reason to stop.
-            let _ = writeln!(std::io::stderr(), "{done} of {of} {what}");
+            tell(&format!("{done} of {of} {what}"));
         }
     }
+}
+
+/// Tells on stderr what is done now.
+pub fn tell(text: &str) {
+    // A progress line that cannot be written is no reason to stop.
+    let _ = writeln!(std::io::stderr(), "{text}");
 }

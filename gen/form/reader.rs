@@ -6,7 +6,7 @@ use super::asked::{Asked, Kind};
 use super::key::{head, Key};
 use crate::error::{shorten, Diagnostic};
 use endat_hdl::config::Limits;
-use endat_host::did_you_mean::closest;
+use endat_host::did_you_mean::guess;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::fmt::Display;
@@ -110,9 +110,8 @@ impl<'t> Source<'t> {
         let homes: BTreeSet<&str> = homes
             .map(|a| a.table.split('[').next().unwrap_or_default())
             .collect();
-        let near = closest(key, known, |known| known);
-        let hint = match near.first() {
-            Some(near) => format!("did you mean {near}?"),
+        let hint = match guess(key, known.iter().copied()) {
+            Some(near) => near,
             None if !homes.is_empty() => {
                 let homes: Vec<String> = homes.into_iter().map(home).collect();
                 format!("it belongs {}", homes.join(" or "))

@@ -73,10 +73,9 @@ pub(super) fn model(
 }
 
 fn not_read(text: &str) -> GenError {
-    let at = text.find("ERROR").unwrap_or(0);
     GenError::input(format!(
         "{YOSYS}: cannot read the Verilog: {}; is it as it was emitted, with its properties?",
-        crate::error::shorten(text[at..].trim())
+        crate::tools::from(text, "ERROR")
     ))
 }
 

@@ -4,7 +4,7 @@
 
 use super::layout::DerivedColumn;
 use crate::error::{shown, GenError};
-use endat_host::did_you_mean::closest;
+use endat_host::did_you_mean::guess;
 use endat_host::feed::Row;
 use endat_host::motion::{nearest, Unwrap, Velocity, VELOCITY_OVER_S};
 use endat_host::units::Scale;
@@ -173,11 +173,7 @@ impl Step {
 
 fn unknown(name: &str) -> String {
     let known = STEPS.map(|s| s.0);
-    let guess = closest(name, known, |n| n);
-    let guess = match guess.first() {
-        Some(near) => format!("did you mean {near}? "),
-        None => String::new(),
-    };
+    let guess = guess(name, known).map_or(String::new(), |near| near + " ");
     let all = STEPS
         .map(|(name, means)| format!("{name} ({means})"))
         .join(", ");

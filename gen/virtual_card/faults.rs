@@ -2,7 +2,7 @@
 
 use super::VirtualCard;
 use crate::error::shown;
-use endat_host::did_you_mean::closest;
+use endat_host::did_you_mean;
 use endat_sim::encoder::{Cause, Defect};
 use endat_sim::line::{FaultKind, GlitchRate, Jitter, LineFault, Wire};
 use endat_sim::{Time, MS, NS, US};
@@ -92,10 +92,8 @@ fn number(what: &str, text: &str, most: u64) -> Result<u64, String> {
 /// The name that may have been meant.
 fn guess<'a>(text: &str, known: impl Iterator<Item = &'a str>) -> String {
     let known: Vec<&str> = known.collect();
-    match closest(text, known.iter().copied(), |n| n).first() {
-        Some(near) => format!("did you mean {near}?"),
-        None => format!("there are {}", known.join(", ")),
-    }
+    did_you_mean::guess(text, known.iter().copied())
+        .unwrap_or_else(|| format!("there are {}", known.join(", ")))
 }
 
 impl Fault {

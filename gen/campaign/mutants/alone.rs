@@ -9,7 +9,7 @@ use std::fmt::Write;
 /// The player's name, and that of its file.
 pub const TOP: &str = "alone";
 /// Cycles of a block.
-const CYCLES: usize = 24_000;
+pub const CYCLES: usize = 24_000;
 /// How long each input goes on in the same way, in cycles.
 const EPOCH_CYCLES: std::ops::RangeInclusive<u64> = 40..=800;
 /// Mean cycles between two resets behind the first one.

@@ -164,9 +164,7 @@ pub fn sums_alone(subject: &Subject) -> Result<Vec<u64>, GenError> {
 pub fn record(emission: &Emission) -> Result<Recording, GenError> {
     let program = Program::new(emission, &[])?;
     program.play(&["+inputs"])?;
-    let path = program.folder.path().join("inputs.txt");
-    let inputs = std::fs::read_to_string(&path)
-        .map_err(|e| GenError::io("read", &path, &e, scratch::REMEDY))?;
+    let inputs = scratch::read(&program.folder.path().join("inputs.txt"))?;
     Ok(Recording {
         inputs,
         sums: program.whole.sums,
@@ -192,9 +190,7 @@ fn mutated_text(emission: &Emission, module: &Module, one: &Mutated) -> Result<S
         module.name, module.name
     );
     yosys_must(folder.path(), &module.name, script)?;
-    let path = folder.path().join(out);
-    let text = std::fs::read_to_string(&path)
-        .map_err(|e| GenError::io("read", &path, &e, scratch::REMEDY))?;
+    let text = scratch::read(&folder.path().join(out))?;
     let wire = format!("wire [{}:0] {CONTROL};", CONTROL_BITS - 1);
     let reg = format!(
         "reg [{}:0] {CONTROL}; initial if (!$value$plusargs(\"mutant=%d\", {CONTROL})) {CONTROL} = 0;",
@@ -263,10 +259,8 @@ fn build(folder: &Path, top: &str, files: &[Artifact], optimised: &str) -> Resul
     if ran.is_good {
         return Ok(());
     }
-    let text = ran.text();
-    let at = text.find("%Error").unwrap_or(0);
     Err(GenError::fault(
         "campaign mutants",
-        &format!("verilator: {}", shorten(text[at..].trim())),
+        &format!("verilator: {}", tools::from(&ran.text(), "%Error")),
     ))
 }

@@ -1,7 +1,7 @@
 //! What yosys does with a module before it is a mutant, and the mutants that it lists.
 
 use crate::artifact::Artifact;
-use crate::error::{shorten, GenError};
+use crate::error::GenError;
 use crate::prove::{Subject, YOSYS};
 use crate::{scratch, tools};
 use rtl_design::elaborate::Module;
@@ -75,11 +75,9 @@ pub fn yosys_must(folder: &Path, name: &str, script: String) -> Result<(), GenEr
     if ran.is_good {
         return Ok(());
     }
-    let text = ran.text();
-    let at = text.find("ERROR").unwrap_or(0);
     Err(GenError::fault(
         "campaign mutants",
-        &format!("{YOSYS}: {name}.ys: {}", shorten(text[at..].trim())),
+        &format!("{YOSYS}: {name}.ys: {}", tools::from(&ran.text(), "ERROR")),
     ))
 }
 
@@ -105,9 +103,7 @@ pub fn mutations(
             2 * count,
         );
         yosys_must(folder.path(), name, script)?;
-        let path = folder.path().join(LIST);
-        let list = std::fs::read_to_string(&path)
-            .map_err(|e| GenError::io("read", &path, &e, scratch::REMEDY))?;
+        let list = scratch::read(&folder.path().join(LIST))?;
         let mutations = list.lines().filter_map(|line| mutation(line, text));
         found = mutations.take(count as usize).collect();
         if found.len() as u64 == count || !list.contains("$meminit") {

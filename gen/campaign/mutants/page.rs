@@ -1,6 +1,6 @@
 //! The page of the results.
 
-use super::{reasons, subjects, Fate, NAME};
+use super::{alone, reasons, subjects, Fate, NAME};
 use crate::campaign::budget;
 use crate::campaign::part::{Identity, Part};
 use crate::campaign::report::{grouped, Counts};
@@ -17,7 +17,7 @@ again and again, and each of these mutants is given to those who should see it, 
 |---|---|
 | bench | the self-checking bench that is emitted beside the card does not end with PASS |
 | ports | in a cycle of that bench a port of the block, or of one directly below it, has another value than in the card as it is |
-| alone | the same while the block stands alone, with random inputs for 24000 cycles |
+| alone | the same while the block stands alone, with random inputs for {cycles} cycles |
 | proof | a property of [proofs.md](proofs.md) that holds from the start values does not hold any more |
 
 What the ports do is compared with the design, for the unchanged Verilog, by `tests/verilog/ports.rs`: in the suite for the T-format receiver in its bench and each block of the shipped \
@@ -81,7 +81,7 @@ pub fn table(tally: &Tally) -> String {
 
 /// The page `docs/mutants.md`, from the results of one card or more.
 pub fn page(parts: &[Part]) -> Result<String, GenError> {
-    let mut text = HEAD.to_owned();
+    let mut text = HEAD.replace("{cycles}", &alone::CYCLES.to_string());
     let mut tally = Tally::default();
     for part in parts {
         let Identity {

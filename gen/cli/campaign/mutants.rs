@@ -3,10 +3,10 @@
 use super::CampaignArgs;
 use crate::campaign::mutants::{subjects, Emission, Mutants};
 use crate::cli::number::number;
+use crate::cli::work::tell;
 use crate::cli::Outcome;
 use crate::error::{shorten, shown, GenError};
 use endat_sim::campaign::{count, Shard};
-use std::io::Write;
 
 /// Mutants of each block, if not told, and of the one block of `--quick`.
 const USUAL: &str = "30";
@@ -23,11 +23,6 @@ pub(super) enum Asked {
     One(Outcome),
     /// The plan, and the cases.
     All(String, Mutants),
-}
-
-fn progress(text: &str) {
-    // A progress line that cannot be written is no reason to stop.
-    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 /// The campaign that is asked for, ready to run a part of it; or one case of it.
@@ -50,7 +45,7 @@ pub(super) fn asked(
             subjects().collect::<Vec<_>>().join(", ")
         )));
     }
-    progress("listing mutants");
+    tell("listing mutants");
     let emissions: Result<Vec<_>, _> = subjects().map(Emission::preset).collect();
     let mut mutants = Mutants::new(emissions?, subject, per_block, seed, only)?;
     let all = count(&mutants);
@@ -68,12 +63,12 @@ pub(super) fn asked(
             index: case + 1,
             of: all,
         };
-        mutants.prepare(alone, &progress)?;
+        mutants.prepare(alone, &tell)?;
         let (fate, block, place) = mutants.case(case)?;
         let text = format!("case {case} ({block}, {place}): {}\n", fate.name());
         return Ok(Asked::One(Outcome::good(text)));
     }
-    mutants.prepare(part.unwrap_or(Shard::WHOLE), &progress)?;
+    mutants.prepare(part.unwrap_or(Shard::WHOLE), &tell)?;
     let subject = subject.unwrap_or("all");
     let plan = format!("{per_block} of a block; seed {seed}; subject {subject}; only {only}*");
     Ok(Asked::All(plan, mutants))
