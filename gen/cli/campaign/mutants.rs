@@ -46,7 +46,7 @@ pub(super) fn asked(
         )));
     }
     tell("listing mutants");
-    let emissions: Result<Vec<_>, _> = subjects().map(Emission::preset).collect();
+    let emissions: Result<Vec<_>, _> = subjects().map(Emission::named).collect();
     let mut mutants = Mutants::new(emissions?, subject, per_block, seed, only)?;
     let all = count(&mutants);
     if all == 0 {

@@ -164,7 +164,12 @@ impl FrameKind {
 
 impl Port {
     /// Those of the committed campaigns.
-    pub const ALL: [Self; 3] = [Self::Position, Self::AllParts, Self::DoubleEdge];
+    pub const ALL: [Self; 4] = [
+        Self::Position,
+        Self::AllParts,
+        Self::DoubleEdge,
+        Self::SecondReceiver,
+    ];
 
     /// Its name in tables.
     pub fn name(self) -> &'static str {
