@@ -33,7 +33,7 @@ left out, as `mutate` would take the start value away (its input and its readers
 
 The cards are presets, and four that are made for it (`gen/campaign/mutants/cards`). Not counted, as no card has them: `Crc5Fixed`, `TFormatChannel`.
 
-The command is in [campaigns.md](campaigns.md), the results are `campaigns/results/mutants.csv`, and a test compares this page with them.
+The command is in [campaigns.md](campaigns.md), the results are `campaigns/results/mutants_*.csv`, and a test compares this page with them.
 
 ";
 
