@@ -6,7 +6,9 @@
 pub mod elaborate;
 pub mod engine;
 pub mod memory;
+mod printing;
 pub mod reg;
 pub mod verilog;
+pub mod vhdl;
 
 pub use rtl_design_macros::{kernel, ports, Block, States};

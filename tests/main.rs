@@ -40,6 +40,8 @@ mod verilog;
 mod view;
 
 // What the tests of design/ are made of, for whole cards.
+#[path = "../design/tests/ghdl.rs"]
+mod ghdl;
 #[path = "../design/tests/stimulus.rs"]
 mod stimulus;
 #[path = "../design/tests/three_way.rs"]

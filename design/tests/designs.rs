@@ -1,5 +1,6 @@
 //! Random designs of one module, without rust-hdl: all operators at widths up to 128 bits, memories, partial assignments.
 
+use crate::ghdl;
 use crate::rng::Rng;
 use crate::stimulus::stimulus;
 use crate::three_way::{agree, engines, lanes_agree, record, replay};
@@ -268,8 +269,11 @@ fn check(seed: u64) -> Result<(), String> {
         agree(name, &expected, &record(engine.as_mut(), &stimulus))?;
     }
     lanes_agree(&design, &stimulus, &expected)?;
-    match tools::require("iverilog", "random designs: emitted Verilog") {
-        true => replay("random-design", &design, &stimulus, &expected),
+    if tools::require("iverilog", "random designs: emitted Verilog") {
+        replay("random-design", &design, &stimulus, &expected)?;
+    }
+    match tools::require("ghdl", "random designs: emitted VHDL") {
+        true => ghdl::replay("random-design", &design, &stimulus, &expected),
         false => Ok(()),
     }
 }

@@ -1,10 +1,11 @@
-//! Tests of the whole way: blocks, designs, engines, Verilog.
+//! Tests of the whole way: blocks, designs, engines, Verilog, VHDL.
 
 mod bundles;
 mod clean;
 mod designs;
 mod errors;
 mod generator;
+mod ghdl;
 mod header;
 mod lint;
 mod memories;

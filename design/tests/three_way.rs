@@ -1,7 +1,7 @@
-//! The same stimulus on rust-hdl's kernels, on every engine for the design, and on the emitted Verilog under
-//! iverilog: all outputs must agree in every cycle.
+//! The same stimulus on rust-hdl's kernels, on every engine for the design, on the emitted Verilog under iverilog, and on the emitted
+//! VHDL under GHDL: all outputs must agree in every cycle.
 
-use crate::tools;
+use crate::{ghdl, tools};
 use rtl_design::elaborate::{Design, Direction};
 use rtl_design::engine::{
     Compiled, Engine, EngineError, Interpreter, Keep, LaneWords, Lanes, Port, PortId,
@@ -23,8 +23,8 @@ pub struct Stimulus {
 
 /// What the outputs were, cycle by cycle.
 pub struct Recording {
-    outputs: Vec<Port>,
-    cycles: Vec<Vec<u128>>,
+    pub outputs: Vec<Port>,
+    pub cycles: Vec<Vec<u128>>,
 }
 
 /// Runs an engine: in each cycle the inputs are set, the outputs noted, the clock ticked.
@@ -71,7 +71,7 @@ impl Recording {
     }
 }
 
-/// Checks that the three executions agree and returns what they gave; `Err` names the first cycle and port where they
+/// Checks that all executions agree and returns what they gave; `Err` names the first cycle and port where they
 /// do not.
 pub fn three_way(
     name: &str,
@@ -107,6 +107,9 @@ pub fn three_way(
         &format!("three-way check of {name}: emitted Verilog"),
     ) {
         replay(name, design, stimulus, &expected)?;
+    }
+    if tools::require("ghdl", &format!("four-way check of {name}: emitted VHDL")) {
+        ghdl::replay(name, design, stimulus, &expected)?;
     }
     Ok(expected)
 }
@@ -270,7 +273,7 @@ pub fn replay(
     }
 }
 
-fn input_ports(design: &Design, stimulus: &Stimulus) -> Vec<Port> {
+pub fn input_ports(design: &Design, stimulus: &Stimulus) -> Vec<Port> {
     let top = design.top();
     let port = |name: &String| {
         let net = top.nets.iter().find(|n| n.name == *name).unwrap();
@@ -284,7 +287,7 @@ fn input_ports(design: &Design, stimulus: &Stimulus) -> Vec<Port> {
 }
 
 /// Each row as one binary word, the first value in the lowest bits.
-fn rows(cycles: &[Vec<u128>], widths: &[usize]) -> String {
+pub fn rows(cycles: &[Vec<u128>], widths: &[usize]) -> String {
     let mut out = String::new();
     for row in cycles {
         for (value, width) in row.iter().zip(widths).rev() {

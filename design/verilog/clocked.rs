@@ -4,9 +4,7 @@ use super::module::expression::{bits, literal, named_literal, Helpers};
 use super::module::ModulePrinter;
 use super::text::{comment, vector, INDENT};
 use crate::elaborate::{Memory, NetId, Register};
-
-/// Clock, its falling edge, and reset, and the registers that have all of them.
-type Group<'a> = ((NetId, bool, Option<NetId>), Vec<&'a Register>);
+use crate::printing::register_groups;
 
 impl ModulePrinter<'_> {
     pub fn start(&mut self, register: &Register) -> String {
@@ -21,16 +19,8 @@ impl ModulePrinter<'_> {
 
     /// One clocked process for all registers of one clock and reset.
     pub fn registers(&mut self) -> String {
-        let mut groups: Vec<Group> = vec![];
-        for register in &self.module.registers {
-            let key = (register.clock, register.on_fall, register.reset);
-            match groups.iter_mut().find(|(k, _)| *k == key) {
-                Some((_, group)) => group.push(register),
-                None => groups.push((key, vec![register])),
-            }
-        }
         let mut out = String::new();
-        for ((clock, on_fall, reset), group) in groups {
+        for ((clock, on_fall, reset), group) in register_groups(self.module) {
             let name = |net: NetId| &self.module.nets[net].name;
             let (pad, deep) = (INDENT.repeat(2), INDENT.repeat(3));
             let edge = if on_fall { "negedge" } else { "posedge" };

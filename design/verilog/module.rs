@@ -5,6 +5,9 @@ pub(super) mod expression;
 
 use super::text::{comment, properties, ranges, vector, INDENT};
 use crate::elaborate::{mask, Design, Direction, EnumId, Expr, Module, NetId, Statement};
+use crate::printing::{
+    constant_values, direct_next, reads_and_targets, used_parameters, variant_name, Names,
+};
 use expression::{literal, range, Helper, Helpers};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -19,8 +22,7 @@ pub(super) fn print(design: &Design, module: &Module) -> String {
 pub(super) struct ModulePrinter<'a> {
     pub design: &'a Design,
     pub module: &'a Module,
-    /// Names in use, in lower case.
-    taken: BTreeSet<String>,
+    names: Names,
     /// Helper nets that are assigned continuously.
     pub continuous: Vec<Helper>,
     /// Helper nets that are assigned inside a process.
@@ -43,25 +45,19 @@ impl<'a> ModulePrinter<'a> {
         Self {
             design,
             module,
-            taken: names.map(|name| name.to_lowercase()).collect(),
+            names: Names::new(names),
             continuous: vec![],
             inside: vec![],
             process_targets: BTreeSet::new(),
             variants: BTreeMap::new(),
-            used_parameters: BTreeSet::new(),
+            used_parameters: used_parameters(module),
             direct_next: direct_next(module),
         }
     }
 
     /// `base`, or `base` with a number if that is taken.
     pub fn unique(&mut self, base: &str) -> String {
-        let numbered = (2..).map(|number| format!("{base}_{number}"));
-        let name = std::iter::once(base.to_string())
-            .chain(numbered)
-            .find(|name| !self.taken.contains(&name.to_lowercase()))
-            .unwrap_or_default();
-        self.taken.insert(name.to_lowercase());
-        name
+        self.names.unique(base)
     }
 
     /// The `localparam` of a state.
@@ -69,14 +65,13 @@ impl<'a> ModulePrinter<'a> {
         if let Some(name) = self.variants.get(&(enum_id, variant)) {
             return name.clone();
         }
-        let name = self.variant_name(enum_id, variant);
+        let name = variant_name(&self.design.enums[enum_id], variant);
         let name = self.unique(&name);
         self.variants.insert((enum_id, variant), name.clone());
         name
     }
 
     fn print(mut self) -> String {
-        self.find_used_parameters();
         let instances: String = (0..self.module.instances.len())
             .map(|i| self.instance(i))
             .collect();
@@ -263,18 +258,8 @@ impl<'a> ModulePrinter<'a> {
     }
 
     fn process(&mut self, statements: &[Statement], in_always: &mut BTreeSet<NetId>) -> String {
-        self.process_targets.clear();
-        let mut reads = BTreeSet::new();
-        for statement in statements {
-            statement.for_each_target(&mut |net, _, _| {
-                self.process_targets.insert(net);
-            });
-            statement.for_each_expr(&mut |e| {
-                e.for_each_net(&mut |net| {
-                    reads.insert(net);
-                });
-            });
-        }
+        let (reads, targets) = reads_and_targets(statements);
+        self.process_targets = targets;
         if let [Statement::Assign {
             net,
             low_bit: 0,
@@ -308,9 +293,6 @@ impl<'a> ModulePrinter<'a> {
     }
 
     fn constant_process(&self, statements: &[Statement]) -> String {
-        let mut values: BTreeMap<NetId, u128> = BTreeMap::new();
-        let parameters: Vec<u128> = self.module.parameters.iter().map(|p| p.value).collect();
-        crate::elaborate::execute(statements, &parameters, &mut values);
         let line = |(net, value): (&NetId, &u128)| {
             let net = &self.module.nets[*net];
             format!(
@@ -319,7 +301,10 @@ impl<'a> ModulePrinter<'a> {
                 literal(*value, net.width_bits)
             )
         };
-        values.iter().map(line).collect()
+        constant_values(self.module, statements)
+            .iter()
+            .map(line)
+            .collect()
     }
 
     fn block(&mut self, statements: &[Statement], depth: usize) -> String {
@@ -402,18 +387,4 @@ impl<'a> ModulePrinter<'a> {
             ),
         }
     }
-}
-
-/// Registers whose next value is a single expression, and that expression.
-fn direct_next(module: &Module) -> BTreeMap<NetId, Expr> {
-    let next: BTreeSet<NetId> = module.registers.iter().map(|r| r.next).collect();
-    let single = |process: &crate::elaborate::Process| match &process.statements[..] {
-        [Statement::Assign { net, value, .. }]
-            if next.contains(net) && value.width_bits == module.nets[*net].width_bits =>
-        {
-            Some((*net, value.clone()))
-        }
-        _ => None,
-    };
-    module.processes.iter().filter_map(single).collect()
 }

@@ -1,8 +1,10 @@
 //! Pieces of text that every part of a module uses.
 
 use crate::elaborate::{mask, properties::ANY_STATE};
+pub(super) use crate::printing::INDENT;
 
-pub(super) const INDENT: &str = "    ";
+/// Begins a comment.
+pub(super) const MARK: &str = "//";
 
 /// The ranges of set bits, as lowest bit and width.
 pub(super) fn ranges(mut bits: u128) -> impl Iterator<Item = (usize, usize)> {
@@ -25,22 +27,7 @@ pub(super) fn vector(width_bits: usize) -> String {
 }
 
 pub(super) fn comment(lines: &[String], pad: &str) -> String {
-    let line = |line: &String| format!("{}\n", format!("{pad}// {line}").trim_end());
-    lines.iter().map(line).collect()
-}
-
-/// `NoStartBit` becomes `NO_START_BIT`.
-pub(super) fn upper(name: &str) -> String {
-    let mut out = String::new();
-    let mut previous_is_lower = false;
-    for c in name.chars() {
-        if c.is_ascii_uppercase() && previous_is_lower {
-            out.push('_');
-        }
-        previous_is_lower = !c.is_ascii_uppercase();
-        out.push(c.to_ascii_uppercase());
-    }
-    out
+    crate::printing::comment(MARK, lines, pad)
 }
 
 /// What is proved about a module: compilers other than provers never see it.

@@ -3,31 +3,11 @@
 use super::expression::{literal, named_literal};
 use super::ModulePrinter;
 use crate::elaborate::properties::words;
-use crate::elaborate::{EnumId, Expr, ExprKind};
-use crate::verilog::text::{comment, upper, vector, INDENT};
-use std::collections::BTreeSet;
+use crate::elaborate::EnumId;
+use crate::printing::variant_name;
+use crate::verilog::text::{comment, vector, INDENT};
 
 impl ModulePrinter<'_> {
-    pub(super) fn find_used_parameters(&mut self) {
-        fn visit(expr: &Expr, used: &mut BTreeSet<usize>) {
-            if let ExprKind::Parameter(index) = expr.kind {
-                used.insert(index);
-            }
-            // bits of a constant are printed as a literal
-            let is_literal = matches!(&expr.kind, ExprKind::Slice(inner, _) if matches!(inner.kind, ExprKind::Parameter(_)));
-            if !is_literal {
-                expr.operands().into_iter().for_each(|e| visit(e, used));
-            }
-        }
-        let used = &mut self.used_parameters;
-        for statement in self.module.processes.iter().flat_map(|p| &p.statements) {
-            statement.for_each_expr(&mut |expr| visit(expr, used));
-        }
-        for connection in self.module.instances.iter().flat_map(|i| &i.connections) {
-            visit(&connection.value, used);
-        }
-    }
-
     /// What is named in the logic, with what it is.
     pub(super) fn constants(&self) -> String {
         let mut out = String::new();
@@ -68,7 +48,7 @@ impl ModulePrinter<'_> {
         }
         for (enum_id, enum_type) in self.design.enums.iter().enumerate() {
             for variant in 0..enum_type.variants.len() {
-                let name = self.variant_name(enum_id, variant);
+                let name = variant_name(enum_type, variant);
                 let is_there = self.variants.values().any(|known| *known == name);
                 if words.contains(&*name) && !is_there {
                     lines.push(self.variant_line(enum_id, variant, &name));
@@ -91,12 +71,5 @@ impl ModulePrinter<'_> {
         let width_bits = self.design.enums[enum_id].width_bits;
         let value = literal(variant as u128, width_bits);
         format!("localparam {:>7} {name} = {value};", vector(width_bits))
-    }
-
-    /// What a state is called where nothing else has that name.
-    pub(super) fn variant_name(&self, enum_id: EnumId, variant: usize) -> String {
-        let enum_type = &self.design.enums[enum_id];
-        let name = upper(&enum_type.variants[variant]);
-        format!("{}_{name}", upper(&enum_type.name))
     }
 }

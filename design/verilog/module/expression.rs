@@ -1,15 +1,12 @@
 //! Expressions as Verilog text.
 
 use super::ModulePrinter;
-use crate::elaborate::{mask, row, BinaryOp, Expr, ExprKind, NetId, Piece, UnaryOp};
-
-/// Ends of the names of quantities.
-const UNITS: [&str; 8] = ["hz", "ns", "us", "ms", "cycles", "bits", "bytes", "words"];
+use crate::elaborate::{mask, BinaryOp, Expr, ExprKind, NetId, UnaryOp};
+use crate::printing::{is_count, is_quantity, is_row, parts, Part, SMALL_MASK_MAX};
 
 /// The value of something that has a name: quantities in decimal, what may be flags or several fields in hexadecimal.
 pub(in crate::verilog) fn named_literal(name: &str, value: u128, width_bits: usize) -> String {
-    let last = name.rsplit('_').next().unwrap_or(name).to_lowercase();
-    match UNITS.contains(&last.as_str()) || value <= SMALL_MASK_MAX {
+    match is_quantity(name, value) {
         true => format!(
             "{width_bits}'{}{value}",
             if width_bits == 1 { 'b' } else { 'd' }
@@ -22,7 +19,7 @@ pub(in crate::verilog) fn named_literal(name: &str, value: u128, width_bits: usi
 pub(in crate::verilog) fn literal(value: u128, width_bits: usize) -> String {
     match width_bits {
         1 => format!("1'b{value}"),
-        _ if value < 1_000_000 || value.is_multiple_of(1_000) => format!("{width_bits}'d{value}"),
+        _ if is_count(value) => format!("{width_bits}'d{value}"),
         _ => bits(value, width_bits),
     }
 }
@@ -31,9 +28,6 @@ pub(in crate::verilog) fn literal(value: u128, width_bits: usize) -> String {
 pub(in crate::verilog) fn bits(value: u128, width_bits: usize) -> String {
     format!("{width_bits}'h{value:x}")
 }
-
-/// Largest pattern of bits that is said in decimal: everyone sees the bits of a small number.
-const SMALL_MASK_MAX: u128 = 255;
 
 /// A net that the printer adds because Verilog cannot take bits of an expression.
 pub(in crate::verilog) struct Helper {
@@ -55,8 +49,8 @@ pub(in crate::verilog) struct Helpers {
 impl ModulePrinter<'_> {
     /// The text of an expression; `for_net` names helper nets.
     pub fn expression(&mut self, expr: &Expr, for_net: &str, helpers: &mut Helpers) -> String {
-        if let Some(row) = row(expr) {
-            return self.side_by_side(row, expr.width_bits, for_net, helpers);
+        if let Some(parts) = parts(expr) {
+            return self.side_by_side(parts, for_net, helpers);
         }
         match &expr.kind {
             ExprKind::Constant(value) => literal(*value, expr.width_bits),
@@ -111,41 +105,14 @@ impl ModulePrinter<'_> {
         }
     }
 
-    /// Pieces side by side, zeros between them: a concatenation.
-    fn side_by_side(
-        &mut self,
-        row: Vec<Piece>,
-        width_bits: usize,
-        for_net: &str,
-        helpers: &mut Helpers,
-    ) -> String {
-        let mut texts = vec![];
-        // Bits that are known, from where on, and their value.
-        let (mut known_from, mut known) = (0, 0);
-        let top = Piece {
-            low_bit: width_bits,
-            expr: Expr::constant(0, 0),
+    /// Parts side by side: a concatenation.
+    fn side_by_side(&mut self, parts: Vec<Part>, for_net: &str, helpers: &mut Helpers) -> String {
+        let text = |part| match part {
+            Part::Known(value, places) if value <= SMALL_MASK_MAX => literal(value, places),
+            Part::Known(value, places) => bits(value, places),
+            Part::Value(expr) => self.expression(&expr, for_net, helpers),
         };
-        for piece in row.into_iter().chain([top]) {
-            if let ExprKind::Constant(value) = piece.expr.kind {
-                let places = (piece.low_bit - known_from) as u32;
-                known |= value.checked_shl(places).unwrap_or(0);
-                if piece.low_bit < width_bits {
-                    continue;
-                }
-            }
-            if piece.low_bit > known_from {
-                let places = piece.low_bit - known_from;
-                texts.push(match known <= SMALL_MASK_MAX {
-                    true => literal(known, places),
-                    false => bits(known, places),
-                });
-            }
-            if piece.low_bit < width_bits {
-                texts.push(self.expression(&piece.expr, for_net, helpers));
-            }
-            (known_from, known) = (piece.end(), 0);
-        }
+        let mut texts: Vec<String> = parts.into_iter().map(text).collect();
         texts.reverse();
         match &texts[..] {
             [text] if !text.contains(' ') => text.clone(),
@@ -322,11 +289,6 @@ pub(in crate::verilog) fn range(
         1 => format!("{name}[{low_bit}]"),
         _ => format!("{name}[{}:{low_bit}]", low_bit + width_bits - 1),
     }
-}
-
-/// Whether it is printed as a concatenation.
-fn is_row(expr: &Expr) -> bool {
-    row(expr).is_some()
 }
 
 /// Operators that read well in a row.
