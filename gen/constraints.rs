@@ -8,6 +8,7 @@ use crate::board::{
 use crate::config::Project;
 use crate::error::GenError;
 use crate::explain;
+use crate::language::Language;
 use crate::template;
 use crate::testbench::RESET_CYCLES;
 use endat_hdl::card::bus::HostBus;
@@ -177,15 +178,17 @@ fn connections(project: &Project, inverted: &[&str]) -> Vec<Connection> {
 }
 
 /// Board top, constraints and README of a project; without a board only a README that says how to use the card.
-pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
+pub fn artifacts(project: &Project, language: Language) -> Result<Vec<Artifact>, GenError> {
+    let is_vhdl = language == Language::Vhdl;
     match (&project.board, &project.pll) {
-        (Some(board), Some(pll)) => of_board(project, board, pll),
-        _ => without_board(project),
+        (Some(board), Some(pll)) => of_board(project, board, pll, is_vhdl),
+        _ => without_board(project, is_vhdl),
     }
 }
 
-fn without_board(project: &Project) -> Result<Vec<Artifact>, GenError> {
+fn without_board(project: &Project, is_vhdl: bool) -> Result<Vec<Artifact>, GenError> {
     let context = context! {
+        is_vhdl,
         name => project.name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
@@ -209,7 +212,12 @@ fn without_board(project: &Project) -> Result<Vec<Artifact>, GenError> {
 }
 
 /// What the templates know, a family's own among them; docs/boards.md lists it.
-fn of_board(project: &Project, board: &Board, pll: &Pll) -> Result<Vec<Artifact>, GenError> {
+fn of_board(
+    project: &Project,
+    board: &Board,
+    pll: &Pll,
+    is_vhdl: bool,
+) -> Result<Vec<Artifact>, GenError> {
     let name = &project.name;
     let family = &board.family;
     let t_format: Vec<usize> = project.card.t_format_numbers().collect();
@@ -218,6 +226,7 @@ fn of_board(project: &Project, board: &Board, pll: &Pll) -> Result<Vec<Artifact>
         .collect();
     let inverted = inverted(project, board);
     let facts = context! {
+        is_vhdl,
         name => name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),

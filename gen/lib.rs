@@ -23,6 +23,7 @@ pub mod explain;
 pub(crate) mod form;
 pub mod integration;
 pub mod json_schema;
+pub mod language;
 pub mod maps;
 pub mod prove;
 pub mod readers;
@@ -33,6 +34,7 @@ pub mod template;
 pub mod testbench;
 pub mod tools;
 pub mod verilog;
+pub mod vhdl;
 pub mod virtual_card;
 
 use artifact::Artifact;
@@ -43,20 +45,35 @@ use endat_hdl::card::bus::{
 };
 use endat_hdl::card::{bare_port, Card};
 use error::GenError;
+use language::Language;
 use rtl_design::elaborate::{elaborate, Design};
 use rust_hdl::prelude::Block;
 
 /// All files of a project, the MANIFEST last.
 pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
+    emit_in(project, Language::Verilog)
+}
+
+/// The same with the core in this language.
+pub fn emit_in(project: &Project, language: Language) -> Result<Vec<Artifact>, GenError> {
     let design = design(project)?;
-    let mut artifacts = artifacts_of(project, &design)?;
-    let sources = verilog::source_files(&artifacts);
+    let mut artifacts = artifacts_of(project, &design, language)?;
+    let sources = verilog::source_files(&artifacts, language);
     artifacts.push(verilog::source_list(&project.name, &sources));
-    let bench = testbench::artifact(project)?;
-    let core = integration::Core::card(project, &sources, bench.is_some())?;
+    let bench = match language {
+        Language::Verilog => testbench::artifact(project)?,
+        Language::Vhdl => None,
+    };
+    let has_bench = bench.is_some() || language == Language::Vhdl;
+    let core = integration::Core::card(project, &sources, has_bench, language)?;
     artifacts.extend(integration::artifacts(&core, &design)?);
-    artifacts.extend(constraints::artifacts(project)?);
+    artifacts.extend(vhdl::component(&core, &design)?);
+    artifacts.extend(constraints::artifacts(project, language)?);
     artifacts.extend(bench);
+    if language == Language::Vhdl {
+        let played = vhdl::card(project, &design)?;
+        artifacts.extend(vhdl::bench(&core, &design, &played)?);
+    }
     artifacts.push(artifact::manifest(&artifacts));
     Ok(artifacts)
 }
@@ -87,8 +104,12 @@ pub fn design(project: &Project) -> Result<Design, GenError> {
     })
 }
 
-/// The card as Verilog, and its register map in every format.
-fn artifacts_of(project: &Project, design: &Design) -> Result<Vec<Artifact>, GenError> {
+/// The card in a language, and its register map in every format.
+fn artifacts_of(
+    project: &Project,
+    design: &Design,
+    language: Language,
+) -> Result<Vec<Artifact>, GenError> {
     let report = explain::report(project).to_string();
     let channels = project.card.channels.len();
     let title = match project.bus {
@@ -101,7 +122,10 @@ fn artifacts_of(project: &Project, design: &Design) -> Result<Vec<Artifact>, Gen
         ),
     };
     let header = verilog::header(title, &project.hash, &report);
-    let mut artifacts = verilog::artifacts(design, &header);
+    let mut artifacts = match language {
+        Language::Verilog => verilog::artifacts(design, &header),
+        Language::Vhdl => vhdl::artifacts(design, &header),
+    };
     if project.bus != HostBus::Bare {
         artifacts.extend(maps::artifacts(project)?);
     }

@@ -1,6 +1,7 @@
 //! The Verilog files of a project: what they say of themselves, and the list of them.
 
 use crate::artifact::Artifact;
+use crate::language::Language;
 use rtl_design::elaborate::Design;
 use rtl_design::verilog::{print_files, Header};
 
@@ -35,13 +36,15 @@ pub fn untitled(design: &Design) -> Vec<Artifact> {
     artifacts(design, &header(String::new(), "", ""))
 }
 
-/// The Verilog files among the artefacts of a design.
-pub fn source_files(artifacts: &[Artifact]) -> Vec<String> {
+/// The files in a language among the artefacts of a design.
+pub fn source_files(artifacts: &[Artifact], language: Language) -> Vec<String> {
     let paths = artifacts.iter().map(|a| a.path.clone());
-    paths.filter(|p| p.ends_with(".v")).collect()
+    paths
+        .filter(|p| p.ends_with(language.extension()))
+        .collect()
 }
 
-/// The list of a card's Verilog files that compilers read with `-f`: no pattern of names takes in a file that is not the card's.
+/// The list of a card's files, in Verilog such as compilers read with `-f`: no pattern of names takes in a file that is not the card's.
 pub fn source_list(name: &str, sources: &[String]) -> Artifact {
     let lines = sources.iter().map(|file| format!("{file}\n"));
     Artifact::new(format!("{name}.f"), lines.collect::<String>())

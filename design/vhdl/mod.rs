@@ -16,7 +16,7 @@ pub use crate::printing::Header;
 pub use names::emitted_name;
 pub use package::package_name;
 
-use crate::elaborate::{Design, Module};
+use crate::elaborate::{Design, Module, ModuleId};
 use text::MARK;
 
 /// The design that the text is of: with the names of the text, and without what its configuration never uses.
@@ -61,4 +61,10 @@ pub fn print_files(design: &Design, header: &Header) -> Vec<(String, String)> {
     std::iter::once((file_name(&package), first))
         .chain(entities)
         .collect()
+}
+
+/// Another architecture of a module, for a simulation: `design` is as [`as_printed`] gives it, and differs from what has been printed inside
+/// that module only.
+pub fn print_architecture(design: &Design, module: ModuleId, name: &str) -> String {
+    module::print_architecture(design, &design.modules[module], name)
 }

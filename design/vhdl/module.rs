@@ -13,9 +13,25 @@ use crate::printing::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
+/// What the architecture of a module is called.
+const ARCHITECTURE: &str = "rtl";
+
 /// The text of a module.
 pub(super) fn print(design: &Design, module: &Module) -> String {
-    ModulePrinter::new(design, module).print()
+    let mut printer = ModulePrinter::new(design, module);
+    let architecture = printer.architecture(ARCHITECTURE);
+    let name = &module.name;
+    let docs = comment(&module.docs, "");
+    let ports = printer.ports();
+    let libraries = printer.libraries();
+    format!("{libraries}{docs}entity {name} is\n{ports}end entity;\n\n{architecture}")
+}
+
+/// Its architecture alone, under another name.
+pub(super) fn print_architecture(design: &Design, module: &Module, name: &str) -> String {
+    let mut printer = ModulePrinter::new(design, module);
+    let architecture = printer.architecture(name);
+    format!("{}{architecture}", printer.libraries())
 }
 
 /// A signal or variable that the printer adds.
@@ -146,43 +162,37 @@ impl<'a> ModulePrinter<'a> {
         }
     }
 
-    fn print(mut self) -> String {
+    fn libraries(&self) -> String {
+        let package = package_name(self.design);
+        format!(
+            "library ieee;\nuse ieee.std_logic_1164.all;\nuse ieee.numeric_std.all;\nuse work.{package}.all;\n\n"
+        )
+    }
+
+    fn architecture(&mut self, name: &str) -> String {
         let instances: Vec<String> = (0..self.module.instances.len())
             .map(|i| self.instance(i))
             .collect();
         let processes = self.processes();
         let registers = self.registers();
         let (memory_types, memories) = self.memories();
-        let outputs = self.outputs();
-
-        let (module, package) = (self.module, package_name(self.design));
-        let name = &module.name;
-        let mut out = String::from(
-            "library ieee;\nuse ieee.std_logic_1164.all;\nuse ieee.numeric_std.all;\n",
-        );
-        out.push_str(&format!("use work.{package}.all;\n\n"));
-        out.push_str(&comment(&module.docs, ""));
-        out.push_str(&format!(
-            "entity {name} is\n{}end entity;\n\n",
-            self.ports()
-        ));
-        out.push_str(&format!("architecture rtl of {name} is\n"));
-        out.push_str(&self.constants());
-        out.push_str(&self.declarations());
-        out.push_str(&memory_types);
-        out.push_str("begin\n");
         let sections = [
             instances.join("\n"),
             processes,
             registers,
             memories,
-            outputs,
+            self.outputs(),
         ];
         let sections = sections.iter().map(|text| text.trim_matches('\n'));
         let sections: Vec<&str> = sections.filter(|text| !text.is_empty()).collect();
-        out.push_str(&sections.join("\n\n"));
-        out.push_str("\nend architecture;\n");
-        out
+        let sections = sections.join("\n\n").replace("\n\n\n", "\n\n");
+        let declarations = self.declarations();
+        format!(
+            "architecture {name} of {} is\n{}{declarations}{memory_types}begin\n{}\nend architecture;\n",
+            self.module.name,
+            self.constants(),
+            sections
+        )
     }
 
     /// The ports that a signal of this module stands for.

@@ -5,6 +5,7 @@ use super::{EmissionArgs, Outcome};
 use crate::artifact::{self, Artifact};
 use crate::config::Configuration;
 use crate::error::GenError;
+use crate::language::Language;
 use clap::Args;
 use endat_hdl::card::bus::HostBus;
 use std::sync::atomic::Ordering;
@@ -14,6 +15,9 @@ use std::sync::atomic::Ordering;
 pub struct EmitArgs {
     #[command(flatten)]
     emission: EmissionArgs,
+    /// Language of the core: verilog, or vhdl, which is VHDL-93 and VHDL-2008 at once [default: verilog]
+    #[arg(long, value_name = "LANGUAGE")]
+    language: Option<String>,
     /// Write the C driver, too: C99 for any bus of a card, see docs/driver.md
     #[arg(long)]
     driver: bool,
@@ -28,10 +32,12 @@ pub struct EmitArgs {
 /// Runs the command.
 pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
     let stop = interrupted();
+    let language = arguments.language.as_deref().map(Language::named);
+    let language = language.transpose()?.unwrap_or_default();
     let (configuration, folder) = arguments.emission.load()?;
     let mut artifacts = match &configuration {
-        Configuration::Card(card) => crate::emit(card)?,
-        Configuration::Receiver(receiver) => crate::t_format::emit(receiver)?,
+        Configuration::Card(card) => crate::emit_in(card, language)?,
+        Configuration::Receiver(receiver) => crate::t_format::emit_in(receiver, language)?,
     };
     if arguments.driver {
         add_driver(&configuration, &mut artifacts)?;
@@ -138,6 +144,7 @@ fn repair(arguments: &EmitArgs, force: bool) -> String {
         emission.out.as_ref().map(|p| p.display().to_string()),
     );
     add("--name", emission.name.clone());
+    add("--language", arguments.language.clone());
     if arguments.driver {
         words.push("--driver".into());
     }

@@ -23,6 +23,7 @@ pub use trace::Trace;
 use crate::artifact::Artifact;
 use crate::config::{Project, Receiver};
 use crate::error::GenError;
+use crate::language::Language;
 use crate::readers::is_core;
 use crate::scratch;
 use endat_sim::diagram::waves_svg;
@@ -74,7 +75,7 @@ impl Subject {
     /// A card as it is emitted.
     pub fn new(project: &Project) -> Result<Self, GenError> {
         let design = crate::design(project)?;
-        let files = crate::artifacts_of(project, &design)?;
+        let files = crate::artifacts_of(project, &design, Language::Verilog)?;
         Ok(Self::of(&project.name, design, files))
     }
 

@@ -14,9 +14,11 @@ use crate::artifact::{self, Artifact};
 use crate::config::Receiver;
 use crate::error::GenError;
 use crate::integration;
+use crate::language::Language;
 use crate::template::render;
 use crate::testbench::RESET_CYCLES;
 use crate::verilog;
+use crate::vhdl;
 use endat_hdl::t_format::dsp::AsyncDsp;
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
 use minijinja::context;
@@ -36,6 +38,11 @@ pub fn design(receiver: &Receiver) -> Result<Design, GenError> {
 
 /// All files of a receiver, the MANIFEST last.
 pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
+    emit_in(receiver, Language::Verilog)
+}
+
+/// The same with the core in this language.
+pub fn emit_in(receiver: &Receiver, language: Language) -> Result<Vec<Artifact>, GenError> {
     let design = design(receiver)?;
     let report = report(receiver).to_string();
     let title = format!(
@@ -43,8 +50,11 @@ pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
         receiver.name
     );
     let header = verilog::header(title, &receiver.hash, &report);
-    let mut artifacts = verilog::artifacts(&design, &header);
-    let sources = verilog::source_files(&artifacts);
+    let mut artifacts = match language {
+        Language::Verilog => verilog::artifacts(&design, &header),
+        Language::Vhdl => vhdl::artifacts(&design, &header),
+    };
+    let sources = verilog::source_files(&artifacts, language);
     artifacts.push(verilog::source_list(&receiver.name, &sources));
     let map = include_str!("../templates/t_format_registers.md");
     artifacts.push(Artifact::new(
@@ -56,9 +66,16 @@ pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
             receiver.hash
         ),
     ));
-    let core = integration::Core::receiver(receiver, &sources);
+    let core = integration::Core::receiver(receiver, &sources, language);
     artifacts.extend(integration::artifacts(&core, &design)?);
-    artifacts.push(bench::artifact(receiver)?);
+    artifacts.extend(vhdl::component(&core, &design)?);
+    match language {
+        Language::Verilog => artifacts.push(bench::artifact(receiver)?),
+        Language::Vhdl => {
+            let played = vhdl::receiver(receiver, &design)?;
+            artifacts.extend(vhdl::bench(&core, &design, &played)?);
+        }
+    }
     let context = context! {
         name => receiver.name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
@@ -67,6 +84,7 @@ pub fn emit(receiver: &Receiver) -> Result<Vec<Artifact>, GenError> {
         timing => report,
         initial_values => receiver.initial_values,
         reset_cycles => RESET_CYCLES,
+        is_vhdl => language == Language::Vhdl,
     };
     let readme = include_str!("../templates/receiver_readme.md.jinja");
     artifacts.push(Artifact::new(
