@@ -37,6 +37,7 @@ mod stream;
 mod t_format;
 mod tools;
 mod verilog;
+mod vhdl;
 mod view;
 
 // What the tests of design/ are made of, for whole cards.

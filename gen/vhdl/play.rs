@@ -51,7 +51,7 @@ pub struct Played {
     pub known_from: usize,
     /// System clock in hertz.
     pub system_hz: u64,
-    /// Good positions that the host has read.
+    /// Good positions that the host has read, or that a port without a bus has shown.
     pub good: usize,
     /// The design with the program that is played: the initialisation takes two seconds, and is left out.
     pub design: Design,
@@ -159,9 +159,9 @@ fn bench_of(project: &Project, design: &Design) -> Result<Bench<Compiled>, GenEr
 
 /// What happens before the first trigger; the cycle from which on outputs are known.
 fn power_up(card: &CardConfig, host: &mut Host, bench: &mut Bench<Compiled>) -> usize {
-    host.run(bench, BEHIND_CYCLES);
     if card.initial_values {
         // There is no reset: an encoder channel would be quiet for 30 ms behind it.
+        host.run(bench, BEHIND_CYCLES);
         return 0;
     }
     let reset = reset_of(bench);
@@ -169,6 +169,7 @@ fn power_up(card: &CardConfig, host: &mut Host, bench: &mut Bench<Compiled>) -> 
     host.run(bench, RESET_CYCLES);
     bench.set(reset, 0);
     let known_from = bench.cycle();
+    host.run(bench, BEHIND_CYCLES);
     if card.service.requests {
         host.run(bench, CLEAR_CYCLES as u64);
     }
@@ -222,6 +223,7 @@ fn life(project: &Project, host: &mut Host, bench: &mut Bench<Compiled>) -> usiz
             good += usize::from(words.first().is_some_and(|word| word & fresh != 0));
         }
     }
+    good += bench.results().iter().filter(|result| result.fresh).count();
     let frame_word = CHANNEL_CONFIG.word("frame");
     let address = u64::from(CHANNEL_CONFIG.address(frame_word, 0));
     host.write(
@@ -256,15 +258,14 @@ pub fn receiver(receiver: &Receiver, design: &Design) -> Result<Played, GenError
         bench.set(strobe, 1);
     }
     bench.record_cycles();
-    bench.run_cycles(BEHIND_CYCLES);
     let mut known_from = 0;
     if !receiver.initial_values {
         bench.set("rst_i", 1);
         bench.run_cycles(RESET_CYCLES);
         bench.set("rst_i", 0);
         known_from = bench.cycle() as usize;
-        bench.run_cycles(BEHIND_CYCLES);
     }
+    bench.run_cycles(BEHIND_CYCLES);
     let mut good = 0;
     let exchange = cycles_at_least(200_000, system_hz);
     for id in [u16::from(receiver.start.request_id), 0, 1, 2] {

@@ -326,7 +326,9 @@ impl ModulePrinter<'_> {
                 ExprKind::Binary(op, left, right) if is_comparison(*op) => {
                     return self.relation(*op, left, right);
                 }
-                ExprKind::Binary(op, left, right) if is_logic(expr) => {
+                ExprKind::Binary(op, left, right)
+                    if is_logic(expr) && (*op != BinaryOp::Xor || is_condition(expr)) =>
+                {
                     let own = Level::Logic(*op);
                     let left =
                         (self.condition_text(left)).within(&[own, Level::Relation, Level::Not]);

@@ -1,0 +1,211 @@
+//! The emitted VHDL under GHDL: every preset in both languages, and its bench, which has to see what is broken.
+
+mod files;
+mod mutations;
+
+use crate::tools;
+use crate::verilog::mutations::Mutation;
+use endat_gen::artifact::Artifact;
+use endat_gen::config::{self, Configuration};
+use endat_gen::language::Language;
+use mutations::MUTATIONS;
+use rtl_design::elaborate::block_name;
+use std::path::{Path, PathBuf};
+
+/// Both languages that the text is in.
+const STANDARDS: [&str; 2] = ["--std=93", "--std=08"];
+
+/// Everything that is emitted for a configuration in VHDL.
+fn emission(configuration: &Configuration) -> Vec<Artifact> {
+    match configuration {
+        Configuration::Card(card) => endat_gen::emit_in(card, Language::Vhdl),
+        Configuration::Receiver(receiver) => endat_gen::t_format::emit_in(receiver, Language::Vhdl),
+    }
+    .unwrap()
+}
+
+fn preset(name: &str) -> Vec<Artifact> {
+    emission(&config::load_any_preset(name).unwrap())
+}
+
+fn presets() -> impl Iterator<Item = &'static str> {
+    let all = config::PRESETS.iter().chain(config::RECEIVER_PRESETS);
+    all.map(|preset| preset.0)
+}
+
+/// What an emission is called, and the files that its list names.
+fn listed(files: &[Artifact]) -> (&str, Vec<&str>) {
+    let find = |f: &'_ Artifact| f.path.ends_with(".f");
+    let list = files.iter().find(|f| find(f)).unwrap();
+    let name = list.path.trim_end_matches(".f");
+    (name, list.text.lines().collect())
+}
+
+/// Writes an emission into a folder of its own.
+fn write(test: &str, files: &[Artifact]) -> PathBuf {
+    let folder = tools::folder(&format!("vhdl-{test}"));
+    for file in files
+        .iter()
+        .filter(|f| f.path.contains(".vhd") || f.path.ends_with(".txt"))
+    {
+        std::fs::write(folder.join(&file.path), &file.text).unwrap();
+    }
+    folder
+}
+
+/// Analyses the files of a list and more, and runs a unit with options.
+fn ghdl(
+    folder: &Path,
+    files: &[Artifact],
+    standard: &str,
+    more: &[&str],
+    run: &[&str],
+) -> (bool, String) {
+    let (_, sources) = listed(files);
+    let arguments = [&["-c", standard][..], &sources, more, &["-r"], run].concat();
+    tools::run("ghdl", folder, &arguments)
+}
+
+/// What the bench of an emission says.
+fn bench(folder: &Path, files: &[Artifact], standard: &str) -> (bool, String) {
+    let (name, _) = listed(files);
+    let (bench, file) = (format!("{name}_tb"), format!("{name}_tb.vhd"));
+    let run = [&bench[..], "--ieee-asserts=disable-at-0"];
+    ghdl(folder, files, standard, &[&file], &run)
+}
+
+fn assert_passes(test: &str, files: &[Artifact], standard: &str) {
+    let folder = write(test, files);
+    let (is_good, text) = bench(&folder, files, standard);
+    // Not a warning of numeric_std stands before it.
+    assert!(
+        is_good && text.trim() == "PASS",
+        "{test} {standard}: {text}"
+    );
+}
+
+/// Not a warning; with the component, and with the bench.
+#[test]
+fn every_preset_is_analysed_and_elaborated_in_both_languages() {
+    if !tools::require("ghdl", "VHDL of the presets") {
+        return;
+    }
+    for name in presets() {
+        let files = preset(name);
+        let folder = write(&format!("elaborated-{name}"), &files);
+        let (bench, component) = (format!("{name}_tb"), format!("{name}_component.vhd"));
+        let more = [&component[..], &format!("{name}_tb.vhd")];
+        for standard in STANDARDS {
+            let (is_good, text) = ghdl(&folder, &files, standard, &more, &[&bench, "--no-run"]);
+            assert!(is_good && text.is_empty(), "{name} {standard}: {text}");
+        }
+    }
+}
+
+#[test]
+fn benches_of_quick_presets_pass() {
+    if tools::require("ghdl", "VHDL benches") {
+        assert_passes("async_dsp-93", &preset("async_dsp"), STANDARDS[0]);
+        assert_passes("async_dsp-08", &preset("async_dsp"), STANDARDS[1]);
+        assert_passes("s6_two_channel", &preset("s6_two_channel"), STANDARDS[1]);
+    }
+}
+
+#[test]
+#[ignore = "two minutes: every preset's bench in both languages"]
+fn every_bench_passes_in_both_languages() {
+    if !tools::require("ghdl", "VHDL benches") {
+        return;
+    }
+    for name in presets() {
+        let files = preset(name);
+        for standard in STANDARDS {
+            assert_passes(&format!("all-{name}"), &files, standard);
+        }
+    }
+}
+
+/// Presets have a UART, APB and AXI4-Lite; here are the other buses, and registers without start values.
+#[test]
+#[ignore = "half a minute: benches of cards on other buses, and of those without start values"]
+fn benches_of_other_cards_pass() {
+    if !tools::require("ghdl", "VHDL benches") {
+        return;
+    }
+    let unknown = "[device]\ninitial_values = false\n";
+    let cards = [
+        ("wishbone", ""),
+        ("spi", ""),
+        ("parallel", ""),
+        ("none", ""),
+        ("apb", unknown),
+        ("none", unknown),
+    ];
+    for (index, (bus, more)) in cards.into_iter().enumerate() {
+        let text = format!(
+            "name = \"other\"\n[clock]\nsystem_hz = 100_000_000\n[endat]\nclock_hz = 4_000_000\n[[channel]]\nposition_bits = 25\n\
+             command = \"111000\"\n[trigger]\nsample_hz = 5_000\n[host]\nbus = \"{bus}\"\n{more}"
+        );
+        let card = config::parse_any_on("other.toml", &text, None).unwrap();
+        let files = emission(&card);
+        let folder = write(&format!("other-{index}"), &files);
+        let (is_good, said) = bench(&folder, &files, STANDARDS[index % 2]);
+        let passes = said.lines().any(|line| line == "PASS");
+        assert!(is_good && passes, "{bus} {more}: {said}");
+        // Before the reset numeric_std may say that values are none.
+        assert!(!more.is_empty() || said.trim() == "PASS", "{bus}: {said}");
+    }
+}
+
+/// A card whose frames take few cycles.
+const QUICK: &str = "name = \"quick\"
+[clock]
+system_hz = 50_000_000
+[endat]
+clock_hz = 2_500_000
+[[channel]]
+position_bits = 25
+command = \"111000\"
+[trigger]
+sample_hz = 5_000
+[host]
+bus = \"apb\"
+[outputs]
+parts = [\"position\", \"interrupt\"]
+";
+
+/// A broken emission.
+fn mutant(files: &[Artifact], mutation: &Mutation) -> Result<Vec<Artifact>, String> {
+    let (name, _) = listed(files);
+    let path = match mutation.block {
+        "" => format!("{name}.vhd"),
+        block => format!("{}.vhd", block_name(name, block)),
+    };
+    let mut files = files.to_vec();
+    let file = files.iter_mut().find(|f| f.path == path);
+    let file = file.ok_or(format!("{}: there is no {path}", mutation.name))?;
+    file.text = mutation.applied(&file.text)?;
+    Ok(files)
+}
+
+#[test]
+fn the_bench_fails_on_twenty_broken_cards() {
+    if !tools::require("ghdl", "mutations of the emitted VHDL") {
+        return;
+    }
+    assert!(MUTATIONS.len() >= 20);
+    let card = config::parse_any_on("quick.toml", QUICK, None).unwrap();
+    let files = emission(&card);
+    assert_passes("whole", &files, STANDARDS[0]);
+    let mut survivors = vec![];
+    for (index, mutation) in MUTATIONS.iter().enumerate() {
+        let broken = mutant(&files, mutation).unwrap();
+        let folder = write("mutant", &broken);
+        let (is_good, text) = bench(&folder, &broken, STANDARDS[index % 2]);
+        // It is the bench that has to see it, no compiler.
+        if is_good || !text.contains("FAIL: cycle") {
+            survivors.push((mutation.name, text));
+        }
+    }
+    assert!(survivors.is_empty(), "not noticed: {survivors:#?}");
+}
