@@ -2,8 +2,8 @@
 
 use crate::artifact::Artifact;
 use crate::board::{
-    Assignment, Board, Kind, Pll, CLOCK, CONSTRAINTS, PARALLEL_ADDRESS_LINES, PARALLEL_DATA_LINES,
-    README,
+    Assignment, Board, Kind, Pll, CLOCK, CLOCK_VHDL, CONSTRAINTS, PARALLEL_ADDRESS_LINES,
+    PARALLEL_DATA_LINES, README,
 };
 use crate::config::Project;
 use crate::error::GenError;
@@ -21,6 +21,7 @@ use serde::Serialize;
 
 /// The templates that are the same for every family.
 const TOP: &str = include_str!("../constraints/templates/top.v.jinja");
+const TOP_VHDL: &str = include_str!("../constraints/templates/top.vhd.jinja");
 const PAGE: &str = include_str!("../constraints/templates/readme.md.jinja");
 
 /// A port as the templates see it.
@@ -31,6 +32,8 @@ struct Port {
     position: String,
     meaning: String,
     direction: &'static str,
+    /// The direction in VHDL.
+    mode: &'static str,
     iostandard: String,
     /// The last register belongs into the output cell.
     output_cell: bool,
@@ -90,6 +93,11 @@ impl Port {
             position: pin.position.clone(),
             meaning: meaning(pin, t_format),
             direction: pin.kind.direction(),
+            mode: match pin.kind.direction().split(' ').next() {
+                Some("input") => "in",
+                Some("output") => "out",
+                _ => "inout",
+            },
             iostandard: board.iostandard_of(&pin.pin).to_owned(),
             output_cell: pin.kind == Kind::Transceiver,
             attributes: board.family.attributes(pin.kind).to_owned(),
@@ -137,7 +145,7 @@ struct Connection {
 }
 
 /// All ports of the card but clock and reset. Lines of a bus are pins one by one, and one vector at the card.
-fn connections(project: &Project, inverted: &[&str]) -> Vec<Connection> {
+fn connections(project: &Project, inverted: &[&str], is_vhdl: bool) -> Vec<Connection> {
     let own = project
         .pins
         .iter()
@@ -156,6 +164,12 @@ fn connections(project: &Project, inverted: &[&str]) -> Vec<Connection> {
         [(of("_o"), of("")), (of("_oe"), of("_oe"))]
     });
     let mut bus = match project.bus {
+        HostBus::Parallel if is_vhdl => vec![
+            ("bus_address_i", "bus_address".to_owned()),
+            ("bus_data_i", "bus_data_in".to_owned()),
+            ("bus_data_o", "bus_data".to_owned()),
+            ("bus_data_oe", "bus_data_oe".to_owned()),
+        ],
         HostBus::Parallel => vec![
             (
                 "bus_address_i",
@@ -168,7 +182,8 @@ fn connections(project: &Project, inverted: &[&str]) -> Vec<Connection> {
         _ => vec![],
     };
     if has_unused_interrupt(project) {
-        bus.push(("irq_o", UNUSED_INTERRUPT.to_owned()));
+        let net = if is_vhdl { "open" } else { UNUSED_INTERRUPT };
+        bus.push(("irq_o", net.to_owned()));
     }
     let bus = bus.into_iter().map(|(port, net)| (port.to_owned(), net));
     own.chain(shared)
@@ -181,7 +196,7 @@ fn connections(project: &Project, inverted: &[&str]) -> Vec<Connection> {
 pub fn artifacts(project: &Project, language: Language) -> Result<Vec<Artifact>, GenError> {
     let is_vhdl = language == Language::Vhdl;
     match (&project.board, &project.pll) {
-        (Some(board), Some(pll)) => of_board(project, board, pll, is_vhdl),
+        (Some(board), Some(pll)) => of_board(project, board, pll, language),
         _ => without_board(project, is_vhdl),
     }
 }
@@ -211,22 +226,55 @@ fn without_board(project: &Project, is_vhdl: bool) -> Result<Vec<Artifact>, GenE
     Ok(vec![Artifact::new(crate::artifact::README, text)])
 }
 
+/// The language of the board top where the core is in this one: the clock manager of a family of somebody's own may be in Verilog
+/// alone. Tools that take both languages put the two together.
+pub fn top_language(board: &Board, core: Language) -> Language {
+    match board.family.has(CLOCK_VHDL) {
+        true => core,
+        false => Language::Verilog,
+    }
+}
+
+/// A Verilog attribute, for VHDL.
+#[derive(Serialize)]
+struct Attribute<'a> {
+    name: &'a str,
+    value: &'a str,
+}
+
+/// The attributes of a family's words, as `(* IOB = "TRUE" *)`.
+fn attributes(words: &str) -> Vec<Attribute<'_>> {
+    let inside = words.trim().trim_start_matches("(*").trim_end_matches("*)");
+    let pairs = inside.split(',').filter_map(|one| one.split_once('='));
+    pairs
+        .map(|(name, value)| {
+            let name = name.trim();
+            let value = value.trim().trim_matches('"');
+            Attribute { name, value }
+        })
+        .collect()
+}
+
 /// What the templates know, a family's own among them; docs/boards.md lists it.
 fn of_board(
     project: &Project,
     board: &Board,
     pll: &Pll,
-    is_vhdl: bool,
+    language: Language,
 ) -> Result<Vec<Artifact>, GenError> {
     let name = &project.name;
     let family = &board.family;
+    let top_language = top_language(board, language);
+    let has_vhdl_top = top_language == Language::Vhdl;
+    let top = format!("{name}_top{}", top_language.extension());
     let t_format: Vec<usize> = project.card.t_format_numbers().collect();
     let ports: Vec<Value> = (project.pins.iter())
         .map(|pin| Value::from(Serde(Port::new(pin, board, &t_format))))
         .collect();
     let inverted = inverted(project, board);
     let facts = context! {
-        is_vhdl,
+        is_vhdl => language == Language::Vhdl,
+        top => top.as_str(),
         name => name.as_str(),
         version => env!("CARGO_PKG_VERSION"),
         hash => project.hash.as_str(),
@@ -236,8 +284,9 @@ fn of_board(
         device => Serde(&board.device),
         ports => ports,
         bus => project.bus.name(),
+        address_lines => PARALLEL_ADDRESS_LINES,
         data_lines => PARALLEL_DATA_LINES,
-        connections => Serde(connections(project, &inverted)),
+        connections => Serde(connections(project, &inverted, has_vhdl_top)),
         shared => Serde(shared_outputs(project).collect::<Vec<_>>()),
         inverted => Serde(&inverted),
         unused_interrupt => has_unused_interrupt(project).then_some(UNUSED_INTERRUPT),
@@ -265,15 +314,29 @@ fn of_board(
         reset_registers => family.reset_registers.as_str(),
     };
     let of_family = |part: &str| family.render(part, &facts);
+    let vhdl_clock = |part: &str| {
+        let facts = context! { part, ..facts.clone() };
+        family.render(CLOCK_VHDL, &facts)
+    };
+    let (clock_manager, clock_declarations) = match has_vhdl_top {
+        true => (vhdl_clock("statements")?, vhdl_clock("declarations")?),
+        false => (of_family(CLOCK)?, String::new()),
+    };
     let facts = context! {
-        clock_manager => of_family(CLOCK)?,
+        clock_manager,
+        clock_declarations,
+        output_attributes => Serde(attributes(&family.output_cell)),
+        reset_attributes => Serde(attributes(&family.reset_registers)),
         bitstream => of_family(README)?,
         ..facts.clone()
     };
     Ok(vec![
         Artifact::new(
-            format!("{name}_top.v"),
-            template::render("top.v", TOP, &facts)?,
+            top.as_str(),
+            match has_vhdl_top {
+                true => template::render("top.vhd", TOP_VHDL, &facts)?,
+                false => template::render("top.v", TOP, &facts)?,
+            },
         ),
         Artifact::new(
             format!("{name}.{}", family.constraints),

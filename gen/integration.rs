@@ -6,6 +6,7 @@ mod interface;
 use crate::artifact::Artifact;
 use crate::board::{Board, FUSESOC};
 use crate::config::{Project, Receiver};
+use crate::constraints::top_language;
 use crate::error::GenError;
 use crate::language::Language;
 use crate::template::render;
@@ -57,6 +58,14 @@ struct Port {
     meaning: String,
 }
 
+/// What FuseSoC calls files in a language.
+fn file_type(language: Language) -> &'static str {
+    match language {
+        Language::Verilog => "verilogSource-2005",
+        Language::Vhdl => "vhdlSource-2008",
+    }
+}
+
 /// Words that Python keeps for itself and that begin like a class.
 const PYTHON_WORDS: [&str; 3] = ["False", "None", "True"];
 
@@ -80,6 +89,9 @@ struct Target<'a> {
     title: &'a str,
     constraints: &'a str,
     file_type: &'a str,
+    /// The board top, and its type.
+    top: String,
+    top_type: &'static str,
     /// Name of the target, padded.
     target: String,
     /// The target itself.
@@ -88,7 +100,7 @@ struct Target<'a> {
 
 impl<'a> Target<'a> {
     /// None when FuseSoC does not know the tools of the board's family.
-    fn of(board: &'a Board, name: &str) -> Result<Option<Self>, GenError> {
+    fn of(board: &'a Board, name: &str, language: Language) -> Result<Option<Self>, GenError> {
         let Some(fusesoc) = &board.family.fusesoc else {
             return Ok(None);
         };
@@ -96,7 +108,10 @@ impl<'a> Target<'a> {
         let text = board
             .family
             .render(FUSESOC, &context! { name, part => words })?;
+        let language = top_language(board, language);
         Ok(Some(Self {
+            top: format!("{name}_top{}", language.extension()),
+            top_type: file_type(language),
             title: &board.title,
             constraints: &board.family.constraints,
             file_type: &fusesoc.file_type,
@@ -147,7 +162,7 @@ impl<'a> Core<'a> {
         language: Language,
     ) -> Result<Self, GenError> {
         let target = match &project.board {
-            Some(board) => Target::of(board, &project.name)?,
+            Some(board) => Target::of(board, &project.name, language)?,
             None => None,
         };
         let channels = project.card.channels.len();
@@ -255,6 +270,7 @@ pub fn artifacts(core: &Core<'_>, design: &Design) -> Result<Vec<Artifact>, GenE
         macro => core.name.to_ascii_uppercase(),
         origin => core.origin(),
         is_vhdl => core.language == Language::Vhdl,
+        file_type => file_type(core.language),
         version => env!("CARGO_PKG_VERSION"),
         vendor => VENDOR,
         library => LIBRARY,

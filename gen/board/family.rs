@@ -18,6 +18,8 @@ use toml::de::DeTable;
 pub const FILE: &str = "family.toml";
 /// Verilog of the clock manager: makes `clk` and `pll_locked` of the port `osc_i`.
 pub const CLOCK: &str = "clock.v.jinja";
+/// The same in VHDL, rendered once for each `part`: `declarations` and `statements`. A family without it has a top in Verilog only.
+pub const CLOCK_VHDL: &str = "clock.vhd.jinja";
 /// The constraints file.
 pub const CONSTRAINTS: &str = "constraints.jinja";
 /// How a bitstream is made, for the README of an emission.
@@ -126,6 +128,11 @@ impl Family {
         self.attributes.get(kind.name()).map_or("", String::as_str)
     }
 
+    /// Whether it has a template.
+    pub fn has(&self, file: &str) -> bool {
+        self.templates.contains_key(file)
+    }
+
     /// One of its templates, filled in.
     pub fn render(&self, file: &str, facts: &Value) -> Result<String, GenError> {
         let text = self.templates.get(file).map_or("", String::as_str);
@@ -173,6 +180,9 @@ fn read(
     let Some(mut family) = family.filter(|_| source.is_good()) else {
         return Err(source.into_diagnostics());
     };
+    if let Ok(text) = text_of(CLOCK_VHDL) {
+        family.templates.insert(CLOCK_VHDL, text);
+    }
     if family.fusesoc.is_some() {
         let text = text_of(FUSESOC).map_err(|why| vec![missing(FUSESOC, why)])?;
         family.templates.insert(FUSESOC, text);

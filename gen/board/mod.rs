@@ -9,7 +9,7 @@ mod read;
 mod shipped;
 
 pub use clock::{ClockManager, Feedback, Pll};
-pub use family::{Build, Family, CLOCK, CONSTRAINTS, FUSESOC, README};
+pub use family::{Build, Family, CLOCK, CLOCK_VHDL, CONSTRAINTS, FUSESOC, README};
 pub use keys::{page, BOARD_KEYS};
 pub use package::Package;
 pub use ports::{
