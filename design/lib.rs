@@ -1,7 +1,7 @@
 #![doc = include_str!("README.md")]
 //!
 //! Reading order: [`reg`] and [`memory`] (the only state there is), [`elaborate`] (a block becomes a [`Design`](elaborate::Design)),
-//! [`engine`] (runs it), [`verilog`] (prints it).
+//! [`engine`] (runs it), [`verilog`] and [`vhdl`] (print it).
 
 pub mod elaborate;
 pub mod engine;

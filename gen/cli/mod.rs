@@ -49,7 +49,7 @@ impl Outcome {
     }
 }
 
-/// Makes the Verilog, the constraints and the register map of an EnDat receiver card from one configuration.
+/// Makes the Verilog or VHDL, the constraints and the register map of an EnDat receiver card from one configuration.
 ///
 /// Without a command: emit the preset s6_two_channel into out/. Exit code 0: good; 1: a check failed; 2: wrong usage or input.
 #[derive(Parser)]
