@@ -135,7 +135,7 @@ end architecture;
 ",
         given = total(&inputs) - 1,
         got = total(&expected.outputs) - 1,
-        name = top.name,
+        name = emitted_name(&top.name),
         connections = connections.join(", "),
         last = count - 1,
     )

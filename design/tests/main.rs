@@ -17,4 +17,5 @@ mod stimulus;
 mod three_way;
 mod tools;
 mod trim;
+mod vhdl;
 mod zoo;

@@ -171,7 +171,7 @@ fn power_up(card: &CardConfig, host: &mut Host, bench: &mut Bench<Compiled>) -> 
     let known_from = bench.cycle();
     host.run(bench, BEHIND_CYCLES);
     if card.service.requests {
-        host.run(bench, CLEAR_CYCLES as u64);
+        host.run(bench, CLEAR_CYCLES);
     }
     known_from as usize
 }
@@ -202,7 +202,7 @@ fn life(project: &Project, host: &mut Host, bench: &mut Bench<Compiled>) -> usiz
         true => 0,
         false => c.cycle_max_cycles(card.system_hz),
     });
-    let after = cycles(RECOVERY_MAX_NS + AFTER_NS) + cycles((TCAL / NS) as u64);
+    let after = cycles(RECOVERY_MAX_NS + AFTER_NS) + cycles(TCAL / NS);
     let (measuring_frames, triggers) = match card.line.alignment {
         true => (CALIBRATION_FRAMES, TRIGGERS_ALIGNED),
         false => (1, TRIGGERS),

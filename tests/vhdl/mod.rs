@@ -207,6 +207,52 @@ fn board_tops_are_elaborated() {
     }
 }
 
+/// A family of somebody's own may have its clock manager in Verilog alone: then the top stays what it is.
+#[test]
+fn a_family_without_a_clock_manager_in_vhdl_keeps_its_top() {
+    let folder = tools::folder("vhdl-family");
+    let own = folder.join("own");
+    std::fs::create_dir(&own).unwrap();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("constraints/families/ecp5");
+    for entry in std::fs::read_dir(shipped).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap();
+        if name != "clock.vhd.jinja" {
+            std::fs::copy(&path, own.join(name)).unwrap();
+        }
+    }
+    let text = Board::text("ulx3s").unwrap();
+    let file = folder.join("board.toml");
+    std::fs::write(&file, text.replace("\"ecp5\"", "\"./own\"")).unwrap();
+    let board = Board::from_file(&file).unwrap();
+    let text = config::preset_for("--preset", config::DEFAULT_PRESET, &board).unwrap();
+    let files = emission(&config::parse_any_on("card.toml", &text, Some(&board)).unwrap());
+    let tops = files.iter().filter(|f| f.path.contains("_top."));
+    let tops: Vec<&str> = tops.map(|f| f.path.as_str()).collect();
+    assert_eq!(tops, ["s6_two_channel_top.v"]);
+    let readme = files.iter().find(|f| f.path == "README.md").unwrap();
+    assert!(readme.text.contains("`s6_two_channel_top.v`"));
+}
+
+/// What a design in VHDL takes the Verilog in with, in both languages.
+#[test]
+fn the_component_of_the_verilog_is_analysed() {
+    if !tools::require("ghdl", "VHDL component of the Verilog") {
+        return;
+    }
+    let folder = tools::folder("vhdl-component");
+    for name in ["ti_three_channel", "s6_two_channel"] {
+        let files = endat_gen::emit(&config::load_preset(name).unwrap()).unwrap();
+        let path = format!("{name}_component.vhd");
+        let file = files.iter().find(|f| f.path == path).unwrap();
+        std::fs::write(folder.join(&path), &file.text).unwrap();
+        for standard in STANDARDS {
+            let (is_good, text) = tools::run("ghdl", &folder, &["-s", standard, &path]);
+            assert!(is_good && text.is_empty(), "{name} {standard}: {text}");
+        }
+    }
+}
+
 /// A card whose frames take few cycles.
 const QUICK_BEGINS: &str = "name = \"quick\"
 [clock]
