@@ -1,14 +1,12 @@
 //! The program `endat-gen`; everything it does is in [`endat_gen::cli`].
 
-use endat_gen::cli;
-use std::io::{ErrorKind, Write};
+use endat_gen::cli::{self, colour};
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let mut outcome = cli::run(std::env::args_os());
-    let mut stdout = std::io::stdout();
-    let written = stdout.write_all(outcome.stdout.as_bytes());
-    match written.and_then(|()| stdout.flush()) {
+    let mut outcome = cli::painted(std::env::args_os());
+    match colour::to_stdout(&outcome.stdout) {
         Ok(()) => {}
         // A reader that has gone away (`| head`) is not an error worth a message.
         Err(e) if e.kind() == ErrorKind::BrokenPipe => {}
@@ -19,7 +17,7 @@ fn main() -> ExitCode {
         }
     }
     for message in &outcome.messages {
-        let _ = writeln!(std::io::stderr(), "endat-gen: {message}");
+        colour::to_stderr(message, outcome.exit_code != 0);
     }
     ExitCode::from(outcome.exit_code)
 }

@@ -20,6 +20,7 @@ mod house;
 mod integrators;
 mod keys;
 mod maps;
+mod new;
 mod own_triggers;
 mod packages;
 mod pages;

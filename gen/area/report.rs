@@ -68,7 +68,11 @@ pub struct Report {
 }
 
 /// Measures everything; with `with_speed`, card and channel are also placed and routed.
-pub fn report(only: &[String], with_speed: bool) -> Result<Report, GenError> {
+pub fn report(
+    only: &[String],
+    with_speed: bool,
+    progress: &dyn Fn(&str),
+) -> Result<Report, GenError> {
     let version = version()?;
     if !version.starts_with(YOSYS_VERSION) {
         return Err(GenError::input(format!(
@@ -90,6 +94,7 @@ pub fn report(only: &[String], with_speed: bool) -> Result<Report, GenError> {
     let scratch = crate::scratch::folder()?;
     let mut lines = vec![];
     for subject in subjects {
+        progress(subject.name);
         let files = subject.files();
         let folder = scratch.path().join(subject.name);
         let usage = |family| synthesise(&folder, &files, subject.name, family).map(|s| s.usage);

@@ -1,5 +1,6 @@
 //! `area`: measures the emitted Verilog with outside tools.
 
+use super::work::Steps;
 use super::{to_json, Outcome};
 use crate::area;
 use crate::error::GenError;
@@ -21,7 +22,9 @@ pub struct AreaArgs {
 
 /// Runs the command.
 pub fn run(arguments: &AreaArgs) -> Result<Outcome, GenError> {
-    let report = area::report(&arguments.only, arguments.fmax)?;
+    let steps = Steps::new(None);
+    let report = area::report(&arguments.only, arguments.fmax, &|name| steps.begin(name))?;
+    drop(steps);
     Ok(Outcome::good(if arguments.json {
         to_json(&report)?
     } else {

@@ -1,7 +1,7 @@
 //! `bench`: measures the simulators, and the core in simulation.
 
 use super::number::number;
-use super::work::tell;
+use super::work::Steps;
 use super::{to_json, Outcome};
 use crate::bench::{self, CycleTimeOptions, Options};
 use crate::error::GenError;
@@ -140,7 +140,8 @@ fn engines(arguments: &EnginesArgs) -> Result<Outcome, GenError> {
         outside: !arguments.own,
         instructions: arguments.instructions,
     };
-    let progress = |what: &str| tell(&format!("bench: {what}"));
+    let steps = Steps::new(None);
+    let progress = |what: &str| steps.begin(&format!("bench: {what}"));
     let report = bench::run(options, &progress)?;
     let mut outcome = Outcome::good(if arguments.json {
         to_json(&report)?

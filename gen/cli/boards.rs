@@ -1,6 +1,6 @@
 //! `boards`: lists the boards that come with the program, prints the file of one, or builds the shipped card on them.
 
-use super::build::progress;
+use super::work::Steps;
 use super::{to_json, Outcome};
 use crate::bitstream::{self, Use};
 use crate::board::{self, Board};
@@ -76,10 +76,12 @@ pub fn measure(name: Option<&str>) -> Result<Outcome, GenError> {
         "| board | system clock, MHz | reached, MHz | margin | seeds | cells |\n|---|---|---|---|---|---|\n",
     );
     let (mut exit_code, mut messages) = (0, vec![]);
+    let steps = Steps::new(None);
+    let mut begin = |step: String| steps.begin(&step);
     for board in boards.iter().filter(|b| b.family.build.is_some()) {
         let project = shipped_card(board)?;
         let artifacts = crate::emit(&project)?;
-        let built = bitstream::build(&project, board, &artifacts, SEEDS, &mut progress);
+        let built = bitstream::build(&project, board, &artifacts, SEEDS, &mut begin);
         let report = match built {
             Ok((report, _)) => report,
             // The others are as good as before.

@@ -1,12 +1,12 @@
 //! `build`: makes the bitstream of a card on a board.
 
+use super::work::Steps;
 use super::{to_json, EmissionArgs, Outcome};
 use crate::artifact;
 use crate::bitstream;
 use crate::config::{Configuration, RECEIVER_BUS};
 use crate::error::GenError;
 use clap::Args;
-use std::io::Write;
 
 /// Arguments of `build`.
 ///
@@ -21,11 +21,6 @@ pub struct BuildArgs {
     /// As JSON
     #[arg(long)]
     json: bool,
-}
-
-/// Says how far it is. No result; a closed stderr does not matter.
-pub(super) fn progress(text: String) {
-    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 /// Runs the command.
@@ -58,8 +53,11 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
     }
     let remedy = "give another folder with --out";
     artifact::write(&folder, &artifacts, remedy)?;
+    let steps = Steps::new(None);
+    let mut begin = |step: String| steps.begin(&step);
     let (mut report, bytes) =
-        bitstream::build(&project, &board, &artifacts, arguments.seeds, &mut progress)?;
+        bitstream::build(&project, &board, &artifacts, arguments.seeds, &mut begin)?;
+    drop(steps);
     let path = folder.join(&report.bitstream);
     std::fs::write(&path, bytes).map_err(|e| GenError::io("write", &path, &e, remedy))?;
     report.bitstream = path.display().to_string();

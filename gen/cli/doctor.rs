@@ -1,6 +1,6 @@
 //! `doctor`: which programs of others are there, and what those are for that are not.
 
-use super::{to_json, Outcome};
+use super::{colour, to_json, Outcome};
 use crate::error::GenError;
 use crate::tools::{version, TOOLS};
 use clap::Args;
@@ -33,8 +33,8 @@ pub fn run(arguments: &DoctorArgs) -> Result<Outcome, GenError> {
         String::from("Nothing of this is needed to emit, to simulate or to talk to a card.\n\n");
     for (tool, version) in &found {
         let state = match version {
-            Some(version) => version.clone(),
-            None => format!("missing: {}", tool.install),
+            Some(version) => colour::good(version),
+            None => colour::doubtful(format_args!("missing: {}", tool.install)),
         };
         let _ = writeln!(text, "{:<32} {:<46} {state}", tool.program, tool.enables);
     }

@@ -158,7 +158,7 @@ fn repair(arguments: &EmitArgs, force: bool) -> String {
 }
 
 /// A word for a POSIX shell.
-fn quoted(word: &str) -> String {
+pub(super) fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "_-./=:,+".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.into()

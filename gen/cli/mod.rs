@@ -5,12 +5,14 @@ mod bench;
 mod boards;
 mod build;
 mod campaign;
+pub mod colour;
 mod crc_command;
 mod doctor;
 mod documents;
 mod emit;
 mod explain_key;
 mod host;
+mod new;
 mod number;
 mod pictures;
 mod prove;
@@ -65,6 +67,8 @@ enum Command {
     Emit(emit::EmitArgs),
     /// Make the bitstream of a card on a board: synthesis, place and route, timing, with open tools
     Build(build::BuildArgs),
+    /// Ask a few questions, and write a configuration with every key explained
+    New(new::NewArgs),
     /// List the configurations that come with the program, or print one
     Presets {
         /// Print the file of this preset, to start an own configuration from
@@ -264,13 +268,23 @@ impl SourceArgs {
 
 /// Runs the program with these arguments; the first is the program's name.
 pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Outcome {
+    let painted = painted(arguments);
+    Outcome {
+        stdout: colour::plain(&painted.stdout),
+        messages: painted.messages.iter().map(|m| colour::plain(m)).collect(),
+        exit_code: painted.exit_code,
+    }
+}
+
+/// The same with colours, see [`colour`].
+pub fn painted(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Outcome {
     match Cli::try_parse_from(arguments) {
         Ok(cli) => execute(cli).unwrap_or_else(|error| Outcome {
             stdout: String::new(),
             messages: error.messages().to_vec(),
             exit_code: error.exit_code(),
         }),
-        Err(error) if !error.use_stderr() => Outcome::good(error.to_string()),
+        Err(error) if !error.use_stderr() => Outcome::good(error.render().ansi().to_string()),
         Err(error) => {
             let text = error.to_string();
             let messages = text
@@ -302,6 +316,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         None => emit::run(&emit::EmitArgs::default()),
         Some(Command::Emit(arguments)) => emit::run(&arguments),
         Some(Command::Build(arguments)) => build::run(&arguments),
+        Some(Command::New(arguments)) => new::run(&arguments),
         Some(Command::Presets {
             show: Some(name),
             board: Some(board),

@@ -1,6 +1,6 @@
 //! `prove`: proves what the blocks of a card promise, on its Verilog.
 
-use super::work::tell;
+use super::work::Steps;
 use super::{to_json, Outcome, SourceArgs};
 use crate::artifact::{read_regular, Artifact};
 use crate::config::{load_any_preset, Configuration, Project, PRESETS, RECEIVER_PRESETS};
@@ -64,7 +64,11 @@ pub fn run(arguments: &ProveArgs) -> Result<Outcome, GenError> {
         };
         return frames(arguments, &subject, project, delay_cycles);
     }
-    let report = prove::prove(&subject, arguments.out.as_deref(), &tell)?;
+    let steps = Steps::new(Some(subject.parts.len() as u64));
+    let report = prove::prove(&subject, arguments.out.as_deref(), &|step| {
+        steps.begin(step)
+    })?;
+    drop(steps);
     let stdout = match arguments.json {
         true => to_json(&report)?,
         false => report.to_string(),
@@ -100,7 +104,9 @@ fn frames(
     delay_cycles: u32,
 ) -> Result<Outcome, GenError> {
     let line = Line::usual(delay_cycles, arguments.undriven, project.card.system_hz);
-    let mut report = prove::frames::prove(subject, project, line, PHASES_MAX, &tell)?;
+    let steps = Steps::new(None);
+    let begin = |step: &str| steps.begin(step);
+    let mut report = prove::frames::prove(subject, project, line, PHASES_MAX, &begin)?;
     if let (Some(folder), Some(broken)) = (&arguments.out, &mut report.broken) {
         broken.keep(folder, &format!("{}_frames", subject.name))?;
     }
@@ -122,11 +128,13 @@ fn frames(
 /// The page of the presets.
 fn page() -> Result<Outcome, GenError> {
     let mut reports = vec![];
+    let steps = Steps::new(None);
+    let begin = |step: &str| steps.begin(step);
     for (name, _) in PRESETS.iter().chain(RECEIVER_PRESETS) {
         let subject = subject(&load_any_preset(name)?)?;
-        reports.push(prove::prove(&subject, None, &tell)?);
+        reports.push(prove::prove(&subject, None, &begin)?);
     }
-    let frames = prove_cases(&tell)?;
+    let frames = prove_cases(&begin)?;
     let is_good = reports.iter().all(Report::is_good) && frames.iter().all(|f| f.broken.is_none());
     Ok(Outcome {
         exit_code: u8::from(!is_good),

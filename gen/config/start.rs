@@ -81,7 +81,7 @@ fn with_one_channel(text: &str) -> String {
 }
 
 /// A number as people write it: 3_125_000.
-fn grouped(number: u64) -> String {
+pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let groups = digits.as_bytes().rchunks(3).rev();
     let groups = groups.map(|group| String::from_utf8_lossy(group).into_owned());

@@ -12,6 +12,8 @@ mod ports;
 mod recordings;
 mod requests;
 mod slow;
+#[cfg(unix)]
+mod terminal;
 mod ti_menu;
 
 pub use ports::{slow_card, Served};

@@ -3,7 +3,7 @@
 use super::CampaignArgs;
 use crate::campaign::mutants::{subjects, Emission, Mutants};
 use crate::cli::number::number;
-use crate::cli::work::tell;
+use crate::cli::work::Steps;
 use crate::cli::Outcome;
 use crate::error::{shorten, shown, GenError};
 use endat_sim::campaign::{count, Shard};
@@ -45,7 +45,9 @@ pub(super) fn asked(
             subjects().collect::<Vec<_>>().join(", ")
         )));
     }
-    tell("listing mutants");
+    let steps = Steps::new(None);
+    let begin = |step: &str| steps.begin(step);
+    begin("listing mutants");
     let emissions: Result<Vec<_>, _> = subjects().map(Emission::named).collect();
     let mut mutants = Mutants::new(emissions?, subject, per_block, seed, only)?;
     let all = count(&mutants);
@@ -63,12 +65,12 @@ pub(super) fn asked(
             index: case + 1,
             of: all,
         };
-        mutants.prepare(alone, &tell)?;
+        mutants.prepare(alone, &begin)?;
         let (fate, block, place) = mutants.case(case)?;
         let text = format!("case {case} ({block}, {place}): {}\n", fate.name());
         return Ok(Asked::One(Outcome::good(text)));
     }
-    mutants.prepare(part.unwrap_or(Shard::WHOLE), &tell)?;
+    mutants.prepare(part.unwrap_or(Shard::WHOLE), &begin)?;
     let subject = subject.unwrap_or("all");
     let plan = format!("{per_block} of a block; seed {seed}; subject {subject}; only {only}*");
     Ok(Asked::All(plan, mutants))

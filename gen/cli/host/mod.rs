@@ -14,6 +14,7 @@ pub mod view;
 pub mod virtual_card;
 
 use super::number::{number, number_if};
+use super::work::say;
 use crate::error::GenError;
 use crate::virtual_card::virtual_card_at;
 use clap::Args;
@@ -22,7 +23,6 @@ pub use endat_host::owner::AnyCard;
 use endat_host::registers::Place;
 use endat_host::transport::Port;
 use endat_host::{Bridge, HostError, Transport};
-use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
@@ -93,11 +93,10 @@ pub fn channel(card: &AnyCard, text: Option<&str>) -> Result<usize, GenError> {
 
 /// Says once that an initialisation takes long.
 fn long() {
-    let _ = writeln!(
-        std::io::stderr(),
-        "endat-gen: waiting for the initialisation of the encoders, up to {} s",
+    say(&format!(
+        "waiting for the initialisation of the encoders, up to {} s",
         INITIALISATION.as_secs()
-    );
+    ));
 }
 
 /// Waits until no encoder is being initialised and every channel has had a first result, or has none after a second.

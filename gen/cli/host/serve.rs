@@ -1,6 +1,7 @@
 //! `serve`: a card for PandABlocks clients.
 
 use super::super::number::number_if;
+use super::super::work::say;
 use super::super::Outcome;
 use super::{interrupted, settled, told, PortArgs};
 use crate::error::GenError;
@@ -60,9 +61,8 @@ pub fn run(arguments: &ServeArgs) -> Result<Outcome, GenError> {
         let _ = stdout.flush();
     }
     if !card.identity().has(Part::Stream) {
-        let _ = writeln!(
-            std::io::stderr(),
-            "endat-gen: the card has no part stream: results are read one by one, and not every trigger has a sample"
+        say(
+            "the card has no part stream: results are read one by one, and not every trigger has a sample"
         );
     }
     let stop = interrupted();

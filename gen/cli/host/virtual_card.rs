@@ -1,6 +1,7 @@
 //! `card`: a card without hardware, for other programs.
 
 use super::super::number::decimal_if;
+use super::super::work::say;
 use super::super::{Outcome, SourceArgs};
 use super::interrupted;
 use crate::error::GenError;
@@ -82,41 +83,37 @@ pub fn run(arguments: &CardArgs) -> Result<Outcome, GenError> {
         None => usual_door()?,
     };
     let mut card = VirtualCard::new(&project, &config)?;
-    let mut stderr = std::io::stderr();
     // The one line that a program which starts this one reads.
     let mut stdout = std::io::stdout();
     let _ = writeln!(stdout, "{}", door.name());
     let _ = stdout.flush();
-    let _ = writeln!(
-        stderr,
-        "endat-gen: virtual card {} at {}: simulated, nothing is measured; Ctrl-C ends it",
+    say(&format!(
+        "virtual card {} at {}: simulated, nothing is measured; Ctrl-C ends it",
         project.name,
         door.name()
-    );
+    ));
     if project.bus != HostBus::Uart {
-        let _ = writeln!(
-            stderr,
-            "endat-gen: host.bus = \"{}\": the virtual card has a UART in its place, the registers are the same",
+        say(&format!(
+            "host.bus = \"{}\": the virtual card has a UART in its place, the registers are the same",
             project.bus.name()
-        );
+        ));
     }
     let stop = interrupted();
     let mut is_first = true;
     serve(&mut card, &mut door, &stop, seconds, |pace| {
         if is_first {
-            let _ = writeln!(
-                stderr,
-                "endat-gen: the card's time runs at {:.3} of real time ({})",
+            say(&format!(
+                "the card's time runs at {:.3} of real time ({})",
                 pace.ratio().min(1.0),
                 if pace.ratio() > 0.98 {
                     "as a real card"
                 } else {
                     "as fast as this machine simulates"
                 }
-            );
+            ));
             is_first = false;
         }
     });
-    let _ = writeln!(stderr, "endat-gen: virtual card ended");
+    say("virtual card ended");
     Ok(Outcome::default())
 }

@@ -5,6 +5,7 @@ mod progress;
 
 use super::super::number::{decimal_if, number_if};
 use super::super::pictures::{check_all, write_all, File};
+use super::super::work::{say, Progress};
 use super::super::Outcome;
 use super::{interrupted, settled, told, AnyCard};
 use crate::error::GenError;
@@ -15,9 +16,9 @@ use endat_host::{HostError, Transport};
 use endat_regs::Part;
 use endat_sim::diagram::is_drawing;
 pub use options::LogArgs;
-use progress::{Progress, Watch, SILENCE};
+use progress::{Watch, SILENCE};
 use std::collections::VecDeque;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{channel, Receiver, RecvTimeoutError, Sender};
 use std::sync::Arc;
@@ -36,6 +37,18 @@ const FLUSH: Duration = Duration::from_secs(1);
 struct End {
     samples: Option<u64>,
     seconds: Option<u64>,
+    /// Rows go to the terminal, where a bar would be among them.
+    is_quiet: bool,
+}
+
+impl End {
+    fn progress(&self) -> Progress {
+        match (self.is_quiet, self.samples, self.seconds) {
+            (true, ..) => Progress::quiet("sample sets"),
+            (_, None, Some(seconds)) => Progress::new(Some(seconds), "s"),
+            (_, samples, _) => Progress::new(samples, "sample sets"),
+        }
+    }
 }
 
 /// Runs the command.
@@ -44,6 +57,7 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     let end = End {
         samples: limit("--samples", &arguments.samples)?,
         seconds: limit("--seconds", &arguments.seconds)?,
+        is_quiet: arguments.out.is_none() && io::stdout().is_terminal(),
     };
     let bad_max = decimal_if("--bad-max", &arguments.bad_max, 0.0..=100.0)?;
     let bad_max = bad_max.unwrap_or(BAD_MAX_PERCENT);
@@ -255,10 +269,10 @@ fn record(
         waiting: waiting.clone(),
     };
     let writer = thread::spawn(move || write(recorder, &take, &waiting));
-    let mut progress = Progress::new(end.samples);
-    let taken = take_rows(card, feed, &queue, (count, &mut progress), end);
+    let progress = end.progress();
+    let taken = take_rows(card, feed, &queue, (count, &progress), end);
     drop(queue);
-    progress.clear();
+    drop(progress);
     let (written, recorder) = writer
         .join()
         .unwrap_or_else(|e| std::panic::resume_unwind(e));
@@ -269,7 +283,7 @@ fn take_rows(
     card: &mut AnyCard,
     feed: &mut Feed,
     queue: &Queue,
-    (count, progress): (&mut Count, &mut Progress),
+    (count, progress): (&mut Count, &Progress),
     end: &End,
 ) -> Result<(), Failure> {
     let stop = interrupted();
@@ -282,8 +296,7 @@ fn take_rows(
     loop {
         let filled = feed.fill(card, &mut rows, SLICE);
         for text in watch.news(card.bridge().transport().state()) {
-            progress.clear();
-            let _ = writeln!(io::stderr(), "endat-gen: {text}");
+            say(&text);
         }
         still(filled, count.rows)?;
         if !rows.is_empty() {
@@ -310,6 +323,9 @@ fn take_rows(
                 count.rows
             )])));
         }
-        progress.show(count.rows);
+        progress.at(match (end.samples, end.seconds) {
+            (None, Some(_)) => begin.elapsed().as_secs(),
+            _ => count.rows,
+        });
     }
 }

@@ -1,59 +1,10 @@
 //! What is told while a log goes on.
 
 use endat_host::transport::LinkState;
-use std::io::{self, IsTerminal, Write};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Nothing for this long: something is wrong.
 pub const SILENCE: Duration = Duration::from_secs(20);
-/// Between two lines of progress.
-const PROGRESS: Duration = Duration::from_secs(2);
-
-/// Lines of progress: one that is written over on a terminal, one after the other in a file.
-pub struct Progress {
-    of: Option<u64>,
-    is_terminal: bool,
-    shown: Instant,
-    is_there: bool,
-}
-
-impl Progress {
-    pub fn new(of: Option<u64>) -> Self {
-        Self {
-            of,
-            is_terminal: io::stderr().is_terminal(),
-            shown: Instant::now(),
-            is_there: false,
-        }
-    }
-
-    pub fn show(&mut self, rows: u64) {
-        let is_wanted = self.is_terminal || self.of.is_some();
-        if !is_wanted || self.shown.elapsed() < PROGRESS {
-            return;
-        }
-        self.shown = Instant::now();
-        self.is_there = true;
-        let text = self.text(rows);
-        let _ = io::stderr().write_all(text.as_bytes());
-    }
-
-    fn text(&self, rows: u64) -> String {
-        let of = self.of.map_or(String::new(), |n| format!(" of {n}"));
-        match self.is_terminal {
-            true => format!("\r{rows}{of} sample sets\x1b[K"),
-            false => format!("{rows}{of} sample sets\n"),
-        }
-    }
-
-    /// What comes next begins a line.
-    pub fn clear(&self) {
-        if self.is_terminal && self.is_there {
-            let _ = io::stderr().write_all(b"\r\x1b[K");
-        }
-    }
-}
-
 /// Says so when the link is lost, and when it is back.
 pub struct Watch {
     pub last: LinkState,
@@ -77,15 +28,6 @@ impl Watch {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn progress_stays_on_one_line_of_a_terminal() {
-        let mut progress = Progress::new(Some(9));
-        progress.is_terminal = true;
-        assert_eq!(progress.text(5), "\r5 of 9 sample sets\x1b[K");
-        progress.is_terminal = false;
-        assert_eq!(progress.text(5), "5 of 9 sample sets\n");
-    }
 
     #[test]
     fn a_lost_link_is_told_once_and_so_is_its_return() {

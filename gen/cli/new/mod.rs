@@ -1,0 +1,232 @@
+//! `new`: asks a few questions, and writes a configuration with every key explained.
+
+mod questions;
+mod text;
+
+use super::work::say;
+use super::Outcome;
+use crate::config;
+use crate::error::{shown, GenError};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
+use questions::{Answers, Question, QUESTIONS};
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// In the place of a file's name: the text goes to stdout.
+const STDOUT: &str = "-";
+
+/// Arguments of `new`: an option for each question, described by the key that it is about.
+pub struct NewArgs {
+    file: Option<PathBuf>,
+    force: bool,
+    yes: bool,
+    given: Answers,
+}
+
+impl Args for NewArgs {
+    fn augment_args(command: Command) -> Command {
+        let file = Arg::new("file")
+            .value_name("FILE")
+            .value_parser(clap::value_parser!(PathBuf))
+            .help("Write this file; - writes to stdout [default: the name, with .toml]");
+        let flag = |name: &'static str, short: Option<char>, help: &'static str| {
+            let flag = Arg::new(name).long(name).short(short);
+            flag.action(ArgAction::SetTrue).help(help)
+        };
+        let options = QUESTIONS.iter().map(|question| {
+            Arg::new(question.name)
+                .long(question.name)
+                .value_name("VALUE")
+                .allow_negative_numbers(true)
+                .help(question.about())
+        });
+        command
+            .arg(file)
+            .arg(flag("force", None, "Replace the file if it is there"))
+            .arg(flag(
+                "yes",
+                'y'.into(),
+                "Ask nothing: what no option says is as usual",
+            ))
+            .args(options)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for NewArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let said = |q: &Question| Some((q.name, matches.get_one::<String>(q.name)?.clone()));
+        Ok(Self {
+            file: matches.get_one::<PathBuf>("file").cloned(),
+            force: matches.get_flag("force"),
+            yes: matches.get_flag("yes"),
+            given: QUESTIONS.iter().filter_map(said).collect(),
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// All answers: those that are given, and usual ones that go with them; or what is wrong with those that are given.
+fn completed(given: &Answers) -> Result<Answers, Vec<String>> {
+    // Which of the usual ones; the next one where one does not go with the rest.
+    let mut tried: BTreeMap<&str, usize> = BTreeMap::new();
+    loop {
+        let mut all = Answers::new();
+        let mut left: Vec<&Question> = Vec::new();
+        for question in QUESTIONS.iter().filter(|q| given.contains_key(q.name)) {
+            if let Err(error) = text::literal(question.of, &question.option(), &given[question.name])
+            {
+                return Err(error.messages().to_vec());
+            }
+        }
+        for question in QUESTIONS {
+            if !(question.is_asked)(&all) {
+                continue;
+            }
+            let usual = (question.usual)(&all);
+            let at = tried.get(question.name).copied().unwrap_or(0);
+            let answer = match given.get(question.name) {
+                Some(answer) => answer.clone(),
+                None => usual.get(at).cloned().unwrap_or_default(),
+            };
+            if !given.contains_key(question.name) && at + 1 < usual.len() {
+                left.push(question);
+            }
+            all.insert(question.name, answer);
+        }
+        let wrong = match config::parse_any("new", &text::written(&all)) {
+            Ok(_) => return Ok(all),
+            Err(wrong) => wrong,
+        };
+        let is_about = |q: &&Question| {
+            let path = q.path();
+            wrong.iter().any(|one| one.text.starts_with(&path))
+        };
+        let is_named = |q: &&Question| {
+            let path = q.path();
+            let key = path.rsplit('.').next().unwrap_or_default();
+            wrong.iter().any(|one| one.text.contains(key))
+        };
+        let next = left.iter().copied().find(is_about);
+        let Some(next) = next.or_else(|| left.iter().copied().find(is_named)) else {
+            return Err(wrong.into_iter().map(|one| one.text).collect());
+        };
+        *tried.entry(next.name).or_default() += 1;
+    }
+}
+
+/// Asks until the answer goes with those before it.
+fn ask(
+    question: &Question,
+    given: &mut Answers,
+    usual: &str,
+    lines: &mut dyn Iterator<Item = io::Result<String>>,
+) -> Result<Answers, GenError> {
+    let mut stderr = io::stderr();
+    let _ = writeln!(stderr, "{}: {}", question.name, question.about());
+    for (word, means) in question.words() {
+        let _ = writeln!(stderr, "    {word:<12} {means}");
+    }
+    loop {
+        let _ = write!(stderr, "  [{usual}] ");
+        let _ = stderr.flush();
+        let line = match lines.next() {
+            Some(Ok(line)) => line,
+            Some(Err(error)) => {
+                return Err(GenError::input(format!(
+                    "stdin: cannot read: {error}; give options instead"
+                )))
+            }
+            None => {
+                let _ = writeln!(stderr);
+                return Err(GenError::input(format!(
+                    "{}: has no answer: standard input is at its end; answer with --{}, or take what is usual with --yes",
+                    question.name, question.name
+                )));
+            }
+        };
+        let answer = match line.trim() {
+            "" => usual,
+            answer => answer,
+        };
+        given.insert(question.name, answer.to_owned());
+        match completed(given) {
+            Ok(all) => return Ok(all),
+            Err(wrong) => {
+                given.remove(question.name);
+                wrong.iter().for_each(|text| say(text));
+            }
+        }
+    }
+}
+
+/// Refuses an option that nothing is asked about.
+fn check_asked(given: &Answers, all: &Answers) -> Result<(), GenError> {
+    let useless = given.iter().find(|(name, _)| !all.contains_key(*name));
+    useless.map_or(Ok(()), |(name, told)| {
+        let bus = all.get("bus").map_or("", String::as_str);
+        let protocol = all.get("protocol").map_or("", String::as_str);
+        Err(GenError::input(format!(
+            "--{name} = {}: there is no such thing with protocol {protocol} and bus {bus}; leave it out",
+            shown(told)
+        )))
+    })
+}
+
+/// The commands that come next.
+fn next(path: &Path) -> String {
+    let file = path.display().to_string();
+    let file = super::emit::quoted(&file);
+    format!(
+        "{}: written\nnext: endat-gen explain --config {file}    # what becomes of it\n      endat-gen emit --config {file}       # the files of the card\n",
+        path.display()
+    )
+}
+
+/// Runs the command.
+pub fn run(arguments: &NewArgs) -> Result<Outcome, GenError> {
+    let mut given = arguments.given.clone();
+    let mut all = completed(&given).map_err(GenError::Input)?;
+    check_asked(&given, &all)?;
+    if !arguments.yes {
+        let mut lines = io::stdin().lines();
+        for question in QUESTIONS {
+            if given.contains_key(question.name) || !(question.is_asked)(&all) {
+                continue;
+            }
+            let usual = all.get(question.name).cloned().unwrap_or_default();
+            all = ask(question, &mut given, &usual, &mut lines)?;
+        }
+        check_asked(&given, &all)?;
+    }
+    let text = text::written(&all);
+    if arguments.file.as_deref() == Some(Path::new(STDOUT)) {
+        return Ok(Outcome::good(text));
+    }
+    let path = match &arguments.file {
+        Some(path) => path.clone(),
+        None => PathBuf::from(format!("{}.toml", all["name"])),
+    };
+    let remedy = "give another file, in a folder that is there";
+    let made = match arguments.force {
+        true => std::fs::File::create(&path),
+        false => std::fs::File::create_new(&path),
+    };
+    let written = made.and_then(|mut file| file.write_all(text.as_bytes()));
+    written.map_err(|error| match error.kind() {
+        io::ErrorKind::AlreadyExists => GenError::input(format!(
+            "{}: is there already; give another file, or replace it with --force",
+            path.display()
+        )),
+        _ => GenError::io("write", &path, &error, remedy),
+    })?;
+    Ok(Outcome::good(next(&path)))
+}

@@ -1,0 +1,265 @@
+//! What `new` asks: keys of a configuration, in an order in which each answer stands on those before it.
+
+use crate::board::Board;
+use crate::config::keys::{self, Key, TABLES};
+use crate::config::words::{RECEIVER_BUS, T_FORMAT};
+use crate::json_schema::plain;
+use endat_hdl::card::bus::HostBus;
+use std::collections::BTreeMap;
+
+/// Answers by the name of their question, as they were typed.
+pub type Answers = BTreeMap<&'static str, String>;
+
+/// What is asked for.
+#[derive(Clone, Copy)]
+pub enum Of {
+    /// A key, in this table.
+    Key(&'static Key, &'static str),
+    /// How many channels.
+    Channels,
+}
+
+/// A question.
+pub struct Question {
+    /// Its option.
+    pub name: &'static str,
+    /// What it is about.
+    pub of: Of,
+    /// Whether it is asked beside these answers.
+    pub is_asked: fn(&Answers) -> bool,
+    /// What is usual beside these answers; where the first does not go with them, one of the others may.
+    pub usual: fn(&Answers) -> Vec<String>,
+}
+
+/// In the place of a board: a card that others put into a chip.
+pub const NO_BOARD: &str = "none";
+/// Encoder ports unless a board has no room for them.
+const CHANNELS: [usize; 2] = [2, 1];
+/// From here on a clock suits nearly everything.
+const SYSTEM_HZ: [u64; 6] = [
+    100_000_000,
+    50_000_000,
+    48_000_000,
+    25_000_000,
+    20_000_000,
+    12_000_000,
+];
+const CLOCK_HZ: [u64; 8] = [
+    3_125_000, 4_000_000, 2_500_000, 3_000_000, 2_000_000, 1_000_000, 500_000, 250_000,
+];
+const SAMPLE_HZ: [u64; 5] = [10_000, 5_000, 2_000, 1_000, 100];
+const BAUD: [u64; 5] = [3_000_000, 2_000_000, 1_000_000, 500_000, 115_200];
+const READ_HZ: [u64; 4] = [1_000, 500, 100, 10];
+
+fn is(answers: &Answers, name: &str, word: &str) -> bool {
+    answers.get(name).is_some_and(|told| told == word)
+}
+
+pub fn is_receiver(answers: &Answers) -> bool {
+    is(answers, "bus", RECEIVER_BUS)
+}
+
+pub fn is_t_format(answers: &Answers) -> bool {
+    is(answers, "protocol", T_FORMAT)
+}
+
+/// An EnDat channel of a card.
+fn is_endat(answers: &Answers) -> bool {
+    !is_t_format(answers) && !is_receiver(answers)
+}
+
+fn is_card(answers: &Answers) -> bool {
+    !is_receiver(answers)
+}
+
+pub fn has_uart(answers: &Answers) -> bool {
+    is(answers, "bus", HostBus::Uart.name())
+}
+
+/// The card can be a whole device.
+fn may_have_board(answers: &Answers) -> bool {
+    let buses = HostBus::ALL.iter().filter(|bus| !bus.is_internal());
+    let mut of_devices = buses.filter(|bus| **bus != HostBus::Bare);
+    of_devices.any(|bus| is(answers, "bus", bus.name()))
+}
+
+pub fn has_board(answers: &Answers) -> bool {
+    may_have_board(answers) && !is(answers, "board", NO_BOARD)
+}
+
+/// What suits the board comes first.
+fn of_board(answers: &Answers, own: fn(&crate::board::Start) -> u64, usual: &[u64]) -> Vec<String> {
+    let named = answers.get("board").filter(|_| has_board(answers));
+    let board = named.and_then(|name| Board::named(name).ok());
+    let own = board.and_then(|board| board.start.map(|start| own(&start)));
+    let all = own.into_iter().chain(usual.iter().copied());
+    all.map(|n| n.to_string()).collect()
+}
+
+fn numbers(all: &[u64]) -> Vec<String> {
+    all.iter().map(u64::to_string).collect()
+}
+
+/// What a key must be, for example, without its quotes.
+fn example(key: &Key) -> String {
+    key.example().trim_matches('"').replace('_', "")
+}
+
+/// All of them.
+pub static QUESTIONS: &[Question] = &[
+    Question {
+        name: "protocol",
+        of: Of::Key(&keys::PROTOCOL, keys::CHANNELS),
+        is_asked: |_| true,
+        usual: |_| vec![crate::config::words::ENDAT.into(), T_FORMAT.into()],
+    },
+    Question {
+        name: "bus",
+        of: Of::Key(&keys::BUS, "host"),
+        is_asked: |_| true,
+        usual: |_| vec![HostBus::Uart.name().into()],
+    },
+    Question {
+        name: "board",
+        of: Of::Key(&keys::BOARD_NAME, "board"),
+        is_asked: may_have_board,
+        usual: |answers| match has_uart(answers) {
+            true => vec![keys::BOARD_NAME.example().trim_matches('"').into()],
+            false => vec![NO_BOARD.into()],
+        },
+    },
+    Question {
+        name: "name",
+        of: Of::Key(&keys::NAME, ""),
+        is_asked: |_| true,
+        usual: |_| vec![keys::NAME.example().trim_matches('"').into()],
+    },
+    Question {
+        name: "system-hz",
+        of: Of::Key(&keys::SYSTEM_HZ, "clock"),
+        is_asked: is_card,
+        usual: |answers| of_board(answers, |start| start.system_hz, &SYSTEM_HZ),
+    },
+    Question {
+        name: "channels",
+        of: Of::Channels,
+        is_asked: is_card,
+        usual: |answers| {
+            let all = CHANNELS.map(|n| n as u64);
+            of_board(answers, |start| start.channels as u64, &all)
+        },
+    },
+    Question {
+        name: "encoder",
+        of: Of::Key(&keys::ENCODER, keys::CHANNELS),
+        is_asked: |_| true,
+        usual: |_| vec![String::new()],
+    },
+    Question {
+        name: "position-bits",
+        of: Of::Key(&keys::POSITION_BITS, keys::CHANNELS),
+        is_asked: is_endat,
+        usual: |_| vec![example(&keys::POSITION_BITS)],
+    },
+    Question {
+        name: "command",
+        of: Of::Key(&keys::COMMAND, keys::CHANNELS),
+        is_asked: is_endat,
+        usual: |_| vec![example(&keys::COMMAND)],
+    },
+    Question {
+        name: "clock-hz",
+        of: Of::Key(&keys::CLOCK_HZ, keys::COMMON),
+        is_asked: is_endat,
+        usual: |answers| of_board(answers, |start| start.clock_hz, &CLOCK_HZ),
+    },
+    Question {
+        name: "cable-m",
+        of: Of::Key(&keys::CABLE, keys::COMMON),
+        is_asked: is_endat,
+        usual: |_| numbers(&[keys::CABLE.usual_number(), 10, 0]),
+    },
+    Question {
+        name: "bit-hz",
+        of: Of::Key(&keys::BIT_RATE, keys::CHANNELS),
+        is_asked: |answers| is_t_format(answers) || is_receiver(answers),
+        usual: |_| numbers(&[keys::BIT_RATE.usual_number()]),
+    },
+    Question {
+        name: "sample-hz",
+        of: Of::Key(&keys::SAMPLE_HZ, "trigger"),
+        is_asked: is_card,
+        usual: |_| numbers(&SAMPLE_HZ),
+    },
+    Question {
+        name: "baud",
+        of: Of::Key(&keys::BAUD, "link"),
+        is_asked: has_uart,
+        usual: |_| numbers(&BAUD),
+    },
+    Question {
+        name: "read-hz",
+        of: Of::Key(&keys::READ_HZ, "link"),
+        is_asked: has_uart,
+        usual: |_| numbers(&READ_HZ),
+    },
+];
+
+impl Question {
+    /// What it is, as the table of keys says it.
+    pub fn meaning(&self) -> &'static str {
+        match self.of {
+            Of::Key(key, _) => key.meaning,
+            Of::Channels => {
+                let channels = TABLES.iter().find(|(table, _)| *table == keys::CHANNELS);
+                channels.map_or("", |(_, meaning)| meaning)
+            }
+        }
+    }
+
+    /// What may be answered.
+    pub fn may_be(&self) -> String {
+        let all = match self.of {
+            Of::Key(key, _) => key.may_be(""),
+            // Their table says it.
+            Of::Channels => String::new(),
+        };
+        match self.name {
+            "board" => format!("{all}, or {NO_BOARD}"),
+            _ => all,
+        }
+    }
+
+    /// Both in a line.
+    pub fn about(&self) -> String {
+        let (meaning, may_be) = (self.meaning(), self.may_be());
+        let colon = if may_be.is_empty() { "" } else { ": " };
+        plain(&format!("{meaning}{colon}{may_be}"))
+    }
+
+    /// Words that mean more than they say.
+    pub fn words(&self) -> Vec<(String, String)> {
+        let choices = match self.of {
+            Of::Key(key, _) => key.choices(),
+            Of::Channels => Vec::new(),
+        };
+        let choices = choices.into_iter().filter(|c| !c.meaning.is_empty());
+        choices.map(|c| (c.word, plain(c.meaning))).collect()
+    }
+
+    /// What a complaint about its answer alone begins with.
+    pub fn option(&self) -> String {
+        match self.of {
+            Of::Key(..) => self.path(),
+            Of::Channels => self.name.to_owned(),
+        }
+    }
+
+    /// What the reader's complaint about it begins with.
+    pub fn path(&self) -> String {
+        match self.of {
+            Of::Key(key, table) => key.path_in(table),
+            Of::Channels => keys::CHANNELS.to_owned(),
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! `new`: questions, and the configurations that come of them.
+
+use crate::program::{bad, good, program, run, Dir};
+use endat_gen::config::keys::{KEYS, TABLES};
+use endat_gen::config::{parse_any, Configuration};
+use endat_gen::json_schema::plain;
+use std::io::Write;
+use std::process::{Output, Stdio};
+
+/// The program with these lines on standard input.
+fn asked(dir: &Dir, arguments: &[&str], lines: &str) -> Output {
+    let mut child = program()
+        .current_dir(&dir.0)
+        .arg("new")
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    stdin.write_all(lines.as_bytes()).unwrap();
+    drop(stdin);
+    child.wait_with_output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Every way through the questions that asks something else.
+fn ways() -> Vec<Vec<String>> {
+    let mut ways = Vec::new();
+    for protocol in ["endat", "t_format"] {
+        for bus in [
+            "uart", "apb", "wishbone", "axi_lite", "spi", "parallel", "none", "dsp",
+        ] {
+            let boards = match bus {
+                "uart" => endat_gen::board::names(),
+                "spi" | "parallel" => vec!["none", "papilio_pro"],
+                _ => vec![""],
+            };
+            for board in boards
+                .iter()
+                .filter(|_| (protocol, bus) != ("endat", "dsp"))
+            {
+                let mut way = vec![
+                    "--protocol".into(),
+                    protocol.into(),
+                    "--bus".into(),
+                    bus.into(),
+                ];
+                if !board.is_empty() {
+                    way.extend(["--board".into(), board.to_string()]);
+                }
+                ways.push(way);
+            }
+        }
+    }
+    ways
+}
+
+/// Catches a usual answer that does not go with those before it.
+#[test]
+fn every_way_through_the_questions_gives_a_good_configuration() {
+    for way in ways() {
+        let words: Vec<&str> = way.iter().map(String::as_str).collect();
+        let text = good(&[&["new", "--yes", "-"], &words[..]].concat());
+        let read =
+            parse_any("new.toml", &text).unwrap_or_else(|e| panic!("{way:?}: {e:?}\n{text}"));
+        if let Configuration::Card(card) = &read {
+            let board = way
+                .iter()
+                .position(|w| w == "--board")
+                .map(|at| &way[at + 1]);
+            let board = board.filter(|b| *b != "none");
+            assert_eq!(card.board.as_ref().map(|b| &b.name), board, "{way:?}");
+        }
+        // What counts without a key changes nothing where it is written.
+        let lines: Vec<&str> = text.lines().collect();
+        let mut table = 0;
+        for (n, line) in lines.iter().enumerate() {
+            if line.trim_start_matches("# ").starts_with('[') {
+                table = n;
+            }
+            let said = line
+                .strip_prefix("# ")
+                .filter(|l| l.contains(" = ") && !l.ends_with("..."));
+            let Some(said) = said.filter(|l| l.split(' ').nth(1) == Some("=")) else {
+                continue;
+            };
+            let about = lines[..n].iter().rev().take_while(|l| !l.contains(" = "));
+            if about.clone().any(|l| l.contains("; takes ")) {
+                continue;
+            }
+            let mut changed: Vec<&str> = lines.clone();
+            changed[n] = said;
+            changed[table] = changed[table].trim_start_matches("# ");
+            // A trigger of its own is logic of its own, whatever is said of it.
+            let is_own = ["enabled", "divider"].contains(&said.split(' ').next().unwrap());
+            let is_own = is_own || lines[table].starts_with("[[") && said.starts_with("sources");
+            let with = parse_any("new.toml", &(changed.join("\n") + "\n"));
+            let with = match with {
+                Ok(with) => with,
+                // Some have no meaning behind this bus.
+                Err(wrong) if wrong[0].text.ends_with("leave it out") => continue,
+                Err(wrong) => panic!("{way:?}: {said}: {wrong:?}"),
+            };
+            let hash = |c: &Configuration| match c {
+                Configuration::Card(card) => card.hash.clone(),
+                Configuration::Receiver(receiver) => receiver.hash.clone(),
+            };
+            assert!(is_own || hash(&with) == hash(&read), "{way:?}: {said}");
+        }
+    }
+}
+
+/// Catches comments that are not those of the table of keys.
+#[test]
+fn every_key_is_there_with_what_the_table_of_keys_says() {
+    let joined = |text: &str| {
+        let words = text.split_whitespace().filter(|word| *word != "#");
+        words.collect::<Vec<_>>().join(" ")
+    };
+    let card = joined(&good(&["new", "--yes", "-"]));
+    let receiver = joined(&good(&["new", "--yes", "--bus", "dsp", "-"]));
+    for key in KEYS {
+        let told = joined(&plain(&format!("{}: {}", key.meaning, key.may_be(""))));
+        let is_here =
+            [(&card, 1), (&receiver, 4)].map(|(text, form)| (text, key.forms & form != 0));
+        for (text, is_here) in is_here {
+            assert_eq!(text.contains(&told), is_here, "{}: {told}", key.name);
+        }
+    }
+    for (table, meaning) in TABLES {
+        assert!(card.contains(&plain(meaning)), "{table}");
+    }
+}
+
+#[test]
+fn answers_come_from_standard_input_and_wrong_ones_are_asked_for_again() {
+    let dir = Dir::new("new");
+    // Protocol, bus, board, name, clock, channels, encoder, bits, command, EnDat clock, cable, rate, baud, reads.
+    let lines =
+        "\nuart\nulx3s\n2cards\nmine\n0\n\n2\nROD 1\n99\n37\n000111\n4000000\nlong\n50\n\n\n\n";
+    let output = asked(&dir, &[], lines);
+    let told = text(&output.stderr);
+    assert!(output.status.success(), "{told}");
+    for wrong in [
+        "name = \"2cards\": ",
+        "clock.system_hz = 0: outside ",
+        "channel.position_bits = 99: outside 1..48",
+        "endat.cable_m = long: is not a number from 0 to ",
+    ] {
+        assert!(told.contains(wrong), "{wrong}: {told}");
+    }
+    let next = text(&output.stdout);
+    assert!(next.contains("mine.toml: written"), "{next}");
+    assert!(next.contains("endat-gen emit --config mine.toml"), "{next}");
+    let path = dir.path("mine.toml");
+    let card = endat_gen::config::load_file(path.as_ref()).unwrap();
+    assert_eq!(card.card.channels.len(), 2);
+    assert_eq!(card.encoders, ["ROD 1", "ROD 1"]);
+    assert_eq!(card.card.channels[1].request.clock_hz, 4_000_000);
+    // Not a word of warning.
+    let out = dir.path("out");
+    assert!(good(&["emit", "--config", &path, "--out", &out]).contains("mine_top.v"));
+}
+
+/// Catches a file that is lost, and half a dialog that is taken for a whole one.
+#[test]
+fn no_file_is_replaced_and_no_answer_is_made_up() {
+    let dir = Dir::new("new-again");
+    let path = dir.write("card.toml", b"mine");
+    let new = ["new", "--yes", &path];
+    assert!(bad(&new, 2).contains("is there already"));
+    assert_eq!(std::fs::read(&path).unwrap(), b"mine");
+    good(&[&new[..], &["--force"]].concat());
+    assert_ne!(std::fs::read(&path).unwrap(), b"mine");
+    let output = asked(&dir, &["half.toml"], "endat\n");
+    assert_eq!(output.status.code(), Some(2));
+    let told = text(&output.stderr);
+    assert!(
+        told.contains("bus: has no answer: standard input is at its end"),
+        "{told}"
+    );
+    assert!(!dir.0.join("half.toml").exists());
+    // What an option says is not asked for, and what goes with nothing is refused.
+    let output = asked(&dir, &["--bus", "dsp", "-"], "\nfast\n\n5000000\n");
+    assert!(
+        text(&output.stdout).contains("bit_hz = 5_000_000"),
+        "{output:?}"
+    );
+    let told = bad(&["new", "--yes", "--bus", "apb", "--baud", "9600"], 2);
+    assert!(
+        told.contains("--baud = 9600: there is no such thing"),
+        "{told}"
+    );
+    for (option, value) in [
+        ("--position-bits", "-1"),
+        ("--channels", "9"),
+        ("--board", "x"),
+        ("--bus", "usb"),
+    ] {
+        let told = bad(&["new", "--yes", option, value], 2);
+        assert!(told.contains(value), "{told}");
+    }
+    let nowhere = dir.path("no/folder.toml");
+    assert!(bad(&["new", "--yes", &nowhere], 2).contains("in a folder that is there"));
+    assert_eq!(run(&["new", "--yes", &path, "--name", "a\"b"]).exit_code, 2);
+}
