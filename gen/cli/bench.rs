@@ -1,10 +1,10 @@
 //! `bench`: measures the simulators, and the core in simulation.
 
-use super::number::number;
 use super::work::Steps;
 use super::{to_json, Outcome};
 use crate::bench::{self, CycleTimeOptions, Options};
 use crate::error::GenError;
+use crate::number::number;
 use clap::{Args, Subcommand};
 use endat_hdl::config::CABLE_M_MAX;
 use endat_hdl::endat::timing::RECOVERY_MAX_NS;

@@ -1,9 +1,9 @@
 //! `crc`: computes and explains the CRC of a frame.
 
-use super::number::number;
 use super::{to_json, Outcome};
 use crate::crc::{self, CoveredBit};
 use crate::error::{shown, GenError};
+use crate::number::number;
 use clap::Args;
 use endat_hdl::protocol::POSITION_BITS;
 

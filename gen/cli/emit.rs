@@ -1,13 +1,14 @@
 //! `emit`: writes the files of a card, or checks them.
 
 use super::host::interrupted;
-use super::{EmissionArgs, Outcome};
+use super::{to_json, EmissionArgs, Outcome};
 use crate::artifact::{self, Artifact};
 use crate::config::Configuration;
 use crate::error::GenError;
 use crate::language::Language;
 use clap::Args;
 use endat_hdl::card::bus::HostBus;
+use serde_json::json;
 use std::sync::atomic::Ordering;
 
 /// Arguments of `emit`.
@@ -27,6 +28,9 @@ pub struct EmitArgs {
     /// Write nothing; exit with 1 when a file is not what the configuration gives
     #[arg(long)]
     check: bool,
+    /// What has been written, as JSON
+    #[arg(long, conflicts_with = "check")]
+    json: bool,
 }
 
 /// Runs the command.
@@ -70,14 +74,26 @@ pub fn run(arguments: &EmitArgs) -> Result<Outcome, GenError> {
         .map(|path| format!("{}\n", path.display()))
         .collect();
     let mut messages = left.kept;
+    let mut removed = vec![];
     for path in left.removable {
         match std::fs::remove_file(&path) {
+            Ok(()) if arguments.json => removed.push(path.display().to_string()),
             Ok(()) => lines.push_str(&format!("{}: removed\n", path.display())),
             Err(e) => messages.push(format!(
                 "{}: is no longer emitted, and cannot be removed: {e}; delete it",
                 path.display()
             )),
         }
+    }
+    if arguments.json {
+        let written = written.iter().map(|path| path.display().to_string());
+        let files = artifacts.iter().map(|file| &file.path);
+        lines = to_json(&json!({
+            "folder": folder.display().to_string(),
+            "files": files.collect::<Vec<_>>(),
+            "written": written.collect::<Vec<_>>(),
+            "removed": removed,
+        }))?;
     }
     if lines.is_empty() {
         lines = format!(

@@ -13,7 +13,6 @@ mod emit;
 mod explain_key;
 mod host;
 mod new;
-mod number;
 mod pictures;
 mod prove;
 mod recorded;

@@ -1,10 +1,10 @@
 //! `shmoo`: maps of where frames are good.
 
-use super::number::number;
 use super::pictures::{check_all, write_all, File};
 use super::work::{progress, ThreadsArgs};
 use super::{to_json, Outcome};
 use crate::error::{shown, GenError};
+use crate::number::number;
 use clap::{Args, ValueEnum};
 use endat_hdl::config::{SYSTEM_HZ_MAX, SYSTEM_HZ_MIN};
 use endat_hdl::endat::timing;

@@ -1,8 +1,8 @@
 //! Long work on many processors: how many, and how far it is.
 
 use super::colour;
-use super::number::number;
 use crate::error::GenError;
+use crate::number::number;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal, Write};

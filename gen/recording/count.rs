@@ -34,6 +34,47 @@ impl Judge {
     }
 }
 
+/// What became of a channel, row by row: one concept for a log that runs and for a recording that is read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Rows in which it should have brought a position, and did not, by cause.
+    pub bad: BTreeMap<String, u64>,
+    /// What was noticed beside a good position, or where none was due, by cause.
+    pub beside: BTreeMap<String, u64>,
+}
+
+impl Tally {
+    /// Takes a cell; whether it is bad.
+    pub fn note(&mut self, judge: Judge, fresh: bool, cause: &str) -> bool {
+        let is_bad = judge.misses(fresh, cause);
+        let counts = match is_bad {
+            true => &mut self.bad,
+            false if cause == endat_host::causes::name(0) => return false,
+            false => &mut self.beside,
+        };
+        match counts.get_mut(cause) {
+            Some(count) => *count += 1,
+            None => {
+                counts.insert(cause.to_owned(), 1);
+            }
+        }
+        is_bad
+    }
+
+    /// Rows in which it was bad.
+    pub fn bad_rows(&self) -> u64 {
+        self.bad.values().sum()
+    }
+}
+
+/// `crc 780, no_start_bit 7`.
+fn named(counts: &BTreeMap<String, u64>) -> String {
+    let each = counts
+        .iter()
+        .map(|(cause, count)| format!("{cause} {count}"));
+    each.collect::<Vec<_>>().join(", ")
+}
+
 /// What became of the rows.
 #[derive(Default)]
 pub struct Count {
@@ -44,8 +85,7 @@ pub struct Count {
     pub missing: u64,
     /// Rows in which a channel is bad.
     pub bad: u64,
-    /// Cells without a position of their own, by channel and cause.
-    causes: BTreeMap<(usize, &'static str), u64>,
+    channels: Vec<Tally>,
 }
 
 impl Count {
@@ -61,12 +101,14 @@ impl Count {
     pub fn note(&mut self, row: &Row) {
         self.rows += 1;
         self.missing += row.missing;
-        let bad = row.cells.iter().enumerate();
-        let mut bad = bad.filter(|(_, c)| self.judge.is_bad(c)).peekable();
-        self.bad += u64::from(bad.peek().is_some());
-        for (channel, cell) in bad {
-            *self.causes.entry((channel, cell.cause)).or_default() += 1;
+        if self.channels.len() < row.cells.len() {
+            self.channels.resize(row.cells.len(), Tally::default());
         }
+        let mut is_bad = false;
+        for (tally, cell) in self.channels.iter_mut().zip(&row.cells) {
+            is_bad |= tally.note(self.judge, cell.fresh, cell.cause);
+        }
+        self.bad += u64::from(is_bad);
     }
 
     /// Share of bad rows in per cent.
@@ -75,29 +117,40 @@ impl Count {
     }
 
     /// Channel, cause and number of its bad cells.
-    pub fn causes(&self) -> impl Iterator<Item = (usize, &'static str, u64)> + '_ {
-        let all = self.causes.iter();
-        all.map(|((channel, cause), count)| (*channel, *cause, *count))
+    pub fn causes(&self) -> impl Iterator<Item = (usize, &str, u64)> + '_ {
+        let all = self.channels.iter().enumerate();
+        all.flat_map(|(n, tally)| {
+            tally
+                .bad
+                .iter()
+                .map(move |(cause, count)| (n, cause.as_str(), *count))
+        })
     }
 
-    /// `787 of 800 rows bad (98.4 %): channel 0 crc 780, no_start_bit 7`.
+    /// `787 of 800 rows bad (98.4 %); channel 0: crc 780, no_start_bit 7; beside good positions: channel 1: trigger_overrun 3`.
     pub fn told(&self) -> String {
-        if self.bad == 0 {
-            return "no row bad".into();
-        }
-        let mut text = format!(
-            "{} of {} rows bad ({:.1} %)",
-            self.bad,
-            self.rows,
-            self.bad_percent()
-        );
-        let mut last = None;
-        for ((channel, cause), count) in &self.causes {
-            let _ = match last {
-                Some(before) if before == channel => write!(text, ", {cause} {count}"),
-                _ => write!(text, "; channel {channel}: {cause} {count}"),
-            };
-            last = Some(channel);
+        let of = |counts: fn(&Tally) -> &BTreeMap<String, u64>| {
+            let all = self.channels.iter().enumerate();
+            let all = all.filter(|(_, tally)| !counts(tally).is_empty());
+            let all = all.map(|(n, tally)| format!("; channel {n}: {}", named(counts(tally))));
+            all.collect::<String>()
+        };
+        let mut text = match self.bad {
+            0 => "no row bad".to_owned(),
+            bad => format!(
+                "{bad} of {} rows bad ({:.1} %)",
+                self.rows,
+                self.bad_percent()
+            ),
+        };
+        text += &of(|tally| &tally.bad);
+        let beside = of(|tally| &tally.beside);
+        if !beside.is_empty() {
+            let _ = write!(
+                text,
+                "; beside good positions{}",
+                beside.replacen(';', ":", 1)
+            );
         }
         text
     }
@@ -118,11 +171,11 @@ mod tests {
         for (own_triggers, told) in [
             (
                 true,
-                "2 of 4 rows bad (50.0 %); channel 0: crc 2; channel 1: no_start_bit 1",
+                "2 of 4 rows bad (50.0 %); channel 0: crc 2; channel 1: no_start_bit 1; beside good positions: channel 0: recovery_too_short 1; channel 1: late 1, not_taken 1",
             ),
             (
                 false,
-                "3 of 4 rows bad (75.0 %); channel 0: crc 2; channel 1: late 1, no_start_bit 1, not_taken 1",
+                "3 of 4 rows bad (75.0 %); channel 0: crc 2; channel 1: late 1, no_start_bit 1, not_taken 1; beside good positions: channel 0: recovery_too_short 1",
             ),
         ] {
             let mut count = Count::new(Judge { own_triggers });

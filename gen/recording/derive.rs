@@ -4,6 +4,7 @@
 
 use super::layout::DerivedColumn;
 use crate::error::{shown, GenError};
+use crate::number::decimal;
 use endat_host::did_you_mean::guess;
 use endat_host::feed::Row;
 use endat_host::motion::{nearest, Unwrap, Velocity, VELOCITY_OVER_S};
@@ -58,16 +59,13 @@ pub struct Derivation {
     all: Vec<Derived>,
 }
 
-/// A number of a step, within all that is sensible.
-fn amount(spec: &str, text: &str) -> Result<f64, GenError> {
-    let number = text.replace('_', "").parse::<f64>();
-    match number {
-        Ok(x) if x.is_finite() && x.abs() <= 1e15 => Ok(x),
-        _ => Err(wrong(
-            spec,
-            &format!("{} is no number; write 12 or -0.5", shown(text)),
-        )),
-    }
+/// Beyond is no position.
+const AMOUNT_MAX: f64 = 1e15;
+
+/// A number of a step.
+fn amount(spec: &str, name: &str, text: &str) -> Result<f64, GenError> {
+    let what = format!("--derive = {}: {name}", shown(spec));
+    decimal(&what, text, -AMOUNT_MAX..=AMOUNT_MAX)
 }
 
 fn wrong(spec: &str, what: &str) -> GenError {
@@ -90,7 +88,7 @@ impl Step {
             None => (word, None),
         };
         let number = || match argument {
-            Some(text) => amount(spec, text),
+            Some(text) => amount(spec, name, text),
             None => Err(wrong(
                 spec,
                 &format!("{name}: takes a number; write {name}=X"),
@@ -444,8 +442,8 @@ mod tests {
             ("A=0", "A is no name"),
             ("a=0:scale", "scale: takes a number; write scale=X"),
             ("a=0:zero=1", "zero: takes no number"),
-            ("a=0:offset=x", "x is no number"),
-            ("a=0:scale=nan", "nan is no number"),
+            ("a=0:offset=x", "offset = x: is not a number"),
+            ("a=0:scale=nan", "scale = nan: outside"),
             ("a=0:modulo=0", "takes a number above 0"),
             ("a=0:offset=1:velocity", "velocity counts measuring steps"),
             ("a=0:zero:unwrap", "unwrap comes first"),

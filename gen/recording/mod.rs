@@ -17,5 +17,6 @@ pub mod parquet;
 pub mod picture;
 pub mod read;
 pub mod recorder;
+pub mod resume;
 pub mod sheet;
 pub mod stats;

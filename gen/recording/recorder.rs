@@ -364,7 +364,7 @@ mod tests {
             let all = stats(&parts);
             assert_eq!((each, all.rows, all.bad_rows), (2_000, 2_000, 1), "{name}");
             assert!((all.duration_s() - 0.1999).abs() < 1e-9);
-            assert_eq!(all.channels[0].causes["crc"], 1);
+            assert_eq!(all.channels[0].tally.bad["crc"], 1);
             let before: Vec<Vec<u8>> = parts.iter().map(|p| fs::read(p).unwrap()).collect();
             assert!(Recorder::begin(wishes(target(false), format, Keep::All, limits)).is_err());
             let mut again = wishes(target(true), format, Keep::All, limits);

@@ -1,10 +1,9 @@
 //! Figures of a recording, in one pass and constant memory.
 
+use super::count::Tally;
 use super::histogram::Histogram;
 use super::picture::Measurement;
 use super::read::Head;
-use std::borrow::Cow;
-use std::collections::BTreeMap;
 
 /// What a column of numbers has shown.
 #[derive(Clone, Debug)]
@@ -162,10 +161,8 @@ impl Track {
 pub struct ChannelStats {
     /// Its positions, counted on.
     pub track: Track,
-    /// Rows in which it should have brought a position, and did not.
-    pub bad: u64,
-    /// Rows by cause, that of a good one left out.
-    pub causes: BTreeMap<Cow<'static, str>, u64>,
+    /// Rows by what became of them.
+    pub tally: Tally,
     /// One measuring step in its unit, if the file says so.
     pub step: Option<f64>,
 }
@@ -199,8 +196,7 @@ impl Stats {
             let step = scales.as_ref().map(|all| all[n].0.step());
             ChannelStats {
                 track: Track::new(format!("channel {n}"), unit.clone(), window_rows, step),
-                bad: 0,
-                causes: BTreeMap::new(),
+                tally: Tally::default(),
                 step,
             }
         });
@@ -244,13 +240,7 @@ impl Stats {
                 continue;
             }
             channel.track.push(row.time_s, cell.position);
-            if self.judge.misses(cell.fresh, &cell.cause) {
-                channel.bad += 1;
-                is_bad = true;
-            }
-            if cell.cause != none {
-                *channel.causes.entry(cell.cause.clone()).or_default() += 1;
-            }
+            is_bad |= channel.tally.note(self.judge, cell.fresh, &cell.cause);
         }
         self.bad_rows += u64::from(is_bad);
         for (track, value) in self.derived.iter_mut().zip(&row.derived) {
@@ -344,7 +334,7 @@ mod tests {
         // A step at each fault: noise of a window that has one in it.
         let position = |n: u64| (!n.is_multiple_of(150)).then_some((n / 150) as f64 * 10.0);
         let all = stats((0..3_000).map(position));
-        assert_eq!((all.bad_rows, all.channels[0].causes["crc"]), (20, 20));
+        assert_eq!((all.bad_rows, all.channels[0].tally.bad["crc"]), (20, 20));
         let worst = all.channels[0].track.noise().unwrap().1;
         assert!(worst < 1e-9, "{worst}");
     }

@@ -1,7 +1,9 @@
 //! Faults that are made while a virtual card runs: what a cable, a plug or an encoder can do, by name.
 
 use super::VirtualCard;
-use crate::error::shown;
+use crate::error::{shown, GenError};
+use crate::number::{decimal, number};
+use endat_hdl::config::CHANNELS;
 use endat_host::did_you_mean;
 use endat_sim::encoder::{Cause, Defect};
 use endat_sim::line::{FaultKind, GlitchRate, Jitter, LineFault, Wire};
@@ -50,6 +52,10 @@ const SLOW_MAX: Time = 10 * MS;
 const JITTER_MAX: Time = US;
 /// Pulses of noise.
 const PULSE: (Time, Time) = (40 * NS, 200 * NS);
+/// The rarest noise that is any.
+const NOISE_MIN: f64 = 1e-9;
+/// Highest channel of a card.
+const CHANNEL_MAX: u64 = *CHANNELS.end() as u64 - 1;
 /// Bits of alarms and warnings.
 const STATUS_MAX: u64 = 0xFFFF;
 
@@ -57,36 +63,24 @@ fn wrong(what: &str, text: &str, why: &str) -> String {
     format!("{what} = {}: {why}", shown(text))
 }
 
+/// What a parser of numbers says, as a text.
+fn text_of<T>(result: Result<T, GenError>) -> Result<T, String> {
+    result.map_err(|error| error.to_string())
+}
+
 /// A time with its unit.
 fn time(what: &str, text: &str, most: Time) -> Result<Time, String> {
     let units = [("ns", NS), ("us", US), ("ms", MS)];
     let found = units
         .iter()
-        .find_map(|(name, unit)| Some((text.strip_suffix(name)?, *unit)));
-    let number = found.and_then(|(digits, unit)| Some(digits.parse::<f64>().ok()? * unit as f64));
-    match number {
-        Some(ps) if (0.0..=most as f64).contains(&ps) => Ok(ps as Time),
-        _ => {
-            let limit = format!("is no time from 0 to {}us; write 20ns or 0.5us", most / US);
-            Err(wrong(what, text, &limit))
-        }
-    }
-}
-
-fn number(what: &str, text: &str, most: u64) -> Result<u64, String> {
-    let plain = text.replace('_', "");
-    let parsed = match plain.strip_prefix("0x") {
-        Some(digits) => u64::from_str_radix(digits, 16),
-        None => plain.parse(),
+        .find_map(|(name, unit)| Some((name, text.strip_suffix(name)?, *unit)));
+    let Some((name, digits, unit)) = found else {
+        let limit = format!("is no time from 0 to {}us; write 20ns or 0.5us", most / US);
+        return Err(wrong(what, text, &limit));
     };
-    match parsed {
-        Ok(n) if (1..=most).contains(&n) => Ok(n),
-        _ => Err(wrong(
-            what,
-            text,
-            &format!("is no number from 1 to {most}; write 12 or 0x0C"),
-        )),
-    }
+    let what = format!("{what}, in {name}");
+    let number = text_of(decimal(&what, digits, 0.0..=most as f64 / unit as f64))?;
+    Ok((number * unit as f64) as Time)
 }
 
 /// The name that may have been meant.
@@ -120,18 +114,16 @@ impl Fault {
                 ))
             }
         };
-        let channel = channel.parse::<usize>();
-        let channel = channel.map_err(|_| {
-            wrong(
-                "channel",
-                rest[0],
-                "is no number of a channel; write 0 or 1",
-            )
-        })?;
-        let count = || value.map_or(Ok(1), |text| number("frames", text, FRAMES_MAX));
+        // Which ones there are, the card says.
+        let channel = text_of(number("channel", channel, 0..=CHANNEL_MAX))? as usize;
+        let count = || {
+            value.map_or(Ok(1), |text| {
+                text_of(number("frames", text, 1..=FRAMES_MAX))
+            })
+        };
         let bits = || {
             value
-                .map_or(Ok(1), |text| number("bits", text, STATUS_MAX))
+                .map_or(Ok(1), |text| text_of(number("bits", text, 1..=STATUS_MAX)))
                 .map(|b| b as u16)
         };
         let needed = || value.ok_or_else(|| format!("inject {name}: takes {takes}"));
@@ -159,13 +151,8 @@ impl Fault {
                 warnings: bits()?,
             },
             "noise" => {
-                let text = needed()?;
-                let limit = "is no rate up to 1 per microsecond; write 1e-3";
-                let rate = text
-                    .parse::<f64>()
-                    .ok()
-                    .filter(|r| (1e-9..=1.0).contains(r));
-                Deed::Noise(rate.ok_or_else(|| wrong("noise", text, limit))?)
+                let what = "noise, in pulses per microsecond";
+                Deed::Noise(text_of(decimal(what, needed()?, NOISE_MIN..=1.0))?)
             }
             "jitter" => Deed::Jitter(time("jitter", needed()?, JITTER_MAX)?),
             "line" => {
@@ -294,14 +281,19 @@ mod tests {
                 "inject unplug: takes CHANNEL; write for example unplug 0",
             ),
             ("unplug 0 1", "takes CHANNEL"),
-            ("unplug x", "channel = x: is no number of a channel"),
-            ("crc 0 0", "frames = 0: is no number from 1 to 1000000000"),
+            ("unplug x", "channel = x: is not a number from 0 to 7"),
+            ("crc 0 0", "frames = 0: outside 1..1000000000"),
             ("slow 0 30", "slow = 30: is no time from 0 to 10000us"),
+            ("unplug -1", "channel = -1: outside 0..7"),
+            ("slow 0 -1us", "slow, in us = -1: outside 0..10000"),
             ("slow 0", "inject slow: takes CHANNEL TIME"),
-            ("noise 0 2", "noise = 2: is no rate"),
-            ("noise 0 nan", "noise = nan: is no rate"),
+            (
+                "noise 0 2",
+                "noise, in pulses per microsecond = 2: outside 0.000000001..1",
+            ),
+            ("noise 0 nan", "microsecond = nan: outside"),
             ("line 0 stuck", "there is no such fault of a line"),
-            ("alarm 0 0x10000", "bits = 0x10000: is no number"),
+            ("alarm 0 0x10000", "bits = 0x10000: outside 1..65535"),
         ] {
             let error = parse(text).unwrap_err();
             assert!(error.contains(told), "{text}: {error}");

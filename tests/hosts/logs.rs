@@ -150,7 +150,9 @@ fn what_cannot_be_logged_is_told_at_once() {
         );
     }
     let file = toml.to_str().unwrap();
-    let outcome = run(&["log", "--samples", "1", "--port", "virtual", "--out", file]);
+    let log = ["log", "--samples", "1", "--port", "virtual", "--out", file];
+    // Its suffix is none of a recording.
+    let outcome = run(&[&log[..], &["--format", "csv"]].concat());
     assert_eq!(outcome.exit_code, 2, "{outcome:?}");
     let told = format!("--out = {file}: is there already; give another file with --out, or replace it with --force");
     assert_eq!(outcome.messages, [told]);

@@ -3,6 +3,7 @@
 mod again;
 mod clients;
 mod commands;
+mod continued;
 pub mod desk;
 mod disturbed;
 mod few_cycles;

@@ -189,10 +189,7 @@ fn long_work_has_a_bar_on_a_terminal_and_lines_elsewhere() {
     let output = program().args(log).output().unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(!told.contains('\x1b') && !told.contains('['), "{told}");
-    assert!(
-        told.starts_with("200 of 2000 sample sets"),
-        "{told}"
-    );
+    assert!(told.starts_with("200 of 2000 sample sets"), "{told}");
 }
 
 /// Catches colour in a file, and where nobody wants it.

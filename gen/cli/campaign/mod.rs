@@ -4,11 +4,11 @@ mod mutants;
 mod options;
 mod tallies;
 
-use crate::cli::number::number;
 use crate::cli::pictures::{draw, Drawn, Pictures};
 use crate::cli::work::{progress, ThreadsArgs};
 use crate::cli::{to_json, Outcome};
 use crate::error::GenError;
+use crate::number::number;
 use clap::{Args, ValueEnum};
 use endat_sim::campaign::{self, Case, RunOptions, Traces};
 use rtl_design::engine::{Compiled, LaneWords};

@@ -2,10 +2,10 @@
 
 use super::CampaignArgs;
 use crate::campaign::mutants::{subjects, Emission, Mutants};
-use crate::cli::number::number;
 use crate::cli::work::Steps;
 use crate::cli::Outcome;
 use crate::error::{shorten, shown, GenError};
+use crate::number::number;
 use endat_sim::campaign::{count, Shard};
 
 /// Mutants of each block, if not told, and of the one block of `--quick`.

@@ -1,9 +1,10 @@
 //! `inject`: faults of a virtual card that runs, to rehearse what a program does about them.
 
-use super::super::Outcome;
+use super::super::{to_json, Outcome};
 use crate::error::{shown, GenError};
 use crate::virtual_card::{Fault, CONTROL, FAULTS};
 use clap::Args;
+use serde_json::json;
 use std::io::{Read, Write};
 use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
@@ -17,8 +18,11 @@ pub struct InjectArgs {
     /// List the faults that there are
     #[arg(long, conflicts_with = "fault")]
     list: bool,
+    /// The list as JSON
+    #[arg(long, requires = "list")]
+    json: bool,
     /// Fault, channel, and how much, as in: unplug 0, crc 1 5, slow 0 30us, heal 0
-    #[arg(value_name = "FAULT", required_unless_present = "list", num_args = 1..)]
+    #[arg(value_name = "FAULT", required_unless_present = "list", num_args = 1.., allow_negative_numbers = true)]
     fault: Vec<String>,
 }
 
@@ -29,6 +33,12 @@ const ANSWER_BYTES: u64 = 4096;
 
 /// Runs the command.
 pub fn run(arguments: &InjectArgs) -> Result<Outcome, GenError> {
+    if arguments.list && arguments.json {
+        let all = FAULTS
+            .iter()
+            .map(|(name, takes, is)| json!({"name": name, "takes": takes, "is": is}));
+        return Ok(Outcome::good(to_json(&all.collect::<Vec<_>>())?));
+    }
     if arguments.list {
         let lines = FAULTS.iter().map(|(name, takes, is)| {
             let call = format!("{name} {takes}");
@@ -75,7 +85,8 @@ fn ask(port: &str, words: &str) -> Result<String, GenError> {
             shown(port)
         )])
     };
-    let mut stream = TcpStream::connect(&here[..]).map_err(silent)?;
+    let connected = TcpStream::connect(&here[..]);
+    let mut stream = connected.map_err(|e| wrong(&format!("{e}; is the card running?")))?;
     stream.set_read_timeout(Some(PATIENCE)).map_err(silent)?;
     let line = format!("{CONTROL}{words}\n");
     stream.write_all(line.as_bytes()).map_err(silent)?;

@@ -1,10 +1,10 @@
 //! `margin`: where the edges of DATA are, as the card itself has measured it.
 
-use super::super::number::number_if;
 use super::super::pictures::{write_all, File};
 use super::super::{to_json, Outcome};
 use super::{channel, told, AnyCard, PortArgs};
 use crate::error::GenError;
+use crate::number::number_if;
 use clap::Args;
 use endat_host::registers::Place;
 use endat_host::HostError;

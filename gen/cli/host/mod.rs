@@ -13,9 +13,9 @@ pub mod serve;
 pub mod view;
 pub mod virtual_card;
 
-use super::number::{number, number_if};
 use super::work::say;
 use crate::error::GenError;
+use crate::number::{number, number_if};
 use crate::virtual_card::virtual_card_at;
 use clap::Args;
 use endat_host::mailbox::INITIALISATION;
@@ -24,7 +24,10 @@ use endat_host::registers::Place;
 use endat_host::transport::Port;
 use endat_host::{Bridge, HostError, Transport};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{channel as channel_of_threads, RecvTimeoutError};
 use std::sync::Arc;
+use std::thread;
+use std::time::Duration;
 
 /// Baud rate of the cards that come with the program.
 const BAUD: u32 = 3_000_000;
@@ -78,9 +81,13 @@ impl PortArgs {
         let (name, baud) = (self.checked_name()?, self.baud()?);
         let transport = match virtual_card_at(name)? {
             Some(card) => Box::new(card),
-            None => Box::new(Port::open(name, baud).map_err(told)?) as Box<dyn Transport>,
+            None => {
+                let open = || Port::open(name, baud).map_err(told);
+                Box::new(patiently(name, open)?) as Box<dyn Transport>
+            }
         };
-        endat_host::Card::find(Bridge::new(transport)).map_err(told)
+        let find = || endat_host::Card::find(Bridge::new(transport)).map_err(told);
+        patiently(name, find)
     }
 }
 
@@ -89,6 +96,25 @@ pub fn channel(card: &AnyCard, text: Option<&str>) -> Result<usize, GenError> {
     let last = card.identity().channels as u64 - 1;
     let text = text.unwrap_or("0");
     number("--channel", text, 0..=last).map(|n| n as usize)
+}
+
+/// What takes longer is told.
+const PATIENCE: Duration = Duration::from_millis(1_500);
+
+/// Does something that waits for a card, and says so if it takes long.
+pub fn patiently<T>(port: &str, work: impl FnOnce() -> T) -> T {
+    let (done, wait) = channel_of_threads::<()>();
+    let text = format!(
+        "waiting for the card at {port}: it does not answer yet; another program, or one that has been killed, may still have it"
+    );
+    thread::spawn(move || {
+        if wait.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+            say(&text);
+        }
+    });
+    let result = work();
+    drop(done);
+    result
 }
 
 /// Says once that an initialisation takes long.

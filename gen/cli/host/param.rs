@@ -1,9 +1,9 @@
 //! `param`: words of the encoder's memory, and any other mode command.
 
-use super::super::number::{number, number_if};
 use super::super::{to_json, Outcome};
 use super::{channel, told, PortArgs};
 use crate::error::{shown, GenError};
+use crate::number::{number, number_if};
 use clap::{Args, Subcommand};
 use endat_host::mailbox::{Answer, Request};
 use serde_json::json;

@@ -1,9 +1,9 @@
 //! `reg`: words of the card by name.
 
-use super::super::number::number;
 use super::super::{to_json, Outcome};
 use super::{told, AnyCard, PortArgs};
 use crate::error::GenError;
+use crate::number::number;
 use clap::{Args, Subcommand};
 use endat_host::registers::{Access, Field, Limits, Named, Place, Values};
 use endat_host::HostError;
@@ -43,9 +43,16 @@ enum Action {
         /// Write what the register map forbids, too
         #[arg(long)]
         force: bool,
+        /// What it reads then, as JSON
+        #[arg(long)]
+        json: bool,
     },
     /// List the registers that a card can have, without a card
-    List,
+    List {
+        /// As JSON
+        #[arg(long)]
+        json: bool,
+    },
 }
 
 /// Runs the command.
@@ -57,8 +64,10 @@ pub fn run(arguments: &RegArgs) -> Result<Outcome, GenError> {
             name,
             value,
             force,
-        } => write(&mut port.open()?, name, value, *force),
-        Action::List => Ok(Outcome::good(list())),
+            json,
+        } => write(&mut port.open()?, name, value, *force, *json),
+        Action::List { json: false } => Ok(Outcome::good(list())),
+        Action::List { json: true } => to_json(&list_as_json()).map(Outcome::good),
     }
 }
 
@@ -124,10 +133,15 @@ pub fn as_json(card: &mut AnyCard, place: &Place) -> Result<Value, HostError> {
 }
 
 fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, GenError> {
-    let mut all = Vec::new();
+    // A wrong name loses nothing of the others.
+    let (mut all, mut wrong) = (Vec::new(), Vec::new());
     for name in names {
-        all.extend(places(card, name)?);
+        match places(card, name) {
+            Ok(found) => all.extend(found),
+            Err(error) => wrong.push(error),
+        }
     }
+    let all_wrong = all.is_empty();
     let mut text = String::new();
     let mut objects = Vec::new();
     for place in all {
@@ -154,11 +168,16 @@ fn read(card: &mut AnyCard, names: &[String], as_data: bool) -> Result<Outcome, 
             text.push('\n');
         }
     }
-    Ok(Outcome::good(if as_data {
-        to_json(&objects)?
-    } else {
-        text
-    }))
+    let stdout = match as_data {
+        true if all_wrong => String::new(),
+        true => to_json(&objects)?,
+        false => text,
+    };
+    Ok(Outcome {
+        stdout,
+        exit_code: wrong.iter().map(GenError::exit_code).max().unwrap_or(0),
+        messages: wrong.iter().flat_map(|e| e.messages().to_vec()).collect(),
+    })
 }
 
 /// A number, the name of one of the field's values, or names of some of its bits.
@@ -184,7 +203,13 @@ fn value_of(place: &Place, text: &str, force: bool) -> Result<u32, GenError> {
     number("value", text, 0..=most.into()).map(|n| n as u32)
 }
 
-fn write(card: &mut AnyCard, name: &str, text: &str, force: bool) -> Result<Outcome, GenError> {
+fn write(
+    card: &mut AnyCard,
+    name: &str,
+    text: &str,
+    force: bool,
+    as_data: bool,
+) -> Result<Outcome, GenError> {
     let place = card.place(name).map_err(told)?;
     let value = value_of(&place, text, force)?;
     if !force {
@@ -192,17 +217,51 @@ fn write(card: &mut AnyCard, name: &str, text: &str, force: bool) -> Result<Outc
             .map_err(|e| GenError::input(format!("{e}; --force writes it all the same")))?;
     }
     card.write(&place, value).map_err(told)?;
+    if place.register.access == Access::Strobe && as_data {
+        let done = json!({"name": place.to_string(), "address": place.address()});
+        return to_json(&done).map(Outcome::good);
+    }
     if place.register.access == Access::Strobe {
         return Ok(Outcome::good(format!("{place}: done\n")));
     }
     let now = card.read(&place).map_err(told)?;
-    let mut outcome = Outcome::good(format!("{place} = 0x{now:08X} = {now}\n"));
+    let mut outcome = Outcome::good(match as_data {
+        true => to_json(&self::as_json(card, &place).map_err(told)?)?,
+        false => format!("{place} = 0x{now:08X} = {now}\n"),
+    });
     if now != value {
         outcome.messages.push(format!(
             "{place}: wrote {value}, reads {now}: the word acts when written, or has bits that do not keep it"
         ));
     }
     Ok(outcome)
+}
+
+fn list_as_json() -> Vec<Value> {
+    let register = |block: &'static endat_regs::Block| {
+        block.registers.iter().map(|register| {
+            let fields = register.fields.iter().map(|field| {
+                json!({"name": field.name, "lsb": field.lsb, "width": field.width, "unit": field.unit, "meaning": field.meaning})
+            });
+            json!({
+                "name": register.name,
+                "address": block.base + register.offset,
+                "access": register.access.short(),
+                "part": register.part.map(|part| part.named().name),
+                "meaning": register.meaning,
+                "fields": fields.collect::<Vec<_>>(),
+            })
+        })
+    };
+    let block = |block: &'static endat_regs::Block| {
+        json!({
+            "name": block.name,
+            "per_channel": block.per_channel,
+            "meaning": block.meaning,
+            "registers": register(block).collect::<Vec<_>>(),
+        })
+    };
+    BLOCKS.iter().map(block).collect()
 }
 
 fn list() -> String {

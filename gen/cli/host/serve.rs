@@ -1,10 +1,10 @@
 //! `serve`: a card for PandABlocks clients.
 
-use super::super::number::number_if;
 use super::super::work::say;
 use super::super::Outcome;
 use super::{interrupted, settled, told, PortArgs};
 use crate::error::GenError;
+use crate::number::number_if;
 use clap::Args;
 use endat_host::panda::{Column, Ports, Server, CONTROL_PORT, DATA_PORT};
 use endat_regs::Part;

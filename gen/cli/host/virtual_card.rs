@@ -1,10 +1,10 @@
 //! `card`: a card without hardware, for other programs.
 
-use super::super::number::decimal_if;
 use super::super::work::say;
 use super::super::{Outcome, SourceArgs};
 use super::interrupted;
 use crate::error::GenError;
+use crate::number::decimal_if;
 use crate::virtual_card::{serve, Door, VirtualCard, VirtualConfig, CABLE_M};
 use clap::Args;
 use endat_hdl::card::bus::HostBus;

@@ -82,7 +82,8 @@ fn completed(given: &Answers) -> Result<Answers, Vec<String>> {
         let mut all = Answers::new();
         let mut left: Vec<&Question> = Vec::new();
         for question in QUESTIONS.iter().filter(|q| given.contains_key(q.name)) {
-            if let Err(error) = text::literal(question.of, &question.option(), &given[question.name])
+            if let Err(error) =
+                text::literal(question.of, &question.option(), &given[question.name])
             {
                 return Err(error.messages().to_vec());
             }

@@ -36,10 +36,12 @@ pub const NO_BOARD: &str = "none";
 /// Encoder ports unless a board has no room for them.
 const CHANNELS: [usize; 2] = [2, 1];
 /// From here on a clock suits nearly everything.
-const SYSTEM_HZ: [u64; 6] = [
+const SYSTEM_HZ: [u64; 8] = [
     100_000_000,
     50_000_000,
     48_000_000,
+    60_000_000,
+    30_000_000,
     25_000_000,
     20_000_000,
     12_000_000,

@@ -1,7 +1,6 @@
 //! The text of a configuration: what was answered, and beside it every key that was not asked for, with what counts without it.
 
 use super::questions::{has_board, has_uart, is_receiver, is_t_format, Answers, Of, QUESTIONS};
-use crate::cli::number::number;
 use crate::config::grouped;
 use crate::config::keys::{
     self, Key, Kind, Usual, CHANNELS, COMMON, ENDAT_FORM, KEYS, RECEIVER_FORM, TABLES,
@@ -10,6 +9,7 @@ use crate::config::keys::{
 use crate::error::GenError;
 use crate::form::key::head;
 use crate::json_schema::plain;
+use crate::number::number;
 use std::fmt::Write;
 
 /// Comments are not longer.

@@ -1,10 +1,10 @@
 //! `plot`: a recording as a drawing.
 
-use super::super::number::decimal_if;
 use super::super::pictures::{check_all, write_all, File};
 use super::super::Outcome;
 use super::FileArgs;
 use crate::error::GenError;
+use crate::number::decimal_if;
 use crate::recording::picture::{Extras, Picture};
 use clap::Args;
 use endat_sim::diagram::is_drawing;

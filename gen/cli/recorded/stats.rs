@@ -1,9 +1,9 @@
 //! `stats`: figures of a recording.
 
-use super::super::number::number_if;
 use super::super::{to_json, Outcome};
 use super::FileArgs;
 use crate::error::GenError;
+use crate::number::number_if;
 use crate::recording::read::Head;
 use crate::recording::stats::{Stats, Track};
 use clap::Args;
@@ -69,8 +69,9 @@ fn track_json(track: &Track) -> Value {
 fn as_json(stats: &Stats, head: &Head, window: usize) -> Value {
     let channels = stats.channels.iter().map(|channel| {
         let mut object = track_json(&channel.track);
-        object["bad"] = json!(channel.bad);
-        object["causes"] = json!(channel.causes);
+        object["bad"] = json!(channel.tally.bad_rows());
+        object["causes"] = json!(channel.tally.bad);
+        object["beside"] = json!(channel.tally.beside);
         object["step"] = json!(channel.step);
         object
     });
@@ -174,16 +175,31 @@ fn as_text(stats: &Stats, head: &Head, window: usize) -> String {
         format!("{} triggers, {} times", stats.missing, stats.gaps),
     );
     let percent = stats.bad_rows as f64 * 100.0 / stats.rows.max(1) as f64;
-    line("bad rows", format!("{} ({percent:.3} %)", stats.bad_rows));
+    // Rows that were left out were good, and count nowhere.
+    let of = if head.every() > 1 {
+        " of the rows that were kept"
+    } else {
+        ""
+    };
+    line(
+        "bad rows",
+        format!("{} ({percent:.3} %{of})", stats.bad_rows),
+    );
     line(
         "noise",
         format!("deviation about parabolas through {window} rows each"),
     );
     for channel in &stats.channels {
         let _ = writeln!(text, "\n{}", channel.track.name);
-        let _ = writeln!(text, "  {:<18}{}", "bad", channel.bad);
-        for (cause, count) in &channel.causes {
-            let _ = writeln!(text, "  {:<18}{count}", cause);
+        let _ = writeln!(text, "  {:<18}{}", "bad", channel.tally.bad_rows());
+        for (cause, count) in &channel.tally.bad {
+            let _ = writeln!(text, "    {cause:<16}{count}");
+        }
+        if !channel.tally.beside.is_empty() {
+            let _ = writeln!(text, "  beside good ones");
+        }
+        for (cause, count) in &channel.tally.beside {
+            let _ = writeln!(text, "    {cause:<16}{count}");
         }
         track_text(&mut text, &channel.track, channel.step);
     }

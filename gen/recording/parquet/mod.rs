@@ -1,7 +1,8 @@
 //! Recordings as Parquet: integers as deltas, so that an hour of two channels at 10 kHz is some hundred megabytes.
 //!
-//! Rows are collected into groups. Behind each group stands what makes the file whole, and the next group takes its place: whatever ends
-//! the program, all but the last group is there.
+//! Rows are collected into groups. Behind each group stands what makes the file whole, and the next group takes its place. The old end is
+//! written once more behind the place of the new one, and cut off when that is there: whatever ends the program, and whenever, all but the
+//! last group is there.
 
 mod columns;
 pub mod seal;
@@ -194,16 +195,21 @@ impl<D: Disk> ParquetFile<D> {
         let group = std::mem::take(self.writer.inner_mut());
         let mut sum = self.sum.clone();
         sum.update(&group);
-        let footer = seal::seal(sum.clone(), &self.footer_now()?);
-        let mut put = |at: u64, parts: [&[u8]; 2]| -> io::Result<()> {
-            self.file.seek(SeekFrom::Start(at))?;
-            parts
-                .iter()
-                .try_for_each(|part| self.file.write_all(part))?;
-            self.file
-                .cut(at + parts.iter().map(|p| p.len() as u64).sum::<u64>())
+        let groups = self.end + group.len() as u64;
+        let footer = seal::seal(sum.clone(), groups, &self.footer_now()?);
+        let whole = self.end + (group.len() + footer.len()) as u64;
+        let spare = whole.max(self.end + self.footer.len() as u64);
+        let mut put = || -> io::Result<()> {
+            if !self.footer.is_empty() {
+                self.file.seek(SeekFrom::Start(spare))?;
+                self.file.write_all(&self.footer)?;
+            }
+            self.file.seek(SeekFrom::Start(self.end))?;
+            self.file.write_all(&group)?;
+            self.file.write_all(&footer)?;
+            self.file.cut(whole)
         };
-        if let Err(error) = put(self.end, [&group, &footer]) {
+        if let Err(error) = put() {
             // What is cut off makes room for what stood there.
             let _ = self.file.cut(self.end);
             let mut put = |at: u64| -> io::Result<()> {
@@ -280,6 +286,15 @@ mod tests {
         rows
     }
 
+    /// The same of what may have none.
+    fn rows_of(bytes: &[u8]) -> Option<Vec<Measurement>> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), bytes).unwrap();
+        let mut rows = Vec::new();
+        read_all(&[file.path().to_owned()], &mut |_, row| rows.push(row)).ok()?;
+        Some(rows)
+    }
+
     fn assert_rows(rows: &[Measurement], count: u64) {
         assert_eq!(rows.len() as u64, count);
         for (n, row) in rows.iter().enumerate() {
@@ -324,6 +339,72 @@ mod tests {
         fn cut(&mut self, bytes: u64) -> io::Result<()> {
             self.0.get_mut().truncate(bytes as usize);
             Ok(())
+        }
+    }
+
+    /// A disk of a computer on which the program is killed behind so many writes.
+    #[derive(Clone)]
+    struct Killed(Cursor<Vec<u8>>, usize);
+
+    impl Killed {
+        fn is_alive(&mut self) -> bool {
+            let alive = self.1 > 0;
+            self.1 = self.1.saturating_sub(1);
+            alive
+        }
+    }
+
+    impl Write for Killed {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            match self.is_alive() {
+                true => self.0.write(bytes),
+                false => Ok(bytes.len()),
+            }
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    impl Seek for Killed {
+        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+            self.0.seek(to)
+        }
+    }
+
+    impl Disk for Killed {
+        fn cut(&mut self, bytes: u64) -> io::Result<()> {
+            if self.is_alive() {
+                self.0.get_mut().truncate(bytes as usize);
+            }
+            Ok(())
+        }
+    }
+
+    /// Catches a file that is lost as a whole because its end is written over while the program is killed.
+    #[test]
+    fn a_program_that_is_killed_at_any_write_loses_the_last_group_only() {
+        for writes in 3..30 {
+            let disk = Killed(Cursor::default(), writes);
+            let mut file = ParquetFile::new(disk, &layout(), &about()).unwrap();
+            let mut wanted = 0;
+            for n in 0..500 {
+                file.row(&entry(n)).unwrap();
+                if n % 100 == 99 {
+                    file.flush().unwrap();
+                    // What was alive behind it has all of it.
+                    wanted = if file.file.1 > 0 { n + 1 } else { wanted };
+                }
+            }
+            let bytes = file.file.0.get_ref();
+            let state = seal::state(&mut Cursor::new(bytes)).unwrap();
+            assert_eq!(state, seal::State::Whole, "{writes}");
+            let kept = rows_of(bytes).map_or(0, |rows| rows.len() as u64);
+            assert!(
+                (wanted..=wanted + 100).contains(&kept),
+                "{writes}: {kept} of {wanted}"
+            );
         }
     }
 

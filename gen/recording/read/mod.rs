@@ -92,6 +92,44 @@ impl Wrong {
 
 type Take<'a> = &'a mut dyn FnMut(&Head, Parsed) -> Result<(), Wrong>;
 
+/// Refuses a value that is not what its raw position is in units: one of the two has been changed.
+fn check_value(line: u64, channel: usize, cell: &Cell, scale: Option<&Scale>) -> Result<(), Wrong> {
+    let (Some(scale), Some(raw), Some(value)) = (scale, cell.raw, cell.value) else {
+        return Ok(());
+    };
+    let units = scale.convert(raw);
+    // What is written ends behind the digits of a measuring step; the last of a turn may be rounded to a whole one.
+    let off = (value - units.value).abs();
+    let is_near = off <= scale.step()
+        || scale
+            .wraps_at()
+            .is_some_and(|turn| off >= turn - scale.step());
+    match is_near {
+        true => Ok(()),
+        false => Err(Wrong::at(
+            line,
+            format!(
+                "ch{channel}_{} = {value}: does not fit ch{channel}_raw = {raw}, which is {}; delete the line if it is damaged",
+                units.unit, units.value
+            ),
+        )),
+    }
+}
+
+/// The name of a cause, of those that there are.
+fn known_cause(line: u64, channel: usize, name: &str) -> Result<Cow<'static, str>, Wrong> {
+    match cause(name) {
+        known @ Cow::Borrowed(_) => Ok(known),
+        Cow::Owned(name) => Err(Wrong::at(
+            line,
+            format!(
+                "ch{channel}_cause = {}: is no cause; `endat-gen explain NAME` knows those that there are; delete the line if it is damaged",
+                crate::error::shown(&name)
+            ),
+        )),
+    }
+}
+
 /// A name as rows of a card have it, so that millions of them cost nothing.
 fn cause(name: &str) -> Cow<'static, str> {
     let known = endat_host::feed::cause_codes().find(|(_, known)| *known == name);
@@ -127,6 +165,8 @@ impl TextTurns {
 pub struct Reader {
     head: Option<Head>,
     counter: Option<Counter>,
+    /// What a measuring step is; empty if the file does not say.
+    scales: Vec<Scale>,
     turns: Vec<TextTurns>,
     /// Time of the last row of a trigger, of this file only if it has begun anew.
     last_s: Option<f64>,
@@ -153,6 +193,18 @@ impl Reader {
         &mut self,
         path: &Path,
         take: &mut dyn FnMut(&Head, Measurement),
+    ) -> Result<(), GenError> {
+        self.rows(path, &mut |head, row| {
+            take(head, row);
+            Ok(())
+        })
+    }
+
+    /// The same, as long as rows are taken.
+    fn rows(
+        &mut self,
+        path: &Path,
+        take: &mut dyn FnMut(&Head, Measurement) -> Result<(), Wrong>,
     ) -> Result<(), GenError> {
         let at = |wrong: Wrong| {
             let place = match wrong.line {
@@ -191,8 +243,7 @@ impl Reader {
                 self.begin(head)?;
             }
             let measurement = self.measurement(row)?;
-            take(self.head.as_ref().unwrap_or(head), measurement);
-            Ok(())
+            take(self.head.as_ref().unwrap_or(head), measurement)
         };
         let read = match &begin[..count] == b"PAR1" {
             true => parquet::read(file, &mut next),
@@ -227,6 +278,7 @@ impl Reader {
             let scales = head.scales();
             self.counter = scales.map(|all| {
                 let (scales, ranges): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+                self.scales.clone_from(&scales);
                 Counter::new(&scales, &ranges)
             });
             self.turns = vec![TextTurns::default(); head.units.len()];
@@ -272,6 +324,9 @@ impl Reader {
         }
         let mut seen = Vec::with_capacity(row.cells.len());
         let units = self.head.as_ref().map_or(&[][..], |h| &h.units);
+        for (n, cell) in row.cells.iter().enumerate() {
+            check_value(row.line, n, cell, self.scales.get(n))?;
+        }
         for (n, cell) in row.cells.into_iter().enumerate() {
             let position = match (&mut self.counter, cell.raw, cell.value) {
                 _ if !cell.fresh => None,
@@ -297,6 +352,20 @@ impl Reader {
             cells: seen,
             derived: row.derived,
         })
+    }
+}
+
+/// What a file says before its rows, and none of them; none if there is none.
+pub fn first(path: &Path) -> Result<Option<Head>, GenError> {
+    let mut reader = Reader::default();
+    let mut head = None;
+    let read = reader.rows(path, &mut |found, _| {
+        head = Some(found.clone());
+        Err(Wrong::at(0, String::new()))
+    });
+    match head {
+        Some(head) => Ok(Some(head)),
+        None => read.map(|()| reader.head),
     }
 }
 

@@ -135,16 +135,24 @@ fn long(values: &Values, row: usize) -> Result<Option<u64>, Wrong> {
 
 /// Reads a file; what it says before its rows.
 pub(super) fn read(mut file: File, take: Take<'_>) -> Result<Head, Wrong> {
-    let whole = seal::is_whole(&mut file);
-    let whole = whole.map_err(|e| {
+    let state = seal::state(&mut file);
+    let state = state.map_err(|e| {
         foreign(&format!(
             "cannot be read: {e}; Parquet needs a file, no pipe"
         ))
     })?;
-    if !whole {
-        return Err(foreign(
-            "is damaged, or no recording of this program: its check sum is wrong or missing",
-        ));
+    match state {
+        seal::State::Whole => {}
+        seal::State::NoEnd => {
+            return Err(foreign(
+                "is cut off: the end of a Parquet file says where its rows are, and this has none; copy it again if it is a copy",
+            ))
+        }
+        seal::State::Damaged => {
+            return Err(foreign(
+                "is damaged, or no recording of this program: its check sum is wrong or missing",
+            ))
+        }
     }
     let reader = SerializedFileReader::new(file).map_err(broken)?;
     let meta = reader.metadata().file_metadata();

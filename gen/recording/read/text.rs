@@ -2,7 +2,7 @@
 
 use super::super::layout::{of_channel, DerivedColumn, INFOS};
 use super::super::sheet::ABOUT;
-use super::{cause, Cell, Head, Parsed, Take, Wrong};
+use super::{known_cause, Cell, Head, Parsed, Take, Wrong};
 use crate::error::shown;
 use serde_json::Value;
 use std::io::{BufRead, Read};
@@ -214,7 +214,7 @@ impl Columns {
             },
         };
         let needed = |n: usize| wrong(n);
-        let cells = self.channels.iter().map(|at| {
+        let cells = self.channels.iter().enumerate().map(|(n, at)| {
             Ok(Cell {
                 raw: whole(at.raw)?,
                 value: number(at.value)?,
@@ -224,7 +224,7 @@ impl Columns {
                     "0" => false,
                     _ => return Err(wrong(at.fresh)),
                 },
-                cause: cause(all[at.cause]),
+                cause: known_cause(line, n, all[at.cause])?,
             })
         });
         Ok(Parsed {
@@ -277,13 +277,13 @@ fn json_line(line: u64, text: &str, head: &mut Head, take: Take<'_>) -> Result<(
             "has another number of channels than the rows before it".into(),
         ));
     }
-    let cells = channels.iter().map(|c| {
+    let cells = channels.iter().enumerate().map(|(n, c)| {
         Ok(Cell {
             raw: c["raw"].as_u64(),
             value: c["value"].as_f64(),
             turns: c["turns"].as_u64(),
             fresh: c["fresh"].as_bool().ok_or_else(|| lacks("fresh"))?,
-            cause: cause(c["cause"].as_str().ok_or_else(|| lacks("cause"))?),
+            cause: known_cause(line, n, c["cause"].as_str().ok_or_else(|| lacks("cause"))?)?,
         })
     });
     let row = Parsed {

@@ -3,14 +3,15 @@
 mod options;
 mod progress;
 
-use super::super::number::{decimal_if, number_if};
-use super::super::pictures::{check_all, write_all, File};
+use super::super::pictures::{check_all, folder, write_all, File};
 use super::super::work::{say, Progress};
 use super::super::Outcome;
-use super::{interrupted, settled, told, AnyCard};
+use super::{interrupted, patiently, settled, told, AnyCard};
 use crate::error::GenError;
+use crate::number::{decimal_if, number_if};
 use crate::recording::count::{Count, Judge};
 use crate::recording::recorder::Recorder;
+use crate::recording::resume;
 use endat_host::feed::{Feed, Row};
 use endat_host::{HostError, Transport};
 use endat_regs::Part;
@@ -87,8 +88,20 @@ pub fn run(arguments: &LogArgs) -> Result<Outcome, GenError> {
     let judge = Judge {
         own_triggers: card.identity().has(Part::OwnTrigger),
     };
-    let recorder = Recorder::begin(arguments.wishes(checked, &mut card, judge)?)?;
-    let mut feed = Feed::begin(&mut card, arguments.poll).map_err(told)?;
+    let wishes = arguments.wishes(checked, &mut card, judge)?;
+    resume::check(&wishes.target, &wishes.layout)?
+        .iter()
+        .for_each(|text| say(text));
+    let made = arguments.out.as_deref().map(folder).filter(|f| !f.exists());
+    let recorder = Recorder::begin(wishes)?;
+    if let Some(folder) = made.filter(|f| f.exists()) {
+        say(&format!(
+            "--out: the folder {} has been made",
+            folder.display()
+        ));
+    }
+    let begin = || Feed::begin(&mut card, arguments.poll).map_err(told);
+    let mut feed = patiently(arguments.port.name(), begin)?;
     let mut count = Count::new(judge);
     let (result, recorder) = record(&mut card, &mut feed, recorder, &mut count, &end);
     // Whatever ended it: the card is quiet again, the file whole, and what was measured is told and drawn.

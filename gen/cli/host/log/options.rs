@@ -1,8 +1,8 @@
 //! Arguments of `log`, and what they mean.
 
-use super::super::super::number::number_if;
 use super::super::{told, AnyCard, PortArgs};
 use crate::error::GenError;
+use crate::number::number_if;
 use crate::recording::about::About;
 use crate::recording::count::Judge;
 use crate::recording::derive::Derivation;
@@ -37,7 +37,7 @@ pub struct LogArgs {
     /// Draw the positions over time, at the end
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
-    /// Form of the file [default: by its suffix, .csv, .jsonl or .parquet; CSV where it tells nothing]
+    /// Form of the file [default: by its suffix, .csv, .jsonl or .parquet; CSV without one]
     #[arg(long, value_enum)]
     pub format: Option<Format>,
     /// Let CSV and JSON lines begin with what they are of: units, clock, encoders, start; Parquet always does
@@ -115,15 +115,19 @@ const BEFORE_MAX: u64 = 1_000_000;
 /// Bytes of a megabyte.
 const MB: u64 = 1_000_000;
 
-/// The form that a suffix means.
-fn of_suffix(path: &Path) -> Format {
+/// The form that a suffix means: CSV where there is none.
+fn of_suffix(path: &Path) -> Result<Format, GenError> {
     let suffix = path
         .extension()
         .map(|s| s.to_string_lossy().to_ascii_lowercase());
     match suffix.as_deref() {
-        Some("jsonl" | "ndjson") => Format::Jsonl,
-        Some("parquet" | "pq") => Format::Parquet,
-        _ => Format::Csv,
+        None | Some("csv") => Ok(Format::Csv),
+        Some("jsonl" | "ndjson") => Ok(Format::Jsonl),
+        Some("parquet" | "pq") => Ok(Format::Parquet),
+        Some(other) => Err(GenError::input(format!(
+            "--out = {}: .{other} is no form of a recording; give a name that ends in .csv, .jsonl, .ndjson, .parquet or .pq, or say --format",
+            path.display()
+        ))),
     }
 }
 
@@ -178,8 +182,11 @@ impl LogArgs {
                 force: self.force,
             },
         };
-        let by_suffix = self.out.as_deref().map_or(Format::Csv, of_suffix);
-        let format = self.format.unwrap_or(by_suffix);
+        let format = match (self.format, &self.out) {
+            (Some(format), _) => format,
+            (None, Some(path)) => of_suffix(path)?,
+            (None, None) => Format::Csv,
+        };
         let is_file = |path: &Path| path.metadata().map_or(true, |m| m.is_file());
         if format == Format::Parquet && !self.out.as_deref().is_some_and(is_file) {
             let text = "--format = parquet: needs a regular file; give one with --out, or take csv or jsonl";

@@ -153,10 +153,10 @@ fn shown(
             continue;
         }
         match event::read()? {
-            Event::Key(key) if key.kind == KeyEventKind::Press => {
-                if screen.key(key.code, key.modifiers) {
-                    return Ok(None);
-                }
+            Event::Key(key)
+                if key.kind == KeyEventKind::Press && screen.key(key.code, key.modifiers) =>
+            {
+                return Ok(None);
             }
             // What has another size is drawn anew in the next round.
             _ => {}

@@ -5,10 +5,10 @@ mod look;
 mod screen;
 mod text;
 
-use super::super::number::{decimal_if, number_if};
 use super::super::Outcome;
 use super::{interrupted, settled, told, AnyCard, PortArgs};
 use crate::error::GenError;
+use crate::number::{decimal_if, number_if};
 use clap::Args;
 use endat_host::units::Scale;
 use look::Watcher;

@@ -97,7 +97,7 @@ fn number(request: &Request, name: &str, default: Option<f64>) -> Result<f64, Re
 /// A whole number within bounds, decimal or as `0xA1`.
 fn whole(request: &Request, name: &str, most: u64) -> Result<u64, Refusal> {
     let text = request.query.get(name).map(String::as_str).unwrap_or("0");
-    Ok(super::super::super::number::number(name, text, 0..=most)?)
+    Ok(crate::number::number(name, text, 0..=most)?)
 }
 
 impl Api {

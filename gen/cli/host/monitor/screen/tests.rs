@@ -58,7 +58,11 @@ fn terminal(screen: &Screen, width: u16, height: u16) -> Terminal<TestBackend> {
 
 fn drawn(screen: &Screen, width: u16, height: u16) -> String {
     let terminal = terminal(screen, width, height);
-    let cells = terminal.backend().buffer().content.chunks(width.max(1).into());
+    let cells = terminal
+        .backend()
+        .buffer()
+        .content
+        .chunks(width.max(1).into());
     let line = |cells: &[ratatui::buffer::Cell]| {
         let text: String = cells.iter().map(|cell| cell.symbol()).collect();
         text.trim_end().to_owned() + "\n"

@@ -1,4 +1,4 @@
-//! Numbers on the command line, with their limits in the message.
+//! Numbers as people type them, with their limits in the message: of options, faults and calculated columns.
 
 use crate::error::{shown, GenError};
 use std::ops::RangeInclusive;

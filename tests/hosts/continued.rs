@@ -1,0 +1,213 @@
+//! Recordings that go on behind others, and what is told instead of guessed.
+
+use super::{slow_card, Served};
+use crate::program::{bad, good, program, run, Dir};
+use endat_gen::cli::Outcome;
+use endat_gen::virtual_card::Door;
+use serde_json::Value;
+use std::fs;
+
+fn log(out: &str, more: &[&str]) -> Outcome {
+    let log = ["log", "--port", "virtual", "--samples", "30", "--out", out];
+    run(&[&log[..], more].concat())
+}
+
+fn refused(out: &str, more: &[&str]) -> String {
+    let outcome = log(out, more);
+    assert_eq!(outcome.exit_code, 2, "{more:?}: {outcome:?}");
+    outcome.messages.join("\n")
+}
+
+/// Catches a recording of two kinds of rows, and one whose first file is forgotten.
+#[test]
+fn what_a_log_cannot_go_on_behind_is_refused_with_its_remedy() {
+    let dir = Dir::new("resume");
+    for form in ["csv", "jsonl", "parquet"] {
+        let out = dir.path(&format!("night.{form}"));
+        assert_eq!(log(&out, &[]).exit_code, 0);
+        let told = refused(&out, &["--resume"]);
+        let first = dir.path(&format!("night-0001.{form}"));
+        assert!(
+            told.contains(&format!(
+                "has no number, so nothing goes on behind it; rename it to {first}"
+            )),
+            "{told}"
+        );
+        fs::rename(&out, &first).unwrap();
+        let told = refused(&out, &["--resume", "--derive", "a=0:zero"]);
+        assert!(
+            told.contains(&first)
+                && told.contains(
+                    "has other columns: 2 channels, where this log has 2 channels and a_deg"
+                ),
+            "{told}"
+        );
+        assert_eq!(log(&out, &["--resume"]).exit_code, 0);
+        let second = dir.path(&format!("night-0002.{form}"));
+        good(&["stats", "--json", &second]);
+        // A file that somebody has cut in two is told, and loses nothing of what comes.
+        let bytes = fs::read(&second).unwrap();
+        fs::write(&second, &bytes[..bytes.len() / 2]).unwrap();
+        assert_eq!(log(&out, &["--resume"]).exit_code, 0);
+        good(&["stats", "--json", &dir.path(&format!("night-0003.{form}"))]);
+    }
+    let cut = bad(&["stats", &dir.path("night-0002.parquet")], 2);
+    assert!(
+        cut.contains("is cut off: the end of a Parquet file says where its rows are"),
+        "{cut}"
+    );
+}
+
+#[test]
+fn an_unknown_suffix_is_refused_and_a_new_folder_is_told() {
+    let dir = Dir::new("suffix");
+    let out = dir.path("night.xlsx");
+    let told = refused(&out, &[]);
+    assert!(told.contains("--out = ") && told.contains(".xlsx is no form of a recording; give a name that ends in .csv, .jsonl, .ndjson, .parquet or .pq"), "{told}");
+    assert!(!fs::exists(&out).unwrap());
+    assert_eq!(log(&out, &["--format", "csv"]).exit_code, 0);
+    let out = dir.path("new/folder/rows.csv");
+    for is_told in [true, false] {
+        let log = [
+            "log",
+            "--port",
+            "virtual",
+            "--samples",
+            "5",
+            "--force",
+            "--out",
+            &out,
+        ];
+        let output = program().args(log).output().unwrap();
+        let told = String::from_utf8(output.stderr).unwrap();
+        let says = told.contains("--out: the folder ") && told.contains("has been made");
+        assert_eq!((output.status.code(), says), (Some(0), is_told), "{told}");
+    }
+}
+
+/// Catches figures of rows that somebody has changed.
+#[test]
+fn causes_that_are_none_and_degrees_that_are_not_those_of_raw_are_told() {
+    let dir = Dir::new("changed");
+    let csv = dir.path("r.csv");
+    assert_eq!(log(&csv, &["--about"]).exit_code, 0);
+    let text = fs::read_to_string(&csv).unwrap();
+    let spoilt = dir.write("cause.csv", text.replacen(",none,", ",nine,", 1).as_bytes());
+    let told = bad(&["stats", &spoilt], 2);
+    assert!(told.contains(":3: ch0_cause = nine: is no cause"), "{told}");
+    let row: Vec<&str> = text.lines().nth(2).unwrap().split(',').collect();
+    let more = format!(",{},{:.7},", row[3], row[4].parse::<f64>().unwrap() + 0.001);
+    let spoilt = text.replacen(&format!(",{},{},", row[3], row[4]), &more, 1);
+    let spoilt = dir.write("degrees.csv", spoilt.as_bytes());
+    let told = bad(&["stats", &spoilt], 2);
+    assert!(
+        told.contains(":3: ch0_deg = ")
+            && told.contains(&format!("does not fit ch0_raw = {}", row[3])),
+        "{told}"
+    );
+}
+
+/// Catches a share of one thing that is taken for that of another.
+#[test]
+fn the_share_of_bad_rows_says_of_what_it_is() {
+    let dir = Dir::new("share");
+    let csv = dir.path("r.csv");
+    assert_eq!(log(&csv, &["--about", "--every", "5"]).exit_code, 0);
+    assert!(good(&["stats", &csv]).contains("% of the rows that were kept)"));
+    assert_eq!(log(&csv, &["--about", "--force"]).exit_code, 0);
+    assert!(!good(&["stats", &csv]).contains("that were kept"));
+}
+
+/// Catches one exit code for a port that nobody serves here, and another one there.
+#[test]
+fn what_is_not_there_has_one_exit_code_and_a_wrong_name_loses_no_other() {
+    let nobody = ["--port", "tcp:127.0.0.1:1"];
+    for command in [
+        &["read"][..],
+        &["inject", "unplug", "0"],
+        &["monitor", "--plain"],
+    ] {
+        bad(&[command, &nobody].concat(), 2);
+    }
+    let read = [
+        "reg",
+        "read",
+        "card.nonsense",
+        "card.system_hz",
+        "--port",
+        "virtual",
+    ];
+    let outcome = run(&read);
+    assert_eq!(outcome.exit_code, 2, "{outcome:?}");
+    assert!(
+        outcome.stdout.starts_with("card.system_hz = "),
+        "{outcome:?}"
+    );
+    assert!(outcome.messages[0].contains("nonsense"), "{outcome:?}");
+    let minus = ["inject", "--port", "tcp:127.0.0.1:1", "crc", "0", "-1"];
+    assert!(bad(&minus, 2).contains("frames = -1: outside 1..1000000000"));
+}
+
+/// Catches a log that waits and says nothing.
+#[test]
+fn a_card_that_somebody_else_has_is_waited_for_and_that_is_told() {
+    let card = Served::new(slow_card(), || Door::tcp("127.0.0.1:0").unwrap());
+    let dir = Dir::new("taken");
+    let first = dir.path("first.csv");
+    let mut other = program()
+        .args(["log", "--port", &card.name, "--out", &first])
+        .spawn()
+        .unwrap();
+    // It has the card when it has rows.
+    let has_rows = || fs::metadata(&first).is_ok_and(|m| m.len() > 1_000);
+    while !has_rows() {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+    }
+    let log = ["log", "--samples", "1", "--port", &card.name];
+    let output = program().args(log).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.contains("waiting for the card at tcp:"), "{told}");
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    other.kill().unwrap();
+    other.wait().unwrap();
+}
+
+/// Catches data that no program can read.
+#[test]
+fn what_is_data_is_there_as_json() {
+    let dir = Dir::new("json");
+    let json = |arguments: &[&str]| -> Value { serde_json::from_str(&good(arguments)).unwrap() };
+    let out = dir.path("out");
+    let emit = ["emit", "--json", "--out", &out];
+    let written = json(&emit);
+    assert_eq!(
+        written["files"].as_array().unwrap().len(),
+        written["written"].as_array().unwrap().len()
+    );
+    assert!(json(&emit)["written"].as_array().unwrap().is_empty());
+    assert_eq!(json(&["inject", "--list", "--json"])[0]["name"], "unplug");
+    let blocks = json(&["reg", "list", "--json"]);
+    let blocks = blocks.as_array().unwrap();
+    assert_eq!(blocks.len(), endat_regs::BLOCKS.len());
+    let write = [
+        "reg",
+        "write",
+        "card_config.hold.scratch",
+        "5",
+        "--json",
+        "--port",
+        "virtual",
+    ];
+    assert_eq!(json(&write)["value"], 5);
+    let monitor = [
+        "monitor", "--json", "--count", "2", "--every", "0", "--port", "virtual",
+    ];
+    let output = program().args(monitor).output().unwrap();
+    let looks = String::from_utf8(output.stdout).unwrap();
+    let looks: Vec<Value> = looks
+        .lines()
+        .map(|l| serde_json::from_str(l).unwrap())
+        .collect();
+    assert_eq!(looks.len(), 2);
+    assert_eq!(looks[1]["channels"][1]["unit"], "deg");
+}
