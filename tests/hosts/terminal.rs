@@ -181,7 +181,7 @@ fn long_work_has_a_bar_on_a_terminal_and_lines_elsewhere() {
     let (seen, code) = terminal.end();
     assert_eq!(code, Some(0), "{seen:?}");
     assert!(
-        seen.contains(" of 2000 sample sets, ") && seen.contains(" left") && seen.contains('['),
+        seen.contains(" of 2000 sample sets, ") && seen.contains(" left") && seen.contains("[="),
         "{seen:?}"
     );
     // The message behind it has its colour.
