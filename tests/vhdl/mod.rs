@@ -229,9 +229,9 @@ fn a_family_without_a_clock_manager_in_vhdl_keeps_its_top() {
     let files = emission(&config::parse_any_on("card.toml", &text, Some(&board)).unwrap());
     let tops = files.iter().filter(|f| f.path.contains("_top."));
     let tops: Vec<&str> = tops.map(|f| f.path.as_str()).collect();
-    assert_eq!(tops, ["s6_two_channel_top.v"]);
+    assert_eq!(tops, ["board_two_channel_top.v"]);
     let readme = files.iter().find(|f| f.path == "README.md").unwrap();
-    assert!(readme.text.contains("`s6_two_channel_top.v`"));
+    assert!(readme.text.contains("`board_two_channel_top.v`"));
 }
 
 /// What a design in VHDL takes the Verilog in with, in both languages.
