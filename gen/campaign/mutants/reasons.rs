@@ -60,6 +60,46 @@ const REASONS: &[(&str, &str, &str)] = &[
         "one register of those that a right check sum sets, needed by a write of several words: the bench writes single words, and random levels at the pins are no commands",
     ),
     (
+        "AddInfo",
+        "`assign is_sent",
+        "causes behind which a block of additional data is not told: the bench has none of them in a frame with two blocks",
+    ),
+    (
+        "DirectOutput",
+        "error_causes",
+        "one of the causes that the host may choose for the error output: the bench chooses others, and random inputs seldom meet the address",
+    ),
+    (
+        "Interrupt",
+        "had_error_0[0]",
+        "an error that ends and comes again before another result",
+    ),
+    (
+        "LineMonitor",
+        "`if (phase < drift_reference) begin`",
+        "a drift to an earlier phase with a pattern in two of its bits: the bench's cable does not become shorter so far",
+    ),
+    (
+        "Sequencer",
+        "",
+        "an instruction that the program of this card does not have in this form; the block alone runs no program",
+    ),
+    (
+        "Service",
+        "",
+        "the watchdog of the sequencer: its program would have to hang, which only an upset makes it do (`campaign upsets`)",
+    ),
+    (
+        "WholeResult",
+        "`if (closes) begin`",
+        "a bit of additional data that is the same in every answer of the bench; alone, the order of a whole result seldom comes about",
+    ),
+    (
+        "WordAccess",
+        "",
+        "a read that goes on where another word was read just before: the order of addresses and times seldom comes about",
+    ),
+    (
         "EncoderPort",
         "first_fall_timestamp[30]",
         "time stamps from 10 s on: the bench ends before, and random inputs begin no frame then",
