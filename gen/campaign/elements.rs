@@ -5,31 +5,28 @@ use endat_sim::campaign::port::Class;
 use endat_sim::campaign::{Row, Tally};
 use std::fmt::Write;
 
-/// An element: subjects, how its blocks begin, what it is, and what tells an upset of it.
+/// An element: subject, how its blocks begin, what it is, and what tells an upset of it.
 struct Element(
-    &'static [&'static str],
+    &'static str,
     &'static [&'static str],
     &'static str,
     &'static str,
 );
 
 const PORT: &str = "port_all";
-const WATCHED: &str = "port_second_receiver";
-const PORTS: &[&str] = &[PORT, WATCHED];
-const CARD: &[&str] = &["card"];
+const CARD: &str = "card";
 
 /// Every block is in the first that fits.
 #[rustfmt::skip]
 const ELEMENTS: &[Element] = &[
-    Element(PORTS, &["clock_gen", "sender"], "clock and mode command", "the encoder's answer: start bit, CRC, state of the line behind the frame"),
-    Element(PORTS, &["receiver.check", "receiver.serial"], "the two CRCs", "each other"),
-    Element(PORTS, &["receiver", "add_info"], "receiver", "CRC in parallel and serially, state of the line"),
-    Element(PORTS, &["delay", "filter"], "line delay and input filter", "CRC, start window, parity of the delay"),
-    Element(PORTS, &["settings"], "settings of the frame", "parity"),
-    Element(PORTS, &["snapshot"], "result that is held", "parity of the position, of both copies"),
-    Element(PORTS, &["transaction", "own_asked", "ride_asked"], "order of a frame, verdict", "second look at the state of the line, limits of every wait"),
-    Element(PORTS, &["(top)"], "wiring of the channel", "CRC, causes"),
-    Element(&[WATCHED], &["second_0"], "second receiver", "the receiver beside it, bit by bit"),
+    Element(PORT, &["clock_gen", "sender"], "clock and mode command", "the encoder's answer: start bit, CRC, state of the line behind the frame"),
+    Element(PORT, &["receiver.check", "receiver.serial"], "the two CRCs", "each other"),
+    Element(PORT, &["receiver", "add_info"], "receiver", "CRC in parallel and serially, state of the line"),
+    Element(PORT, &["delay", "filter"], "line delay and input filter", "CRC, start window, parity of the delay"),
+    Element(PORT, &["settings"], "settings of the frame", "parity"),
+    Element(PORT, &["snapshot"], "result that is held", "parity of the position, of both copies"),
+    Element(PORT, &["transaction", "own_asked", "ride_asked"], "order of a frame, verdict", "second look at the state of the line, limits of every wait"),
+    Element(PORT, &["(top)"], "wiring of the channel", "CRC, causes"),
     Element(CARD, &["bridge"], "UART link", "no answer, bytes that nobody asked for; of the address: nothing"),
     Element(CARD, &["core.bank.ring", "core.registers_0.ring", "core.registers_1.ring"], "configuration", "ring with parity, told in every result"),
     Element(CARD, &["core.bank", "core.registers"], "register bank, results for the host", "CRC5 of the position, stale"),
@@ -40,11 +37,9 @@ const ELEMENTS: &[Element] = &[
     Element(CARD, &["core.timebase"], "time base", "nothing: time stamps are another moment's"),
 ];
 
-/// The subject of a row, where elements are told of it, and the index of its element.
-fn element<'a>(subject: &'a str, block: &str) -> Option<(&'a str, usize)> {
-    let begins = |e: &Element| e.1.iter().any(|begin| block.starts_with(begin));
-    let fits = |e: &Element| e.0.contains(&subject) && begins(e);
-    Some((subject, ELEMENTS.iter().position(fits)?))
+fn element(subject: &str, block: &str) -> Option<usize> {
+    let fits = |e: &Element| e.0 == subject && e.1.iter().any(|begin| block.starts_with(begin));
+    ELEMENTS.iter().position(fits)
 }
 
 /// Part of a whole, per cent.
@@ -73,22 +68,20 @@ fn line(text: &mut String, subject: &str, name: &str, counts: &Counts, told_by: 
     );
 }
 
-/// The table: a line for each element of the ports with everything and of the card, and their sums.
+/// The table: a line for each element of the port with everything and of the card, and their sums.
 pub fn table(tally: &Tally) -> String {
-    fn of(row: &Row) -> Option<(&str, usize)> {
-        element(&row.subject, block(&row.place))
-    }
+    let of = |r: &Row| element(&r.subject, block(&r.place));
     let mut text = String::from(
         "| subject | element | upsets | safe, % | told, % | other, % | wrong position told as good, % | told of those that are not safe, % | without a wrong position, of the same, % | told by |\n\
          |---|---|---|---|---|---|---|---|---|---|\n",
     );
-    for (found, counts) in grouped(tally, of) {
-        if let Some((subject, index)) = found {
-            let Element(_, _, name, told_by) = ELEMENTS[index];
+    for (index, counts) in grouped(tally, of) {
+        if let Some(index) = index {
+            let Element(subject, _, name, told_by) = ELEMENTS[index];
             line(&mut text, subject, name, &counts, told_by);
         }
     }
-    for (subject, counts) in grouped(tally, |r| of(r).map(|found| found.0)) {
+    for (subject, counts) in grouped(tally, |r| of(r).map(|index| ELEMENTS[index].0)) {
         if let Some(subject) = subject {
             line(&mut text, subject, "all", &counts, "");
         }
@@ -96,15 +89,11 @@ pub fn table(tally: &Tally) -> String {
     text
 }
 
-/// Whom elements are told of.
-#[cfg(test)]
-const SUBJECTS: [&str; 3] = [PORT, WATCHED, CARD[0]];
-
-/// Blocks of theirs that no element has.
+/// Blocks of the port with everything and of the card that no element has.
 #[cfg(test)]
 fn without_element(tally: &Tally) -> Vec<(&str, &str)> {
     let blocks = grouped(tally, |r| (r.subject.as_str(), block(&r.place)));
-    let blocks = blocks.into_keys().filter(|(s, _)| SUBJECTS.contains(s));
+    let blocks = blocks.into_keys().filter(|(s, _)| [PORT, CARD].contains(s));
     blocks.filter(|(s, b)| element(s, b).is_none()).collect()
 }
 
@@ -125,15 +114,11 @@ mod tests {
                 .count(|r| r.subject == subject && Class::ALL.iter().any(|c| c.name() == r.class))
         };
         let text = table(&part.tally);
-        for subject in SUBJECTS {
+        for subject in [PORT, CARD] {
             let sum = format!("| {subject} | all | {} |", all(subject));
             assert!(text.contains(&sum), "{sum} {text}");
         }
-        for (subject, one, other) in [
-            (CARD[0], "core.bank.ring", "core.bank"),
-            (PORT, "receiver.check", "receiver"),
-        ] {
-            assert!(element(subject, one) != element(subject, other));
-        }
+        assert!(element(CARD, "core.bank.ring") != element(CARD, "core.bank"));
+        assert!(element(PORT, "receiver.check") != element(PORT, "receiver"));
     }
 }

@@ -68,7 +68,7 @@ Ages, evidence and delays are not compared. The clocks are fast and pauses short
 /// What stands above the upsets by element.
 const ELEMENTS: &str = "By element, as a fault analysis sorts them ([safety.md](safety.md); no FMEDA, which has rates and faults that stay): an upset is safe where every result is as without it; told by a cause, a position that is not fresh, or a check of \
 the host; other where a trigger is lost or something beside the position is wrong, and nothing tells it. \
-Subjects are the EnDat port with everything, the same with a second receiver (`[safety]`), and the card behind the UART.
+Subjects are the EnDat port with everything and the card behind the UART.
 
 ";
 

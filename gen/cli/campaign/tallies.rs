@@ -204,11 +204,13 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
     let chosen = arguments.subject.as_deref();
     let is_t_format = chosen.is_none_or(|name| name == t_format::SUBJECT);
     let is_card = chosen.is_none_or(|name| name == card::SUBJECT);
-    let of_name = |port: &Port| chosen.is_none_or(|name| name == port.name());
-    let ports: Vec<Port> = Port::ALL.into_iter().filter(of_name).collect();
+    let ports: Vec<Port> = match chosen {
+        Some(name) => Port::named().filter(|port| port.name() == name).collect(),
+        None => Port::ALL.to_vec(),
+    };
     let is_upsets = matches!(arguments.name, Name::Upsets);
     if ports.is_empty() && !(is_upsets && (is_t_format || is_card)) {
-        let mut names: Vec<&str> = Port::ALL.map(Port::name).to_vec();
+        let mut names: Vec<&str> = Port::named().map(Port::name).collect();
         if is_upsets {
             names.extend([t_format::SUBJECT, card::SUBJECT]);
         }

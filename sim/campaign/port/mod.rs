@@ -164,12 +164,12 @@ impl FrameKind {
 
 impl Port {
     /// Those of the committed campaigns.
-    pub const ALL: [Self; 4] = [
-        Self::Position,
-        Self::AllParts,
-        Self::DoubleEdge,
-        Self::SecondReceiver,
-    ];
+    pub const ALL: [Self; 3] = [Self::Position, Self::AllParts, Self::DoubleEdge];
+
+    /// Those that may be asked for by name: these, and one with a second receiver.
+    pub fn named() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().chain([Self::SecondReceiver])
+    }
 
     /// Its name in tables.
     pub fn name(self) -> &'static str {
