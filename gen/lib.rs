@@ -18,6 +18,7 @@ pub mod config;
 pub mod constraints;
 pub mod crc;
 pub mod driver;
+pub(crate) mod encoders;
 pub mod error;
 pub mod explain;
 pub(crate) mod form;
@@ -30,11 +31,11 @@ pub mod prove;
 pub mod readers;
 pub mod recording;
 mod scratch;
+pub mod sources;
 pub mod t_format;
 pub mod template;
 pub mod testbench;
 pub mod tools;
-pub mod verilog;
 pub mod vhdl;
 pub mod virtual_card;
 
@@ -59,8 +60,8 @@ pub fn emit(project: &Project) -> Result<Vec<Artifact>, GenError> {
 pub fn emit_in(project: &Project, language: Language) -> Result<Vec<Artifact>, GenError> {
     let design = design(project)?;
     let mut artifacts = artifacts_of(project, &design, language)?;
-    let sources = verilog::source_files(&artifacts, language);
-    artifacts.push(verilog::source_list(&project.name, &sources));
+    let sources = sources::paths(&artifacts, language);
+    artifacts.push(sources::list(&project.name, &sources));
     let bench = match language {
         Language::Verilog => testbench::artifact(project)?,
         Language::Vhdl => None,
@@ -122,11 +123,8 @@ fn artifacts_of(
             if channels == 1 { "" } else { "s" }
         ),
     };
-    let header = verilog::header(title, &project.hash, &report);
-    let mut artifacts = match language {
-        Language::Verilog => verilog::artifacts(design, &header),
-        Language::Vhdl => vhdl::artifacts(design, &header),
-    };
+    let header = sources::header(title, &project.hash, &report);
+    let mut artifacts = sources::artifacts(design, &header, language);
     if project.bus != HostBus::Bare {
         artifacts.extend(maps::artifacts(project)?);
     }

@@ -4,13 +4,16 @@ mod header;
 mod names;
 mod order;
 mod row;
+mod scope;
 
 pub use header::Header;
 pub(crate) use names::{variant_name, Names};
+use order::used_parameters;
 pub(crate) use order::{
-    constant_values, direct_next, reads_and_targets, register_groups, used_parameters,
+    constant_values, direct_next, processes, reads_and_targets, register_groups,
 };
 pub(crate) use row::{is_row, parts, Part};
+pub(crate) use scope::Scope;
 
 /// One step of indentation.
 pub(crate) const INDENT: &str = "    ";

@@ -17,6 +17,18 @@ pub(crate) fn direct_next(module: &Module) -> BTreeMap<NetId, Expr> {
     module.processes.iter().filter_map(single).collect()
 }
 
+/// The processes that are printed: those of [`direct_next`] stand where their register is.
+pub(crate) fn processes<'a>(
+    module: &'a Module,
+    direct: &BTreeMap<NetId, Expr>,
+) -> Vec<&'a Process> {
+    let is_direct =
+        |s: &Statement| matches!(s, Statement::Assign { net, .. } if direct.contains_key(net));
+    let all = module.processes.iter();
+    all.filter(|p| !p.statements.iter().any(is_direct))
+        .collect()
+}
+
 /// Clock, its falling edge, and reset, and the registers that have all of them.
 pub(crate) type Group<'a> = ((NetId, bool, Option<NetId>), Vec<&'a Register>);
 
@@ -34,7 +46,7 @@ pub(crate) fn register_groups(module: &Module) -> Vec<Group<'_>> {
 }
 
 /// The parameters that the text names.
-pub(crate) fn used_parameters(module: &Module) -> BTreeSet<usize> {
+pub(super) fn used_parameters(module: &Module) -> BTreeSet<usize> {
     fn visit(expr: &Expr, used: &mut BTreeSet<usize>) {
         if let ExprKind::Parameter(index) = expr.kind {
             used.insert(index);

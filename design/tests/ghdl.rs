@@ -1,6 +1,6 @@
 //! The printed VHDL under GHDL, on the stimulus and the expectation of the other executions.
 
-use crate::three_way::{input_ports, rows, Recording, Stimulus};
+use crate::three_way::{input_ports, write_rows, Recording, Stimulus};
 use crate::tools;
 use rtl_design::elaborate::Design;
 use rtl_design::engine::Port;
@@ -27,19 +27,10 @@ pub fn replay(
         _ => "--std=08",
     };
     let count = stimulus.cycles.len().min(CYCLES_MAX);
-    let widths = |ports: &[Port]| -> Vec<usize> { ports.iter().map(|p| p.width_bits).collect() };
-    let inputs = input_ports(design, stimulus);
     let write = |file: &str, text: String| fs::write(folder.join(file), text).unwrap();
     write("design.vhd", text);
     write("bench.vhd", bench(design, stimulus, expected, count));
-    write("stimulus.txt", rows(&stimulus.cycles, &widths(&inputs)));
-    write(
-        "expected.txt",
-        rows(&expected.cycles, &widths(&expected.outputs)),
-    );
-    if !stimulus.middle.is_empty() {
-        write("middle.txt", rows(&stimulus.middle, &widths(&inputs)));
-    }
+    write_rows(&folder, "txt", design, stimulus, expected);
     let arguments = [
         "-c",
         standard,

@@ -9,6 +9,7 @@ use rtl_design::engine::{
 use rtl_design::verilog::{self, emitted_name, Header};
 use std::fmt::Write;
 use std::fs;
+use std::path::Path;
 
 /// Input values, cycle by cycle.
 #[derive(Clone, Debug, Default)]
@@ -245,22 +246,7 @@ pub fn replay(
     )
     .unwrap();
     fs::write(folder.join("bench.v"), bench(design, stimulus, expected)).unwrap();
-    let widths = |ports: &[Port]| -> Vec<usize> { ports.iter().map(|p| p.width_bits).collect() };
-    let inputs = input_ports(design, stimulus);
-    fs::write(
-        folder.join("stimulus.hex"),
-        rows(&stimulus.cycles, &widths(&inputs)),
-    )
-    .unwrap();
-    fs::write(
-        folder.join("expected.hex"),
-        rows(&expected.cycles, &widths(&expected.outputs)),
-    )
-    .unwrap();
-    if !stimulus.middle.is_empty() {
-        let middle = rows(&stimulus.middle, &widths(&inputs));
-        fs::write(folder.join("middle.hex"), middle).unwrap();
-    }
+    write_rows(&folder, "hex", design, stimulus, expected);
     let arguments = ["-g2005", "-Wall", "-o", "bench.vvp", "design.v", "bench.v"];
     let (good, text) = tools::run("iverilog", &folder, &arguments);
     if !good || !text.is_empty() {
@@ -270,6 +256,26 @@ pub fn replay(
     match text.trim() {
         "PASS" => Ok(()),
         other => Err(format!("Verilog, {}: {other}", folder.display())),
+    }
+}
+
+/// Writes what a bench plays, and what it expects; their names end with `end`.
+pub fn write_rows(
+    folder: &Path,
+    end: &str,
+    design: &Design,
+    stimulus: &Stimulus,
+    expected: &Recording,
+) {
+    let write = |name: &str, cycles: &[Vec<u128>], ports: &[Port]| {
+        let widths: Vec<usize> = ports.iter().map(|p| p.width_bits).collect();
+        fs::write(folder.join(format!("{name}.{end}")), rows(cycles, &widths)).unwrap();
+    };
+    let inputs = input_ports(design, stimulus);
+    write("stimulus", &stimulus.cycles, &inputs);
+    write("expected", &expected.cycles, &expected.outputs);
+    if !stimulus.middle.is_empty() {
+        write("middle", &stimulus.middle, &inputs);
     }
 }
 
@@ -287,7 +293,7 @@ pub fn input_ports(design: &Design, stimulus: &Stimulus) -> Vec<Port> {
 }
 
 /// Each row as one binary word, the first value in the lowest bits.
-pub fn rows(cycles: &[Vec<u128>], widths: &[usize]) -> String {
+fn rows(cycles: &[Vec<u128>], widths: &[usize]) -> String {
     let mut out = String::new();
     for row in cycles {
         for (value, width) in row.iter().zip(widths).rev() {

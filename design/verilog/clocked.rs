@@ -9,12 +9,8 @@ use crate::printing::register_groups;
 impl ModulePrinter<'_> {
     pub fn start(&mut self, register: &Register) -> String {
         let net = &self.module.nets[register.q];
-        match net.enum_id {
-            Some(id) if (register.start as usize) < self.design.enums[id].variants.len() => {
-                self.variant(id, register.start as usize)
-            }
-            _ => named_literal(&net.name, register.start, net.width_bits),
-        }
+        let state = self.scope.start_state(register);
+        state.unwrap_or_else(|| named_literal(&net.name, register.start, net.width_bits))
     }
 
     /// One clocked process for all registers of one clock and reset.
@@ -130,7 +126,7 @@ impl ModulePrinter<'_> {
         if first == memory.words {
             return Default::default();
         }
-        let counter = self.unique(&format!("{}_word", memory.name));
+        let counter = self.scope.unique(&format!("{}_word", memory.name));
         let (word, words) = (&memory.name, memory.words);
         let zero = literal(0, memory.width_bits);
         (

@@ -4,10 +4,8 @@ mod constants;
 pub(super) mod expression;
 
 use super::text::{comment, properties, ranges, vector, INDENT};
-use crate::elaborate::{mask, Design, Direction, EnumId, Expr, Module, NetId, Statement};
-use crate::printing::{
-    constant_values, direct_next, reads_and_targets, used_parameters, variant_name, Names,
-};
+use crate::elaborate::{mask, Design, Direction, Expr, Module, NetId, Statement};
+use crate::printing::{constant_values, direct_next, processes, reads_and_targets, Scope};
 use expression::{literal, range, Helper, Helpers};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,72 +20,39 @@ pub(super) fn print(design: &Design, module: &Module) -> String {
 pub(super) struct ModulePrinter<'a> {
     pub design: &'a Design,
     pub module: &'a Module,
-    names: Names,
+    pub scope: Scope<'a>,
     /// Helper nets that are assigned continuously.
     pub continuous: Vec<Helper>,
     /// Helper nets that are assigned inside a process.
     inside: Vec<Helper>,
     /// Targets of the process that is being printed.
     pub process_targets: BTreeSet<NetId>,
-    /// Names of the states that are used.
-    variants: BTreeMap<(EnumId, usize), String>,
-    used_parameters: BTreeSet<usize>,
     /// Next values of registers that are one expression: they need no net.
     pub direct_next: BTreeMap<NetId, Expr>,
 }
 
 impl<'a> ModulePrinter<'a> {
     fn new(design: &'a Design, module: &'a Module) -> Self {
-        let names = module.nets.iter().map(|n| &n.name);
-        let names = names.chain(module.parameters.iter().map(|p| &p.name));
-        let names = names.chain(module.instances.iter().map(|i| &i.name));
-        let names = names.chain(module.memories.iter().map(|m| &m.name));
         Self {
             design,
             module,
-            names: Names::new(names),
+            scope: Scope::new(design, module, str::to_owned),
             continuous: vec![],
             inside: vec![],
             process_targets: BTreeSet::new(),
-            variants: BTreeMap::new(),
-            used_parameters: used_parameters(module),
             direct_next: direct_next(module),
         }
-    }
-
-    /// `base`, or `base` with a number if that is taken.
-    pub fn unique(&mut self, base: &str) -> String {
-        self.names.unique(base)
-    }
-
-    /// The `localparam` of a state.
-    pub fn variant(&mut self, enum_id: EnumId, variant: usize) -> String {
-        if let Some(name) = self.variants.get(&(enum_id, variant)) {
-            return name.clone();
-        }
-        let name = variant_name(&self.design.enums[enum_id], variant);
-        let name = self.unique(&name);
-        self.variants.insert((enum_id, variant), name.clone());
-        name
     }
 
     fn print(mut self) -> String {
         let instances: String = (0..self.module.instances.len())
             .map(|i| self.instance(i))
             .collect();
-        let direct = self.direct_next.clone();
-        let mut processes = String::new();
+        let mut combinational = String::new();
         let mut in_always = BTreeSet::new();
-        let is_direct =
-            |s: &Statement| matches!(s, Statement::Assign { net, .. } if direct.contains_key(net));
-        let processes_left = self
-            .module
-            .processes
-            .iter()
-            .filter(|p| !p.statements.iter().any(is_direct));
-        for process in processes_left {
+        for process in processes(self.module, &self.direct_next) {
             let text = self.process(&process.statements, &mut in_always);
-            processes.push_str(&text);
+            combinational.push_str(&text);
         }
         let registers = self.registers();
         let memories: String = self
@@ -109,7 +74,7 @@ impl<'a> ModulePrinter<'a> {
                 helper.name, helper.text
             ));
         }
-        for section in [instances, processes, registers, memories] {
+        for section in [instances, combinational, registers, memories] {
             if !section.is_empty() {
                 out.push('\n');
                 out.push_str(section.trim_start_matches('\n'));
@@ -195,7 +160,7 @@ impl<'a> ModulePrinter<'a> {
         }
         let unused = self.unused();
         if !unused.is_empty() {
-            let name = self.unique("unused_ok");
+            let name = self.scope.unique("unused_ok");
             out.push_str(&format!(
                 "{INDENT}wire {:>7} _{name} = &{{1'b0, {}}};\n",
                 "",

@@ -1,7 +1,7 @@
 //! Registers and memories as VHDL text.
 
 use super::module::ModulePrinter;
-use super::text::{bits, comment, named_literal, subtype};
+use super::text::{bits, comment, named_literal, subtype, wrapped};
 use crate::elaborate::{Memory, NetId, Register};
 use crate::printing::{register_groups, INDENT};
 
@@ -11,12 +11,8 @@ const LINE: usize = 96;
 impl ModulePrinter<'_> {
     pub fn start(&mut self, register: &Register) -> String {
         let net = &self.module.nets[register.q];
-        match net.enum_id {
-            Some(id) if (register.start as usize) < self.design.enums[id].variants.len() => {
-                self.variant(id, register.start as usize)
-            }
-            _ => named_literal(&net.name, register.start, net.width_bits),
-        }
+        let state = self.scope.start_state(register);
+        state.unwrap_or_else(|| named_literal(&net.name, register.start, net.width_bits))
     }
 
     /// One clocked process for all registers of one clock and reset.
@@ -81,7 +77,7 @@ impl ModulePrinter<'_> {
 
     fn memory(&mut self, memory: &Memory) -> (String, String) {
         let (word, last) = (&memory.name, memory.words - 1);
-        let words = self.unique(&format!("{word}_words"));
+        let words = self.scope.unique(&format!("{word}_words"));
         let docs = comment(&memory.docs, INDENT);
         let element = subtype(memory.width_bits);
         let declare = |kind: &str, start: &str| {
@@ -129,17 +125,7 @@ fn start_words(memory: &Memory) -> String {
             _ => "others => (others => '0')".into(),
         });
     }
-    let mut lines = vec![String::new()];
-    for (index, item) in items.iter().enumerate() {
-        let end = if index + 1 < items.len() { "," } else { "" };
-        let last = lines.len() - 1;
-        if !lines[last].is_empty() && lines[last].len() + item.len() > LINE {
-            lines.push(format!("{item}{end}"));
-            continue;
-        }
-        let space = if lines[last].is_empty() { "" } else { " " };
-        lines[last].push_str(&format!("{space}{item}{end}"));
-    }
+    let lines = wrapped(&items, LINE);
     let lines: Vec<String> = lines.iter().map(|line| format!("{pad}{line}")).collect();
     lines.join("\n")
 }

@@ -7,10 +7,8 @@ mod process;
 
 use super::package::package_name;
 use super::text::{comment, Context};
-use crate::elaborate::{Design, Direction, EnumId, Expr, ExprKind, Module, NetId};
-use crate::printing::{
-    direct_next, reads_and_targets, used_parameters, variant_name, Names, INDENT,
-};
+use crate::elaborate::{Design, Direction, Expr, ExprKind, Module, NetId};
+use crate::printing::{direct_next, reads_and_targets, Scope, INDENT};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the architecture of a module is called.
@@ -45,10 +43,7 @@ pub(super) struct ModulePrinter<'a> {
     pub module: &'a Module,
     /// Its ports are `std_logic_vector`.
     is_top: bool,
-    names: Names,
-    /// Names of the states that are used.
-    variants: BTreeMap<(EnumId, usize), String>,
-    used_parameters: BTreeSet<usize>,
+    pub scope: Scope<'a>,
     /// Next values of registers that are one expression: they need no signal.
     pub direct_next: BTreeMap<NetId, Expr>,
     /// Signals in the place of output ports: VHDL-93 does not read a port that it drives.
@@ -63,17 +58,11 @@ pub(super) struct ModulePrinter<'a> {
 
 impl<'a> ModulePrinter<'a> {
     fn new(design: &'a Design, module: &'a Module) -> Self {
-        let names = module.nets.iter().map(|n| &n.name);
-        let names = names.chain(module.parameters.iter().map(|p| &p.name));
-        let names = names.chain(module.instances.iter().map(|i| &i.name));
-        let names = names.chain(module.memories.iter().map(|m| &m.name));
         let mut printer = Self {
             design,
             module,
             is_top: std::ptr::eq(module, design.top()),
-            names: Names::new(names),
-            variants: BTreeMap::new(),
-            used_parameters: used_parameters(module),
+            scope: Scope::new(design, module, super::emitted_name),
             direct_next: direct_next(module),
             inner: BTreeMap::new(),
             added: vec![],
@@ -81,26 +70,12 @@ impl<'a> ModulePrinter<'a> {
             subjects: vec![],
         };
         for net in printer.read_outputs() {
-            let name = printer.unique(&format!("{}_sig", module.nets[net].name));
+            let name = printer
+                .scope
+                .unique(&format!("{}_sig", module.nets[net].name));
             printer.inner.insert(net, name);
         }
         printer
-    }
-
-    /// `base`, or `base` with a number if that is taken.
-    pub fn unique(&mut self, base: &str) -> String {
-        self.names.unique(base)
-    }
-
-    /// The constant of a state.
-    pub fn variant(&mut self, enum_id: EnumId, variant: usize) -> String {
-        if let Some(name) = self.variants.get(&(enum_id, variant)) {
-            return name.clone();
-        }
-        let base = super::emitted_name(&variant_name(&self.design.enums[enum_id], variant));
-        let name = self.unique(&base);
-        self.variants.insert((enum_id, variant), name.clone());
-        name
     }
 
     /// Output ports that need a signal in their place: those that are read, and those whose type is not that of the values.
@@ -236,7 +211,7 @@ impl<'a> ModulePrinter<'a> {
                 // VHDL-93 takes nothing that would have to be computed.
                 _ => {
                     let base = format!("{}_{}", instance.name, child.nets[port.net].name);
-                    let name = self.unique(&base);
+                    let name = self.scope.unique(&base);
                     let text = self.value(value, Context::Target);
                     before.push_str(&format!("{INDENT}{name} <= {text};\n"));
                     self.added.push(Added {

@@ -110,3 +110,19 @@ fn typed(text: String, context: Context) -> String {
         _ => format!("unsigned'({text})"),
     }
 }
+
+/// Items of a list in lines, as many in each as fit; commas stand between them.
+pub(super) fn wrapped(items: &[String], longest: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for (index, item) in items.iter().enumerate() {
+        let end = if index + 1 < items.len() { "," } else { "" };
+        let last = lines.len() - 1;
+        if !lines[last].is_empty() && lines[last].len() + item.len() > longest {
+            lines.push(format!("{item}{end}"));
+            continue;
+        }
+        let space = if lines[last].is_empty() { "" } else { " " };
+        lines[last].push_str(&format!("{space}{item}{end}"));
+    }
+    lines
+}

@@ -4,7 +4,7 @@ use super::guard::{Guard, GUARDS};
 use crate::artifact::Artifact;
 use crate::config::{load_preset, DEFAULT_PRESET};
 use crate::error::GenError;
-use crate::verilog;
+use crate::sources;
 use endat_hdl::card::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard,
@@ -73,7 +73,7 @@ impl Subject {
 
     /// Its Verilog.
     pub fn files(&self) -> Vec<Artifact> {
-        let mut files = verilog::untitled(&self.design);
+        let mut files = sources::untitled(&self.design);
         for (block, from, to) in self.without.iter().flat_map(|guard| guard.edits) {
             let path = file_name(&block_name(self.name, block));
             let file = files.iter_mut().find(|file| file.path == path);

@@ -41,7 +41,7 @@ impl CardDesign {
 
     /// Writes its Verilog into a folder; the names of the files.
     pub fn write(&self, folder: &Path) -> Result<Vec<String>, GenError> {
-        let files = crate::verilog::untitled(&self.design);
+        let files = crate::sources::untitled(&self.design);
         crate::artifact::write(folder, &files, crate::scratch::REMEDY)?;
         Ok(files.into_iter().map(|f| f.path).collect())
     }

@@ -3,11 +3,11 @@
 
 use super::fault;
 use crate::config::{load_preset, Project};
+use crate::encoders;
 use crate::error::GenError;
 use endat_hdl::config::TriggerSources;
 use endat_hdl::protocol::ModeCommand;
 use endat_sim::bench::{Bench, Link, PinNames};
-use endat_sim::encoder::{EncoderConfig, PositionSource};
 use endat_sim::line::LineConfig;
 use endat_sim::{Time, US};
 use rtl_design::engine::Compiled;
@@ -67,14 +67,7 @@ pub fn run(project: &Project, conditions: Conditions) -> Result<Vec<ChannelRun>,
     let card = &project.card;
     let link = |n: usize| {
         let channel = &card.channels[n];
-        let bits = channel.position_bits;
-        let mut encoder = match channel.command {
-            ModeCommand::SendPosition => EncoderConfig::endat21(bits),
-            _ => EncoderConfig::endat22(bits),
-        };
-        let (start, step) = (0x1234_5678 >> n, 0x10_0001);
-        encoder = encoder.position(PositionSource::Ramp { start, step });
-        encoder = encoder.seed(n as u64 + 1);
+        let mut encoder = encoders::turning(channel, n);
         encoder.tcal = 5 * US;
         let is_short = channel.command.has_f2() && channel.request.clock_hz > 1_000_000;
         let tm = if is_short {

@@ -23,19 +23,6 @@ pub fn doubtful(text: impl Display) -> String {
     painted(text, of(AnsiColor::Yellow))
 }
 
-/// Something is wrong.
-pub fn bad(text: impl Display) -> String {
-    painted(text, of(AnsiColor::Red))
-}
-
-/// One or the other.
-pub fn verdict(is_good: bool, text: impl Display) -> String {
-    match is_good {
-        true => good(text),
-        false => bad(text),
-    }
-}
-
 /// The same text without colour.
 pub fn plain(text: &str) -> String {
     match text.contains('\x1b') {
@@ -82,7 +69,8 @@ mod tests {
 
     #[test]
     fn what_is_painted_is_the_same_text_where_colour_is_not_wanted() {
-        let text = format!("{}, {}\n", good("holds"), bad("fails"));
+        let bad = painted("fails", of(AnsiColor::Red));
+        let text = format!("{}, {bad}\n", good("holds"));
         assert_eq!(text, "\x1b[32mholds\x1b[0m, \x1b[31mfails\x1b[0m\n");
         for (is_wanted, seen) in [(true, text.as_str()), (false, "holds, fails\n")] {
             let mut out = Vec::new();

@@ -2,6 +2,7 @@
 
 use super::host::{strobe, Host};
 use crate::config::{Project, Receiver};
+use crate::encoders;
 use crate::error::GenError;
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::card::service_times;
@@ -9,11 +10,9 @@ use endat_hdl::config::{CardConfig, ChannelConfig};
 use endat_hdl::endat::channel::CALIBRATION_FRAMES;
 use endat_hdl::endat::service::program::{program, ServiceTimes, CLEAR_CYCLES};
 use endat_hdl::endat::timing::{cycles_at_least, RECOVERY_MAX_NS};
-use endat_hdl::protocol::ModeCommand;
 use endat_hdl::regs::{start, CARD, CHANNEL_CONFIG, RESULT};
 use endat_hdl::t_format::protocol::SYSTEM_HZ;
 use endat_sim::bench::{Bench, ChannelSettings, Link, PinNames, TFormatLink};
-use endat_sim::encoder::{EncoderConfig, PositionSource};
 use endat_sim::line::LineConfig;
 use endat_sim::{t_format, Time, NS, US};
 use rtl_design::elaborate::{Design, Direction, Memory};
@@ -85,14 +84,7 @@ fn without_initialisation(card: &CardConfig, design: &Design) -> Option<Design> 
 
 /// An encoder on a cable.
 fn link(channel: &ChannelConfig, n: usize) -> Link {
-    let bits = channel.position_bits;
-    let mut encoder = match channel.command {
-        ModeCommand::SendPosition => EncoderConfig::endat21(bits),
-        _ => EncoderConfig::endat22(bits),
-    };
-    let (start, step) = (0x1234_5678 >> n, 0x10_0001);
-    encoder = encoder.position(PositionSource::Ramp { start, step });
-    encoder = encoder.seed(n as u64 + 1);
+    let mut encoder = encoders::turning(channel, n);
     encoder.tcal = TCAL;
     let request = &channel.request;
     let tm = Time::from(request.recovery_min_ns.midpoint(request.recovery_max_ns)) * NS;
@@ -164,10 +156,7 @@ fn power_up(card: &CardConfig, host: &mut Host, bench: &mut Bench<Compiled>) -> 
         host.run(bench, BEHIND_CYCLES);
         return 0;
     }
-    let reset = reset_of(bench);
-    bench.set(reset, 1);
-    host.run(bench, RESET_CYCLES);
-    bench.set(reset, 0);
+    reset(bench, |bench, cycles| host.run(bench, cycles));
     let known_from = bench.cycle();
     host.run(bench, BEHIND_CYCLES);
     if card.service.requests {
@@ -176,11 +165,15 @@ fn power_up(card: &CardConfig, host: &mut Host, bench: &mut Bench<Compiled>) -> 
     known_from as usize
 }
 
-fn reset_of(bench: &Bench<Compiled>) -> &'static str {
-    match bench.has_port("rst_i") {
+/// A reset; `run` lets cycles pass.
+fn reset(bench: &mut Bench<Compiled>, run: impl FnOnce(&mut Bench<Compiled>, u64)) {
+    let reset = match bench.has_port("rst_i") {
         true => "rst_i",
         false => "reset",
-    }
+    };
+    bench.set(reset, 1);
+    run(bench, RESET_CYCLES);
+    bench.set(reset, 0);
 }
 
 /// Identification, triggers with their results, a setting that is written and read, a reset; how many good positions have come.
@@ -232,9 +225,7 @@ fn life(project: &Project, host: &mut Host, bench: &mut Bench<Compiled>) -> usiz
         start(&CHANNEL_CONFIG, frame_word, card, 0) ^ 1,
     );
     host.read(bench, address, 1);
-    bench.set(reset_of(bench), 1);
-    host.run(bench, RESET_CYCLES);
-    bench.set(reset_of(bench), 0);
+    reset(bench, |bench, cycles| host.run(bench, cycles));
     host.run(bench, BEHIND_CYCLES);
     good
 }
@@ -260,9 +251,7 @@ pub fn receiver(receiver: &Receiver, design: &Design) -> Result<Played, GenError
     bench.record_cycles();
     let mut known_from = 0;
     if !receiver.initial_values {
-        bench.set("rst_i", 1);
-        bench.run_cycles(RESET_CYCLES);
-        bench.set("rst_i", 0);
+        reset(&mut bench, Bench::run_cycles);
         known_from = bench.cycle() as usize;
     }
     bench.run_cycles(BEHIND_CYCLES);
@@ -276,9 +265,7 @@ pub fn receiver(receiver: &Receiver, design: &Design) -> Result<Played, GenError
     }
     bench.trigger();
     bench.run_cycles(exchange);
-    bench.set("rst_i", 1);
-    bench.run_cycles(RESET_CYCLES);
-    bench.set("rst_i", 0);
+    reset(&mut bench, Bench::run_cycles);
     bench.run_cycles(BEHIND_CYCLES);
     Ok(played(bench, known_from, good, design.clone(), false))
 }

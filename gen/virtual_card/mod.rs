@@ -17,10 +17,10 @@ pub use serve::{serve, Door, Pace, CONTROL};
 use faults::PortOf;
 
 use crate::config::{load_file, load_preset, preset_of, Project, DEFAULT_PRESET};
+use crate::encoders;
 use crate::error::{shown, GenError};
 use endat_hdl::card::{service_times, Card};
 use endat_hdl::endat::service::program::ServiceTimes;
-use endat_hdl::protocol::ModeCommand;
 use endat_host::owner::AnyCard;
 use endat_host::transport::Port;
 use endat_host::{Bridge, HostError, Transport};
@@ -137,13 +137,7 @@ fn encoder(
             known.join(", ")
         )));
     }
-    let config = &project.card.channels[channel];
-    let bits = config.position_bits;
-    Ok(if config.command == ModeCommand::SendPosition {
-        EncoderConfig::endat21(bits)
-    } else {
-        EncoderConfig::endat22(bits)
-    })
+    Ok(encoders::fitting(&project.card.channels[channel]))
 }
 
 /// A shaft that turns evenly, with a slow swing on top; a carriage that goes to and fro.

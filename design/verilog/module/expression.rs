@@ -54,7 +54,7 @@ impl ModulePrinter<'_> {
         }
         match &expr.kind {
             ExprKind::Constant(value) => literal(*value, expr.width_bits),
-            ExprKind::Variant(enum_id, variant) => self.variant(*enum_id, *variant),
+            ExprKind::Variant(enum_id, variant) => self.scope.state(*enum_id, *variant),
             ExprKind::Parameter(index) => self.module.parameters[*index].name.clone(),
             ExprKind::Net(net) => self.module.nets[*net].name.clone(),
             ExprKind::Extend(inner) => {
@@ -143,12 +143,7 @@ impl ModulePrinter<'_> {
         for_net: &str,
         helpers: &mut Helpers,
     ) -> String {
-        let known = match inner.kind {
-            ExprKind::Variant(_, variant) => Some(variant as u128),
-            ExprKind::Parameter(index) => Some(self.module.parameters[index].value),
-            _ => None,
-        };
-        if let Some(value) = known {
+        if let Some(value) = self.scope.named_value(inner) {
             return literal((value >> low_bit) & mask(width_bits), width_bits);
         }
         let bits = mask(width_bits) << low_bit;
@@ -257,7 +252,7 @@ impl ModulePrinter<'_> {
             return known.name.clone();
         }
         let text = self.expression(&value, for_net, helpers);
-        let name = self.unique(&base);
+        let name = self.scope.unique(&base);
         let mut nets: Vec<NetId> = vec![];
         value.for_each_net(&mut |net| nets.push(net));
         let is_continuous = nets.iter().all(|net| !self.process_targets.contains(net));

@@ -78,7 +78,7 @@ impl ModulePrinter<'_> {
         }
         match &expr.kind {
             ExprKind::Constant(value) => literal_text(literal(*value, expr.width_bits, context)),
-            ExprKind::Variant(enum_id, variant) => Text::atom(self.variant(*enum_id, *variant)),
+            ExprKind::Variant(enum_id, variant) => Text::atom(self.scope.state(*enum_id, *variant)),
             ExprKind::Parameter(index) => Text::atom(&self.module.parameters[*index].name),
             ExprKind::Net(net) => Text::atom(self.range(*net, 0, expr.width_bits)),
             ExprKind::Extend(inner) => self.resized(inner, expr.width_bits),
@@ -134,12 +134,7 @@ impl ModulePrinter<'_> {
         width_bits: usize,
         context: Context,
     ) -> String {
-        let known = match inner.kind {
-            ExprKind::Variant(_, variant) => Some(variant as u128),
-            ExprKind::Parameter(index) => Some(self.module.parameters[index].value),
-            _ => None,
-        };
-        if let Some(value) = known {
+        if let Some(value) = self.scope.named_value(inner) {
             return literal((value >> low_bit) & mask(width_bits), width_bits, context);
         }
         if let ExprKind::Net(net) = inner.kind {

@@ -3,8 +3,8 @@
 use super::expression::{choice, is_condition};
 use super::{Added, ModulePrinter};
 use crate::elaborate::{Expr, ExprKind, NetId, Statement};
-use crate::printing::{constant_values, reads_and_targets, INDENT};
-use crate::vhdl::text::{literal, subtype, Context};
+use crate::printing::{constant_values, processes, reads_and_targets, INDENT};
+use crate::vhdl::text::{literal, subtype, wrapped, Context};
 use std::collections::BTreeSet;
 
 /// Where a list of signals goes on in the next line.
@@ -13,14 +13,8 @@ const LINE: usize = 110;
 impl ModulePrinter<'_> {
     /// All processes; those that give nothing but the next value of a register stand there.
     pub(super) fn processes(&mut self) -> String {
-        let module = self.module;
-        let direct = self.direct_next.clone();
-        let is_direct =
-            |s: &Statement| matches!(s, Statement::Assign { net, .. } if direct.contains_key(net));
-        let left = module.processes.iter();
-        let left = left.filter(|p| !p.statements.iter().any(is_direct));
         let mut out = String::new();
-        for process in left {
+        for process in processes(self.module, &self.direct_next) {
             out.push_str(&self.process(&process.statements));
         }
         out
@@ -42,7 +36,9 @@ impl ModulePrinter<'_> {
             return lines;
         }
         for net in targets.intersection(&reads) {
-            let name = self.unique(&format!("{}_v", self.module.nets[*net].name));
+            let name = self
+                .scope
+                .unique(&format!("{}_v", self.module.nets[*net].name));
             self.variables.insert(*net, name);
         }
         let body = self.block(statements, 2);
@@ -70,7 +66,7 @@ impl ModulePrinter<'_> {
             .collect();
         format!(
             "\n{INDENT}process ({})\n{declared}{INDENT}begin\n{body}{given}{INDENT}end process;\n\n",
-            wrapped(&list)
+            wrapped(&list, LINE).join(&format!("\n{INDENT}         "))
         )
     }
 
@@ -200,7 +196,7 @@ impl ModulePrinter<'_> {
         let (before, name) = match is_net {
             true => (String::new(), value),
             false => {
-                let name = self.unique("subject");
+                let name = self.scope.unique("subject");
                 let width_bits = subject.width_bits;
                 self.subjects.push(Added {
                     name: name.clone(),
@@ -213,7 +209,7 @@ impl ModulePrinter<'_> {
         let mut seen = BTreeSet::new();
         for (value, body) in arms {
             let (known, choice) = match value.kind {
-                ExprKind::Variant(id, variant) => (variant as u128, self.variant(id, variant)),
+                ExprKind::Variant(id, variant) => (variant as u128, self.scope.state(id, variant)),
                 ExprKind::Parameter(index) => {
                     let known = self.module.parameters[index].value;
                     (known, choice(known, value.width_bits))
@@ -231,20 +227,4 @@ impl ModulePrinter<'_> {
         let body = self.branch(default, depth + 2);
         text + &format!("{inner}when others =>\n{body}{pad}end case;\n")
     }
-}
-
-/// The signals that a process waits for.
-fn wrapped(names: &[String]) -> String {
-    let mut lines = vec![String::new()];
-    for (index, name) in names.iter().enumerate() {
-        let end = if index + 1 < names.len() { "," } else { "" };
-        let last = lines.len() - 1;
-        if !lines[last].is_empty() && lines[last].len() + name.len() > LINE {
-            lines.push(format!("{name}{end}"));
-            continue;
-        }
-        let space = if lines[last].is_empty() { "" } else { " " };
-        lines[last].push_str(&format!("{space}{name}{end}"));
-    }
-    lines.join(&format!("\n{INDENT}         "))
 }

@@ -8,7 +8,7 @@ use rtl_design::elaborate::Module;
 use std::path::Path;
 
 /// Finds invariants by itself where an induction is too short.
-pub const PDR: &str = "yosys-abc";
+const PDR: &str = "yosys-abc";
 /// Its question, and what it is asked of.
 const AIGER: &str = "miter.aig";
 const PROVED: &str = "Property proved.";

@@ -8,7 +8,7 @@ use endat_driver::Reading;
 use endat_host::causes;
 use endat_host::units::Scale;
 use endat_regs::Part;
-use serde_json::json;
+use serde_json::{json, Value};
 use std::fmt::Write;
 
 /// Arguments of `read`.
@@ -53,6 +53,21 @@ fn why_old(reading: &Reading) -> Option<String> {
     is_old(reading).then(|| format!("the position is older than 65 ms; {why}"))
 }
 
+/// What every command tells of a result as data.
+pub fn json(channel: usize, reading: &Reading, scale: &Scale) -> Value {
+    let units = scale.convert(reading.position);
+    json!({
+        "channel": channel,
+        "position": reading.valid.then_some(reading.position),
+        "value": reading.valid.then_some(units.value),
+        "unit": units.unit,
+        "turns": units.turns.filter(|_| reading.valid),
+        "fresh": reading.fresh,
+        "cause": reading.cause_name(),
+        "age_us": reading.age_us,
+    })
+}
+
 /// What kind of result it is.
 pub fn verdict(reading: &Reading) -> String {
     if reading.fresh && is_old(reading) {
@@ -91,21 +106,11 @@ pub fn run(arguments: &ReadArgs) -> Result<Outcome, GenError> {
     let has_infos = card.identity().has(Part::Requests);
     let stdout = if arguments.json {
         let objects = each.map(|(channel, (r, scale))| {
-            let units = scale.convert(r.position);
-            let mut object = json!({
-                "channel": channel,
-                "position": r.valid.then_some(r.position),
-                "value": r.valid.then_some(units.value),
-                "unit": units.unit,
-                "turns": units.turns.filter(|_| r.valid),
-                "fresh": r.fresh,
-                "cause": r.cause_name(),
-                "sequence": r.sequence,
-                "timestamp_s": f64::from(r.timestamp) / system_hz,
-                "age_us": r.age_us,
-                "stale": r.stale,
-                "delay_cycles": r.delay_cycles,
-            });
+            let mut object = json(channel, r, scale);
+            object["sequence"] = r.sequence.into();
+            object["timestamp_s"] = (f64::from(r.timestamp) / system_hz).into();
+            object["stale"] = r.stale.into();
+            object["delay_cycles"] = r.delay_cycles.into();
             for (n, info) in r.infos.iter().enumerate().filter(|_| has_infos) {
                 let good = info.good();
                 let good = good.map(|i| json!({ "status": i.status, "content": i.content }));

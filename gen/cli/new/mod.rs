@@ -78,16 +78,13 @@ impl FromArgMatches for NewArgs {
 fn completed(given: &Answers) -> Result<Answers, Vec<String>> {
     // Which of the usual ones; the next one where one does not go with the rest.
     let mut tried: BTreeMap<&str, usize> = BTreeMap::new();
+    for question in QUESTIONS.iter().filter(|q| given.contains_key(q.name)) {
+        let literal = text::literal(question.of, &question.option(), &given[question.name]);
+        literal.map_err(|error| error.messages().to_vec())?;
+    }
     loop {
         let mut all = Answers::new();
         let mut left: Vec<&Question> = Vec::new();
-        for question in QUESTIONS.iter().filter(|q| given.contains_key(q.name)) {
-            if let Err(error) =
-                text::literal(question.of, &question.option(), &given[question.name])
-            {
-                return Err(error.messages().to_vec());
-            }
-        }
         for question in QUESTIONS {
             if !(question.is_asked)(&all) {
                 continue;

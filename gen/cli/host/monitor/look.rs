@@ -1,6 +1,6 @@
 //! One look at a card: what `monitor` shows, whatever it shows it on.
 
-use super::super::{place, told, AnyCard};
+use super::super::{place, read, told, AnyCard};
 use crate::error::GenError;
 use endat_driver::Reading;
 use endat_host::registers::Place;
@@ -171,8 +171,6 @@ impl Look {
     pub fn json(&self, scales: &[endat_host::units::Scale]) -> Value {
         let channels = self.channels.iter().zip(scales).enumerate();
         let channels = channels.map(|(channel, (seen, scale))| {
-            let r = &seen.reading;
-            let units = scale.convert(r.position);
             let frames = seen.frames.as_ref().map(|f| {
                 let causes = f
                     .causes
@@ -189,23 +187,15 @@ impl Look {
             let infos = infos.map(
                 |(n, content, status)| json!({"number": n, "content": content, "status": status}),
             );
-            json!({
-                "channel": channel,
-                "position": r.valid.then_some(r.position),
-                "value": r.valid.then_some(units.value),
-                "unit": units.unit,
-                "turns": units.turns.filter(|_| r.valid),
-                "fresh": r.fresh,
-                "cause": r.cause_name(),
-                "age_us": r.age_us,
-                "result_hz": seen.rate_hz,
-                "line_delay_ns": seen.times.map(|t| t.0),
-                "recovery_us": seen.times.map(|t| t.1),
-                "additional_data": infos.collect::<Vec<_>>(),
-                "frames": frames,
-                "state": seen.state,
-                "edges": seen.edges.flatten().map(|(first, last)| [first, last]),
-            })
+            let mut object = read::json(channel, &seen.reading, scale);
+            object["result_hz"] = json!(seen.rate_hz);
+            object["line_delay_ns"] = json!(seen.times.map(|t| t.0));
+            object["recovery_us"] = json!(seen.times.map(|t| t.1));
+            object["additional_data"] = json!(infos.collect::<Vec<_>>());
+            object["frames"] = json!(frames);
+            object["state"] = json!(seen.state);
+            object["edges"] = json!(seen.edges.flatten().map(|(first, last)| [first, last]));
+            object
         });
         json!({"channels": channels.collect::<Vec<_>>(), "link_retries": self.retries})
     }
