@@ -47,5 +47,21 @@ pub fn is_whole() -> bool {
 /// A third of these, or all of them if [`is_whole`]. `turn` says which third; the length of a text, so that a change of it tries others.
 pub fn third<T>(all: &[T], turn: usize) -> impl Iterator<Item = &T> {
     let of = if is_whole() { 1 } else { 3 };
-    all.iter().skip(turn % of).step_by(of)
+    // Of two, one.
+    let first = turn % of.min(all.len().max(1));
+    all.iter().skip(first).step_by(of)
+}
+
+/// Catches a short list of which nothing is tried, and a place that never is.
+#[test]
+fn a_third_is_never_nothing_and_each_has_its_turn() {
+    for count in 1..8 {
+        let all: Vec<usize> = (0..count).collect();
+        let thirds = (0..6).map(|turn| third(&all, turn).copied().collect::<Vec<_>>());
+        let thirds: Vec<_> = thirds.collect();
+        assert!(thirds.iter().all(|third| !third.is_empty()), "{count}");
+        assert!(all
+            .iter()
+            .all(|n| thirds.iter().any(|third| third.contains(n))));
+    }
 }
