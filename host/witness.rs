@@ -5,18 +5,36 @@ use crate::registers::Place;
 use crate::transport::Transport;
 use crate::HostError;
 use endat_regs::ID;
+use std::hash::{BuildHasher, RandomState};
 
 /// What is known of a card from earlier.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Witness {
     triggers: u32,
+    /// What was left in the card's scratch bits, which a reset clears: the count alone does not show a restart after which the card has
+    /// soon counted more than before. None where it was not taken.
+    mark: Option<u32>,
+}
+
+/// Registers of a card that has answered.
+struct Answer {
+    /// From the first on.
+    words: Vec<u32>,
+    mark: u32,
+    /// It pushes nothing although it should.
+    is_stopped: bool,
 }
 
 impl Witness {
-    /// Remembers a card as it is now.
+    /// Remembers a card as it is now, and marks it.
     pub fn new<T: Transport>(card: &mut Card<T>) -> Result<Self, HostError> {
         let triggers = card.read(&Place::at("card", "trigger_count", 0))?;
-        Ok(Self { triggers })
+        let scratch = scratch();
+        // Another one each time, so that a card of the same configuration is another one, too; 0 is what a reset leaves.
+        let mark = 1.max(scratch.of(RandomState::new().hash_one(triggers) as u32));
+        card.write(&scratch, mark)?;
+        let mark = Some(mark).filter(|mark| card.read(&scratch).is_ok_and(|is| is == *mark));
+        Ok(Self { triggers, mark })
     }
 
     /// Triggers since the card's reset, when it was last asked.
@@ -27,42 +45,54 @@ impl Witness {
     /// Asks the card: whether it has answered, and an error if it is another one, or has begun anew. Whatever was counted, its triggers
     /// and its time among it, does not go on then.
     pub fn ask<T: Transport>(&mut self, card: &mut Card<T>) -> Result<bool, HostError> {
-        let Some((mut words, is_stopped)) = answer(card)? else {
+        let Some(mut now) = answer(card)? else {
             return Ok(false);
         };
-        if !is_stopped && self.verdict(card.identity(), &words, false).is_err() {
+        if !now.is_stopped && self.verdict(card.identity(), &now).is_err() {
             // Answers have no check: a byte may have been changed on its way.
             match answer(card)? {
-                Some((again, _)) => words = again,
+                Some(again) => now = again,
                 None => return Ok(false),
             }
         }
-        self.verdict(card.identity(), &words, is_stopped)?;
-        self.triggers = triggers(&words);
+        self.verdict(card.identity(), &now)?;
+        self.triggers = now.triggers();
         Ok(true)
     }
 
-    fn verdict(&self, was: &Identity, words: &[u32], is_stopped: bool) -> Result<(), HostError> {
-        let same = Identity::of(words).is_ok_and(|now| now == *was);
-        if !same {
-            return Err(HostError::Refused(format!(
+    fn verdict(&self, was: &Identity, now: &Answer) -> Result<(), HostError> {
+        let refused = |what: String| Err(HostError::Refused(what));
+        if !Identity::of(&now.words).is_ok_and(|now| now == *was) {
+            return refused(format!(
                 "another card answers: its configuration hash is 0x{:08X}, that of the card before 0x{:08X}",
-                words[4], was.configuration_hash
-            )));
+                now.words[4], was.configuration_hash
+            ));
         }
-        let (before, now) = (self.triggers, triggers(words));
-        if (now.wrapping_sub(before) as i32) < 0 {
-            return Err(HostError::Refused(format!(
-                "the card was restarted: it has counted {now} triggers since its reset, and had counted at least {before} before"
-            )));
+        let before = self.triggers;
+        let count = now.triggers();
+        if (count.wrapping_sub(before) as i32) < 0 {
+            return refused(format!(
+                "the card was restarted: it has counted {count} triggers since its reset, and had counted at least {before} before"
+            ));
         }
-        if is_stopped {
-            return Err(HostError::Refused(
+        if now.is_stopped {
+            return refused(
                 "the card was restarted, or another program has used it: it does not push its stream any more".into(),
+            );
+        }
+        if self.mark.is_some_and(|mark| mark != now.mark) {
+            return refused(format!(
+                "the card was restarted, or another one is there, or another program has used it: what was left in {} is gone",
+                scratch()
             ));
         }
         Ok(())
     }
+}
+
+/// The bits for a mark.
+fn scratch() -> Place {
+    Place::field_at("card_config", "hold", "scratch", 0)
 }
 
 /// Where the count of triggers stands.
@@ -70,33 +100,43 @@ fn place() -> usize {
     usize::from(Place::at("card", "trigger_count", 0).address())
 }
 
-fn triggers(words: &[u32]) -> u32 {
-    words[place()]
+impl Answer {
+    fn triggers(&self) -> u32 {
+        self.words[place()]
+    }
+
+    /// None if nobody answers, or no card.
+    fn read<T: Transport>(card: &mut Card<T>, is_stopped: bool) -> Result<Option<Self>, HostError> {
+        let mut all = || {
+            let words = card.bridge().read(0, place() + 1)?;
+            let mark = card.read(&scratch())?;
+            Ok((words, mark))
+        };
+        match all() {
+            Ok((words, mark)) => Ok((words[0] == ID).then_some(Self {
+                words,
+                mark,
+                is_stopped,
+            })),
+            Err(HostError::Silent { .. }) => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
 }
 
-/// The card's first words, and whether it pushes nothing although it should; none if nobody answers, or no card.
-fn answer<T: Transport>(card: &mut Card<T>) -> Result<Option<(Vec<u32>, bool)>, HostError> {
-    let count = place() + 1;
-    let bridge = card.bridge();
-    let damaged = bridge.decoder().damaged();
-    let is_card = |words: &Vec<u32>| words[0] == ID;
-    match bridge.read(0, count) {
-        Ok(words) => return Ok(Some((words, false)).filter(|(words, _)| is_card(words))),
-        Err(HostError::Silent { .. }) if bridge.pushes() => {}
-        Err(HostError::Silent { .. }) => return Ok(None),
-        Err(error) => return Err(error),
+/// What the card answers; none if nobody answers, or no card.
+fn answer<T: Transport>(card: &mut Card<T>) -> Result<Option<Answer>, HostError> {
+    let damaged = card.bridge().decoder().damaged();
+    let now = Answer::read(card, false)?;
+    if now.is_some() || !card.bridge().pushes() {
+        return Ok(now);
     }
     // A card that has begun anew pushes nothing, and its answers have no marker.
-    bridge.set_pushes(false);
-    match bridge.read(0, count) {
-        Ok(words) if is_card(&words) => {
-            bridge.forgive(damaged);
-            Ok(Some((words, true)))
-        }
-        Ok(_) | Err(HostError::Silent { .. }) => {
-            bridge.set_pushes(true);
-            Ok(None)
-        }
-        Err(error) => Err(error),
+    card.bridge().set_pushes(false);
+    let now = Answer::read(card, true)?;
+    match now {
+        Some(_) => card.bridge().forgive(damaged),
+        None => card.bridge().set_pushes(true),
     }
+    Ok(now)
 }

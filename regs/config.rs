@@ -41,7 +41,7 @@ pub const CARD_CONFIG: Block = Block {
             "Keeps the results of all channels, for a host that reads word by word.",
             &[
                 field("hold", 0, 1, "", "1: results and trigger_count stand still"),
-                field("scratch", 8, 24, "", "Free for the host, to try the link"),
+                field("scratch", 8, 24, "", "Free for the host: a driver tries the link with it, a recording leaves a mark that a restart clears"),
             ],
         ),
     ],

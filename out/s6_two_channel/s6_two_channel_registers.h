@@ -214,7 +214,7 @@
 /* hold: 1: results and trigger_count stand still */
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_HOLD_SHIFT 0u
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_HOLD_MASK 0x00000001u
-/* scratch: Free for the host, to try the link */
+/* scratch: Free for the host: a driver tries the link with it, a recording leaves a mark that a restart clears */
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_SCRATCH_SHIFT 8u
 #define S6_TWO_CHANNEL_CARD_CONFIG_HOLD_SCRATCH_MASK 0xFFFFFF00u
 

@@ -1,14 +1,20 @@
 //! A log whose link is lost and found again: the card has run on, was restarted, or is another one.
 
-use super::{changed, slow_card, Served};
+use super::{card_of, changed, slow_card, Served};
 use crate::tools;
 use endat_gen::cli;
 use endat_gen::config::Project;
-use endat_gen::virtual_card::Door;
+use endat_gen::virtual_card::{Door, VirtualCard};
+use endat_host::feed::Feed;
+use endat_host::transport::LinkState;
+use endat_host::{Bridge, Card, Transport};
+use std::cell::{Cell, RefCell};
+use std::collections::VecDeque;
 use std::fs;
-use std::io::{Read, Write};
+use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -53,7 +59,8 @@ impl Log {
     fn end(self) -> (cli::Outcome, Vec<(u64, f64, u64)>) {
         let begin = Instant::now();
         while !self.thread.is_finished() {
-            assert!(begin.elapsed() < PATIENCE, "the log goes on");
+            let out = self.out.display();
+            assert!(begin.elapsed() < PATIENCE, "{out}: the log goes on");
             thread::sleep(Duration::from_millis(50));
         }
         let outcome = self.thread.join().unwrap();
@@ -214,4 +221,54 @@ fn a_log_goes_on_when_only_the_link_was_lost() {
             assert!(late.abs() < if is_stream { 1e-6 } else { 1e-2 }, "{pair:?}");
         }
     }
+}
+
+/// A card that may be exchanged for another one while nobody looks.
+struct Plug {
+    card: Rc<RefCell<VirtualCard>>,
+    reopened: Rc<Cell<u64>>,
+}
+
+impl Transport for Plug {
+    fn send(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.card.borrow_mut().send(bytes)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize> {
+        self.card.borrow_mut().receive(buffer, wait)
+    }
+
+    fn state(&self) -> LinkState {
+        LinkState {
+            is_open: true,
+            reopened: self.reopened.get(),
+        }
+    }
+}
+
+/// Catches a restart that is not seen because the card has soon counted more triggers than before, and one that is seen where there was none.
+#[test]
+fn a_restart_is_seen_by_more_than_its_count() {
+    let project = slow_card();
+    let inside = Rc::new(RefCell::new(card_of(&project)));
+    let reopened = Rc::new(Cell::new(0));
+    let plug = Plug {
+        card: inside.clone(),
+        reopened: reopened.clone(),
+    };
+    let mut card = Card::find(Bridge::new(plug)).unwrap();
+    let mut feed = Feed::begin(&mut card, true).unwrap();
+    let mut fill = || {
+        reopened.set(reopened.get() + 1);
+        feed.fill(&mut card, &mut VecDeque::new(), Duration::ZERO)
+    };
+    fill().unwrap();
+    let mut begun_anew = card_of(&project);
+    begun_anew.run(2 * inside.borrow_mut().bench().cycle());
+    *inside.borrow_mut() = begun_anew;
+    let told = fill().unwrap_err().to_string();
+    assert!(
+        told.contains("what was left in card_config.hold.scratch is gone"),
+        "{told}"
+    );
 }
