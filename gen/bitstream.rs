@@ -87,6 +87,8 @@ pub struct Report {
     pub best: Attempt,
     /// Name of the bitstream.
     pub bitstream: String,
+    /// The command that loads it, where there is one.
+    pub load: Option<String>,
 }
 
 impl fmt::Display for Report {
@@ -116,7 +118,11 @@ impl fmt::Display for Report {
             f,
             "timing {met} with seed {}, {} tried; bitstream {}",
             self.best.seed, self.seeds, self.bitstream
-        )
+        )?;
+        match &self.load {
+            Some(command) => writeln!(f, "load it: {command}"),
+            None => Ok(()),
+        }
     }
 }
 
@@ -128,6 +134,45 @@ pub fn tools(board: &Board) -> Result<&Build, GenError> {
             board.name, board.family.title, board.family.tools
         ))
     })
+}
+
+/// Words of a family's file, with what is this card's in them.
+fn fill(project: &Project, board: &Board, words: &[String]) -> Result<Vec<String>, GenError> {
+    let facts = context! {
+        name => project.name.as_str(),
+        constraints => format!("{}.{}", project.name, board.family.constraints),
+        device => Serde(&board.device),
+        board => context! { part => board.part.as_str() },
+    };
+    let words = words.iter();
+    words
+        .map(|word| board.family.fill("family.toml: build", word, &facts))
+        .collect()
+}
+
+/// Name of a card's bitstream.
+pub fn file_name(project: &Project, board: &Board) -> Result<String, GenError> {
+    let words = std::slice::from_ref(&tools(board)?.bitstream);
+    let name = fill(project, board, words)?.concat();
+    match name.contains(['/', '\\']) {
+        true => Err(GenError::input(format!(
+            "bitstream = {name:?}: is a path; the family's file gives a name"
+        ))),
+        false => Ok(name),
+    }
+}
+
+/// The command that loads a bitstream, until power goes or for good; none if openFPGALoader has no name for the board.
+pub fn loading(board: &Board, bitstream: &Path, for_good: bool) -> Option<String> {
+    let loader = board.loader.as_ref()?;
+    let flash = if for_good { " --write-flash" } else { "" };
+    let path = bitstream.display().to_string();
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_./-".contains(c);
+    let path = match path.chars().all(is_plain) {
+        true => path,
+        false => format!("'{}'", path.replace('\'', "'\\''")),
+    };
+    Some(format!("openFPGALoader --board {loader}{flash} {path}"))
 }
 
 /// Builds a card; tries up to `seeds` seeds until timing is met. Returns the report and the bitstream's bytes.
@@ -143,18 +188,7 @@ pub fn build(
     let scratch = scratch::folder()?;
     let folder = scratch.path();
     artifact::write(folder, artifacts, scratch::REMEDY)?;
-    let fill = |words: &[String]| -> Result<Vec<String>, GenError> {
-        let facts = context! {
-            name,
-            constraints => format!("{name}.{}", board.family.constraints),
-            device => Serde(&board.device),
-            board => context! { part => board.part.as_str() },
-        };
-        let words = words.iter();
-        words
-            .map(|word| board.family.fill("family.toml: build", word, &facts))
-            .collect()
-    };
+    let fill = |words: &[String]| fill(project, board, words);
     let run = |words: &[String]| run(folder, words, &build.install);
     progress(format!("{name}: synthesis for {}", board.family.title));
     // The test bench is not for a device.
@@ -204,11 +238,7 @@ pub fn build(
             break;
         }
     }
-    let bitstream = fill(std::slice::from_ref(&build.bitstream))?.concat();
-    if bitstream.contains(['/', '\\']) {
-        let text = format!("bitstream = {bitstream:?}: is a path; the family\'s file gives a name");
-        return Err(GenError::input(text));
-    }
+    let bitstream = file_name(project, board)?;
     let path = folder.join(&bitstream);
     let bytes = std::fs::read(&path).map_err(|e| {
         GenError::io(
@@ -227,6 +257,7 @@ pub fn build(
         best: best
             .ok_or_else(|| GenError::input("--seeds = 0: no seed, no bitstream; give 1 or more"))?,
         bitstream,
+        load: None,
     };
     Ok((report, bytes))
 }

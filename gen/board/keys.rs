@@ -49,6 +49,7 @@ keys! {
     UART_BAUD_MAX = Key::number(TOP, "uart_baud_max", "fastest rate of the board's USB converter, in bit/s")
         .within(|_, _| Limits::new(9_600..=100_000_000)).required("3_000_000");
     IOSTANDARD = word("iostandard", "I/O standard of all pins but those of `[iostandards]`").required("\"LVCMOS33\"");
+    LOADER = word("loader", "how openFPGALoader calls the board, for `flash`");
     LOW_ACTIVE = Key::texts(TOP, "low_active", "pins whose light shines when they are low");
     CONNECTOR = Key::texts(&["connectors"], "NAME", "free pins of a connector, position 0 first; `\"-\"` is a position without one. `C8` is the ninth of `C`")
         .named(Vec::new);

@@ -68,6 +68,8 @@ pub struct Board {
     pub iostandard: String,
     /// Pins with another I/O standard.
     pub iostandards: BTreeMap<String, String>,
+    /// How openFPGALoader calls it.
+    pub loader: Option<String>,
     /// Pins whose light shines when they are low.
     pub low_active: BTreeSet<String>,
     /// Free pins by connector, position 0 first.

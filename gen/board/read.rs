@@ -63,6 +63,10 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
     let oscillator_hz = t.root.number(&keys::OSCILLATOR_HZ);
     let uart_baud_max = t.root.number(&keys::UART_BAUD_MAX);
     let iostandard = read_word(&t.root, &keys::IOSTANDARD, "_");
+    let loader = t.root.string(&keys::LOADER).and_then(|word| {
+        check_word(&t.root, keys::LOADER.name, &word, "-_")?;
+        Some(word.value)
+    });
     let low_active = t.root.strings(&keys::LOW_ACTIVE).unwrap_or_default();
     let connectors = t.connectors.free_lists();
     let fixed = places(&t.fixed);
@@ -95,6 +99,7 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
         uart_baud_max: uart_baud_max?.value,
         iostandard: iostandard?,
         iostandards: BTreeMap::new(),
+        loader,
         low_active: BTreeSet::new(),
         connectors: BTreeMap::new(),
         fixed: BTreeMap::new(),

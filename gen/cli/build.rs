@@ -1,12 +1,14 @@
-//! `build`: makes the bitstream of a card on a board.
+//! `build` and `flash`: the bitstream of a card on a board, and the command that loads it.
 
 use super::work::Steps;
 use super::{to_json, EmissionArgs, Outcome};
 use crate::artifact;
 use crate::bitstream;
-use crate::config::{Configuration, RECEIVER_BUS};
+use crate::board::Board;
+use crate::config::{Configuration, Project, RECEIVER_BUS};
 use crate::error::GenError;
 use clap::Args;
+use std::path::PathBuf;
 
 /// Arguments of `build`.
 ///
@@ -23,9 +25,38 @@ pub struct BuildArgs {
     json: bool,
 }
 
-/// Runs the command.
-pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
-    let (configuration, folder) = arguments.emission.load()?;
+/// Arguments of `flash`.
+#[derive(Args)]
+pub struct FlashArgs {
+    #[command(flatten)]
+    emission: EmissionArgs,
+    /// Into the board's flash memory, where it stays without power
+    #[arg(long)]
+    write_flash: bool,
+}
+
+/// Prints the command that loads a bitstream that has been built.
+pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
+    let (project, board, folder) = on_board(&arguments.emission)?;
+    let path = folder.join(bitstream::file_name(&project, &board)?);
+    if !path.exists() {
+        return Err(GenError::input(format!(
+            "{}: is not there; make it first: the same command with `build` instead of `flash`",
+            path.display()
+        )));
+    }
+    match bitstream::loading(&board, &path, arguments.write_flash) {
+        Some(command) => Ok(Outcome::good(command + "\n")),
+        None => Err(GenError::input(format!(
+            "board = {}: its file does not say how openFPGALoader calls it; add loader = \"...\" (`openFPGALoader --list-boards`), or load the file with the vendor's program",
+            board.name
+        ))),
+    }
+}
+
+/// The card that is meant, its board, and the folder of its files.
+fn on_board(emission: &EmissionArgs) -> Result<(Project, Board, PathBuf), GenError> {
+    let (configuration, folder) = emission.load()?;
     let project = match configuration {
         Configuration::Card(project) => *project,
         Configuration::Receiver(_) => {
@@ -45,6 +76,12 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
             "board: the configuration names none, and a bitstream is for a board; add [board], or --board NAME",
         ));
     };
+    Ok((project, board, folder))
+}
+
+/// Runs the command.
+pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
+    let (project, board, folder) = on_board(&arguments.emission)?;
     bitstream::tools(&board)?;
     let artifacts = crate::emit(&project)?;
     let foreign = artifact::foreign(&folder, &artifacts);
@@ -60,6 +97,7 @@ pub fn run(arguments: &BuildArgs) -> Result<Outcome, GenError> {
     drop(steps);
     let path = folder.join(&report.bitstream);
     std::fs::write(&path, bytes).map_err(|e| GenError::io("write", &path, &e, remedy))?;
+    report.load = bitstream::loading(&board, &path, false);
     report.bitstream = path.display().to_string();
     let is_met = report.best.is_met;
     let stdout = match arguments.json {

@@ -25,7 +25,7 @@ use crate::board::Board;
 use crate::config::{self, check_name, Configuration, Project};
 use crate::error::{shown, GenError};
 use crate::explain;
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -66,6 +66,8 @@ enum Command {
     Emit(emit::EmitArgs),
     /// Make the bitstream of a card on a board: synthesis, place and route, timing, with open tools
     Build(build::BuildArgs),
+    /// Print the command that loads the bitstream that `build` has made onto its board (openFPGALoader)
+    Flash(build::FlashArgs),
     /// Ask a few questions, and write a configuration with every key explained
     New(new::NewArgs),
     /// List the configurations that come with the program, or print one
@@ -265,6 +267,11 @@ impl SourceArgs {
     }
 }
 
+/// The command line: its commands, options and what they say of themselves.
+pub fn command_line() -> clap::Command {
+    Cli::command()
+}
+
 /// Runs the program with these arguments; the first is the program's name.
 pub fn run(arguments: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> Outcome {
     let painted = painted(arguments);
@@ -315,6 +322,7 @@ fn execute(cli: Cli) -> Result<Outcome, GenError> {
         None => emit::run(&emit::EmitArgs::default()),
         Some(Command::Emit(arguments)) => emit::run(&arguments),
         Some(Command::Build(arguments)) => build::run(&arguments),
+        Some(Command::Flash(arguments)) => build::flash(&arguments),
         Some(Command::New(arguments)) => new::run(&arguments),
         Some(Command::Presets {
             show: Some(name),

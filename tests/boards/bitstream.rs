@@ -58,7 +58,18 @@ fn a_small_card_becomes_a_bitstream_that_meets_its_clock() {
     }
     let dir = Dir::new("bitstream");
     let config = small_card(&dir, "hx8k_b_evn");
+    let out = dir.path("o");
+    let flash = [
+        "flash", "--config", &config, "--out", &out, "--name", "card",
+    ];
+    assert!(bad(&flash, 2).contains("card.bin: is not there; make it first"));
     let report = build(&dir, &config, "hx8k_b_evn");
+    let command =
+        |more: &str| format!("openFPGALoader --board ice40_generic{more} {out}/card/card.bin");
+    assert_eq!(good(&flash), command("") + "\n");
+    assert_eq!(report["load"], command(""));
+    let for_good = good(&[&flash[..], &["--write-flash"]].concat());
+    assert_eq!(for_good, command(" --write-flash") + "\n");
     assert_eq!(report["best"]["is_met"], true, "{report}");
     let clocks = report["best"]["clocks"].as_array().unwrap();
     let system = clocks
@@ -71,6 +82,27 @@ fn a_small_card_becomes_a_bitstream_that_meets_its_clock() {
     );
     let cells = &report["best"]["cells"]["ICESTORM_PLL"];
     assert_eq!(cells["used"], 1, "{report}");
+}
+
+/// Catches a board whose name the loader does not have, and one that open tools make a bitstream for and nobody can load.
+#[test]
+fn the_loader_knows_each_board_by_its_name() {
+    if !tools::require("openFPGALoader", "names of boards") {
+        return;
+    }
+    let dir = Dir::new("bitstream-loader");
+    let (_, list) = tools::run("openFPGALoader", &dir.0, &["--list-boards"]);
+    for board in boards() {
+        match &board.loader {
+            Some(name) => {
+                let mut names = list
+                    .lines()
+                    .filter_map(|line| line.split_whitespace().next());
+                assert!(names.any(|known| known == name), "{name}\n{list}");
+            }
+            None => assert!(board.family.build.is_none(), "{}", board.name),
+        }
+    }
 }
 
 #[test]
