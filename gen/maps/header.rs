@@ -1,7 +1,7 @@
 //! The register map as a header for C99 and C++: macros only, so that it asks for nothing and fits any way of access.
 
-use super::{with_unit, Map, MapBlock, MapRegister};
-use endat_regs::Values;
+use super::constants::{self, Form, Item};
+use super::{Map, MapBlock};
 use std::fmt::Write;
 
 /// The header.
@@ -17,13 +17,10 @@ pub fn write(map: &Map) -> String {
 }
 
 fn preamble(map: &Map, prefix: &str) -> String {
-    let [major, minor, patch] = map.version;
-    let base_address = match map.base_address {
-        0 => String::new(),
-        base => format!(
-            "/* Where a system has the registers: a register is at this and its ..._BYTE */\n#define {prefix}_BASE_ADDRESS 0x{base:08X}u\n"
-        ),
-    };
+    let mut head = String::new();
+    constants::head(map)
+        .iter()
+        .for_each(|item| write_item(&mut head, item, prefix));
     format!(
         "/*
  * {title}
@@ -37,13 +34,7 @@ fn preamble(map: &Map, prefix: &str) -> String {
 #ifndef {prefix}_REGISTERS_H
 #define {prefix}_REGISTERS_H
 
-/* Version of the register map; within a major version no address and no field moves. */
-#define {prefix}_MAP_MAJOR {major}u
-#define {prefix}_MAP_MINOR {minor}u
-#define {prefix}_MAP_PATCH {patch}u
-/* Encoder ports */
-#define {prefix}_CHANNELS {channels}u
-{base_address}
+{head}
 /* Content of a field in a word that was read, and a field's content as part of a word to be written: */
 /* {prefix}_GET({prefix}_RESULT_STATUS_CAUSE, word) */
 #define {prefix}_GET(field, word) (((word) & field##_MASK) >> field##_SHIFT)
@@ -51,102 +42,58 @@ fn preamble(map: &Map, prefix: &str) -> String {
 ",
         title = map.title(),
         origin = map.origin,
-        channels = map.channels,
     )
 }
 
 pub(super) fn write_block(text: &mut String, block: &MapBlock, prefix: &str) {
-    let (table, base_bytes) = (&block.block, block.base_bytes());
-    let name = format!("{prefix}_{}", block.block.name.to_ascii_uppercase());
-    let _ = writeln!(
-        text,
-        "\n/* ---- {} {} */\n",
-        block.block.name,
-        dashes(block.block.name)
-    );
-    let _ = writeln!(text, "/* {} */", table.meaning);
-    let _ = writeln!(text, "#define {name}_BASE_WORD 0x{:03X}u", table.base);
-    let _ = writeln!(text, "#define {name}_BASE_BYTE 0x{base_bytes:04X}u");
-    if table.per_channel {
-        let _ = writeln!(text, "#define {name}_STRIDE_WORDS {}u", table.stride);
-        let _ = writeln!(
+    constants::block(block)
+        .iter()
+        .for_each(|item| write_item(text, item, prefix));
+}
+
+/// A number, unsigned.
+fn number(value: u32, form: Form) -> String {
+    match form {
+        Form::Decimal => format!("{value}u"),
+        Form::Hex(digits) => format!("0x{value:0digits$X}u"),
+    }
+}
+
+fn write_item(text: &mut String, item: &Item, prefix: &str) {
+    let _ = match item {
+        Item::Blank => writeln!(text),
+        Item::Heading(name) => writeln!(text, "\n/* ---- {name} {} */\n", dashes(name)),
+        Item::Comment(comment) => writeln!(text, "/* {comment} */"),
+        Item::Constant {
+            name,
+            value,
+            form,
+            meaning,
+        } => {
+            let comment = match *meaning {
+                "" => String::new(),
+                meaning => format!(" /* {meaning} */"),
+            };
+            writeln!(
+                text,
+                "#define {prefix}_{name} {}{comment}",
+                number(*value, *form)
+            )
+        }
+        Item::OfChannel {
+            name,
+            value,
+            stride,
+            form,
+        } => writeln!(
             text,
-            "#define {name}_STRIDE_BYTES {}u",
-            block.stride_bytes()
-        );
-    }
-    for entry in &block.registers {
-        let register = entry.register;
-        let name = format!("{name}_{}", register.name.to_ascii_uppercase());
-        let word = table.address(register, 0);
-        let byte = u32::from(word) * super::WORD_BYTES;
-        let access = register.access.short();
-        let _ = writeln!(text, "\n/* {access}: {} */", register.meaning);
-        let _ = match table.per_channel {
-            true => writeln!(
-                text,
-                "#define {name}_WORD(channel) (0x{word:03X}u + {}u * (channel))\n\
-                 #define {name}_BYTE(channel) (0x{byte:04X}u + {}u * (channel))",
-                table.stride,
-                block.stride_bytes()
-            ),
-            false => writeln!(
-                text,
-                "#define {name}_WORD 0x{word:03X}u\n#define {name}_BYTE 0x{byte:04X}u"
-            ),
-        };
-        write_resets(text, entry, &name);
-        write_fields(text, entry, &name);
-    }
+            "#define {prefix}_{name}(channel) ({} + {stride}u * (channel))",
+            number(*value, *form)
+        ),
+    };
 }
 
 /// Fills the line of a heading.
 fn dashes(heading: &str) -> String {
     "-".repeat(70usize.saturating_sub(heading.len()))
-}
-
-/// One value, or one for each channel where they differ.
-fn write_resets(text: &mut String, entry: &MapRegister, name: &str) {
-    if entry.reset_mask() == u32::MAX {
-        let _ = writeln!(text, "#define {name}_RESET 0x{:08X}u", entry.reset());
-        return;
-    }
-    for (channel, reset) in entry.resets.iter().enumerate() {
-        let _ = writeln!(text, "#define {name}_RESET_{channel} 0x{reset:08X}u");
-    }
-}
-
-fn write_fields(text: &mut String, entry: &MapRegister, register: &str) {
-    for field in entry.register.fields {
-        let name = format!("{register}_{}", field.name.to_ascii_uppercase());
-        let _ = writeln!(text, "/* {}: {} */", field.name, with_unit(field));
-        let _ = writeln!(text, "#define {name}_SHIFT {}u", field.lsb);
-        let _ = writeln!(text, "#define {name}_MASK 0x{:08X}u", field.mask());
-        write_values(text, &name, field.values);
-        if let Some(values) = entry.t_format_values(field) {
-            let _ = writeln!(text, "/* {}: on a T-format channel */", field.name);
-            write_values(text, &format!("{name}_T_FORMAT"), values);
-        }
-    }
-}
-
-fn write_values(text: &mut String, name: &str, values: Values) {
-    let (listed, is_bits) = match values {
-        Values::Plain => return,
-        Values::Codes(listed) => (listed, false),
-        Values::Bits(listed) => (listed, true),
-    };
-    for value in listed {
-        let constant = match is_bits {
-            // As the content of the field: after ..._GET.
-            true => format!("0x{:X}u", 1u32 << value.number),
-            false => format!("{}u", value.number),
-        };
-        let _ = writeln!(
-            text,
-            "#define {name}_{} {constant} /* {} */",
-            value.name.to_ascii_uppercase(),
-            value.meaning
-        );
-    }
 }

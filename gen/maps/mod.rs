@@ -11,10 +11,12 @@
 //! [`Map::new`] is the only walk over the table: what the card has, under which names, with which start values. A writer
 //! adds the form of its language and nothing else.
 
+mod constants;
 mod csr;
 pub mod driver;
 mod header;
 mod markdown;
+mod package;
 mod rdl;
 mod svd;
 
@@ -225,6 +227,7 @@ pub fn artifacts(project: &Project) -> Result<Vec<Artifact>, GenError> {
     Ok(vec![
         Artifact::new(format!("{name}_registers.md"), markdown::write(&map)),
         Artifact::new(format!("{name}_registers.h"), header::write(&map)),
+        Artifact::new(format!("{name}_registers.sv"), package::write(&map)),
         Artifact::new(format!("{name}.svd"), svd::write(&map)?),
         Artifact::new(format!("{name}.rdl"), rdl::write(&map)),
         Artifact::new(
