@@ -218,7 +218,7 @@ struct Lane {
 const WARM_UP: u32 = 3;
 
 impl TFormatUpsets {
-    /// Upsets of registers whose hierarchical name begins with `only`.
+    /// Upsets of registers [that are asked for](super::upsets::is_asked).
     ///
     /// # Errors
     /// If the design cannot be made.

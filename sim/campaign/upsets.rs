@@ -31,10 +31,15 @@ pub struct Flops {
     pub names: Vec<String>,
 }
 
+/// Whether a hierarchical name begins with one of those in `only`, which stand between commas; nothing asks for all.
+pub fn is_asked(name: &str, only: &str) -> bool {
+    only.split(',').any(|begin| name.starts_with(begin))
+}
+
 impl Flops {
-    /// Those of registers whose name begins with `only`.
+    /// Those of registers [that are asked for](is_asked).
     pub fn new(engine: &Lanes, only: &str) -> Self {
-        Self::filtered(engine, |name| name.starts_with(only))
+        Self::filtered(engine, |name| is_asked(name, only))
     }
 
     /// Those of registers whose names are chosen.
@@ -96,7 +101,7 @@ pub struct Upsets {
 }
 
 impl Upsets {
-    /// Upsets of these ports, of registers whose hierarchical name begins with `only`.
+    /// Upsets of these ports, of registers [that are asked for](is_asked).
     ///
     /// # Errors
     /// If the design of a port cannot be made.

@@ -2,6 +2,7 @@
 
 use super::everything;
 use super::rig::{self, Rig, ALL_PARTS, WIDTHS};
+use crate::tools::third;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use endat_driver::regs::{self, causes::endat, service::request_state};
@@ -443,13 +444,16 @@ fn everything_works_over_spi() {
 
 #[test]
 fn position_parameter_and_plug_over_every_other_bus() {
-    for bus in [HostBus::Apb, HostBus::Wishbone] {
-        words(bus, ALL_PARTS).short();
+    use HostBus::{Apb, Parallel as Pins, Uart as Serial, Wishbone};
+    let driver = include_str!("../../drivers/rust/card.rs");
+    for &bus in third(&[Apb, Wishbone, Pins, Serial], driver.len()) {
+        let world = World::new(Rig::new(bus, ALL_PARTS));
+        match bus {
+            Pins => Bench::new(world.clone(), Parallel::new(world)).short(),
+            Serial => Bench::new(world.clone(), Uart::new(world)).short(),
+            _ => Bench::new(world.clone(), world).short(),
+        }
     }
-    let world = World::new(Rig::new(HostBus::Parallel, ALL_PARTS));
-    Bench::new(world.clone(), Parallel::new(world)).short();
-    let world = World::new(Rig::new(HostBus::Uart, ALL_PARTS));
-    Bench::new(world.clone(), Uart::new(world)).short();
 }
 
 #[test]

@@ -16,7 +16,7 @@ use endat_hdl::endat::service::program::ServiceTimes;
 use endat_hdl::regs::config_words;
 use endat_sim::bench::{LaneBench, LaneUart, Link, PinNames};
 use endat_sim::campaign::port::{is_count, Class, Mark};
-use endat_sim::campaign::upsets::{Draw, Flops};
+use endat_sim::campaign::upsets::{is_asked, Draw, Flops};
 use endat_sim::campaign::{digest, Campaign, Row, Tally, ABORT_US};
 use endat_sim::encoder::{AnswerKind, Encoder, EncoderConfig};
 use endat_sim::line::LineConfig;
@@ -371,13 +371,13 @@ fn is_of_port(name: &str) -> bool {
 }
 
 impl CardUpsets {
-    /// Upsets of registers whose hierarchical name begins with `only`.
+    /// Upsets of registers [that are asked for](is_asked).
     pub fn new(draw: Draw, seed: u64, only: &str) -> Result<Self, GenError> {
         let card = configuration()?;
         let design = design(&card)?;
         let engine = Lanes::new(&design, Keep::Registers, LaneWords::Two)
             .map_err(|e| GenError::fault("campaign", &e))?;
-        let chosen = |name: &str| name.starts_with(only) && !is_of_port(name);
+        let chosen = |name: &str| is_asked(name, only) && !is_of_port(name);
         let flops = Flops::filtered(&engine, chosen);
         let count = Kind::ALL.len() as u64;
         let group = |(index, kind): (usize, Kind)| Group {

@@ -41,7 +41,7 @@ pub struct CampaignArgs {
     /// Of upsets, faults, garbage: only this port; of upsets also t_format_port, card; of mutants: only this card [default: all]
     #[arg(long, value_name = "NAME")]
     subject: Option<String>,
-    /// Of upsets: only registers whose hierarchical name begins so; of mutants: only blocks
+    /// Of upsets: only registers whose hierarchical name begins so, or so (a.b,a.c); of mutants: only blocks
     #[arg(long, value_name = "NAME")]
     only: Option<String>,
     /// Seed of the random cases [default: 1]
