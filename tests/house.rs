@@ -8,7 +8,7 @@ use syn::visit::{self, Visit};
 use syn::{ImplItemFn, ItemFn, ItemMod, ItemStruct, ItemUse, UseTree};
 
 /// Folders of the crates.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 10] = [
     "design/macros",
     "design",
     "regs",
@@ -18,6 +18,7 @@ const CRATES: [&str; 9] = [
     "host",
     "drivers/rust",
     "gen",
+    "site",
 ];
 /// Longest file.
 const FILE_LINES: usize = 500;

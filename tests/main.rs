@@ -5,6 +5,7 @@ mod boards;
 mod bus;
 mod campaign;
 mod cli;
+mod commands;
 mod comparison;
 mod config;
 mod constraints;

@@ -1,9 +1,9 @@
 //! `completions` and `man`: what shells and manual readers know of the command line, from its own description.
 
-use super::{Cli, Outcome};
+use super::{command_line, Outcome};
 use crate::artifact::{self, Artifact};
 use crate::error::GenError;
-use clap::{Args, Command, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 use clap_mangen::Man;
 use std::path::PathBuf;
@@ -29,7 +29,7 @@ fn fault(e: &dyn std::fmt::Display) -> GenError {
 
 /// Prints the completions for a shell.
 pub fn completions(arguments: &CompletionsArgs) -> Result<Outcome, GenError> {
-    let mut command = Cli::command();
+    let mut command = command_line();
     let name = command.get_name().to_owned();
     let mut text = vec![];
     clap_complete::generate(arguments.shell, &mut command, name, &mut text);
@@ -40,7 +40,7 @@ pub fn completions(arguments: &CompletionsArgs) -> Result<Outcome, GenError> {
 
 /// Prints the manual page of the program, or writes those of all its commands.
 pub fn man(arguments: &ManArgs) -> Result<Outcome, GenError> {
-    let mut command = Cli::command().disable_help_subcommand(true);
+    let mut command = command_line().disable_help_subcommand(true);
     command.build();
     let Some(out) = &arguments.out else {
         return Ok(Outcome::good(page(&command)?.text));

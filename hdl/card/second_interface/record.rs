@@ -1,4 +1,4 @@
-//! Record of one channel for the [second interface](super).
+//! Record of one channel for the second interface.
 //!
 //! ```text
 //! result words of the channel --(take)--> held --+

@@ -1,0 +1,58 @@
+//! Sources of the site on disk, and its HTML.
+
+use crate::{pages, Complaints};
+use endat_gen::tools;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What beside Markdown belongs to pages.
+const PICTURES: [&str; 3] = ["svg", "png", "json"];
+
+/// Makes HTML of Markdown.
+const MDBOOK: &str = "mdbook";
+
+/// How mdBook is to read and write it.
+const SETTINGS: &str = include_str!("book.toml");
+
+fn told(path: &Path) -> impl Fn(std::io::Error) -> Complaints + '_ {
+    move |error| {
+        vec![format!(
+            "{}: {error}; give another folder with --out",
+            path.display()
+        )]
+    }
+}
+
+/// Builds the site below `out`, and returns where its first page is.
+pub fn build(repository: &Path, out: &Path) -> Result<PathBuf, Complaints> {
+    let pages = pages(repository)?;
+    let sources = out.join("sources");
+    // A page that is no more must not stay.
+    if sources.exists() {
+        fs::remove_dir_all(&sources).map_err(told(&sources))?;
+    }
+    for page in &pages {
+        let path = sources.join(&page.path);
+        let folder = path.parent().unwrap_or(out);
+        fs::create_dir_all(folder).map_err(told(folder))?;
+        fs::write(&path, &page.text).map_err(told(&path))?;
+    }
+    let docs = repository.join("docs");
+    for entry in fs::read_dir(&docs).map_err(told(&docs))? {
+        let file = entry.map_err(told(&docs))?.path();
+        let ending = file.extension().and_then(|e| e.to_str());
+        if let (true, Some(name)) = (
+            ending.is_some_and(|e| PICTURES.contains(&e)),
+            file.file_name(),
+        ) {
+            fs::copy(&file, sources.join(name)).map_err(told(&file))?;
+        }
+    }
+    let settings = out.join("book.toml");
+    fs::write(&settings, SETTINGS).map_err(told(&settings))?;
+    let ran = tools::run(MDBOOK, out, &["build"]).map_err(|e| e.messages().to_vec())?;
+    match ran.is_good {
+        true => Ok(out.join("html/index.html")),
+        false => Err(vec![format!("{}: {}", MDBOOK, ran.text())]),
+    }
+}

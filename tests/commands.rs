@@ -1,0 +1,177 @@
+//! Commands of the documentation: each is one, and those that take seconds do what the page says.
+
+use crate::program::Dir;
+use crate::tools;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// How a command of the program begins on a page.
+const CARGO: &str = "cargo run";
+/// Commands that take seconds, and need nothing but a configuration.
+const QUICK: [&str; 9] = [
+    "boards", "crc", "doctor", "emit", "explain", "presets", "schema", "sim", "id",
+];
+/// Says on the page that a command does not end by itself.
+const STAYS: &str = "# leave it running";
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every page, and its text.
+fn pages() -> Vec<(String, String)> {
+    let docs = fs::read_dir(root().join("docs")).unwrap();
+    let docs = docs.map(|entry| entry.unwrap().path());
+    let mut files: Vec<PathBuf> = docs
+        .filter(|f| f.extension().is_some_and(|e| e == "md"))
+        .collect();
+    files.extend(["README.md", "CONTRIBUTING.md", "ARCHITECTURE.md"].map(|f| root().join(f)));
+    files.sort();
+    let read = |file: PathBuf| {
+        (
+            file.display().to_string(),
+            fs::read_to_string(&file).unwrap(),
+        )
+    };
+    files.into_iter().map(read).collect()
+}
+
+/// The commands of a page, whether they stand in a block or in a sentence.
+fn commands(text: &str) -> Vec<String> {
+    let mut all = vec![];
+    let mut is_block = false;
+    for line in text.lines() {
+        if line.starts_with("```") {
+            is_block = !is_block;
+        } else if is_block {
+            if line.starts_with(CARGO) {
+                all.push(line.to_owned());
+            }
+        } else {
+            let spans = line.split('`').skip(1).step_by(2);
+            all.extend(spans.filter(|s| s.starts_with(CARGO)).map(str::to_owned));
+        }
+    }
+    all
+}
+
+/// The program's words of a command, without what belongs to the shell; none of one that is for cargo alone.
+fn words(command: &str) -> Option<Vec<&str>> {
+    let ends = [" #", " >", " |"].into_iter();
+    let end = ends.filter_map(|mark| command.find(mark)).min();
+    let command = &command[..end.unwrap_or(command.len())];
+    let (_, words) = command.split_once(" -- ")?;
+    Some(words.split_whitespace().collect())
+}
+
+/// Catches a page with an option that has another name now, and a command that is no more.
+#[test]
+fn every_command_of_the_documentation_is_one() {
+    let mut count = 0;
+    for (page, text) in pages() {
+        for command in commands(&text) {
+            let Some(words) = words(&command).filter(|words| words != &["COMMAND"]) else {
+                continue;
+            };
+            count += 1;
+            let words = std::iter::once("endat-gen").chain(words);
+            if let Err(error) = endat_gen::cli::command_line().try_get_matches_from(words) {
+                panic!("{page}: {command}\n{error}");
+            }
+        }
+    }
+    assert!(count > 80, "{count}");
+}
+
+/// A shell in which `cargo run` is the program that has been built.
+fn shell(folder: &Path, script: &str) -> (bool, String) {
+    let cargo = format!(
+        "cargo() {{ while [ $# -gt 0 ] && [ \"$1\" != -- ]; do shift; done; shift; '{}' \"$@\"; }}\n",
+        env!("CARGO_BIN_EXE_endat-gen")
+    );
+    let output = Command::new("bash")
+        .args(["-c", &format!("{cargo}{script}")])
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let told = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let text = told(&output.stdout) + &told(&output.stderr);
+    (output.status.success(), text)
+}
+
+/// Catches an example that is refused: a preset, a scenario, a key, a file that the page's earlier commands do not make.
+#[test]
+fn what_takes_seconds_does_what_its_page_says() {
+    let mut count = 0;
+    // Contributors have emitted before.
+    for (page, text) in pages()
+        .into_iter()
+        .filter(|(page, _)| !page.ends_with("CONTRIBUTING.md"))
+    {
+        let name = Path::new(&page)
+            .file_stem()
+            .unwrap()
+            .to_string_lossy()
+            .into_owned();
+        let folder = Dir::new(&format!("commands-{name}"));
+        let preset = fs::read_to_string(root().join("gen/presets/s6_two_channel.toml")).unwrap();
+        // What users have by now.
+        folder.write("mine.toml", preset.as_bytes());
+        folder.write("my_card.toml", preset.as_bytes());
+        let quick = commands(&text).into_iter().filter(|command| {
+            let first = words(command).and_then(|words| words.first().copied());
+            let is_long = ["tcp:", "/dev/", "--measure"]
+                .iter()
+                .any(|word| command.contains(word));
+            first.is_some_and(|word| QUICK.contains(&word)) && !is_long
+        });
+        for command in quick {
+            let (is_good, told) = shell(&folder.0, &command);
+            assert!(is_good, "{page}: {command}\n{told}");
+            count += 1;
+        }
+    }
+    assert!(count > 30, "{count}");
+}
+
+/// The tutorial as somebody follows it: its blocks, in order, as they stand. Catches a step that does not work, or comes too early.
+#[test]
+fn the_tutorial_works_as_it_stands() {
+    if !tools::require("bash", "the tutorial") {
+        return;
+    }
+    let text = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
+    let folder = Dir::new("tutorial");
+    let preset = fs::read_to_string(root().join("gen/presets/s6_two_channel.toml")).unwrap();
+    let mut script = String::from("set -e\ntrap 'kill $(jobs -p)' EXIT\n");
+    for command in commands(&text) {
+        if command.contains(STAYS) {
+            let address = command.split_once("--tcp ").unwrap().1;
+            let address = address.split_whitespace().next().unwrap().replace(':', "/");
+            let command = command.replace(STAYS, "");
+            script += &format!(
+                "{command} &\nfor n in $(seq 600); do sleep 0.1; (: < /dev/tcp/{address}) 2>/dev/null && break; done\n"
+            );
+            continue;
+        }
+        let words = words(&command).unwrap();
+        script += &match words[0] {
+            // It asks; what it would write is there already.
+            "new" => continue,
+            "read" if script.contains(" unplug ") && !script.contains(" plug ") => {
+                format!("! {command}\n")
+            }
+            _ => format!("{command}\n"),
+        };
+    }
+    folder.write("mine.toml", preset.as_bytes());
+    let (is_good, told) = shell(&folder.0, &script);
+    assert!(is_good, "{script}\n{told}");
+    for words in ["fresh", "0 triggers missing", "data_not_low"] {
+        assert!(told.contains(words), "{words}\n{told}");
+    }
+    for file in ["angles.parquet", "angles.svg", "out/mine/mine.v"] {
+        assert!(folder.0.join(file).exists(), "{file}\n{told}");
+    }
+}
