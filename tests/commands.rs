@@ -168,7 +168,12 @@ fn the_tutorial_works_as_it_stands() {
     folder.write("mine.toml", preset.as_bytes());
     let (is_good, told) = shell(&folder.0, &script);
     assert!(is_good, "{script}\n{told}");
-    for words in ["fresh", "0 triggers missing", "data_not_low"] {
+    for words in [
+        "good",
+        "500 sample sets",
+        "; 0 triggers missing, ",
+        "none: no_encoder",
+    ] {
         assert!(told.contains(words), "{words}\n{told}");
     }
     for file in ["angles.parquet", "angles.svg", "out/mine/mine.v"] {
