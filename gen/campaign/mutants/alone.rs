@@ -1,19 +1,14 @@
 //! A block alone, with random inputs: what it is given, and the module that gives it.
 
+use super::known::known;
 use super::recorder;
-use endat_sim::rng::Rng;
-use rtl_design::elaborate::{mask, Design, Direction, Module};
+use super::stimulus::{Input, Rows};
+use rtl_design::elaborate::{Design, Direction, Module};
 use rtl_design::verilog::emitted_name;
 use std::fmt::Write;
 
 /// The player's name, and that of its file.
 pub const TOP: &str = "alone";
-/// Cycles of a block.
-pub const CYCLES: usize = 24_000;
-/// How long each input goes on in the same way, in cycles.
-const EPOCH_CYCLES: std::ops::RangeInclusive<u64> = 40..=800;
-/// Mean cycles between two resets behind the first one.
-const RESET_CYCLES: u64 = 3_000;
 
 /// The part of a design that is below one of its modules, which is the top.
 #[must_use]
@@ -38,14 +33,6 @@ pub fn part(design: &Design, top: usize) -> Design {
     }
 }
 
-/// An input, and its bits.
-pub struct Input {
-    /// Its name.
-    pub name: String,
-    /// Bits.
-    pub width_bits: usize,
-}
-
 /// The inputs of a module but for its clock.
 #[must_use]
 pub fn inputs(module: &Module) -> Vec<Input> {
@@ -59,95 +46,35 @@ pub fn inputs(module: &Module) -> Vec<Input> {
         .collect()
 }
 
-/// How an input goes on for a while.
-struct Way {
-    cycles: u64,
-    /// It changes once in so many cycles.
-    hold_cycles: u64,
-    /// Highest bit of what it takes.
-    bits: u64,
-    /// Back to 0 in the next cycle.
-    is_strobe: bool,
-    counts: bool,
-}
-
-impl Way {
-    fn new(rng: &mut Rng, width_bits: usize) -> Self {
-        let holds = [1, 2, 4, 8, 16, 50, 200, 100_000];
-        Self {
-            cycles: rng.in_range(*EPOCH_CYCLES.start(), *EPOCH_CYCLES.end()),
-            hold_cycles: holds[rng.in_range(0, holds.len() as u64 - 1) as usize],
-            // Half of them are small: what is counted down ends.
-            bits: match rng.in_range(0, 1) {
-                0 => width_bits as u64,
-                _ => rng.in_range(1, width_bits as u64),
-            },
-            is_strobe: rng.in_range(0, 2) == 0,
-            counts: rng.in_range(0, 5) == 0,
-        }
-    }
-
-    fn value(&self, rng: &mut Rng, now: u128, width_bits: usize) -> u128 {
-        let changes = rng.in_range(1, self.hold_cycles) == 1;
-        let random = u128::from(rng.next_u64()) << 64 | u128::from(rng.next_u64());
-        let all = mask(width_bits);
-        match (changes, width_bits) {
-            (false, 1) if self.is_strobe => 0,
-            (false, _) if !self.counts => now,
-            (false, _) => now.wrapping_add(1) & all,
-            (true, 1) if self.is_strobe => 1,
-            (true, 1) => random & 1,
-            // A bit that is another one; everything; nothing; anything.
-            (true, _) => match rng.in_range(0, 7) {
-                0 => now ^ (1 << rng.in_range(0, width_bits as u64 - 1)),
-                1 => all,
-                2 => 0,
-                _ => random & mask(self.bits as usize),
-            },
-        }
-    }
-}
-
-/// What a module is given in each cycle, an input for each column.
-#[must_use]
-pub fn rows(module: &Module) -> Vec<Vec<u128>> {
+/// What a module of a design is given in each cycle, an input for each column.
+pub fn rows(design: &Design, index: usize) -> Rows {
+    let module = &design.modules[index];
     let seed = module.type_name.bytes().fold(1, |seed: u64, byte| {
         seed.wrapping_mul(31).wrapping_add(u64::from(byte))
     });
-    let mut rng = Rng::new(seed);
-    let inputs = inputs(module);
-    let mut ways: Vec<Way> = inputs
-        .iter()
-        .map(|i| Way::new(&mut rng, i.width_bits))
-        .collect();
-    let mut row = vec![0; inputs.len()];
-    let mut cycle = |cycle: usize| {
-        for ((input, way), value) in inputs.iter().zip(&mut ways).zip(&mut row) {
-            way.cycles -= 1;
-            if way.cycles == 0 {
-                *way = Way::new(&mut rng, input.width_bits);
-            }
-            *value = match input.name.as_str() {
-                "reset" | "rst_i" => u128::from(cycle < 3 || rng.in_range(1, RESET_CYCLES) == 1),
-                _ => way.value(&mut rng, *value, input.width_bits),
-            };
-        }
-        row.clone()
-    };
-    (0..CYCLES).map(&mut cycle).collect()
+    Rows::new(&inputs(module), known(&part(design, index)), seed)
 }
 
-/// The rows of a module as the player reads them, the first input lowest.
-pub fn rows_text(module: &Module) -> String {
-    let inputs = inputs(module);
+/// The rows of a module of a design as the player reads them, so many at most, the first input lowest.
+pub fn rows_text(design: &Design, index: usize, cycles: usize) -> String {
+    let inputs = inputs(&design.modules[index]);
     let mut text = String::new();
-    for row in rows(module) {
-        for (input, value) in inputs.iter().zip(row).rev() {
-            let _ = write!(text, "{value:0width$b}", width = input.width_bits);
-        }
+    for row in rows(design, index).take(cycles) {
+        let bits = inputs.iter().zip(row);
+        let bits = bits.flat_map(|(i, value)| (0..i.width_bits).map(move |bit| value >> bit & 1));
+        text += &hexadecimal(&bits.collect::<Vec<_>>());
         text.push('\n');
     }
     text
+}
+
+/// A number from its bits, the lowest first.
+fn hexadecimal(bits: &[u128]) -> String {
+    let digits = bits.chunks(4).map(|four| {
+        let value = four.iter().rev().fold(0, |above, bit| above << 1 | bit);
+        char::from_digit(value as u32, 16).unwrap_or('0')
+    });
+    digits.rev().collect()
 }
 
 /// The file of a module's rows.
@@ -155,8 +82,8 @@ pub fn rows_file(module: &Module) -> String {
     format!("{}.rows", module.name)
 }
 
-/// The player of some modules. Plusarg `alone` chooses one by its index in the design; what it prints is the sum over its ports, and those directly below.
-pub fn text(design: &Design, modules: &[usize]) -> String {
+/// The player of some modules, for so many cycles. Plusarg `alone` chooses one by its index in the design; what it prints is the sum over its ports, and those directly below.
+pub fn text(design: &Design, modules: &[usize], cycles: usize) -> String {
     let widths = modules.iter().map(|&index| {
         let inputs = inputs(&design.modules[index]);
         inputs.iter().map(|i| i.width_bits).sum::<usize>()
@@ -196,7 +123,7 @@ pub fn text(design: &Design, modules: &[usize]) -> String {
         );
         let _ = writeln!(
             loads,
-            "        if (chosen == {index}) $readmemb(\"{}\", rows);",
+            "        if (chosen == {index}) $readmemh(\"{}\", rows);",
             rows_file(module)
         );
     }
@@ -205,7 +132,7 @@ pub fn text(design: &Design, modules: &[usize]) -> String {
 module {TOP};
     reg clock;
     integer chosen, cycle;
-    reg [{last}:0] rows [0:{CYCLES}];
+    reg [{last}:0] rows [0:{cycles}];
     reg [{last}:0] row;
     reg [63:0] sum;
 {blocks}    initial begin
@@ -221,7 +148,7 @@ module {TOP};
         cycle = cycle + 1;
         row <= rows[cycle];
     end
-    always @(negedge clock) if (cycle == {CYCLES}) begin
+    always @(negedge clock) if (cycle == {cycles}) begin
         $display(\"sum 0 %0d\", sum);
         $finish;
     end
@@ -229,4 +156,15 @@ endmodule
 ",
         start = recorder::START
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_is_read_as_it_is_written() {
+        let bits: Vec<u128> = (0..9).map(|bit| 0x1A5 >> bit & 1).collect();
+        assert_eq!(hexadecimal(&bits), "1a5");
+    }
 }

@@ -1,12 +1,13 @@
 //! All mutants of a card in one program: its bench, with the number of a mutant, says whether it sees it.
 
 use super::list::{files, reading_bare, yosys_must, Mutation};
+use super::stimulus::CYCLES;
 use super::{alone, recorder, Emission};
 use crate::artifact::Artifact;
 use crate::error::{shorten, GenError};
 use crate::prove::Subject;
 use crate::{readers, scratch, tools};
-use rtl_design::elaborate::{Design, Module};
+use rtl_design::elaborate::Module;
 use rtl_design::verilog::file_name;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -76,7 +77,7 @@ impl Program {
         let optimised = if runs < MANY { "-O0" } else { "-O1" };
         let modules: Vec<usize> = mutated.iter().map(|m| m.module).collect();
         build_bench(folder.path(), emission, optimised)?;
-        build_alone(folder.path(), &subject.design, &subject.files, &modules)?;
+        build_alone(folder.path(), subject, &modules, CYCLES)?;
         let mut program = Self {
             folder,
             alone: BTreeMap::new(),
@@ -147,12 +148,12 @@ pub struct Recording {
     pub sums: Vec<u64>,
 }
 
-/// Sums over the ports of each module alone, with its random inputs.
-pub fn sums_alone(subject: &Subject) -> Result<Vec<u64>, GenError> {
+/// Sums over the ports of each module alone, with so many cycles of its random inputs.
+pub fn sums_alone(subject: &Subject, cycles: usize) -> Result<Vec<u64>, GenError> {
     let folder = scratch::folder()?;
     crate::artifact::write(folder.path(), &subject.files, scratch::REMEDY)?;
     let modules: Vec<usize> = (0..subject.design.modules.len()).collect();
-    build_alone(folder.path(), &subject.design, &subject.files, &modules)?;
+    build_alone(folder.path(), subject, &modules, cycles)?;
     let sum = |module: usize| {
         let text = start(folder.path(), alone::TOP, &[&format!("+alone={module}")])?;
         Ok(Run::new(&text).sums.first().copied().unwrap_or(0))
@@ -225,22 +226,25 @@ fn build_bench(folder: &Path, emission: &Emission, optimised: &str) -> Result<()
 /// The program of modules alone; the card's files are in the folder.
 fn build_alone(
     folder: &Path,
-    design: &Design,
-    core: &[Artifact],
+    subject: &Subject,
     modules: &[usize],
+    cycles: usize,
 ) -> Result<(), GenError> {
     if modules.is_empty() {
         return Ok(());
     }
     let mut files = vec![Artifact::new(
         file_name(alone::TOP),
-        alone::text(design, modules),
+        alone::text(&subject.design, modules, cycles),
     )];
-    let rows = modules.iter().map(|&index| &design.modules[index]);
-    let rows = rows.map(|m| Artifact::new(alone::rows_file(m), alone::rows_text(m)));
-    crate::artifact::write(folder, &rows.collect::<Vec<_>>(), scratch::REMEDY)?;
+    // They are long, so no two are held at once.
+    for &index in modules {
+        let rows = alone::rows_text(&subject.design, index, cycles);
+        let file = Artifact::new(alone::rows_file(&subject.design.modules[index]), rows);
+        crate::artifact::write(folder, &[file], scratch::REMEDY)?;
+    }
     crate::artifact::write(folder, &files, scratch::REMEDY)?;
-    files.extend(core.iter().cloned());
+    files.extend(subject.files.iter().cloned());
     build(folder, alone::TOP, &files, "-O1")
 }
 

@@ -12,10 +12,12 @@
 pub mod alone;
 mod bench;
 mod equal;
+mod known;
 mod list;
 mod page;
 mod reasons;
 pub mod recorder;
+pub mod stimulus;
 
 pub use bench::{record, sums_alone, Recording};
 pub use page::{page, table};

@@ -1,6 +1,7 @@
 //! The page of the results.
 
-use super::{alone, reasons, subjects, Fate, NAME};
+use super::stimulus::CYCLES;
+use super::{reasons, subjects, Fate, NAME};
 use crate::campaign::budget;
 use crate::campaign::part::{Identity, Part};
 use crate::campaign::report::{grouped, Counts};
@@ -17,14 +18,14 @@ again and again, and each of these mutants is given to those who should see it, 
 |---|---|
 | bench | the self-checking bench that is emitted beside the card does not end with PASS |
 | ports | in a cycle of that bench a port of the block, or of one directly below it, has another value than in the card as it is |
-| alone | the same while the block stands alone, with random inputs for {cycles} cycles |
+| alone | the same while the block stands alone, with random inputs for {cycles} cycles, among them what the block compares something with; a microsecond is a few cycles |
 | proof | a property of [proofs.md](proofs.md) that holds from the start values does not hold any more |
 
-What the ports do is compared with the design, for the unchanged Verilog, by `tests/verilog/ports.rs`: in the suite for the T-format receiver in its bench and each block of the shipped \
-card alone; with `-- --ignored` for the others, but for benches that set registers inside their card. A mutant of the columns *ports* and *alone* would turn these tests red.
+What the ports do is compared with the design, for the unchanged Verilog, by `tests/verilog/ports.rs`: in the suite for the T-format receiver in its bench and the first part of the rows of each block of the shipped \
+card alone; with `-- --ignored` for all rows and the others, but for benches that set registers inside their card. A mutant of the columns *ports* and *alone* would turn these tests red.
 
 A mutant that none of them sees may change nothing at all: where yosys proves, with all inputs free, that no port ever differs, it is *equivalent*, and does not count. \
-yosys's own solver is asked first, then ABC for invariants that no short induction has (`pdr`). All others survive, and are listed below; that a solver finds no proof in half a minute \
+yosys's own solver is asked first, then ABC for signals that are always alike (`scorr`) and for invariants that no short induction has (`pdr`). All others survive, and are listed below; that a solver finds no proof in half a minute \
 does not say that something changes.
 
 Each block is mutated by itself, in the first card of the table that has it, in all its places at once. yosys spreads mutants evenly; those at the output of a register are \
@@ -82,7 +83,7 @@ pub fn table(tally: &Tally) -> String {
 
 /// The page `docs/mutants.md`, from the results of one card or more.
 pub fn page(parts: &[Part]) -> Result<String, GenError> {
-    let mut text = HEAD.replace("{cycles}", &alone::CYCLES.to_string());
+    let mut text = HEAD.replace("{cycles}", &CYCLES.to_string());
     let mut tally = Tally::default();
     for part in parts {
         let Identity {

@@ -104,6 +104,51 @@ const REASONS: &[(&str, &str, &str)] = &[
         "first_fall_timestamp[30]",
         "time stamps from 10 s on: the bench ends before, and random inputs begin no frame then",
     ),
+    (
+        "CardCore",
+        "trigger_trigger_count[14]",
+        "counts of triggers from 16384 on: the bench ends before, and random inputs reset the block before",
+    ),
+    (
+        "CardCore",
+        "set_byte_1[4]",
+        "a byte of the second channel's set with a one in bit 5: the emitted bench does not switch the stream on, and random levels bring no good frame",
+    ),
+    (
+        "CardCore",
+        "start_timeout_us[8]",
+        "a start time-out of 512 us and more: the bench writes shorter ones, and random accesses seldom write a whole configuration word there",
+    ),
+    (
+        "Channel",
+        "position[13]",
+        "positions from 2^30 on: those of the bench's encoders are narrower, and random levels bring no good frame",
+    ),
+    (
+        "FrameBuffer",
+        "code_at_next[1]",
+        "changes nothing: follows bit 12 of an address that a mask keeps below 2048; the solver's model has the RAM as registers, which are too many for it",
+    ),
+    (
+        "Transaction",
+        "flags_told[16]",
+        "changes nothing: follows raw flag 14, which a channel of this card does not have; what comes out of a block below is anything to the solver",
+    ),
+    (
+        "Transaction",
+        "`assign afresh",
+        "a delay that has been measured, and is to be measured again: the bench asks for it before the first frame only, and random levels bring no good frame",
+    ),
+    (
+        "UartBridge",
+        "write_busy_next",
+        "a byte that waits for the end of the word before: the bench sends slower than a turn of the configuration ring, and random levels are seldom commands",
+    ),
+    (
+        "UartBridge",
+        "words_left_next[5]",
+        "commands of 32 words and more: the bench has shorter ones, and random levels are seldom commands",
+    ),
 ];
 
 /// A transfer that is longer than random levels at the pins let it be.
