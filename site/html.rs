@@ -26,11 +26,23 @@ fn told(path: &Path) -> impl Fn(std::io::Error) -> Complaints + '_ {
 /// Builds the site below `out`, and returns where its first page is.
 pub fn build(repository: &Path, out: &Path) -> Result<PathBuf, Complaints> {
     let pages = pages(repository)?;
+    let settings = out.join("book.toml");
+    let mark = SETTINGS.lines().next().unwrap_or_default();
+    let is_ours = fs::read_to_string(&settings).is_ok_and(|text| text.starts_with(mark));
+    let is_empty = !out.exists() || fs::read_dir(out).is_ok_and(|mut all| all.next().is_none());
+    if !is_ours && !is_empty {
+        return Err(vec![format!(
+            "--out = {}: has files that are not the site's; give an empty folder, or one that is not there yet",
+            out.display()
+        )]);
+    }
     let sources = out.join("sources");
     // A page that is no more must not stay.
     if sources.exists() {
         fs::remove_dir_all(&sources).map_err(told(&sources))?;
     }
+    fs::create_dir_all(out).map_err(told(out))?;
+    fs::write(&settings, SETTINGS).map_err(told(&settings))?;
     for page in &pages {
         let path = sources.join(&page.path);
         let folder = path.parent().unwrap_or(out);
@@ -48,8 +60,6 @@ pub fn build(repository: &Path, out: &Path) -> Result<PathBuf, Complaints> {
             fs::copy(&file, sources.join(name)).map_err(told(&file))?;
         }
     }
-    let settings = out.join("book.toml");
-    fs::write(&settings, SETTINGS).map_err(told(&settings))?;
     let ran = tools::run(MDBOOK, out, &["build"]).map_err(|e| e.messages().to_vec())?;
     match ran.is_good {
         true => Ok(out.join("html/index.html")),

@@ -124,6 +124,22 @@ fn every_block_has_a_page_that_says_what_it_is_for() {
     }
 }
 
+/// Catches a site that is built over what somebody has in a folder.
+#[test]
+fn files_of_others_are_left_alone() {
+    let out = tempfile::tempdir().unwrap();
+    let theirs = out.path().join("sources");
+    std::fs::create_dir(&theirs).unwrap();
+    let told = build(&repository(), out.path()).unwrap_err();
+    assert!(
+        told[0].ends_with(
+            "has files that are not the site's; give an empty folder, or one that is not there yet"
+        ),
+        "{told:?}"
+    );
+    assert!(theirs.exists());
+}
+
 /// Catches a link that leads nowhere in the finished site, an anchor that is no heading any more among them.
 #[test]
 fn every_link_of_the_site_leads_somewhere() {
