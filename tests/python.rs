@@ -8,7 +8,7 @@ use std::process::Command;
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/drivers/python");
 
 /// What the tests import; plain `pip install endat` takes numpy alone.
-const MODULES: [&str; 5] = ["pytest", "mypy", "matplotlib", "h5py", "pandas"];
+const MODULES: [&str; 6] = ["pytest", "mypy", "matplotlib", "h5py", "pandas", "tango"];
 
 fn done(command: &mut Command) -> String {
     let output = command.output().unwrap();
