@@ -17,6 +17,7 @@ pub struct Diagnostic {
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.line {
+            0 if self.file.is_empty() => f.write_str(&self.text),
             0 => write!(f, "{}: {}", self.file, self.text),
             line => write!(f, "{}:{line}: {}", self.file, self.text),
         }

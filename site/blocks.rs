@@ -18,6 +18,14 @@ struct Block<'a> {
     users: BTreeSet<&'a str>,
 }
 
+impl Block<'_> {
+    /// What its module is called, behind the name of the card.
+    fn emitted(&self) -> &str {
+        let top = &self.design.top().name;
+        self.module.name.strip_prefix(top).unwrap_or_default()
+    }
+}
+
 /// The page of all blocks, and that of each.
 pub fn pages() -> Result<Vec<Page>, GenError> {
     let cards: Vec<(String, Design)> = subjects()
@@ -66,6 +74,10 @@ struct Head {
     rest: Vec<String>,
 }
 
+/// What lines of a drawing have, and running text has not: the drawings of the sources stand between fences, which documentation does not
+/// carry on.
+const DRAWN: [&str; 7] = ["   ", "-->", "->", "<-", "--+", "+--", "~~"];
+
 impl Head {
     fn of(module: &Module) -> Self {
         let paragraphs = module.docs.split(|line| line.trim().is_empty());
@@ -77,13 +89,22 @@ impl Head {
             Some((name, rest)) if name.split(' ').count() < 4 => capital(rest),
             _ => purpose,
         };
-        // Columns: the drawings of the sources stand between fences, which documentation does not carry on.
-        let is_drawing = |lines: &&[String]| lines.iter().any(|line| line.trim().contains("   "));
+        let is_table = |lines: &[String]| lines.iter().all(|line| line.trim().starts_with('|'));
+        let is_drawing = |lines: &&[String]| {
+            let is_drawn = |line: &String| DRAWN.iter().any(|mark| line.trim().contains(mark));
+            !is_table(lines) && lines.iter().any(is_drawn)
+        };
         let (drawings, rest): (Vec<_>, Vec<_>) = paragraphs.partition(is_drawing);
         Self {
             purpose,
             drawings: drawings.iter().map(|lines| lines.join("\n")).collect(),
-            rest: rest.into_iter().map(words).collect(),
+            rest: rest
+                .into_iter()
+                .map(|lines| match is_table(lines) {
+                    true => lines.join("\n"),
+                    false => escaped(&words(lines)),
+                })
+                .collect(),
         }
     }
 }
@@ -105,7 +126,7 @@ fn cell(lines: &[String]) -> String {
 fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for letter in text.chars() {
-        if "<>*_[]`".contains(letter) {
+        if "<>_[]`".contains(letter) {
             out.push('\\');
         }
         out.push(letter);
@@ -132,7 +153,12 @@ fn list(blocks: &BTreeMap<&str, Block>) -> String {
 fn page(block: &Block, blocks: &BTreeMap<&str, Block>) -> String {
     let module = block.module;
     let head = Head::of(module);
-    let mut text = format!("# {}\n\n{}\n", module.type_name, escaped(&head.purpose));
+    let mut text = format!(
+        "# {}\n\n{}\n\nIn an emission: `NAME{}`, in the file of that name.\n",
+        module.type_name,
+        escaped(&head.purpose),
+        block.emitted()
+    );
     text += "\n## Ports\n\n| port | | bits | |\n|---|---|---|---|\n";
     for port in &module.ports {
         let net = &module.nets[port.net];
@@ -167,7 +193,7 @@ fn page(block: &Block, blocks: &BTreeMap<&str, Block>) -> String {
     if !head.rest.is_empty() {
         text += "\n## How it works\n";
         for paragraph in &head.rest {
-            let _ = write!(text, "\n{}\n", escaped(paragraph));
+            let _ = write!(text, "\n{paragraph}\n");
         }
     }
     text += &states(block);

@@ -28,6 +28,8 @@ fn main() -> ExitCode {
             Ok(dead) => (dead, 1),
         },
     };
-    complaints.iter().for_each(|text| eprintln!("{text}"));
+    complaints
+        .iter()
+        .for_each(|text| eprintln!("endat-site: {text}"));
     ExitCode::from(code)
 }

@@ -65,6 +65,12 @@ fn read_board(source: &Source<'_>, name: &str, folder: &Path) -> Option<Board> {
     let iostandard = read_word(&t.root, &keys::IOSTANDARD, "_");
     let loader = t.root.string(&keys::LOADER).and_then(|word| {
         check_word(&t.root, keys::LOADER.name, &word, "-_")?;
+        if word.value.starts_with('-') {
+            let text =
+                "begins like an option; write the name that `openFPGALoader --list-boards` has";
+            let value = format!("{:?}", word.value);
+            t.root.complain(word.line, keys::LOADER.name, &value, text);
+        }
         Some(word.value)
     });
     let low_active = t.root.strings(&keys::LOW_ACTIVE).unwrap_or_default();

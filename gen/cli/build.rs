@@ -39,19 +39,28 @@ pub struct FlashArgs {
 pub fn flash(arguments: &FlashArgs) -> Result<Outcome, GenError> {
     let (project, board, folder) = on_board(&arguments.emission)?;
     let path = folder.join(bitstream::file_name(&project, &board)?);
-    if !path.exists() {
+    let Some(command) = bitstream::loading(&board, &path, arguments.write_flash) else {
         return Err(GenError::input(format!(
-            "{}: is not there; make it first: the same command with `build` instead of `flash`",
+            "board = {}: its file does not say how openFPGALoader calls it; add loader = \"...\" (`openFPGALoader --list-boards`), or load the file with the vendor's program",
+            board.name
+        )));
+    };
+    let make = "make it: the same command with `build` instead of `flash`";
+    let is_there = std::fs::metadata(&path).is_ok_and(|file| file.is_file() && file.len() > 0);
+    if !is_there {
+        return Err(GenError::input(format!(
+            "{}: is not there; {make}",
             path.display()
         )));
     }
-    match bitstream::loading(&board, &path, arguments.write_flash) {
-        Some(command) => Ok(Outcome::good(command + "\n")),
-        None => Err(GenError::input(format!(
-            "board = {}: its file does not say how openFPGALoader calls it; add loader = \"...\" (`openFPGALoader --list-boards`), or load the file with the vendor's program",
-            board.name
-        ))),
+    // What is beside it says what it was built of.
+    if let Some(other) = artifact::differences(&folder, &crate::emit(&project)?).first() {
+        return Err(GenError::input(format!(
+            "{}: is of another configuration, board or version ({other}); {make}",
+            path.display()
+        )));
     }
+    Ok(Outcome::good(command + "\n"))
 }
 
 /// The card that is meant, its board, and the folder of its files.

@@ -33,7 +33,11 @@ pub struct Flops {
 
 /// Whether a hierarchical name begins with one of those in `only`, which stand between commas; nothing asks for all.
 pub fn is_asked(name: &str, only: &str) -> bool {
-    only.split(',').any(|begin| name.starts_with(begin))
+    let mut begins = only
+        .split(',')
+        .map(str::trim)
+        .filter(|begin| !begin.is_empty());
+    only.is_empty() || begins.any(|begin| name.starts_with(begin))
 }
 
 impl Flops {
