@@ -182,7 +182,7 @@ impl Played {
             self.way = Self::way(rng, known, self.role, self.width_bits);
         }
         let changes = match self.way.is_even {
-            true => self.way.cycles % self.way.hold_cycles == 0,
+            true => self.way.cycles.is_multiple_of(self.way.hold_cycles),
             false => one_in(rng, self.way.hold_cycles),
         };
         let is_bit = self.width_bits == 1;
