@@ -112,7 +112,7 @@ fn every_block_has_a_page_that_says_what_it_is_for() {
         }
         let mut lines = page.text.lines();
         let (_, purpose) = (lines.next(), lines.nth(1).unwrap());
-        assert!(purpose.len() > 20, "{}: {purpose}", page.path);
+        assert!(purpose.len() > 10, "{}: {purpose}", page.path);
         let ports = page.text.split("## Ports").nth(1).unwrap();
         let rows = ports
             .lines()

@@ -4,7 +4,7 @@
 //
 // ..._WORD is the address that the host link (UART) takes: it counts words of 32 bits.
 // ..._BYTE is the same place on a bus that counts bytes: 4 * ..._WORD.
-// Of blocks that each channel has, both take the channel: ..._WORD(0) is that of channel 0.
+// Registers that each channel has take the channel: ..._WORD(0) is that of channel 0; ..._BASE_... of such a block is that of channel 0.
 // Content of a field in a word that was read: (word & ..._MASK) >> ..._SHIFT.
 package s6_two_channel_registers;
 
