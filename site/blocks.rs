@@ -185,7 +185,7 @@ fn page(block: &Block, blocks: &BTreeMap<&str, Block>) -> String {
         }
     }
     if !head.drawings.is_empty() {
-        text += "\n## Waveform\n";
+        text += "\n## Drawing\n";
     }
     for drawing in &head.drawings {
         let _ = write!(text, "\n```text\n{drawing}\n```\n");
