@@ -62,7 +62,9 @@ fn a_small_card_becomes_a_bitstream_that_meets_its_clock() {
     let flash = [
         "flash", "--config", &config, "--out", &out, "--name", "card",
     ];
-    assert!(bad(&flash, 2).contains("card.bin: is not there; make it first"));
+    assert!(
+        bad(&flash, 2).contains("card.bin: is not there; make it: the same command with `build`")
+    );
     let report = build(&dir, &config, "hx8k_b_evn");
     let command =
         |more: &str| format!("openFPGALoader --board ice40_generic{more} {out}/card/card.bin");
@@ -71,6 +73,11 @@ fn a_small_card_becomes_a_bitstream_that_meets_its_clock() {
     let for_good = good(&[&flash[..], &["--write-flash"]].concat());
     assert_eq!(for_good, command(" --write-flash") + "\n");
     assert_eq!(report["best"]["is_met"], true, "{report}");
+    // What is there is of another clock now.
+    let other = fs::read_to_string(&config).unwrap();
+    let other = other.replace("clock_hz = 3_000_000", "clock_hz = 2_500_000");
+    fs::write(&config, other).unwrap();
+    assert!(bad(&flash, 2).contains("card.bin: is of another configuration, board or version"));
     let clocks = report["best"]["clocks"].as_array().unwrap();
     let system = clocks
         .iter()
