@@ -6,6 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// What `cargo run` builds.
+const PROGRAM: &str = env!("CARGO_BIN_EXE_endat-gen");
 /// How a command of the program begins on a page.
 const CARGO: &str = "cargo run";
 /// Commands that take seconds, and need nothing but a configuration.
@@ -88,7 +90,7 @@ fn every_command_of_the_documentation_is_one() {
 fn shell(folder: &Path, script: &str) -> (bool, String) {
     let cargo = format!(
         "cargo() {{ while [ $# -gt 0 ] && [ \"$1\" != -- ]; do shift; done; shift; '{}' \"$@\"; }}\n",
-        env!("CARGO_BIN_EXE_endat-gen")
+        PROGRAM
     );
     let output = Command::new("bash")
         .args(["-c", &format!("{cargo}{script}")])
@@ -147,14 +149,15 @@ fn the_tutorial_works_as_it_stands() {
     let text = fs::read_to_string(root().join("docs/tutorial.md")).unwrap();
     let folder = Dir::new("tutorial");
     let preset = fs::read_to_string(root().join("gen/presets/s6_two_channel.toml")).unwrap();
-    let mut script = String::from("set -e\ntrap 'kill $(jobs -p)' EXIT\n");
+    let mut script = String::from("set -e\ntrap 'kill $(jobs -p); wait' EXIT\n");
     for command in commands(&text) {
         if command.contains(STAYS) {
             let address = command.split_once("--tcp ").unwrap().1;
             let address = address.split_whitespace().next().unwrap().replace(':', "/");
-            let command = command.replace(STAYS, "");
+            // Itself, not a shell around it, so that it is what is ended.
+            let words = words(&command).unwrap().join(" ");
             script += &format!(
-                "{command} &\nfor n in $(seq 600); do sleep 0.1; (: < /dev/tcp/{address}) 2>/dev/null && break; done\n"
+                "'{PROGRAM}' {words} &\nfor n in $(seq 600); do sleep 0.1; (: < /dev/tcp/{address}) 2>/dev/null && break; done\n"
             );
             continue;
         }
