@@ -141,11 +141,7 @@ fn fields(items: &mut Vec<Item>, entry: &MapRegister, register: &str) {
             field.name,
             with_unit(field)
         )));
-        items.push(constant(
-            format!("{name}_SHIFT"),
-            field.lsb.into(),
-            Form::Decimal,
-        ));
+        items.push(constant(format!("{name}_SHIFT"), field.lsb, Form::Decimal));
         items.push(constant(format!("{name}_MASK"), field.mask(), CONTENT));
         values(items, &name, field.values);
         if let Some(special) = entry.t_format_values(field) {

@@ -48,7 +48,7 @@ fn wanted(project: &Project) -> Vec<Wanted> {
         for field in word.register.fields {
             let name = format!("{name}_{}", field.name.to_uppercase());
             want(format!("{name}_MASK"), None, field.mask());
-            want(format!("{name}_SHIFT"), None, field.lsb.into());
+            want(format!("{name}_SHIFT"), None, field.lsb);
             let (listed, is_bits) = match field.values {
                 Values::Plain => continue,
                 Values::Codes(listed) => (listed, false),

@@ -298,7 +298,7 @@ mod tests {
     const KNOWN: Compared = Compared {
         low_bit: 4,
         width_bits: 28,
-        value: 0x0ABC_DEF,
+        value: 0x00AB_CDEF,
     };
 
     fn rows() -> Vec<Vec<u128>> {
