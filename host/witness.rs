@@ -105,35 +105,35 @@ impl Answer {
         self.words[place()]
     }
 
-    /// None if nobody answers, or no card.
+    /// None if it is no card, or has fallen silent meanwhile; an error if nobody answers.
     fn read<T: Transport>(card: &mut Card<T>, is_stopped: bool) -> Result<Option<Self>, HostError> {
-        let mut all = || {
-            let words = card.bridge().read(0, place() + 1)?;
-            let mark = card.read(&scratch())?;
-            Ok((words, mark))
+        let words = card.bridge().read(0, place() + 1)?;
+        let mark = match card.read(&scratch()) {
+            Err(HostError::Silent { .. }) => return Ok(None),
+            mark => mark?,
         };
-        match all() {
-            Ok((words, mark)) => Ok((words[0] == ID).then_some(Self {
-                words,
-                mark,
-                is_stopped,
-            })),
-            Err(HostError::Silent { .. }) => Ok(None),
-            Err(error) => Err(error),
-        }
+        Ok((words[0] == ID).then_some(Self {
+            words,
+            mark,
+            is_stopped,
+        }))
     }
 }
 
 /// What the card answers; none if nobody answers, or no card.
 fn answer<T: Transport>(card: &mut Card<T>) -> Result<Option<Answer>, HostError> {
     let damaged = card.bridge().decoder().damaged();
-    let now = Answer::read(card, false)?;
-    if now.is_some() || !card.bridge().pushes() {
-        return Ok(now);
+    match Answer::read(card, false) {
+        Err(HostError::Silent { .. }) if card.bridge().pushes() => {}
+        Err(HostError::Silent { .. }) => return Ok(None),
+        now => return now,
     }
     // A card that has begun anew pushes nothing, and its answers have no marker.
     card.bridge().set_pushes(false);
-    let now = Answer::read(card, true)?;
+    let now = match Answer::read(card, true) {
+        Err(HostError::Silent { .. }) => None,
+        now => now?,
+    };
     match now {
         Some(_) => card.bridge().forgive(damaged),
         None => card.bridge().set_pushes(true),
