@@ -39,6 +39,59 @@ pub enum Item {
     },
 }
 
+/// How a language writes them.
+pub trait Language {
+    /// Before each line.
+    const INDENT: &'static str;
+
+    /// The line of a block's heading.
+    fn heading(&self, name: &str) -> String;
+    /// A comment.
+    fn comment(&self, text: &str) -> String;
+    /// A number, unsigned, of 32 bits.
+    fn number(&self, value: u32, form: Form) -> String;
+    /// A named number.
+    fn constant(&self, name: &str, number: &str) -> String;
+    /// One that takes the channel.
+    fn of_channel(&self, name: &str, number: &str, stride: u32) -> String;
+
+    /// All of them.
+    fn print(&self, items: &[Item]) -> String {
+        let line = |item: &Item| match item {
+            Item::Blank => String::new(),
+            Item::Heading(name) => format!("\n{}{}\n", Self::INDENT, self.heading(name)),
+            Item::Comment(text) => format!("{}{}", Self::INDENT, self.comment(text)),
+            Item::Constant {
+                name,
+                value,
+                form,
+                meaning,
+            } => {
+                let constant = self.constant(name, &self.number(*value, *form));
+                let behind = match *meaning {
+                    "" => String::new(),
+                    meaning => format!(" {}", self.comment(meaning)),
+                };
+                format!("{}{constant}{behind}", Self::INDENT)
+            }
+            Item::OfChannel {
+                name,
+                value,
+                stride,
+                form,
+            } => {
+                let number = self.number(*value, *form);
+                format!(
+                    "{}{}",
+                    Self::INDENT,
+                    self.of_channel(name, &number, *stride)
+                )
+            }
+        };
+        items.iter().map(|item| line(item) + "\n").collect()
+    }
+}
+
 /// Digits of an address in words, of one in bytes, and of a word's content.
 const WORD: Form = Form::Hex(3);
 const BYTE: Form = Form::Hex(4);

@@ -1,8 +1,7 @@
 //! The register map as a header for C99 and C++: macros only, so that it asks for nothing and fits any way of access.
 
-use super::constants::{self, Form, Item};
+use super::constants::{self, Form, Language};
 use super::{Map, MapBlock};
-use std::fmt::Write;
 
 /// The header.
 pub fn write(map: &Map) -> String {
@@ -11,16 +10,12 @@ pub fn write(map: &Map) -> String {
     for block in &map.blocks {
         write_block(&mut text, block, &prefix);
     }
-    // Writing to a String cannot fail.
-    let _ = writeln!(text, "\n#endif");
+    text.push_str("\n#endif\n");
     text
 }
 
 fn preamble(map: &Map, prefix: &str) -> String {
-    let mut head = String::new();
-    constants::head(map)
-        .iter()
-        .for_each(|item| write_item(&mut head, item, prefix));
+    let head = Macros { prefix }.print(&constants::head(map));
     format!(
         "/*
  * {title}
@@ -46,51 +41,42 @@ fn preamble(map: &Map, prefix: &str) -> String {
 }
 
 pub(super) fn write_block(text: &mut String, block: &MapBlock, prefix: &str) {
-    constants::block(block)
-        .iter()
-        .for_each(|item| write_item(text, item, prefix));
+    text.push_str(&Macros { prefix }.print(&constants::block(block)));
 }
 
-/// A number, unsigned.
-fn number(value: u32, form: Form) -> String {
-    match form {
-        Form::Decimal => format!("{value}u"),
-        Form::Hex(digits) => format!("0x{value:0digits$X}u"),
+/// Macros whose names begin with the card's.
+struct Macros<'a> {
+    prefix: &'a str,
+}
+
+impl Language for Macros<'_> {
+    const INDENT: &'static str = "";
+
+    fn heading(&self, name: &str) -> String {
+        format!("/* ---- {name} {} */", dashes(name))
     }
-}
 
-fn write_item(text: &mut String, item: &Item, prefix: &str) {
-    let _ = match item {
-        Item::Blank => writeln!(text),
-        Item::Heading(name) => writeln!(text, "\n/* ---- {name} {} */\n", dashes(name)),
-        Item::Comment(comment) => writeln!(text, "/* {comment} */"),
-        Item::Constant {
-            name,
-            value,
-            form,
-            meaning,
-        } => {
-            let comment = match *meaning {
-                "" => String::new(),
-                meaning => format!(" /* {meaning} */"),
-            };
-            writeln!(
-                text,
-                "#define {prefix}_{name} {}{comment}",
-                number(*value, *form)
-            )
+    fn comment(&self, text: &str) -> String {
+        format!("/* {text} */")
+    }
+
+    fn number(&self, value: u32, form: Form) -> String {
+        match form {
+            Form::Decimal => format!("{value}u"),
+            Form::Hex(digits) => format!("0x{value:0digits$X}u"),
         }
-        Item::OfChannel {
-            name,
-            value,
-            stride,
-            form,
-        } => writeln!(
-            text,
-            "#define {prefix}_{name}(channel) ({} + {stride}u * (channel))",
-            number(*value, *form)
-        ),
-    };
+    }
+
+    fn constant(&self, name: &str, number: &str) -> String {
+        format!("#define {}_{name} {number}", self.prefix)
+    }
+
+    fn of_channel(&self, name: &str, number: &str, stride: u32) -> String {
+        format!(
+            "#define {}_{name}(channel) ({number} + {stride}u * (channel))",
+            self.prefix
+        )
+    }
 }
 
 /// Fills the line of a heading.

@@ -1,8 +1,7 @@
 //! The register map as a package of SystemVerilog, for benches and for logic that reads the card.
 
-use super::constants::{self, Form, Item};
+use super::constants::{self, Form, Language};
 use super::Map;
-use std::fmt::Write;
 
 /// The package.
 pub fn write(map: &Map) -> String {
@@ -25,53 +24,41 @@ package {name}_registers;
         map.title(),
         map.origin
     );
-    let blocks = map.blocks.iter().flat_map(constants::block);
-    for item in constants::head(map).into_iter().chain(blocks) {
-        write_item(&mut text, &item);
-    }
+    let mut items = constants::head(map);
+    items.extend(map.blocks.iter().flat_map(constants::block));
+    text.push_str(&SystemVerilog.print(&items));
     text.push_str("\n    /* verilator lint_on UNUSEDPARAM */\nendpackage\n");
     text
 }
 
-fn number(value: u32, form: Form) -> String {
-    match form {
-        Form::Decimal => format!("32'd{value}"),
-        Form::Hex(digits) => format!("32'h{value:0digits$X}"),
-    }
-}
+struct SystemVerilog;
 
-fn write_item(text: &mut String, item: &Item) {
-    // Writing to a String cannot fail.
-    let _ = match item {
-        Item::Blank => writeln!(text),
-        Item::Heading(name) => writeln!(text, "\n    // ---- {name}\n"),
-        Item::Comment(comment) => writeln!(text, "    // {comment}"),
-        Item::Constant {
-            name,
-            value,
-            form,
-            meaning,
-        } => {
-            let comment = match *meaning {
-                "" => String::new(),
-                meaning => format!(" // {meaning}"),
-            };
-            let value = number(*value, *form);
-            writeln!(
-                text,
-                "    localparam logic [31:0] {name} = {value};{comment}"
-            )
+impl Language for SystemVerilog {
+    const INDENT: &'static str = "    ";
+
+    fn heading(&self, name: &str) -> String {
+        format!("// ---- {name}")
+    }
+
+    fn comment(&self, text: &str) -> String {
+        format!("// {text}")
+    }
+
+    fn number(&self, value: u32, form: Form) -> String {
+        match form {
+            Form::Decimal => format!("32'd{value}"),
+            Form::Hex(digits) => format!("32'h{value:0digits$X}"),
         }
-        Item::OfChannel {
-            name,
-            value,
-            stride,
-            form,
-        } => writeln!(
-            text,
-            "    function automatic logic [31:0] {name}(input logic [31:0] channel);\n        \
-             {name} = {} + 32'd{stride} * channel;\n    endfunction",
-            number(*value, *form)
-        ),
-    };
+    }
+
+    fn constant(&self, name: &str, number: &str) -> String {
+        format!("localparam logic [31:0] {name} = {number};")
+    }
+
+    fn of_channel(&self, name: &str, number: &str, stride: u32) -> String {
+        format!(
+            "function automatic logic [31:0] {name}(input logic [31:0] channel);\n        \
+             {name} = {number} + 32'd{stride} * channel;\n    endfunction"
+        )
+    }
 }
