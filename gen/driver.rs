@@ -19,6 +19,7 @@ files![
     "endat_settings.c",
     "endat_spi.c",
     "endat_stream.c",
+    "endat_t_format.c",
     "endat_texts.c",
     "endat_transports.h",
     "endat_uart.c",

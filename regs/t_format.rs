@@ -6,6 +6,28 @@ use crate::{field, word, Access, Block, BLOCK_STRIDE, T_FORMAT_BASE};
 use word as at;
 use Access::{ReadOnly, Strobe};
 
+/// Resets count only so many times in a row.
+pub const RESETS_IN_A_ROW: u32 = 10;
+
+/// Requests, by their ID on the wire.
+pub mod request {
+    use crate::named::codes;
+
+    codes! {
+        /// Every request.
+        ALL: u8;
+        SINGLE_TURN = 0x0, "single_turn", "single-turn position";
+        MULTI_TURN = 0x1, "multi_turn", "multi-turn position";
+        ENCODER_ID = 0x2, "encoder_id", "kind of encoder";
+        EVERYTHING = 0x3, "everything", "both positions, kind and alarms";
+        WRITE_EEPROM = 0x6, "write_eeprom", "writes a byte of the EEPROM";
+        CLEAR_ERRORS = 0x7, "clear_errors", "clears errors, ten in a row";
+        CLEAR_SINGLE_TURN = 0x8, "clear_single_turn", "makes the present angle zero, ten in a row";
+        CLEAR_MULTI_TURN = 0xC, "clear_multi_turn", "clears turns and errors, ten in a row";
+        READ_EEPROM = 0xD, "read_eeprom", "reads a byte of the EEPROM";
+    }
+}
+
 /// Words that the host reaches, as `host_address` counts them.
 pub mod word {
     /// A request with an exchange of its own.
@@ -31,7 +53,7 @@ pub const T_FORMAT: Block = Block {
         word("send", at::SEND, Strobe, "Sends one request, now or as soon as the exchange under way has ended; not taken while answer.busy.", &[
             field("data", 0, 8, "", "EEPROM data, of request 6"),
             field("address", 8, 7, "", "EEPROM address, of requests 6 and 13; 127 is the page register"),
-            field("id", 16, 4, "", "Request ID"),
+            field("id", 16, 4, "", "Request ID").codes(request::ALL),
         ]),
         word("answer", at::ANSWER, ReadOnly, "What became of the request in send.", &[
             field("data", 0, 8, "", "EEPROM data as they came last"),

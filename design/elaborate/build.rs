@@ -151,6 +151,9 @@ impl Builder {
             fields: (found.into_iter().flat_map(|t| &t.parts))
                 .map(|(name, lines)| (name.as_str(), lines.as_slice()))
                 .collect(),
+            child_names: (block.children.iter())
+                .map(|child| verilog_name(&child.name))
+                .collect(),
             child_inputs: vec![],
             ports_of_child: vec![],
         };

@@ -17,6 +17,8 @@ pub(super) struct Draft<'a> {
     pub symbols: HashMap<String, Symbol>,
     pub enums: Vec<EnumId>,
     pub fields: HashMap<&'a str, &'a [String]>,
+    /// Names of the child blocks.
+    pub child_names: Vec<String>,
     /// Nets that stand for an input of a child (or of a register), with what to call them in a message.
     pub child_inputs: Vec<(NetId, String)>,
     /// For each child block, the nets of its ports.
@@ -55,17 +57,19 @@ impl Draft<'_> {
 
     /// The first of some names that no field has; the last one gets a number if all are taken.
     pub(super) fn free_name_of<const N: usize>(&self, names: [String; N]) -> String {
-        let fields = self.block.atoms.iter().map(|a| a.name.to_lowercase());
-        let children = self.block.children.iter().map(|c| &c.name);
-        let children = children.map(|key| verilog_name(key).to_lowercase());
-        let mut taken: BTreeSet<String> = fields.chain(children).collect();
-        taken.extend(self.module.nets.iter().map(|n| n.name.to_lowercase()));
+        // Verilog tells small letters from capitals, VHDL does not.
+        let is_taken = |name: &String| {
+            let fields = self.block.atoms.iter().map(|a| &a.name);
+            let nets = self.module.nets.iter().map(|n| &n.name);
+            let mut all = fields.chain(&self.child_names).chain(nets);
+            all.any(|taken| taken.eq_ignore_ascii_case(name))
+        };
         let last = names.last().cloned().unwrap_or_default();
         let numbered = (2..).map(|number| format!("{last}_{number}"));
         names
             .into_iter()
             .chain(numbered)
-            .find(|name| !taken.contains(&name.to_lowercase()))
+            .find(|name| !is_taken(name))
             .unwrap_or_default()
     }
 

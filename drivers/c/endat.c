@@ -56,18 +56,28 @@ bool endat_is_t_format(const endat_card *card, uint32_t channel)
     return (channel < ENDAT_CHANNELS_MAX) && (((card->t_format_channels >> channel) & 1u) != 0u);
 }
 
-endat_error endat_needs_endat(const endat_card *card, uint32_t channel)
+static endat_error needs_protocol(const endat_card *card, uint32_t channel, bool t_format)
 {
     endat_error error = ENDAT_OK;
 
     if (channel >= card->channels) {
         error = ENDAT_ERROR_ARGUMENT;
-    } else if (endat_is_t_format(card, channel)) {
+    } else if (endat_is_t_format(card, channel) != t_format) {
         error = ENDAT_ERROR_PROTOCOL;
     } else {
         error = ENDAT_OK;
     }
     return error;
+}
+
+endat_error endat_needs_endat(const endat_card *card, uint32_t channel)
+{
+    return needs_protocol(card, channel, false);
+}
+
+endat_error endat_needs_t_format(const endat_card *card, uint32_t channel)
+{
+    return needs_protocol(card, channel, true);
 }
 
 endat_error endat_needs_service(const endat_card *card, uint32_t channel)
@@ -92,7 +102,7 @@ const char *endat_error_text(endat_error error)
         "the card has another major version of the register map: take the driver that came with the card",
         "the card was made from another configuration: load the bitstream that belongs to this program",
         "the card does not have this part: emit one that has it",
-        "the channel speaks T-format, which does not have this",
+        "the channel speaks the other protocol, EnDat or T-format, which does not have this: endat_card tells which",
         "not ended in time: is a trigger enabled, is the encoder plugged in?",
         "still under way: ask again",
         "the setting reads back as another one: is another master writing, is the link disturbed?",
@@ -101,6 +111,7 @@ const char *endat_error_text(endat_error error)
         "the encoder did not fulfil the request: endat_refusal_text() tells why",
         "the trigger source \"register\" is not enabled: endat_set_triggers()",
         "a set of the stream was damaged: the link is disturbed, or another reader takes from it",
+        "the exchange with the T-format encoder failed: endat_cause_text() of the reply's cause tells why",
     };
     const uint32_t number = (uint32_t)error;
 

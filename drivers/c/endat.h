@@ -37,7 +37,7 @@ typedef enum {
     ENDAT_ERROR_VERSION,        /**< The card has another major version of the register map. */
     ENDAT_ERROR_CONFIGURATION,  /**< The card was made from another configuration than the one expected. */
     ENDAT_ERROR_PART,           /**< The card does not have the part that this takes. */
-    ENDAT_ERROR_PROTOCOL,       /**< The channel speaks T-format, which does not have this. */
+    ENDAT_ERROR_PROTOCOL,       /**< The channel speaks another protocol, which does not have this. */
     ENDAT_ERROR_TIMEOUT,        /**< It did not end in time. */
     ENDAT_ERROR_BUSY,           /**< It is still under way. */
     ENDAT_ERROR_READ_BACK,      /**< A setting reads back as another one than was written. */
@@ -46,6 +46,7 @@ typedef enum {
     ENDAT_ERROR_REFUSED,        /**< The encoder did not fulfil the request; the answer's refusal tells why. */
     ENDAT_ERROR_TRIGGER_OFF,    /**< The source "register" is not enabled: a trigger from here does nothing. */
     ENDAT_ERROR_SET,            /**< A set of the stream was damaged; the next one is a good one again. */
+    ENDAT_ERROR_EXCHANGE,       /**< The exchange with a T-format encoder failed; the reply's cause tells why. */
     ENDAT_ERRORS                /**< How many there are. */
 } endat_error;
 
@@ -291,6 +292,70 @@ endat_error endat_select_infos(const endat_card *card, uint32_t channel, const u
  * @param sequence number of the result that brought it: the difference to the result's sequence is its age in frames.
  */
 endat_error endat_read_info(const endat_card *card, uint32_t channel, uint32_t index, uint16_t *content, uint16_t *sequence);
+
+/* ---- T-format: requests, EEPROM, settings --------------------------------------------------------------------------------------- */
+
+/** What came back of a request to a T-format encoder. */
+typedef struct {
+    uint8_t cause; /**< Why the exchange failed, 0 = it did not: endat_cause_text(). */
+    uint8_t id;    /**< ID that the reply repeats. */
+    uint8_t data;  /**< EEPROM data as they came last. */
+} endat_reply;
+
+/** Fields of the last reply of a T-format encoder, of a trigger or of a request. */
+typedef struct {
+    uint8_t status;     /**< Status field (SF); 0 if none came. */
+    uint8_t encoder_id; /**< Kind of encoder (ENID) as it came last. */
+    uint8_t alarm;      /**< Alarm field (ALMC) as it came last. */
+    uint8_t crc;        /**< CRC as received. */
+} endat_fields;
+
+/**
+ * Sends a request to a T-format encoder, at once or behind the exchange under way, and waits for the reply. A trigger that falls into it
+ * is not taken, and the next result says so.
+ * @param card the card.
+ * @param channel encoder port.
+ * @param id ENDAT_MAP_T_FORMAT_SEND_ID_...
+ * @param address of the EEPROM, for its requests; else 0.
+ * @param data for the EEPROM, for the request that writes it; else 0.
+ * @param limit_ms longest wait.
+ * @param reply what came back.
+ * @return ENDAT_ERROR_EXCHANGE if it failed.
+ */
+endat_error endat_exchange(const endat_card *card, uint32_t channel, uint32_t id, uint32_t address, uint32_t data, uint32_t limit_ms,
+                           endat_reply *reply);
+/**
+ * Reads a byte of the EEPROM of a T-format encoder; address 127 is the page register. ENDAT_ERROR_BUSY if the EEPROM is still writing at
+ * the limit.
+ */
+endat_error endat_read_eeprom(const endat_card *card, uint32_t channel, uint32_t address, uint32_t limit_ms, uint8_t *data);
+/** Writes a byte of the EEPROM, and reads it back when it is there. */
+endat_error endat_write_eeprom(const endat_card *card, uint32_t channel, uint32_t address, uint8_t data, uint32_t limit_ms);
+/**
+ * Clears errors, angle or turns of a T-format encoder: requests that count only several times in a row, so no source triggers meanwhile.
+ * @param card the card.
+ * @param channel encoder port.
+ * @param id ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_...
+ * @param limit_ms longest wait of each exchange.
+ * @return ENDAT_ERROR_EXCHANGE if an alarm is still there behind them.
+ */
+endat_error endat_reset_encoder(const endat_card *card, uint32_t channel, uint32_t id, uint32_t limit_ms);
+/** Fields of the last reply. */
+endat_error endat_read_fields(const endat_card *card, uint32_t channel, endat_fields *fields);
+
+/** Settings of a T-format channel, as the register map explains them. */
+typedef struct {
+    uint32_t bit_cycles;    /**< A bit: endat_period(). */
+    uint32_t request_id;    /**< Request ID of a trigger, ENDAT_MAP_T_FORMAT_SEND_ID_... */
+    uint32_t filter_cycles; /**< Pulses up to this length are ignored. */
+    uint32_t reply_gap_us;  /**< Longest pause before the reply. */
+    uint32_t field_gap_us;  /**< Longest pause between two fields. */
+} endat_t_format_settings;
+
+/** Reads the settings of a T-format channel. */
+endat_error endat_read_t_format_settings(const endat_card *card, uint32_t channel, endat_t_format_settings *settings);
+/** Writes them, while no source triggers, and reads them back. What the map does not allow is refused, and nothing written. */
+endat_error endat_write_t_format_settings(const endat_card *card, uint32_t channel, const endat_t_format_settings *settings);
 
 /* ---- Settings ------------------------------------------------------------------------------------------------------------------ */
 

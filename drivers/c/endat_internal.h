@@ -33,8 +33,31 @@ uint8_t endat_cause_of(uint32_t code, bool is_t_format);
 /** Whether there is this EnDat channel. */
 endat_error endat_needs_endat(const endat_card *card, uint32_t channel);
 
-/** The same, and the part requests. */
+/** Whether there is this EnDat channel, and the part requests. */
 endat_error endat_needs_service(const endat_card *card, uint32_t channel);
+
+/** Whether there is this T-format channel. */
+endat_error endat_needs_t_format(const endat_card *card, uint32_t channel);
+
+/** Pause between two looks at a request, in microseconds. */
+#define ENDAT_REQUEST_PAUSE_US 50u
+
+/** A word with another number in a field. */
+#define ENDAT_WITH(word, field, value) (((word) & ~(uint32_t)field##_MASK) | ENDAT_MAP_PUT(field, value))
+/** Whether a number fits its field. */
+#define ENDAT_FITS(field, value) (ENDAT_MAP_GET(field, ENDAT_MAP_PUT(field, value)) == (value))
+
+/** Words of a channel's settings, in their order: frame, timing, limits. */
+#define ENDAT_SETTINGS_WORDS 3u
+/** Reads them. */
+endat_error endat_read_settings_words(const endat_card *card, uint32_t channel, uint32_t *words);
+/** Writes them while no source triggers, and reads them back. */
+endat_error endat_write_settings_words(const endat_card *card, uint32_t channel, const uint32_t *words);
+
+/** Something to be done with a channel. */
+typedef endat_error (*endat_action)(const endat_card *card, uint32_t channel, const void *what);
+/** Does something while no source triggers. */
+endat_error endat_without_triggers(const endat_card *card, uint32_t channel, endat_action act, const void *what);
 
 /** CRC-16/CCITT-FALSE, which begins with ENDAT_CRC16_START. */
 #define ENDAT_CRC16_START 0xFFFFu

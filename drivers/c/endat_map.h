@@ -23,6 +23,9 @@
 #define ENDAT_MAP_RESULT_WORDS 6u
 #define ENDAT_MAP_RESULT_WORDS_WITH_INFOS 8u
 
+/* How often in a row a T-format encoder takes a request that clears something */
+#define ENDAT_MAP_T_FORMAT_RESETS_IN_A_ROW 10u
+
 /* Content of a field in a word that was read, and a field's content as part of a word to be written. */
 #define ENDAT_MAP_GET(field, word) (((word) & field##_MASK) >> field##_SHIFT)
 #define ENDAT_MAP_PUT(field, value) (((value) << field##_SHIFT) & field##_MASK)
@@ -427,6 +430,15 @@
 /* id: Request ID */
 #define ENDAT_MAP_T_FORMAT_SEND_ID_SHIFT 16u
 #define ENDAT_MAP_T_FORMAT_SEND_ID_MASK 0x000F0000u
+#define ENDAT_MAP_T_FORMAT_SEND_ID_SINGLE_TURN 0u /* single-turn position */
+#define ENDAT_MAP_T_FORMAT_SEND_ID_MULTI_TURN 1u /* multi-turn position */
+#define ENDAT_MAP_T_FORMAT_SEND_ID_ENCODER_ID 2u /* kind of encoder */
+#define ENDAT_MAP_T_FORMAT_SEND_ID_EVERYTHING 3u /* both positions, kind and alarms */
+#define ENDAT_MAP_T_FORMAT_SEND_ID_WRITE_EEPROM 6u /* writes a byte of the EEPROM */
+#define ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_ERRORS 7u /* clears errors, ten in a row */
+#define ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_SINGLE_TURN 8u /* makes the present angle zero, ten in a row */
+#define ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_MULTI_TURN 12u /* clears turns and errors, ten in a row */
+#define ENDAT_MAP_T_FORMAT_SEND_ID_READ_EEPROM 13u /* reads a byte of the EEPROM */
 
 /* ro: What became of the request in send. */
 #define ENDAT_MAP_T_FORMAT_ANSWER_WORD(channel) (0x0C1u + 8u * (channel))
@@ -603,9 +615,17 @@
 #define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_MIN 2u
 #define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_MAX 2047u
 
+/* What period_cycles takes on a T-format channel */
+#define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_T_FORMAT_MIN 8u
+#define ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_T_FORMAT_MAX 127u
+
 /* What position_bits takes */
 #define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_MIN 1u
 #define ENDAT_MAP_CONFIG_FRAME_POSITION_BITS_MAX 48u
+
+/* What start_timeout_us takes on a T-format channel */
+#define ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_T_FORMAT_MIN 1u
+#define ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_T_FORMAT_MAX 63u
 
 /* ---- result ---------------------------------------------------------------- */
 

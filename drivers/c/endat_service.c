@@ -5,9 +5,8 @@
 #include "endat.h"
 #include "endat_internal.h"
 
-/** Pause between two looks at an initialisation, and at a request. */
+/** Pause between two looks at an initialisation. */
 #define STATE_PAUSE_US 500u
-#define REQUEST_PAUSE_US 50u
 /** No trigger is taken for so long behind an aborted frame. */
 #define ABORT_PAUSE_US 30000u
 /** From so many milliseconds on the microseconds of a duration have wrapped, or may have. */
@@ -265,7 +264,7 @@ endat_error endat_send(const endat_card *card, uint32_t channel, uint32_t comman
                 error = ENDAT_ERROR_BUSY;
             }
         }
-    } while ((error == ENDAT_ERROR_BUSY) && endat_wait_more(&wait, REQUEST_PAUSE_US));
+    } while ((error == ENDAT_ERROR_BUSY) && endat_wait_more(&wait, ENDAT_REQUEST_PAUSE_US));
     if (error == ENDAT_ERROR_BUSY) {
         error = ENDAT_ERROR_TIMEOUT;
         if (is_sent) {

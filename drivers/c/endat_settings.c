@@ -8,22 +8,72 @@
 /** Fewest system clocks in an EnDat clock, where DATA is not sampled on both edges. */
 #define SINGLE_EDGE_PERIOD_MIN 4u
 
-/* The three words of a channel follow each other: if not, this does not compile. */
-typedef char endat_settings_follow[((ENDAT_MAP_CONFIG_LIMITS_WORD(0u) - ENDAT_MAP_CONFIG_FRAME_WORD(0u)) == 2u) ? 1 : -1];
+/* The words of a channel follow each other: if not, this does not compile. */
+typedef char endat_settings_follow[((ENDAT_MAP_CONFIG_LIMITS_WORD(0u) - ENDAT_MAP_CONFIG_FRAME_WORD(0u)) == (ENDAT_SETTINGS_WORDS - 1u))
+                                       ? 1
+                                       : -1];
 
 uint32_t endat_period(const endat_card *card, uint32_t clock_hz)
 {
     return (clock_hz == 0u) ? 0u : ((card->system_hz / clock_hz) + (((card->system_hz % clock_hz) != 0u) ? 1u : 0u));
 }
 
+endat_error endat_read_settings_words(const endat_card *card, uint32_t channel, uint32_t *words)
+{
+    uint32_t n;
+    endat_error error = ENDAT_OK;
+
+    for (n = 0u; n < ENDAT_SETTINGS_WORDS; n++) {
+        words[n] = 0u;
+        if (error == ENDAT_OK) {
+            error = endat_read_word(card, ENDAT_MAP_CONFIG_FRAME_WORD(channel) + n, &words[n]);
+        }
+    }
+    return error;
+}
+
+endat_error endat_without_triggers(const endat_card *card, uint32_t channel, endat_action act, const void *what)
+{
+    uint32_t sources = 0u;
+    endat_error error = endat_read_word(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD, &sources);
+
+    if (error == ENDAT_OK) {
+        error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD,
+                                    sources & ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_DISABLED_MASK);
+        if (error == ENDAT_OK) {
+            error = act(card, channel, what);
+        }
+        const endat_error given_back = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD, sources);
+        error = (error == ENDAT_OK) ? given_back : error;
+    }
+    return error;
+}
+
+static endat_error write_words(const endat_card *card, uint32_t channel, const void *what)
+{
+    const uint32_t *const words = (const uint32_t *)what;
+    uint32_t n;
+    endat_error error = ENDAT_OK;
+
+    for (n = 0u; (n < ENDAT_SETTINGS_WORDS) && (error == ENDAT_OK); n++) {
+        error = endat_write_checked(card, ENDAT_MAP_CONFIG_FRAME_WORD(channel) + n, words[n]);
+    }
+    return error;
+}
+
+endat_error endat_write_settings_words(const endat_card *card, uint32_t channel, const uint32_t *words)
+{
+    /* A frame between two writes would run with half of the settings. */
+    return endat_without_triggers(card, channel, write_words, words);
+}
+
 endat_error endat_read_settings(const endat_card *card, uint32_t channel, endat_settings *settings)
 {
-    uint32_t words[3] = {0u, 0u, 0u};
-    uint32_t n;
+    uint32_t words[ENDAT_SETTINGS_WORDS] = {0u, 0u, 0u};
     endat_error error = endat_needs_endat(card, channel);
 
-    for (n = 0u; (n < 3u) && (error == ENDAT_OK); n++) {
-        error = endat_read_word(card, ENDAT_MAP_CONFIG_FRAME_WORD(channel) + n, &words[n]);
+    if (error == ENDAT_OK) {
+        error = endat_read_settings_words(card, channel, words);
     }
     settings->period_cycles = ENDAT_MAP_GET(ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES, words[0]);
     settings->position_bits = ENDAT_MAP_GET(ENDAT_MAP_CONFIG_FRAME_POSITION_BITS, words[0]);
@@ -36,9 +86,6 @@ endat_error endat_read_settings(const endat_card *card, uint32_t channel, endat_
     return error;
 }
 
-/** Whether a number fits its field. */
-#define FITS(field, value) (ENDAT_MAP_GET(field, ENDAT_MAP_PUT(field, value)) == (value))
-
 static bool are_allowed(const endat_card *card, const endat_settings *s)
 {
     const uint32_t least = endat_has(card, ENDAT_MAP_CARD_CAPABILITIES_FEATURES_DOUBLE_EDGE)
@@ -49,56 +96,38 @@ static bool are_allowed(const endat_card *card, const endat_settings *s)
                           (s->position_bits <= card->max_position_bits);
     const bool is_command = (s->command == ENDAT_MAP_CONFIG_FRAME_COMMAND_SEND_POSITION) ||
                             (s->command == ENDAT_MAP_CONFIG_FRAME_COMMAND_SEND_POSITION_ADD_INFO);
-    const bool is_timing = FITS(ENDAT_MAP_CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES, s->first_low_extra_cycles) &&
-                           FITS(ENDAT_MAP_CONFIG_TIMING_START_WINDOW_CYCLES, s->start_window_cycles) &&
-                           FITS(ENDAT_MAP_CONFIG_TIMING_FILTER_CYCLES, s->filter_cycles);
-    const bool are_limits = FITS(ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US, s->start_timeout_us) &&
-                            FITS(ENDAT_MAP_CONFIG_LIMITS_RECOVERY_LIMIT_CYCLES, s->recovery_limit_cycles);
+    const bool is_timing = ENDAT_FITS(ENDAT_MAP_CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES, s->first_low_extra_cycles) &&
+                           ENDAT_FITS(ENDAT_MAP_CONFIG_TIMING_START_WINDOW_CYCLES, s->start_window_cycles) &&
+                           ENDAT_FITS(ENDAT_MAP_CONFIG_TIMING_FILTER_CYCLES, s->filter_cycles);
+    const bool are_limits = ENDAT_FITS(ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US, s->start_timeout_us) &&
+                            ENDAT_FITS(ENDAT_MAP_CONFIG_LIMITS_RECOVERY_LIMIT_CYCLES, s->recovery_limit_cycles);
 
     return is_frame && is_command && is_timing && are_limits;
 }
 
-/** A word with another number in a field. */
-#define WITH(word, field, value) (((word) & ~(uint32_t)field##_MASK) | ENDAT_MAP_PUT(field, value))
-
 endat_error endat_write_settings(const endat_card *card, uint32_t channel, const endat_settings *settings)
 {
-    uint32_t words[3] = {0u, 0u, 0u};
-    uint32_t sources = 0u;
-    uint32_t n;
+    uint32_t words[ENDAT_SETTINGS_WORDS] = {0u, 0u, 0u};
     endat_error error = endat_needs_endat(card, channel);
 
     if ((error == ENDAT_OK) && !are_allowed(card, settings)) {
         error = ENDAT_ERROR_ARGUMENT;
     }
-    for (n = 0u; (n < 3u) && (error == ENDAT_OK); n++) {
-        error = endat_read_word(card, ENDAT_MAP_CONFIG_FRAME_WORD(channel) + n, &words[n]);
-    }
     if (error == ENDAT_OK) {
-        error = endat_read_word(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD, &sources);
+        error = endat_read_settings_words(card, channel, words);
     }
     if (error != ENDAT_OK) {
         return error;
     }
-    words[0] = WITH(words[0], ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES, settings->period_cycles);
-    words[0] = WITH(words[0], ENDAT_MAP_CONFIG_FRAME_POSITION_BITS, settings->position_bits);
-    words[0] = WITH(words[0], ENDAT_MAP_CONFIG_FRAME_COMMAND, settings->command);
-    words[1] = WITH(words[1], ENDAT_MAP_CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES, settings->first_low_extra_cycles);
-    words[1] = WITH(words[1], ENDAT_MAP_CONFIG_TIMING_START_WINDOW_CYCLES, settings->start_window_cycles);
-    words[1] = WITH(words[1], ENDAT_MAP_CONFIG_TIMING_FILTER_CYCLES, settings->filter_cycles);
-    words[2] = WITH(words[2], ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US, settings->start_timeout_us);
-    words[2] = WITH(words[2], ENDAT_MAP_CONFIG_LIMITS_RECOVERY_LIMIT_CYCLES, settings->recovery_limit_cycles);
-    /* A frame between two writes would run with half of the settings. */
-    error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD,
-                                sources & ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_DISABLED_MASK);
-    if (error == ENDAT_OK) {
-        for (n = 0u; (n < 3u) && (error == ENDAT_OK); n++) {
-            error = endat_write_checked(card, ENDAT_MAP_CONFIG_FRAME_WORD(channel) + n, words[n]);
-        }
-        const endat_error given_back = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD, sources);
-        error = (error == ENDAT_OK) ? given_back : error;
-    }
-    return error;
+    words[0] = ENDAT_WITH(words[0], ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES, settings->period_cycles);
+    words[0] = ENDAT_WITH(words[0], ENDAT_MAP_CONFIG_FRAME_POSITION_BITS, settings->position_bits);
+    words[0] = ENDAT_WITH(words[0], ENDAT_MAP_CONFIG_FRAME_COMMAND, settings->command);
+    words[1] = ENDAT_WITH(words[1], ENDAT_MAP_CONFIG_TIMING_FIRST_LOW_EXTRA_CYCLES, settings->first_low_extra_cycles);
+    words[1] = ENDAT_WITH(words[1], ENDAT_MAP_CONFIG_TIMING_START_WINDOW_CYCLES, settings->start_window_cycles);
+    words[1] = ENDAT_WITH(words[1], ENDAT_MAP_CONFIG_TIMING_FILTER_CYCLES, settings->filter_cycles);
+    words[2] = ENDAT_WITH(words[2], ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US, settings->start_timeout_us);
+    words[2] = ENDAT_WITH(words[2], ENDAT_MAP_CONFIG_LIMITS_RECOVERY_LIMIT_CYCLES, settings->recovery_limit_cycles);
+    return endat_write_settings_words(card, channel, words);
 }
 
 endat_error endat_set_triggers(const endat_card *card, uint32_t sources, uint32_t period_cycles)

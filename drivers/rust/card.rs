@@ -280,16 +280,23 @@ impl<L: Link, D: DelayNs> Card<L, D> {
 
     /// An EnDat channel of this card.
     pub(crate) fn needs_endat(&self, channel: usize) -> Result<(), Error<L::Error>> {
-        if channel >= self.facts.channels {
-            return Err(Error::Argument);
-        }
-        match self.facts.is_t_format(channel) {
-            true => Err(Error::Protocol),
-            false => Ok(()),
+        self.needs_protocol(channel, false)
+    }
+
+    /// A T-format channel of this card.
+    pub(crate) fn needs_t_format(&self, channel: usize) -> Result<(), Error<L::Error>> {
+        self.needs_protocol(channel, true)
+    }
+
+    fn needs_protocol(&self, channel: usize, t_format: bool) -> Result<(), Error<L::Error>> {
+        match channel < self.facts.channels {
+            false => Err(Error::Argument),
+            true if self.facts.is_t_format(channel) != t_format => Err(Error::Protocol),
+            true => Ok(()),
         }
     }
 
-    /// The same with a service.
+    /// An EnDat channel with a service.
     pub(crate) fn needs_service(&self, channel: usize) -> Result<(), Error<L::Error>> {
         self.needs_endat(channel)?;
         self.needs(Part::Requests)

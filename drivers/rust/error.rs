@@ -3,7 +3,7 @@
 use crate::answer::Answer;
 use core::fmt;
 use endat_regs::service::STEPS;
-use endat_regs::Part;
+use endat_regs::{causes, Part};
 
 /// Why a call did not do what it should.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub enum Error<E> {
     },
     /// The card does not have the part that this takes.
     Part(Part),
-    /// The channel speaks T-format, which does not have this.
+    /// The channel speaks another protocol, which does not have this.
     Protocol,
     /// It did not end in time.
     Timeout,
@@ -48,6 +48,11 @@ pub enum Error<E> {
     },
     /// The encoder did not fulfil the request; the answer's refusal tells why.
     Refused(Answer),
+    /// The exchange with a T-format encoder failed.
+    Exchange {
+        /// Why, a number of `endat_regs::causes::ALL`.
+        cause: u8,
+    },
     /// The source "register" is not enabled: a trigger from here does nothing.
     TriggerOff,
     /// A set of the stream was damaged; the next one is a good one again.
@@ -84,7 +89,9 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                 "the card does not have the part {}: emit one that has it",
                 part.named().name
             ),
-            Self::Protocol => f.write_str("the channel speaks T-format, which does not have this"),
+            Self::Protocol => f.write_str(
+                "the channel speaks the other protocol, EnDat or T-format, which does not have this: Card::facts() tells which",
+            ),
             Self::Timeout => {
                 f.write_str("not ended in time: is a trigger enabled, is the encoder plugged in?")
             }
@@ -107,6 +114,14 @@ impl<E: fmt::Debug> fmt::Display for Error<E> {
                 f,
                 "the encoder did not fulfil the request: {}",
                 answer.refusal_meaning()
+            ),
+            Self::Exchange { cause } => write!(
+                f,
+                "the exchange with the T-format encoder failed ({}): {}",
+                causes::of(*cause).map_or("unknown", |cause| cause.name),
+                causes::of(*cause)
+                    .and_then(|cause| causes::advice(cause.name))
+                    .map_or("the driver does not know why", |[_, remedy]| remedy),
             ),
             Self::TriggerOff => f.write_str(
                 "the trigger source \"register\" is not enabled: Card::set_triggers()",

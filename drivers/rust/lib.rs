@@ -37,6 +37,7 @@ mod service;
 mod settings;
 mod spi;
 mod stream;
+mod t_format;
 mod uart;
 
 pub use answer::Answer;
@@ -51,7 +52,8 @@ pub use result::{
     difference, readings, signed, AdditionalData, Moment, Reading, MOMENT_WORDS, RESULT_WORDS,
 };
 pub use service::{Request, State};
-pub use settings::Settings;
+pub use settings::{Settings, Sources};
 pub use spi::Spi;
 pub use stream::{Sample, Set, Stream, SET_BYTES};
+pub use t_format::{Fields, Reply, TFormatSettings};
 pub use uart::{Serial, Uart};

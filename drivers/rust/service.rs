@@ -13,7 +13,7 @@ use endat_regs::{Part, SERVICE};
 
 /// Pause between two looks at an initialisation, and at a request.
 const STATE_PAUSE_US: u32 = 500;
-const REQUEST_PAUSE_US: u32 = 50;
+pub(crate) const REQUEST_PAUSE_US: u32 = 50;
 /// No trigger is taken for so long behind an aborted frame.
 const ABORT_PAUSE_US: u32 = 30_000;
 /// From so many milliseconds on the microseconds of a duration have wrapped, or may have.

@@ -31,6 +31,17 @@ pub struct Settings {
     pub recovery_limit_cycles: u32,
 }
 
+/// Where triggers come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sources {
+    /// Rising edges of the trigger pin.
+    pub pin: bool,
+    /// The timer.
+    pub timer: bool,
+    /// [`Card::trigger`] and [`Card::measure`].
+    pub register: bool,
+}
+
 /// The word of a channel that each setting stands in, and its field.
 fn places() -> [(usize, &'static Field); 8] {
     [
@@ -99,7 +110,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Ok(Settings::of(self.settings_words(channel)?))
     }
 
-    fn settings_words(&mut self, channel: usize) -> Result<[u32; 3], Error<L::Error>> {
+    pub(crate) fn settings_words(&mut self, channel: usize) -> Result<[u32; 3], Error<L::Error>> {
         Ok([
             self.link.read(word!(CHANNEL_CONFIG.frame, channel))?,
             self.link.read(word!(CHANNEL_CONFIG.timing, channel))?,
@@ -124,18 +135,26 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         }
         let words = self.settings_words(channel)?;
         let words = settings.put(words).ok_or(Error::Argument)?;
-        let address = word!(CARD_CONFIG.trigger_sources);
-        let sources = self.link.read(address)?;
         // A frame between two writes would run with half of the settings.
-        let disabled = field!(CARD_CONFIG.trigger_sources.disabled).mask();
-        let stopped = self.write_checked(address, sources & disabled);
-        let written = stopped.and_then(|()| self.write_settings_words(channel, words));
-        // After every error, too.
-        let given_back = self.put_back(address, sources);
-        written.and(given_back)
+        self.without_triggers(|card| card.write_settings_words(channel, words))
     }
 
-    fn write_settings_words(
+    /// Does something while no source triggers.
+    pub(crate) fn without_triggers(
+        &mut self,
+        act: impl FnOnce(&mut Self) -> Result<(), Error<L::Error>>,
+    ) -> Result<(), Error<L::Error>> {
+        let address = word!(CARD_CONFIG.trigger_sources);
+        let sources = self.link.read(address)?;
+        let disabled = field!(CARD_CONFIG.trigger_sources.disabled).mask();
+        let stopped = self.write_checked(address, sources & disabled);
+        let done = stopped.and_then(|()| act(self));
+        // After every error, too.
+        let given_back = self.put_back(address, sources);
+        done.and(given_back)
+    }
+
+    pub(crate) fn write_settings_words(
         &mut self,
         channel: usize,
         [frame, timing, limits]: [u32; 3],
@@ -149,15 +168,13 @@ impl<L: Link, D: DelayNs> Card<L, D> {
     /// those of before, unless the link has failed for that, too.
     pub fn set_triggers(
         &mut self,
-        pin: bool,
-        timer: bool,
-        register: bool,
+        sources: Sources,
         period_cycles: Option<u32>,
     ) -> Result<(), Error<L::Error>> {
         let fields = [
-            (field!(CARD_CONFIG.trigger_sources.pin), pin),
-            (field!(CARD_CONFIG.trigger_sources.timer), timer),
-            (field!(CARD_CONFIG.trigger_sources.register), register),
+            (field!(CARD_CONFIG.trigger_sources.pin), sources.pin),
+            (field!(CARD_CONFIG.trigger_sources.timer), sources.timer),
+            (field!(CARD_CONFIG.trigger_sources.register), sources.register),
         ];
         let period = field!(CARD_CONFIG.trigger_period.value);
         if period_cycles.is_some_and(|cycles| !period.allows(cycles, false)) {

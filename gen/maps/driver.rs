@@ -4,6 +4,7 @@
 use super::{header, Map, MapBlock, MapRegister};
 use crate::artifact::Artifact;
 use endat_regs::service::{request_state, NAME_PLATE, STEPS};
+use endat_regs::t_format::RESETS_IN_A_ROW;
 use endat_regs::{causes, Named, BLOCKS, CHANNELS_MAX, ID, INFO_FIRST, MAP_BYTES, VERSION};
 use std::fmt::Write;
 
@@ -78,6 +79,9 @@ fn map() -> String {
 #define {PREFIX}_RESULT_WORDS {INFO_FIRST}u
 #define {PREFIX}_RESULT_WORDS_WITH_INFOS {with_infos}u
 
+/* How often in a row a T-format encoder takes a request that clears something */
+#define {PREFIX}_T_FORMAT_RESETS_IN_A_ROW {RESETS_IN_A_ROW}u
+
 /* Content of a field in a word that was read, and a field's content as part of a word to be written. */
 #define {PREFIX}_GET(field, word) (((word) & field##_MASK) >> field##_SHIFT)
 #define {PREFIX}_PUT(field, value) (((value) << field##_SHIFT) & field##_MASK)
@@ -108,20 +112,27 @@ fn write_causes(text: &mut String) {
     }
 }
 
-/// Least and greatest number that an EnDat channel takes, where one range says it.
+/// Least and greatest number that a channel of each protocol takes, where one range says it.
 fn write_limits(text: &mut String, block: &MapBlock) {
     for entry in &block.registers {
         for field in entry.register.fields {
-            let [(least, greatest)] = field.limits.endat else {
-                continue;
-            };
             let name = [block.block.name, entry.register.name, field.name].join("_");
             let name = name.to_ascii_uppercase();
-            let _ = writeln!(
-                text,
-                "\n/* What {} takes */\n#define {PREFIX}_{name}_MIN {least}u\n#define {PREFIX}_{name}_MAX {greatest}u",
-                field.name
-            );
+            let protocols = [
+                (field.limits.endat, "", ""),
+                (field.limits.t_format, " on a T-format channel", "_T_FORMAT"),
+            ];
+            for (ranges, channel, suffix) in protocols {
+                let [(least, greatest)] = ranges else {
+                    continue;
+                };
+                // Writing to a String cannot fail.
+                let _ = writeln!(
+                    text,
+                    "\n/* What {} takes{channel} */\n#define {PREFIX}_{name}{suffix}_MIN {least}u\n#define {PREFIX}_{name}{suffix}_MAX {greatest}u",
+                    field.name
+                );
+            }
         }
     }
 }

@@ -5,6 +5,8 @@
 //! `position_sense/tamagawa_over_soc_uart` (rates, requests); HPMicro SDK, `samples/drivers/sei` (EEPROM, logged frames);
 //! Microchip T-Format Interface IP (complaint bits).
 
+use endat_regs::t_format::request;
+
 /// Bit rate, in bits per second.
 pub const BIT_HZ: u64 = 2_500_000;
 /// The faster rate that some encoders have, in bits per second.
@@ -96,15 +98,15 @@ impl Request {
     /// The ID on the wire, 4 bits.
     pub const fn id(self) -> u8 {
         match self {
-            Self::SingleTurn => 0x0,
-            Self::MultiTurn => 0x1,
-            Self::EncoderId => 0x2,
-            Self::Everything => 0x3,
-            Self::WriteEeprom => 0x6,
-            Self::ClearErrors => 0x7,
-            Self::ClearSingleTurn => 0x8,
-            Self::ClearMultiTurn => 0xC,
-            Self::ReadEeprom => 0xD,
+            Self::SingleTurn => request::SINGLE_TURN,
+            Self::MultiTurn => request::MULTI_TURN,
+            Self::EncoderId => request::ENCODER_ID,
+            Self::Everything => request::EVERYTHING,
+            Self::WriteEeprom => request::WRITE_EEPROM,
+            Self::ClearErrors => request::CLEAR_ERRORS,
+            Self::ClearSingleTurn => request::CLEAR_SINGLE_TURN,
+            Self::ClearMultiTurn => request::CLEAR_MULTI_TURN,
+            Self::ReadEeprom => request::READ_EEPROM,
         }
     }
 

@@ -62,6 +62,8 @@ pub struct Encoder {
     /// When the last reply ended.
     ended: Option<Time>,
     resets: (u8, u32),
+    /// Where its positions are told from.
+    zero: (u32, u32),
     eeprom: Eeprom,
     violations: Vec<Violation>,
     requests: Vec<Vec<u8>>,
@@ -84,6 +86,7 @@ impl Encoder {
             planned: VecDeque::new(),
             ended: None,
             resets: (0, 0),
+            zero: (0, 0),
             violations: vec![],
             requests: vec![],
             replies: vec![],
@@ -276,8 +279,9 @@ impl Encoder {
             _ => request[0],
         };
         let config = &self.config;
-        let single = &config.single_turn.to_le_bytes()[..3];
-        let multi = &config.multi_turn.to_le_bytes()[..3];
+        let (single, multi) = self.told();
+        let single = &single.to_le_bytes()[..3];
+        let multi = &multi.to_le_bytes()[..3];
         let mut status = config.status | complaints;
         if let Defect::Status(more) = config.defect {
             status |= more;
@@ -306,6 +310,16 @@ impl Encoder {
         bytes
     }
 
+    /// Single- and multi-turn position as it tells them: from where they have been reset.
+    pub fn told(&self) -> (u32, u32) {
+        let from = |place: u32, zero: u32| place.wrapping_sub(zero) & 0xFF_FFFF;
+        let config = &self.config;
+        (
+            from(config.single_turn, self.zero.0),
+            from(config.multi_turn, self.zero.1),
+        )
+    }
+
     fn count_resets(&mut self, id: u8) {
         self.resets = if self.resets.0 == id {
             (id, self.resets.1 + 1)
@@ -315,11 +329,12 @@ impl Encoder {
         if self.resets.1 != RESET_REQUESTS {
             return;
         }
+        // The shaft stays where it is; from now on it is told from here.
         if id == 8 {
-            self.config.single_turn = 0;
+            self.zero.0 = self.config.single_turn;
         }
         if id == 0xC {
-            self.config.multi_turn = 0;
+            self.zero.1 = self.config.multi_turn;
         }
         if id == 7 || id == 0xC {
             self.config.status &= 0x0F;

@@ -107,11 +107,15 @@ fn a_reset_takes_ten_requests_in_a_row() {
     (0..9).for_each(|_| drop(ask(&mut encoder, 0xC2)));
     ask(&mut encoder, 0x02);
     (0..9).for_each(|_| drop(ask(&mut encoder, 0xC2)));
-    assert_eq!(encoder.config.single_turn, 5);
+    assert_eq!(encoder.told().0, 5);
     ask(&mut encoder, 0xC2);
-    assert_eq!(encoder.config.single_turn, 0);
+    assert_eq!(encoder.told(), (0, 6));
     (0..10).for_each(|_| drop(ask(&mut encoder, 0x62)));
-    assert_eq!((encoder.config.multi_turn, encoder.config.alarm), (0, 0));
+    assert_eq!((encoder.told(), encoder.config.alarm), ((0, 0), 0));
+    // The shaft turns on.
+    encoder.config.single_turn = 4;
+    encoder.config.multi_turn = 7;
+    assert_eq!(encoder.told(), (0xFF_FFFF, 1));
 }
 
 #[test]

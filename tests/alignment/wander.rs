@@ -1,9 +1,13 @@
 //! Delays that change: slowly, and by a step.
 
 use super::{count, Kind};
+use crate::tools::third;
 use endat_hdl::endat::{line_delay::mode, transaction::cause};
 use endat_sim::{campaign::Traces, line::Jitter, MS, US};
 use rtl_design::engine::Compiled;
+
+/// What a change of it tries other cases by.
+const TRACKER: &str = include_str!("../../hdl/endat/phase_tracker.rs");
 
 /// A microsecond in 10 000 frames, and then half a bit at once.
 fn wanders(kind: Kind, jitter_bits: f64) {
@@ -27,19 +31,25 @@ fn wanders(kind: Kind, jitter_bits: f64) {
 
 #[test]
 fn slow_drift_costs_no_frame() {
-    wanders(Kind::single(4), 0.0);
-    wanders(Kind::single(8), 0.2);
-    wanders(Kind::double(4), 0.2);
+    let all = [
+        (Kind::single(4), 0.0),
+        (Kind::single(8), 0.2),
+        (Kind::double(4), 0.2),
+    ];
+    for &(kind, jitter_bits) in third(&all, TRACKER.len()) {
+        wanders(kind, jitter_bits);
+    }
 }
 
 #[test]
 fn a_step_costs_one_frame_at_most_and_never_a_wrong_position() {
-    for kind in [
+    let kinds = [
         Kind::single(4),
         Kind::single(8),
         Kind::double(4),
         Kind::single(32),
-    ] {
+    ];
+    for &kind in third(&kinds, TRACKER.len()) {
         for sign in [-1.0, 1.0] {
             for sixteenths in 1..=16 {
                 let mut case = kind.case(0.05, 3.0, 60, sixteenths);

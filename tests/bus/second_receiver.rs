@@ -1,6 +1,7 @@
 //! A second receiver on the same samples: it agrees where nothing is upset, and tells where something is.
 
 use super::{at, frame, Master, WORD_BUSES};
+use crate::tools::is_whole;
 use crate::three_way::{three_way, Stimulus};
 use endat_hdl::card::bus::HostBus;
 use endat_hdl::endat::features::Features;
@@ -84,7 +85,8 @@ fn no_fault_of_the_line_makes_the_receivers_differ() {
 #[test]
 fn upsets_of_either_receiver_are_told() {
     let of = |port, only: &str| {
-        let draw = Draw::Grid { moments: 24 };
+        let moments = if is_whole() { 24 } else { 8 };
+        let draw = Draw::Grid { moments };
         counted(&Upsets::new(&[port], draw, 3, only).unwrap())
     };
     let class = |tally: &Tally, name: &str| tally.count(|row| row.class == name);
@@ -107,7 +109,7 @@ fn upsets_of_either_receiver_are_told() {
     );
     assert!(class(&first, "silent_other") <= class(&alone, "silent_other"));
     let detected = [&first, &second].map(|tally| class(tally, "detected"));
-    assert!(detected.iter().all(|n| *n > 1_000), "{detected:?}");
+    assert!(detected.iter().all(|n| *n > 300), "{detected:?}");
 }
 
 /// Catches a comparison that the emitted Verilog makes in another cycle.

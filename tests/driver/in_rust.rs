@@ -2,132 +2,42 @@
 
 use super::everything;
 use super::rig::{self, Rig, ALL_PARTS, WIDTHS};
+use super::world::World;
 use crate::tools::third;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::spi::{ErrorType, Operation, SpiDevice};
 use endat_driver::regs::{self, causes::endat, service::request_state};
 use endat_driver::{
-    difference, signed, Card, Error, Link, ModeCommand, Moment, Parallel, Part, Registers, Serial,
-    Spi, Uart,
+    difference, signed, Card, Error, Link, ModeCommand, Moment, Parallel, Part, Sources, Spi, Uart,
 };
 use endat_gen::config::parse;
 use endat_hdl::card::bus::HostBus;
 use endat_sim::encoder::Defect;
-use std::cell::RefCell;
 use std::convert::Infallible;
 use std::fmt::Debug;
 use std::path::Path;
-use std::rc::Rc;
 
-/// Both ends of the driver's bus, and what a test does with the encoders.
-#[derive(Clone)]
-struct World(Rc<RefCell<Rig>>);
+/// Triggers from here.
+const HOST: Sources = Sources {
+    pin: false,
+    timer: false,
+    register: true,
+};
+const HOST_AND_TIMER: Sources = Sources {
+    timer: true,
+    ..HOST
+};
 
-impl World {
-    fn new(rig: Rig) -> Self {
-        Self(Rc::new(RefCell::new(rig)))
-    }
-
-    fn told(&self, line: &str) -> String {
-        self.0.borrow_mut().answer(line)
-    }
-
-    fn ask(&self, line: &str) -> u64 {
-        u64::from_str_radix(&self.told(line), 16).unwrap()
-    }
-
-    /// Leaves a cycle.
-    fn pause_us(&self, us: u32) {
-        self.told(&format!("delay {us:x}"));
-    }
-
-    fn open<L: Link<Error: Debug>>(&self, link: L) -> Card<L, Self> {
-        let hash = u32::from_str_radix(&self.0.borrow().hash, 16).unwrap();
-        let mut link = link;
-        let wrong = Card::open(&mut link, self.clone(), Some(hash ^ 1));
-        let found = wrong.err().unwrap();
-        assert!(matches!(found, Error::Configuration { found } if found == hash));
-        let mut card = Card::open(link, self.clone(), Some(hash)).unwrap();
-        assert_eq!(card.facts().channels, WIDTHS.len());
-        card.try_link().unwrap();
-        card
-    }
-
-    fn is_content(&self) {
-        assert_eq!(
-            self.ask("violations"),
-            0,
-            "the encoders saw something wrong"
-        );
-    }
-}
-
-impl DelayNs for World {
-    fn delay_ns(&mut self, ns: u32) {
-        self.pause_us(ns.div_ceil(1_000));
-    }
-}
-
-impl Link for World {
-    type Error = Infallible;
-
-    fn read(&mut self, word_address: u32) -> Result<u32, Error<Infallible>> {
-        Ok(self.ask(&format!("r {word_address:x}")) as u32)
-    }
-
-    fn write(&mut self, word_address: u32, value: u32) -> Result<(), Error<Infallible>> {
-        self.told(&format!("w {word_address:x} {value:x}"));
-        Ok(())
-    }
-}
-
-impl ErrorType for World {
-    type Error = Infallible;
-}
-
-impl SpiDevice for World {
-    fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Infallible> {
-        let [Operation::TransferInPlace(bytes)] = operations else {
-            panic!("chip select is low for one transfer");
-        };
-        let sent: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-        take(&self.told(&format!("spi {sent}")), bytes);
-        Ok(())
-    }
-}
-
-impl Registers for World {
-    type Error = Infallible;
-
-    fn get(&mut self, register: u8) -> Result<u16, Infallible> {
-        Ok(self.ask(&format!("get {register:x}")) as u16)
-    }
-
-    fn put(&mut self, register: u8, value: u16) -> Result<(), Infallible> {
-        self.told(&format!("put {register:x} {value:x}"));
-        Ok(())
-    }
-}
-
-impl Serial for World {
-    type Error = Infallible;
-
-    fn send(&mut self, bytes: &[u8]) -> Result<(), Infallible> {
-        let sent: String = bytes.iter().map(|byte| format!("{byte:02x}")).collect();
-        self.told(&format!("send {sent}"));
-        Ok(())
-    }
-
-    fn receive(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
-        take(&self.told(&format!("receive {:x}", bytes.len())), bytes);
-        Ok(())
-    }
-}
-
-fn take(told: &str, bytes: &mut [u8]) {
-    for (n, byte) in bytes.iter_mut().enumerate() {
-        *byte = u8::from_str_radix(&told[2 * n..2 * n + 2], 16).unwrap();
-    }
+/// The card of a link, which has the hash of its configuration.
+fn opened_over<L: Link<Error: Debug>>(mut link: L, world: &World) -> Card<L, World> {
+    let hash = u32::from_str_radix(&world.0.borrow().hash, 16).unwrap();
+    let wrong = Card::open(&mut link, world.clone(), Some(hash ^ 1));
+    let found = wrong.err().unwrap();
+    assert!(matches!(found, Error::Configuration { found } if found == hash));
+    let mut card = Card::open(link, world.clone(), Some(hash)).unwrap();
+    assert_eq!(card.facts().channels, WIDTHS.len());
+    card.try_link().unwrap();
+    card
 }
 
 /// A card under test.
@@ -138,7 +48,7 @@ struct Bench<L> {
 
 impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
     fn new(world: World, link: L) -> Self {
-        let card = world.open(link);
+        let card = opened_over(link, &world);
         Self { card, world }
     }
 
@@ -251,11 +161,11 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
         let card = &mut self.card;
         card.write_settings(0, &before).unwrap();
         assert_eq!(card.read_settings(0).unwrap(), before);
-        card.set_triggers(false, false, false, None).unwrap();
+        card.set_triggers(Sources::default(), None).unwrap();
         assert_eq!(card.measure(1_000), Err(Error::TriggerOff));
-        let short = card.set_triggers(false, true, true, Some(3));
+        let short = card.set_triggers(HOST_AND_TIMER, Some(3));
         assert_eq!(short, Err(Error::Argument));
-        card.set_triggers(false, false, true, None).unwrap();
+        card.set_triggers(HOST, None).unwrap();
         card.calibrate(3).unwrap();
         self.measure_well();
     }
@@ -410,9 +320,11 @@ impl<L: Link<Error: Debug + PartialEq>> Bench<L> {
         self.wait_for_both();
         self.measure_well();
         let period = self.card.facts().system_hz / 5_000;
-        self.card
-            .set_triggers(false, true, false, Some(period))
-            .unwrap();
+        let timer = Sources {
+            timer: true,
+            ..Sources::default()
+        };
+        self.card.set_triggers(timer, Some(period)).unwrap();
         self.world.told("slow 14");
         let hold = u32::from(endat_driver::regs::CARD_CONFIG.base)
             + u32::from(endat_driver::regs::CARD_CONFIG.word("hold").offset);
@@ -691,7 +603,7 @@ fn one_failed_access_leaves_the_card_as_it_was() {
             card.link_mut().accesses = 0;
             card.link_mut().fails_at = Some(fails_at);
             let became = match what {
-                0 => card.set_triggers(false, true, true, Some(1_000)),
+                0 => card.set_triggers(HOST_AND_TIMER, Some(1_000)),
                 _ => card.write_settings(0, &settings),
             };
             // The last access of all is the read that says how the sources are.

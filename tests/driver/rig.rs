@@ -4,6 +4,7 @@
 use super::compiled;
 use crate::bus::{parallel, spi, Master};
 use endat_gen::config::{parse, Project};
+use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
 use endat_hdl::card::bus::{
     apb::ApbCard, axi_lite::AxiLiteCard, parallel::ParallelCard, spi::SpiCard,
     wishbone::WishboneCard, HostBus,
@@ -88,6 +89,8 @@ enum Front {
     Spi(spi::Host),
     Parallel(parallel::Host),
     Uart(crate::host::Host),
+    /// The program's own virtual card, over its UART.
+    Virtual(Box<VirtualCard>),
 }
 
 impl Front {
@@ -97,6 +100,7 @@ impl Front {
             Self::Spi(host) => &mut host.0.bench,
             Self::Parallel(host) => &mut host.0.bench,
             Self::Uart(host) => &mut host.bench,
+            Self::Virtual(card) => card.bench(),
             Self::Outside(..) => unreachable!("it has a bench of its own"),
         }
     }
@@ -158,6 +162,12 @@ impl Rig {
         Self::at(front, kind, &project)
     }
 
+    /// The virtual card of this project.
+    pub fn of_virtual_card(project: &Project) -> Self {
+        let card = VirtualCard::new(project, &VirtualConfig::default()).unwrap();
+        Self::at(Front::Virtual(Box::new(card)), "uart", project)
+    }
+
     fn at(front: Front, kind: &'static str, project: &Project) -> Self {
         Self {
             front,
@@ -166,7 +176,7 @@ impl Rig {
             noise: 0,
             rng: Rng::new(3),
             system_hz: project.card.system_hz,
-            encoders: project.card.channels.len(),
+            encoders: project.card.channels.iter().filter(|c| c.is_endat()).count(),
             slow_cycles: 0,
             flipped: 0,
         }
@@ -242,7 +252,10 @@ impl Rig {
         match words[0] {
             "delay" => {
                 let cycles = u64::from(number(1)) * cycles_per_us;
-                self.front.bench().run_cycles(cycles);
+                match &mut self.front {
+                    Front::Virtual(card) => card.run(cycles),
+                    front => front.bench().run_cycles(cycles),
+                }
                 String::new()
             }
             "slow" => {
@@ -282,7 +295,10 @@ impl Rig {
                     let violations = bench.violations(n).iter();
                     violations.filter(|(_, v)| is_one(v)).count() + bench.conflicts(n).len()
                 };
-                format!("{:x}", (0..encoders).map(of).sum::<usize>())
+                let t_format = (0..bench.t_format_count()).map(|n| bench.t_format(n));
+                let of_t_format = t_format.map(|link| link.encoder().violations().len());
+                let all = (0..encoders).map(of).chain(of_t_format);
+                format!("{:x}", all.sum::<usize>())
             }
             _ => self.access(&words),
         }
@@ -334,6 +350,24 @@ impl Rig {
             (Front::Uart(host), "receive") => (0..number(1))
                 .map(|_| format!("{:02x}", host.receive()))
                 .collect(),
+            (Front::Virtual(card), "send") => {
+                card.send_bytes(&bytes(words[1]));
+                String::new()
+            }
+            (Front::Virtual(card), "receive") => {
+                let count = number(1) as usize;
+                let mut came = vec![];
+                for _ in 0..LINES {
+                    came.extend(card.take_bytes());
+                    if came.len() >= count {
+                        break;
+                    }
+                    card.run(100);
+                }
+                // Nobody asks for more than is answered.
+                assert_eq!(came.len(), count);
+                came.iter().map(|b| format!("{b:02x}")).collect()
+            }
             (_, what) => panic!("{what}: no access of this bus"),
         }
     }

@@ -14,6 +14,9 @@ void make_link(const char *kind, endat_link *link);
 /* Frames on SPI that went out again. */
 uint32_t disturbed(void);
 
+/* A card with an EnDat and a T-format channel, whose timer triggers. */
+void t_format(const endat_card *card);
+
 /* Without a card. */
 void alone(void);
 

@@ -1,7 +1,6 @@
 //! A link that loses, adds and changes bytes, and one that is unplugged.
 
-use super::{card_of, host};
-use endat_gen::config::load_preset;
+use super::{card_of, found, quick, SERVICE};
 use endat_gen::virtual_card::VirtualCard;
 use endat_host::registers::Place;
 use endat_host::{Bridge, Card, HostError, Transport};
@@ -66,7 +65,7 @@ impl Transport for Disturbed {
 /// Catches a bridge that hangs, or gives words of another command: whatever byte is lost or added, the next reads are right.
 #[test]
 fn after_a_lost_or_added_byte_the_words_are_right_again() {
-    let card = card_of(&load_preset("s6_two_channel").unwrap());
+    let card = card_of(&quick("s6_two_channel"));
     let link = Disturbed {
         card,
         harm: None,
@@ -110,7 +109,7 @@ fn after_a_lost_or_added_byte_the_words_are_right_again() {
 /// The registers as a fuzzer sees them: random words at random addresses while the card samples.
 #[test]
 fn random_accesses_do_not_disturb_the_other_channel_nor_hang_the_card() {
-    let mut card = host("s6_two_channel_service");
+    let mut card = found(&quick(SERVICE));
     let mut state = 0x9E37_79B9_7F4A_7C15u64;
     let mut random = move || {
         state ^= state << 13;

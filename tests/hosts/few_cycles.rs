@@ -1,6 +1,7 @@
 //! A card with few system clocks to a bit: positions from two on, additional data, requests and initialisation from four on.
 
 use super::desk::Desk;
+use crate::tools::third;
 use endat_gen::config::{parse, Project};
 use endat_gen::virtual_card::VirtualConfig;
 use endat_hdl::endat::transaction::cause;
@@ -45,13 +46,15 @@ fn check_all_good(desk: &mut Desk, channel: usize, at_least: u32, request_frames
 /// Catches additional data that begin before the position stands in its place, and a supplement that is one pulse off.
 #[test]
 fn everything_works_from_four_system_clocks_to_a_bit_on() {
-    for (system_hz, clock_hz, cable_m) in [
+    let all = [
         (64_000_000, 16_000_000, 0.5),
         (64_000_000, 16_000_000, 20.0),
         (80_000_000, 16_000_000, 13.0),
         (48_000_000, 8_000_000, 20.0),
         (56_000_000, 8_000_000, 7.0),
-    ] {
+    ];
+    let additional_data = include_str!("../../hdl/endat/add_info.rs");
+    for &(system_hz, clock_hz, cable_m) in third(&all, additional_data.len()) {
         let project = parse("few.toml", &text(system_hz, clock_hz, DOUBLE_EDGE, SERVICE)).unwrap();
         let mut desk = desk(&project, cable_m);
         for (channel, bits) in [(0, 37), (1, 25)] {

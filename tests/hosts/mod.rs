@@ -22,15 +22,47 @@ pub use ports::{slow_card, Served};
 use endat_gen::config::{load_preset, parse, preset, Project};
 use endat_gen::virtual_card::{VirtualCard, VirtualConfig};
 use endat_host::{Bridge, Card};
+use std::sync::LazyLock;
 
 /// A preset with other line parts or numbers: pairs of texts that are replaced.
 fn changed(name: &str, changes: &[(&str, &str)]) -> Project {
+    parse("changed.toml", &changed_text(name, changes)).unwrap()
+}
+
+fn changed_text(name: &str, changes: &[(&str, &str)]) -> String {
     let mut text = preset(name).unwrap().to_owned();
     for (from, to) in changes {
         assert!(text.contains(from), "{from}");
         text = text.replacen(from, to, 1);
     }
-    parse("changed.toml", &text).unwrap()
+    text
+}
+
+/// A preset of 100 MHz at a clock that takes a fifth of the time to simulate.
+pub fn quick(name: &str) -> Project {
+    changed(name, &QUICK)
+}
+
+/// The one with a service.
+const SERVICE: &str = "s6_two_channel_service";
+/// What makes it quick.
+const QUICK: [(&str, &str); 6] = [
+    ("system_hz = 100_000_000", "system_hz = 20_000_000"),
+    ("clock_hz = 3_125_000", "clock_hz = 2_000_000"),
+    ("filter_ns = 20", "filter_ns = 50"),
+    ("start_window_ns = 80", "start_window_ns = 100"),
+    ("baud = 3_000_000", "baud = 2_000_000"),
+    ("sample_hz = 10_000", "sample_hz = 5_000"),
+];
+
+/// The port of the quick card with a service.
+pub fn quick_service_port() -> &'static str {
+    static PORT: LazyLock<String> = LazyLock::new(|| {
+        let file = crate::tools::folder("quick_service").join("quick_service.toml");
+        std::fs::write(&file, changed_text(SERVICE, &QUICK)).unwrap();
+        format!("virtual:{}", file.display())
+    });
+    &PORT
 }
 
 fn card_of(project: &Project) -> VirtualCard {
@@ -39,6 +71,10 @@ fn card_of(project: &Project) -> VirtualCard {
 
 /// A host at the virtual card of a preset.
 fn host(preset: &str) -> Card<VirtualCard> {
-    let card = card_of(&load_preset(preset).unwrap());
-    Card::find(Bridge::new(card)).unwrap()
+    found(&load_preset(preset).unwrap())
+}
+
+/// A host at the virtual card of a project.
+fn found(project: &Project) -> Card<VirtualCard> {
+    Card::find(Bridge::new(card_of(project))).unwrap()
 }

@@ -16,7 +16,7 @@ from pandablocks.commands import Arm, Get, GetBlockInfo, GetFieldInfo, GetState,
 from pandablocks.responses import EndData, ReadyData, StartData
 
 SAMPLES = 400
-RATE_HZ = 10_000
+RATE_HZ = 5_000
 CHANNELS = 2
 
 
@@ -63,8 +63,8 @@ def ioc():
     assert "iocRun: All initialization complete" in told and "Traceback" not in told, told
 
 
-def main(program, folder, *more):
-    card = ["--port", "virtual:s6_two_channel_service"]
+def main(program, folder, port, *more):
+    card = ["--port", port]
     server = subprocess.Popen(
         [program, "serve", *card, "--samples", str(SAMPLES)], stdout=subprocess.PIPE, text=True
     )

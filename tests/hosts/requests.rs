@@ -1,13 +1,11 @@
 //! Requests of the library: whole answers, and requests that wait.
 
-use super::desk::Desk;
-use endat_gen::config::load_preset;
+use super::{desk::Desk, quick, SERVICE};
 use endat_gen::virtual_card::VirtualConfig;
 use endat_host::mailbox::Request;
 
 fn desk() -> Desk {
-    let project = load_preset("s6_two_channel_service").unwrap();
-    Desk::new(&project, &VirtualConfig::default())
+    Desk::new(&quick(SERVICE), &VirtualConfig::default())
 }
 
 #[test]

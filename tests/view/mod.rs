@@ -54,6 +54,12 @@ impl View {
         Self::new(name, port, &["--listen", "127.0.0.1:0"])
     }
 
+    /// What the address that it has printed ends with.
+    fn token(&self) -> &str {
+        let (_, token) = self.line.split_once("?token=").expect(&self.line);
+        token.split_whitespace().next().unwrap()
+    }
+
     /// Status and body of a request with these headers.
     fn with(&self, method: &str, path: &str, headers: &str) -> (u16, String) {
         let text = format!("{method} {path} HTTP/1.1\r\n{headers}\r\n");
@@ -314,8 +320,7 @@ fn others_are_refused_and_nonsense_ends_in_an_error() {
 #[test]
 fn a_page_that_others_may_open_has_a_token() {
     let view = View::new("view-token", "virtual", &["--listen", "0.0.0.0:0"]);
-    let (_, token) = view.line.split_once("?token=").expect(&view.line);
-    let token = token.split_whitespace().next().unwrap();
+    let token = view.token();
     assert_eq!(token.len(), 32, "{token}");
     let ask =
         |path: &str, headers: &str| view.with("GET", path, &format!("Host: card.lab\r\n{headers}"));
@@ -470,7 +475,8 @@ fn what_cannot_be_served_is_told_at_once() {
     }
 }
 
-/// In a browser, by keyboard and mouse, wide and narrow, light and dark; leaves its pictures for people to look at.
+/// In a browser that has come with the token, by keyboard and mouse, wide and narrow, light and dark; leaves its pictures for people to
+/// look at.
 #[test]
 fn a_browser_shows_the_page_and_obeys_its_keys() {
     let check = "the live page is opened in a browser";
@@ -490,10 +496,11 @@ fn a_browser_shows_the_page_and_obeys_its_keys() {
     let line = line.replacen("parts = []", "parts = [\"alignment\", \"margin\"]", 1);
     fs::write(&config, format!("{before}\n[line]{line}")).unwrap();
     let port = format!("virtual:{}", config.display());
-    let view = View::local("view-browser", &port);
+    let view = View::new("view-browser", &port, &["--listen", "0.0.0.0:0"]);
+    let url = format!("http://{}/?token={}", view.address, view.token());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/view/browser.py");
     let output = Command::new("python3")
-        .args([script, &format!("http://{}/", view.address)])
+        .args([script, &url])
         .arg(&dir)
         .arg(browser)
         .output()

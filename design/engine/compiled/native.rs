@@ -15,6 +15,9 @@ use cranelift_module::{FuncId, Linkage, Module, ModuleError};
 use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
+/// Code of designs with fewer segments is verified before it is made, in builds with assertions.
+const CHECKED_SEGMENTS: usize = 300;
+
 /// How values are held: one machine word for each net, or one bit of many copies.
 pub(in crate::engine) trait Lower {
     /// Emits what a segment computes and stores. Nets with the condition, not 0 if one of them has changed.
@@ -194,7 +197,9 @@ impl Native {
         for (name, value) in set {
             flags.set(name, value).map_err(|e| e.to_string())?;
         }
-        if !cfg!(debug_assertions) {
+        // The same few rules make all code: a small design shows a wrong one, and a large one would take long.
+        let is_checked = cfg!(debug_assertions) && form.segments.len() < CHECKED_SEGMENTS;
+        if !is_checked {
             flags
                 .set("enable_verifier", "false")
                 .map_err(|e| e.to_string())?;
