@@ -990,6 +990,12 @@ module s6_two_channel_tb;
         end
         frame(CYCLE_NS);
 
+        tell("line delay once more");
+        // A line that has been measured is measured again when the host asks for it.
+        write_word(CARD_CALIBRATE, ~(32'hFFFFFFFF << CHANNELS));
+        #(SETTLE_NS);
+        measuring_frame(ENDAT);
+
         tell("held results");
         // Held results stand still; let go, they show what has come meanwhile.
         new_positions;
