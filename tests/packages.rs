@@ -33,24 +33,83 @@ fn version(text: &str) -> [u64; 3] {
     [(); 3].map(|()| parts.next().unwrap_or(0))
 }
 
+/// What firmware is made of: an older Rust is enough for it.
+const FOR_FIRMWARE: [&str; 2] = ["endat-driver", "endat-regs"];
+
 /// Catches a dependency that wants a newer Rust than the workspace says.
 #[test]
 fn rust_version_is_what_the_dependencies_need() {
     let metadata = metadata();
     let packages = metadata["packages"].as_array().unwrap();
-    let wanted = packages.iter().filter(|p| !is_own(p)).filter_map(|p| {
-        let name = p["name"].as_str()?;
-        Some((version(p["rust_version"].as_str()?), name))
-    });
-    let (greatest, name) = wanted.max().unwrap();
+    let greatest_of = |is_meant: &dyn Fn(&str) -> bool| {
+        let wanted = packages.iter().filter(|p| !is_own(p)).filter_map(|p| {
+            let name = p["name"].as_str().filter(|name| is_meant(name))?;
+            Some((version(p["rust_version"].as_str()?), name))
+        });
+        wanted.max().unwrap_or(([0; 3], "nobody"))
+    };
+    let of_all = greatest_of(&|_| true);
     for package in packages.iter().filter(|p| is_own(p)) {
         let said = package["rust_version"].as_str().unwrap();
+        let is_for_firmware = FOR_FIRMWARE.map(Value::from).contains(&package["name"]);
+        let (greatest, name) = match is_for_firmware {
+            true => greatest_of(&|name| {
+                let needs = package["dependencies"].as_array().unwrap().iter();
+                needs.filter(|d| d["kind"].is_null()).any(|d| d["name"] == name)
+            }),
+            false => of_all,
+        };
         assert!(
             version(said) >= greatest,
             "{}: rust-version = {said}: {name} needs {greatest:?}; raise it in Cargo.toml",
             package["name"]
         );
     }
+}
+
+/// The driver with the Rust that it asks for, and for processors without an operating system: as far as they are installed, for neither
+/// comes from where packages come from. Catches a function that is younger, and one that needs a system.
+#[test]
+fn the_driver_builds_with_an_older_rust_and_for_small_processors() {
+    let listed = |arguments: &[&str]| {
+        let output = Command::new("rustup").args(arguments).output();
+        output.map_or(String::new(), |o| {
+            String::from_utf8_lossy(&o.stdout).into_owned()
+        })
+    };
+    let metadata = metadata();
+    let mut packages = metadata["packages"].as_array().unwrap().iter();
+    let driver = packages.find(|p| p["name"] == FOR_FIRMWARE[0]).unwrap();
+    let oldest = driver["rust_version"].as_str().unwrap();
+    let toolchains = listed(&["toolchain", "list"]);
+    let is_there = |name: &str| toolchains.lines().any(|line| line.starts_with(name));
+    let targets = listed(&["target", "list", "--installed"]);
+    let mut builds = vec![];
+    if is_there(&format!("{oldest}-")) {
+        builds.push((oldest, None));
+    }
+    let small = targets.lines().filter(|target| target.contains("-none"));
+    builds.extend(small.map(|target| ("", Some(target))));
+    let folder = crate::tools::folder("driver-for-firmware");
+    for (toolchain, target) in &builds {
+        let mut command = match toolchain.is_empty() {
+            true => Command::new(env!("CARGO")),
+            false => {
+                let mut command = Command::new("rustup");
+                command.args(["run", toolchain, "cargo"]);
+                command
+            }
+        };
+        command
+            .args(["check", "-p", FOR_FIRMWARE[0], "--offline", "--locked", "--target-dir"])
+            .arg(&folder)
+            .args(target.map(|target| format!("--target={target}")))
+            .current_dir(env!("CARGO_MANIFEST_DIR"));
+        let output = command.output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{toolchain} {target:?}: {told}");
+    }
+    println!("built: {builds:?}");
 }
 
 /// Packages of a build and the features they have in it.

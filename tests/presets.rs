@@ -206,16 +206,19 @@ fn run((card, engine): &(CardConfig, Compiled), first: usize) -> Vec<String> {
 /// A preset is a promise: an encoder within its limits gives positions and nothing else. Each limit is at either end twice, or more often.
 #[test]
 fn every_preset_runs_without_a_fault_at_corners_of_its_encoders() {
+    let turn = include_str!("../hdl/endat/transaction.rs").len();
     let corners: &[usize] = match tools::is_whole() {
         true => &[0, 3, 5, 6, 9, 10, 12, 15],
-        false => &[0, 5, 9, 14],
+        // One and its opposite.
+        false => [&[0, 15], &[5, 10], &[9, 6]][turn % 3],
     };
     for (name, _) in PRESETS {
         let project = load_preset(name).unwrap();
         let made = pushing(&project);
         // An initialisation takes long; each channel has another corner anyway.
         let firsts = match project.card.service.initialise {
-            true => &[1, 14],
+            true if tools::is_whole() => &[1, 14][..],
+            true => [&[1][..], &[14]][turn % 2],
             false => corners,
         };
         for first in firsts {

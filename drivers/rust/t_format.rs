@@ -155,13 +155,14 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         wait: &mut Wait,
     ) -> Result<u8, Error<L::Error>> {
         let busy = causes::number(causes::t_format::EEPROM_BUSY as u8, true);
+        let mut is_in_time = true;
         loop {
             match self.exchange_within(channel, words, wait) {
-                Err(Error::Exchange { cause }) if cause == busy => {
-                    if !self.pause(wait, REQUEST_PAUSE_US) {
-                        return Err(Error::Busy);
-                    }
+                // The last look comes behind the last pause.
+                Err(Error::Exchange { cause }) if cause == busy && is_in_time => {
+                    is_in_time = self.pause(wait, REQUEST_PAUSE_US);
                 }
+                Err(Error::Exchange { cause }) if cause == busy => return Err(Error::Busy),
                 came => return Ok(came?.data),
             }
         }

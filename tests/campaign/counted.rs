@@ -98,6 +98,10 @@ fn bad_arguments_of_parts_are_refused_with_their_limits() {
             &["--subject", "port", "--only", "bridge."],
             "--only = bridge.: no register of --subject port begins like this",
         ),
+        (
+            &["--subject", "port", "--only", "receiver.,reciever."],
+            "--only = reciever.: no register of --subject port begins like this",
+        ),
     ] {
         let outcome = run(&[&upsets[..], arguments].concat());
         assert_eq!(outcome.exit_code, 2, "{arguments:?}");

@@ -1,7 +1,6 @@
 //! A host that is slower than the card: what is lost is lost as whole sets, and counted.
 
-use super::{card_of, host};
-use endat_gen::config::load_preset;
+use super::{card_of, found, quick, SERVICE};
 use endat_gen::virtual_card::VirtualCard;
 use endat_host::feed::{Feed, Row};
 use endat_host::registers::Place;
@@ -11,7 +10,6 @@ use std::collections::{BTreeSet, VecDeque};
 use std::io;
 use std::time::Duration;
 
-const PRESET: &str = "s6_two_channel_service";
 /// Bytes that the operating system keeps for a program that does not read: a hundred sets and a part of one.
 const ROOM: usize = 100 * 28 + 11;
 
@@ -61,9 +59,9 @@ fn positions_sent(card: &mut VirtualCard) -> [BTreeSet<u64>; 2] {
 fn assert_rows(rows: &VecDeque<Row>, sent: &[BTreeSet<u64>; 2]) {
     for (before, row) in rows.iter().zip(rows.iter().skip(1)) {
         assert_eq!(row.trigger, before.trigger + 1 + row.missing);
-        // The time stamps are those of the triggers: the preset's ten thousand a second at 100 MHz.
+        // The time stamps are those of the triggers: five thousand a second at 20 MHz.
         let triggers = row.trigger - before.trigger;
-        assert_eq!(row.cycles - before.cycles, triggers * 10_000);
+        assert_eq!(row.cycles - before.cycles, triggers * 4_000);
     }
     for row in rows {
         for (cell, sent) in row.cells.iter().zip(sent) {
@@ -79,7 +77,7 @@ fn assert_rows(rows: &VecDeque<Row>, sent: &[BTreeSet<u64>; 2]) {
 #[test]
 fn a_host_that_is_away_for_long_knows_what_it_has_missed() {
     let link = Sluggish {
-        card: card_of(&load_preset(PRESET).unwrap()),
+        card: card_of(&quick(SERVICE)),
         kept: VecDeque::new(),
         thrown_away: 0,
     };
@@ -90,8 +88,8 @@ fn a_host_that_is_away_for_long_knows_what_it_has_missed() {
     let mut feed = Feed::begin(&mut card, false).unwrap();
     let mut rows = VecDeque::new();
     let wait = Duration::from_millis(2);
-    for pause_ms in [0, 3, 30, 1, 50, 0] {
-        card.bridge().transport().away(pause_ms * 100_000);
+    for pause_ms in [0, 6, 60, 2, 100, 0] {
+        card.bridge().transport().away(pause_ms * 20_000);
         let until = rows.len() + 150;
         while rows.len() < until {
             feed.fill(&mut card, &mut rows, wait).unwrap();
@@ -112,7 +110,7 @@ fn a_host_that_is_away_for_long_knows_what_it_has_missed() {
 /// Catches a buffer that overwrites, a count of lost sets that is not that of the gaps, and half a set.
 #[test]
 fn a_host_that_drains_too_slowly_gets_whole_sets_and_the_number_of_the_others() {
-    let mut card = host(PRESET);
+    let mut card = found(&quick(SERVICE));
     for channel in [0, 1] {
         card.wait_for_initialisation(channel).unwrap();
     }
@@ -128,9 +126,9 @@ fn a_host_that_drains_too_slowly_gets_whole_sets_and_the_number_of_the_others() 
             word.to_be_bytes().into_iter().for_each(|b| decoder.push(b));
         }
     };
-    // 112 bytes in 2 ms are four sets; twenty come.
+    // 112 bytes in 4 ms are four sets; twenty come.
     for _ in 0..40 {
-        card.bridge().transport().run(200_000);
+        card.bridge().transport().run(80_000);
         drain(&mut card, &mut decoder, 28);
     }
     card.write(&at("stream_control"), 0).unwrap();

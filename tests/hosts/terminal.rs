@@ -172,7 +172,7 @@ fn long_work_has_a_bar_on_a_terminal_and_lines_elsewhere() {
         "--port",
         "virtual",
         "--samples",
-        "2000",
+        "1000",
         "--force",
         "--out",
         &out,
@@ -181,7 +181,7 @@ fn long_work_has_a_bar_on_a_terminal_and_lines_elsewhere() {
     let (seen, code) = terminal.end();
     assert_eq!(code, Some(0), "{seen:?}");
     assert!(
-        seen.contains(" of 2000 sample sets, ") && seen.contains(" left") && seen.contains("[="),
+        seen.contains(" of 1000 sample sets, ") && seen.contains(" left") && seen.contains("[="),
         "{seen:?}"
     );
     // The message behind it has its colour.
@@ -189,7 +189,7 @@ fn long_work_has_a_bar_on_a_terminal_and_lines_elsewhere() {
     let output = program().args(log).output().unwrap();
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(!told.contains('\x1b') && !told.contains('['), "{told}");
-    assert!(told.starts_with("200 of 2000 sample sets"), "{told}");
+    assert!(told.starts_with("100 of 1000 sample sets"), "{told}");
 }
 
 /// Catches colour in a file, and where nobody wants it.

@@ -269,14 +269,22 @@ fn chosen(arguments: &CampaignArgs, seed: u64) -> Result<(&'static str, String, 
                 is_t_format,
                 is_card,
             };
-            let made = upsets(&subjects, draw, seed, only);
-            let made = made.and_then(|made| match count(made.as_ref()) {
-                0 => Err(GenError::input(format!(
-                    "--only = {}: no register of --subject {subject} begins like this; `campaign upsets` prints their blocks, or leave it out",
-                    shorten(only)
-                ))),
-                _ => Ok(made),
-            });
+            let of = |only: &str| {
+                let made = upsets(&subjects, draw, seed, only)?;
+                match count(made.as_ref()) {
+                    0 => Err(GenError::input(format!(
+                        "--only = {}: no register of --subject {subject} begins like this; `campaign upsets` prints their blocks, or leave it out",
+                        shorten(only)
+                    ))),
+                    _ => Ok(made),
+                }
+            };
+            // Each of several beginnings, by itself, too: a wrong one would be missing in silence.
+            let several = only.split(',').filter(|_| only.contains(','));
+            for begin in several {
+                of(begin)?;
+            }
+            let made = of(only);
             ("upsets", plan, made)
         }
     })
