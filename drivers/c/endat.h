@@ -122,7 +122,7 @@ typedef struct {
 /** What became of a channel's last trigger. */
 typedef struct {
     uint64_t position;        /**< Last good position; bit 0 is the LSB. */
-    uint32_t timestamp;       /**< First falling clock edge of the frame that brought it: system clock cycles, wrapping. */
+    uint32_t timestamp;       /**< First falling clock edge of the frame that brought it; T-format: start bit of the request. System clock cycles, wrapping. */
     uint16_t sequence;        /**< Number of results, wrapping. */
     uint16_t age_us;          /**< Of the position; stops at 65535. */
     uint16_t delay_cycles;    /**< Tracked line delay. */
@@ -132,7 +132,7 @@ typedef struct {
     bool valid;               /**< There is a good position. */
     bool fresh;               /**< The last result brought it: test this, not the cause. */
     bool stale;               /**< A trigger has come since this result. */
-    bool fits;                /**< The position fits the CRC that the encoder sent with it; if not, it is neither valid nor fresh. */
+    bool fits;                /**< The position fits the CRC that the encoder sent with it, or there is nothing to check, as of T-format; if not, it is neither valid nor fresh. */
     endat_info info[2];       /**< Additional data 1 and 2 of this frame; none on cards without requests. */
 } endat_result;
 
@@ -295,9 +295,9 @@ endat_error endat_read_info(const endat_card *card, uint32_t channel, uint32_t i
 
 /* ---- T-format: requests, EEPROM, settings --------------------------------------------------------------------------------------- */
 
-/** What came back of a request to a T-format encoder. */
+/** What came back of a request to a T-format encoder; all 0 unless the call gives ENDAT_OK, _EXCHANGE, _BUSY or _READ_BACK. */
 typedef struct {
-    uint8_t cause; /**< Why the exchange failed, 0 = it did not: endat_cause_text(). */
+    uint8_t cause; /**< Why the exchange failed, or the alarm that a good reply told; 0 = neither: endat_cause_text(). */
     uint8_t id;    /**< ID that the reply repeats. */
     uint8_t data;  /**< EEPROM data as they came last. */
 } endat_reply;
@@ -318,35 +318,41 @@ typedef struct {
  * @param id ENDAT_MAP_T_FORMAT_SEND_ID_...
  * @param address of the EEPROM, for its requests; else 0.
  * @param data for the EEPROM, for the request that writes it; else 0.
- * @param limit_ms longest wait.
+ * @param limit_ms longest wait for what is under way before it; the exchange itself takes less than 2 ms, and is waited for.
  * @param reply what came back.
- * @return ENDAT_ERROR_EXCHANGE if it failed.
+ * @return ENDAT_ERROR_EXCHANGE if it failed; a request that did not reach the card goes out again, and is ENDAT_ERROR_TIMEOUT at the limit.
  */
 endat_error endat_exchange(const endat_card *card, uint32_t channel, uint32_t id, uint32_t address, uint32_t data, uint32_t limit_ms,
                            endat_reply *reply);
 /**
- * Reads a byte of the EEPROM of a T-format encoder; address 127 is the page register. ENDAT_ERROR_BUSY if the EEPROM is still writing at
- * the limit.
+ * Reads a byte of the EEPROM of a T-format encoder, reply->data; address 127 is the page register. ENDAT_ERROR_BUSY if the EEPROM is
+ * still writing at the limit.
  */
-endat_error endat_read_eeprom(const endat_card *card, uint32_t channel, uint32_t address, uint32_t limit_ms, uint8_t *data);
-/** Writes a byte of the EEPROM, and reads it back when it is there. */
-endat_error endat_write_eeprom(const endat_card *card, uint32_t channel, uint32_t address, uint8_t data, uint32_t limit_ms);
+endat_error endat_read_eeprom(const endat_card *card, uint32_t channel, uint32_t address, uint32_t limit_ms, endat_reply *reply);
+/**
+ * Writes a byte of the EEPROM, and reads it back when it is there; address 127 is the page register. ENDAT_ERROR_BUSY: it was still
+ * writing at the limit, and what it reads as then is not known; ENDAT_ERROR_READ_BACK: it has another byte, reply->data.
+ */
+endat_error endat_write_eeprom(const endat_card *card, uint32_t channel, uint32_t address, uint8_t data, uint32_t limit_ms,
+                               endat_reply *reply);
 /**
  * Clears errors, angle or turns of a T-format encoder: requests that count only several times in a row, so no source triggers meanwhile.
+ * What it has done is seen in the next position: a link without a check may have lost one of them.
  * @param card the card.
  * @param channel encoder port.
  * @param id ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_...
- * @param limit_ms longest wait of each exchange.
- * @return ENDAT_ERROR_EXCHANGE if an alarm is still there behind them.
+ * @param limit_ms as of endat_exchange(), of each of them.
+ * @param reply what came back last.
+ * @return ENDAT_ERROR_EXCHANGE if one of them failed, or an alarm is still there behind them: reply->cause.
  */
-endat_error endat_reset_encoder(const endat_card *card, uint32_t channel, uint32_t id, uint32_t limit_ms);
+endat_error endat_reset_encoder(const endat_card *card, uint32_t channel, uint32_t id, uint32_t limit_ms, endat_reply *reply);
 /** Fields of the last reply. */
 endat_error endat_read_fields(const endat_card *card, uint32_t channel, endat_fields *fields);
 
 /** Settings of a T-format channel, as the register map explains them. */
 typedef struct {
     uint32_t bit_cycles;    /**< A bit: endat_period(). */
-    uint32_t request_id;    /**< Request ID of a trigger, ENDAT_MAP_T_FORMAT_SEND_ID_... */
+    uint32_t request_id;    /**< Request ID of a trigger, 0 to 3: ENDAT_MAP_T_FORMAT_SEND_ID_... */
     uint32_t filter_cycles; /**< Pulses up to this length are ignored. */
     uint32_t reply_gap_us;  /**< Longest pause before the reply. */
     uint32_t field_gap_us;  /**< Longest pause between two fields. */
@@ -354,7 +360,10 @@ typedef struct {
 
 /** Reads the settings of a T-format channel. */
 endat_error endat_read_t_format_settings(const endat_card *card, uint32_t channel, endat_t_format_settings *settings);
-/** Writes them, while no source triggers, and reads them back. What the map does not allow is refused, and nothing written. */
+/**
+ * Writes them, while no source triggers, and reads them back. What the map does not allow is refused, and nothing written; so are
+ * requests of a trigger that bring no position or kind, and a filter of half a bit or more.
+ */
 endat_error endat_write_t_format_settings(const endat_card *card, uint32_t channel, const endat_t_format_settings *settings);
 
 /* ---- Settings ------------------------------------------------------------------------------------------------------------------ */

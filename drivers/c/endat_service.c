@@ -131,10 +131,12 @@ static endat_error control(const endat_card *card, uint32_t channel, uint32_t wo
 
 endat_error endat_initialise(const endat_card *card, uint32_t channel)
 {
-    if ((channel < card->channels) && !endat_has(card, ENDAT_MAP_CARD_CAPABILITIES_FEATURES_INITIALISE)) {
-        return ENDAT_ERROR_PART;
+    endat_error error = endat_needs_endat(card, channel);
+
+    if ((error == ENDAT_OK) && !endat_has(card, ENDAT_MAP_CARD_CAPABILITIES_FEATURES_INITIALISE)) {
+        error = ENDAT_ERROR_PART;
     }
-    return control(card, channel, ENDAT_MAP_SERVICE_CONTROL_INITIALISE_MASK);
+    return (error == ENDAT_OK) ? control(card, channel, ENDAT_MAP_SERVICE_CONTROL_INITIALISE_MASK) : error;
 }
 
 endat_error endat_clear(const endat_card *card, uint32_t channel)
@@ -189,7 +191,7 @@ endat_error endat_request_begin(const endat_card *card, endat_request *request, 
     }
     if (state.unplugged) {
         error = ENDAT_ERROR_UNPLUGGED;
-    } else if (state.initialising || ((word & ENDAT_MAP_SERVICE_REQUEST_STATE_BUSY_MASK) != 0u)) {
+    } else if (state.initialising || (state.starts == 0u) || ((word & ENDAT_MAP_SERVICE_REQUEST_STATE_BUSY_MASK) != 0u)) {
         error = ENDAT_ERROR_BUSY;
     } else {
         request->channel = channel;
@@ -309,8 +311,8 @@ endat_error endat_select_infos(const endat_card *card, uint32_t channel, const u
     uint32_t n;
 
     for (n = 0u; (n < count) && (count <= ENDAT_MAP_SERVICE_LIST_LENGTH_LENGTH_MAX); n++) {
-        /* Bits 7..5 are those that select additional data. */
-        if ((error == ENDAT_OK) && ((mrs[n] & 0xE0u) != 0x40u)) {
+        /* Bits 7..5 are those that select additional data, with bits 3..0 = 15 none. */
+        if ((error == ENDAT_OK) && (((mrs[n] & 0xE0u) != 0x40u) || ((mrs[n] & 0x0Fu) == 0x0Fu))) {
             error = ENDAT_ERROR_ARGUMENT;
         }
     }

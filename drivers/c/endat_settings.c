@@ -32,6 +32,17 @@ endat_error endat_read_settings_words(const endat_card *card, uint32_t channel, 
     return error;
 }
 
+/** Writes the sources of before, also where one access fails: all wait for them. */
+static endat_error give_back(const endat_card *card, uint32_t sources)
+{
+    endat_error error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD, sources);
+
+    if (error != ENDAT_OK) {
+        error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD, sources);
+    }
+    return error;
+}
+
 endat_error endat_without_triggers(const endat_card *card, uint32_t channel, endat_action act, const void *what)
 {
     uint32_t sources = 0u;
@@ -43,7 +54,7 @@ endat_error endat_without_triggers(const endat_card *card, uint32_t channel, end
         if (error == ENDAT_OK) {
             error = act(card, channel, what);
         }
-        const endat_error given_back = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_WORD, sources);
+        const endat_error given_back = give_back(card, sources);
         error = (error == ENDAT_OK) ? given_back : error;
     }
     return error;
@@ -148,6 +159,9 @@ endat_error endat_set_triggers(const endat_card *card, uint32_t sources, uint32_
                                     word & ~(uint32_t)ENDAT_MAP_CARD_CONFIG_TRIGGER_SOURCES_TIMER_MASK);
         if (error == ENDAT_OK) {
             error = endat_write_checked(card, ENDAT_MAP_CARD_CONFIG_TRIGGER_PERIOD_WORD, period_cycles);
+        }
+        if (error != ENDAT_OK) {
+            (void)give_back(card, word);
         }
     }
     if (error == ENDAT_OK) {

@@ -5,7 +5,10 @@
 #include "endat.h"
 #include "endat_internal.h"
 
-/** Waits until one of these bits of the answer is set, or is not. */
+/** An exchange is over after so long, whatever comes: the longest pauses that can be set, and all fields at the slowest bit. */
+#define EXCHANGE_US 2000u
+
+/** Waits until a bit of the answer is set, or is not. */
 static endat_error answer_when(const endat_card *card, uint32_t channel, uint32_t mask, bool is_set, endat_wait *wait, uint32_t *answer)
 {
     bool is_in_time = true;
@@ -22,32 +25,92 @@ static endat_error answer_when(const endat_card *card, uint32_t channel, uint32_
     return error;
 }
 
-static endat_error exchange_within(const endat_card *card, uint32_t channel, uint32_t request, endat_wait *wait, endat_reply *reply)
-{
-    uint32_t answer = 0u;
-    /* One that somebody has asked for before comes first. */
-    endat_error error = answer_when(card, channel, ENDAT_MAP_T_FORMAT_ANSWER_BUSY_MASK, false, wait, &answer);
-
-    if (error == ENDAT_OK) {
-        error = endat_write_word(card, ENDAT_MAP_T_FORMAT_SEND_WORD(channel), request);
-    }
-    if (error == ENDAT_OK) {
-        error = answer_when(card, channel, ENDAT_MAP_T_FORMAT_ANSWER_DONE_MASK, true, wait, &answer);
-    }
-    reply->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_CAUSE, answer), true);
-    reply->id = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_ID, answer);
-    reply->data = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_DATA, answer);
-    if ((error == ENDAT_OK) && (reply->cause != 0u)) {
-        error = ENDAT_ERROR_EXCHANGE;
-    }
-    return error;
-}
-
-/** A request as a word; the arguments fit. */
+/** A request as it is written; its parts fit. */
 static uint32_t request_word(uint32_t id, uint32_t address, uint32_t data)
 {
     return ENDAT_MAP_PUT(ENDAT_MAP_T_FORMAT_SEND_ID, id) | ENDAT_MAP_PUT(ENDAT_MAP_T_FORMAT_SEND_ADDRESS, address) |
            ENDAT_MAP_PUT(ENDAT_MAP_T_FORMAT_SEND_DATA, data);
+}
+
+/** Sends a request that nobody is before, and waits for the end of the exchange. */
+static endat_error exchange_once(const endat_card *card, uint32_t channel, uint32_t request, uint32_t *answer)
+{
+    endat_wait wait;
+    endat_error error = endat_write_word(card, ENDAT_MAP_T_FORMAT_SEND_WORD(channel), request);
+
+    if (error == ENDAT_OK) {
+        endat_wait_begin(&wait, card, EXCHANGE_US);
+        error = answer_when(card, channel, ENDAT_MAP_T_FORMAT_ANSWER_DONE_MASK, true, &wait, answer);
+    }
+    return error;
+}
+
+/** Whether a request clears something. */
+static bool is_reset(uint32_t id)
+{
+    return (id == ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_ERRORS) || (id == ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_SINGLE_TURN) ||
+           (id == ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_MULTI_TURN);
+}
+
+/** Whether this comes with a good reply. */
+static bool is_alarm(uint8_t cause)
+{
+    return (cause == ENDAT_CAUSE_COUNTING_ERROR) || (cause == ENDAT_CAUSE_MULTI_TURN_ALARM);
+}
+
+/** The answer of before, if there is one, is made to repeat another ID than that of the next request. */
+static endat_error tell_apart(const endat_card *card, uint32_t channel, uint32_t id, endat_wait *wait)
+{
+    uint32_t answer = 0u;
+    endat_error error = answer_when(card, channel, ENDAT_MAP_T_FORMAT_ANSWER_BUSY_MASK, false, wait, &answer);
+    const uint32_t other = (id == ENDAT_MAP_T_FORMAT_SEND_ID_ENCODER_ID) ? ENDAT_MAP_T_FORMAT_SEND_ID_SINGLE_TURN
+                                                                         : ENDAT_MAP_T_FORMAT_SEND_ID_ENCODER_ID;
+    const bool is_done = (answer & ENDAT_MAP_T_FORMAT_ANSWER_DONE_MASK) != 0u;
+
+    /* Resets count in a row only. */
+    if ((error == ENDAT_OK) && is_done && (ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_ID, answer) == id) && !is_reset(id)) {
+        error = exchange_once(card, channel, request_word(other, 0u, 0u), &answer);
+    }
+    return error;
+}
+
+static void clear_reply(endat_reply *reply)
+{
+    reply->cause = 0u;
+    reply->id = 0u;
+    reply->data = 0u;
+}
+
+static endat_error exchange_within(const endat_card *card, uint32_t channel, uint32_t request, endat_wait *wait, endat_reply *reply)
+{
+    const uint32_t id = ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_SEND_ID, request);
+    uint32_t answer = 0u;
+    bool is_in_time = true;
+    bool is_lost = true;
+    /* A write that is lost leaves the answer of before: another ID between tells. */
+    endat_error error = tell_apart(card, channel, id, wait);
+
+    clear_reply(reply);
+    while ((error == ENDAT_OK) && is_lost) {
+        error = exchange_once(card, channel, request, &answer);
+        if (error == ENDAT_OK) {
+            reply->cause = endat_cause_of(ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_CAUSE, answer), true);
+            reply->id = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_ID, answer);
+            reply->data = (uint8_t)ENDAT_MAP_GET(ENDAT_MAP_T_FORMAT_ANSWER_DATA, answer);
+            is_lost = (reply->id != id);
+            if ((reply->cause != 0u) && !is_alarm(reply->cause)) {
+                error = ENDAT_ERROR_EXCHANGE;
+            } else if (is_lost && !is_in_time) {
+                clear_reply(reply);
+                error = ENDAT_ERROR_TIMEOUT;
+            } else if (is_lost) {
+                is_in_time = endat_wait_more(wait, ENDAT_REQUEST_PAUSE_US);
+            } else {
+                error = ENDAT_OK;
+            }
+        }
+    }
+    return error;
 }
 
 endat_error endat_exchange(const endat_card *card, uint32_t channel, uint32_t id, uint32_t address, uint32_t data, uint32_t limit_ms,
@@ -56,9 +119,7 @@ endat_error endat_exchange(const endat_card *card, uint32_t channel, uint32_t id
     endat_wait wait;
     endat_error error = endat_needs_t_format(card, channel);
 
-    reply->cause = 0u;
-    reply->id = 0u;
-    reply->data = 0u;
+    clear_reply(reply);
     if ((error == ENDAT_OK) && !(ENDAT_FITS(ENDAT_MAP_T_FORMAT_SEND_ID, id) && ENDAT_FITS(ENDAT_MAP_T_FORMAT_SEND_ADDRESS, address) &&
                                  ENDAT_FITS(ENDAT_MAP_T_FORMAT_SEND_DATA, data))) {
         error = ENDAT_ERROR_ARGUMENT;
@@ -71,20 +132,18 @@ endat_error endat_exchange(const endat_card *card, uint32_t channel, uint32_t id
 }
 
 /** An exchange with the EEPROM, when it is no longer busy with what was written before. */
-static endat_error eeprom(const endat_card *card, uint32_t channel, uint32_t request, endat_wait *wait, uint8_t *data)
+static endat_error eeprom(const endat_card *card, uint32_t channel, uint32_t request, endat_wait *wait, endat_reply *reply)
 {
-    endat_reply reply;
-    endat_error error = exchange_within(card, channel, request, wait, &reply);
+    endat_error error = exchange_within(card, channel, request, wait, reply);
     bool is_in_time = true;
 
-    while ((error == ENDAT_ERROR_EXCHANGE) && (reply.cause == ENDAT_CAUSE_EEPROM_BUSY) && is_in_time) {
+    while ((error == ENDAT_ERROR_EXCHANGE) && (reply->cause == ENDAT_CAUSE_EEPROM_BUSY) && is_in_time) {
         is_in_time = endat_wait_more(wait, ENDAT_REQUEST_PAUSE_US);
-        error = exchange_within(card, channel, request, wait, &reply);
+        error = exchange_within(card, channel, request, wait, reply);
     }
-    if ((error == ENDAT_ERROR_EXCHANGE) && (reply.cause == ENDAT_CAUSE_EEPROM_BUSY)) {
+    if ((error == ENDAT_ERROR_EXCHANGE) && (reply->cause == ENDAT_CAUSE_EEPROM_BUSY)) {
         error = ENDAT_ERROR_BUSY;
     }
-    *data = reply.data;
     return error;
 }
 
@@ -99,72 +158,71 @@ static endat_error needs_address(const endat_card *card, uint32_t channel, uint3
     return error;
 }
 
-endat_error endat_read_eeprom(const endat_card *card, uint32_t channel, uint32_t address, uint32_t limit_ms, uint8_t *data)
+endat_error endat_read_eeprom(const endat_card *card, uint32_t channel, uint32_t address, uint32_t limit_ms, endat_reply *reply)
 {
     endat_wait wait;
     endat_error error = needs_address(card, channel, address);
 
+    clear_reply(reply);
     if (error == ENDAT_OK) {
         endat_wait_begin(&wait, card, endat_ms(limit_ms));
-        error = eeprom(card, channel, request_word(ENDAT_MAP_T_FORMAT_SEND_ID_READ_EEPROM, address, 0u), &wait, data);
+        error = eeprom(card, channel, request_word(ENDAT_MAP_T_FORMAT_SEND_ID_READ_EEPROM, address, 0u), &wait, reply);
     }
     return error;
 }
 
-endat_error endat_write_eeprom(const endat_card *card, uint32_t channel, uint32_t address, uint8_t data, uint32_t limit_ms)
+endat_error endat_write_eeprom(const endat_card *card, uint32_t channel, uint32_t address, uint8_t data, uint32_t limit_ms,
+                               endat_reply *reply)
 {
-    uint8_t back = 0u;
     endat_wait wait;
     endat_error error = needs_address(card, channel, address);
 
+    clear_reply(reply);
     if (error == ENDAT_OK) {
         endat_wait_begin(&wait, card, endat_ms(limit_ms));
-        error = eeprom(card, channel, request_word(ENDAT_MAP_T_FORMAT_SEND_ID_WRITE_EEPROM, address, data), &wait, &back);
+        error = eeprom(card, channel, request_word(ENDAT_MAP_T_FORMAT_SEND_ID_WRITE_EEPROM, address, data), &wait, reply);
     }
     if (error == ENDAT_OK) {
-        error = eeprom(card, channel, request_word(ENDAT_MAP_T_FORMAT_SEND_ID_READ_EEPROM, address, 0u), &wait, &back);
+        error = eeprom(card, channel, request_word(ENDAT_MAP_T_FORMAT_SEND_ID_READ_EEPROM, address, 0u), &wait, reply);
     }
-    if ((error == ENDAT_OK) && (back != data)) {
+    if ((error == ENDAT_OK) && (reply->data != data)) {
         error = ENDAT_ERROR_READ_BACK;
     }
     return error;
 }
 
-/** What is to be reset, and how long it may take. */
+/** What is to be reset, how long it may take, and what comes back. */
 typedef struct {
     uint32_t id;
     uint32_t limit_ms;
+    endat_reply *reply;
 } reset_request;
 
 static endat_error reset_in_a_row(const endat_card *card, uint32_t channel, const void *what)
 {
     const reset_request *const reset = (const reset_request *)what;
-    endat_reply reply;
     uint32_t n;
     endat_error error = ENDAT_OK;
 
     for (n = 0u; (n < ENDAT_MAP_T_FORMAT_RESETS_IN_A_ROW) && (error == ENDAT_OK); n++) {
-        error = endat_exchange(card, channel, reset->id, 0u, 0u, reset->limit_ms, &reply);
-        /* The replies tell what is to be cleared, until it is. */
-        if ((error == ENDAT_ERROR_EXCHANGE) &&
-            ((reply.cause == ENDAT_CAUSE_COUNTING_ERROR) || (reply.cause == ENDAT_CAUSE_MULTI_TURN_ALARM))) {
-            error = ENDAT_OK;
-        }
+        error = endat_exchange(card, channel, reset->id, 0u, 0u, reset->limit_ms, reset->reply);
     }
     if (error == ENDAT_OK) {
-        error = endat_exchange(card, channel, ENDAT_MAP_T_FORMAT_SEND_ID_EVERYTHING, 0u, 0u, reset->limit_ms, &reply);
+        error = endat_exchange(card, channel, ENDAT_MAP_T_FORMAT_SEND_ID_EVERYTHING, 0u, 0u, reset->limit_ms, reset->reply);
+    }
+    if ((error == ENDAT_OK) && (reset->reply->cause != 0u)) {
+        error = ENDAT_ERROR_EXCHANGE;
     }
     return error;
 }
 
-endat_error endat_reset_encoder(const endat_card *card, uint32_t channel, uint32_t id, uint32_t limit_ms)
+endat_error endat_reset_encoder(const endat_card *card, uint32_t channel, uint32_t id, uint32_t limit_ms, endat_reply *reply)
 {
-    const reset_request what = {id, limit_ms};
+    const reset_request what = {id, limit_ms, reply};
     endat_error error = endat_needs_t_format(card, channel);
-    const bool is_reset = (id == ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_ERRORS) || (id == ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_SINGLE_TURN) ||
-                          (id == ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_MULTI_TURN);
 
-    if ((error == ENDAT_OK) && !is_reset) {
+    clear_reply(reply);
+    if ((error == ENDAT_OK) && !is_reset(id)) {
         error = ENDAT_ERROR_ARGUMENT;
     }
     if (error == ENDAT_OK) {
@@ -210,13 +268,16 @@ static bool are_allowed(const endat_t_format_settings *s)
                         (s->bit_cycles <= ENDAT_MAP_CONFIG_FRAME_PERIOD_CYCLES_T_FORMAT_MAX);
     const bool is_gap = (s->reply_gap_us >= ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_T_FORMAT_MIN) &&
                         (s->reply_gap_us <= ENDAT_MAP_CONFIG_LIMITS_START_TIMEOUT_US_T_FORMAT_MAX);
-    /* A trigger never goes to the EEPROM. */
-    const bool is_request = ENDAT_FITS(ENDAT_MAP_CONFIG_TIMING_REQUEST_ID, s->request_id) &&
-                            (s->request_id != ENDAT_MAP_T_FORMAT_SEND_ID_WRITE_EEPROM) &&
-                            (s->request_id != ENDAT_MAP_T_FORMAT_SEND_ID_READ_EEPROM);
+    /* A trigger goes neither to the EEPROM, nor does it clear something. */
+    const bool is_request = (s->request_id == ENDAT_MAP_T_FORMAT_SEND_ID_SINGLE_TURN) ||
+                            (s->request_id == ENDAT_MAP_T_FORMAT_SEND_ID_MULTI_TURN) ||
+                            (s->request_id == ENDAT_MAP_T_FORMAT_SEND_ID_ENCODER_ID) ||
+                            (s->request_id == ENDAT_MAP_T_FORMAT_SEND_ID_EVERYTHING);
+    /* A filter of half a bit leaves nothing of it. */
+    const bool is_filter = ENDAT_FITS(ENDAT_MAP_CONFIG_TIMING_FILTER_CYCLES, s->filter_cycles) &&
+                           ((2u * s->filter_cycles) < s->bit_cycles);
 
-    return is_bit && is_gap && is_request && ENDAT_FITS(ENDAT_MAP_CONFIG_TIMING_FILTER_CYCLES, s->filter_cycles) &&
-           ENDAT_FITS(ENDAT_MAP_CONFIG_LIMITS_FIELD_GAP_US, s->field_gap_us);
+    return is_bit && is_gap && is_request && is_filter && ENDAT_FITS(ENDAT_MAP_CONFIG_LIMITS_FIELD_GAP_US, s->field_gap_us);
 }
 
 endat_error endat_write_t_format_settings(const endat_card *card, uint32_t channel, const endat_t_format_settings *settings)

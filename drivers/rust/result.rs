@@ -77,7 +77,7 @@ pub struct Reading {
     pub position: u64,
     /// Its width; 0: none yet, or T-format.
     pub width_bits: u32,
-    /// First falling clock edge of the frame that brought it: system clock cycles, wrapping.
+    /// First falling clock edge of the frame that brought it; T-format: start bit of the request. System clock cycles, wrapping.
     pub timestamp: u32,
     /// Number of results, wrapping.
     pub sequence: u16,

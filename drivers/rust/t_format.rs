@@ -10,12 +10,15 @@ use endat_regs::causes;
 use endat_regs::t_format::{request, RESETS_IN_A_ROW};
 use endat_regs::Field;
 
+/// An exchange is over after so long, whatever comes: the longest pauses that can be set, and all fields at the slowest bit.
+const EXCHANGE_US: u32 = 2_000;
+
 /// What came back of a request.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reply {
-    /// Why the exchange failed, a number of [`causes::ALL`]; 0 = it did not.
-    pub cause: u8,
-    /// ID that the reply repeats.
+    /// An alarm that the encoder told in it, a number of [`causes::ALL`]: counting error, or multi-turn or battery; 0 = none.
+    pub alarm: u8,
+    /// ID that it repeats.
     pub id: u8,
     /// EEPROM data as they came last.
     pub data: u8,
@@ -39,7 +42,7 @@ pub struct Fields {
 pub struct TFormatSettings {
     /// A bit: [`Card::period_cycles`].
     pub bit_cycles: u32,
-    /// Request ID of a trigger: `endat_regs::t_format::request`.
+    /// Request ID of a trigger, 0 to 3: `endat_regs::t_format::request`.
     pub request_id: u32,
     /// Pulses up to this length are ignored.
     pub filter_cycles: u32,
@@ -84,10 +87,45 @@ impl TFormatSettings {
     }
 }
 
+/// These clear something.
+const RESETS: [u8; 3] = [
+    request::CLEAR_ERRORS,
+    request::CLEAR_SINGLE_TURN,
+    request::CLEAR_MULTI_TURN,
+];
+/// What a trigger may ask for: neither the EEPROM, nor to clear something.
+const OF_TRIGGERS: [u8; 4] = [
+    request::SINGLE_TURN,
+    request::MULTI_TURN,
+    request::ENCODER_ID,
+    request::EVERYTHING,
+];
+/// These come with a good reply.
+const ALARMS: [u8; 2] = [
+    causes::number(causes::t_format::COUNTING_ERROR as u8, true),
+    causes::number(causes::t_format::MULTI_TURN_ALARM as u8, true),
+];
+const BUSY: &Field = field!(T_FORMAT.answer.busy);
+const DONE: &Field = field!(T_FORMAT.answer.done);
+
+/// The ID that the reply repeats.
+fn repeats(answer: u32) -> u8 {
+    field!(T_FORMAT.answer.id).of(answer) as u8
+}
+
+/// A request as it is written; none if it does not fit.
+fn request_word([id, address, data]: [u8; 3]) -> Option<u32> {
+    let word = field!(T_FORMAT.send.id).put(0, id.into())?;
+    let word = field!(T_FORMAT.send.address).put(word, address.into())?;
+    field!(T_FORMAT.send.data).put(word, data.into())
+}
+
 impl<L: Link, D: DelayNs> Card<L, D> {
     /// Sends a request of its own, at once or behind the exchange under way, and waits for the reply. The address and the data are those
-    /// of the EEPROM's requests. A trigger that falls into it is not taken, and the next result says so.
-    /// [`Error::Exchange`] if it failed.
+    /// of the EEPROM's requests. A trigger that falls into it is not taken, and the next result says so. The limit is for what is under
+    /// way before it; the exchange itself takes less than 2 ms, and is waited for.
+    ///
+    /// [`Error::Exchange`] if it failed; a request that did not reach the card goes out again, and is [`Error::Timeout`] at the limit.
     pub fn exchange(
         &mut self,
         channel: usize,
@@ -103,31 +141,49 @@ impl<L: Link, D: DelayNs> Card<L, D> {
     fn exchange_within(
         &mut self,
         channel: usize,
-        [id, address, data]: [u8; 3],
+        request: [u8; 3],
         wait: &mut Wait,
     ) -> Result<Reply, Error<L::Error>> {
-        let word = field!(T_FORMAT.send.id).put(0, id.into());
-        let word = word.and_then(|word| field!(T_FORMAT.send.address).put(word, address.into()));
-        let word = word.and_then(|word| field!(T_FORMAT.send.data).put(word, data.into()));
-        let word = word.ok_or(Error::Argument)?;
-        let (busy, done) = (
-            field!(T_FORMAT.answer.busy),
-            field!(T_FORMAT.answer.done),
-        );
-        // One that somebody has asked for before comes first.
-        self.answer_when(channel, wait, |answer| busy.of(answer) == 0)?;
-        self.link.write(word!(T_FORMAT.send, channel), word)?;
-        let answer = self.answer_when(channel, wait, |answer| done.of(answer) != 0)?;
-        let cause = field!(T_FORMAT.answer.cause).of(answer) as u8;
-        let reply = Reply {
-            cause: causes::number(cause, true),
-            id: field!(T_FORMAT.answer.id).of(answer) as u8,
-            data: field!(T_FORMAT.answer.data).of(answer) as u8,
-        };
-        match reply.cause {
-            0 => Ok(reply),
-            cause => Err(Error::Exchange { cause }),
+        let word = request_word(request).ok_or(Error::Argument)?;
+        let id = request[0];
+        let before = self.answer_when(channel, wait, |answer| BUSY.of(answer) == 0)?;
+        // A write that is lost leaves the answer of before: another ID between tells. Resets count in a row only.
+        if DONE.of(before) != 0 && repeats(before) == id && !RESETS.contains(&id) {
+            let other = match id {
+                request::ENCODER_ID => request::SINGLE_TURN,
+                _ => request::ENCODER_ID,
+            };
+            let word = request_word([other, 0, 0]).ok_or(Error::Argument)?;
+            self.exchange_once(channel, word)?;
         }
+        let mut is_in_time = true;
+        loop {
+            let answer = self.exchange_once(channel, word)?;
+            let cause = field!(T_FORMAT.answer.cause).of(answer) as u8;
+            let cause = causes::number(cause, true);
+            if cause != 0 && !ALARMS.contains(&cause) {
+                return Err(Error::Exchange { cause });
+            }
+            if repeats(answer) == id {
+                return Ok(Reply {
+                    alarm: cause,
+                    id,
+                    data: field!(T_FORMAT.answer.data).of(answer) as u8,
+                });
+            }
+            // It is the answer of before.
+            if !is_in_time {
+                return Err(Error::Timeout);
+            }
+            is_in_time = self.pause(wait, REQUEST_PAUSE_US);
+        }
+    }
+
+    /// Sends a request that nobody is before, and waits for the end of the exchange; the answer.
+    fn exchange_once(&mut self, channel: usize, word: u32) -> Result<u32, Error<L::Error>> {
+        self.link.write(word!(T_FORMAT.send, channel), word)?;
+        let mut wait = Wait::of_us(EXCHANGE_US);
+        self.answer_when(channel, &mut wait, |answer| DONE.of(answer) != 0)
     }
 
     fn answer_when(
@@ -141,6 +197,7 @@ impl<L: Link, D: DelayNs> Card<L, D> {
             let answer = self.link.read(word!(T_FORMAT.answer, channel))?;
             match is_so(answer) {
                 true => return Ok(answer),
+                // The last look comes behind the last pause.
                 false if is_in_time => is_in_time = self.pause(wait, REQUEST_PAUSE_US),
                 false => return Err(Error::Timeout),
             }
@@ -151,14 +208,13 @@ impl<L: Link, D: DelayNs> Card<L, D> {
     fn eeprom(
         &mut self,
         channel: usize,
-        words: [u8; 3],
+        request: [u8; 3],
         wait: &mut Wait,
     ) -> Result<u8, Error<L::Error>> {
         let busy = causes::number(causes::t_format::EEPROM_BUSY as u8, true);
         let mut is_in_time = true;
         loop {
-            match self.exchange_within(channel, words, wait) {
-                // The last look comes behind the last pause.
+            match self.exchange_within(channel, request, wait) {
                 Err(Error::Exchange { cause }) if cause == busy && is_in_time => {
                     is_in_time = self.pause(wait, REQUEST_PAUSE_US);
                 }
@@ -176,11 +232,12 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         limit_ms: u32,
     ) -> Result<u8, Error<L::Error>> {
         self.needs_t_format(channel)?;
-        let words = [request::READ_EEPROM, address, 0];
-        self.eeprom(channel, words, &mut Wait::of_ms(limit_ms))
+        let request = [request::READ_EEPROM, address, 0];
+        self.eeprom(channel, request, &mut Wait::of_ms(limit_ms))
     }
 
-    /// Writes a byte of the EEPROM, and reads it back when it is there; address 127 is the page register.
+    /// Writes a byte of the EEPROM, and reads it back when it is there; address 127 is the page register. [`Error::Busy`]: it was still
+    /// writing at the limit, and what it reads as then is not known; [`Error::ReadBack`]: it has another byte.
     pub fn write_eeprom(
         &mut self,
         channel: usize,
@@ -198,29 +255,26 @@ impl<L: Link, D: DelayNs> Card<L, D> {
     }
 
     /// Clears errors, angle or turns of the encoder: one of the requests that count only several times in a row, so no source triggers
-    /// meanwhile. The limit is that of each exchange; [`Error::Exchange`] if an alarm is still there behind them.
+    /// meanwhile. [`Error::Exchange`] if one of them failed, or an alarm is still there behind them. What it has done is seen in the next
+    /// position: a link without a check may have lost one of them.
     pub fn reset_encoder(
         &mut self,
         channel: usize,
         id: u8,
         limit_ms: u32,
     ) -> Result<(), Error<L::Error>> {
-        use causes::t_format::{COUNTING_ERROR, MULTI_TURN_ALARM};
-        use request::{CLEAR_ERRORS, CLEAR_MULTI_TURN, CLEAR_SINGLE_TURN, EVERYTHING};
         self.needs_t_format(channel)?;
-        if ![CLEAR_ERRORS, CLEAR_SINGLE_TURN, CLEAR_MULTI_TURN].contains(&id) {
+        if !RESETS.contains(&id) {
             return Err(Error::Argument);
         }
-        // The replies tell what is to be cleared, until it is.
-        let alarms = [COUNTING_ERROR, MULTI_TURN_ALARM].map(|code| causes::number(code as u8, true));
         self.without_triggers(|card| {
             for _ in 0..RESETS_IN_A_ROW {
-                match card.exchange(channel, id, 0, 0, limit_ms) {
-                    Err(Error::Exchange { cause }) if alarms.contains(&cause) => {}
-                    came => drop(came?),
-                }
+                card.exchange(channel, id, 0, 0, limit_ms)?;
             }
-            card.exchange(channel, EVERYTHING, 0, 0, limit_ms).map(drop)
+            match card.exchange(channel, request::EVERYTHING, 0, 0, limit_ms)? {
+                Reply { alarm: 0, .. } => Ok(()),
+                Reply { alarm: cause, .. } => Err(Error::Exchange { cause }),
+            }
         })
     }
 
@@ -245,18 +299,24 @@ impl<L: Link, D: DelayNs> Card<L, D> {
         Ok(TFormatSettings::of(self.settings_words(channel)?))
     }
 
-    /// Writes them, while no source triggers, and reads them back. What the map does not allow is refused, and nothing written.
+    /// Writes them, while no source triggers, and reads them back. What the map does not allow is refused, and nothing written; so are
+    /// requests of a trigger that bring no position or kind, and a filter of half a bit or more.
     pub fn write_t_format_settings(
         &mut self,
         channel: usize,
         settings: &TFormatSettings,
     ) -> Result<(), Error<L::Error>> {
         self.needs_t_format(channel)?;
+        let is_request = OF_TRIGGERS.iter().any(|id| u32::from(*id) == settings.request_id);
+        let fits = |((_, field), value): ((usize, &Field), u32)| field.allows(value, true);
+        let are_allowed = places().into_iter().zip(settings.values()).all(fits);
+        // A filter of half a bit leaves nothing of it.
+        let is_short = 2 * u64::from(settings.filter_cycles) < settings.bit_cycles.into();
+        if !(is_request && are_allowed && is_short) {
+            return Err(Error::Argument);
+        }
         let mut words = self.settings_words(channel)?;
         for ((word, field), value) in places().into_iter().zip(settings.values()) {
-            if !field.allows(value, true) {
-                return Err(Error::Argument);
-            }
             words[word] = field.put(words[word], value).ok_or(Error::Argument)?;
         }
         self.without_triggers(|card| card.write_settings_words(channel, words))

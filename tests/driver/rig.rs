@@ -121,6 +121,8 @@ pub struct Rig {
     slow_cycles: u64,
     /// Wrong bits so far.
     pub flipped: u64,
+    /// Which write from now on is lost, if any.
+    loses: u32,
 }
 
 impl Rig {
@@ -179,6 +181,7 @@ impl Rig {
             encoders: project.card.channels.iter().filter(|c| c.is_endat()).count(),
             slow_cycles: 0,
             flipped: 0,
+            loses: 0,
         }
     }
 
@@ -260,6 +263,10 @@ impl Rig {
             }
             "slow" => {
                 self.slow_cycles = u64::from(number(1)) * cycles_per_us;
+                String::new()
+            }
+            "lose" => {
+                self.loses = number(1);
                 String::new()
             }
             "irq" => format!("{:x}", self.front.bench().get("irq_o")),
@@ -351,7 +358,13 @@ impl Rig {
                 .map(|_| format!("{:02x}", host.receive()))
                 .collect(),
             (Front::Virtual(card), "send") => {
-                card.send_bytes(&bytes(words[1]));
+                let sent = bytes(words[1]);
+                // A write begins with a 1.
+                let is_lost = sent[0] == 1 && self.loses == 1;
+                self.loses = self.loses.saturating_sub(u32::from(sent[0] == 1));
+                if !is_lost {
+                    card.send_bytes(&sent);
+                }
                 String::new()
             }
             (Front::Virtual(card), "receive") => {

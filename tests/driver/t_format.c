@@ -39,20 +39,42 @@ static void requests(const endat_card *card)
 
 static void eeprom(const endat_card *card)
 {
-    uint8_t data = 0;
+    endat_reply reply;
 
     for (uint32_t address = 1; address < 4; address++)
-        GOOD(endat_write_eeprom(card, T_FORMAT, address, (uint8_t)(0x5A + address), LIMIT_MS));
+        GOOD(endat_write_eeprom(card, T_FORMAT, address, (uint8_t)(0x5A + address), LIMIT_MS, &reply));
     for (uint32_t address = 1; address < 4; address++) {
-        GOOD(endat_read_eeprom(card, T_FORMAT, address, LIMIT_MS, &data));
-        CHECK(data == 0x5A + address, "%x at %x", data, (unsigned)address);
+        GOOD(endat_read_eeprom(card, T_FORMAT, address, LIMIT_MS, &reply));
+        CHECK(reply.data == 0x5A + address, "%x at %x", reply.data, (unsigned)address);
     }
     /* It is written and not yet read back: the EEPROM takes its time. */
-    IS(endat_write_eeprom(card, T_FORMAT, 1, 0xA5, 0), ENDAT_ERROR_BUSY);
-    GOOD(endat_read_eeprom(card, T_FORMAT, 1, LIMIT_MS, &data));
-    CHECK(data == 0xA5, "%x", data);
-    IS(endat_read_eeprom(card, T_FORMAT, 128, LIMIT_MS, &data), ENDAT_ERROR_ARGUMENT);
-    IS(endat_read_eeprom(card, ENDAT, 1, LIMIT_MS, &data), ENDAT_ERROR_PROTOCOL);
+    IS(endat_write_eeprom(card, T_FORMAT, 1, 0xA5, 0, &reply), ENDAT_ERROR_BUSY);
+    CHECK(reply.cause == ENDAT_CAUSE_EEPROM_BUSY, "%s", endat_cause_text(reply.cause));
+    GOOD(endat_read_eeprom(card, T_FORMAT, 1, LIMIT_MS, &reply));
+    CHECK(reply.data == 0xA5, "%x", reply.data);
+    IS(endat_read_eeprom(card, T_FORMAT, 128, LIMIT_MS, &reply), ENDAT_ERROR_ARGUMENT);
+    IS(endat_read_eeprom(card, ENDAT, 1, LIMIT_MS, &reply), ENDAT_ERROR_PROTOCOL);
+}
+
+/* A request that is lost on the way is not told as done: the answer of before is none of it. */
+static void lost(const endat_card *card)
+{
+    endat_reply reply;
+
+    for (uint32_t first = 1; first < 4; first++) {
+        for (uint32_t write = 1; write < 4; write++) {
+            GOOD(endat_write_eeprom(card, T_FORMAT, 9, 0x11, LIMIT_MS, &reply));
+            GOOD(endat_write_eeprom(card, T_FORMAT, 10, 0x22, LIMIT_MS, &reply));
+            ask("lose %x", (unsigned)first);
+            GOOD(endat_read_eeprom(card, T_FORMAT, 9, LIMIT_MS, &reply));
+            CHECK(reply.data == 0x11 && reply.id == ENDAT_MAP_T_FORMAT_SEND_ID_READ_EEPROM, "%x", reply.data);
+            ask("lose %x", (unsigned)write);
+            GOOD(endat_write_eeprom(card, T_FORMAT, 9, 0x33, LIMIT_MS, &reply));
+            ask("lose 0");
+            GOOD(endat_read_eeprom(card, T_FORMAT, 9, LIMIT_MS, &reply));
+            CHECK(reply.data == 0x33, "%x", reply.data);
+        }
+    }
 }
 
 static void settings(const endat_card *card)
@@ -70,6 +92,14 @@ static void settings(const endat_card *card)
     after = before;
     after.request_id = ENDAT_MAP_T_FORMAT_SEND_ID_WRITE_EEPROM;
     IS(endat_write_t_format_settings(card, T_FORMAT, &after), ENDAT_ERROR_ARGUMENT);
+    after.request_id = 5;
+    IS(endat_write_t_format_settings(card, T_FORMAT, &after), ENDAT_ERROR_ARGUMENT);
+    after.request_id = ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_ERRORS;
+    IS(endat_write_t_format_settings(card, T_FORMAT, &after), ENDAT_ERROR_ARGUMENT);
+    after = before;
+    after.filter_cycles = before.bit_cycles / 2;
+    IS(endat_write_t_format_settings(card, T_FORMAT, &after), ENDAT_ERROR_ARGUMENT);
+    after = before;
     after.request_id = ENDAT_MAP_T_FORMAT_SEND_ID_MULTI_TURN;
     after.reply_gap_us = 64;
     IS(endat_write_t_format_settings(card, T_FORMAT, &after), ENDAT_ERROR_ARGUMENT);
@@ -87,13 +117,16 @@ static void settings(const endat_card *card)
 
 void t_format(const endat_card *card)
 {
+    endat_reply reply;
+
     ask("delay 7d0");
     CHECK(turns(card) == 200, "%u turns", (unsigned)turns(card));
     requests(card);
     eeprom(card);
     settings(card);
-    IS(endat_reset_encoder(card, T_FORMAT, ENDAT_MAP_T_FORMAT_SEND_ID_EVERYTHING, LIMIT_MS), ENDAT_ERROR_ARGUMENT);
-    GOOD(endat_reset_encoder(card, T_FORMAT, ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_MULTI_TURN, LIMIT_MS));
+    lost(card);
+    IS(endat_reset_encoder(card, T_FORMAT, ENDAT_MAP_T_FORMAT_SEND_ID_EVERYTHING, LIMIT_MS, &reply), ENDAT_ERROR_ARGUMENT);
+    GOOD(endat_reset_encoder(card, T_FORMAT, ENDAT_MAP_T_FORMAT_SEND_ID_CLEAR_MULTI_TURN, LIMIT_MS, &reply));
     ask("delay 3e8");
     CHECK(turns(card) == 0, "%u turns", (unsigned)turns(card));
 }

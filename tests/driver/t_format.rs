@@ -48,7 +48,8 @@ fn the_rust_driver_has_the_t_format_encoder() {
     assert_eq!(turns(&mut card), 200);
 
     let reply = card.exchange(T_FORMAT, request::EVERYTHING, 0, 0, LIMIT_MS);
-    assert_eq!(reply.unwrap().id, request::EVERYTHING);
+    let reply = reply.unwrap();
+    assert_eq!((reply.id, reply.alarm), (request::EVERYTHING, 0));
     let fields = card.read_fields(T_FORMAT).unwrap();
     assert_eq!((fields.encoder_id, fields.alarm), (0x17, 0));
     let unknown = causes::number(cause::UNKNOWN_REQUEST as u8, true);
@@ -74,6 +75,18 @@ fn the_rust_driver_has_the_t_format_encoder() {
         Err(Error::Argument)
     );
 
+    // A request that is lost on the way is not told as done.
+    for lost in 1..4 {
+        card.write_eeprom(T_FORMAT, 10, 0x22, LIMIT_MS).unwrap();
+        world.told(&format!("lose {lost:x}"));
+        assert_eq!(card.read_eeprom(T_FORMAT, 2, LIMIT_MS), Ok(0x22));
+        world.told(&format!("lose {lost:x}"));
+        card.write_eeprom(T_FORMAT, 9, 0x40 + lost, LIMIT_MS)
+            .unwrap();
+        world.told("lose 0");
+        assert_eq!(card.read_eeprom(T_FORMAT, 9, LIMIT_MS), Ok(0x40 + lost));
+    }
+
     let before = card.read_t_format_settings(T_FORMAT).unwrap();
     assert_eq!(before.bit_cycles, card.period_cycles(2_500_000));
     let wrong = [
@@ -83,6 +96,14 @@ fn the_rust_driver_has_the_t_format_encoder() {
         },
         TFormatSettings {
             request_id: request::READ_EEPROM.into(),
+            ..before
+        },
+        TFormatSettings {
+            request_id: request::CLEAR_ERRORS.into(),
+            ..before
+        },
+        TFormatSettings {
+            filter_cycles: before.bit_cycles / 2,
             ..before
         },
         TFormatSettings {

@@ -1,6 +1,7 @@
 //! What is wrong with a line or an encoder, told apart, within its limit and at every phase of a frame.
 
 use super::rig::Rig;
+use crate::tools::third;
 use endat_hdl::endat::{
     timing::{recovery_min_cycles, PROBE_US, RECOVERY_MIN_NS, SETTLE_US},
     transaction::cause::{self, flag},
@@ -90,10 +91,17 @@ fn a_late_start_bit_is_told_from_a_silent_encoder() {
     }
 }
 
+/// Half clock periods of a frame; a third of them.
+fn phases() -> Vec<Time> {
+    let all: Vec<Time> = (0..FRAME_LENGTH).step_by(HALF as usize).collect();
+    let line = include_str!("../../hdl/endat/line_health.rs");
+    third(&all, line.len()).copied().collect()
+}
+
 #[test]
 fn a_line_stuck_at_any_phase_has_its_cause_and_comes_back() {
     for level in [false, true] {
-        for from in (0..FRAME_LENGTH).step_by(HALF as usize) {
+        for from in phases() {
             let until = FRAME + WRONG;
             let mut line = LineConfig::cable(10.0);
             line.stuck = Some(Stuck {
@@ -130,7 +138,7 @@ fn a_line_stuck_at_any_phase_has_its_cause_and_comes_back() {
 
 #[test]
 fn an_encoder_unplugged_at_any_phase_is_no_encoder_and_comes_back() {
-    for from in (0..FRAME_LENGTH).step_by(HALF as usize) {
+    for from in phases() {
         let until = FRAME + WRONG;
         let mut encoder = encoder();
         encoder.unplugged.push(FRAME + from..until);

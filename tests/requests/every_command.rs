@@ -1,6 +1,7 @@
 //! Every command with every combination of additional data, at every width, rate and cable.
 
 use super::rig::Rig;
+use crate::tools::third;
 use endat_hdl::endat::transaction::cause;
 use endat_hdl::protocol::ModeCommand::{self, *};
 use endat_sim::{
@@ -30,8 +31,10 @@ fn address(command: ModeCommand) -> u8 {
 }
 
 fn all(system_hz: u64, endat_hz: u64) {
+    let widths: Vec<u32> = (1..=48).collect();
+    let shape = include_str!("../../hdl/endat/command_shape.rs");
     for cable_m in [0.0, 100.0] {
-        for width in 1..=48 {
+        for &width in third(&widths, shape.len()) {
             let mut rig = Rig::new(system_hz, endat_hz, quick(width, endat_hz), cable_m);
             rig.good_position(); // measures the delay
             rig.good(SelectMemory, area::OPERATING_PARAMETERS, 0);

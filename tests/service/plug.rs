@@ -4,6 +4,7 @@ use super::rig::{quick, times};
 use crate::requests::lanes::{
     self, Rig, FRAME_TIME, HALF_PERIOD, LANES, POSITION_BITS, RECOVERY, SYSTEM_HZ,
 };
+use crate::tools::third;
 use endat_hdl::{
     encoder_port::EncoderPort,
     endat::{
@@ -200,11 +201,15 @@ impl Hosts {
     }
 }
 
-/// Half clock periods of the frame and its recovery time, from just before its trigger.
+/// Half clock periods of the frame and its recovery time, from just before its trigger; a third of them.
 fn places() -> impl Iterator<Item = Time> {
-    (0..)
+    let all: Vec<Time> = (0..)
         .map(|i| PULLED_FROM + i * HALF_PERIOD)
         .take_while(|t| *t < PULLED_FROM + US + FRAME_TIME + RECOVERY)
+        .collect();
+    let service = include_str!("../../hdl/endat/service.rs");
+    let places: Vec<Time> = third(&all, service.len()).copied().collect();
+    places.into_iter()
 }
 
 /// Pulls the plug of each lane for its time, in a frame with additional data 1 and 2 and a request. Everything is well again afterwards.

@@ -21,9 +21,9 @@ def device(port: str) -> Any:
     return context.DeviceTestContext(server.EndatCard, properties={"port": port}, process=True, timeout=120)
 
 
-def test_a_client_of_tango_reads_positions_and_the_memory_of_encoders() -> None:
+def test_a_client_of_tango_reads_positions_and_the_memory_of_encoders(service: str) -> None:
     """Catches an attribute without unit, a position that is told as good and is none, and a call that the package does not have any more."""
-    with device("virtual:s6_two_channel_service") as card:
+    with device(service) as card:
         card.set_timeout_millis(60_000)
         assert card.state() == tango.DevState.ON
         for channel in range(2):

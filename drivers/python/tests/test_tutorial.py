@@ -17,4 +17,4 @@ def test_the_tutorial_records_what_others_read(
     monkeypatch.chdir(tmp_path)
     exec(compile(found[1], str(PAGE), "exec"), {"__name__": "tutorial"})
     shown = capsys.readouterr().out
-    assert "(2000,)" in shown and "unit" in shown and "deg" in shown, shown
+    assert "(500,)" in shown and "unit" in shown and "deg" in shown, shown
